@@ -1,0 +1,28 @@
+"""An ellipse on the ground, set rolling by an impulse: solved exactly, proved valid, drawn.
+
+>>> import rolling_ellipse as re
+>>> trajectory = re.simulate(re.scenes.report, 6.0)
+>>> trajectory.plot(); trajectory.animate("roll.gif")
+"""
+
+from importlib.metadata import version as _version
+
+from . import geometry, scenes
+from ._core import Mode, Validity
+from ._simulate import simulate
+from .animation import animate
+from .kinematics import ConstraintResiduals, constraints, kinematics
+from .motion import flow, period
+from .plotting import plot, plot_strobe
+from .scene import Impulse, InitialState, Scene
+from .trajectory import Status, Trajectory, ValidityWarning, load
+from .validity import Certificate, Thresholds, certify, thresholds
+
+__version__ = _version("rolling-ellipse")
+
+__all__ = [
+    "Certificate", "ConstraintResiduals", "Impulse", "InitialState", "Mode", "Scene", "Status",
+    "Thresholds", "Trajectory", "Validity", "ValidityWarning", "__version__", "animate", "certify",
+    "constraints", "flow", "geometry", "kinematics", "load", "period", "plot", "plot_strobe",
+    "scenes", "simulate", "thresholds",
+]  # fmt: skip

@@ -1,0 +1,43 @@
+"""Conversion of arguments: numbers stay numbers, everything else is refused by name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def number(name: str, value: Any) -> float:
+    """Return ``value`` as a float, or raise TypeError naming the argument."""
+    if not isinstance(value, (str, bytes, complex)):
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            pass
+    raise TypeError(f"{name} must be a number, got {value!r}")
+
+
+def optional_number(name: str, value: Any) -> float | None:
+    return None if value is None else number(name, value)
+
+
+def array(name: str, value: Any) -> FloatArray:
+    """Return ``value`` as a float64 array, or raise TypeError naming the argument."""
+    try:
+        found = np.asarray(value)
+        if found.dtype.kind in "biuf":
+            return found.astype(np.float64, copy=False)
+    except ValueError:  # ragged sequences
+        pass
+    raise TypeError(f"{name} must be a number or an array of numbers, got {value!r}")
+
+
+def choice(name: str, value: Any, valid: tuple[str, ...]) -> str:
+    """Return ``value`` if it is one of the valid names, or raise ValueError listing them."""
+    if value in valid and isinstance(value, str):
+        return value
+    names = ", ".join(repr(v) for v in valid)
+    raise ValueError(f"{name} must be one of {names}, got {value!r}")

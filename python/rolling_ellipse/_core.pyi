@@ -1,0 +1,124 @@
+"""Types of the C++ core (src/bindings.cpp)."""
+
+import enum
+from typing import Any
+
+from ._check import FloatArray
+
+class Mode(enum.IntEnum):
+    """What the body does, one code a sample."""
+
+    ROLLING = 0
+    SLIDING = 1
+    FLIGHT = 2
+    REST = 3
+
+class Validity(enum.Enum):
+    """Is rolling valid for the whole motion?"""
+
+    VALID = 0
+    INVALID = 1
+    EDGE = 2
+    NO_PROOF = 3
+
+class Model(enum.Enum):
+    AUTO = 0
+    ROLLING = 1
+
+class Status(enum.Enum):
+    COMPLETED = 0
+    VALIDITY_LOST = 1
+
+class Impulse:
+    def __init__(self, jx: float, jz: float, dx: float, dz: float) -> None: ...
+
+class Scene:
+    def __init__(
+        self,
+        *,
+        a: float,
+        b: float,
+        mass: float,
+        gravity: float,
+        inertia: float | None,
+        slope: float,
+        friction: float,
+        restitution: float,
+        theta: float,
+        omega: float,
+        x: float,
+        z: float | None,
+        x_dot: float | None,
+        z_dot: float | None,
+        impulse: Impulse | None,
+    ) -> None: ...
+    @property
+    def gyration2(self) -> float: ...
+
+class Solution:
+    @property
+    def status(self) -> Status: ...
+    @property
+    def followed_until(self) -> float: ...
+    @property
+    def valid_until(self) -> float: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def segment_count(self) -> int: ...
+    def sample(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]: ...
+
+def support(theta: Any, a: Any, b: Any) -> Any: ...
+def support_slope(theta: Any, a: Any, b: Any) -> Any: ...
+def support_curvature(theta: Any, a: Any, b: Any) -> Any: ...
+def curvature_radius(theta: Any, a: Any, b: Any) -> Any: ...
+def contact_distance(theta: Any, a: Any, b: Any) -> Any: ...
+def contact_angle(theta: Any, a: Any, b: Any) -> Any: ...
+def centre_path(theta: Any, a: Any, b: Any) -> Any: ...
+def arc_length(theta: Any, a: Any, b: Any) -> Any: ...
+def initial_state(
+    scene: Scene,
+) -> tuple[float, float, float, float, float, float, Mode, float, float, float]: ...
+def certify(
+    scene: Scene,
+) -> tuple[
+    Validity, float | None, float | None, float | None, float | None, float | None, str
+]: ...
+def thresholds(
+    a: float, b: float, gravity: float, gyration2: float | None, friction: float
+) -> tuple[
+    float, float, float | None, float, float | None, float, float, float | None, float, float
+]: ...
+def simulate(scene: Scene, model: Model, t_end: float) -> Solution: ...
+def period(scene: Scene) -> float: ...
+def flow_scalar(
+    t: float,
+    a: float,
+    b: float,
+    theta: float,
+    omega: float,
+    gravity: float,
+    gyration2: float | None,
+) -> tuple[float, float, float]: ...
+def flow_array(
+    n: int,
+    t: FloatArray,
+    a: FloatArray,
+    b: FloatArray,
+    theta: FloatArray,
+    omega: FloatArray,
+    gravity: FloatArray,
+    gyration2: FloatArray,
+    workers: int,
+) -> tuple[FloatArray, FloatArray, FloatArray]: ...
+def constraints(
+    q: FloatArray, q_dot: FloatArray, a: float, b: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]: ...
+def kinematics(
+    theta: FloatArray, omega: FloatArray, a: float, b: float
+) -> tuple[FloatArray, FloatArray]: ...
+def rolling_detail(
+    scene: Scene, theta: FloatArray, omega: FloatArray, x: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]: ...

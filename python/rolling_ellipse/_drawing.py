@@ -1,0 +1,146 @@
+"""The body and its ground as matplotlib artists, for still and moving pictures alike.
+
+Artists live in ground axes (x along the ground, z normal to it); `tilted` turns them to what the
+eye sees. Colours differ in lightness as well as in hue: they read in grey and for colour-blind
+eyes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap, to_rgb
+from matplotlib.patches import Ellipse, Polygon
+from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import Affine2D
+
+from ._core import Mode
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ._check import FloatArray
+    from .scene import Scene
+    from .trajectory import Trajectory
+
+INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
+FILL = to_rgb(BLUE)
+TIMES = LinearSegmentedColormap.from_list("times", ["#bcd9ea", BLUE, INK])  # early to late
+SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be a thin stripe
+
+
+def tilted(scene: Scene) -> Affine2D:
+    """Ground axes as the eye sees them: x down the slope, gravity down the page."""
+    return Affine2D().rotate(-scene.slope)
+
+
+def body_patch(trajectory: Trajectory, i: int, **style: Any) -> Ellipse:
+    """The body at sample i (theta is clockwise, matplotlib's angle is not)."""
+    centre = (float(trajectory.x[i]), float(trajectory.z[i]))
+    angle = -math.degrees(trajectory.theta[i])
+    return Ellipse(centre, 2 * trajectory.scene.a, 2 * trajectory.scene.b, angle=angle, **style)
+
+
+def tip(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """The end of axis a that lies on the right at theta = 0: x and z, (n,) [m]."""
+    a, theta = trajectory.scene.a, trajectory.theta
+    return trajectory.x + a * np.cos(theta), trajectory.z - a * np.sin(theta)
+
+
+def contact_points(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """Where body and ground touch: x and z, (n,) [m]; NaN in flight."""
+    touching = trajectory.mode != Mode.FLIGHT
+    return np.where(touching, trajectory.contact_x, np.nan), np.where(touching, 0.0, np.nan)
+
+
+def view(path: Trajectory) -> tuple[float, float, float, float]:
+    """Left, right, bottom, top [m] of what the eye sees of a motion, with a little air."""
+    size = max(path.scene.a, path.scene.b)
+    top_z = path.z + np.minimum(path.z, size)  # on the ground G is midway up
+    corners = [
+        tilted(path.scene).transform(np.column_stack([path.x + dx, z]))
+        for dx in (-size, size)
+        for z in (np.zeros_like(path.z), top_z)
+    ]
+    seen = np.concatenate(corners)
+    (left, bottom), (right, top) = seen.min(axis=0), seen.max(axis=0)
+    return left - 0.2 * size, right + 0.2 * size, bottom - 0.35 * size, top + 0.25 * size
+
+
+def camera(motion: Trajectory, shape: float | None) -> tuple[FloatArray, float]:
+    """View (left, right, bottom, top) [m] of each frame, (n, 4), and its height over its width."""
+    scene = motion.scene
+    size = max(scene.a, scene.b)
+    left, right, bottom, top = view(motion)
+    follow = right - left > 2 * np.pi * size * SHOWN_TURNS + 4 * size
+    if follow:  # every frame has the size that the tallest needs, relative to its place on the way
+        height = float(np.max(motion.z + np.minimum(motion.z, size)))
+        left, right, bottom, top = -5 * size, 4 * size, -0.8 * size, height + 0.3 * size
+    bottom -= 0.04 * (right - left)  # for the ruler's figures
+    shape = shape or min(max((top - bottom) / (right - left), 0.25), 0.55)
+    wide = max(right - left, (top - bottom) / shape)
+    air, sky = wide - (right - left), wide * shape - (top - bottom)
+    fixed = np.array([left - air / 2, right + air / 2, bottom, top + sky])
+    if not follow:
+        return np.tile(fixed, (motion.t.size, 1)), shape
+    below = tilted(scene).transform(np.column_stack([motion.x, np.zeros_like(motion.x)]))
+    return fixed + below[:, [0, 0, 1, 1]], shape
+
+
+def draw_ground(ax: Axes, path: Trajectory) -> Polygon:
+    """Fill the earth below z = 0, well past both ends of the path and past any view of it."""
+    reach = float(np.ptp(path.x)) + 100 * max(path.scene.a, path.scene.b)
+    left, right = path.x.min() - reach, path.x.max() + reach
+    earth = Polygon(
+        [(left, -reach), (left, 0.0), (right, 0.0), (right, -reach)],
+        facecolor=EARTH, edgecolor=GREY, lw=1, zorder=1,
+        transform=tilted(path.scene) + ax.transData,
+    )  # fmt: skip
+    ax.add_artist(earth)  # add_patch would make room for all of it
+    return earth
+
+
+class Ruler:
+    """Rules the ground: a tick every step, longer every fifth, with its distance.
+
+    It makes the rolling visible. Only the part within `span` [m] of a place on the ground is
+    drawn, so that it costs the same however far the body rolls.
+    """
+
+    def __init__(self, ax: Axes, scene: Scene, span: float) -> None:
+        on_slope = tilted(scene) + ax.transData
+        steps = MaxNLocator(24, steps=[1, 2, 10]).tick_values(0, span)
+        self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
+        self._fifths = math.ceil(span / (5 * self.step))
+        self.ticks = LineCollection([], colors=GREY, lw=1, transform=on_slope, zorder=2)
+        ax.add_artist(self.ticks)
+        self.labels = [
+            ax.text(
+                0, 0, "", color=GREY, fontsize="small", ha="center", va="top", zorder=2,
+                rotation=-math.degrees(scene.slope), clip_on=True, transform=on_slope,
+            )
+            for _ in range(2 * self._fifths + 1)
+        ]  # fmt: skip
+
+    def move(self, x: float) -> None:
+        """Rule the ground around x [m]."""
+        middle = 5 * round(x / (5 * self.step))
+        marks = middle + np.arange(-5 * self._fifths, 5 * self._fifths + 1)
+        lengths = self._depth * np.where(marks % 5 == 0, 2, 1)
+        places = marks * self.step
+        top = np.column_stack([places, np.zeros_like(places)])
+        self.ticks.set_segments(np.stack([top, np.column_stack([places, -lengths])], axis=1))
+        for label, place in zip(self.labels, places[::5], strict=True):
+            label.set_position((place, -2.2 * self._depth))
+            label.set_text(f"{place:.10g} m".replace("-", "−"))
+
+
+def legend_above(ax: Axes) -> None:
+    """A legend above the axes on the right, where it covers nothing."""
+    ax.legend(
+        loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize="small",
+        borderaxespad=0.1, handlelength=1.8, columnspacing=1.2, markerscale=2,
+    )  # fmt: skip

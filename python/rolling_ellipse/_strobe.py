@@ -1,0 +1,159 @@
+"""The body at even times over the ground, as one still picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from . import _drawing as drawing
+from ._drawing import FILL, INK, ORANGE, SHOWN_TURNS, TIMES, legend_above
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Ellipse, Polygon
+
+    from .trajectory import Trajectory
+
+
+@dataclass(frozen=True, repr=False)
+class Strobe:
+    """Artists of `plot_strobe`; bodies[i], hands[i] and point i of `contacts` belong together.
+
+    All data are in ground axes: x along the ground, z normal to it [m].
+    """
+
+    ax: Axes
+    bodies: tuple[Ellipse, ...]
+    hands: tuple[Line2D, ...]
+    centre_path: Line2D
+    contact_path: Line2D
+    contacts: Line2D
+    ground: Polygon
+
+
+def plot_strobe(
+    trajectory: Trajectory,
+    *,
+    ax: Axes | None = None,
+    count: int = 13,
+    t_end: float | None = None,
+) -> Strobe:
+    """Draw the body at even times over the ground, early ones light and late ones dark.
+
+    The hand of each body points to the end of axis a that lies on the right at theta = 0. On a
+    slope the picture is tilted, so that down is down. Positions that the model is not valid for
+    are dotted.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    ax : matplotlib Axes, optional
+        Where to draw; without it, in a new pyplot figure.
+    count : int
+        Number of positions, even in time from the first sample to `t_end`.
+    t_end : float, optional
+        Last time shown [s]. Without it the whole motion is shown, or its first three turns, or
+        its first swing to and fro, where it is longer (the title then says so).
+
+    Returns
+    -------
+    Strobe
+        The artists.
+
+    Raises
+    ------
+    ValueError
+        If `count` or `t_end` is out of range, or the trajectory has no samples.
+    """
+    if trajectory.t.size == 0:
+        raise ValueError("trajectory must have samples, got none")
+    first, last = float(trajectory.t[0]), float(trajectory.t[-1])
+    if count < 1:
+        raise ValueError(f"count must be at least 1, got {count!r}")
+    if t_end is not None and not first <= t_end <= last:
+        raise ValueError(f"t_end must be within [{first:g}, {last:g}] s, got {t_end!r}")
+    end = _uncrowded_until(trajectory) if t_end is None else t_end
+    at = trajectory.sol(np.linspace(first, end, count))
+    path = trajectory.sol(np.linspace(first, end, 801))
+    if ax is None:
+        left, right, bottom, top = drawing.view(path)
+        tall = 0.8 + min(max(9 * (top - bottom) / (right - left), 1.5), 4)
+        ax = plt.figure(figsize=(10, tall), layout="constrained").add_subplot()
+    ground = drawing.draw_ground(ax, path)
+    bodies, hands = _draw_bodies(ax, at)
+    centre_path, contact_path, contacts = _draw_paths(ax, at, path)
+    _dress_strobe(ax, path)
+    title = f"{count} positions over " + (
+        "" if end == last else f"the first {end - first:.3g} s of "
+    )
+    ax.set_title(f"{title}{last - first:.4g} s", loc="left", fontsize="medium")
+    return Strobe(ax, bodies, hands, centre_path, contact_path, contacts, ground)
+
+
+def _uncrowded_until(trajectory: Trajectory) -> float:
+    """Time of three turns or as far a way, or of turning back for the second time [s]."""
+    t, x, omega, scene = trajectory.t, trajectory.x, trajectory.omega, trajectory.scene
+    turned = np.abs(trajectory.theta - trajectory.theta[0]) / (2 * np.pi)
+    moved = np.abs(x - x[0]) / (2 * np.pi * max(scene.a, scene.b))
+    used = np.maximum.accumulate(np.maximum(turned, moved)) / SHOWN_TURNS
+    end = float(t[-1] if used[-1] <= 1 else np.interp(1.0, used, t))
+    for i in np.flatnonzero(omega[:-1] * omega[1:] < 0)[1:2]:
+        zero = t[i] + (t[i + 1] - t[i]) * omega[i] / (omega[i] - omega[i + 1])
+        end = min(end, float(zero))
+    return end
+
+
+def _draw_bodies(ax: Axes, at: Trajectory) -> tuple[tuple[Ellipse, ...], tuple[Line2D, ...]]:
+    on_slope = drawing.tilted(at.scene) + ax.transData
+    tip_x, tip_z = drawing.tip(at)
+    bodies: list[Ellipse] = []
+    hands: list[Line2D] = []
+    for i, t in enumerate(at.t):
+        colour = TIMES(i / (at.t.size - 1) if at.t.size > 1 else 1.0)
+        style = "-" if t < at.valid_until else ":"
+        body = drawing.body_patch(
+            at, i, facecolor=(*FILL, 0.1), edgecolor=colour, lw=1.3, ls=style, zorder=3
+        )
+        body.set_transform(on_slope)
+        ax.add_patch(body)
+        bodies.append(body)
+        hands += ax.plot(
+            [at.x[i], tip_x[i]], [at.z[i], tip_z[i]], color=colour, lw=1.3, ls=style, marker="o",
+            markevery=[1], ms=3, transform=on_slope, zorder=4,
+        )  # fmt: skip
+    return tuple(bodies), tuple(hands)
+
+
+def _draw_paths(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
+    on_slope = drawing.tilted(at.scene) + ax.transData
+    return [
+        *ax.plot(
+            path.x, path.z, color=ORANGE, lw=1.8, transform=on_slope, zorder=5, label="centre"
+        ),
+        *ax.plot(
+            *drawing.contact_points(path), color=INK, lw=2.4, solid_capstyle="round",
+            transform=on_slope, zorder=5, label="contact",
+        ),
+        *ax.plot(
+            *drawing.contact_points(at), ls="none", marker="o", ms=5, mfc="white", mec=INK,
+            transform=on_slope, zorder=6,
+        ),
+    ]  # fmt: skip
+
+
+def _dress_strobe(ax: Axes, path: Trajectory) -> None:
+    left, right, bottom, top = drawing.view(path)
+    ax.set_xlim(left, right, auto=True)  # auto, because the aspect may widen either
+    ax.set_ylim(bottom, top, auto=True)
+    ax.set_aspect("equal", adjustable="datalim")  # so that the ground fills the whole width
+    level = path.scene.slope == 0
+    ax.set_xlabel("x [m]" if level else "horizontal [m]")
+    ax.set_ylabel("z [m]" if level else "vertical [m]")
+    ax.yaxis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
+    ax.spines[["top", "right"]].set_visible(False)
+    legend_above(ax)

@@ -1,0 +1,374 @@
+"""A sampled motion, and everything that follows from it, computed when asked for."""
+
+from __future__ import annotations
+
+import enum
+import json
+import math
+import os
+from dataclasses import KW_ONLY, asdict, dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._check import FloatArray, array
+from .kinematics import ConstraintResiduals, constraints
+from .scene import Impulse, Scene
+
+if TYPE_CHECKING:
+    from .animation import RollingAnimation
+    from .plotting import Overview
+
+_SCHEMA = 1
+_ARRAYS = ("t", "theta", "omega", "x")
+
+
+class Status(enum.Enum):
+    """How a simulation ended; the value is the sentence."""
+
+    COMPLETED = "the motion was followed to the end"
+    VALIDITY_LOST = (
+        "rolling without slip stops being true at valid_until: use samples before it, "
+        "more friction or a slower start"
+    )
+
+
+class ValidityWarning(UserWarning):
+    """Part of the motion is not what a body on the ground would do."""
+
+
+def solve(scene: Scene, model: str, t_end: float) -> _core.Solution:
+    """Return the core's solution of a scene: the motion at any time in [0, t_end]."""
+    return _core.simulate(scene._core_scene, _core.Model[model.upper()], t_end)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory:
+    """A motion sampled at n times. Arrays are float64 and read-only, time is the first axis.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n,)
+        Times [s].
+    theta, omega : ndarray, shape (n,)
+        Angle, clockwise positive [rad]; angular velocity [rad/s].
+    x, z, psi, r : ndarray, shape (n,)
+        Centre [m]; angle and distance from the centre to the contact [rad, m].
+    x_dot, z_dot, psi_dot, r_dot, x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot : ndarray, shape (n,)
+        Their rates.
+    q, q_dot : ndarray, shape (n, 5)
+        x, z, theta, psi, r and their rates.
+    contact_x : ndarray, shape (n,)
+        Where the body touches the ground [m].
+    turns : ndarray, shape (n,)
+        Turns made since the start of the scene.
+    normal_force, friction_force : ndarray, shape (n,)
+        Contact force on the body away from and along the ground [N].
+    friction_needed : ndarray, shape (n,)
+        |F|/N (infinite where N <= 0 without F = 0).
+    multipliers : ndarray, shape (n, 4)
+        Lagrange multipliers of the four constraints; the first two are F and N.
+    energy, kinetic_energy, potential_energy : ndarray, shape (n,)
+        From the state itself [J].
+    mode : ndarray of int8, shape (n,)
+        Codes of `Mode`.
+    scene, model, method, status, message, reason : Scene, str, str, Status, str, str
+        What was asked for, how it ended, and the sentence that says why the model is valid.
+    valid_until : float
+        Time from which on the model is not true [s]; infinite if it always is.
+    events : tuple
+        Changes of mode; empty for rolling.
+    stats : dict
+        Figures of the solver.
+    """
+
+    t: FloatArray
+    theta: FloatArray
+    omega: FloatArray
+    x: FloatArray
+    _: KW_ONLY
+    scene: Scene
+    model: str
+    method: str
+    status: Status
+    message: str
+    reason: str
+    valid_until: float
+    t_end: float
+    events: tuple[()] = ()
+    stats: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in _ARRAYS:
+            values = np.ascontiguousarray(getattr(self, name))
+            values.flags.writeable = False
+            object.__setattr__(self, name, values)
+
+    @classmethod
+    def from_solution(
+        cls, scene: Scene, model: str, solution: _core.Solution, times: FloatArray
+    ) -> Trajectory:
+        """Sample the core's solution at the given times."""
+        theta, omega, x = solution.sample(times) if times.size else np.empty((3, 0))
+        status = Status[solution.status.name]
+        trajectory = cls(
+            np.array(times),
+            theta,
+            omega,
+            x,
+            scene=scene,
+            model="rolling",
+            method="exact",
+            status=status,
+            message=solution.message or status.value,
+            reason=solution.reason,
+            valid_until=solution.valid_until,
+            t_end=solution.followed_until,
+            stats={"segments": solution.segment_count, "steps": 0},
+        )
+        trajectory.__dict__["_solution"] = solution
+        return trajectory
+
+    @cached_property
+    def _solution(self) -> _core.Solution:
+        return solve(self.scene, "auto", self.t_end)
+
+    # -- what follows from the samples ----------------------------------------------------------
+
+    @cached_property
+    def _detail(self) -> tuple[FloatArray, ...]:
+        found = _core.rolling_detail(self.scene._core_scene, self.theta, self.omega, self.x)
+        for values in found:
+            values.flags.writeable = False
+        return found
+
+    def _column(self, which: int, column: int) -> FloatArray:
+        values = np.ascontiguousarray(self._detail[which][:, column])
+        values.flags.writeable = False
+        return values
+
+    @property
+    def q(self) -> FloatArray:
+        return self._detail[0]
+
+    @property
+    def q_dot(self) -> FloatArray:
+        return self._detail[1]
+
+    @cached_property
+    def z(self) -> FloatArray:
+        return self._column(0, 1)
+
+    @cached_property
+    def psi(self) -> FloatArray:
+        return self._column(0, 3)
+
+    @cached_property
+    def r(self) -> FloatArray:
+        return self._column(0, 4)
+
+    @cached_property
+    def x_dot(self) -> FloatArray:
+        return self._column(1, 0)
+
+    @cached_property
+    def z_dot(self) -> FloatArray:
+        return self._column(1, 1)
+
+    @cached_property
+    def psi_dot(self) -> FloatArray:
+        return self._column(1, 3)
+
+    @cached_property
+    def r_dot(self) -> FloatArray:
+        return self._column(1, 4)
+
+    @cached_property
+    def x_ddot(self) -> FloatArray:
+        return self._column(2, 0)
+
+    @cached_property
+    def z_ddot(self) -> FloatArray:
+        return self._column(2, 1)
+
+    @cached_property
+    def omega_dot(self) -> FloatArray:
+        return self._column(2, 2)
+
+    @cached_property
+    def psi_ddot(self) -> FloatArray:
+        return self._column(2, 3)
+
+    @cached_property
+    def r_ddot(self) -> FloatArray:
+        return self._column(2, 4)
+
+    @property
+    def normal_force(self) -> FloatArray:
+        return self._detail[3]
+
+    @property
+    def friction_force(self) -> FloatArray:
+        return self._detail[4]
+
+    @property
+    def multipliers(self) -> FloatArray:
+        return self._detail[5]
+
+    @cached_property
+    def friction_needed(self) -> FloatArray:
+        normal, friction = self.normal_force, np.abs(self.friction_force)
+        needed = np.where(friction == 0, 0.0, np.inf)
+        return np.divide(friction, normal, out=needed, where=normal > 0)
+
+    @cached_property
+    def contact_x(self) -> FloatArray:
+        # r sin(psi - theta) = h', the contact seen from the centre.
+        return self.x + self.r * np.sin(self.psi - self.theta)
+
+    @cached_property
+    def turns(self) -> FloatArray:
+        return (self.theta - self.scene.theta) / (2 * math.pi)
+
+    @cached_property
+    def kinetic_energy(self) -> FloatArray:
+        mass, inertia = self.scene.mass, self.scene.mass * self.scene.gyration2
+        return 0.5 * mass * (self.x_dot**2 + self.z_dot**2) + 0.5 * inertia * self.omega**2
+
+    @cached_property
+    def potential_energy(self) -> FloatArray:
+        weight, slope = self.scene.mass * self.scene.gravity, self.scene.slope
+        return weight * (self.z * math.cos(slope) - self.x * math.sin(slope))
+
+    @cached_property
+    def energy(self) -> FloatArray:
+        return self.kinetic_energy + self.potential_energy
+
+    @cached_property
+    def mode(self) -> npt.NDArray[np.int8]:
+        return np.full(self.t.shape, self.scene.initial_state.mode, dtype=np.int8)
+
+    @property
+    def success(self) -> bool:
+        return self.status is Status.COMPLETED
+
+    def constraint_residuals(self) -> ConstraintResiduals:
+        """Return by how much each sample misses the constraints (see `constraints`)."""
+        return constraints(self.q, self.q_dot, a=self.scene.a, b=self.scene.b)
+
+    # -- the same motion at other times ----------------------------------------------------------
+
+    def sol(self, t: Any) -> Trajectory:
+        """Return the same motion at other times in [0, t_end], in any order.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (n,)
+            Times [s]; ``t_end`` is the last time of the simulation.
+
+        Raises
+        ------
+        ValueError
+            If a time is outside.
+        """
+        self._require_motion()
+        times = np.atleast_1d(array("t", t))
+        if times.ndim != 1:
+            raise ValueError(f"t must be a time or a 1-D array of times, got shape {times.shape}")
+        outside = times[~((times >= 0) & (times <= self.t_end))]
+        if outside.size:
+            raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
+        theta, omega, x = self._solution.sample(times)
+        other = replace(self, t=np.array(times), theta=theta, omega=omega, x=x)
+        other.__dict__["_solution"] = self._solution
+        return other
+
+    def scene_at(self, t: float) -> Scene:
+        """Return a Scene that goes on from time t [s]; give it an impulse with `replace`."""
+        at = self.sol(t)
+        return replace(
+            self.scene,
+            theta=float(at.theta[0]),
+            omega=float(at.omega[0]),
+            x=float(at.x[0]),
+            z=None,
+            x_dot=None,
+            z_dot=None,
+            impulse=None,
+        )
+
+    # -- pictures --------------------------------------------------------------------------------
+
+    def plot(self, **options: Any) -> Overview:
+        """Draw the overview figure; see `rolling_ellipse.plot`."""
+        from .plotting import plot
+
+        self._require_motion()
+        return plot(self, **options)
+
+    def animate(self, path: str | os.PathLike[str] | None = None, **options: Any) -> RollingAnimation:
+        """Animate the motion; see `rolling_ellipse.animate`."""
+        from .animation import animate
+
+        self._require_motion()
+        return animate(self, path, **options)
+
+    # -- files -----------------------------------------------------------------------------------
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit."""
+        about = {
+            "schema": _SCHEMA,
+            "scene": asdict(self.scene),
+            "status": self.status.name,
+            **{
+                name: getattr(self, name)
+                for name in ("model", "method", "message", "reason", "valid_until", "t_end", "stats")
+            },
+        }
+        arrays = {name: getattr(self, name) for name in _ARRAYS}
+        with open(path, "wb") as file:
+            np.savez(file, about=np.array(json.dumps(about)), **arrays)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Trajectory:
+        """Read a trajectory written by `save`.
+
+        Raises
+        ------
+        ValueError
+            If the file holds no trajectory, or one of another schema version.
+        """
+        with np.load(path, allow_pickle=False) as data:
+            if "about" not in data:
+                raise ValueError(f"path must name a saved Trajectory, got {os.fspath(path)!r}")
+            about = json.loads(str(data["about"]))
+            arrays = [data[name] for name in _ARRAYS]
+        if about.pop("schema") != _SCHEMA:
+            raise ValueError(f"path must name a Trajectory of schema {_SCHEMA}, got another version")
+        scene = about.pop("scene")
+        if scene["impulse"] is not None:
+            scene["impulse"] = Impulse(**scene["impulse"])
+        status = Status[about.pop("status")]
+        return cls(*arrays, scene=Scene(**scene), status=status, **about)
+
+    def _require_motion(self) -> None:
+        if self.t_end < 0:
+            raise ValueError(f"the trajectory must hold a motion, got none: {self.message}")
+
+    def __repr__(self) -> str:
+        if self.t.size == 0:
+            return f"<Trajectory {self.model}/{self.method}: no samples, {self.status.name}>"
+        return (
+            f"<Trajectory {self.model}/{self.method}: {self.t.size} samples, "
+            f"t = {self.t[0]:g} ... {self.t[-1]:g} s, {self.turns[-1]:.3g} turns, "
+            f"{self.status.name}>"
+        )
+
+
+def load(path: str | os.PathLike[str]) -> Trajectory:
+    """Read a trajectory written by `Trajectory.save`."""
+    return Trajectory.load(path)

@@ -1,0 +1,352 @@
+// The only file that knows Python: numbers in, NumPy arrays out, no arithmetic.
+#include <pybind11/native_enum.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <thread>
+
+#include "constraints.hpp"
+#include "rolling.hpp"
+#include "simulate.hpp"
+#include "thresholds.hpp"
+
+namespace py = pybind11;
+using namespace pybind11::literals;
+using namespace rolling_ellipse;
+
+namespace {
+
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Range = std::function<void(py::ssize_t, py::ssize_t)>;
+
+void check_signals() {
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+// Run body(begin, end) over 0 .. n in chunks, without the GIL; Ctrl-C stops it between chunks.
+// What a chunk computes does not depend on which thread takes it.
+void run_interruptible(py::ssize_t n, int workers, const Range& body) {
+    constexpr py::ssize_t chunk = 1024;
+    if (n <= chunk) return body(0, n);
+    const py::gil_scoped_release release;
+    std::atomic<py::ssize_t> next{0};
+    std::atomic<int> running{workers - 1};
+    std::vector<std::exception_ptr> failures(workers);
+    const auto work = [&](int worker, bool interruptible) {
+        try {
+            for (py::ssize_t begin; (begin = next.fetch_add(chunk)) < n;) {
+                body(begin, std::min(begin + chunk, n));
+                if (interruptible) check_signals();
+            }
+        } catch (...) {
+            failures[worker] = std::current_exception();
+            next = n;
+        }
+    };
+    std::vector<std::thread> threads;
+    for (int worker = 1; worker < workers; ++worker) threads.emplace_back(work, worker, false);
+    work(0, true);
+    for (std::thread& thread : threads) thread.join();
+    for (const std::exception_ptr& failure : failures) {
+        if (failure) std::rethrow_exception(failure);
+    }
+}
+
+std::vector<Array> empty_arrays(int count, py::ssize_t n) {
+    std::vector<Array> arrays;
+    for (int i = 0; i < count; ++i) arrays.emplace_back(n);
+    return arrays;
+}
+
+// One argument of `flow`: an array of n numbers, or one number for all.
+struct Argument {
+    const double* data;
+    py::ssize_t stride;
+
+    double operator[](py::ssize_t i) const { return data[i * stride]; }
+};
+
+Argument argument(const Array& array) { return {array.data(), array.size() == 1 ? 0 : 1}; }
+
+void require_finite_time(double t) {
+    if (!std::isfinite(t)) refuse("t", "finite [s]", t);
+}
+
+RollingFlow validated_flow(const Body& body, double theta, double omega) {
+    validate(body);
+    validate_motion(theta, omega);
+    return rolling_flow(body, theta, omega);
+}
+
+py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
+                      std::optional<double> gyration2) {
+    require_finite_time(t);
+    const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
+    const FlowSample now = sample(validated_flow(body, theta, omega), t);
+    return py::make_tuple(now.theta, now.omega, now.x);
+}
+
+// All arguments have n elements, or one.
+py::tuple flow_array(py::ssize_t n, const Array& t, const Array& a, const Array& b,
+                     const Array& theta, const Array& omega, const Array& gravity,
+                     const Array& gyration2, int workers) {
+    std::vector<Array> out = empty_arrays(3, n);
+    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(),
+                               out[2].mutable_data()};
+    const Argument times = argument(t);
+    const std::array<Argument, 6> parameters{argument(a),     argument(b),       argument(gyration2),
+                                             argument(gravity), argument(theta), argument(omega)};
+    run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
+        std::array<double, 6> last{};
+        RollingFlow flow{};
+        for (py::ssize_t i = begin; i < end; ++i) {
+            std::array<double, 6> now{};
+            for (std::size_t p = 0; p < now.size(); ++p) now[p] = parameters[p][i];
+            if (i == begin || now != last) {
+                flow = validated_flow({now[0], now[1], now[2], now[3]}, now[4], now[5]);
+                last = now;
+            }
+            require_finite_time(times[i]);
+            const FlowSample at = sample(flow, times[i]);
+            columns[0][i] = at.theta;
+            columns[1][i] = at.omega;
+            columns[2][i] = at.x;
+        }
+    });
+    return py::make_tuple(out[0], out[1], out[2]);
+}
+
+// theta, omega, x at each time.
+py::tuple sample_solution(const Solution& solution, const Array& t) {
+    const py::ssize_t n = t.size();
+    std::vector<Array> out = empty_arrays(3, n);
+    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(),
+                               out[2].mutable_data()};
+    const double* const times = t.data();
+    const Segment& segment = solution.segments.front();
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const FlowSample at = sample(segment, times[i]);
+            columns[0][i] = at.theta;
+            columns[1][i] = at.omega;
+            columns[2][i] = at.x;
+        }
+    });
+    return py::make_tuple(out[0], out[1], out[2]);
+}
+
+void store(Array& array, py::ssize_t row, const double* values) {
+    std::copy_n(values, array.shape(1), array.mutable_data(row, 0));
+}
+
+Array matrix(py::ssize_t rows, py::ssize_t columns) {
+    return Array(std::vector<py::ssize_t>{rows, columns});
+}
+
+// q and q_dot as (n, 5); the caller has checked the shapes.
+py::tuple constraint_arrays(const Array& q, const Array& q_dot, double a, double b) {
+    validate_axes(a, b);
+    const py::ssize_t n = q.shape(0);
+    Array position = matrix(n, 3);
+    Array velocity = matrix(n, 4);
+    Array gap(n);
+    Array slip(n);
+    double* const gaps = gap.mutable_data();
+    double* const slips = slip.mutable_data();
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const ConstraintResiduals residuals =
+                constraints({a, b}, Eigen::Map<const Coordinates>(q.data(i, 0)),
+                            Eigen::Map<const Coordinates>(q_dot.data(i, 0)));
+            store(position, i, residuals.position.data());
+            store(velocity, i, residuals.velocity.data());
+            gaps[i] = residuals.gap;
+            slips[i] = residuals.slip;
+        }
+    });
+    return py::make_tuple(position, velocity, gap, slip);
+}
+
+py::tuple kinematics_arrays(const Array& theta, const Array& omega, double a, double b) {
+    validate_axes(a, b);
+    const py::ssize_t n = theta.size();
+    Array q = matrix(n, 5);
+    Array q_dot = matrix(n, 5);
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const KinematicState state = kinematics({a, b}, theta.data()[i], omega.data()[i]);
+            store(q, i, state.q.data());
+            store(q_dot, i, state.q_dot.data());
+        }
+    });
+    return py::make_tuple(q, q_dot);
+}
+
+// q (its x replaced by the one given), q_dot, q_ddot, normal and friction force, multipliers.
+py::tuple rolling_arrays(const Scene& scene, const Array& theta, const Array& omega,
+                         const Array& x) {
+    const py::ssize_t n = theta.size();
+    Array q = matrix(n, 5);
+    Array q_dot = matrix(n, 5);
+    Array q_ddot = matrix(n, 5);
+    Array multipliers = matrix(n, 4);
+    Array normal(n);
+    Array friction(n);
+    double* const normals = normal.mutable_data();
+    double* const frictions = friction.mutable_data();
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            RollingDetail detail = rolling_detail(scene, theta.data()[i], omega.data()[i]);
+            detail.state.q[coordinate::x] = x.data()[i];
+            store(q, i, detail.state.q.data());
+            store(q_dot, i, detail.state.q_dot.data());
+            store(q_ddot, i, detail.q_ddot.data());
+            store(multipliers, i, detail.multipliers.data());
+            normals[i] = detail.normal_force;
+            frictions[i] = detail.friction_force;
+        }
+    });
+    return py::make_tuple(q, q_dot, q_ddot, normal, friction, multipliers);
+}
+
+// A function of an angle and the semi-axes, broadcast by NumPy's rules.
+template <class Function>
+void define_geometry(py::module_& module, const char* name, Function function) {
+    module.def(name, py::vectorize([function](double theta, double a, double b) {
+                   validate_axes(a, b);
+                   return function(Axes{a, b}, theta);
+               }),
+               "theta"_a, "a"_a, "b"_a);
+}
+
+void bind_geometry(py::module_& m) {
+    define_geometry(m, "support", [](const Axes& e, double t) { return geometry(e, t).h; });
+    define_geometry(m, "support_slope", [](const Axes& e, double t) { return geometry(e, t).dh; });
+    define_geometry(m, "support_curvature",
+                    [](const Axes& e, double t) { return geometry(e, t).ddh; });
+    define_geometry(m, "curvature_radius",
+                    [](const Axes& e, double t) { return geometry(e, t).rho; });
+    define_geometry(m, "contact_distance",
+                    [](const Axes& e, double t) { return contact_distance(e, geometry(e, t)); });
+    define_geometry(m, "contact_angle", contact_angle);
+    define_geometry(m, "centre_path", centre_path);
+    define_geometry(m, "arc_length", arc_length);
+}
+
+void bind_scene(py::module_& m) {
+    py::native_enum<Mode>(m, "Mode", "enum.IntEnum", "What the body does, one code a sample.")
+        .value("ROLLING", Mode::rolling)
+        .value("SLIDING", Mode::sliding)
+        .value("FLIGHT", Mode::flight)
+        .value("REST", Mode::rest)
+        .finalize();
+    py::class_<Impulse>(m, "Impulse")
+        .def(py::init([](double jx, double jz, double dx, double dz) {
+                 const Impulse impulse{jx, jz, dx, dz};
+                 validate(impulse);
+                 return impulse;
+             }),
+             "jx"_a, "jz"_a, "dx"_a, "dz"_a);
+    py::class_<Scene>(m, "Scene")
+        .def(py::init([](double a, double b, double mass, double gravity,
+                         std::optional<double> inertia, double slope, double friction,
+                         double restitution, double theta, double omega, double x,
+                         std::optional<double> z, std::optional<double> x_dot,
+                         std::optional<double> z_dot, std::optional<Impulse> impulse) {
+                 const Scene scene{a,     b,           mass,
+                                   gravity, inertia.value_or(mass * uniform_disc_gyration2(a, b)),
+                                   slope, friction,    restitution,
+                                   theta, omega,       x,
+                                   z,     x_dot,       z_dot,
+                                   impulse};
+                 validate(scene);
+                 return scene;
+             }),
+             py::kw_only(), "a"_a, "b"_a, "mass"_a, "gravity"_a, "inertia"_a, "slope"_a,
+             "friction"_a, "restitution"_a, "theta"_a, "omega"_a, "x"_a, "z"_a, "x_dot"_a,
+             "z_dot"_a, "impulse"_a)
+        .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
+    m.def("initial_state", [](const Scene& scene) {
+        const InitialState initial = initial_state(scene);
+        const State& s = initial.state;
+        return py::make_tuple(s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot, s.mode,
+                              initial.reaction_x, initial.reaction_z, initial.free_omega);
+    });
+}
+
+void bind_certificate(py::module_& m) {
+    py::native_enum<Validity>(m, "Validity", "enum.Enum", "Is rolling valid for the whole motion?")
+        .value("VALID", Validity::valid)
+        .value("INVALID", Validity::invalid)
+        .value("EDGE", Validity::edge)
+        .value("NO_PROOF", Validity::no_proof)
+        .finalize();
+    m.def("certify", [](const Scene& scene) {
+        const CertifiedScene certified = certify(scene);
+        const Certificate& c = certified.certificate;
+        return py::make_tuple(c.validity, c.smallest_normal_force, c.smallest_normal_force_angle,
+                              c.largest_friction_needed, c.largest_friction_needed_angle,
+                              c.ends_at, certified.reason);
+    });
+    m.def(
+        "thresholds",
+        [](double a, double b, double gravity, std::optional<double> gyration2, double friction) {
+            const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
+            validate(body);
+            if (!(friction >= 0)) {
+                refuse("friction", "a coefficient of at least 0 (inf allowed)", friction);
+            }
+            const Thresholds t = thresholds(body, friction);
+            return py::make_tuple(t.roll_over_speed, t.contact_loss_speed, t.contact_loss_angle,
+                                  t.slip_speed, t.slip_angle, t.friction_to_roll_over,
+                                  t.painleve_friction, t.painleve_angle, t.rocking_rate,
+                                  t.tip_rate);
+        },
+        "a"_a, "b"_a, "gravity"_a, "gyration2"_a, "friction"_a);
+}
+
+void bind_motion(py::module_& m) {
+    py::native_enum<Model>(m, "Model", "enum.Enum", "How the motion is described.")
+        .value("AUTO", Model::automatic)
+        .value("ROLLING", Model::rolling)
+        .finalize();
+    py::native_enum<Status>(m, "Status", "enum.Enum", "How a simulation ended.")
+        .value("COMPLETED", Status::completed)
+        .value("VALIDITY_LOST", Status::validity_lost)
+        .finalize();
+    py::class_<Solution>(m, "Solution")
+        .def_readonly("status", &Solution::status)
+        .def_readonly("followed_until", &Solution::followed_until)
+        .def_readonly("valid_until", &Solution::valid_until)
+        .def_readonly("reason", &Solution::reason)
+        .def_readonly("message", &Solution::message)
+        .def_property_readonly(
+            "segment_count", [](const Solution& solution) { return solution.segments.size(); })
+        .def("sample", sample_solution, "t"_a);
+    m.def("simulate", simulate, "scene"_a, "model"_a, "t_end"_a);
+    m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);
+    m.def("flow_scalar", flow_scalar, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
+          "gyration2"_a);
+    m.def("flow_array", flow_array, "n"_a, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
+          "gyration2"_a, "workers"_a);
+    m.def("constraints", constraint_arrays, "q"_a, "q_dot"_a, "a"_a, "b"_a);
+    m.def("kinematics", kinematics_arrays, "theta"_a, "omega"_a, "a"_a, "b"_a);
+    m.def("rolling_detail", rolling_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_core, m) {
+    m.doc() = "C++ core of rolling_ellipse; see the Python package for the documented interface.";
+    bind_geometry(m);
+    bind_scene(m);
+    bind_certificate(m);
+    bind_motion(m);
+}

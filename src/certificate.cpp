@@ -1,0 +1,148 @@
+#include "certificate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "energy_range.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+double theta_of(const Body& body, double angle_from_flat) {
+    return body.a >= body.b ? angle_from_flat : half_pi - angle_from_flat;
+}
+
+// Friction mu suffices where mu^2 P^2 - G Q^2 >= 0; divided by mu^2 above 1, so that any mu fits.
+Polynomial grip(const ForcePolynomials& p, double friction) {
+    const Polynomial held = p.normal * p.normal;
+    const Polynomial needed = p.slope_square * p.friction * p.friction;
+    if (friction > 1) return held - (1 / friction / friction) * needed;
+    return friction * friction * held - needed;
+}
+
+// The start in the frame in which the motion goes forwards.
+struct Start {
+    double angle;  // from the nearest flat position, signed: negative while the body sinks
+    double direction;
+    RollingForces forces;
+};
+
+Start start_on_range(const FlatView& at, const EnergyRange& range, const Body& body, double omega) {
+    // At a turning point the body falls back towards the flat position.
+    const double direction = omega != 0 ? std::copysign(1.0, omega) : -std::copysign(1.0, at.sin);
+    const double omega2 = omega * omega * at.long_axis / body.gravity;
+    return {direction * std::atan2(at.sin, at.cos), direction,
+            rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
+}
+
+double slack(const RollingForces& forces, double friction) {
+    if (std::isinf(friction)) return forces.normal;
+    return friction * forces.normal - std::abs(forces.friction);
+}
+
+// Does the law hold at the start? Within rounding of its end what counts is where the motion goes.
+bool holds_at_start(const EnergyRange& range, double friction, const Start& start) {
+    if (friction == 0) return false;
+    const double here = slack(start.forces, friction);
+    const double scale = std::isinf(friction)
+                             ? std::abs(start.forces.normal)
+                             : friction * std::abs(start.forces.normal) + start.forces.friction;
+    if (std::abs(here) > 64 * epsilon * scale) return here > 0;
+    constexpr double ahead = 1e-8;
+    const double x = std::min(start.forces.x, 1.0);
+    const double next = start.angle >= 0 ? x + ahead * (1 - x) : x * (1 - ahead);
+    return slack(rolling_forces(range, next), friction) > 0;
+}
+
+// A root of the law, found in its squared form, refined in the plain one: near the tip both forces
+// may be small, and their squares know half their digits only.
+double refined_root(const EnergyRange& range, double friction, double x) {
+    const auto slack_at = [&](double at) { return slack(rolling_forces(range, at), friction); };
+    double low = x;
+    double high = x;
+    for (double reach = epsilon; reach < 1e-6; reach *= 4) {
+        low = std::max(x - reach * std::max(x, epsilon), 0.0);
+        high = std::min(x + reach * std::max(1 - x, epsilon), 1.0);
+        if ((slack_at(low) > 0) != (slack_at(high) > 0)) break;
+    }
+    const bool falls = slack_at(low) > 0;
+    if (falls == (slack_at(high) > 0)) return x;
+    for (;;) {
+        const double middle = 0.5 * (low + high);
+        if (middle == low || middle == high) return middle;
+        ((slack_at(middle) > 0) == falls ? low : high) = middle;
+    }
+}
+
+// How far the body turns until the first of the places x (ascending, at least one) is met, and
+// which way it then moves.
+struct Turn {
+    double angle;
+    double heading;
+};
+
+Turn first_meeting(const EnergyRange& range, const Start& start,
+                   const std::vector<double>& places) {
+    const auto angle_at = [&](double x) { return rolling_forces(range, x).angle; };
+    const double on = start.direction;
+    const auto above = std::upper_bound(places.begin(), places.end(), start.forces.x);
+    const bool rising = start.angle >= 0;
+    if (!rising && above != places.begin()) {
+        return Turn{on * (-angle_at(above[-1]) - start.angle), on};
+    }
+    if (rising && above != places.end()) return Turn{on * (angle_at(*above) - start.angle), on};
+    if (!rising) return Turn{on * (angle_at(places.front()) - start.angle), on};
+    // Over the top: the last place, on the other side of the tip or back from the turning point.
+    const double last = angle_at(places.back());
+    if (range.libration) return Turn{on * (last - start.angle), -on};
+    return Turn{on * (pi - last - start.angle), on};
+}
+
+}  // namespace
+
+Certificate certify_rolling(const Body& body, double mass, double friction, double theta,
+                            double omega) {
+    const double weight = mass * body.gravity;
+    const FlatView at = flat_view({body.a, body.b}, theta);
+    const bool at_rest = omega == 0 && is_equilibrium(geometry({body.a, body.b}, theta));
+    if (at.c2 == 0 || at_rest) {
+        const double angle = theta_of(body, std::atan2(std::abs(at.sin), at.cos));
+        return {Validity::valid, weight, angle, 0.0, angle, std::nullopt, 0.0};
+    }
+
+    const EnergyRange range = energy_range(at, body, omega);
+    const ForcePolynomials polynomials = force_polynomials(range);
+    const ForceExtremes extremes = force_extremes(range, polynomials);
+    Certificate certificate{Validity::valid,
+                            weight * extremes.least_normal.normal,
+                            theta_of(body, extremes.least_normal.angle),
+                            extremes.most_friction.needed(),
+                            theta_of(body, extremes.most_friction.angle),
+                            std::nullopt,
+                            0.0};
+
+    const Bernstein contact = bernstein(polynomials.normal);
+    const bool finite_friction = std::isfinite(friction);
+    const Bernstein law = finite_friction ? bernstein(grip(polynomials, friction)) : contact;
+    const Sign contact_sign = sign_on_unit_interval(contact);
+    const Sign law_sign = finite_friction ? sign_on_unit_interval(law) : contact_sign;
+    if (contact_sign == Sign::positive && law_sign == Sign::positive) return certificate;
+
+    const bool broken = contact_sign == Sign::negative || law_sign == Sign::negative;
+    certificate.validity = broken ? Validity::invalid : Validity::edge;
+    const Start start = start_on_range(at, range, body, omega);
+    certificate.ends_at = theta;
+    certificate.ends_heading = start.direction;
+    if (!holds_at_start(range, friction, start)) return certificate;
+    std::vector<double> places = roots_on_unit_interval(law);
+    if (places.empty()) {  // on the edge: the least margin is where the law may be broken
+        places.push_back(finite_friction ? extremes.most_friction.x : extremes.least_normal.x);
+    }
+    for (double& x : places) x = refined_root(range, friction, x);
+    const Turn turn = first_meeting(range, start, places);
+    certificate.ends_at = theta + turn.angle;
+    certificate.ends_heading = turn.heading;
+    return certificate;
+}
+
+}  // namespace rolling_ellipse

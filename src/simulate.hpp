@@ -1,0 +1,26 @@
+// The table of contents: scene -> initial state -> certificate -> model -> solution.
+#pragma once
+
+#include "certificate.hpp"
+#include "impact.hpp"
+#include "solution.hpp"
+
+namespace rolling_ellipse {
+
+enum class Model { automatic, rolling };
+
+// The certificate of the motion that starts from the scene; its reason in one sentence.
+struct CertifiedScene {
+    InitialState start;
+    Certificate certificate;
+    std::string reason;
+};
+
+CertifiedScene certify(const Scene& scene);
+
+Solution simulate(const Scene& scene, Model model, double t_end);
+
+// Time of a full swing or turn of the rolling motion that starts from the scene.
+double period(const Scene& scene);
+
+}  // namespace rolling_ellipse

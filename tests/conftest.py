@@ -1,0 +1,50 @@
+"""Shapes and angles that every layer of the suite runs through."""
+
+import math
+
+import pytest
+
+# neutral (the circle), a hair beside it (where a*a - b*b cancels), generic, standing up, thin both
+# ways up to the limits of the package, and sizes far from a metre (nothing may depend on the unit)
+SHAPES = {
+    "circle": (1.0, 1.0),
+    "circle+1e-8": (1.0 + 1e-8, 1.0),
+    "generic": (2.0, 1.0),
+    "standing": (0.7, 1.9),
+    "thin": (2.0, 0.02),
+    "thin standing": (0.03, 1.3),
+    "flat limit": (1.0, 1e-3),
+    "tall limit": (1e-3, 1.0),
+    "millimetres": (3.1e-3, 1.7e-3),
+    "kilometres": (1.1e3, 2.3e3),
+}
+
+# far from 0 by thousands of turns, beside and on (as near as a double gets) the multiples of pi/2,
+# where sin or cos nearly vanishes, and next to 0
+QUARTER = math.pi / 2
+ANGLES = sorted(
+    {
+        sign * angle
+        for sign in (1, -1)
+        for angle in (
+            [0.0, 1e-300, 1e-20, 1e-8, 1e-4, 0.02, 0.3, 0.9, 1.2, 1.55, 2.0, 2.6, 3.0, 4.0, 5.7]
+            + [k * QUARTER for k in (1, 2, 3, 4, 5, 8191, 25000)]
+            + [k * QUARTER + offset for k in (1, 2, 7) for offset in (-1e-3, 1e-6, -1e-9)]
+            + [math.nextafter(QUARTER, 0), math.nextafter(QUARTER, 2)]
+            + [10.0, 333.3, 1e4, 9999.5, 2 * math.pi * 4321 + 0.7]
+        )
+    }
+)
+
+
+@pytest.fixture(params=SHAPES.values(), ids=SHAPES.keys())
+def shape(request: pytest.FixtureRequest) -> tuple[float, float]:
+    """Semi-axes (a, b) [m]."""
+    semi_axes: tuple[float, float] = request.param
+    return semi_axes
+
+
+@pytest.fixture
+def angles() -> list[float]:
+    """Rotations theta [rad] that have been trouble for somebody."""
+    return ANGLES
