@@ -93,16 +93,13 @@ py::tuple flow_scalar(double t, double a, double b, double theta, double omega, 
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
-// All arguments have n elements, or one.
-py::tuple flow_array(py::ssize_t n, const Array& t, const Array& a, const Array& b,
-                     const Array& theta, const Array& omega, const Array& gravity,
-                     const Array& gyration2, int workers) {
+// t, a, b, theta, omega, gravity, gyration2, each with n elements, or one.
+py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers) {
     std::vector<Array> out = empty_arrays(3, n);
-    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(),
-                               out[2].mutable_data()};
-    const Argument times = argument(t);
-    const std::array<Argument, 6> parameters{argument(a),     argument(b),       argument(gyration2),
-                                             argument(gravity), argument(theta), argument(omega)};
+    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
+    const Argument times = argument(arguments[0]);
+    std::array<Argument, 6> parameters{};
+    std::transform(arguments.begin() + 1, arguments.end(), parameters.begin(), argument);
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         std::array<double, 6> last{};
         RollingFlow flow{};
@@ -110,7 +107,7 @@ py::tuple flow_array(py::ssize_t n, const Array& t, const Array& a, const Array&
             std::array<double, 6> now{};
             for (std::size_t p = 0; p < now.size(); ++p) now[p] = parameters[p][i];
             if (i == begin || now != last) {
-                flow = validated_flow({now[0], now[1], now[2], now[3]}, now[4], now[5]);
+                flow = validated_flow({now[0], now[1], now[5], now[4]}, now[2], now[3]);
                 last = now;
             }
             require_finite_time(times[i]);
@@ -125,10 +122,10 @@ py::tuple flow_array(py::ssize_t n, const Array& t, const Array& a, const Array&
 
 // theta, omega, x at each time.
 py::tuple sample_solution(const Solution& solution, const Array& t) {
+    if (solution.segments.empty()) throw py::value_error(solution.message);
     const py::ssize_t n = t.size();
     std::vector<Array> out = empty_arrays(3, n);
-    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(),
-                               out[2].mutable_data()};
+    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
     const double* const times = t.data();
     const Segment& segment = solution.segments.front();
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
@@ -260,11 +257,20 @@ void bind_scene(py::module_& m) {
                          double restitution, double theta, double omega, double x,
                          std::optional<double> z, std::optional<double> x_dot,
                          std::optional<double> z_dot, std::optional<Impulse> impulse) {
-                 const Scene scene{a,     b,           mass,
-                                   gravity, inertia.value_or(mass * uniform_disc_gyration2(a, b)),
-                                   slope, friction,    restitution,
-                                   theta, omega,       x,
-                                   z,     x_dot,       z_dot,
+                 const Scene scene{a,
+                                   b,
+                                   mass,
+                                   gravity,
+                                   inertia.value_or(mass * uniform_disc_gyration2(a, b)),
+                                   slope,
+                                   friction,
+                                   restitution,
+                                   theta,
+                                   omega,
+                                   x,
+                                   z,
+                                   x_dot,
+                                   z_dot,
                                    impulse};
                  validate(scene);
                  return scene;
@@ -292,8 +298,8 @@ void bind_certificate(py::module_& m) {
         const CertifiedScene certified = certify(scene);
         const Certificate& c = certified.certificate;
         return py::make_tuple(c.validity, c.smallest_normal_force, c.smallest_normal_force_angle,
-                              c.largest_friction_needed, c.largest_friction_needed_angle,
-                              c.ends_at, certified.reason);
+                              c.largest_friction_needed, c.largest_friction_needed_angle, c.ends_at,
+                              certified.reason);
     });
     m.def(
         "thresholds",
@@ -327,15 +333,14 @@ void bind_motion(py::module_& m) {
         .def_readonly("valid_until", &Solution::valid_until)
         .def_readonly("reason", &Solution::reason)
         .def_readonly("message", &Solution::message)
-        .def_property_readonly(
-            "segment_count", [](const Solution& solution) { return solution.segments.size(); })
+        .def_property_readonly("segment_count",
+                               [](const Solution& solution) { return solution.segments.size(); })
         .def("sample", sample_solution, "t"_a);
     m.def("simulate", simulate, "scene"_a, "model"_a, "t_end"_a);
     m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);
     m.def("flow_scalar", flow_scalar, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a);
-    m.def("flow_array", flow_array, "n"_a, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
-          "gyration2"_a, "workers"_a);
+    m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("constraints", constraint_arrays, "q"_a, "q_dot"_a, "a"_a, "b"_a);
     m.def("kinematics", kinematics_arrays, "theta"_a, "omega"_a, "a"_a, "b"_a);
     m.def("rolling_detail", rolling_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a);

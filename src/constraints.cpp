@@ -31,12 +31,14 @@ ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q) {
     const double s = std::sin(psi - theta);
     const double c = std::cos(psi - theta);
     ConstraintMatrix matrix;
-    // columns     x, z, theta, psi, r
+    // clang-format off
+    // columns: x, z, theta, psi, r
     matrix <<
         1, 0, -r * c, 0, 0,
         0, 1, -r * s, r * s, -c,
         0, 0, 0, -polar_radius_slope(axes, psi), 1,
         0, 0, -contact_angle_rate(axes, geometry(axes, theta)), 1, 0;
+    // clang-format on
     return matrix;
 }
 

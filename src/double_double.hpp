@@ -1,9 +1,11 @@
-// Sums of two doubles: 106 bits for the few numbers that need them (periods, phases, multiples of pi).
-// Algorithms: T. J. Dekker, Numer. Math. 18 (1971) 224; J. R. Shewchuk, Discrete Comput. Geom. 18
-// (1997) 305.
+// Sums of two doubles: 106 bits for the few numbers that need them (periods, phases, multiples of
+// pi). Algorithms: T. J. Dekker, Numer. Math. 18 (1971) 224; J. R. Shewchuk, Discrete Comput. Geom.
+// 18 (1997) 305.
 #pragma once
 
 #include <cmath>
+
+#include "numbers.hpp"
 
 namespace rolling_ellipse {
 
@@ -50,8 +52,6 @@ inline DoubleDouble operator*(DoubleDouble x, double y) {
     return quick_two_sum(product.high, std::fma(x.low, y, product.low));
 }
 
-inline constexpr double pi = 3.14159265358979311600e+00;
-inline constexpr double half_pi = 1.57079632679489655800e+00;
 inline constexpr DoubleDouble half_pi_exact = {half_pi, 6.12323399573676603587e-17};
 
 }  // namespace rolling_ellipse

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "double_double.hpp"
-
 namespace rolling_ellipse {
 namespace {
 
@@ -71,8 +69,8 @@ CarlsonPair carlson(double x, double y, double z) {
     return result;
 }
 
-// The arc between the contact at the tip and that at an offset: DLMF 19.25.10 without its last term,
-// which is the lead -h' of the centre.
+// The arc between the contact at the tip and that at an offset: DLMF 19.25.10 without its last
+// term, which is the lead -h' of the centre.
 double arc_from_tip(double long_axis, double short_axis, double s, double c) {
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
     const double h = std::hypot(long_axis * c, short_axis * s);

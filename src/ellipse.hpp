@@ -65,8 +65,8 @@ double centre_path(const Axes& axes, double theta);
 // centre_path + h' = arc length along the ellipse from the contact at 0 to that at theta.
 double arc_length(const Axes& axes, double theta);
 
-// The integral of h over an offset, of sine s >= 0 and cosine c >= 0, from the position in which the
-// long (flat) or the short axis (tip) is parallel to the ground.
+// The integral of h over an offset, of sine s >= 0 and cosine c >= 0, from the position in which
+// the long (flat) or the short axis (tip) is parallel to the ground.
 double path_from_flat(double long_axis, double short_axis, double s, double c);
 double path_from_tip(double long_axis, double short_axis, double s, double c);
 

@@ -6,8 +6,6 @@
 namespace rolling_ellipse {
 namespace {
 
-double square(double x) { return x * x; }
-
 // Numerator of dN/dx, N = h P/V^2.
 Polynomial normal_slope(const ForcePolynomials& p) {
     const Polynomial moment = p.height * p.normal;
@@ -67,8 +65,7 @@ ForcePolynomials force_polynomials(const EnergyRange& range) {
     p.height = polynomial({b, w});
     const Polynomial y = polynomial({0, 2 * b * w, w * w});
     const Polynomial y2 = y * y;
-    p.normal_free =
-        p.height * (constant(flat_normal) + kb * (k2 + 7 * b2 + c2) * y + 3 * s * y2);
+    p.normal_free = p.height * (constant(flat_normal) + kb * (k2 + 7 * b2 + c2) * y + 3 * s * y2);
     p.normal_energy = 2.0 * (b2 * kb * (polynomial({c2}) - 2.0 * y) - s * y2);
     p.normal = p.normal_free + range.energy * p.normal_energy;
     p.friction = p.height * (constant(flat_friction) - 3 * s * y) +

@@ -21,10 +21,10 @@ struct EnergyRange {
     double short_axis;
     double gyration2;
     double c2;
-    double energy;     // H
-    double width;      // of the heights reached
-    double energy_gap; // H minus the greatest height reached (0 in libration)
-    double tip_gap;    // 1 minus the greatest height reached (0 in rotation)
+    double energy;      // H
+    double width;       // of the heights reached
+    double energy_gap;  // H minus the greatest height reached (0 in libration)
+    double tip_gap;     // 1 minus the greatest height reached (0 in rotation)
     bool libration;
 };
 

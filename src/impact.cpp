@@ -74,8 +74,9 @@ Reaction coulomb_friction(const Contact& c, double friction) {
     return reaction;
 }
 
-// u = 0 afterwards, and v = 0 where it sticks, exactly. The sticking angular velocity is that of the
-// angular momentum about the contact, which no reaction changes: D omega = k^2 omega + h x. + h' z.
+// u = 0 afterwards, and v = 0 where it sticks, exactly. The sticking angular velocity is that of
+// the angular momentum about the contact, which no reaction changes: D omega = k^2 omega + h x. +
+// h' z.
 void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, State& state) {
     if (reaction.sticks) {
         const double k2 = scene.inertia / scene.mass;
@@ -92,8 +93,8 @@ void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, Sta
 Mode mode_in_contact(const Scene& scene, const Geometry& at, const State& state, bool sticks) {
     // Gap acceleration of the free body is -c.
     const double c = scene.gravity * std::cos(scene.slope) + at.ddh * state.omega * state.omega;
-    if (sticks) return Mode::rolling;
-    return c > 0 ? Mode::sliding : Mode::flight;
+    if (c <= 0) return Mode::flight;
+    return sticks ? Mode::rolling : Mode::sliding;
 }
 
 }  // namespace

@@ -85,7 +85,8 @@ double single_root(const Bernstein& p) {
     double f_high = p.coefficients[p.degree].value;
     int kept = 0;
     for (int i = 0; i < 100 && high - low > epsilon * high; ++i) {
-        double x = i % 4 == 3 ? 0.5 * (low + high) : (low * f_high - high * f_low) / (f_high - f_low);
+        double x =
+            i % 4 == 3 ? 0.5 * (low + high) : (low * f_high - high * f_low) / (f_high - f_low);
         if (!(x > low && x < high)) x = 0.5 * (low + high);
         if (x == low || x == high) break;
         const double f = evaluate(p, x).value;
@@ -129,13 +130,9 @@ void collect_roots(const Bernstein& p, double start, double width, int depth,
 
 Tracked tracked(double value) { return {value, std::abs(value)}; }
 
-Tracked operator+(Tracked x, Tracked y) {
-    return {x.value + y.value, x.magnitude + y.magnitude};
-}
+Tracked operator+(Tracked x, Tracked y) { return {x.value + y.value, x.magnitude + y.magnitude}; }
 
-Tracked operator-(Tracked x, Tracked y) {
-    return {x.value - y.value, x.magnitude + y.magnitude};
-}
+Tracked operator-(Tracked x, Tracked y) { return {x.value - y.value, x.magnitude + y.magnitude}; }
 
 Tracked operator*(Tracked x, Tracked y) { return {x.value * y.value, x.magnitude * y.magnitude}; }
 
@@ -201,8 +198,7 @@ Bernstein bernstein(const Polynomial& p) {
     for (int i = 0; i <= p.degree; ++i) {
         double ratio = 1.0;  // binomial(i, j)/binomial(degree, j)
         for (int j = 0; j <= i; ++j) {
-            result.coefficients[i] =
-                result.coefficients[i] + tracked(ratio) * p.coefficients[j];
+            result.coefficients[i] = result.coefficients[i] + tracked(ratio) * p.coefficients[j];
             ratio *= double(i - j) / double(p.degree - j);
         }
     }

@@ -12,8 +12,8 @@ Eigen::Vector4d multipliers(const Axes& axes, const Coordinates& q, double frict
     const double psi = q[coordinate::psi];
     const double offset = psi - q[coordinate::theta];
     const double lambda3 = normal * std::cos(offset);
-    const double lambda4 = polar_radius_slope(axes, psi) * lambda3 -
-                           q[coordinate::r] * std::sin(offset) * normal;
+    const double lambda4 =
+        polar_radius_slope(axes, psi) * lambda3 - q[coordinate::r] * std::sin(offset) * normal;
     return {friction, normal, lambda3, lambda4};
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "double_double.hpp"
 #include "ellipse.hpp"
 
 namespace rolling_ellipse {
@@ -14,6 +13,8 @@ namespace {
 // Beyond these no product of four lengths and a squared speed stays within the range of doubles.
 constexpr double smallest = 1e-50;
 constexpr double largest = 1e50;
+// Below this the energy over the tip is no longer a normal double.
+constexpr double slowest = 1e-100;
 constexpr double aspect_limit = 1e3;
 constexpr double touching_ulps = 8;
 
@@ -33,7 +34,8 @@ void require_positive(const std::string& name, const std::string& kind, double v
 }
 
 bool nearly_equal(double value, double target) {
-    const double ulp = std::max(epsilon * std::abs(target), std::numeric_limits<double>::denorm_min());
+    const double ulp =
+        std::max(epsilon * std::abs(target), std::numeric_limits<double>::denorm_min());
     return std::abs(value - target) <= touching_ulps * ulp;
 }
 
@@ -76,6 +78,9 @@ void validate(const Body& body) {
 void validate_motion(double theta, double omega) {
     require_finite("theta", " [rad]", theta);
     require_finite("omega", " [rad/s]", omega);
+    if (omega != 0 && std::abs(omega) < slowest) {
+        refuse("omega", "0 or at least 1e-100 [rad/s] in size", omega);
+    }
 }
 
 void validate(const Impulse& impulse) {
@@ -116,8 +121,12 @@ State state_before_impulse(const Scene& scene) {
     State state{scene.theta, scene.omega, scene.x, at.h, 0.0, 0.0, Mode::flight};
     const double z = scene.z.value_or(at.h);
     if (!nearly_equal(z, at.h)) {
-        if (z < at.h) refuse("z", "at least h(theta) = " + text(at.h) + " [m], the height at which "
-                             "the ellipse touches the ground", z);
+        if (z < at.h)
+            refuse("z",
+                   "at least h(theta) = " + text(at.h) +
+                       " [m], the height at which "
+                       "the ellipse touches the ground",
+                   z);
         state.z = z;
         state.x_dot = scene.x_dot.value_or(0.0);
         state.z_dot = scene.z_dot.value_or(0.0);
@@ -130,15 +139,17 @@ State state_before_impulse(const Scene& scene) {
     if (nearly_equal(state.x_dot, rolling_x_dot)) state.x_dot = rolling_x_dot;
     if (nearly_equal(state.z_dot, rolling_z_dot)) state.z_dot = rolling_z_dot;
     if (state.z_dot < rolling_z_dot) {
-        refuse("z_dot", "at least h'(theta)*omega = " + text(rolling_z_dot) +
-               " [m/s] while touching the ground (less moves into it)", state.z_dot);
+        refuse("z_dot",
+               "at least h'(theta)*omega = " + text(rolling_z_dot) +
+                   " [m/s] while touching the ground (less moves into it)",
+               state.z_dot);
     }
     if (state.z_dot == rolling_z_dot) {
-        const bool at_rest = scene.slope == 0 && scene.omega == 0 && state.x_dot == 0 &&
-                             is_equilibrium(at);
-        state.mode = at_rest                          ? Mode::rest
+        const bool at_rest =
+            scene.slope == 0 && scene.omega == 0 && state.x_dot == 0 && is_equilibrium(at);
+        state.mode = at_rest                        ? Mode::rest
                      : state.x_dot == rolling_x_dot ? Mode::rolling
-                                                     : Mode::sliding;
+                                                    : Mode::sliding;
     }
     return state;
 }

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 
-namespace rolling_ellipse {
+#include "numbers.hpp"
 
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
-inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
+namespace rolling_ellipse {
 
 // What the motion on level ground depends on: semi-axes [m], k^2 = I/m [m^2], gravity [m/s^2].
 struct Body {

@@ -31,12 +31,11 @@ std::string sentence(const Scene& scene, const State& start, const Certificate& 
     if (c.validity == Validity::no_proof) {
         return "rolling: nothing to prove, " + why_not_rolling(scene, start);
     }
-    const std::string extremes =
-        "the smallest N is " + brief(*c.smallest_normal_force) + " N (theta = " +
-        in_degrees(*c.smallest_normal_force_angle) + "), the largest |F|/N " +
-        brief(*c.largest_friction_needed) + " (theta = " +
-        in_degrees(*c.largest_friction_needed_angle) + "), the friction coefficient " +
-        brief(scene.friction);
+    const std::string extremes = "the smallest N is " + brief(*c.smallest_normal_force) +
+                                 " N (theta = " + in_degrees(*c.smallest_normal_force_angle) +
+                                 "), the largest |F|/N " + brief(*c.largest_friction_needed) +
+                                 " (theta = " + in_degrees(*c.largest_friction_needed_angle) +
+                                 "), the friction coefficient " + brief(scene.friction);
     switch (c.validity) {
         case Validity::valid:
             return (start.mode == Mode::rest ? "rest: in equilibrium, "
@@ -45,7 +44,8 @@ std::string sentence(const Scene& scene, const State& start, const Certificate& 
         case Validity::edge:
             return "rolling: on the edge of its validity at theta = " + brief(*c.ends_at) +
                    " rad, closer than rounding can tell; " + extremes;
-        default: break;
+        default:
+            break;
     }
     const bool at_once = *c.ends_at == start.theta;
     const std::string what = std::isinf(scene.friction) ? "N would have to pull"
@@ -67,8 +67,8 @@ CertifiedScene certify(const Scene& scene) {
     result.start = initial_state(scene);
     const State& start = result.start.state;
     if (why_not_rolling(scene, start).empty()) {
-        result.certificate = certify_rolling(scene.body(), scene.mass, scene.friction, start.theta,
-                                             start.omega);
+        result.certificate =
+            certify_rolling(scene.body(), scene.mass, scene.friction, start.theta, start.omega);
     } else {
         result.certificate = {Validity::no_proof, {}, {}, {}, {}, {}, 0.0};
     }

@@ -8,8 +8,6 @@
 namespace rolling_ellipse {
 namespace {
 
-double square(double x) { return x * x; }
-
 // The body with lengths in units of its long semi-axis and accelerations in units of g.
 struct Shape {
     double short_axis;
@@ -19,8 +17,8 @@ struct Shape {
 
 // A place on the ellipse, and what rolling needs there.
 struct Place {
-    double angle;        // phi
-    double over_flat;    // h - S
+    double angle;      // phi
+    double over_flat;  // h - S
     double h;
     double dh;
     double kh;           // k^2 + h^2

@@ -37,7 +37,7 @@ ANGLES = sorted(
 )
 
 
-@pytest.fixture(params=SHAPES.values(), ids=SHAPES.keys())
+@pytest.fixture(params=list(SHAPES.values()), ids=list(SHAPES))
 def shape(request: pytest.FixtureRequest) -> tuple[float, float]:
     """Semi-axes (a, b) [m]."""
     semi_axes: tuple[float, float] = request.param

@@ -14,7 +14,7 @@ import mpmath as mp
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Long = NDArray[np.longdouble]
+Long = NDArray[Any]  # of np.longdouble, which NumPy's annotations lose in mixed arithmetic
 EPS = 2.0**-52  # one ulp of 1.0 in double
 PI = np.longdouble("3.14159265358979323846264338327950288")
 DIGITS = 40
@@ -71,7 +71,7 @@ def height_slopes(theta: float, a: float, b: float) -> tuple[Any, Any, Any]:
     with mp.workdps(2 * DIGITS):
         turned, long_axis, short_axis = mp.mpf(theta), mp.mpf(a), mp.mpf(b)
         derivatives = mp.diffs(lambda angle: height(angle, long_axis, short_axis), turned, 2)
-        return tuple(+value for value in derivatives)  # type: ignore[return-value]
+        return tuple(+value for value in derivatives)
 
 
 def forces_by_differentiation(
@@ -167,7 +167,8 @@ def speed(moving: Motion, sine: Long, cosine: Long) -> Long:
     longer, shorter = np.maximum(moving.a, moving.b), np.minimum(moving.a, moving.b)
     rise = (longer - shorter) * (longer + shorter) * sine**2 / (h + shorter)
     kinetic = np.maximum(moving.lift - moving.gravity * rise, 0)
-    return np.sqrt(2 * kinetic / (moving.gyration2 + h * h + slope * slope))
+    omega: Long = np.sqrt(2 * kinetic / (moving.gyration2 + h * h + slope * slope))
+    return omega
 
 
 def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:

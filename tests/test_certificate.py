@@ -17,7 +17,7 @@ from oracles import EPS, PI, Long, Motion
 from rolling_ellipse import Impulse, Scene, Validity, certify
 
 SCENES, CHUNK = 10_000, 500
-EDGE_MARGIN = 1e-6  # relative, of friction to the needed or of N to m g: nearer EDGE may be said
+EDGE_MARGIN = 1e-5  # nearer to a threshold, relative, EDGE may be said
 Floats = NDArray[np.float64]
 
 
@@ -155,11 +155,11 @@ class Judged(NamedTuple):
         return truth.normal / truth.normal_error, np.where(limited, grip, np.inf)
 
     def distance(self) -> Long:
-        """Relative, to the threshold that decides: of friction, or with unlimited friction of N."""
+        """Relative, to the nearer threshold: of the friction to the needed, or of N/(m g) to 0."""
         friction, needed = self.sample.friction, self.truth.needed
         known = np.isfinite(friction) & np.isfinite(needed) & (needed > 0)
         off = np.abs(np.where(known, friction, np.inf) / np.where(known, needed, 1) - 1)
-        return np.where(np.isinf(friction), np.abs(self.truth.normal) / self.sample.gravity, off)
+        return np.minimum(off, np.abs(self.truth.normal) / self.sample.gravity)
 
 
 def column(found: list[Any], name: str) -> Floats:
@@ -187,6 +187,13 @@ def judge(count: int, seed: int) -> Judged:
 def judged() -> list[Judged]:
     """In chunks: 500 scenes x 300 samples of long double are 2.4 MB per intermediate array."""
     return [judge(CHUNK, seed) for seed in range(SCENES // CHUNK)]
+
+
+def at_rest(sample: Sample) -> NDArray[np.bool_]:
+    """Stays for ever by decree: omega = 0 and h' within 8 ulp of the size of the body."""
+    _, slope, *_ = oracles.geometry(sample.a, sample.b, *reduced_start(sample))
+    resting: NDArray[np.bool_] = slope <= 8 * EPS * np.maximum(sample.a, sample.b)
+    return (sample.omega == 0) & resting
 
 
 def starts_rolling(chunk: Judged) -> NDArray[np.bool_]:
@@ -285,14 +292,14 @@ def test_no_false_verdict(judged: list[Judged]) -> None:
             for verdict in (Validity.VALID, Validity.INVALID, Validity.EDGE, Validity.NO_PROOF)
         )
         # 0.1 errors: the truth is known to 1e-16, the inputs the package forms (k^2) to 1e-16 too
-        false = (valid & (margin < -0.1)) | (invalid & (margin > 0.1))
+        false = (valid & (margin < -0.1) & ~at_rest(chunk.sample)) | (invalid & (margin > 0.1))
         assert not false.any(), [chunk.sample.scene(int(row)) for row in np.flatnonzero(false)[:3]]
         vague = edge & (chunk.distance() > EDGE_MARGIN)
         assert not vague.any(), [chunk.sample.scene(int(row)) for row in np.flatnonzero(vague)[:3]]
         assert not np.any(no_proof & rolls)
         assert np.all(valid | invalid | edge | no_proof)
         edges += int(edge.sum())
-    assert edges < 0.005 * SCENES
+    assert edges < 0.002 * SCENES
 
 
 def test_smallest_normal_force(judged: list[Judged]) -> None:

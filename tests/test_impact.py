@@ -281,6 +281,16 @@ def test_a_horizontal_push_with_unlimited_friction_rolls(push: float) -> None:
     assert limited.mode == Mode.SLIDING and limited.omega == 0 and limited.reaction_x == 0
 
 
+def test_unlimited_friction_takes_a_given_slip_at_once() -> None:
+    """Lying flat h' = 0: D omega = h x_dot, by the impulse m (h omega - x_dot) alone."""
+    found = Scene(2.0, 1.0, mass=2.0, x_dot=4.5).initial_state
+    assert found.mode == Mode.ROLLING
+    assert found.omega == pytest.approx(1.0 * 4.5 / 2.25, rel=4 * EPS)
+    assert found.x_dot == found.omega * 1.0
+    assert found.reaction_x == pytest.approx(2 * (2.0 - 4.5), rel=8 * EPS)
+    assert found.reaction_z == 0
+
+
 def test_pulled_up_it_leaves_the_ground() -> None:
     found = Scene(2.0, 1.0, mass=2.0, omega=0.5, impulse=Impulse(1.0, 6.0)).initial_state
     assert found.mode == Mode.FLIGHT

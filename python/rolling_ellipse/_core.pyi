@@ -83,9 +83,7 @@ def initial_state(
 ) -> tuple[float, float, float, float, float, float, Mode, float, float, float]: ...
 def certify(
     scene: Scene,
-) -> tuple[
-    Validity, float | None, float | None, float | None, float | None, float | None, str
-]: ...
+) -> tuple[Validity, float | None, float | None, float | None, float | None, float | None, str]: ...
 def thresholds(
     a: float, b: float, gravity: float, gyration2: float | None, friction: float
 ) -> tuple[
@@ -103,15 +101,7 @@ def flow_scalar(
     gyration2: float | None,
 ) -> tuple[float, float, float]: ...
 def flow_array(
-    n: int,
-    t: FloatArray,
-    a: FloatArray,
-    b: FloatArray,
-    theta: FloatArray,
-    omega: FloatArray,
-    gravity: FloatArray,
-    gyration2: FloatArray,
-    workers: int,
+    n: int, arguments: list[FloatArray], workers: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]: ...
 def constraints(
     q: FloatArray, q_dot: FloatArray, a: float, b: float

@@ -132,7 +132,8 @@ class Ruler:
         lengths = self._depth * np.where(marks % 5 == 0, 2, 1)
         places = marks * self.step
         top = np.column_stack([places, np.zeros_like(places)])
-        self.ticks.set_segments(np.stack([top, np.column_stack([places, -lengths])], axis=1))
+        bottom = np.column_stack([places, -lengths])
+        self.ticks.set_segments(list(np.stack([top, bottom], axis=1)))
         for label, place in zip(self.labels, places[::5], strict=True):
             label.set_position((place, -2.2 * self._depth))
             label.set_text(f"{place:.10g} m".replace("-", "−"))

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 SUFFIXES = (".gif", ".mp4", ".html")
-_COLOURS = 48  # of a GIF; the pictures have six, and shades between them
 
 
 class GifWriter(PillowWriter):
@@ -25,7 +24,8 @@ class GifWriter(PillowWriter):
 
     def finish(self) -> None:
         frames = [frame.convert("RGB") for frame in self._frames]  # type: ignore[attr-defined]
-        palette = frames[-1].quantize(_COLOURS)  # the last frame has every colour, the traces' too
+        # the last frame has every colour, and this way to choose them spares those of thin lines
+        palette = frames[-1].quantize(64, Image.Quantize.MAXCOVERAGE)
         first, *rest = (
             frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames
         )
@@ -67,8 +67,8 @@ def movie_writer(
     if suffix == ".mp4":
         return FFMpegWriter(fps=fps), {"animation.ffmpeg_path": ffmpeg()}  # type: ignore[arg-type]
     if suffix == ".html":
-        writer = HTMLWriter(fps=fps, embed_frames=True, default_mode="loop")  # type: ignore[arg-type]
-        return writer, {"animation.embed_limit": math.inf}
+        html = {"embed_frames": True, "embed_limit": math.inf, "default_mode": "loop"}
+        return HTMLWriter(fps=fps, **html), {}  # type: ignore[arg-type]
     raise ValueError(f"path must end in one of {', '.join(SUFFIXES)}, got {fspath(path)!r}")
 
 

@@ -128,6 +128,7 @@ class RollingAnimation(FuncAnimation):
         figure: Figure | None,
     ) -> None:
         self.motion, self.fps, self.speed = motion, fps, speed
+        self._decimals = _decimals(speed / fps)
         self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
         shape = None if figure is None else figure.get_figheight() / figure.get_figwidth()
         self._views, shape = drawing.camera(motion, shape)
@@ -192,8 +193,7 @@ class RollingAnimation(FuncAnimation):
                 self.centre_trace, self.clock]  # fmt: skip
 
     def _clock(self, t: float) -> str:
-        decimals = max(0, -math.floor(math.log10(self.speed / self.fps) + 1e-9))
-        text = f"t = {t:.{decimals}f} s"
+        text = f"t = {t:.{self._decimals}f} s"
         if self.speed != 1:
             text += f"   speed × {self.speed:g}"
         if t >= self.motion.valid_until:
@@ -212,14 +212,16 @@ class RollingAnimation(FuncAnimation):
 
         `writer` and `options` are matplotlib's, for those who want another writer.
         """
-        settings: Any = {"savefig.bbox": None}  # "tight" would change the size
+        settings: Any = {}
         if writer is None:
-            writer, more = movie_writer(filename, self.fps)
-            settings |= more
+            writer, settings = movie_writer(filename, self.fps)
         if progress:
             options["progress_callback"] = progress_bar(filename)
         with rc_context(settings):
             super().save(fspath(filename), writer=writer, **{"dpi": self.figure.dpi, **options})
+
+    def __repr__(self) -> str:
+        return f"<RollingAnimation: {self.motion.t.size} frames, {self.motion.t[-1]:g} s>"
 
     def _repr_html_(self) -> str:
         """A GIF, which plays everywhere; a player where a GIF cannot keep the time."""
@@ -238,3 +240,11 @@ class RollingAnimation(FuncAnimation):
             self.save(gif)
             data = base64.b64encode(gif.read_bytes()).decode()
         return f'<img alt="the ellipse in motion" src="data:image/gif;base64,{data}">'
+
+
+def _decimals(step: float) -> int:
+    """Digits that show every multiple of a step [s] in full, or two of the step's own."""
+    for digits in range(10):
+        if math.isclose(step * 10**digits, max(1, round(step * 10**digits)), rel_tol=1e-9):
+            return digits
+    return max(0, 1 - math.floor(math.log10(step)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from typing import Any
 
@@ -75,9 +76,8 @@ def flow(
             f"{name} {v.shape}" for name, v in zip((*names, "gyration2"), arguments, strict=True)
         )
         raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
-    columns = [v if v.size == 1 else np.broadcast_to(v, shape) for v in arguments]
-    size = int(np.prod(shape))
-    results = _core.flow_array(size, *(c.ravel() for c in columns), threads)
+    columns = [(v if v.size == 1 else np.broadcast_to(v, shape)).ravel() for v in arguments]
+    results = _core.flow_array(math.prod(shape), columns, threads)
     if shape == ():
         return tuple(float(v[0]) for v in results)  # type: ignore[return-value]
     theta_t, omega_t, x_t = (v.reshape(shape) for v in results)

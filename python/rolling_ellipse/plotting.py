@@ -142,7 +142,9 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
         ("their rates", "x", ORANGE, np.max(np.abs(residuals.velocity), axis=1)),
         ("energy, relative", "+", BLUE, np.abs(trajectory.energy - trajectory.energy[0]) / scale),
     ]
+    largest = max(float(np.max(values)) for *_, values in errors)
     ax.set_yscale("log", nonpositive="mask")
+    ax.set_ylim(1e-17, 10 * max(largest, 1e-13))
     lines = []
     for name, marker, colour, values in errors:
         label = name if values.any() else f"{name} = 0"
@@ -150,8 +152,6 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
             trajectory.t, values, ls="none", marker=marker, ms=3, mew=0.7, color=colour, label=label
         )
         lines.append(line)
-    largest = max(float(np.max(values)) for *_, values in errors)
-    ax.set_ylim(1e-17, 10 * max(largest, 1e-13))
     ax.set_ylabel("error [m, rad, s]")
     legend_above(ax)
     position, velocity, energy = lines

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -168,9 +168,8 @@ class Scene:
     @cached_property
     def initial_state(self) -> InitialState:
         """State just after the impulse: the collision law without restitution (InitialState)."""
-        *numbers, free_omega = _core.initial_state(self._core_scene)
-        state = InitialState(*numbers, free_omega, reason="")
-        return InitialState(*numbers, free_omega, reason=_what_happened(self, state))
+        state = InitialState(*_core.initial_state(self._core_scene), reason="")
+        return replace(state, reason=_what_happened(self, state))
 
 
 def require_scene(scene: object) -> Scene:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 _SCHEMA = 1
 _ARRAYS = ("t", "theta", "omega", "x")
+_FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "stats")
 
 
 class Status(enum.Enum):
@@ -309,7 +310,9 @@ class Trajectory:
         self._require_motion()
         return plot(self, **options)
 
-    def animate(self, path: str | os.PathLike[str] | None = None, **options: Any) -> RollingAnimation:
+    def animate(
+        self, path: str | os.PathLike[str] | None = None, **options: Any
+    ) -> RollingAnimation:
         """Animate the motion; see `rolling_ellipse.animate`."""
         from .animation import animate
 
@@ -324,10 +327,7 @@ class Trajectory:
             "schema": _SCHEMA,
             "scene": asdict(self.scene),
             "status": self.status.name,
-            **{
-                name: getattr(self, name)
-                for name in ("model", "method", "message", "reason", "valid_until", "t_end", "stats")
-            },
+            **{name: getattr(self, name) for name in _FACTS},
         }
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         with open(path, "wb") as file:
@@ -348,7 +348,7 @@ class Trajectory:
             about = json.loads(str(data["about"]))
             arrays = [data[name] for name in _ARRAYS]
         if about.pop("schema") != _SCHEMA:
-            raise ValueError(f"path must name a Trajectory of schema {_SCHEMA}, got another version")
+            raise ValueError(f"path must name a file of schema {_SCHEMA}, got another version")
         scene = about.pop("scene")
         if scene["impulse"] is not None:
             scene["impulse"] = Impulse(**scene["impulse"])

@@ -119,7 +119,7 @@ def thresholds(
     gyration2 : float, optional
         k^2 = I/m [m^2]; default: a uniform disc.
     friction : float
-        Coefficient of friction that `slip_speed` is for.
+        Coefficient of friction that `slip_speed` is for; if infinite, it is the contact loss speed.
 
     Returns
     -------

@@ -1,0 +1,15 @@
+// Constants and the smallest of functions.
+#pragma once
+
+#include <limits>
+
+namespace rolling_ellipse {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
+inline constexpr double pi = 3.14159265358979311600e+00;
+inline constexpr double half_pi = 1.57079632679489655800e+00;
+
+constexpr double square(double x) { return x * x; }
+
+}  // namespace rolling_ellipse
