@@ -122,6 +122,8 @@ def test_a_few_ulp_of_an_input_are_seen(rows: list[Row], name: str) -> None:
 
     def changed(row: Row) -> Row:
         value = row.arguments[name]
+        if value == 0:  # its ulp is no speed that the package takes
+            return row
         return row._replace(arguments={**row.arguments, name: value + ulps * math.ulp(value)})
 
     found = errors([changed(row) for row in rows if row.kind != "far_angle"], one_by_one)
