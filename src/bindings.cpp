@@ -171,14 +171,16 @@ py::tuple constraint_arrays(const Array& q, const Array& q_dot, double a, double
     return py::make_tuple(position, velocity, gap, slip);
 }
 
-py::tuple kinematics_arrays(const Array& theta, const Array& omega, double a, double b) {
+py::tuple kinematics_arrays(py::ssize_t n, const Array& theta, const Array& omega, double a,
+                            double b) {
     validate_axes(a, b);
-    const py::ssize_t n = theta.size();
+    const Argument thetas = argument(theta);
+    const Argument omegas = argument(omega);
     Array q = matrix(n, 5);
     Array q_dot = matrix(n, 5);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
-            const KinematicState state = kinematics({a, b}, theta.data()[i], omega.data()[i]);
+            const KinematicState state = kinematics({a, b}, thetas[i], omegas[i]);
             store(q, i, state.q.data());
             store(q_dot, i, state.q_dot.data());
         }
@@ -213,14 +215,26 @@ py::tuple rolling_arrays(const Scene& scene, const Array& theta, const Array& om
     return py::make_tuple(q, q_dot, q_ddot, normal, friction, multipliers);
 }
 
-// A function of an angle and the semi-axes, broadcast by NumPy's rules.
+// A function of theta, a, b, each with n elements, or one.
 template <class Function>
 void define_geometry(py::module_& module, const char* name, Function function) {
-    module.def(name, py::vectorize([function](double theta, double a, double b) {
-                   validate_axes(a, b);
-                   return function(Axes{a, b}, theta);
-               }),
-               "theta"_a, "a"_a, "b"_a);
+    module.def(
+        name,
+        [function](py::ssize_t n, const std::array<Array, 3>& arguments) {
+            const Argument theta = argument(arguments[0]);
+            const Argument a = argument(arguments[1]);
+            const Argument b = argument(arguments[2]);
+            Array out(n);
+            double* const values = out.mutable_data();
+            run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+                for (py::ssize_t i = begin; i < end; ++i) {
+                    validate_axes(a[i], b[i]);
+                    values[i] = function(Axes{a[i], b[i]}, theta[i]);
+                }
+            });
+            return out;
+        },
+        "n"_a, "arguments"_a);
 }
 
 void bind_geometry(py::module_& m) {
@@ -342,7 +356,7 @@ void bind_motion(py::module_& m) {
           "gyration2"_a);
     m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("constraints", constraint_arrays, "q"_a, "q_dot"_a, "a"_a, "b"_a);
-    m.def("kinematics", kinematics_arrays, "theta"_a, "omega"_a, "a"_a, "b"_a);
+    m.def("kinematics", kinematics_arrays, "n"_a, "theta"_a, "omega"_a, "a"_a, "b"_a);
     m.def("rolling_detail", rolling_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a);
 }
 

@@ -1,58 +1,11 @@
 #include "simulate.hpp"
 
-#include <cmath>
-#include <cstdio>
 #include <stdexcept>
+
+#include "reason.hpp"
 
 namespace rolling_ellipse {
 namespace {
-
-std::string brief(double value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.6g", value);
-    return buffer;
-}
-
-std::string in_degrees(double angle) { return brief(angle * 180 / pi) + " deg"; }
-
-// Why the exact rolling motion does not describe this scene at all; empty where it does.
-std::string why_not_rolling(const Scene& scene, const State& start) {
-    if (scene.slope != 0) return "the ground has a slope of " + brief(scene.slope) + " rad";
-    if (start.mode == Mode::flight) return "the body is in the air";
-    if (start.mode == Mode::sliding) {
-        return "the body slides with " +
-               brief(start.x_dot - geometry({scene.a, scene.b}, start.theta).h * start.omega) +
-               " m/s at the contact";
-    }
-    return {};
-}
-
-std::string sentence(const Scene& scene, const State& start, const Certificate& c) {
-    if (c.validity == Validity::no_proof) {
-        return "rolling: nothing to prove, " + why_not_rolling(scene, start);
-    }
-    const std::string extremes = "the smallest N is " + brief(*c.smallest_normal_force) +
-                                 " N (theta = " + in_degrees(*c.smallest_normal_force_angle) +
-                                 "), the largest |F|/N " + brief(*c.largest_friction_needed) +
-                                 " (theta = " + in_degrees(*c.largest_friction_needed_angle) +
-                                 "), the friction coefficient " + brief(scene.friction);
-    switch (c.validity) {
-        case Validity::valid:
-            return (start.mode == Mode::rest ? "rest: in equilibrium, "
-                                             : "rolling: proved valid for the whole motion, ") +
-                   extremes;
-        case Validity::edge:
-            return "rolling: on the edge of its validity at theta = " + brief(*c.ends_at) +
-                   " rad, closer than rounding can tell; " + extremes;
-        default:
-            break;
-    }
-    const bool at_once = *c.ends_at == start.theta;
-    const std::string what = std::isinf(scene.friction) ? "N would have to pull"
-                                                        : "it would need more than the friction";
-    return (at_once ? "rolling: cannot start at theta = " : "rolling: ends at theta = ") +
-           brief(*c.ends_at) + " rad, where " + what + "; on the whole motion " + extremes;
-}
 
 double end_of_validity(const RollingFlow& flow, const Certificate& certificate) {
     if (!certificate.ends_at) return infinity;
@@ -72,7 +25,7 @@ CertifiedScene certify(const Scene& scene) {
     } else {
         result.certificate = {Validity::no_proof, {}, {}, {}, {}, {}, 0.0};
     }
-    result.reason = sentence(scene, start, result.certificate);
+    result.reason = reason(scene, start, result.certificate);
     return result;
 }
 

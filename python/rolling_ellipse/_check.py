@@ -35,6 +35,26 @@ def array(name: str, value: Any) -> FloatArray:
     raise TypeError(f"{name} must be a number or an array of numbers, got {value!r}")
 
 
+def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
+    """Return the common shape and, as 1-D arrays, what the core wants: all elements, or one.
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not broadcast; it names the arguments and their shapes.
+    """
+    arrays = {name: array(name, value) for name, value in arguments.items()}
+    try:
+        shape = np.broadcast_shapes(*(values.shape for values in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {values.shape}" for name, values in arrays.items())
+        raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
+    return shape, [
+        (values if values.size == 1 else np.broadcast_to(values, shape)).ravel()
+        for values in arrays.values()
+    ]
+
+
 def choice(name: str, value: Any, valid: tuple[str, ...]) -> str:
     """Return ``value`` if it is one of the valid names, or raise ValueError listing them."""
     if value in valid and isinstance(value, str):

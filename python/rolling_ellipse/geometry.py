@@ -7,11 +7,12 @@ ValueError for semi-axes that are no positive lengths or whose ratio is outside 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 from . import _core
-from ._check import array
+from ._check import FloatArray, broadcast
 
 __all__ = [
     "arc_length", "centre_path", "contact_angle", "contact_distance", "curvature_radius",
@@ -19,8 +20,10 @@ __all__ = [
 ]  # fmt: skip
 
 
-def _evaluate(function: Callable[..., Any], theta: Any, a: Any, b: Any) -> Any:
-    return function(array("theta", theta), array("a", a), array("b", b))
+def _evaluate(function: Callable[..., FloatArray], theta: Any, a: Any, b: Any) -> Any:
+    shape, arguments = broadcast(theta=theta, a=a, b=b)
+    values = function(math.prod(shape), arguments)
+    return float(values[0]) if shape == () else values.reshape(shape)
 
 
 def support(theta: Any, *, a: Any, b: Any) -> Any:

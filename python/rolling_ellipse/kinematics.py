@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, array, number
+from ._check import FloatArray, array, broadcast, number
 
 COORDINATES = 5
 
@@ -45,14 +46,6 @@ def _coordinates(name: str, value: Any) -> FloatArray:
     return found
 
 
-def _broadcast(**arrays: FloatArray) -> tuple[FloatArray, ...]:
-    try:
-        return np.broadcast_arrays(*arrays.values())
-    except ValueError:
-        shapes = ", ".join(f"{name} {values.shape}" for name, values in arrays.items())
-        raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
-
-
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
     """Evaluate the four constraints, and gap and slip by a road of their own, for any state.
 
@@ -76,7 +69,12 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     ValueError
         If a shape or a semi-axis is wrong.
     """
-    q, q_dot = _broadcast(q=_coordinates("q", q), q_dot=_coordinates("q_dot", q_dot))
+    states = _coordinates("q", q), _coordinates("q_dot", q_dot)
+    try:
+        q, q_dot = np.broadcast_arrays(*states)
+    except ValueError:
+        shapes = f"q {states[0].shape}, q_dot {states[1].shape}"
+        raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
     shape = q.shape[:-1]
     position, velocity, gap, slip = _core.constraints(
         q.reshape(-1, COORDINATES),
@@ -112,7 +110,7 @@ def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArra
     ValueError
         If a semi-axis is out of its range.
     """
-    theta, omega = _broadcast(theta=array("theta", theta), omega=array("omega", omega))
-    q, q_dot = _core.kinematics(theta.ravel(), omega.ravel(), number("a", a), number("b", b))
-    shape = (*theta.shape, COORDINATES)
-    return q.reshape(shape), q_dot.reshape(shape)
+    shape, (angle, speed) = broadcast(theta=theta, omega=omega)
+    size = math.prod(shape)
+    q, q_dot = _core.kinematics(size, angle, speed, number("a", a), number("b", b))
+    return q.reshape(*shape, COORDINATES), q_dot.reshape(*shape, COORDINATES)

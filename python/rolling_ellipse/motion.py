@@ -6,10 +6,8 @@ import math
 import os
 from typing import Any
 
-import numpy as np
-
 from . import _core
-from ._check import array
+from ._check import array, broadcast
 from .scene import Scene, require_scene
 
 _SCALARS = (float, int)
@@ -65,19 +63,12 @@ def flow(
         gyration2 is None or type(gyration2) in _SCALARS
     ):
         return _core.flow_scalar(t, a, b, theta, omega, gravity, gyration2)
-    names = ("t", "a", "b", "theta", "omega", "gravity")
-    arguments = [array(name, value) for name, value in zip(names, given, strict=True)]
-    k2 = (arguments[1] ** 2 + arguments[2] ** 2) / 4 if gyration2 is None else gyration2
-    arguments.append(array("gyration2", k2))
-    try:
-        shape = np.broadcast_shapes(*(v.shape for v in arguments))
-    except ValueError:
-        shapes = ", ".join(
-            f"{name} {v.shape}" for name, v in zip((*names, "gyration2"), arguments, strict=True)
-        )
-        raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
-    columns = [(v if v.size == 1 else np.broadcast_to(v, shape)).ravel() for v in arguments]
-    results = _core.flow_array(math.prod(shape), columns, threads)
+    if gyration2 is None:
+        gyration2 = (array("a", a) ** 2 + array("b", b) ** 2) / 4
+    shape, arguments = broadcast(
+        t=t, a=a, b=b, theta=theta, omega=omega, gravity=gravity, gyration2=gyration2
+    )
+    results = _core.flow_array(math.prod(shape), arguments, threads)
     if shape == ():
         return tuple(float(v[0]) for v in results)  # type: ignore[return-value]
     theta_t, omega_t, x_t = (v.reshape(shape) for v in results)

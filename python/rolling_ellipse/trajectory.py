@@ -41,6 +41,17 @@ class ValidityWarning(UserWarning):
     """Part of the motion is not what a body on the ground would do."""
 
 
+def _column(array_index: int, column: int) -> cached_property[FloatArray]:
+    """An array of its own for one column of q, q_dot or q_ddot (0, 1, 2)."""
+
+    def values(self: Trajectory) -> FloatArray:
+        found = np.ascontiguousarray(self._detail[array_index][:, column])
+        found.flags.writeable = False
+        return found
+
+    return cached_property(values)
+
+
 def solve(scene: Scene, model: str, t_end: float) -> _core.Solution:
     """Return the core's solution of a scene: the motion at any time in [0, t_end]."""
     return _core.simulate(scene._core_scene, _core.Model[model.upper()], t_end)
@@ -146,11 +157,6 @@ class Trajectory:
             values.flags.writeable = False
         return found
 
-    def _column(self, which: int, column: int) -> FloatArray:
-        values = np.ascontiguousarray(self._detail[which][:, column])
-        values.flags.writeable = False
-        return values
-
     @property
     def q(self) -> FloatArray:
         return self._detail[0]
@@ -159,53 +165,9 @@ class Trajectory:
     def q_dot(self) -> FloatArray:
         return self._detail[1]
 
-    @cached_property
-    def z(self) -> FloatArray:
-        return self._column(0, 1)
-
-    @cached_property
-    def psi(self) -> FloatArray:
-        return self._column(0, 3)
-
-    @cached_property
-    def r(self) -> FloatArray:
-        return self._column(0, 4)
-
-    @cached_property
-    def x_dot(self) -> FloatArray:
-        return self._column(1, 0)
-
-    @cached_property
-    def z_dot(self) -> FloatArray:
-        return self._column(1, 1)
-
-    @cached_property
-    def psi_dot(self) -> FloatArray:
-        return self._column(1, 3)
-
-    @cached_property
-    def r_dot(self) -> FloatArray:
-        return self._column(1, 4)
-
-    @cached_property
-    def x_ddot(self) -> FloatArray:
-        return self._column(2, 0)
-
-    @cached_property
-    def z_ddot(self) -> FloatArray:
-        return self._column(2, 1)
-
-    @cached_property
-    def omega_dot(self) -> FloatArray:
-        return self._column(2, 2)
-
-    @cached_property
-    def psi_ddot(self) -> FloatArray:
-        return self._column(2, 3)
-
-    @cached_property
-    def r_ddot(self) -> FloatArray:
-        return self._column(2, 4)
+    z, psi, r = _column(0, 1), _column(0, 3), _column(0, 4)
+    x_dot, z_dot, psi_dot, r_dot = (_column(1, i) for i in (0, 1, 3, 4))
+    x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot = (_column(2, i) for i in range(5))
 
     @property
     def normal_force(self) -> FloatArray:
