@@ -75,8 +75,12 @@ struct Argument {
 
 Argument argument(const Array& array) { return {array.data(), array.size() == 1 ? 0 : 1}; }
 
-void require_finite_time(double t) {
+FlowSample validated_sample(const RollingFlow& flow, double t) {
     if (!std::isfinite(t)) refuse("t", "finite [s]", t);
+    if (std::abs(t) > longest_time(flow)) {
+        refuse("t", "at most 1e15 half turns or swings, " + text(longest_time(flow)) + " [s]", t);
+    }
+    return sample(flow, t);
 }
 
 RollingFlow validated_flow(const Body& body, double theta, double omega) {
@@ -87,9 +91,8 @@ RollingFlow validated_flow(const Body& body, double theta, double omega) {
 
 py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
                       std::optional<double> gyration2) {
-    require_finite_time(t);
     const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
-    const FlowSample now = sample(validated_flow(body, theta, omega), t);
+    const FlowSample now = validated_sample(validated_flow(body, theta, omega), t);
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
@@ -110,8 +113,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
                 flow = validated_flow({now[0], now[1], now[5], now[4]}, now[2], now[3]);
                 last = now;
             }
-            require_finite_time(times[i]);
-            const FlowSample at = sample(flow, times[i]);
+            const FlowSample at = validated_sample(flow, times[i]);
             columns[0][i] = at.theta;
             columns[1][i] = at.omega;
             columns[2][i] = at.x;
@@ -130,7 +132,7 @@ py::tuple sample_solution(const Solution& solution, const Array& t) {
     const Segment& segment = solution.segments.front();
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
-            const FlowSample at = sample(segment, times[i]);
+            const FlowSample at = validated_sample(segment.rolling, times[i] - segment.t0);
             columns[0][i] = at.theta;
             columns[1][i] = at.omega;
             columns[2][i] = at.x;

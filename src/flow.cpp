@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quadrature.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
@@ -21,6 +23,7 @@ struct MotionPoint {
     double sin_phi;
     double cos_phi;
     double omega;
+    double quarters;  // whole turns made, in quarters, beside what sin_phi and cos_phi say
 };
 
 // Angle and angular velocity at a phase: the energy integral read at the point itself.
@@ -29,9 +32,51 @@ MotionPoint motion_point(const RollingFlow& flow, const PhasePoint& at) {
     const double factor = shape_factor(flow.phase.rate, sin_phi);
     const double root = std::hypot(at.cos, flow.phase.rate.kappa * at.sin);
     if (flow.kind == MotionKind::rotation) {
-        return {flow.direction * sin_phi, at.cos, flow.direction * root / factor};
+        return {flow.direction * sin_phi, at.cos, flow.direction * root / factor, 0.0};
     }
-    return {sin_phi, root, flow.amplitude * at.cos / factor};
+    return {sin_phi, root, flow.amplitude * at.cos / factor, 0.0};
+}
+
+MotionPoint point_after(const RollingFlow& flow, double t) {
+    // Whole half turns first; t - n T is formed without rounding, T being a double-double.
+    const DoubleDouble& period = flow.phase.half_turn;
+    double half_turns = 0.0;
+    DoubleDouble time = flow.start_time + t;
+    if (std::isfinite(period.high)) {
+        half_turns = std::nearbyint(t / period.high);
+        time = flow.start_time + std::fma(-half_turns, period.high, t) +
+               two_product(-half_turns, period.low);
+        while (double(time * 2.0 - period) > 0) {
+            time = time - period;
+            half_turns += 1;
+        }
+        while (double(time * 2.0 + period) < 0) {
+            time = time + period;
+            half_turns -= 1;
+        }
+    }
+    const PhasePoint phase = point_at_time(flow.phase, time);
+    if (flow.kind == MotionKind::libration) {
+        const bool odd = std::fmod(half_turns, 2.0) != 0.0;
+        const double sign = odd == flow.start_on_way_back ? 1.0 : -1.0;
+        return motion_point(flow, {sign * phase.sin, sign * phase.cos});
+    }
+    MotionPoint point = motion_point(flow, phase);
+    point.quarters = 2 * flow.direction * half_turns;
+    return point;
+}
+
+// The way of the centre, the integral of h omega over time, for a move over which the difference of
+// two paths would cancel: full relative accuracy. Such a move is short beside its distance from the
+// flat position and the tip, so that eight Gauss nodes are more than enough.
+double short_path(const RollingFlow& flow, double t) {
+    const auto velocity = [&](double at) {
+        const MotionPoint point = point_after(flow, at);
+        const double h =
+            std::hypot(flow.start.long_axis * point.sin_phi, flow.start.short_axis * point.cos_phi);
+        return h * point.omega;
+    };
+    return double(integrate(gauss_rule(8), 0.0, t, velocity));
 }
 
 // The constants of the energy integral; see phase_time.hpp.
@@ -109,36 +154,21 @@ FlowSample sample(const RollingFlow& flow, double t) {
         const double turn = flow.omega * t;
         return {flow.theta + turn, flow.omega, flow.x + flow.start.long_axis * turn};
     }
-    // Whole half turns first; t - n T is formed without rounding, T being a double-double.
-    const DoubleDouble& period = flow.phase.half_turn;
-    double half_turns = 0.0;
-    DoubleDouble time = flow.start_time + t;
-    if (std::isfinite(period.high)) {
-        half_turns = std::nearbyint(t / period.high);
-        time = flow.start_time + two_sum(std::fma(-half_turns, period.high, t), 0.0) +
-               two_product(-half_turns, period.low);
-        while (double(time * 2.0 - period) > 0) {
-            time = time - period;
-            half_turns += 1;
-        }
-        while (double(time * 2.0 + period) < 0) {
-            time = time + period;
-            half_turns -= 1;
-        }
-    }
-    PhasePoint phase = point_at_time(flow.phase, time);
-    const bool odd = std::fmod(half_turns, 2.0) != 0.0;
-    const bool libration = flow.kind == MotionKind::libration;
-    if (libration && odd != flow.start_on_way_back) phase = {-phase.sin, -phase.cos};
-    const MotionPoint now = motion_point(flow, phase);
-
+    const MotionPoint now = point_after(flow, t);
     const QuarterPosition& from = flow.start_position;
     const QuarterPosition to = quarter_position(flow.start, now.sin_phi, now.cos_phi);
-    const double quarters =
-        (libration ? 0.0 : 2 * flow.direction * half_turns) + (to.quarters - from.quarters);
+    const double quarters = now.quarters + (to.quarters - from.quarters);
     const DoubleDouble turned = half_pi_exact * quarters + (to.angle - from.angle);
-    const double path = std::fma(quarters, flow.quarter_path, to.path - from.path);
+    const bool short_move = quarters == 0 && std::abs(t) < double(flow.phase.quarter_turn) / 8 &&
+                            std::abs(to.path - from.path) < std::abs(from.path) / 4;
+    const double path = short_move ? short_path(flow, t)
+                                   : std::fma(quarters, flow.quarter_path, to.path - from.path);
     return {double(turned + flow.theta), now.omega, flow.x + path};
+}
+
+double longest_time(const RollingFlow& flow) {
+    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return infinity;
+    return 1e15 * flow.phase.half_turn.high;
 }
 
 double period(const RollingFlow& flow) {

@@ -43,7 +43,11 @@ struct FlowSample {
 
 RollingFlow rolling_flow(const Body& body, double theta, double omega, double x = 0.0);
 
+// For |t| up to longest_time.
 FlowSample sample(const RollingFlow& flow, double t);
+
+// 1e15 half turns: beyond, a double does not know the phase.
+double longest_time(const RollingFlow& flow);
 
 // Time of a full swing or of a full turn; infinite for a body at rest and on the separatrix.
 double period(const RollingFlow& flow);

@@ -26,8 +26,4 @@ struct Solution {
     std::string message;
 };
 
-inline FlowSample sample(const Segment& segment, double t) {
-    return sample(segment.rolling, t - segment.t0);
-}
-
 }  // namespace rolling_ellipse
