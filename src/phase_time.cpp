@@ -11,8 +11,8 @@ namespace {
 // From here on e^-w squared is below rounding: the integrand at the tip is constant.
 constexpr double constant_from = 20.0;
 
-// The panel next to the end of a half (coordinate v from the end), or next to the split (w from
-// it).
+// The panel next to the end of a half (coordinate v, from the end), or to the split (w, from
+// there).
 enum class Panel { end, slope };
 
 double length(const Half& half, Panel panel) {
@@ -85,8 +85,7 @@ const GaussRule& rule_between(double v0, double v1) {
 
 DoubleDouble time_from_anchor(const PhaseRate& rate, const Half& half, Panel panel, double v) {
     const auto rate_at = [&](double at) { return time_rate(rate, half, tangent(half, panel, at)); };
-    if (v > constant_from &&
-        panel == Panel::slope) {  // on the separatrix: the tip is never reached
+    if (panel == Panel::slope && v > constant_from) {  // on the separatrix: there is no end panel
         return time_from_anchor(rate, half, panel, constant_from) +
                (v - constant_from) * rate_at(constant_from);
     }
