@@ -200,7 +200,10 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
         half_turns = double(on_way_back) - double(flow.start_on_way_back);
     }
     DoubleDouble time = time_since_flat(flow.phase, {sin, cos}) - flow.start_time;
-    if (half_turns != 0) time = time + flow.phase.half_turn * half_turns;
+    if (half_turns != 0) {
+        if (std::isinf(flow.phase.half_turn.high)) return infinity;
+        time = time + flow.phase.half_turn * half_turns;
+    }
     if (time.high < 0 && flow.kind == MotionKind::libration)
         time = time + flow.phase.half_turn * 2.0;
     return std::max(double(time), 0.0);

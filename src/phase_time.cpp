@@ -62,9 +62,7 @@ double time_rate(const PhaseRate& rate, const Half& half, double tan) {
 const GaussRule& rule_from_anchor(const PhaseRate& rate, const Half& half, Panel panel, double v) {
     const bool constant = panel == Panel::end && half.length >= 2 * constant_from;
     if (v == 0.0 || constant) return gauss_rule(2);
-    const auto mapped = [v](double place) {
-        return std::complex<double>(2 * place / v - 1, pi / v);
-    };
+    const auto mapped = [v](double place) { return 2 * place / v - 1; };
     double zero_of_h = 0.0;
     if (!half.at_tip) {
         const double s2 = square(rate.short_axis);
@@ -73,14 +71,14 @@ const GaussRule& rule_from_anchor(const PhaseRate& rate, const Half& half, Panel
         if (panel == Panel::slope) zero_of_h = half.length - zero_of_h;
     }
     const double other_end = std::min(half.length, 2 * constant_from);
-    return gauss_rule(nodes_needed({mapped(0.0), mapped(zero_of_h), mapped(other_end)}));
+    return gauss_rule(nodes_needed(pi / v, {mapped(0.0), mapped(zero_of_h), mapped(other_end)}));
 }
 
 // Between two points of a panel: no singularity is closer than pi/2.
 const GaussRule& rule_between(double v0, double v1) {
     const double distance = std::abs(v1 - v0);
     if (distance < 1e-5) return gauss_rule(2);
-    return gauss_rule(nodes_needed({std::complex<double>(0.0, pi / distance)}));
+    return gauss_rule(nodes_needed(pi / distance, {0.0}));
 }
 
 DoubleDouble time_from_anchor(const PhaseRate& rate, const Half& half, Panel panel, double v) {
@@ -158,6 +156,10 @@ PhaseTime phase_time(const PhaseRate& rate) {
     phase.flat = graded_half(rate, false, flat_grade);
     phase.tip = graded_half(rate, true, rate.kappa);
     phase.split = phase.flat.end_time + phase.flat.slope_time;
+    if (phase.tip.grade == 0.0) {
+        phase.quarter_turn = phase.half_turn = {infinity, 0.0};
+        return phase;
+    }
     phase.quarter_turn = phase.split + (phase.tip.end_time + phase.tip.slope_time);
     phase.half_turn = phase.quarter_turn * 2.0;
     return phase;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cmath>
-#include <complex>
 #include <initializer_list>
+#include <iterator>
 
 #include "double_double.hpp"
 #include "gauss_legendre.hpp"
@@ -18,16 +18,19 @@ inline const GaussRule& gauss_rule(int n) {
     return gauss_rules[std::size(gauss_rules) - 1];
 }
 
-// Nodes for full double precision on an interval whose integrand is singular at the given points
-// z (mapped to the interval -1 .. 1): the error falls like rho^(-2n), rho the semi-axis sum of the
-// smallest Bernstein ellipse through a singularity (Trefethen, SIAM Rev. 50 (2008) 67, thm 4.5).
-inline int nodes_needed(std::initializer_list<std::complex<double>> singularities) {
+// Nodes for full double precision where the integrand is singular at the points place +- i height,
+// both mapped to the interval -1 .. 1: the error falls like rho^(-2n), rho the sum of the semi-axes
+// of the smallest ellipse with foci +-1 through a singularity (Trefethen, SIAM Rev. 50 (2008) 67,
+// theorem 4.5).
+inline int nodes_needed(double height, std::initializer_list<double> places) {
     constexpr double log_accuracy = 38.0;  // -ln(3e-17)
-    double rho = infinity;
-    for (const std::complex<double> z : singularities) {
-        const std::complex<double> root = std::sqrt(z * z - 1.0);
-        rho = std::fmin(rho, std::fmax(std::abs(z + root), std::abs(z - root)));
+    double axis = infinity;
+    for (const double place : places) {
+        const double distances = std::sqrt(square(place - 1) + square(height)) +
+                                 std::sqrt(square(place + 1) + square(height));
+        axis = std::fmin(axis, distances / 2);
     }
+    const double rho = axis + std::sqrt((axis - 1) * (axis + 1));
     return 1 + static_cast<int>(std::ceil(log_accuracy / (2 * std::log(rho))));
 }
 

@@ -1,6 +1,7 @@
 """Types of the C++ core (src/bindings.cpp)."""
 
 import enum
+
 from ._check import FloatArray
 
 class Mode(enum.IntEnum):

@@ -6,21 +6,26 @@ import enum
 import json
 import math
 import os
+import zipfile
+from collections.abc import Callable
 from dataclasses import KW_ONLY, asdict, dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._check import FloatArray, array
+from .geometry import support_slope
 from .kinematics import ConstraintResiduals, constraints
 from .scene import Impulse, Scene
 
 if TYPE_CHECKING:
     from .animation import RollingAnimation
     from .plotting import Overview
+
+_Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 _SCHEMA = 1
 _ARRAYS = ("t", "theta", "omega", "x")
@@ -41,15 +46,20 @@ class ValidityWarning(UserWarning):
     """Part of the motion is not what a body on the ground would do."""
 
 
-def _column(array_index: int, column: int) -> cached_property[FloatArray]:
-    """An array of its own for one column of q, q_dot or q_ddot (0, 1, 2)."""
+def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Values]:
+    """A read-only array, computed when first asked for."""
 
-    def values(self: Trajectory) -> FloatArray:
-        found = np.ascontiguousarray(self._detail[array_index][:, column])
+    def values(self: Trajectory) -> _Values:
+        found = function(self)
         found.flags.writeable = False
         return found
 
     return cached_property(values)
+
+
+def _column(which: int, column: int) -> cached_property[FloatArray]:
+    """An array of its own for one column of q, q_dot or q_ddot (0, 1, 2)."""
+    return _derived(lambda self: np.ascontiguousarray(self._detail[which][:, column]))
 
 
 def solve(scene: Scene, model: str, t_end: float) -> _core.Solution:
@@ -181,36 +191,36 @@ class Trajectory:
     def multipliers(self) -> FloatArray:
         return self._detail[5]
 
-    @cached_property
+    @_derived
     def friction_needed(self) -> FloatArray:
         normal, friction = self.normal_force, np.abs(self.friction_force)
         needed = np.where(friction == 0, 0.0, np.inf)
         return np.divide(friction, normal, out=needed, where=normal > 0)
 
-    @cached_property
+    @_derived
     def contact_x(self) -> FloatArray:
-        # r sin(psi - theta) = h', the contact seen from the centre.
-        return self.x + self.r * np.sin(self.psi - self.theta)
+        lead: FloatArray = support_slope(self.theta, a=self.scene.a, b=self.scene.b)
+        return self.x + lead
 
-    @cached_property
+    @_derived
     def turns(self) -> FloatArray:
         return (self.theta - self.scene.theta) / (2 * math.pi)
 
-    @cached_property
+    @_derived
     def kinetic_energy(self) -> FloatArray:
         mass, inertia = self.scene.mass, self.scene.mass * self.scene.gyration2
         return 0.5 * mass * (self.x_dot**2 + self.z_dot**2) + 0.5 * inertia * self.omega**2
 
-    @cached_property
+    @_derived
     def potential_energy(self) -> FloatArray:
         weight, slope = self.scene.mass * self.scene.gravity, self.scene.slope
         return weight * (self.z * math.cos(slope) - self.x * math.sin(slope))
 
-    @cached_property
+    @_derived
     def energy(self) -> FloatArray:
         return self.kinetic_energy + self.potential_energy
 
-    @cached_property
+    @_derived
     def mode(self) -> npt.NDArray[np.int8]:
         return np.full(self.t.shape, self.scene.initial_state.mode, dtype=np.int8)
 
@@ -304,13 +314,7 @@ class Trajectory:
         ValueError
             If the file holds no trajectory, or one of another schema version.
         """
-        with np.load(path, allow_pickle=False) as data:
-            if "about" not in data:
-                raise ValueError(f"path must name a saved Trajectory, got {os.fspath(path)!r}")
-            about = json.loads(str(data["about"]))
-            arrays = [data[name] for name in _ARRAYS]
-        if about.pop("schema") != _SCHEMA:
-            raise ValueError(f"path must name a file of schema {_SCHEMA}, got another version")
+        about, arrays = _read(path)
         scene = about.pop("scene")
         if scene["impulse"] is not None:
             scene["impulse"] = Impulse(**scene["impulse"])
@@ -329,6 +333,22 @@ class Trajectory:
             f"t = {self.t[0]:g} ... {self.t[-1]:g} s, {self.turns[-1]:.3g} turns, "
             f"{self.status.name}>"
         )
+
+
+def _read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[FloatArray]]:
+    """Return what `Trajectory.save` wrote: the facts and the arrays."""
+    with open(path, "rb") as file:
+        try:
+            data = np.load(file, allow_pickle=False)
+            about = json.loads(str(data["about"]))
+            arrays = [data[name] for name in _ARRAYS]
+        except (ValueError, KeyError, IndexError, EOFError, zipfile.BadZipFile) as error:
+            name = os.fspath(path)
+            raise ValueError(f"path must name a file written by save, got {name!r}") from error
+    if (schema := about.pop("schema")) != _SCHEMA:
+        name = os.fspath(path)
+        raise ValueError(f"path must name a file of schema {_SCHEMA}, got {name!r} of {schema!r}")
+    return about, arrays
 
 
 def load(path: str | os.PathLike[str]) -> Trajectory:
