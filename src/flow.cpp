@@ -120,7 +120,7 @@ EnergyHeight energy_height(const FlatView& at, double gyration2, double gravity,
 RollingFlow rolling_flow(const Body& body, double theta, double omega, double x) {
     RollingFlow flow{};
     flow.theta = theta;
-    flow.omega = omega;
+    flow.omega = omega = noticeable(omega);
     flow.x = x;
     flow.start = flat_view({body.a, body.b}, theta);
     const FlatView& at = flow.start;

@@ -124,6 +124,7 @@ InitialState initial_state(const Scene& scene) {
         std::isinf(scene.friction) ? unlimited_friction(c) : coulomb_friction(c, scene.friction);
     const State free = state;
     apply(scene, at, reaction, state);
+    state.omega = noticeable(state.omega);
     result.reaction_x = scene.mass * (state.x_dot - free.x_dot);
     result.reaction_z = scene.mass * (state.z_dot - free.z_dot);
     state.mode = mode_in_contact(scene, at, state, reaction.sticks);

@@ -7,14 +7,10 @@ namespace {
 
 // The multipliers of the gradients of f1 ... f4: lambda1 = F, lambda2 = N, and from the rows of psi
 // and r, which carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3.
-Eigen::Vector4d multipliers(const Axes& axes, const Coordinates& q, double friction,
-                            double normal) {
-    const double psi = q[coordinate::psi];
-    const double offset = psi - q[coordinate::theta];
-    const double lambda3 = normal * std::cos(offset);
-    const double lambda4 =
-        polar_radius_slope(axes, psi) * lambda3 - q[coordinate::r] * std::sin(offset) * normal;
-    return {friction, normal, lambda3, lambda4};
+// At the contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0.
+Eigen::Vector4d multipliers(const Coordinates& q, double friction, double normal) {
+    const double offset = q[coordinate::psi] - q[coordinate::theta];
+    return {friction, normal, normal * std::cos(offset), 0.0};
 }
 
 }  // namespace
@@ -45,8 +41,7 @@ RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
     detail.q_ddot << x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot;
     detail.normal_force = scene.mass * (scene.gravity * std::cos(scene.slope) + z_ddot);
     detail.friction_force = scene.mass * (x_ddot - scene.gravity * std::sin(scene.slope));
-    detail.multipliers =
-        multipliers(axes, detail.state.q, detail.friction_force, detail.normal_force);
+    detail.multipliers = multipliers(detail.state.q, detail.friction_force, detail.normal_force);
     return detail;
 }
 

@@ -60,6 +60,9 @@ struct Scene {
 
 inline double uniform_disc_gyration2(double a, double b) { return (a * a + b * b) / 4; }
 
+// Slower than 1e-100 rad/s is at rest: its energy is no longer a normal double.
+inline double noticeable(double omega) { return omega > -1e-100 && omega < 1e-100 ? 0.0 : omega; }
+
 // "name must be requirement, got value" as the exception that Python shows as ValueError.
 [[noreturn]] void refuse(const std::string& name, const std::string& requirement, double value);
 

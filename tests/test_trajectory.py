@@ -80,6 +80,13 @@ def close(actual: np.ndarray, exact: Long, terms: Long, ulps: float) -> None:
     assert np.all(off <= ulps * EPS * terms), f"{worst:.3g} ulp"
 
 
+def test_close_sees_ten_ulp() -> None:
+    values = np.linspace(1, 2, 5)
+    close(values, values, values, 0)
+    with pytest.raises(AssertionError, match="ulp"):
+        close(values * (1 + 10 * EPS), values, values, 8)
+
+
 # ----------------------------------------------------------------------------- sample times
 
 
@@ -189,7 +196,7 @@ def test_rolling_that_ends(scene: Scene) -> None:
         return (scene.friction * at.normal_force - np.abs(at.friction_force)) / weight
 
     assert abs(spare(end)[0]) <= 1e-9
-    before = spare(end * (1 - np.concatenate([np.geomspace(1e-6, 1, 3000)])))
+    before = spare(end * (1 - np.geomspace(1e-6, 1, 3000)))
     assert np.all(before > 0)
     assert spare(end * (1 + 1e-6))[0] < 0
     ends_at = re.certify(scene).ends_at
@@ -331,8 +338,10 @@ def test_rates_are_derivatives(motion: Trajectory, name: str) -> None:
     theta_grain = 2 * np.spacing(np.maximum(np.abs(at[0].theta), 1.0))
     largest = np.max(np.abs(values[0]))
     noise = (16 * EPS * largest + per_theta * theta_grain) / step
-    off = np.abs(near - rate)[fast]
-    assert np.all(off <= (np.abs(far - near) + noise)[fast])
+    off, allowed = np.abs(near - rate)[fast], (np.abs(far - near) + noise)[fast]
+    assert np.all(off <= allowed)
+    # and the bound means something
+    assert np.median(allowed) <= 1e-5 * np.max(np.abs(rate)) + 1e-9 * largest
 
 
 def test_newton_and_euler(motion: Trajectory) -> None:
@@ -625,7 +634,6 @@ def test_residuals_of_a_million_samples(scene: Scene, t_end: float) -> None:
     speed = np.abs(trajectory.omega)
     rate = speed + np.abs(trajectory.psi_dot)
     lever = np.abs(trajectory.contact_x - trajectory.x)  # |h'|
-    weight = scene.mass * scene.gravity
     # |dE/dtheta| at constant omega is |I_dot omega / 2 + m g h'|, and rolling conserves E:
     # it is the moment of inertia about the contact times |omega_dot|
     inertia = scene.mass * (scene.gyration2 + trajectory.z**2 + lever**2)
@@ -647,7 +655,6 @@ def test_residuals_of_a_million_samples(scene: Scene, t_end: float) -> None:
         f"{np.max(np.abs(residuals.velocity)):.2g}, gap {np.max(np.abs(residuals.gap)):.2g}, slip "
         f"{np.max(np.abs(residuals.slip)):.2g}, energy {np.max(drift) / start / EPS:.2g} ulp"
     )
-    assert weight > 0
     for name, share in shares.items():
         assert np.max(share) <= 1, name
 

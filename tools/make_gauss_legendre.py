@@ -8,7 +8,9 @@ Run:  python tools/make_gauss_legendre.py > src/gauss_legendre.hpp    (needs mpm
 
 from mpmath import cos, mp, mpf, pi
 
-SIZES = (2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20, 22, 24, 28, 32, 36, 40, 48, 56, 64, 80, 96, 128)
+SIZES = (
+    *range(2, 11), 12, 14, 16, 18, 20, 22, 24, 28, 32, 36, 40, 48, 56, 64, 80, 96, 128,
+)  # fmt: skip
 DIGITS = 40
 
 HEADER = """\

@@ -7,7 +7,8 @@ import json
 import math
 import sys
 import warnings
-from typing import Any
+from pathlib import Path
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -26,9 +27,16 @@ _SCENE_OPTIONS = {
 }
 
 
+class OneLineParser(argparse.ArgumentParser):
+    """Says what is wrong in one line; --help has the rest."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}\n")
+
+
 def parser() -> argparse.ArgumentParser:
     """Return the command line."""
-    found = argparse.ArgumentParser(
+    found = OneLineParser(
         prog="python -m rolling_ellipse",
         description="An ellipse rolling on the ground. Without scene options: the report's scene, "
         "a = 2 m, b = 1 m, 10 kg, pressed down by 48 N s at 1.5 m from its centre.",
@@ -104,10 +112,20 @@ def _lines(found: dict[str, Any], t_end: float) -> list[str]:
     return lines
 
 
+def _check_options(options: argparse.Namespace) -> None:
+    if not 0 <= options.time < math.inf:
+        raise ValueError(f"--time must be a finite time >= 0 [s], got {options.time!r}")
+    for name in ("save", "plot"):
+        path = getattr(options, name)
+        if path is not None and not Path(path).parent.is_dir():
+            raise ValueError(f"--{name} must name a file in an existing folder, got {path!r}")
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; 0 on success, 2 (and one line) on bad input."""
     options = parser().parse_args(arguments)
     try:
+        _check_options(options)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the summary says it
             trajectory = simulate(chosen_scene(options), options.time)

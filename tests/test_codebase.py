@@ -1,0 +1,152 @@
+"""The code itself: linter, formatters, type checker, generated files, one version, walls.
+
+Everything is found beside this file, so that the suite runs from a source checkout with the
+package installed as users install it.
+"""
+
+import re
+import subprocess
+import sys
+import sysconfig
+import tomllib
+from pathlib import Path
+
+import pytest
+import rolling_ellipse
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCES = sorted((ROOT / "src").rglob("*.[ch]pp"))
+GENERATED = ROOT / "src" / "gauss_legendre.hpp"
+GENERATOR = ROOT / "tools" / "make_gauss_legendre.py"
+PYTHON_FOLDERS = ("python", "tests", "tools", "docs")
+CORE = [path for path in SOURCES if path.name != "bindings.cpp"]
+
+
+def run(*command: str | Path) -> str:
+    """Output of a command in the checkout; what it says is the message if it fails."""
+    done = subprocess.run(
+        [str(part) for part in command], cwd=ROOT, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, f"{command[0]}:\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+def clang_format() -> Path:
+    """The script that the test extra puts beside the interpreter."""
+    found = Path(sysconfig.get_path("scripts")) / "clang-format"
+    assert found.exists(), f"{found} is missing: pip install '.[test]'"
+    return found
+
+
+# -------------------------------------------------------------------------------- tools
+
+
+def test_ruff() -> None:
+    run(sys.executable, "-m", "ruff", "check", "--no-cache", ".")
+
+
+def test_ruff_format() -> None:
+    """Python files; newer versions also take code in Markdown, where comments are aligned."""
+    run(sys.executable, "-m", "ruff", "format", "--no-cache", "--check", *PYTHON_FOLDERS)
+
+
+def test_mypy(tmp_path: Path) -> None:
+    """The package as written here, strict by the project's settings."""
+    package = ROOT / "python" / "rolling_ellipse"
+    # -p would take the installed package: the path given wins over `packages` of the settings
+    run(sys.executable, "-m", "mypy", f"--cache-dir={tmp_path}", package)
+
+
+def test_clang_format() -> None:
+    run(clang_format(), "--dry-run", "-Werror", *(p for p in SOURCES if p != GENERATED))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "command"),
+    [
+        ("unused.py", "import os\n", ["-m", "ruff", "check", "--no-cache"]),
+        ("quotes.py", "x = 'one'\n", ["-m", "ruff", "format", "--no-cache", "--check"]),
+        ("untyped.py", "def f(x):\n    return x\n", ["-m", "mypy", "--strict"]),
+    ],
+)
+def test_the_tools_refuse_what_is_wrong(
+    name: str, text: str, command: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / name
+    path.write_text(text)
+    done = subprocess.run(
+        [sys.executable, *command, str(path)], cwd=tmp_path, capture_output=True, timeout=300
+    )
+    assert done.returncode == 1, done.stderr
+
+
+def test_clang_format_refuses_what_is_wrong(tmp_path: Path) -> None:
+    (tmp_path / ".clang-format").write_text((ROOT / ".clang-format").read_text())
+    path = tmp_path / "wide.cpp"
+    path.write_text("int   f( ){return 1;}\n")
+    done = subprocess.run(
+        [clang_format(), "--dry-run", "-Werror", path], capture_output=True, timeout=60
+    )
+    assert done.returncode != 0
+
+
+# -------------------------------------------------------------- generated files and numbers
+
+
+def test_gauss_rules_are_what_their_script_prints() -> None:
+    printed = run(sys.executable, GENERATOR)
+    assert GENERATED.read_text(encoding="utf-8") == printed
+
+
+def test_one_version() -> None:
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    version = settings["project"]["version"]
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    found = re.search(r"^version:\s*\"?([^\"\s]+)", citation, re.MULTILINE)
+    assert found and found[1] == version
+    assert rolling_ellipse.__version__ == version
+    # and nowhere else
+    literal = f'"{version}"'
+    for path in (*SOURCES, *(ROOT / "python").rglob("*.py"), ROOT / "CMakeLists.txt"):
+        assert literal not in path.read_text(encoding="utf-8"), path
+
+
+# --------------------------------------------------------------------------------- walls
+
+
+def included(path: Path) -> list[str]:
+    text = path.read_text(encoding="utf-8")
+    return re.findall(r"^\s*#\s*include\s*[<\"]([^>\"]+)[>\"]", text, re.MULTILINE)
+
+
+def test_only_the_bindings_know_python() -> None:
+    assert any(name.startswith("pybind11/") for name in included(ROOT / "src" / "bindings.cpp"))
+    assert len(CORE) > 20
+    for path in CORE:
+        for name in included(path):
+            assert not name.startswith(("pybind11", "Python.h", "numpy")), f"{path.name}: {name}"
+        assert "PyObject" not in path.read_text(encoding="utf-8")
+
+
+def test_no_arithmetic_that_depends_on_the_mood_of_the_compiler() -> None:
+    """-ffast-math breaks the compensated sums; -march=native the same bits on other machines."""
+    build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    assert "-ffp-contract=off" in build and "EIGEN_DONT_VECTORIZE" in build
+    settings = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    for text in (build, settings, *(path.read_text(encoding="utf-8") for path in SOURCES)):
+        for flag in ("-ffast-math", "-Ofast", "-funsafe-math", "-march=native", "fast_math"):
+            assert flag not in text
+
+
+def test_every_source_is_built_and_included_once() -> None:
+    build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    for path in SOURCES:
+        if path.suffix == ".cpp":
+            assert len(re.findall(rf"\bsrc/{re.escape(path.name)}\b", build)) == 1, path.name
+        else:
+            assert "#pragma once" in path.read_text(encoding="utf-8"), path.name
+
+
+def test_it_carries_its_types() -> None:
+    installed = Path(rolling_ellipse.__file__).resolve().parent
+    assert (installed / "py.typed").exists() and (installed / "_core.pyi").exists()

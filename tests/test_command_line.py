@@ -1,0 +1,253 @@
+"""`python -m rolling_ellipse`: as a user types it, and its parts through `main`."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import matplotlib
+import pytest
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import rolling_ellipse as re
+from PIL import Image
+from rolling_ellipse.__main__ import main
+
+KEYS = {
+    "status", "message", "reason", "valid_until", "smallest_normal_force",
+    "largest_friction_needed", "period", "distance", "turns", "largest_position_residual",
+    "largest_velocity_residual", "largest_gap", "largest_slip",
+}  # fmt: skip
+
+
+class Answer(NamedTuple):
+    """What a command gave back."""
+
+    code: int
+    out: str
+    err: str
+
+
+def typed(folder: Path, *arguments: str) -> Answer:
+    """The command in a process and a folder of its own."""
+    done = subprocess.run(
+        [sys.executable, "-m", "rolling_ellipse", *arguments],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env=os.environ | {"MPLBACKEND": "Agg"},
+    )
+    return Answer(done.returncode, done.stdout, done.stderr)
+
+
+@pytest.fixture
+def command(capsys: pytest.CaptureFixture[str], monkeypatch: Any, tmp_path: Path) -> Any:
+    """The command in this process, in the folder tmp_path."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> Answer:
+        try:
+            code = main(list(arguments))
+        except SystemExit as stopped:  # argparse leaves like this
+            code = int(stopped.code or 0)
+        captured = capsys.readouterr()
+        return Answer(code, captured.out, captured.err)
+
+    yield run
+    plt.close("all")
+
+
+def strict_json(text: str) -> dict[str, Any]:
+    """JSON as the standard has it: NaN and Infinity are errors."""
+
+    def refuse(constant: str) -> None:
+        raise ValueError(f"{constant} is no JSON")
+
+    found: dict[str, Any] = json.loads(text, parse_constant=refuse)
+    return found
+
+
+# -------------------------------------------------------------------------------- summaries
+
+
+def test_without_options_it_is_the_report_scene(tmp_path: Path) -> None:
+    code, out, err = typed(tmp_path)
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[0] == re.certify(re.scenes.report).reason
+    assert lines[1].split()[:2] == ["status", "COMPLETED:"]
+    starts = ["swing or turn", "distance", "smallest N", "largest |F|/N", "residuals"]
+    assert [line[: len(start)] for line, start in zip(lines[2:], starts, strict=True)] == starts
+    trajectory = re.simulate(re.scenes.report, 6.0)
+    assert f"{re.period(re.scenes.report):.12g} s" in lines[2]
+    assert f"{trajectory.x[-1]:.12g} m in 6 s, {trajectory.turns[-1]:.6g} turns" in lines[3]
+    assert f"{re.certify(re.scenes.report).smallest_normal_force:.6g} N" in lines[4]
+    assert list(tmp_path.iterdir()) == []  # nothing is written unless asked
+
+
+def test_json_on_stdout(tmp_path: Path) -> None:
+    code, out, err = typed(tmp_path, "--json")
+    assert (code, err) == (0, "")
+    found = strict_json(out)
+    assert set(found) == KEYS
+    trajectory = re.simulate(re.scenes.report, 6.0)
+    assert found["status"] == "COMPLETED" and found["valid_until"] is None
+    assert found["distance"] == trajectory.x[-1] and found["turns"] == trajectory.turns[-1]
+    assert found["period"] == re.period(re.scenes.report)
+    assert found["reason"] == trajectory.reason and found["message"] == trajectory.message
+    residuals = trajectory.constraint_residuals()
+    assert found["largest_position_residual"] == np.max(np.abs(residuals.position))
+    assert found["largest_velocity_residual"] == np.max(np.abs(residuals.velocity))
+    assert found["largest_gap"] == np.max(np.abs(residuals.gap))
+    assert found["largest_slip"] == np.max(np.abs(residuals.slip))
+
+
+def test_options_make_another_scene_without_impulse(command: Any) -> None:
+    options = {"a": 3.0, "b": 1.5, "mass": 2.0, "theta": 0.3, "omega": 1.25, "friction": 5.0}
+    text = [part for name, value in options.items() for part in (f"--{name}", str(value))]
+    code, out, _ = command(*text, "--restitution", "0.5", "--slope", "0", "--time", "2.5", "--json")
+    assert code == 0
+    found = strict_json(out)
+    scene = re.Scene(options.pop("a"), options.pop("b"), **options)
+    trajectory = re.simulate(scene, 2.5)
+    assert found["distance"] == trajectory.x[-1]
+    assert found["smallest_normal_force"] == re.certify(scene).smallest_normal_force
+
+
+def test_one_option_is_enough(command: Any) -> None:
+    """The report's axes, but not its blow: without a speed it lies where it is."""
+    found = strict_json(command("--mass", "10", "--json").out)
+    assert found["distance"] == 0 and found["period"] is None and found["turns"] == 0
+    turning = strict_json(command("--omega", "3.2", "--json").out)
+    report = strict_json(command("--json").out)
+    assert turning["distance"] == pytest.approx(report["distance"], rel=1e-13)
+    assert "never" in command("--mass", "10").out
+
+
+def test_time_is_the_end_time(command: Any) -> None:
+    out = command("--time", "1.5").out
+    assert " m in 1.5 s, " in out
+    found = strict_json(command("--time", "1.5", "--json").out)
+    assert found["distance"] == re.simulate(re.scenes.report, 1.5).x[-1]
+    assert command("--time", "0").code == 0
+
+
+def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
+    code, out, err = command("--omega", "5.2", "--friction", "1")
+    assert (code, err) == (0, "")  # a hard answer is an answer
+    assert "VALIDITY_LOST" in out and "ends at theta" in out
+    found = strict_json(command("--omega", "5.2", "--friction", "1", "--json").out)
+    assert found["status"] == "VALIDITY_LOST" and 0 < found["valid_until"] < 1
+
+
+def test_what_does_not_roll_has_a_summary_too(command: Any) -> None:
+    code, out, err = command("--slope", "0.1", "--omega", "3")
+    assert (code, err) == (0, "")
+    assert "VALIDITY_LOST" in out and "slope" in out
+    found = strict_json(command("--slope", "0.1", "--json").out)
+    assert found["valid_until"] == 0 and found["smallest_normal_force"] is None
+
+
+def test_extreme_motions_are_still_json(command: Any) -> None:
+    """Nothing infinite slips through: no friction limit, rest, contact lost, the separatrix."""
+    speed = re.thresholds(2.0, 1.0).roll_over_speed
+    for options in (
+        ["--omega", "50"],
+        ["--theta", str(math.pi / 2)],
+        ["--omega", "5.2", "--friction", "0"],
+        ["--omega", repr(speed)],
+        ["--a", "1", "--b", "1", "--omega", "2"],
+    ):
+        assert set(strict_json(command(*options, "--json").out)) == KEYS
+
+
+# ---------------------------------------------------------------------------------- files
+
+
+def test_save_writes_an_animation(tmp_path: Path) -> None:
+    code, out, err = typed(tmp_path, "--time", "0.5", "--save", "roll.gif")
+    assert (code, err) == (0, "") and "distance" in out
+    with Image.open(tmp_path / "roll.gif") as picture:
+        assert picture.format == "GIF" and picture.n_frames > 5
+        shown = 0
+        for i in range(picture.n_frames):
+            picture.seek(i)
+            shown += picture.info["duration"]
+            picture.load()
+    assert 450 <= shown <= 1000  # the half second [ms], the last frame may stay longer
+
+
+def test_plot_writes_a_figure(command: Any, tmp_path: Path) -> None:
+    assert command("--plot", "overview.png", "--time", "2").code == 0
+    with Image.open(tmp_path / "overview.png") as picture:
+        picture.load()
+        assert min(picture.size) > 300
+        assert len(picture.convert("L").getcolors() or []) > 10  # something is drawn
+    assert command("--plot", "overview.svg", "--time", "2", "--json").code == 0
+    assert "<svg" in (tmp_path / "overview.svg").read_text()
+
+
+def test_json_goes_with_files(command: Any, tmp_path: Path) -> None:
+    out = command("--json", "--time", "0.2", "--save", "a.gif", "--plot", "b.png").out
+    assert strict_json(out)["status"] == "COMPLETED"
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["a.gif", "b.png"]
+
+
+# ------------------------------------------------------------------------------ bad input
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["--a", "-1"], "a must"),
+        (["--b", "0"], "b must"),
+        (["--a", "5000"], "a/b must"),
+        (["--mass", "-2"], "mass must"),
+        (["--theta", "nan"], "theta must"),
+        (["--omega", "inf"], "omega must"),
+        (["--friction", "-0.1"], "friction must"),
+        (["--restitution", "1.5"], "restitution must"),
+        (["--slope", "2"], "slope must"),
+        (["--time", "-1"], "time"),
+        (["--time", "inf"], "time"),
+        (["--a", "two"], "--a"),
+        (["--time"], "--time"),
+        (["--bogus"], "--bogus"),
+        (["--save", "roll.xyz"], "roll.xyz"),
+        (["--plot", "picture.xyz"], "xyz"),
+        (["--plot", "no/such/folder/picture.png"], "no/such/folder/picture.png"),
+        (["--save", "no/such/folder/roll.gif"], "no/such/folder/roll.gif"),
+        (["--slope", "0.1", "--plot", "picture.png"], "motion"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_bad_input_is_one_line_and_exit_code_2(
+    command: Any, tmp_path: Path, arguments: list[str], named: str
+) -> None:
+    code, out, err = command(*arguments)
+    assert (code, out) == (2, "")
+    assert named in err and "Traceback" not in err
+    assert list(tmp_path.iterdir()) == []
+    assert len(err.splitlines()) == 1 and err.endswith("\n"), err
+
+
+def test_bad_input_of_a_process(tmp_path: Path) -> None:
+    code, out, err = typed(tmp_path, "--a", "-1")
+    assert (code, out) == (2, "")
+    assert err == ("python -m rolling_ellipse: a must be a positive finite length [m], got -1.0\n")
+
+
+def test_help(tmp_path: Path) -> None:
+    code, out, err = typed(tmp_path, "--help")
+    assert (code, err) == (0, "")
+    options = ["a", "b", "mass", "theta", "omega", "friction", "restitution", "slope", "time"]
+    for option in [*options, "save", "plot", "json"]:
+        assert f"--{option}" in out
+    assert out.startswith("usage: python -m rolling_ellipse")
