@@ -35,9 +35,10 @@ void check_signals() {
 void run_interruptible(py::ssize_t n, int workers, const Range& body) {
     constexpr py::ssize_t chunk = 1024;
     if (n <= chunk) return body(0, n);
+    constexpr py::ssize_t most_threads = 256;
+    workers = static_cast<int>(std::min({py::ssize_t{workers}, most_threads, n / chunk + 1}));
     const py::gil_scoped_release release;
     std::atomic<py::ssize_t> next{0};
-    std::atomic<int> running{workers - 1};
     std::vector<std::exception_ptr> failures(workers);
     const auto work = [&](int worker, bool interruptible) {
         try {
@@ -85,7 +86,7 @@ FlowSample validated_sample(const RollingFlow& flow, double t) {
 
 RollingFlow validated_flow(const Body& body, double theta, double omega) {
     validate(body);
-    validate_motion(theta, omega);
+    validate_motion(body, theta, omega);
     return rolling_flow(body, theta, omega);
 }
 

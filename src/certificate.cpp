@@ -56,13 +56,14 @@ bool holds_at_start(const EnergyRange& range, double friction, const Start& star
 
 // A root of the law, found in its squared form, refined in the plain one: near the tip both forces
 // may be small, and their squares know half their digits only.
-double refined_root(const EnergyRange& range, double friction, double x) {
+// It lies between the places given.
+double refined_root(const EnergyRange& range, double friction, double x, double from, double to) {
     const auto slack_at = [&](double at) { return slack(rolling_forces(range, at), friction); };
     double low = x;
     double high = x;
-    for (double reach = epsilon; reach < 1e-6; reach *= 4) {
-        low = std::max(x - reach * std::max(x, epsilon), 0.0);
-        high = std::min(x + reach * std::max(1 - x, epsilon), 1.0);
+    for (double reach = epsilon; reach < 1; reach *= 4) {
+        low = std::max(x - reach * std::max(x, epsilon), from);
+        high = std::min(x + reach * std::max(1 - x, epsilon), to);
         if ((slack_at(low) > 0) != (slack_at(high) > 0)) break;
     }
     const bool falls = slack_at(low) > 0;
@@ -74,15 +75,29 @@ double refined_root(const EnergyRange& range, double friction, double x) {
     }
 }
 
+// Where the law may be broken, ascending: its zeros, and those of N, at which it is broken anyway.
+std::vector<double> breaking_places(const EnergyRange& range, const Bernstein& contact,
+                                    const Bernstein& law, double friction) {
+    const std::vector<double> coarse = roots_on_unit_interval(law);
+    std::vector<double> places = roots_on_unit_interval(contact);
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        const double from = i == 0 ? 0.0 : 0.5 * (coarse[i - 1] + coarse[i]);
+        const double to = i + 1 == coarse.size() ? 1.0 : 0.5 * (coarse[i] + coarse[i + 1]);
+        places.push_back(refined_root(range, friction, coarse[i], from, to));
+    }
+    std::sort(places.begin(), places.end());
+    return places;
+}
+
 // How far the body turns until the first of the places x (ascending, at least one) is met, and
-// which way it then moves.
+// which way it then moves; nothing where it never gets there: on the separatrix the tip is the end.
 struct Turn {
     double angle;
     double heading;
 };
 
-Turn first_meeting(const EnergyRange& range, const Start& start,
-                   const std::vector<double>& places) {
+std::optional<Turn> first_meeting(const EnergyRange& range, const Start& start,
+                                  const std::vector<double>& places) {
     const auto angle_at = [&](double x) { return rolling_forces(range, x).angle; };
     const double on = start.direction;
     const auto above = std::upper_bound(places.begin(), places.end(), start.forces.x);
@@ -92,6 +107,7 @@ Turn first_meeting(const EnergyRange& range, const Start& start,
     }
     if (rising && above != places.end()) return Turn{on * (angle_at(*above) - start.angle), on};
     if (!rising) return Turn{on * (angle_at(places.front()) - start.angle), on};
+    if (!range.libration && range.energy_gap == 0) return std::nullopt;
     // Over the top: the last place, on the other side of the tip or back from the turning point.
     const double last = angle_at(places.back());
     if (range.libration) return Turn{on * (last - start.angle), -on};
@@ -134,14 +150,17 @@ Certificate certify_rolling(const Body& body, double mass, double friction, doub
     certificate.ends_at = theta;
     certificate.ends_heading = start.direction;
     if (!holds_at_start(range, friction, start)) return certificate;
-    std::vector<double> places = roots_on_unit_interval(law);
+    std::vector<double> places = breaking_places(range, contact, law, friction);
     if (places.empty()) {  // on the edge: the least margin is where the law may be broken
         places.push_back(finite_friction ? extremes.most_friction.x : extremes.least_normal.x);
     }
-    for (double& x : places) x = refined_root(range, friction, x);
-    const Turn turn = first_meeting(range, start, places);
-    certificate.ends_at = theta + turn.angle;
-    certificate.ends_heading = turn.heading;
+    const std::optional<Turn> turn = first_meeting(range, start, places);
+    if (!turn) {
+        certificate.ends_at.reset();
+        return certificate;
+    }
+    certificate.ends_at = theta + turn->angle;
+    certificate.ends_heading = turn->heading;
     return certificate;
 }
 

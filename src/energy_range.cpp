@@ -52,27 +52,20 @@ ForcePolynomials force_polynomials(const EnergyRange& range) {
     const double w = range.width;
     const double kb = k2 + b2;
     const double s = kb + 1;
-    const auto constant = [](Tracked value) {
-        Polynomial p;
-        p.coefficients[0] = value;
-        return p;
-    };
-    const Tracked flat_normal = tracked(b2 * kb) * (tracked(kb) - tracked(2 * c2));
-    const Tracked flat_friction = tracked(b2) * (tracked(2 * c2) - tracked(3 * k2 + b2));
-    const Tracked flat_friction_energy = tracked(b2) * (tracked(k2) - tracked(c2));
+    Polynomial friction_flat;  // B (K - c2), which may cancel
+    friction_flat.coefficients[0] = tracked(b2) * (tracked(k2) - tracked(c2));
 
     ForcePolynomials p;
     p.height = polynomial({b, w});
     const Polynomial y = polynomial({0, 2 * b * w, w * w});
-    const Polynomial y2 = y * y;
-    p.normal_free = p.height * (constant(flat_normal) + kb * (k2 + 7 * b2 + c2) * y + 3 * s * y2);
-    p.normal_energy = 2.0 * (b2 * kb * (polynomial({c2}) - 2.0 * y) - s * y2);
-    p.normal = p.normal_free + range.energy * p.normal_energy;
-    p.friction = p.height * (constant(flat_friction) - 3 * s * y) +
-                 2 * range.energy * (constant(flat_friction_energy) + s * y);
+    const Polynomial energy = polynomial({range.energy_gap + w, -w});
+    p.weight = polynomial({b2 * kb}) + s * y;
+    p.normal_at_rest = p.height * p.weight * (polynomial({kb}) + y);
+    p.normal_moving = 2.0 * (b2 * kb * (polynomial({c2}) - 2.0 * y) - s * (y * y));
+    p.normal = p.normal_at_rest + energy * p.normal_moving;
+    p.friction = 2.0 * energy * (friction_flat + s * y) - p.height * p.weight;
     // (h - S)(h + S)(1 - h)(1 + h), with h - S = w x and 1 - h = tip_gap + w (1 - x).
     p.slope_square = y * polynomial({range.tip_gap + w, -w}) * polynomial({1 + b, w});
-    p.weight = polynomial({b2 * kb}) + s * y;
     return p;
 }
 

@@ -1,14 +1,13 @@
 // The heights h that a rolling motion reaches, and the contact forces there as rational functions.
 //
-// Lengths in units of the long semi-axis, forces in units of m g. With B = S^2, K = k^2, u = h^2,
-// s = K + 1 + B, V = s u - B and H the height of the energy, P and Q of h are
-//     P = 3 s h^5 - 2 H s h^4 + (K s - 5 B) h^3 + 4 H B h^2 - 3 K B h + 2 H K B
-//     Q = -3 s h^3 + 2 H s h^2 + 5 B h - 4 H B
-//     N = h P/V^2,   F = h' u Q/V^2,   (h h')^2 = G = (1 - u)(u - B)
-// from D = V/u and omega^2 = 2 (H - h)/D in N and F of rolling. In y = u - B, with c2 = 1 - B:
-//     P = h (B (K+B) (K+B-2c2) + (K+B) (K+7B+c2) y + 3 s y^2) + 2 H (B (K+B) (c2-2y) - s y^2)
-//     Q = h (B (2c2-3K-B) - 3 s y) + 2 H (B (K-c2) + s y),   V = B (K+B) + s y
-// where a nearly circular body keeps its digits: that is how they are evaluated.
+// Lengths in units of the long semi-axis, forces in units of m g. With B = S^2, c2 = 1 - B, K =
+// k^2, u = h^2, y = u - B, s = K + 1 + B and the energy over the height e = H - h, H = E/(m g):
+//     V = s u - B = B (K + B) + s y,           D = V/u,   omega^2 = 2 e/D
+//     P = h V (K + u) + 2 e (B (K + B) (c2 - 2y) - s y^2),   N = h P/V^2
+//     Q = -h V + 2 e (B (K - c2) + s y),                     F = h' u Q/V^2
+//     G = (h h')^2 = (1 - u) y
+// from N and F of rolling. Nothing cancels for nearly circular bodies (c2), nor, for thin ones,
+// near a turning point (e).
 #pragma once
 
 #include "flow.hpp"
@@ -33,11 +32,11 @@ EnergyRange energy_range(const FlatView& at, const Body& body, double omega);
 // The range of a rotation with the energy of the separatrix, H = 1.
 EnergyRange separatrix_range(double short_axis, double gyration2, double c2);
 
-// Polynomials in x. P = normal_free + H normal_energy.
+// Polynomials in x. P = normal_at_rest + e normal_moving.
 struct ForcePolynomials {
     Polynomial height;
-    Polynomial normal_free;
-    Polynomial normal_energy;
+    Polynomial normal_at_rest;
+    Polynomial normal_moving;
     Polynomial normal;        // P
     Polynomial friction;      // Q
     Polynomial slope_square;  // G

@@ -167,7 +167,8 @@ FlowSample sample(const RollingFlow& flow, double t) {
 }
 
 double longest_time(const RollingFlow& flow) {
-    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return infinity;
+    if (flow.kind == MotionKind::rest) return infinity;
+    if (flow.kind == MotionKind::uniform) return 1e15 * (pi / std::abs(flow.omega));
     return 1e15 * flow.phase.half_turn.high;
 }
 

@@ -122,11 +122,10 @@ InitialState initial_state(const Scene& scene) {
     }
     const Reaction reaction =
         std::isinf(scene.friction) ? unlimited_friction(c) : coulomb_friction(c, scene.friction);
-    const State free = state;
+    result.reaction_x = reaction.tangential;
+    result.reaction_z = reaction.normal;
     apply(scene, at, reaction, state);
     state.omega = noticeable(state.omega);
-    result.reaction_x = scene.mass * (state.x_dot - free.x_dot);
-    result.reaction_z = scene.mass * (state.z_dot - free.z_dot);
     state.mode = mode_in_contact(scene, at, state, reaction.sticks);
     if (state.mode == Mode::rolling && state.omega == 0 && scene.slope == 0 && is_equilibrium(at)) {
         state.mode = Mode::rest;

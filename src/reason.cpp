@@ -38,6 +38,12 @@ std::string reason(const Scene& scene, const State& start, const Certificate& c)
                                  "), the largest |F|/N " + brief(*c.largest_friction_needed) +
                                  " (theta = " + in_degrees(*c.largest_friction_needed_angle) +
                                  "), the friction coefficient " + brief(scene.friction);
+    if (c.validity != Validity::valid && !c.ends_at) {
+        return "rolling: holds from the start on, towards the tip it never reaches; before the "
+               "start "
+               "the same motion would break it; on the whole motion " +
+               extremes;
+    }
     switch (c.validity) {
         case Validity::valid:
             return (start.mode == Mode::rest ? "rest: in equilibrium, "

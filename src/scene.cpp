@@ -10,14 +10,17 @@
 namespace rolling_ellipse {
 namespace {
 
-// Beyond these no product of four lengths and a squared speed stays within the range of doubles.
-constexpr double smallest = 1e-50;
-constexpr double largest = 1e50;
+// Within these no product of four lengths, an energy and gravity leaves the range of doubles.
+constexpr double smallest = 1e-30;
+constexpr double largest = 1e30;
+constexpr double largest_number = 1e50;  // of positions, velocities, impulses
+constexpr double inertia_limit = 1e30;   // of k^2 beside the long semi-axis squared, either way
+constexpr double energy_limit = 1e100;   // of the kinetic energy beside m g times that axis
 constexpr double aspect_limit = 1e3;
 constexpr double touching_ulps = 8;
 
 void require_finite(const std::string& name, const std::string& unit, double value) {
-    if (!(std::abs(value) <= largest)) {
+    if (!(std::abs(value) <= largest_number)) {
         refuse(name, "a finite number" + unit + " of at most 1e50", value);
     }
 }
@@ -27,7 +30,7 @@ void require_positive(const std::string& name, const std::string& kind, double v
         refuse(name, "a positive finite " + kind, value);
     }
     if (value < smallest || value > largest) {
-        refuse(name, "a " + kind + " between 1e-50 and 1e50", value);
+        refuse(name, "a " + kind + " between 1e-30 and 1e30", value);
     }
 }
 
@@ -68,14 +71,21 @@ void validate(const Body& body) {
     if (!(body.gyration2 > 0 && std::isfinite(body.gyration2))) {
         refuse("gyration2", "a positive finite area [m^2]", body.gyration2);
     }
-    if (body.gyration2 < smallest * smallest || body.gyration2 > largest * largest) {
-        refuse("gyration2", "an area [m^2] between 1e-100 and 1e100", body.gyration2);
+    const double ratio = body.gyration2 / square(std::max(body.a, body.b));
+    if (ratio > inertia_limit || ratio * inertia_limit < 1) {
+        refuse("gyration2", "between 1e-30 and 1e30 times max(a, b)^2", body.gyration2);
     }
 }
 
-void validate_motion(double theta, double omega) {
+void validate_motion(const Body& body, double theta, double omega) {
     require_finite("theta", " [rad]", theta);
     require_finite("omega", " [rad/s]", omega);
+    const double axis = std::max(body.a, body.b);
+    const double energy = square(omega) * (body.gyration2 + square(axis)) / (body.gravity * axis);
+    if (energy > energy_limit) {
+        const double most = std::abs(omega) * std::sqrt(energy_limit / energy);
+        refuse("omega", "at most " + text(most) + " [rad/s] in size for this body", omega);
+    }
 }
 
 void validate(const Impulse& impulse) {
@@ -102,7 +112,7 @@ void validate(const Scene& scene) {
     if (!(scene.restitution >= 0 && scene.restitution <= 1)) {
         refuse("restitution", "between 0 and 1", scene.restitution);
     }
-    validate_motion(scene.theta, scene.omega);
+    validate_motion(scene.body(), scene.theta, scene.omega);
     require_finite("x", " [m]", scene.x);
     if (scene.z) require_finite("z", " [m]", *scene.z);
     if (scene.x_dot) require_finite("x_dot", " [m/s]", *scene.x_dot);

@@ -72,7 +72,7 @@ std::string text(double value);
 // Throw std::invalid_argument naming the argument, what was required and what came.
 void validate_axes(double a, double b);
 void validate(const Body& body);
-void validate_motion(double theta, double omega);
+void validate_motion(const Body& body, double theta, double omega);
 void validate(const Impulse& impulse);
 void validate(const Scene& scene);
 

@@ -19,6 +19,7 @@ CertifiedScene certify(const Scene& scene) {
     CertifiedScene result;
     result.start = initial_state(scene);
     const State& start = result.start.state;
+    validate_motion(scene.body(), start.theta, start.omega);
     if (why_not_rolling(scene, start).empty()) {
         result.certificate =
             certify_rolling(scene.body(), scene.mass, scene.friction, start.theta, start.omega);

@@ -55,12 +55,15 @@ void take_if_lower(Onset& onset, double energy, double angle) {
     if (energy < onset.energy) onset = {energy, angle};
 }
 
-// N of rolling vanishes at H = -p0(h)/p1(h); the least such H is a root of p0' p1 - p0 p1'.
+// N of rolling vanishes at H = h - r/p, with r = normal_at_rest and p = normal_moving; the least
+// such H is a root of h' p^2 - r' p + r p'.
 Onset contact_loss(const Shape& shape) {
     const EnergyRange range = separatrix_range(shape.short_axis, shape.gyration2, shape.c2);
     const ForcePolynomials p = force_polynomials(range);
-    std::vector<double> places = roots_on_unit_interval(bernstein(
-        derivative(p.normal_free) * p.normal_energy - p.normal_free * derivative(p.normal_energy)));
+    const Polynomial& moving = p.normal_moving;
+    std::vector<double> places = roots_on_unit_interval(
+        bernstein(range.width * (moving * moving) - derivative(p.normal_at_rest) * moving +
+                  p.normal_at_rest * derivative(moving)));
     places.push_back(1.0);
     Onset onset;
     for (const double x : places) {

@@ -76,7 +76,7 @@ def test_scene_refuses_none(name: str) -> None:
     assert_refused(TypeError, name, "None", scene, **{name: None})
 
 
-@pytest.mark.parametrize("axes", [(1000.1, 1.0), (1.0, 1000.1), (1e-9, 1.0), (1.0, 1e-40)])
+@pytest.mark.parametrize("axes", [(1000.1, 1.0), (1.0, 1000.1), (1e-9, 1.0), (1.0, 1e-20)])
 def test_scene_refuses_needles(axes: tuple[float, float]) -> None:
     assert_refused(ValueError, "a/b", "got", Scene, a=axes[0], b=axes[1])
 

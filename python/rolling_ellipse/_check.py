@@ -15,7 +15,7 @@ def number(name: str, value: Any) -> float:
     if not isinstance(value, (str, bytes, complex)):
         try:
             return float(value)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             pass
     raise TypeError(f"{name} must be a number, got {value!r}")
 
@@ -57,7 +57,7 @@ def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
 
 def choice(name: str, value: Any, valid: tuple[str, ...]) -> str:
     """Return ``value`` if it is one of the valid names, or raise ValueError listing them."""
-    if value in valid and isinstance(value, str):
+    if isinstance(value, str) and value in valid:
         return value
     names = ", ".join(repr(v) for v in valid)
     raise ValueError(f"{name} must be one of {names}, got {value!r}")

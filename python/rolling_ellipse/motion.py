@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
+import operator
 import os
+from contextlib import suppress
+from types import NoneType
 from typing import Any
 
+import numpy as np
+
 from . import _core
-from ._check import array, broadcast
+from ._check import broadcast
 from .scene import Scene, require_scene
 
 _SCALARS = (float, int)
@@ -59,16 +64,17 @@ def flow(
     """
     threads = worker_count(workers)
     given = (t, a, b, theta, omega, gravity)
-    if all(type(v) in _SCALARS for v in given) and (
-        gyration2 is None or type(gyration2) in _SCALARS
-    ):
-        return _core.flow_scalar(t, a, b, theta, omega, gravity, gyration2)
+    if all(type(v) in _SCALARS for v in given) and type(gyration2) in (*_SCALARS, NoneType):
+        with suppress(TypeError):  # an int beyond the doubles: refused by name below
+            return _core.flow_scalar(*given, gyration2)
+    arguments = dict(zip(("t", "a", "b", "theta", "omega", "gravity"), given, strict=True))
+    if gyration2 is not None:
+        arguments["gyration2"] = gyration2
+    shape, columns = broadcast(**arguments)
     if gyration2 is None:
-        gyration2 = (array("a", a) ** 2 + array("b", b) ** 2) / 4
-    shape, arguments = broadcast(
-        t=t, a=a, b=b, theta=theta, omega=omega, gravity=gravity, gyration2=gyration2
-    )
-    results = _core.flow_array(math.prod(shape), arguments, threads)
+        with np.errstate(over="ignore"):  # the core refuses by name what is too large
+            columns.append((columns[1] ** 2 + columns[2] ** 2) / 4)
+    results = _core.flow_array(math.prod(shape), columns, threads)
     if shape == ():
         return tuple(float(v[0]) for v in results)  # type: ignore[return-value]
     theta_t, omega_t, x_t = (v.reshape(shape) for v in results)
@@ -77,8 +83,9 @@ def flow(
 
 def worker_count(workers: int) -> int:
     """Return the number of threads that ``workers`` stands for."""
-    if isinstance(workers, bool) or not isinstance(workers, int):
+    if isinstance(workers, bool) or not hasattr(workers, "__index__"):
         raise TypeError(f"workers must be an int, got {workers!r}")
+    workers = operator.index(workers)
     if workers == -1:
         return os.cpu_count() or 1
     if workers < 1:

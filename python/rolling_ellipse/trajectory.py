@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._check import FloatArray, array
+from ._check import FloatArray, array, number
 from .geometry import support_slope
 from .kinematics import ConstraintResiduals, constraints
 from .scene import Impulse, Scene
@@ -261,7 +261,7 @@ class Trajectory:
 
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that goes on from time t [s]; give it an impulse with `replace`."""
-        at = self.sol(t)
+        at = self.sol(number("t", t))
         return replace(
             self.scene,
             theta=float(at.theta[0]),
@@ -345,7 +345,7 @@ def _read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[FloatArray
         except (ValueError, KeyError, IndexError, EOFError, zipfile.BadZipFile) as error:
             name = os.fspath(path)
             raise ValueError(f"path must name a file written by save, got {name!r}") from error
-    if (schema := about.pop("schema")) != _SCHEMA:
+    if (schema := about.pop("schema", None)) != _SCHEMA:
         name = os.fspath(path)
         raise ValueError(f"path must name a file of schema {_SCHEMA}, got {name!r} of {schema!r}")
     return about, arrays
