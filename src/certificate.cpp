@@ -40,6 +40,10 @@ double slack(const RollingForces& forces, double friction) {
     return friction * forces.normal - std::abs(forces.friction);
 }
 
+double slack_at(const EnergyRange& range, double friction, double angle) {
+    return slack(rolling_forces_at_angle(range, angle), friction);
+}
+
 // Does the law hold at the start? Within rounding of its end what counts is where the motion goes.
 bool holds_at_start(const EnergyRange& range, double friction, const Start& start) {
     if (friction == 0) return false;
@@ -49,69 +53,70 @@ bool holds_at_start(const EnergyRange& range, double friction, const Start& star
                              : friction * std::abs(start.forces.normal) + start.forces.friction;
     if (std::abs(here) > 64 * epsilon * scale) return here > 0;
     constexpr double ahead = 1e-8;
-    const double x = std::min(start.forces.x, 1.0);
-    const double next = start.angle >= 0 ? x + ahead * (1 - x) : x * (1 - ahead);
-    return slack(rolling_forces(range, next), friction) > 0;
+    const double angle = std::abs(start.angle);
+    const double top = rolling_forces(range, 1.0).angle;
+    const double next = start.angle >= 0 ? angle + ahead * (top - angle) : angle * (1 - ahead);
+    return slack_at(range, friction, next) > 0;
 }
 
-// A root of the law, found in its squared form, refined in the plain one: near the tip both forces
-// may be small, and their squares know half their digits only.
-// It lies between the places given.
-double refined_root(const EnergyRange& range, double friction, double x, double from, double to) {
-    const auto slack_at = [&](double at) { return slack(rolling_forces(range, at), friction); };
-    double low = x;
-    double high = x;
+// A zero of the law, found in its squared form, refined in the plain one: near the tip both forces
+// may be small, and their squares know half their digits only. It lies between the angles given.
+double refined_zero(const EnergyRange& range, double friction, double angle, double from,
+                    double to) {
+    double low = angle;
+    double high = angle;
     for (double reach = epsilon; reach < 1; reach *= 4) {
-        low = std::max(x - reach * std::max(x, epsilon), from);
-        high = std::min(x + reach * std::max(1 - x, epsilon), to);
-        if ((slack_at(low) > 0) != (slack_at(high) > 0)) break;
+        low = std::max(angle * (1 - reach), from);
+        high = std::min(angle * (1 + reach), to);
+        if ((slack_at(range, friction, low) > 0) != (slack_at(range, friction, high) > 0)) break;
     }
-    const bool falls = slack_at(low) > 0;
-    if (falls == (slack_at(high) > 0)) return x;
+    const bool falls = slack_at(range, friction, low) > 0;
+    if (falls == (slack_at(range, friction, high) > 0)) return angle;
     for (;;) {
         const double middle = 0.5 * (low + high);
-        if (middle == low || middle == high) return middle;
-        ((slack_at(middle) > 0) == falls ? low : high) = middle;
+        if (middle <= low || middle >= high) return middle;
+        ((slack_at(range, friction, middle) > 0) == falls ? low : high) = middle;
     }
 }
 
-// Where the law may be broken, ascending: its zeros, and those of N, at which it is broken anyway.
-std::vector<double> breaking_places(const EnergyRange& range, const Bernstein& contact,
+// Where the law may be broken, as angles from the flat position, ascending: its zeros, and those of
+// N, at which it is broken anyway.
+std::vector<double> breaking_angles(const EnergyRange& range, const Bernstein& contact,
                                     const Bernstein& law, double friction) {
-    const std::vector<double> coarse = roots_on_unit_interval(law);
-    std::vector<double> places = roots_on_unit_interval(contact);
-    for (std::size_t i = 0; i < coarse.size(); ++i) {
-        const double from = i == 0 ? 0.0 : 0.5 * (coarse[i - 1] + coarse[i]);
-        const double to = i + 1 == coarse.size() ? 1.0 : 0.5 * (coarse[i] + coarse[i + 1]);
-        places.push_back(refined_root(range, friction, coarse[i], from, to));
+    const auto angle_at = [&](double x) { return rolling_forces(range, x).angle; };
+    const std::vector<double> roots = roots_on_unit_interval(law);
+    std::vector<double> angles;
+    for (const double x : roots_on_unit_interval(contact)) angles.push_back(angle_at(x));
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+        const double from = i == 0 ? 0.0 : 0.5 * (roots[i - 1] + roots[i]);
+        const double to = i + 1 == roots.size() ? 1.0 : 0.5 * (roots[i] + roots[i + 1]);
+        angles.push_back(
+            refined_zero(range, friction, angle_at(roots[i]), angle_at(from), angle_at(to)));
     }
-    std::sort(places.begin(), places.end());
-    return places;
+    std::sort(angles.begin(), angles.end());
+    return angles;
 }
 
-// How far the body turns until the first of the places x (ascending, at least one) is met, and
-// which way it then moves; nothing where it never gets there: on the separatrix the tip is the end.
+// How far the body turns until the first of the angles (ascending, at least one) is met on one side
+// or the other of the flat position, and which way it then moves; nothing where it never gets
+// there: on the separatrix the tip is the end.
 struct Turn {
     double angle;
     double heading;
 };
 
 std::optional<Turn> first_meeting(const EnergyRange& range, const Start& start,
-                                  const std::vector<double>& places) {
-    const auto angle_at = [&](double x) { return rolling_forces(range, x).angle; };
+                                  const std::vector<double>& angles) {
     const double on = start.direction;
-    const auto above = std::upper_bound(places.begin(), places.end(), start.forces.x);
+    const auto above = std::upper_bound(angles.begin(), angles.end(), std::abs(start.angle));
     const bool rising = start.angle >= 0;
-    if (!rising && above != places.begin()) {
-        return Turn{on * (-angle_at(above[-1]) - start.angle), on};
-    }
-    if (rising && above != places.end()) return Turn{on * (angle_at(*above) - start.angle), on};
-    if (!rising) return Turn{on * (angle_at(places.front()) - start.angle), on};
+    if (!rising && above != angles.begin()) return Turn{on * (-above[-1] - start.angle), on};
+    if (rising && above != angles.end()) return Turn{on * (*above - start.angle), on};
+    if (!rising) return Turn{on * (angles.front() - start.angle), on};
     if (!range.libration && range.energy_gap == 0) return std::nullopt;
-    // Over the top: the last place, on the other side of the tip or back from the turning point.
-    const double last = angle_at(places.back());
-    if (range.libration) return Turn{on * (last - start.angle), -on};
-    return Turn{on * (pi - last - start.angle), on};
+    // Over the top: the last angle, on the other side of the tip or back from the turning point.
+    if (range.libration) return Turn{on * (angles.back() - start.angle), -on};
+    return Turn{on * (pi - angles.back() - start.angle), on};
 }
 
 }  // namespace
@@ -150,11 +155,12 @@ Certificate certify_rolling(const Body& body, double mass, double friction, doub
     certificate.ends_at = theta;
     certificate.ends_heading = start.direction;
     if (!holds_at_start(range, friction, start)) return certificate;
-    std::vector<double> places = breaking_places(range, contact, law, friction);
-    if (places.empty()) {  // on the edge: the least margin is where the law may be broken
-        places.push_back(finite_friction ? extremes.most_friction.x : extremes.least_normal.x);
+    std::vector<double> angles = breaking_angles(range, contact, law, friction);
+    if (angles.empty()) {  // on the edge: the least margin is where the law may be broken
+        angles.push_back(finite_friction ? extremes.most_friction.angle
+                                         : extremes.least_normal.angle);
     }
-    const std::optional<Turn> turn = first_meeting(range, start, places);
+    const std::optional<Turn> turn = first_meeting(range, start, angles);
     if (!turn) {
         certificate.ends_at.reset();
         return certificate;

@@ -85,9 +85,17 @@ RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2,
     const double normal = (kh + omega2 * (ddh * kh - h * dh2)) / d;
     // F = h theta'' + h' omega^2 with theta'' = -h' (1 + rho omega^2)/D, rho h = S^2/h^2
     const double friction = std::sqrt(dh2) * std::abs(omega2 * (d - square(b) / h2) - h) / d;
-    const double x = range.c2 * sin2 / (h + b) / range.width;
-    return {x, std::atan2(std::sqrt(sin2), std::sqrt(cos2)), normal, friction};
+    return {std::atan2(std::sqrt(sin2), std::sqrt(cos2)), normal, friction};
 }
+
+namespace {
+
+// D at a height, for omega^2 = 2 e/D.
+double inertia(const EnergyRange& range, double h2, double sin2, double cos2) {
+    return range.gyration2 + h2 + square(range.c2) * sin2 * cos2 / h2;
+}
+
+}  // namespace
 
 RollingForces rolling_forces(const EnergyRange& range, double x) {
     const double over_flat = range.width * x;
@@ -95,10 +103,19 @@ RollingForces rolling_forces(const EnergyRange& range, double x) {
     const double h = range.short_axis + over_flat;
     const double sin2 = over_flat * (h + range.short_axis) / range.c2;
     const double cos2 = (range.tip_gap + to_top) * (1 + h) / range.c2;
-    const double d = range.gyration2 + h * h + square(range.c2 / h) * sin2 * cos2;
-    RollingForces forces = rolling_forces(range, sin2, cos2, 2 * (range.energy_gap + to_top) / d);
-    forces.x = x;
-    return forces;
+    const double energy = range.energy_gap + to_top;
+    return rolling_forces(range, sin2, cos2, 2 * energy / inertia(range, h * h, sin2, cos2));
+}
+
+RollingForces rolling_forces_at_angle(const EnergyRange& range, double angle) {
+    const double sin2 = square(std::sin(angle));
+    const double cos2 = square(std::cos(angle));
+    const double h2 = square(range.short_axis) * cos2 + sin2;
+    const double h = std::sqrt(h2);
+    const double to_top = range.libration ? range.width - range.c2 * sin2 / (h + range.short_axis)
+                                          : range.c2 * cos2 / (1 + h);
+    const double energy = range.energy_gap + std::max(to_top, 0.0);
+    return rolling_forces(range, sin2, cos2, 2 * energy / inertia(range, h2, sin2, cos2));
 }
 
 ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& polynomials) {

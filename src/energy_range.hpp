@@ -47,7 +47,6 @@ ForcePolynomials force_polynomials(const EnergyRange& range);
 
 // The contact forces at one place, straight from the equations of rolling.
 struct RollingForces {
-    double x;
     double angle;     // from the flat position, 0 .. pi/2
     double normal;    // N/(m g)
     double friction;  // |F|/(m g)
@@ -57,8 +56,10 @@ struct RollingForces {
 
 RollingForces rolling_forces(const EnergyRange& range, double x);
 
-// By sin^2 and cos^2 of the angle from the flat position and omega^2 in units of g/L: near the tip
-// the angle knows more than x.
+// The same by the angle from the flat position: near the tip it knows more than x.
+RollingForces rolling_forces_at_angle(const EnergyRange& range, double angle);
+
+// The same by sin^2 and cos^2 of the angle and omega^2 in units of g/L.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2);
 
 struct ForceExtremes {
