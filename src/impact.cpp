@@ -7,6 +7,9 @@
 namespace rolling_ellipse {
 namespace {
 
+// The law approaches its limit for infinite friction like 1/friction: beyond this, within rounding.
+constexpr double practically_infinite = 1e20;
+
 // Velocity of the material contact point: v along the ground, u away from it; and the matrix that
 // takes an impulse there to its change (Delassus). W. J. Stronge, Impact Mechanics (2000), ch. 3.
 struct Contact {
@@ -15,14 +18,18 @@ struct Contact {
     double gtt;
     double gtn;
     double gnn;
+    double determinant;  // gtt gnn - gtn^2 = (1/m) (1/m + (h^2 + h'^2)/I)
 };
 
 Contact contact(const Scene& scene, const Geometry& at, const State& state) {
     const double inverse_mass = 1 / scene.mass;
     const double inverse_inertia = 1 / scene.inertia;
-    return {state.x_dot - at.h * state.omega, state.z_dot - at.dh * state.omega,
-            inverse_mass + at.h * at.h * inverse_inertia, at.h * at.dh * inverse_inertia,
-            inverse_mass + at.dh * at.dh * inverse_inertia};
+    return {state.x_dot - at.h * state.omega,
+            state.z_dot - at.dh * state.omega,
+            inverse_mass + at.h * at.h * inverse_inertia,
+            at.h * at.dh * inverse_inertia,
+            inverse_mass + at.dh * at.dh * inverse_inertia,
+            inverse_mass * (inverse_mass + (at.h * at.h + at.dh * at.dh) * inverse_inertia)};
 }
 
 struct Reaction {
@@ -36,8 +43,7 @@ Reaction unlimited_friction(const Contact& c) {
     const double u_without_slip = c.u - c.v * c.gtn / c.gtt;
     if (u_without_slip <= 0) {
         // v = 0 and u = 0: the full 2 x 2 system.
-        const double determinant = c.gtt * c.gnn - c.gtn * c.gtn;
-        const double normal = -u_without_slip * c.gtt / determinant;
+        const double normal = -u_without_slip * c.gtt / c.determinant;
         return {-(c.v + c.gtn * normal) / c.gtt, normal, true};
     }
     return {-c.u / c.gtn, 0.0, false};  // friction alone stops the approach
@@ -60,7 +66,7 @@ Reaction coulomb_friction(const Contact& c, double friction) {
         if (u >= 0) return reaction;
     }
     if (std::abs(c.gtn) <= friction * c.gtt) {
-        const double normal = -u / (c.gnn - c.gtn * c.gtn / c.gtt);
+        const double normal = -u * c.gtt / c.determinant;
         reaction.tangential -= c.gtn / c.gtt * normal;
         reaction.normal += normal;
         reaction.sticks = true;
@@ -120,8 +126,9 @@ InitialState initial_state(const Scene& scene) {
         state.mode = Mode::flight;
         return result;
     }
-    const Reaction reaction =
-        std::isinf(scene.friction) ? unlimited_friction(c) : coulomb_friction(c, scene.friction);
+    const Reaction reaction = scene.friction > practically_infinite
+                                  ? unlimited_friction(c)
+                                  : coulomb_friction(c, scene.friction);
     result.reaction_x = reaction.tangential;
     result.reaction_z = reaction.normal;
     apply(scene, at, reaction, state);
