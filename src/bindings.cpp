@@ -5,11 +5,13 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
-#include <chrono>
+#include <cmath>
 #include <exception>
 #include <functional>
 #include <thread>
+#include <vector>
 
 #include "constraints.hpp"
 #include "rolling.hpp"
