@@ -19,6 +19,11 @@ Polynomial needed_slope(const ForcePolynomials& p) {
     return derivative(p.slope_square) * p.friction * p.normal + 2.0 * (p.slope_square * bracket);
 }
 
+// D = k^2 + h^2 + h'^2.
+double inertia(const EnergyRange& range, double h2, double sin2, double cos2) {
+    return range.gyration2 + h2 + square(range.c2) * sin2 * cos2 / h2;
+}
+
 }  // namespace
 
 EnergyRange energy_range(const FlatView& at, const Body& body, double omega) {
@@ -81,21 +86,12 @@ RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2,
     const double dh2 = square(range.c2) * sin2 * cos2 / h2;
     const double ddh = range.c2 * (b * cos2 - sin2) * (b * cos2 + sin2) / (h * h2);
     const double kh = range.gyration2 + h2;
-    const double d = kh + dh2;
+    const double d = inertia(range, h2, sin2, cos2);
     const double normal = (kh + omega2 * (ddh * kh - h * dh2)) / d;
     // F = h theta'' + h' omega^2 with theta'' = -h' (1 + rho omega^2)/D, rho h = S^2/h^2
     const double friction = std::sqrt(dh2) * std::abs(omega2 * (d - square(b) / h2) - h) / d;
     return {std::atan2(std::sqrt(sin2), std::sqrt(cos2)), normal, friction};
 }
-
-namespace {
-
-// D at a height, for omega^2 = 2 e/D.
-double inertia(const EnergyRange& range, double h2, double sin2, double cos2) {
-    return range.gyration2 + h2 + square(range.c2) * sin2 * cos2 / h2;
-}
-
-}  // namespace
 
 RollingForces rolling_forces(const EnergyRange& range, double x) {
     const double over_flat = range.width * x;

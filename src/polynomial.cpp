@@ -181,17 +181,6 @@ Polynomial derivative(const Polynomial& p) {
     return slope;
 }
 
-Polynomial on_interval(const Polynomial& p, double start, double width) {
-    const Polynomial place = polynomial({start, width});
-    Polynomial result;
-    result.coefficients[0] = p.coefficients[p.degree];
-    for (int i = p.degree - 1; i >= 0; --i) {
-        result = result * place;
-        result.coefficients[0] = result.coefficients[0] + p.coefficients[i];
-    }
-    return result;
-}
-
 Bernstein bernstein(const Polynomial& p) {
     Bernstein result;
     result.degree = p.degree;

@@ -36,9 +36,6 @@ Polynomial operator*(const Polynomial& p, const Polynomial& q);
 Polynomial operator*(double factor, const Polynomial& p);
 Polynomial derivative(const Polynomial& p);
 
-// The polynomial q(x) = p(start + width x).
-Polynomial on_interval(const Polynomial& p, double start, double width);
-
 // Bernstein coefficients on [0, 1]: their least and largest bound the polynomial.
 struct Bernstein {
     int degree = 0;

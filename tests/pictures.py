@@ -1,8 +1,19 @@
-"""What a drawn ellipse is, from matplotlib's own transform of it; nothing of the package here."""
+"""Scenes to draw, and what a drawn ellipse is, from matplotlib's own transform of it."""
 
 import numpy as np
+import rolling_ellipse as re
 from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
+
+
+ORDINARY_SCENES = {
+    "report": re.scenes.report,
+    "rocking": re.scenes.rocking,
+    "circle": re.scenes.circle,
+    "thin": re.scenes.thin,
+    "standing": re.Scene(0.7, 1.9, omega=1.0),
+    "backwards": re.Scene(2.0, 1.0, omega=-3.2),
+}
 
 
 def support(body: Ellipse) -> tuple[float, float]:

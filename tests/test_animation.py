@@ -18,20 +18,15 @@ import matplotlib.pyplot as plt
 import rolling_ellipse as re
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from pictures import outline, support
+from pictures import ORDINARY_SCENES, outline, support
 from PIL import Image
 from rolling_ellipse import _movies as movies
 from rolling_ellipse import animation as animation_module
 from rolling_ellipse.animation import RollingAnimation
 
 SCENES = {
-    "report": re.scenes.report,
-    "rocking": re.scenes.rocking,
-    "circle": re.scenes.circle,
-    "thin": re.scenes.thin,
-    "standing": re.Scene(0.7, 1.9, omega=1.0),
+    **ORDINARY_SCENES,
     "kilometres": re.Scene(2.3e3, 1.1e3, omega=0.04, x=-500.0),
-    "backwards": re.Scene(2.0, 1.0, omega=-3.2),
 }
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 

@@ -16,17 +16,12 @@ import rolling_ellipse as re
 from matplotlib.axes import Axes
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from matplotlib.figure import Figure
-from pictures import outline, support
+from pictures import ORDINARY_SCENES, outline, support
 from rolling_ellipse import _drawing as drawing
 
 SCENES = {
-    "report": re.scenes.report,
-    "rocking": re.scenes.rocking,
-    "circle": re.scenes.circle,
-    "thin": re.scenes.thin,
-    "standing": re.Scene(0.7, 1.9, omega=1.0),
+    **ORDINARY_SCENES,
     "millimetres": re.Scene(3.1e-3, 1.7e-3, omega=90.0, x=5.0),
-    "backwards": re.Scene(2.0, 1.0, omega=-3.2),
 }
 
 
