@@ -5,7 +5,6 @@ import rolling_ellipse as re
 from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
 
-
 ORDINARY_SCENES = {
     "report": re.scenes.report,
     "rocking": re.scenes.rocking,
