@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "constraints.hpp"
+#include "integrator/collocation.hpp"
+#include "integrator/explicit_tableaus.hpp"
 #include "rolling.hpp"
 #include "simulate.hpp"
 #include "thresholds.hpp"
@@ -34,8 +36,9 @@ void check_signals() {
 
 // Run body(begin, end) over 0 .. n in chunks, without the GIL; Ctrl-C stops it between chunks.
 // What a chunk computes does not depend on which thread takes it.
+constexpr py::ssize_t chunk = 1024;
+
 void run_interruptible(py::ssize_t n, int workers, const Range& body) {
-    constexpr py::ssize_t chunk = 1024;
     if (n <= chunk) return body(0, n);
     constexpr py::ssize_t most_threads = 256;
     workers = static_cast<int>(std::min({py::ssize_t{workers}, most_threads, n / chunk + 1}));
@@ -132,16 +135,21 @@ py::tuple sample_solution(const Solution& solution, const Array& t) {
     std::vector<Array> out = empty_arrays(3, n);
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
     const double* const times = t.data();
-    const Segment& segment = solution.segments.front();
+    std::vector<FlowSample> samples(std::min<std::size_t>(n, chunk));
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        sample(solution, times + begin, end - begin, samples.data());
         for (py::ssize_t i = begin; i < end; ++i) {
-            const FlowSample at = validated_sample(segment.rolling, times[i] - segment.t0);
-            columns[0][i] = at.theta;
-            columns[1][i] = at.omega;
-            columns[2][i] = at.x;
+            columns[0][i] = samples[i - begin].theta;
+            columns[1][i] = samples[i - begin].omega;
+            columns[2][i] = samples[i - begin].x;
         }
     });
     return py::make_tuple(out[0], out[1], out[2]);
+}
+
+Solution simulate_interruptible(const Scene& scene, const Settings& settings, double t_end) {
+    const py::gil_scoped_release release;
+    return simulate(scene, settings, t_end, check_signals);
 }
 
 void store(Array& array, py::ssize_t row, const double* values) {
@@ -213,11 +221,29 @@ py::tuple rolling_arrays(const Scene& scene, const Array& theta, const Array& om
             store(q_dot, i, detail.state.q_dot.data());
             store(q_ddot, i, detail.q_ddot.data());
             store(multipliers, i, detail.multipliers.data());
-            normals[i] = detail.normal_force;
-            frictions[i] = detail.friction_force;
+            normals[i] = detail.force.normal;
+            frictions[i] = detail.force.friction;
         }
     });
     return py::make_tuple(q, q_dot, q_ddot, normal, friction, multipliers);
+}
+
+// theta'' of rolling at each angle and angular velocity, and its derivatives by both.
+py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const Array& omega) {
+    const RollingEquation equation(scene.body(), scene.slope);
+    const py::ssize_t n = theta.size();
+    Array acceleration(n);
+    Array jacobian = matrix(n, 2);
+    double* const accelerations = acceleration.mutable_data();
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const Vector<2> y{theta.data()[i], omega.data()[i]};
+            accelerations[i] = equation(0.0, y)[1];
+            const Vector<2> row = equation.jacobian(0.0, y).row(1);
+            store(jacobian, i, row.data());
+        }
+    });
+    return py::make_tuple(acceleration, jacobian);
 }
 
 // A function of theta, a, b, each with n elements, or one.
@@ -337,31 +363,101 @@ void bind_certificate(py::module_& m) {
         "a"_a, "b"_a, "gravity"_a, "gyration2"_a, "friction"_a);
 }
 
+// Numbers of the methods, for those who want to check them.
+template <std::size_t N>
+Array array(const double (&values)[N]) {
+    return Array(N, values);
+}
+
+template <std::size_t Rows, std::size_t Columns>
+Array array(const double (&values)[Rows][Columns]) {
+    return Array(std::vector<py::ssize_t>{Rows, Columns}, values[0]);
+}
+
+template <class T>
+py::dict explicit_tableau() {
+    return py::dict("order"_a = T::order, "stages"_a = T::stages, "c"_a = array(T::c),
+                    "a"_a = array(T::a), "error_estimates"_a = T::error_estimates,
+                    "error"_a = array(T::error), "dense_terms"_a = T::dense_terms,
+                    "dense"_a = array(T::dense));
+}
+
+template <class T>
+py::dict gauss_tableau() {
+    return py::dict("c"_a = array(T::c), "b"_a = array(T::b), "mu"_a = array(T::mu),
+                    "nu"_a = array(T::nu));
+}
+
+template <class T>
+py::dict radau_tableau() {
+    return py::dict("c"_a = array(T::c), "a"_a = array(T::a), "gamma"_a = T::gamma,
+                    "alpha"_a = T::alpha, "beta"_a = T::beta, "transform"_a = array(T::transform),
+                    "inverse_transform"_a = array(T::inverse_transform));
+}
+
+void bind_tableaus(py::module_& m) {
+    m.def("tableaus", [] {
+        return py::dict("rk4"_a = explicit_tableau<RungeKutta4>(),
+                        "dopri5"_a = explicit_tableau<DormandPrince5>(),
+                        "dop853"_a = explicit_tableau<DormandPrince853>(),
+                        "gauss2"_a = gauss_tableau<GaussCoefficients<2>>(),
+                        "gauss3"_a = gauss_tableau<GaussCoefficients<3>>(),
+                        "gauss4"_a = gauss_tableau<GaussCoefficients<4>>(),
+                        "radau"_a = radau_tableau<RadauCoefficients>());
+    });
+}
+
 void bind_motion(py::module_& m) {
     py::native_enum<Model>(m, "Model", "enum.Enum", "How the motion is described.")
         .value("AUTO", Model::automatic)
         .value("ROLLING", Model::rolling)
         .finalize();
+    py::native_enum<Method>(m, "Method", "enum.Enum", "How the model is solved.")
+        .value("AUTO", Method::automatic)
+        .value("EXACT", Method::exact)
+        .value("DOP853", Method::dop853)
+        .value("DOPRI5", Method::dopri5)
+        .value("RK4", Method::rk4)
+        .value("GAUSS", Method::gauss)
+        .value("RADAU", Method::radau)
+        .finalize();
     py::native_enum<Status>(m, "Status", "enum.Enum", "How a simulation ended.")
         .value("COMPLETED", Status::completed)
         .value("VALIDITY_LOST", Status::validity_lost)
+        .value("MAX_STEPS", Status::max_steps)
+        .value("STEP_TOO_SMALL", Status::step_too_small)
+        .value("STEP_TOO_LARGE", Status::step_too_large)
         .finalize();
+    py::class_<Settings>(m, "Settings")
+        .def(py::init([](Model model, Method method, double rtol, double atol,
+                         std::optional<double> step, std::optional<int> stages, long max_steps) {
+                 return Settings{model, method, rtol, atol, step, stages, max_steps};
+             }),
+             py::kw_only(), "model"_a, "method"_a, "rtol"_a, "atol"_a, "step"_a, "stages"_a,
+             "max_steps"_a);
     py::class_<Solution>(m, "Solution")
         .def_readonly("status", &Solution::status)
         .def_readonly("followed_until", &Solution::followed_until)
         .def_readonly("valid_until", &Solution::valid_until)
         .def_readonly("reason", &Solution::reason)
         .def_readonly("message", &Solution::message)
-        .def_property_readonly("segment_count",
-                               [](const Solution& solution) { return solution.segments.size(); })
+        .def_readonly("method", &Solution::method)
+        .def_property_readonly("stats",
+                               [](const Solution& s) {
+                                   return py::dict("segments"_a = s.segments.size(),
+                                                   "steps"_a = s.counts.steps,
+                                                   "rejected_steps"_a = s.counts.rejected,
+                                                   "evaluations"_a = s.counts.evaluations);
+                               })
         .def("sample", sample_solution, "t"_a);
-    m.def("simulate", simulate, "scene"_a, "model"_a, "t_end"_a);
+    m.def("simulate", simulate_interruptible, "scene"_a, "settings"_a, "t_end"_a);
     m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);
     m.def("flow_scalar", flow_scalar, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a);
     m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("constraints", constraint_arrays, "q"_a, "q_dot"_a, "a"_a, "b"_a);
     m.def("kinematics", kinematics_arrays, "n"_a, "theta"_a, "omega"_a, "a"_a, "b"_a);
+    m.def("rolling_equation", rolling_equation_arrays, "scene"_a, "theta"_a, "omega"_a);
     m.def("rolling_detail", rolling_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a);
 }
 
@@ -372,5 +468,6 @@ PYBIND11_MODULE(_core, m) {
     bind_geometry(m);
     bind_scene(m);
     bind_certificate(m);
+    bind_tableaus(m);
     bind_motion(m);
 }

@@ -19,7 +19,6 @@ std::string brief(double value) {
 }
 
 std::string why_not_rolling(const Scene& scene, const State& start) {
-    if (scene.slope != 0) return "the ground has a slope of " + brief(scene.slope) + " rad";
     if (start.mode == Mode::flight) return "the body is in the air";
     if (start.mode == Mode::sliding) {
         return "the body slides with " +
@@ -29,9 +28,48 @@ std::string why_not_rolling(const Scene& scene, const State& start) {
     return {};
 }
 
+std::string why_no_proof(const Scene& scene, const State& start) {
+    if (scene.slope != 0) return "the ground has a slope of " + brief(scene.slope) + " rad";
+    return why_not_rolling(scene, start);
+}
+
+std::string rolling_ends(double t) {
+    return "rolling is true until t = " + brief(t) +
+           " s only; what follows obeys the rolling equation, not the ground";
+}
+
+std::string why_stopped(const RollingIntegration& integration, const Settings& settings,
+                        double t_end) {
+    const std::string place =
+        " at t = " + brief(integration.motion.knots.back().t) + " s of " + brief(t_end) + " s";
+    switch (integration.ending) {
+        case Ending::reached:
+            return {};
+        case Ending::max_steps:
+            return "max_steps = " + std::to_string(settings.max_steps) + " steps ended" + place +
+                   ": allow more of them, or larger ones";
+        case Ending::step_too_small:
+            return "no step of a size that changes t meets rtol and atol" + place + ": loosen them";
+        case Ending::step_too_large:
+            return "a step of " + brief(integration.motion.step) + " s cannot be solved" + place +
+                   ": take smaller ones";
+    }
+    return {};
+}
+
+std::string reason(const Scene& scene, const ContactWatch& watch) {
+    return "rolling: on a slope of " + brief(scene.slope) +
+           " rad nothing is proved in advance; along the motion computed the smallest N is " +
+           brief(watch.smallest_normal_force) +
+           " N (t = " + brief(watch.smallest_normal_force_time) + " s), the largest |F|/N " +
+           brief(watch.largest_friction_needed) +
+           " (t = " + brief(watch.largest_friction_needed_time) + " s), the friction coefficient " +
+           brief(scene.friction);
+}
+
 std::string reason(const Scene& scene, const State& start, const Certificate& c) {
     if (c.validity == Validity::no_proof) {
-        return "rolling: nothing to prove, " + why_not_rolling(scene, start);
+        return "rolling: nothing to prove, " + why_no_proof(scene, start);
     }
     const std::string extremes = "the smallest N is " + brief(*c.smallest_normal_force) +
                                  " N (theta = " + in_degrees(*c.smallest_normal_force_angle) +

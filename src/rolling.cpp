@@ -5,43 +5,94 @@
 namespace rolling_ellipse {
 namespace {
 
+struct Accelerations {
+    double theta;
+    double x;
+    double z;
+};
+
+Accelerations rolling_accelerations(const Scene& scene, const Geometry& at, double omega) {
+    const RollingEquation equation(scene.body(), scene.slope);
+    const double omega2 = omega * omega;
+    const double omega_dot = equation.acceleration(at.sin, at.cos, omega);
+    return {omega_dot, at.h * omega_dot + at.dh * omega2, at.dh * omega_dot + at.ddh * omega2};
+}
+
+// Newton's law for the centre.
+ContactForce contact_force(const Scene& scene, const Accelerations& of_centre) {
+    return {scene.mass * (scene.gravity * std::cos(scene.slope) + of_centre.z),
+            scene.mass * (of_centre.x - scene.gravity * std::sin(scene.slope))};
+}
+
 // The multipliers of the gradients of f1 ... f4: lambda1 = F, lambda2 = N, and from the rows of psi
 // and r, which carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3.
 // At the contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0.
-Eigen::Vector4d multipliers(const Coordinates& q, double friction, double normal) {
+Eigen::Vector4d multipliers(const Coordinates& q, const ContactForce& force) {
     const double offset = q[coordinate::psi] - q[coordinate::theta];
-    return {friction, normal, normal * std::cos(offset), 0.0};
+    return {force.friction, force.normal, force.normal * std::cos(offset), 0.0};
 }
 
 }  // namespace
 
-double rolling_acceleration(const Body& body, double slope, const Geometry& at, double omega) {
-    const double inertia = body.gyration2 + at.h * at.h + at.dh * at.dh;
-    const double weight = body.gravity * std::cos(slope);
-    const double pull = body.gravity * std::sin(slope);
-    return (at.h * pull - at.dh * (weight + at.rho * omega * omega)) / inertia;
+RollingEquation::RollingEquation(const Body& body, double slope)
+    : axes_{body.a, body.b},
+      a2_(body.a * body.a),
+      b2_(body.b * body.b),
+      c2_((body.a - body.b) * (body.a + body.b)),
+      gyration2_(body.gyration2),
+      weight_(body.gravity * std::cos(slope)),
+      pull_(body.gravity * std::sin(slope)) {}
+
+// The equation times h^4, so that one root and one division are enough: with u = h^2, p = h h',
+//     theta'' u (u (k^2 + u) + p^2) = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
+double RollingEquation::acceleration(double s, double c, double omega) const {
+    const double u = a2_ * s * s + b2_ * c * c;
+    const double p = c2_ * s * c;
+    const double drive = u * std::sqrt(u) * (u * pull_ - p * weight_);
+    const double turning = p * a2_ * b2_ * omega * omega;
+    return (drive - turning) / (u * (u * (gyration2_ + u) + p * p));
+}
+
+Vector<2> RollingEquation::operator()(double, const Vector<2>& y) const {
+    return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
+}
+
+// With D' = 2 h' rho and rho' = -3 rho h'/h.
+Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {
+    const Geometry at = geometry(axes_, y[0]);
+    const double omega = y[1];
+    const double inertia = gyration2_ + at.h * at.h + at.dh * at.dh;
+    const double load = weight_ + at.rho * omega * omega;
+    const double rho_slope = -3 * at.rho * at.dh / at.h;
+    const double by_theta = at.dh * pull_ - at.ddh * load - at.dh * rho_slope * omega * omega -
+                            2 * at.dh * at.rho * acceleration(at.sin, at.cos, omega);
+    const double by_omega = -2 * at.dh * at.rho * omega;
+    Matrix<2> jacobian;
+    jacobian << 0.0, 1.0, by_theta / inertia, by_omega / inertia;
+    return jacobian;
+}
+
+ContactForce rolling_force(const Scene& scene, double theta, double omega) {
+    const Geometry at = geometry({scene.a, scene.b}, theta);
+    return contact_force(scene, rolling_accelerations(scene, at, omega));
 }
 
 RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
     const Axes axes{scene.a, scene.b};
     const Geometry at = geometry(axes, theta);
-    const double omega2 = omega * omega;
-    const double omega_dot = rolling_acceleration(scene.body(), scene.slope, at, omega);
-    const double x_ddot = at.h * omega_dot + at.dh * omega2;
-    const double z_ddot = at.dh * omega_dot + at.ddh * omega2;
+    const Accelerations acceleration = rolling_accelerations(scene, at, omega);
 
     RollingDetail detail;
     detail.state = kinematics(axes, theta, omega);
     const double psi = detail.state.q[coordinate::psi];
     const double psi_dot = detail.state.q_dot[coordinate::psi];
-    const double psi_ddot =
-        contact_angle_rate(axes, at) * omega_dot + contact_angle_second(axes, at) * omega2;
+    const double psi_ddot = contact_angle_rate(axes, at) * acceleration.theta +
+                            contact_angle_second(axes, at) * omega * omega;
     const double r_ddot = polar_radius_slope(axes, psi) * psi_ddot +
                           polar_radius_second(axes, psi) * psi_dot * psi_dot;
-    detail.q_ddot << x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot;
-    detail.normal_force = scene.mass * (scene.gravity * std::cos(scene.slope) + z_ddot);
-    detail.friction_force = scene.mass * (x_ddot - scene.gravity * std::sin(scene.slope));
-    detail.multipliers = multipliers(detail.state.q, detail.friction_force, detail.normal_force);
+    detail.q_ddot << acceleration.x, acceleration.z, acceleration.theta, psi_ddot, r_ddot;
+    detail.force = contact_force(scene, acceleration);
+    detail.multipliers = multipliers(detail.state.q, detail.force);
     return detail;
 }
 

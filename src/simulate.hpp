@@ -7,8 +7,6 @@
 
 namespace rolling_ellipse {
 
-enum class Model { automatic, rolling };
-
 // The certificate of the motion that starts from the scene; its reason in one sentence.
 struct CertifiedScene {
     InitialState start;
@@ -18,7 +16,8 @@ struct CertifiedScene {
 
 CertifiedScene certify(const Scene& scene);
 
-Solution simulate(const Scene& scene, Model model, double t_end);
+Solution simulate(const Scene& scene, const Settings& settings, double t_end,
+                  const Checkpoint& checkpoint);
 
 // Time of a full swing or turn of the rolling motion that starts from the scene.
 double period(const Scene& scene);

@@ -15,14 +15,14 @@ from .kinematics import ConstraintResiduals, constraints, kinematics
 from .motion import flow, period
 from .plotting import plot, plot_strobe
 from .scene import Impulse, InitialState, Scene
-from .trajectory import Status, Trajectory, ValidityWarning, load
+from .trajectory import IntegrationError, Status, Trajectory, ValidityWarning, load
 from .validity import Certificate, Thresholds, certify, thresholds
 
 __version__ = _version("rolling-ellipse")
 
 __all__ = [
-    "Certificate", "ConstraintResiduals", "Impulse", "InitialState", "Mode", "Scene", "Status",
-    "Thresholds", "Trajectory", "Validity", "ValidityWarning", "__version__", "animate", "certify",
-    "constraints", "flow", "geometry", "kinematics", "load", "period", "plot", "plot_strobe",
-    "scenes", "simulate", "thresholds",
+    "Certificate", "ConstraintResiduals", "Impulse", "InitialState", "IntegrationError", "Mode",
+    "Scene", "Status", "Thresholds", "Trajectory", "Validity", "ValidityWarning", "__version__",
+    "animate", "certify", "constraints", "flow", "geometry", "kinematics", "load", "period", "plot",
+    "plot_strobe", "scenes", "simulate", "thresholds",
 ]  # fmt: skip

@@ -75,7 +75,7 @@ def summary(trajectory: Trajectory) -> dict[str, Any]:
     if trajectory.t.size:
         residuals = trajectory.constraint_residuals()
         found |= {
-            "period": _finite(period(scene)),
+            "period": _finite(period(scene)) if scene.slope == 0 else None,
             "distance": float(trajectory.x[-1] - trajectory.x[0]),
             "turns": float(trajectory.turns[-1]),
             "largest_position_residual": _largest(residuals.position),
@@ -98,13 +98,18 @@ def _lines(found: dict[str, Any], t_end: float) -> list[str]:
     lines = [found["reason"], f"status            {found['status']}: {found['message']}"]
     if "distance" in found:
         swing = "never" if found["period"] is None else f"{found['period']:.12g} s"
-        needed = found["largest_friction_needed"]
         lines += [
             f"swing or turn     {swing}",
             f"distance          {found['distance']:.12g} m in {t_end:g} s, "
             f"{found['turns']:.6g} turns",
-            f"smallest N        {found['smallest_normal_force']:.6g} N",
-            f"largest |F|/N     {'unbounded' if needed is None else format(needed, '.6g')}",
+        ]
+        if found["smallest_normal_force"] is not None:
+            needed = found["largest_friction_needed"]
+            lines += [
+                f"smallest N        {found['smallest_normal_force']:.6g} N",
+                f"largest |F|/N     {'unbounded' if needed is None else format(needed, '.6g')}",
+            ]
+        lines += [
             f"residuals         position {found['largest_position_residual']:.2g}, velocity "
             f"{found['largest_velocity_residual']:.2g}, gap {found['largest_gap']:.2g} m, "
             f"slip {found['largest_slip']:.2g} m/s",

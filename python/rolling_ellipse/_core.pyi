@@ -1,6 +1,7 @@
 """Types of the C++ core (src/bindings.cpp)."""
 
 import enum
+from typing import Any
 
 from ._check import FloatArray
 
@@ -24,9 +25,34 @@ class Model(enum.Enum):
     AUTO = 0
     ROLLING = 1
 
+class Method(enum.Enum):
+    AUTO = 0
+    EXACT = 1
+    DOP853 = 2
+    DOPRI5 = 3
+    RK4 = 4
+    GAUSS = 5
+    RADAU = 6
+
 class Status(enum.Enum):
     COMPLETED = 0
     VALIDITY_LOST = 1
+    MAX_STEPS = 2
+    STEP_TOO_SMALL = 3
+    STEP_TOO_LARGE = 4
+
+class Settings:
+    def __init__(
+        self,
+        *,
+        model: Model,
+        method: Method,
+        rtol: float,
+        atol: float,
+        step: float | None,
+        stages: int | None,
+        max_steps: int,
+    ) -> None: ...
 
 class Impulse:
     def __init__(self, jx: float, jz: float, dx: float, dz: float) -> None: ...
@@ -66,7 +92,9 @@ class Solution:
     @property
     def message(self) -> str: ...
     @property
-    def segment_count(self) -> int: ...
+    def method(self) -> Method: ...
+    @property
+    def stats(self) -> dict[str, int]: ...
     def sample(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]: ...
 
 def support(n: int, arguments: list[FloatArray]) -> FloatArray: ...
@@ -88,7 +116,7 @@ def thresholds(
 ) -> tuple[
     float, float, float | None, float, float | None, float, float, float | None, float, float
 ]: ...
-def simulate(scene: Scene, model: Model, t_end: float) -> Solution: ...
+def simulate(scene: Scene, settings: Settings, t_end: float) -> Solution: ...
 def period(scene: Scene) -> float: ...
 def flow_scalar(
     t: float,
@@ -108,6 +136,10 @@ def constraints(
 def kinematics(
     n: int, theta: FloatArray, omega: FloatArray, a: float, b: float
 ) -> tuple[FloatArray, FloatArray]: ...
+def rolling_equation(
+    scene: Scene, theta: FloatArray, omega: FloatArray
+) -> tuple[FloatArray, FloatArray]: ...
+def tableaus() -> dict[str, dict[str, Any]]: ...
 def rolling_detail(
     scene: Scene, theta: FloatArray, omega: FloatArray, x: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]: ...

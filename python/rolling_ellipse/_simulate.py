@@ -7,16 +7,27 @@ from typing import Any
 
 import numpy as np
 
-from ._check import FloatArray, array, choice
+from ._check import FloatArray, array
 from .scene import Scene, require_scene
-from .trajectory import Status, Trajectory, ValidityWarning, solve
+from .settings import Settings
+from .trajectory import IntegrationError, Status, Trajectory, ValidityWarning
 
-MODELS = ("auto", "rolling")
-METHODS = ("auto", "exact")
 _DEFAULT_SAMPLES = 1001
 
 
-def simulate(scene: Scene, t: Any, *, model: str = "auto", method: str = "auto") -> Trajectory:
+def simulate(
+    scene: Scene,
+    t: Any,
+    *,
+    model: str = "auto",
+    method: str = "auto",
+    rtol: float = 1e-10,
+    atol: float = 1e-12,
+    step: float | None = None,
+    stages: int | None = None,
+    max_steps: int = 1_000_000,
+    raise_on_failure: bool = True,
+) -> Trajectory:
     """Simulate a scene from t = 0 and sample the motion.
 
     Parameters
@@ -26,34 +37,73 @@ def simulate(scene: Scene, t: Any, *, model: str = "auto", method: str = "auto")
     t : float or array_like, shape (n,)
         End time (then 1001 even samples), or strictly increasing sample times >= 0 [s].
     model : {"auto", "rolling"}
-        "rolling" is rolling without slip; "auto" chooses it where it starts. Either way the
-        certificate (see `certify`) says until when rolling is true.
-    method : {"auto", "exact"}
-        Both are exact rolling: the energy integral inverted at each time, nothing is stepped.
+        "rolling" is rolling without slip; "auto" chooses it where it starts. On level ground the
+        certificate (see `certify`) says until when rolling is true, on a slope the forces along
+        the computed motion.
+    method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
+        "exact" inverts the energy integral at each time; nothing is stepped, and neither
+        tolerances nor the span matter. It needs level ground. The others integrate the equation
+        of motion: "dop853" and "dopri5" are explicit Runge-Kutta pairs of order 8 and 5 with
+        error control [1]_; "rk4" is the classical method; "gauss" is Gauss-Legendre collocation
+        of order ``2 * stages``, symmetric and symplectic, whose energy error does not grow, with
+        rounding errors that only walk at random [2]_ [3]_; "radau" is Radau IIA of order 5 [4]_.
+        "auto" is "exact" on level ground and "dop853" on a slope.
+    rtol, atol : float
+        Allowed local error of the pairs, of each of theta and omega: atol + rtol times its size.
+    step : float, optional
+        Size of steps [s]: required by "rk4", "gauss" and "radau"; with it "dop853" and "dopri5"
+        take fixed steps without error control. The last step may be shorter.
+    stages : {4, 3, 2}, optional
+        Of "gauss".
+    max_steps : int
+        Most steps taken before the integration ends with the status MAX_STEPS.
+    raise_on_failure : bool
+        Whether an integration that stops before the last time raises; otherwise it returns what
+        there is up to then.
 
     Returns
     -------
     Trajectory
         ``status`` COMPLETED; or VALIDITY_LOST, where the span goes beyond ``valid_until``: the
         arrays are complete and obey the rolling equation, and a ValidityWarning is issued. A scene
-        that does not start rolling on level ground has ``valid_until`` 0 with "auto", and no
-        samples.
+        that does not start rolling has ``valid_until`` 0 with "auto", and no samples. Samples
+        between steps have the accuracy of the method.
 
     Raises
     ------
     ValueError
-        If times are negative, not increasing or not finite, a name is unknown, or the model
-        "rolling" is asked for a scene that does not start rolling on level ground.
+        If times are negative, not increasing or not finite, a name is unknown, an argument is out
+        of range or of no use to the method, or the model "rolling" is asked for a scene that does
+        not start rolling, or the method "exact" for a slope.
+    IntegrationError
+        If the integration stops before the last time (MAX_STEPS, STEP_TOO_SMALL or
+        STEP_TOO_LARGE); its ``trajectory`` holds what there is.
+
+    References
+    ----------
+    .. [1] E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.,
+       Springer 1993, II.5, II.6 and II.10.
+    .. [2] E. Hairer, R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231.
+    .. [3] M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861.
+    .. [4] E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Springer 1996,
+       IV.8.
     """
     require_scene(scene)
-    choice("model", model, MODELS)
-    choice("method", method, METHODS)
+    settings = Settings(
+        model=model,
+        method=method,
+        rtol=rtol,
+        atol=atol,
+        step=step,
+        stages=stages,
+        max_steps=max_steps,
+    )
     times = _sample_times(t)
-    solution = solve(scene, model, float(times[-1]))
-    times = times[times <= solution.followed_until]
-    trajectory = Trajectory.from_solution(scene, model, solution, times)
+    trajectory = Trajectory.computed(scene, settings, times)
     if trajectory.status is Status.VALIDITY_LOST:
         warnings.warn(trajectory.message, ValidityWarning, stacklevel=2)
+    elif not trajectory.success and raise_on_failure:
+        raise IntegrationError(trajectory)
     return trajectory
 
 

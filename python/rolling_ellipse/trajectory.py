@@ -20,6 +20,7 @@ from ._check import FloatArray, array, number
 from .geometry import support_slope
 from .kinematics import ConstraintResiduals, constraints
 from .scene import Impulse, Scene
+from .settings import Settings
 
 if TYPE_CHECKING:
     from .animation import RollingAnimation
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
 
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
-_SCHEMA = 1
+_SCHEMA = 2
 _ARRAYS = ("t", "theta", "omega", "x")
-_FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "stats")
+_FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
 
 
 class Status(enum.Enum):
@@ -40,6 +41,14 @@ class Status(enum.Enum):
         "rolling without slip stops being true at valid_until: use samples before it, "
         "more friction or a slower start"
     )
+    MAX_STEPS = (
+        "the integration stopped after max_steps steps: allow more of them, loosen rtol and atol "
+        "or take larger steps"
+    )
+    STEP_TOO_SMALL = (
+        "the integration stopped where no step that changes t meets rtol and atol: loosen them"
+    )
+    STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
 
 
 class ValidityWarning(UserWarning):
@@ -62,9 +71,12 @@ def _column(which: int, column: int) -> cached_property[FloatArray]:
     return _derived(lambda self: np.ascontiguousarray(self._detail[which][:, column]))
 
 
-def solve(scene: Scene, model: str, t_end: float) -> _core.Solution:
-    """Return the core's solution of a scene: the motion at any time in [0, t_end]."""
-    return _core.simulate(scene._core_scene, _core.Model[model.upper()], t_end)
+class IntegrationError(RuntimeError):
+    """An integration stopped before its last time; `trajectory` holds what there is."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        super().__init__(trajectory.message)
+        self.trajectory = trajectory
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -101,10 +113,15 @@ class Trajectory:
         What was asked for, how it ended, and the sentence that says why the model is valid.
     valid_until : float
         Time from which on the model is not true [s]; infinite if it always is.
+    t_end : float
+        Last time that was reached [s]; `sol` goes up to it.
+    settings : Settings
+        The arguments of `simulate` that it was computed with.
     events : tuple
         Changes of mode; empty for rolling.
     stats : dict
-        Figures of the solver.
+        Figures of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
+        the right-hand side, without those for the dense output).
     """
 
     t: FloatArray
@@ -120,6 +137,8 @@ class Trajectory:
     reason: str
     valid_until: float
     t_end: float
+    span: float
+    settings: Settings
     events: tuple[()] = ()
     stats: dict[str, int] = field(default_factory=dict)
 
@@ -130,10 +149,11 @@ class Trajectory:
             object.__setattr__(self, name, values)
 
     @classmethod
-    def from_solution(
-        cls, scene: Scene, model: str, solution: _core.Solution, times: FloatArray
-    ) -> Trajectory:
-        """Sample the core's solution at the given times."""
+    def computed(cls, scene: Scene, settings: Settings, times: FloatArray) -> Trajectory:
+        """Solve a scene up to the last of the times, and sample it at all that are reached."""
+        span = float(times[-1])
+        solution = settings.solve(scene._core_scene, span)
+        times = times[times <= solution.followed_until]
         theta, omega, x = solution.sample(times) if times.size else np.empty((3, 0))
         status = Status[solution.status.name]
         trajectory = cls(
@@ -143,20 +163,22 @@ class Trajectory:
             x,
             scene=scene,
             model="rolling",
-            method="exact",
+            method=solution.method.name.lower(),
             status=status,
             message=solution.message or status.value,
             reason=solution.reason,
             valid_until=solution.valid_until,
             t_end=solution.followed_until,
-            stats={"segments": solution.segment_count, "steps": 0},
+            span=span,
+            settings=settings,
+            stats=solution.stats,
         )
         trajectory.__dict__["_solution"] = solution
         return trajectory
 
     @cached_property
     def _solution(self) -> _core.Solution:
-        return solve(self.scene, "auto", self.t_end)
+        return self.settings.solve(self.scene._core_scene, self.span)
 
     # -- what follows from the samples ----------------------------------------------------------
 
@@ -298,6 +320,7 @@ class Trajectory:
         about = {
             "schema": _SCHEMA,
             "scene": asdict(self.scene),
+            "settings": asdict(self.settings),
             "status": self.status.name,
             **{name: getattr(self, name) for name in _FACTS},
         }
@@ -319,7 +342,8 @@ class Trajectory:
         if scene["impulse"] is not None:
             scene["impulse"] = Impulse(**scene["impulse"])
         status = Status[about.pop("status")]
-        return cls(*arrays, scene=Scene(**scene), status=status, **about)
+        settings = Settings(**about.pop("settings"))
+        return cls(*arrays, scene=Scene(**scene), settings=settings, status=status, **about)
 
     def _require_motion(self) -> None:
         if self.t_end < 0:

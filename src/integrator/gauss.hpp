@@ -1,0 +1,104 @@
+// Gauss-Legendre collocation, order 2 s: symplectic, symmetric, and with rounding errors that only
+// walk at random, as
+//     E. Hairer, R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231,
+//     M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861
+// do it: fixed-point iteration to the last bit, increments L_j = h b_j f(Y_j) with h b_j that sum
+// to h, and compensated summation.
+#pragma once
+
+#include "collocation.hpp"
+#include "partial_step.hpp"
+#include "stagnation.hpp"
+
+namespace rolling_ellipse {
+
+template <int S, class System>
+class Gauss {
+  public:
+    static constexpr int N = System::size;
+    static constexpr bool controls_error = false;
+
+    explicit Gauss(const System& system) : f_(system) {}
+
+    const StepCounts& counts() const { return counts_; }
+
+    // One step; false if the stages do not converge, the step being too large for that.
+    bool advance(Point<N>& point, double h) {
+        constexpr int most_iterations = 200;
+        const std::array<double, S> hb = weights(h);
+        StageVectors<N, S> stages = h == last_step_ ? foreseen(point) : constant(point);
+        Stagnation<N, S> stagnation;
+        bool shrinking = true;
+        for (int i = 0; shrinking || !stagnation.settled(size(point)); ++i) {
+            if (i == most_iterations) return false;
+            for (int j = 0; j < S; ++j) {
+                increments_[j] = hb[j] * f_(point.t + Coefficients::c[j] * h, stages[j]);
+            }
+            counts_.evaluations += S;
+            StageVectors<N, S> changes;
+            for (int j = 0; j < S; ++j) {
+                const Vector<N> stage = point.y + (point.carry + combination(Coefficients::mu[j]));
+                changes[j] = stage - stages[j];
+                stages[j] = stage;
+            }
+            shrinking = stagnation.shrinks(changes);
+        }
+        Vector<N> sum = increments_[0];
+        for (int j = 1; j < S; ++j) sum += increments_[j];
+        add<N>(point, sum);
+        last_step_ = h;
+        ++counts_.steps;
+        return true;
+    }
+
+    PartialStep<Gauss<S, System>, System> dense_output(const Point<N>& from, double h) const {
+        return {f_, from, h};
+    }
+
+  private:
+    using Coefficients = GaussCoefficients<S>;
+
+    // h b_j, the outer two such that their sum is h.
+    static std::array<double, S> weights(double h) {
+        std::array<double, S> hb;
+        double rest = h;
+        for (int j = 1; j + 1 < S; ++j) {
+            hb[j] = h * Coefficients::b[j];
+            rest -= hb[j];
+        }
+        hb[0] = hb[S - 1] = rest / 2;
+        return hb;
+    }
+
+    Vector<N> combination(const double (&row)[S]) const {
+        Vector<N> sum = row[0] * increments_[0];
+        for (int j = 1; j < S; ++j) sum += row[j] * increments_[j];
+        return sum;
+    }
+
+    static StageVectors<N, S> constant(const Point<N>& point) {
+        StageVectors<N, S> stages;
+        stages.fill(point.y);
+        return stages;
+    }
+
+    // The stages where the polynomial of the step before has them.
+    StageVectors<N, S> foreseen(const Point<N>& point) const {
+        StageVectors<N, S> stages;
+        for (int i = 0; i < S; ++i) stages[i] = point.y + combination(Coefficients::nu[i]);
+        return stages;
+    }
+
+    Vector<N> size(const Point<N>& point) const {
+        Vector<N> sum = point.y.cwiseAbs();
+        for (const Vector<N>& increment : increments_) sum += increment.cwiseAbs();
+        return sum;
+    }
+
+    const System& f_;
+    StepCounts counts_;
+    StageVectors<N, S> increments_;
+    double last_step_ = 0.0;  // the step that `increments_` belong to
+};
+
+}  // namespace rolling_ellipse

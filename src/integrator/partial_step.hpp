@@ -1,0 +1,24 @@
+// Dense output of an implicit method, of its full order: the method itself, with a shorter step.
+#pragma once
+
+#include "common.hpp"
+
+namespace rolling_ellipse {
+
+template <class Method, class System>
+struct PartialStep {
+    static constexpr int N = System::size;
+
+    const System& f;
+    Point<N> from;
+    double h;
+
+    // y at the fraction s of the step less y at its start.
+    Vector<N> change(double s) const {
+        Point<N> point = from;
+        Method(f).advance(point, s * h);
+        return (point.y - from.y) + (point.carry - from.carry);
+    }
+};
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,97 @@
+// Radau IIA with three stages, order 5: implicit, L-stable. E. Hairer, G. Wanner, Solving Ordinary
+// Differential Equations II, IV.8: simplified Newton iteration in coordinates in which the stages
+// fall apart into a real and a complex system of the size of y.
+#pragma once
+
+#include <Eigen/LU>
+#include <complex>
+
+#include "collocation.hpp"
+#include "partial_step.hpp"
+#include "stagnation.hpp"
+
+namespace rolling_ellipse {
+
+template <class System>
+class Radau {
+  public:
+    static constexpr int N = System::size;
+    static constexpr bool controls_error = false;
+
+    explicit Radau(const System& system) : f_(system) {}
+
+    const StepCounts& counts() const { return counts_; }
+
+    // One step; false if the stages do not converge, the step being too large for that.
+    bool advance(Point<N>& point, double h) {
+        constexpr int most_iterations = 200;
+        const std::complex<double> pair(C::alpha, C::beta);
+        const Matrix<N> jacobian = f_.jacobian(point.t, point.y);
+        const Matrix<N> one = Matrix<N>::Identity();
+        const Eigen::PartialPivLU<Matrix<N>> real(C::gamma / h * one - jacobian);
+        const Eigen::PartialPivLU<ComplexMatrix> complex(
+            pair / h * one.template cast<std::complex<double>>() - jacobian);
+
+        StageVectors<N, 3> z;  // the stages less y
+        StageVectors<N, 3> w;  // inverse_transform z
+        z.fill(Vector<N>::Zero());
+        w.fill(Vector<N>::Zero());
+        Stagnation<N, 3> stagnation;
+        bool shrinking = true;
+        for (int i = 0; shrinking || !stagnation.settled(size(point, z)); ++i) {
+            if (i == most_iterations) return false;
+            StageVectors<N, 3> slopes;
+            for (int j = 0; j < 3; ++j) {
+                slopes[j] = f_(point.t + C::c[j] * h, point.y + (point.carry + z[j]));
+            }
+            counts_.evaluations += 3;
+            const StageVectors<N, 3> g = transformed(C::inverse_transform, slopes);
+            const Vector<N> real_change = real.solve(g[0] - C::gamma / h * w[0]);
+            ComplexVector residual(N);
+            for (int k = 0; k < N; ++k) {
+                residual[k] = std::complex<double>(g[1][k], g[2][k]) -
+                              pair / h * std::complex<double>(w[1][k], w[2][k]);
+            }
+            const ComplexVector complex_change = complex.solve(residual);
+            w[0] += real_change;
+            w[1] += complex_change.real();
+            w[2] += complex_change.imag();
+            const StageVectors<N, 3> next = transformed(C::transform, w);
+            StageVectors<N, 3> changes;
+            for (int j = 0; j < 3; ++j) changes[j] = next[j] - z[j];
+            z = next;
+            shrinking = stagnation.shrinks(changes);
+        }
+        add<N>(point, z[2]);  // the last stage is the end of the step
+        ++counts_.steps;
+        return true;
+    }
+
+    PartialStep<Radau<System>, System> dense_output(const Point<N>& from, double h) const {
+        return {f_, from, h};
+    }
+
+  private:
+    using C = RadauCoefficients;
+    using ComplexVector = Eigen::Matrix<std::complex<double>, N, 1>;
+    using ComplexMatrix = Eigen::Matrix<std::complex<double>, N, N>;
+
+    static StageVectors<N, 3> transformed(const double (&rows)[3][3], const StageVectors<N, 3>& v) {
+        StageVectors<N, 3> result;
+        for (int i = 0; i < 3; ++i) {
+            result[i] = rows[i][0] * v[0] + rows[i][1] * v[1] + rows[i][2] * v[2];
+        }
+        return result;
+    }
+
+    static Vector<N> size(const Point<N>& point, const StageVectors<N, 3>& z) {
+        Vector<N> sum = point.y.cwiseAbs();
+        for (const Vector<N>& change : z) sum += change.cwiseAbs();
+        return sum;
+    }
+
+    const System& f_;
+    StepCounts counts_;
+};
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,219 @@
+// Explicit Runge-Kutta methods: steps of fixed size, steps of controlled error, dense output.
+// HNW: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common.hpp"
+#include "explicit_tableaus.hpp"
+
+namespace rolling_ellipse {
+
+// Rows of a tableau as types, so that coefficients that are zero cost nothing.
+template <class Tableau, int Row>
+struct StageRow {
+    static constexpr const auto& weights = Tableau::a[Row];
+};
+template <class Tableau, int Row>
+struct ErrorRow {
+    static constexpr const auto& weights = Tableau::error[Row];
+};
+template <class Tableau, int Row>
+struct DenseRow {
+    static constexpr const auto& weights = Tableau::dense[Row];
+};
+
+template <class Row, std::size_t J, class K, class Sum>
+void add_weighted(const K& k, Sum& sum) {
+    if constexpr (Row::weights[J] != 0.0) sum += Row::weights[J] * k[J];
+}
+
+template <class Row, int N, std::size_t Size, std::size_t... J>
+Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k, std::index_sequence<J...>) {
+    Vector<N> sum = Vector<N>::Zero();
+    (add_weighted<Row, J>(k, sum), ...);
+    return sum;
+}
+
+template <class Row, int N, std::size_t Size>
+Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k) {
+    return weighted_sum<Row>(k, std::make_index_sequence<Size>{});
+}
+
+// The dense output of a step (HNW II.6): the cubic Hermite polynomial and what raises its order,
+//     y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))),   0 <= s <= 1.
+template <int N, int Terms>
+struct DenseOutput {
+    std::array<Vector<N>, 3 + Terms> terms;
+
+    Vector<N> change(double s) const {
+        Vector<N> value = terms.back();
+        for (int i = 1 + Terms; i >= 0; --i) {
+            value = (terms[i] + (i % 2 == 0 ? 1 - s : s) * value).eval();
+        }
+        return s * value;
+    }
+};
+
+template <class Tableau, class System>
+class ExplicitMethod {
+  public:
+    static constexpr int N = System::size;
+    static constexpr bool controls_error = Tableau::error_estimates > 0;
+    using Dense = DenseOutput<N, Tableau::dense_terms>;
+
+    explicit ExplicitMethod(const System& system) : f_(system) {}
+
+    const StepCounts& counts() const { return counts_; }
+
+    // One step of the given size; always possible.
+    bool advance(Point<N>& point, double h) {
+        evaluate<0, Tableau::stages>(point, h);
+        add<N>(point, increment(h));
+        ++counts_.steps;
+        return true;
+    }
+
+    // The dense output of the step of size h from a point.
+    Dense dense_output(const Point<N>& from, double h) {
+        evaluate<0, Tableau::all_stages>(from, h);
+        const Vector<N> change = increment(h);
+        const Vector<N>& slope_before = k_[0];
+        const Vector<N>& slope_after = k_[Tableau::stages];
+        Dense dense;
+        dense.terms[0] = change;
+        dense.terms[1] = h * slope_before - change;
+        dense.terms[2] = 2 * change - h * (slope_before + slope_after);
+        add_dense_terms(h, dense, std::make_index_sequence<Tableau::dense_terms>{});
+        return dense;
+    }
+
+    // Steps of controlled error up to t_end; `visit(point)` sees each new point and may move its
+    // origin. The elementary controller of HNW II.4, with the limits that SciPy takes.
+    template <class Visit>
+    Ending integrate(Point<N> point, double t_end, const Tolerance& tolerance, long max_steps,
+                     Visit visit) {
+        constexpr double safety = 0.9;
+        constexpr double most_shrinking = 0.2;
+        constexpr double most_growth = 10.0;
+        if (!(point.t < t_end)) return Ending::reached;
+        evaluate<0, 1>(point, 0.0);
+        double h = starting_step(point, t_end, tolerance);
+        for (long n = 0; n < max_steps; ++n) {
+            double growth_limit = most_growth;
+            for (;;) {
+                const double smallest = 10 * (std::nextafter(point.t, infinity) - point.t);
+                if (!(h >= smallest)) return Ending::step_too_small;
+                const double t = std::min(point.t + h, t_end);
+                h = t - point.t;  // exactly the step that is taken
+                evaluate<1, error_stages>(point, h);
+                Point<N> next = point;
+                add<N>(next, increment(h));
+                const double error = error_norm(point, next, h, tolerance);
+                const double factor = safety * std::pow(error, -1.0 / Tableau::order);
+                if (error < 1) {
+                    evaluate<error_stages, Tableau::stages + 1>(point, h);
+                    k_[0] = k_[Tableau::stages];
+                    point = next;
+                    point.t = t;
+                    h *= std::min(growth_limit, factor);
+                    break;
+                }
+                h *= std::max(most_shrinking, factor);  // an error that is no number shrinks most
+                growth_limit = 1.0;
+                ++counts_.rejected;
+            }
+            ++counts_.steps;
+            visit(point);
+            if (!(point.t < t_end)) return Ending::reached;
+        }
+        return Ending::max_steps;
+    }
+
+  private:
+    // The stages that the error estimate needs: one pair uses the slope at the end, too.
+    static constexpr int error_stages =
+        Tableau::stages + (Tableau::error[0][Tableau::stages] != 0.0 ? 1 : 0);
+
+    template <int Stage>
+    void evaluate_stage(const Point<N>& from, double h) {
+        const Vector<N> change = h * weighted_sum<StageRow<Tableau, Stage>>(k_);
+        k_[Stage] = f_(from.t + Tableau::c[Stage] * h, from.y + (from.carry + change));
+        ++counts_.evaluations;
+    }
+
+    template <int First, std::size_t... I>
+    void evaluate([[maybe_unused]] const Point<N>& from, [[maybe_unused]] double h,
+                  std::index_sequence<I...>) {
+        (evaluate_stage<First + static_cast<int>(I)>(from, h), ...);
+    }
+
+    template <int First, int End>
+    void evaluate(const Point<N>& from, double h) {
+        evaluate<First>(from, h, std::make_index_sequence<End - First>{});
+    }
+
+    Vector<N> increment(double h) const {
+        return h * weighted_sum<StageRow<Tableau, Tableau::stages>>(k_);
+    }
+
+    template <std::size_t... I>
+    void add_dense_terms([[maybe_unused]] double h, Dense& dense, std::index_sequence<I...>) const {
+        ((dense.terms[3 + I] = h * weighted_sum<DenseRow<Tableau, I>>(k_)), ...);
+    }
+
+    // The root mean square of v relative to the tolerance; nothing is nothing for any tolerance.
+    static double norm(const Vector<N>& v, const Vector<N>& scale) {
+        double sum = 0.0;
+        for (int i = 0; i < N; ++i) {
+            if (v[i] != 0.0) sum += square(v[i] / scale[i]);
+        }
+        return std::sqrt(sum / N);
+    }
+
+    static Vector<N> scale(const Tolerance& tolerance, const Vector<N>& size) {
+        return (tolerance.absolute + tolerance.relative * size.array()).matrix();
+    }
+
+    double error_norm(const Point<N>& before, const Point<N>& after, double h,
+                      const Tolerance& tolerance) const {
+        const Vector<N> size =
+            (before.origin + before.y).cwiseAbs().cwiseMax((after.origin + after.y).cwiseAbs());
+        const Vector<N> allowed = scale(tolerance, size);
+        const double error = h * norm(weighted_sum<ErrorRow<Tableau, 0>>(k_), allowed);
+        if constexpr (Tableau::error_estimates == 1) {
+            return error;
+        } else {  // HNW II.10: the estimate of order 5, damped by that of order 3
+            const double rough = h * norm(weighted_sum<ErrorRow<Tableau, 1>>(k_), allowed);
+            if (error == 0.0 && rough == 0.0) return 0.0;
+            return error * error / std::sqrt(square(error) + 0.01 * square(rough));
+        }
+    }
+
+    // HNW II.4: from the sizes of y, y' and y''.
+    double starting_step(const Point<N>& point, double t_end, const Tolerance& tolerance) {
+        const double span = t_end - point.t;
+        const Vector<N> size = (point.origin + point.y).cwiseAbs();
+        const Vector<N> allowed = scale(tolerance, size);
+        const double d0 = norm(size, allowed);
+        const double d1 = norm(k_[0], allowed);
+        double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
+        if (!(h0 > 0.0 && h0 < span)) h0 = span;
+        const Vector<N> slope = f_(point.t + h0, point.y + h0 * k_[0]);
+        ++counts_.evaluations;
+        const double d2 = norm(slope - k_[0], allowed) / h0;
+        const double h1 = d1 <= 1e-15 && d2 <= 1e-15
+                              ? std::max(1e-6, 1e-3 * h0)
+                              : std::pow(0.01 / std::max(d1, d2), 1.0 / Tableau::order);
+        const double h = std::min({100 * h0, h1, span});
+        return h > 0.0 ? h : h0;
+    }
+
+    const System& f_;
+    StepCounts counts_;
+    std::array<Vector<N>, Tableau::all_stages> k_;
+};
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,140 @@
+"""Write src/integrator/collocation.hpp: Gauss and Radau IIA methods, rounded from 40 digits.
+
+Gauss with s stages has the nodes c of P_s(2c - 1), Radau IIA those of P_s - P_(s-1); the matrix a
+and the weights b are integrals of the Lagrange polynomials of the nodes (Hairer, Norsett, Wanner,
+Solving ODEs I, II.7).
+
+Run:  python tools/make_collocation.py > src/integrator/collocation.hpp    (needs mpmath)
+"""
+
+from collections.abc import Callable
+
+from mpmath import eig, inverse, matrix, mp, mpf, polyroots, polyval, taylor
+
+DIGITS = 40
+STAGES = (2, 3, 4)
+
+HEADER = """\
+// Collocation methods, rounded from {digits} digits.
+// Written by tools/make_collocation.py: change that script, not this file.
+#pragma once
+
+namespace rolling_ellipse {{
+"""
+
+GAUSS = """\
+
+// Gauss-Legendre: nodes c, weights b; a_ij = b_j mu_ij with mu_ij + mu_ji = 1 exactly, which keeps
+// the rounded method symplectic (Antonana, Makazaga, Murua, Numer. Algorithms 76 (2017) 861).
+// nu_ij b_j are the stages of the next step as the polynomial of this one foresees them.
+template <int Stages>
+struct GaussCoefficients;
+"""
+
+RADAU = """\
+
+// Radau IIA with three stages. inverse(a) = transform . eigenvalues . inverse(transform), the
+// eigenvalues being gamma and the pair alpha +- i beta in the real form [alpha, -beta; beta, alpha]
+// (Hairer, Wanner, Solving ODEs II, IV.8).
+struct RadauCoefficients {"""
+
+
+def lagrange_integral(c: list[mpf], j: int, end: mpf) -> mpf:
+    """Return the integral of the j-th Lagrange polynomial of the nodes from 0 to end."""
+    poly = [mpf(1)]
+    for k, node in enumerate(c):
+        if k != j:  # times (x - node) / (c_j - node)
+            scale = c[j] - node
+            raised = [*poly, mpf(0)]
+            poly = [
+                (up - node * down) / scale for up, down in zip(raised, [mpf(0), *poly], strict=True)
+            ]
+    powers = range(len(poly), 0, -1)
+    primitive = [p / n for p, n in zip(poly, powers, strict=True)]
+    return polyval([*primitive, mpf(0)], end)
+
+
+def nodes(polynomial: Callable[[mpf], mpf], degree: int) -> list[mpf]:
+    """Return the roots of a polynomial in c on [0, 1], ascending."""
+    coefficients = taylor(polynomial, 0, degree)[::-1]
+    return sorted(r.real for r in polyroots(coefficients, maxsteps=200, extraprec=200))
+
+
+def butcher_matrix(c: list[mpf]) -> matrix:
+    return matrix([[lagrange_integral(c, j, end) for j in range(len(c))] for end in c])
+
+
+def symplectic(mu: matrix) -> list[list[float]]:
+    """Round mu so that mu_ij + mu_ji = 1 holds exactly: 1 - x is exact for 1/2 <= x <= 2."""
+    rounded = [[float(mu[i, j]) for j in range(mu.cols)] for i in range(mu.rows)]
+    for i in range(mu.rows):
+        rounded[i][i] = 0.5
+        for j in range(mu.cols):
+            if rounded[i][j] > 0.5:
+                rounded[j][i] = 1 - rounded[i][j]
+                assert 1 - rounded[j][i] == rounded[i][j]
+    return rounded
+
+
+def literal(values: list[mpf]) -> str:
+    return "{" + ", ".join(repr(float(v)) for v in values) + "}"
+
+
+def print_vector(name: str, values: list[mpf]) -> None:
+    print(f"    static constexpr double {name}[{len(values)}] = {literal(values)};")
+
+
+def print_matrix(name: str, rows: list[list[mpf]]) -> None:
+    print(f"    static constexpr double {name}[{len(rows)}][{len(rows[0])}] = {{")
+    for row in rows:
+        print(f"        {literal(row)},")
+    print("    };")
+
+
+def print_gauss(s: int) -> None:
+    c = nodes(lambda x: mp.legendre(s, 2 * x - 1), s)
+    b = [lagrange_integral(c, j, mpf(1)) for j in range(s)]
+    mu = butcher_matrix(c) * mp.diag([1 / w for w in b])
+    nu = [[(lagrange_integral(c, j, 1 + end) - b[j]) / b[j] for j in range(s)] for end in c]
+    print(f"\ntemplate <>\nstruct GaussCoefficients<{s}> {{")
+    print_vector("c", c)
+    print_vector("b", b)
+    print_matrix("mu", symplectic(mu))
+    print_matrix("nu", nu)
+    print("};")
+
+
+def print_radau() -> None:
+    s = 3
+    c = nodes(lambda x: mp.legendre(s, 2 * x - 1) - mp.legendre(s - 1, 2 * x - 1), s)
+    a = butcher_matrix(c)
+    values, vectors = eig(inverse(a))
+    real = min(range(s), key=lambda k: abs(values[k].imag))
+    lower = min(range(s), key=lambda k: values[k].imag)  # alpha - i beta
+    # eigenvectors with last element 1
+    first = [vectors[i, real].real / vectors[s - 1, real].real for i in range(s)]
+    pair = [vectors[i, lower] / vectors[s - 1, lower] for i in range(s)]
+    transform = matrix([[first[i], pair[i].real, pair[i].imag] for i in range(s)])
+    print(RADAU)
+    print_vector("c", c)
+    print_matrix("a", a.tolist())
+    print(f"    static constexpr double gamma = {float(values[real].real)!r};")
+    print(f"    static constexpr double alpha = {float(values[lower].real)!r};")
+    print(f"    static constexpr double beta = {float(-values[lower].imag)!r};")
+    print_matrix("transform", transform.tolist())
+    print_matrix("inverse_transform", inverse(transform).tolist())
+    print("};")
+
+
+def main() -> None:
+    mp.dps = DIGITS + 10
+    print(HEADER.format(digits=DIGITS), end="")
+    print(GAUSS, end="")
+    for s in STAGES:
+        print_gauss(s)
+    print_radau()
+    print("\n}  // namespace rolling_ellipse")
+
+
+if __name__ == "__main__":
+    main()
