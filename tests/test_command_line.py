@@ -149,10 +149,10 @@ def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
 
 def test_a_slope_has_a_summary_too(command: Any) -> None:
     """Nothing is periodic there, and nothing is proved in advance."""
-    code, out, err = command("--slope", "0.1", "--omega", "3")
+    code, out, err = command("--slope", "0.1", "--omega", "3", "--time", "2")
     assert (code, err) == (0, "")
     assert "COMPLETED" in out and "slope" in out and "never" in out
-    found = strict_json(command("--slope", "0.1", "--json").out)
+    found = strict_json(command("--slope", "0.1", "--time", "2", "--json").out)
     assert found["period"] is None and found["smallest_normal_force"] is None
     assert found["distance"] > 0
 
