@@ -147,17 +147,86 @@ py::tuple sample_solution(const Solution& solution, const Array& t) {
     return py::make_tuple(out[0], out[1], out[2]);
 }
 
-Solution simulate_interruptible(const Scene& scene, const Settings& settings, double t_end) {
-    const py::gil_scoped_release release;
-    return simulate(scene, settings, t_end, check_signals);
-}
-
 void store(Array& array, py::ssize_t row, const double* values) {
     std::copy_n(values, array.shape(1), array.mutable_data(row, 0));
 }
 
 Array matrix(py::ssize_t rows, py::ssize_t columns) {
     return Array(std::vector<py::ssize_t>{rows, columns});
+}
+
+CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row) {
+    return {Eigen::Map<const Coordinates>(q.data(row, 0)),
+            Eigen::Map<const Coordinates>(q_dot.data(row, 0))};
+}
+
+Solution simulate_interruptible(const Scene& scene, const Settings& settings, double t_end) {
+    const py::gil_scoped_release release;
+    return simulate(scene, settings, t_end, check_signals);
+}
+
+Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q_dot,
+                              const Settings& settings, double t_end) {
+    const CoordinateState start = state_at(q, q_dot, 0);
+    const py::gil_scoped_release release;
+    return simulate(scene, start, settings, t_end, check_signals);
+}
+
+// q and q_dot, (n, 5), of the multiplier model at each time.
+py::tuple sample_coordinates(const Solution& solution, const Array& t) {
+    const py::ssize_t n = t.size();
+    Array q = matrix(n, 5);
+    Array q_dot = matrix(n, 5);
+    const double* const times = t.data();
+    std::vector<CoordinateState> samples(std::min<std::size_t>(n, chunk));
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        sample(solution, times + begin, end - begin, samples.data());
+        for (py::ssize_t i = begin; i < end; ++i) {
+            store(q, i, samples[i - begin].q.data());
+            store(q_dot, i, samples[i - begin].q_dot.data());
+        }
+    });
+    return py::make_tuple(q, q_dot);
+}
+
+// q_ddot and multipliers of the multiplier model.
+py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const Array& q,
+                            const Array& q_dot) {
+    const py::ssize_t n = q.shape(0);
+    const ConstrainedBody body(scene);
+    Array q_ddot = matrix(n, 5);
+    Array multipliers = matrix(n, 4);
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const MultiplierSolution solution =
+                accelerations(body, settings, state_at(q, q_dot, i));
+            store(q_ddot, i, solution.q_ddot.data());
+            store(multipliers, i, solution.multipliers.data());
+        }
+    });
+    return py::make_tuple(q_ddot, multipliers);
+}
+
+// The nearest state that meets the constraints.
+py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
+    CoordinateState state = state_at(q, q_dot, 0);
+    ConstrainedBody(scene).project(state.q, state.q_dot);
+    return py::make_tuple(Array(5, state.q.data()), Array(5, state.q_dot.data()));
+}
+
+// The constraint matrix, row after row, and the drift term.
+py::tuple constraint_system(const Array& q, const Array& q_dot, double a, double b) {
+    validate_axes(a, b);
+    const py::ssize_t n = q.shape(0);
+    Array rows = matrix(n, 20);
+    Array drift = matrix(n, 4);
+    for (py::ssize_t i = 0; i < n; ++i) {
+        const CoordinateState state = state_at(q, q_dot, i);
+        const Eigen::Matrix<double, 5, 4> columns = constraint_matrix({a, b}, state.q).transpose();
+        store(rows, i, columns.data());
+        store(drift, i, constraint_drift({a, b}, state.q, state.q_dot).data());
+    }
+    return py::make_tuple(rows, drift);
 }
 
 // q and q_dot as (n, 5); the caller has checked the shapes.
@@ -411,6 +480,14 @@ void bind_motion(py::module_& m) {
     py::native_enum<Model>(m, "Model", "enum.Enum", "How the motion is described.")
         .value("AUTO", Model::automatic)
         .value("ROLLING", Model::rolling)
+        .value("MULTIPLIERS", Model::multipliers)
+        .finalize();
+    py::native_enum<Stabilization>(m, "Stabilization", "enum.Enum", "How constraints are kept.")
+        .value("NONE", Stabilization::none)
+        .value("BAUMGARTE", Stabilization::baumgarte)
+        .value("PROJECTION", Stabilization::projection)
+        .value("PROJECTION_ENERGY", Stabilization::projection_energy)
+        .value("GGL", Stabilization::ggl)
         .finalize();
     py::native_enum<Method>(m, "Method", "enum.Enum", "How the model is solved.")
         .value("AUTO", Method::automatic)
@@ -430,11 +507,14 @@ void bind_motion(py::module_& m) {
         .finalize();
     py::class_<Settings>(m, "Settings")
         .def(py::init([](Model model, Method method, double rtol, double atol,
-                         std::optional<double> step, std::optional<int> stages, long max_steps) {
-                 return Settings{model, method, rtol, atol, step, stages, max_steps};
+                         std::optional<double> step, std::optional<int> stages,
+                         Stabilization stabilization, std::array<double, 2> baumgarte,
+                         long max_steps) {
+                 return Settings{model,  method,        rtol,         atol,         step,
+                                 stages, stabilization, baumgarte[0], baumgarte[1], max_steps};
              }),
              py::kw_only(), "model"_a, "method"_a, "rtol"_a, "atol"_a, "step"_a, "stages"_a,
-             "max_steps"_a);
+             "stabilization"_a, "baumgarte"_a, "max_steps"_a);
     py::class_<Solution>(m, "Solution")
         .def_readonly("status", &Solution::status)
         .def_readonly("followed_until", &Solution::followed_until)
@@ -449,8 +529,14 @@ void bind_motion(py::module_& m) {
                                                    "rejected_steps"_a = s.counts.rejected,
                                                    "evaluations"_a = s.counts.evaluations);
                                })
-        .def("sample", sample_solution, "t"_a);
+        .def("sample", sample_solution, "t"_a)
+        .def("sample_coordinates", sample_coordinates, "t"_a);
     m.def("simulate", simulate_interruptible, "scene"_a, "settings"_a, "t_end"_a);
+    m.def("simulate_coordinates", simulate_coordinates, "scene"_a, "q"_a, "q_dot"_a, "settings"_a,
+          "t_end"_a);
+    m.def("multiplier_detail", multiplier_arrays, "scene"_a, "settings"_a, "q"_a, "q_dot"_a);
+    m.def("project", projected, "scene"_a, "q"_a, "q_dot"_a);
+    m.def("constraint_system", constraint_system, "q"_a, "q_dot"_a, "a"_a, "b"_a);
     m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);
     m.def("flow_scalar", flow_scalar, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a);

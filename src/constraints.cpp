@@ -42,16 +42,34 @@ ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q) {
     return matrix;
 }
 
-ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Coordinates& q_dot) {
+Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const Coordinates& q_dot) {
     const double theta = q[coordinate::theta];
     const double psi = q[coordinate::psi];
     const double r = q[coordinate::r];
-    const double z = q[coordinate::z];
+    const double s = std::sin(psi - theta);
+    const double c = std::cos(psi - theta);
+    const double omega = q_dot[coordinate::theta];
+    const double psi_dot = q_dot[coordinate::psi];
+    const double r_dot = q_dot[coordinate::r];
+    const double turn = psi_dot - omega;
+    return {(r * s * turn - r_dot * c) * omega, 2 * r_dot * s * turn + r * c * turn * turn,
+            -polar_radius_second(axes, psi) * psi_dot * psi_dot,
+            -contact_angle_second(axes, geometry(axes, theta)) * omega * omega};
+}
+
+Eigen::Vector3d position_residuals(const Axes& axes, const Coordinates& q) {
+    const double theta = q[coordinate::theta];
+    const double psi = q[coordinate::psi];
+    const double r = q[coordinate::r];
+    return {q[coordinate::z] - r * std::cos(psi - theta), r - polar_radius(axes, psi),
+            (psi - theta) - contact_angle_offset(geometry(axes, theta))};
+}
+
+ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Coordinates& q_dot) {
     ConstraintResiduals result;
-    result.position << z - r * std::cos(psi - theta), r - polar_radius(axes, psi),
-        (psi - theta) - contact_angle_offset(geometry(axes, theta));
+    result.position = position_residuals(axes, q);
     result.velocity = constraint_matrix(axes, q) * q_dot;
-    const LowestPoint lowest = lowest_point(axes, theta, z);
+    const LowestPoint lowest = lowest_point(axes, q[coordinate::theta], q[coordinate::z]);
     result.gap = lowest.height;
     // v + omega x d for the clockwise omega: x. + omega d_z.
     result.slip = q_dot[coordinate::x] - q_dot[coordinate::theta] * lowest.depth;

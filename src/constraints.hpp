@@ -23,6 +23,12 @@ enum : int { x, z, theta, psi, r };
 // Rows: the coefficients of q. in f1 and in the rates of f2, f3, f4.
 ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q);
 
+// What the second derivatives of the constraints have beside matrix q..: the matrix' rate times q.
+Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const Coordinates& q_dot);
+
+// f2 [m], f3 [m], f4 [rad].
+Eigen::Vector3d position_residuals(const Axes& axes, const Coordinates& q);
+
 struct ConstraintResiduals {
     Eigen::Vector3d position;  // f2 [m], f3 [m], f4 [rad]
     Eigen::Vector4d velocity;  // f1 [m/s] and the rates of f2, f3, f4

@@ -1,34 +1,12 @@
 #include "contact_watch.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace rolling_ellipse {
 namespace {
 
-constexpr int looks_per_step = 8;
-
-// What is left until rolling ends: of N, and of the friction where there is a limit to it.
-double margin(const Scene& scene, const ContactForce& force) {
-    if (std::isinf(scene.friction)) return force.normal;
-    return scene.friction * force.normal - std::abs(force.friction);
-}
-
-double margin_at(const Scene& scene, const SteppedRolling& motion, double t) {
-    FlowSample at{};
-    sample(motion, &t, 1, &at);
-    return margin(scene, rolling_force(scene, at.theta, at.omega));
-}
-
-// The first time of a negative margin between one that is not and one that is.
-double first_negative(const Scene& scene, const SteppedRolling& motion, double good, double bad) {
-    for (;;) {
-        const double middle = 0.5 * (good + bad);
-        if (!(good < middle && middle < bad)) return bad;
-        (margin_at(scene, motion, middle) < 0 ? bad : good) = middle;
-    }
-}
+constexpr int looks_per_interval = 8;
 
 struct Look {
     double t;
@@ -39,19 +17,19 @@ struct Look {
 double lowest(const Look& a, const Look& b, const Look& c) {
     const double left = (b.margin - a.margin) / (b.t - a.t);
     const double right = (c.margin - b.margin) / (c.t - b.t);
-    const double fraction = left / (left - right);
-    return a.t + (b.t - a.t) / 2 + fraction * (c.t - a.t) / 2;
+    return a.t + (b.t - a.t) / 2 + left / (left - right) * (c.t - a.t) / 2;
 }
 
 // Takes the forces in the order of time.
 class Watcher {
   public:
-    Watcher(const Scene& scene, const SteppedRolling& motion) : scene_(scene), motion_(motion) {}
+    Watcher(double friction, const ForcesAt& forces_at)
+        : friction_(friction), forces_at_(forces_at) {}
 
     void take(double t, const ContactForce& force) {
         note_extremes(t, force);
         if (watch_.holds_until < infinity) return;
-        looks_ = {looks_[1], looks_[2], Look{t, margin(scene_, force)}};
+        looks_ = {looks_[1], looks_[2], Look{t, margin(force)}};
         ++count_;
         note_violation();
     }
@@ -59,6 +37,27 @@ class Watcher {
     const ContactWatch& result() const { return watch_; }
 
   private:
+    // What is left until rolling ends: of N, and of the friction where there is a limit to it.
+    double margin(const ContactForce& force) const {
+        if (std::isinf(friction_)) return force.normal;
+        return friction_ * force.normal - std::abs(force.friction);
+    }
+
+    double margin_at(double t) const {
+        ContactForce force{};
+        forces_at_(&t, 1, &force);
+        return margin(force);
+    }
+
+    // The first time of a negative margin between one that is not and one that is.
+    double first_negative(double good, double bad) const {
+        for (;;) {
+            const double middle = 0.5 * (good + bad);
+            if (!(good < middle && middle < bad)) return bad;
+            (margin_at(middle) < 0 ? bad : good) = middle;
+        }
+    }
+
     void note_extremes(double t, const ContactForce& force) {
         const double friction = std::abs(force.friction);
         const double needed = friction == 0      ? 0.0
@@ -77,19 +76,18 @@ class Watcher {
     void note_violation() {
         const auto& [before, middle, now] = looks_;
         if (now.margin < 0) {
-            watch_.holds_until =
-                count_ == 1 ? now.t : first_negative(scene_, motion_, middle.t, now.t);
+            watch_.holds_until = count_ == 1 ? now.t : first_negative(middle.t, now.t);
         } else if (count_ > 2 && middle.margin < before.margin && middle.margin <= now.margin) {
             const double between = lowest(before, middle, now);
-            if (margin_at(scene_, motion_, between) < 0) {
+            if (margin_at(between) < 0) {
                 const double good = between < middle.t ? before.t : middle.t;
-                watch_.holds_until = first_negative(scene_, motion_, good, between);
+                watch_.holds_until = first_negative(good, between);
             }
         }
     }
 
-    const Scene& scene_;
-    const SteppedRolling& motion_;
+    const double friction_;
+    const ForcesAt& forces_at_;
     ContactWatch watch_{infinity, 0.0, 0.0, 0.0, infinity};
     std::array<Look, 3> looks_{};
     long count_ = 0;
@@ -97,23 +95,20 @@ class Watcher {
 
 }  // namespace
 
-ContactWatch watch_contact(const Scene& scene, const SteppedRolling& motion,
-                           const Checkpoint& checkpoint) {
-    constexpr std::size_t steps_between_checks = 1024;
-    Watcher watcher(scene, motion);
-    const std::vector<RollingKnot>& knots = motion.knots;
-    std::array<double, looks_per_step> times{};
-    std::array<FlowSample, looks_per_step> states{};
-    for (std::size_t i = 0; i < knots.size(); ++i) {
-        const bool is_end = i + 1 == knots.size();
-        const double h = is_end ? 0.0 : (knots[i + 1].t - knots[i].t) / looks_per_step;
-        const int looks = is_end ? 1 : looks_per_step;
-        for (int j = 0; j < looks; ++j) times[j] = knots[i].t + j * h;
-        sample(motion, times.data(), looks, states.data());
-        for (int j = 0; j < looks; ++j) {
-            watcher.take(times[j], rolling_force(scene, states[j].theta, states[j].omega));
-        }
-        if (i % steps_between_checks == 0) checkpoint();
+ContactWatch watch_contact(double friction, const std::vector<double>& times,
+                           const ForcesAt& forces_at, const Checkpoint& checkpoint) {
+    constexpr std::size_t intervals_between_checks = 1024;
+    Watcher watcher(friction, forces_at);
+    std::array<double, looks_per_interval> looks{};
+    std::array<ContactForce, looks_per_interval> forces{};
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const bool is_end = i + 1 == times.size();
+        const double h = is_end ? 0.0 : (times[i + 1] - times[i]) / looks_per_interval;
+        const int count = is_end ? 1 : looks_per_interval;
+        for (int j = 0; j < count; ++j) looks[j] = times[i] + j * h;
+        forces_at(looks.data(), count, forces.data());
+        for (int j = 0; j < count; ++j) watcher.take(looks[j], forces[j]);
+        if (i % intervals_between_checks == 0) checkpoint();
     }
     return watcher.result();
 }

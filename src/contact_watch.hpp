@@ -2,7 +2,11 @@
 // them.
 #pragma once
 
-#include "rolling_steps.hpp"
+#include <functional>
+#include <vector>
+
+#include "rolling.hpp"
+#include "settings.hpp"
 
 namespace rolling_ellipse {
 
@@ -14,9 +18,12 @@ struct ContactWatch {
     double holds_until;  // first time at which N < 0 or |F| > mu N; infinite if there is none
 };
 
-// Looks several times into each step; a violation between two looks that are both in order is found
-// by the minimum of what is left between them.
-ContactWatch watch_contact(const Scene& scene, const SteppedRolling& motion,
-                           const Checkpoint& checkpoint);
+// The contact forces at n times.
+using ForcesAt = std::function<void(const double* times, std::size_t n, ContactForce* forces)>;
+
+// Looks several times between each two of the times; a violation between two looks that are both in
+// order is found by the minimum of what is left between them.
+ContactWatch watch_contact(double friction, const std::vector<double>& times,
+                           const ForcesAt& forces_at, const Checkpoint& checkpoint);
 
 }  // namespace rolling_ellipse

@@ -38,11 +38,9 @@ std::string rolling_ends(double t) {
            " s only; what follows obeys the rolling equation, not the ground";
 }
 
-std::string why_stopped(const RollingIntegration& integration, const Settings& settings,
-                        double t_end) {
-    const std::string place =
-        " at t = " + brief(integration.motion.knots.back().t) + " s of " + brief(t_end) + " s";
-    switch (integration.ending) {
+std::string why_stopped(Ending ending, const Settings& settings, double t, double t_end) {
+    const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
+    switch (ending) {
         case Ending::reached:
             return {};
         case Ending::max_steps:
@@ -51,7 +49,7 @@ std::string why_stopped(const RollingIntegration& integration, const Settings& s
         case Ending::step_too_small:
             return "no step of a size that changes t meets rtol and atol" + place + ": loosen them";
         case Ending::step_too_large:
-            return "a step of " + brief(integration.motion.step) + " s cannot be solved" + place +
+            return "a step of " + brief(*settings.step) + " s cannot be solved" + place +
                    ": take smaller ones";
     }
     return {};

@@ -19,9 +19,8 @@ std::string why_no_proof(const Scene& scene, const State& start);
 std::string reason(const Scene& scene, const State& start, const Certificate& certificate);
 std::string reason(const Scene& scene, const ContactWatch& watch);
 
-// Why an integration stopped before its end, and what helps; empty where it did not.
-std::string why_stopped(const RollingIntegration& integration, const Settings& settings,
-                        double t_end);
+// Why an integration stopped at t, before its end, and what helps; empty where it did not.
+std::string why_stopped(Ending ending, const Settings& settings, double t, double t_end);
 
 std::string rolling_ends(double t);
 

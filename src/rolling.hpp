@@ -20,6 +20,7 @@ class RollingEquation {
 
     Vector<2> operator()(double t, const Vector<2>& y) const;
     Matrix<2> jacobian(double t, const Vector<2>& y) const;
+    Vector<2> mass() const { return Vector<2>::Ones(); }
 
   private:
     Axes axes_;

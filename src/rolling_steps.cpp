@@ -1,9 +1,8 @@
 #include "rolling_steps.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "half_turns.hpp"
 #include "integrator/gauss.hpp"
 #include "integrator/radau.hpp"
 #include "integrator/runge_kutta.hpp"
@@ -12,121 +11,49 @@ namespace rolling_ellipse {
 namespace {
 
 constexpr int default_stages = 4;
-constexpr DoubleDouble half_turn = {2 * half_pi_exact.high, 2 * half_pi_exact.low};
-
-template <class Tableau>
-using Explicit = ExplicitMethod<Tableau, RollingEquation>;
 
 // Call action with the integrator of a motion.
 template <class Action>
-auto with_integrator(const SteppedRolling& motion, Action action) {
+void with_integrator(const SteppedRolling& motion, Action action) {
     const RollingEquation& f = motion.equation;
-    switch (motion.method) {
+    const int stages = motion.settings.stages.value_or(default_stages);
+    switch (motion.settings.method) {
         case Method::rk4:
-            return action(Explicit<RungeKutta4>(f));
+            return action(ExplicitMethod<RungeKutta4, RollingEquation>(f));
         case Method::dopri5:
-            return action(Explicit<DormandPrince5>(f));
+            return action(ExplicitMethod<DormandPrince5, RollingEquation>(f));
         case Method::radau:
             return action(Radau<RollingEquation>(f));
         case Method::gauss:
-            if (motion.stages == 2) return action(Gauss<2, RollingEquation>(f));
-            if (motion.stages == 3) return action(Gauss<3, RollingEquation>(f));
+            if (stages == 2) return action(Gauss<2, RollingEquation>(f));
+            if (stages == 3) return action(Gauss<3, RollingEquation>(f));
             return action(Gauss<4, RollingEquation>(f));
         default:
-            return action(Explicit<DormandPrince853>(f));
+            return action(ExplicitMethod<DormandPrince853, RollingEquation>(f));
     }
 }
 
 SteppedRolling motion_from(const Scene& scene, const State& start, const Settings& settings) {
-    const bool turned = std::abs(start.theta) > pi;
-    const double theta =
-        turned ? std::atan2(std::sin(start.theta), std::cos(start.theta)) : start.theta;
+    const Axes axes{scene.a, scene.b};
+    const double rest = within_a_turn(start.theta);
     SteppedRolling motion{RollingEquation(scene.body(), scene.slope),
-                          {scene.a, scene.b},
-                          settings.method == Method::automatic ? Method::dop853 : settings.method,
-                          settings.stages.value_or(default_stages),
-                          settings.step.value_or(0.0),
-                          two_sum(start.theta, -theta),
-                          two_sum(start.x, -centre_path({scene.a, scene.b}, theta)),
-                          centre_path({scene.a, scene.b}, pi),
-                          {}};
-    motion.knots.push_back({0.0, {theta, 0.0}, {start.omega, 0.0}, 0.0});
+                          axes,
+                          settings,
+                          two_sum(start.theta, -rest),
+                          two_sum(start.x, -centre_path(axes, rest)),
+                          centre_path(axes, pi),
+                          {settings.step.value_or(0.0), {}}};
+    motion.steps.knots.push_back({0.0, {rest, start.omega}, Vector<2>::Zero(), 0.0});
     return motion;
 }
 
-Point<2> point(const RollingKnot& knot) {
-    return {knot.t, {knot.theta.high, knot.omega.high}, {knot.theta.low, knot.omega.low}};
-}
-
-// Move full half turns from y to the origin once y exceeds one.
-void reduce(Point<2>& at, double& half_turns, const DoubleDouble& base) {
-    if (std::abs(at.y[0]) <= pi) return;
-    const double over = std::nearbyint(at.y[0] / pi);
-    const DoubleDouble rest = DoubleDouble{at.y[0], at.carry[0]} - half_turn * over;
-    at.y[0] = rest.high;
-    at.carry[0] = rest.low;
-    half_turns += over;
-    at.origin[0] = base.high + half_turns * pi;
-}
-
-template <class Integrator, class Visit>
-Ending run(Integrator& integrator, const SteppedRolling& motion, const Point<2>& start,
-           double t_end, const Settings& settings, Visit visit) {
-    if constexpr (Integrator::controls_error) {
-        if (motion.step == 0) {
-            return integrator.integrate(start, t_end, {settings.rtol, settings.atol},
-                                        settings.max_steps, visit);
-        }
-    }
-    return integrate_by_fixed_steps(integrator, start, motion.step, t_end, settings.max_steps,
-                                    visit);
-}
-
-// The step that a time falls into.
-class StepFinder {
-  public:
-    explicit StepFinder(const SteppedRolling& motion) : motion_(motion) {}
-
-    // Go to the step that holds t; true if it is another one than before.
-    bool move_to(double t) {
-        const std::vector<RollingKnot>& knots = motion_.knots;
-        if (step_ < knots.size() && knots[step_].t <= t &&
-            (step_ + 1 == knots.size() || t < knots[step_ + 1].t)) {
-            return false;
-        }
-        const auto later =
-            std::upper_bound(knots.begin(), knots.end(), t,
-                             [](double time, const RollingKnot& knot) { return time < knot.t; });
-        step_ = static_cast<std::size_t>(later - knots.begin()) - 1;
-        return true;
-    }
-
-    const RollingKnot& knot() const { return motion_.knots[step_]; }
-
-    // Time since the knot. Fixed steps lie at multiples that are not rounded.
-    double since_knot(double t) const {
-        return motion_.step == 0 ? t - knot().t
-                                 : std::fma(-static_cast<double>(step_), motion_.step, t);
-    }
-
-    // Size of the step; 0 after the last knot.
-    double size() const {
-        return step_ + 1 == motion_.knots.size() ? 0.0 : since_knot(motion_.knots[step_ + 1].t);
-    }
-
-  private:
-    const SteppedRolling& motion_;
-    std::size_t step_ = static_cast<std::size_t>(-1);
-};
-
-FlowSample flow_sample(const SteppedRolling& motion, const RollingKnot& knot,
-                       const Vector<2>& change) {
-    const DoubleDouble theta = knot.theta + change[0];
+FlowSample flow_sample(const SteppedRolling& motion, const Knot<2>& knot, const Vector<2>& change) {
+    const DoubleDouble theta = DoubleDouble{knot.y[0], knot.carry[0]} + change[0];
     const double path = centre_path(motion.axes, static_cast<double>(theta));
-    return {static_cast<double>(motion.theta_base + half_turn * knot.half_turns + theta),
-            static_cast<double>(knot.omega + change[1]),
-            static_cast<double>(motion.x_base +
-                                std::fma(knot.half_turns, motion.half_turn_path, path))};
+    return {
+        static_cast<double>(motion.theta_base + half_turn * knot.periods + theta),
+        knot.y[1] + (knot.carry[1] + change[1]),
+        static_cast<double>(motion.x_base + std::fma(knot.periods, motion.half_turn_path, path))};
 }
 
 }  // namespace
@@ -136,17 +63,15 @@ RollingIntegration integrate_rolling(const Scene& scene, const State& start,
                                      const Checkpoint& checkpoint) {
     RollingIntegration result{motion_from(scene, start, settings), Ending::reached, {}};
     SteppedRolling& motion = result.motion;
-    double half_turns = 0.0;
-    const auto visit = [&](Point<2>& at) {
-        constexpr std::size_t steps_between_checks = 1024;
-        reduce(at, half_turns, motion.theta_base);
-        motion.knots.push_back({at.t, {at.y[0], at.carry[0]}, {at.y[1], at.carry[1]}, half_turns});
-        if (motion.knots.size() % steps_between_checks == 0) checkpoint();
+    const auto keep = [](Point<2>&) { return false; };
+    const auto reduce = [&](Point<2>& point) {
+        const double half_turns = take_half_turns_off(point.y[0], point.carry[0]);
+        point.origin[0] += half_turns * pi;
+        return half_turns;
     };
-    Point<2> first = point(motion.knots.front());
-    first.origin[0] = motion.theta_base.high;
     with_integrator(motion, [&](auto integrator) {
-        result.ending = run(integrator, motion, first, t_end, settings, visit);
+        result.ending = integrate(integrator, motion.steps, {settings.rtol, settings.atol},
+                                  settings.max_steps, t_end, keep, reduce, checkpoint);
         result.counts = integrator.counts();
     });
     return result;
@@ -154,19 +79,10 @@ RollingIntegration integrate_rolling(const Scene& scene, const State& start,
 
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples) {
     with_integrator(motion, [&](auto integrator) {
-        StepFinder steps(motion);
-        std::optional<decltype(integrator.dense_output({}, 0.0))> step;
-        for (std::size_t i = 0; i < n; ++i) {
-            if (steps.move_to(times[i])) step.reset();
-            const double size = steps.size();
-            const double since = steps.since_knot(times[i]);
-            Vector<2> change = Vector<2>::Zero();
-            if (size > 0 && since != 0) {
-                if (!step) step.emplace(integrator.dense_output(point(steps.knot()), size));
-                change = step->change(since / size);
-            }
-            samples[i] = flow_sample(motion, steps.knot(), change);
-        }
+        look(integrator, motion.steps, times, n,
+             [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
+                 samples[i] = flow_sample(motion, knot, change);
+             });
     });
 }
 

@@ -1,11 +1,8 @@
-// Rolling by numerical integration: the points between the steps, and from them the state at any
-// time. What a step needs for its dense output is computed again when somebody looks into it.
+// Rolling by numerical integration: the state at any time.
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "flow.hpp"
+#include "integrator/stepped.hpp"
 #include "rolling.hpp"
 #include "settings.hpp"
 
@@ -13,23 +10,16 @@ namespace rolling_ellipse {
 
 // The ellipse is the same after half a turn: its angle is integrated as half turns and a rest, so
 // that it keeps its digits however far it rolls.
-struct RollingKnot {
-    double t;
-    DoubleDouble theta;  // over the last half turn
-    DoubleDouble omega;
-    double half_turns;
-};
-
 struct SteppedRolling {
     RollingEquation equation;
     Axes axes;
-    Method method;
-    int stages;               // of Gauss
-    double step;              // 0: chosen by error control
+    Settings settings;
     DoubleDouble theta_base;  // angle at which half turns and rest are 0
     DoubleDouble x_base;      // x there
     double half_turn_path;
-    std::vector<RollingKnot> knots;
+    Steps<2> steps;
+
+    Method method() const { return settings.method; }
 };
 
 struct RollingIntegration {
@@ -42,7 +32,7 @@ RollingIntegration integrate_rolling(const Scene& scene, const State& start,
                                      const Settings& settings, double t_end,
                                      const Checkpoint& checkpoint);
 
-// The state at n times between the first and the last knot; quickest where they are sorted.
+// The state at n times between the first and the last knot.
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples);
 
 }  // namespace rolling_ellipse

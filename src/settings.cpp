@@ -1,6 +1,7 @@
 #include "settings.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <stdexcept>
 
 #include "scene.hpp"
@@ -35,6 +36,41 @@ void validate_step(const Settings& settings, double t_end) {
     }
 }
 
+// Which methods a model has, and which stabilization goes with them.
+void validate_method(const Settings& settings) {
+    const Method method = settings.method;
+    const Stabilization stabilization = settings.stabilization;
+    const std::string came = ", got '" + name(stabilization) + "'";
+    if (settings.model != Model::multipliers) {
+        if (stabilization == Stabilization::projection) return;
+        throw std::invalid_argument(
+            "stabilization must be left alone for model '" + name(settings.model) +
+            "', which has no constraints to drift from ('multipliers' has)" + came);
+    }
+    if (method == Method::exact || method == Method::gauss) {
+        throw std::invalid_argument(
+            "method must be one of 'dop853', 'dopri5', 'rk4', 'radau' for model 'multipliers', "
+            "got '" +
+            name(method) + "'");
+    }
+    if ((method == Method::radau) != (stabilization == Stabilization::ggl)) {
+        throw std::invalid_argument(
+            (method == Method::radau ? "stabilization must be 'ggl' for method 'radau'"
+                                     : "stabilization must not be 'ggl', which only method 'radau' "
+                                       "can solve, for method '" +
+                                           name(method) + "'") +
+            came);
+    }
+}
+
+void validate_baumgarte(const Settings& settings) {
+    for (const double gain : {settings.baumgarte_alpha, settings.baumgarte_beta}) {
+        if (!(gain >= 0 && std::isfinite(gain))) {
+            refuse("baumgarte", "two finite gains of at least 0 [1/s]", gain);
+        }
+    }
+}
+
 void validate_stages(const Settings& settings) {
     if (!settings.stages) return;
     const std::string came = ", got " + std::to_string(*settings.stages);
@@ -48,6 +84,34 @@ void validate_stages(const Settings& settings) {
 }
 
 }  // namespace
+
+std::string name(Model model) {
+    switch (model) {
+        case Model::automatic:
+            return "auto";
+        case Model::rolling:
+            return "rolling";
+        case Model::multipliers:
+            return "multipliers";
+    }
+    return {};
+}
+
+std::string name(Stabilization stabilization) {
+    switch (stabilization) {
+        case Stabilization::none:
+            return "none";
+        case Stabilization::baumgarte:
+            return "baumgarte";
+        case Stabilization::projection:
+            return "projection";
+        case Stabilization::projection_energy:
+            return "projection+energy";
+        case Stabilization::ggl:
+            return "ggl";
+    }
+    return {};
+}
 
 std::string name(Method method) {
     switch (method) {
@@ -75,6 +139,8 @@ void validate(const Settings& settings, double t_end) {
     if (settings.rtol == 0 && settings.atol == 0) {
         throw std::invalid_argument("rtol and atol must not both be 0, got 0.0 and 0.0");
     }
+    validate_method(settings);
+    validate_baumgarte(settings);
     validate_step(settings, t_end);
     validate_stages(settings);
     if (settings.max_steps < 1) {

@@ -7,9 +7,14 @@
 
 namespace rolling_ellipse {
 
-enum class Model { automatic, rolling };
+enum class Model { automatic, rolling, multipliers };
 
 enum class Method { automatic, exact, dop853, dopri5, rk4, gauss, radau };
+
+// Of the constraints of the multiplier model: as an index-1 system, with Baumgarte's feedback,
+// projected after each step, also onto the energy, or as the index-2 system of Gear, Gupta and
+// Leimkuhler.
+enum class Stabilization { none, baumgarte, projection, projection_energy, ggl };
 
 struct Settings {
     Model model;
@@ -18,13 +23,18 @@ struct Settings {
     double atol;
     std::optional<double> step;  // [s]; absent: chosen by error control
     std::optional<int> stages;   // of Gauss; absent: 4
+    Stabilization stabilization;
+    double baumgarte_alpha;  // [1/s]
+    double baumgarte_beta;   // [1/s]
     long max_steps;
 };
 
 // Called now and then during long work; throws to stop it.
 using Checkpoint = std::function<void()>;
 
+std::string name(Model model);
 std::string name(Method method);
+std::string name(Stabilization stabilization);
 
 // Throws std::invalid_argument naming the argument, what was required and what came.
 void validate(const Settings& settings, double t_end);

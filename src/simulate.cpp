@@ -8,9 +8,17 @@
 namespace rolling_ellipse {
 namespace {
 
-Method chosen_method(const Scene& scene, const Settings& settings) {
-    if (settings.method != Method::automatic) return settings.method;
-    return scene.slope == 0 ? Method::exact : Method::dop853;
+// What "auto" stands for.
+Settings chosen(Settings settings, const Scene& scene) {
+    if (settings.model == Model::automatic) settings.model = Model::rolling;
+    if (settings.method == Method::exact && scene.slope != 0) {
+        refuse("slope", "0 for method 'exact'", scene.slope);
+    }
+    if (settings.method == Method::automatic) {
+        settings.method =
+            settings.model == Model::rolling && scene.slope == 0 ? Method::exact : Method::dop853;
+    }
+    return settings;
 }
 
 Status status(Ending ending) {
@@ -33,24 +41,33 @@ double end_of_validity(const RollingFlow& flow, const Certificate& certificate) 
     return time_of_passing(flow, *certificate.ends_at, certificate.ends_heading);
 }
 
-// On level ground the certificate knows, on a slope the motion has to be watched.
-void judge_validity(const Scene& scene, const CertifiedScene& certified, double t_end,
-                    const Checkpoint& checkpoint, Solution& solution) {
-    const State& start = certified.start.state;
-    if (scene.slope == 0) {
-        const RollingFlow flow = rolling_flow(scene.body(), start.theta, start.omega, start.x);
-        solution.valid_until = end_of_validity(flow, certified.certificate);
-        solution.reason = certified.reason;
-    } else {
-        const ContactWatch watch = watch_contact(
-            scene, std::get<SteppedRolling>(solution.segments.front().motion), checkpoint);
-        solution.valid_until = watch.holds_until;
-        solution.reason = reason(scene, watch);
-    }
-    if (solution.status == Status::completed && solution.valid_until < t_end) {
+void end_validity(double t, double t_end, Solution& solution) {
+    solution.valid_until = t;
+    if (solution.status == Status::completed && t < t_end) {
         solution.status = Status::validity_lost;
-        solution.message = rolling_ends(solution.valid_until);
+        solution.message = rolling_ends(t);
     }
+}
+
+// On level ground the certificate knows for how long rolling is true.
+void judge_by_proof(const Scene& scene, const CertifiedScene& certified, double t_end,
+                    Solution& solution) {
+    const State& start = certified.start.state;
+    const RollingFlow flow = rolling_flow(scene.body(), start.theta, start.omega, start.x);
+    solution.reason = certified.reason;
+    end_validity(end_of_validity(flow, certified.certificate), t_end, solution);
+}
+
+// On a slope, and where the constraints may be broken, the motion has to be watched.
+void judge_by_watch(const Scene& scene, const Settings& settings, double t_end,
+                    const Checkpoint& checkpoint, Solution& solution) {
+    const auto forces = [&](const double* times, std::size_t n, ContactForce* found) {
+        contact_forces(solution, scene, settings, times, n, found);
+    };
+    const ContactWatch watch =
+        watch_contact(scene.friction, solution.segments.front().knot_times(), forces, checkpoint);
+    solution.reason = reason(scene, watch);
+    end_validity(watch.holds_until, t_end, solution);
 }
 
 Solution exact_rolling(const Scene& scene, const State& start, double t_end) {
@@ -65,17 +82,17 @@ Solution exact_rolling(const Scene& scene, const State& start, double t_end) {
     return solution;
 }
 
-Solution stepped_rolling(const Scene& scene, const State& start, const Settings& settings,
-                         double t_end, const Checkpoint& checkpoint) {
-    RollingIntegration integration = integrate_rolling(scene, start, settings, t_end, checkpoint);
+template <class Integration>
+Solution stepped(Integration integration, Mode mode, const Settings& settings, double t_end) {
     Solution solution;
-    solution.method = integration.motion.method;
+    solution.method = integration.motion.method();
     solution.counts = integration.counts;
-    solution.followed_until = integration.motion.knots.back().t;
     solution.status = status(integration.ending);
-    solution.message = why_stopped(integration, settings, t_end);
-    solution.segments.push_back(
-        {start.mode, 0.0, solution.followed_until, std::move(integration.motion)});
+    Segment segment{mode, 0.0, 0.0, std::move(integration.motion)};
+    segment.t1 = segment.knot_times().back();
+    solution.followed_until = segment.t1;
+    solution.message = why_stopped(integration.ending, settings, solution.followed_until, t_end);
+    solution.segments.push_back(std::move(segment));
     return solution;
 }
 
@@ -105,24 +122,43 @@ CertifiedScene certify(const Scene& scene) {
     return result;
 }
 
-Solution simulate(const Scene& scene, const Settings& settings, double t_end,
+Solution simulate(const Scene& scene, const Settings& asked, double t_end,
                   const Checkpoint& checkpoint) {
-    validate(settings, t_end);
+    validate(asked, t_end);
+    const Settings settings = chosen(asked, scene);
     const CertifiedScene certified = certify(scene);
     const State& start = certified.start.state;
-    const Method method = chosen_method(scene, settings);
 
     if (const std::string obstacle = why_not_rolling(scene, start); !obstacle.empty()) {
-        if (settings.model == Model::automatic) return not_followed(certified, obstacle);
-        throw std::invalid_argument("model 'rolling' must start rolling, but " + obstacle);
+        if (asked.model == Model::automatic) return not_followed(certified, obstacle);
+        throw std::invalid_argument("model '" + name(asked.model) + "' must start rolling, but " +
+                                    obstacle);
     }
-    if (method == Method::exact && scene.slope != 0) {
-        refuse("slope", "0 for method 'exact'", scene.slope);
+    Solution solution = [&] {
+        if (settings.method == Method::exact) return exact_rolling(scene, start, t_end);
+        if (settings.model == Model::multipliers) {
+            return stepped(integrate_multipliers(scene, coordinate_state(scene, start), settings,
+                                                 t_end, checkpoint),
+                           start.mode, settings, t_end);
+        }
+        return stepped(integrate_rolling(scene, start, settings, t_end, checkpoint), start.mode,
+                       settings, t_end);
+    }();
+    if (scene.slope == 0) {
+        judge_by_proof(scene, certified, t_end, solution);
+    } else {
+        judge_by_watch(scene, settings, t_end, checkpoint, solution);
     }
-    Solution solution = method == Method::exact
-                            ? exact_rolling(scene, start, t_end)
-                            : stepped_rolling(scene, start, settings, t_end, checkpoint);
-    judge_validity(scene, certified, t_end, checkpoint, solution);
+    return solution;
+}
+
+Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& asked,
+                  double t_end, const Checkpoint& checkpoint) {
+    validate(asked, t_end);
+    const Settings settings = chosen(asked, scene);
+    Solution solution = stepped(integrate_multipliers(scene, start, settings, t_end, checkpoint),
+                                Mode::rolling, settings, t_end);
+    judge_by_watch(scene, settings, t_end, checkpoint, solution);
     return solution;
 }
 

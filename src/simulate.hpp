@@ -19,6 +19,10 @@ CertifiedScene certify(const Scene& scene);
 Solution simulate(const Scene& scene, const Settings& settings, double t_end,
                   const Checkpoint& checkpoint);
 
+// The multiplier model from any coordinates and velocities; the scene gives body and ground.
+Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
+                  double t_end, const Checkpoint& checkpoint);
+
 // Time of a full swing or turn of the rolling motion that starts from the scene.
 double period(const Scene& scene);
 

@@ -7,11 +7,59 @@ void sample(const RollingFlow& flow, const double* times, std::size_t n, FlowSam
     for (std::size_t i = 0; i < n; ++i) samples[i] = sample(flow, times[i]);
 }
 
+template <int N>
+std::vector<double> times_of(const Steps<N>& steps) {
+    std::vector<double> times;
+    times.reserve(steps.knots.size());
+    for (const Knot<N>& knot : steps.knots) times.push_back(knot.t);
+    return times;
+}
+
+std::vector<double> times_of(const SteppedRolling& motion) { return times_of(motion.steps); }
+
+std::vector<double> times_of(const SteppedMultipliers& motion) {
+    return std::visit([](const auto& steps) { return times_of(steps); }, motion.steps);
+}
+
 }  // namespace
 
+std::vector<double> Segment::knot_times() const {
+    if (const auto* rolling = std::get_if<SteppedRolling>(&motion)) return times_of(*rolling);
+    if (const auto* all = std::get_if<SteppedMultipliers>(&motion)) return times_of(*all);
+    return {t0, t1};
+}
+
 void sample(const Solution& solution, const double* times, std::size_t n, FlowSample* samples) {
-    const Segment& segment = solution.segments.front();
-    std::visit([&](const auto& motion) { sample(motion, times, n, samples); }, segment.motion);
+    const auto& motion = solution.segments.front().motion;
+    if (const auto* flow = std::get_if<RollingFlow>(&motion)) {
+        sample(*flow, times, n, samples);
+    } else {
+        sample(std::get<SteppedRolling>(motion), times, n, samples);
+    }
+}
+
+void sample(const Solution& solution, const double* times, std::size_t n,
+            CoordinateState* samples) {
+    sample(std::get<SteppedMultipliers>(solution.segments.front().motion), times, n, samples);
+}
+
+void contact_forces(const Solution& solution, const Scene& scene, const Settings& settings,
+                    const double* times, std::size_t n, ContactForce* forces) {
+    const auto& motion = solution.segments.front().motion;
+    if (const auto* multipliers = std::get_if<SteppedMultipliers>(&motion)) {
+        std::vector<CoordinateState> states(n);
+        sample(*multipliers, times, n, states.data());
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto lambda = accelerations(multipliers->body, settings, states[i]).multipliers;
+            forces[i] = {lambda[1], lambda[0]};
+        }
+        return;
+    }
+    std::vector<FlowSample> states(n);
+    sample(solution, times, n, states.data());
+    for (std::size_t i = 0; i < n; ++i) {
+        forces[i] = rolling_force(scene, states[i].theta, states[i].omega);
+    }
 }
 
 }  // namespace rolling_ellipse

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flow.hpp"
+#include "multiplier_steps.hpp"
 #include "rolling_steps.hpp"
 
 namespace rolling_ellipse {
@@ -15,7 +16,10 @@ struct Segment {
     Mode mode;
     double t0;
     double t1;
-    std::variant<RollingFlow, SteppedRolling> motion;
+    std::variant<RollingFlow, SteppedRolling, SteppedMultipliers> motion;
+
+    // Start and end, and the points between the steps.
+    std::vector<double> knot_times() const;
 };
 
 enum class Status { completed, validity_lost, max_steps, step_too_small, step_too_large };
@@ -31,7 +35,12 @@ struct Solution {
     std::string message;
 };
 
-// The state at n times that the segments describe.
+// The state at n times that the segments describe: of rolling, and of the multiplier model.
 void sample(const Solution& solution, const double* times, std::size_t n, FlowSample* samples);
+void sample(const Solution& solution, const double* times, std::size_t n, CoordinateState* samples);
+
+// The force of the ground on the body at n times.
+void contact_forces(const Solution& solution, const Scene& scene, const Settings& settings,
+                    const double* times, std::size_t n, ContactForce* forces);
 
 }  // namespace rolling_ellipse

@@ -24,6 +24,14 @@ class Validity(enum.Enum):
 class Model(enum.Enum):
     AUTO = 0
     ROLLING = 1
+    MULTIPLIERS = 2
+
+class Stabilization(enum.Enum):
+    NONE = 0
+    BAUMGARTE = 1
+    PROJECTION = 2
+    PROJECTION_ENERGY = 3
+    GGL = 4
 
 class Method(enum.Enum):
     AUTO = 0
@@ -51,6 +59,8 @@ class Settings:
         atol: float,
         step: float | None,
         stages: int | None,
+        stabilization: Stabilization,
+        baumgarte: tuple[float, float],
         max_steps: int,
     ) -> None: ...
 
@@ -96,6 +106,7 @@ class Solution:
     @property
     def stats(self) -> dict[str, int]: ...
     def sample(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]: ...
+    def sample_coordinates(self, t: FloatArray) -> tuple[FloatArray, FloatArray]: ...
 
 def support(n: int, arguments: list[FloatArray]) -> FloatArray: ...
 def support_slope(n: int, arguments: list[FloatArray]) -> FloatArray: ...
@@ -117,6 +128,16 @@ def thresholds(
     float, float, float | None, float, float | None, float, float, float | None, float, float
 ]: ...
 def simulate(scene: Scene, settings: Settings, t_end: float) -> Solution: ...
+def simulate_coordinates(
+    scene: Scene, q: FloatArray, q_dot: FloatArray, settings: Settings, t_end: float
+) -> Solution: ...
+def multiplier_detail(
+    scene: Scene, settings: Settings, q: FloatArray, q_dot: FloatArray
+) -> tuple[FloatArray, FloatArray]: ...
+def project(scene: Scene, q: FloatArray, q_dot: FloatArray) -> tuple[FloatArray, FloatArray]: ...
+def constraint_system(
+    q: FloatArray, q_dot: FloatArray, a: float, b: float
+) -> tuple[FloatArray, FloatArray]: ...
 def period(scene: Scene) -> float: ...
 def flow_scalar(
     t: float,

@@ -25,6 +25,8 @@ def simulate(
     atol: float = 1e-12,
     step: float | None = None,
     stages: int | None = None,
+    stabilization: str = "projection",
+    baumgarte: tuple[float, float] = (10.0, 10.0),
     max_steps: int = 1_000_000,
     raise_on_failure: bool = True,
 ) -> Trajectory:
@@ -36,10 +38,12 @@ def simulate(
         Its state is that at t = 0; an impulse acts there first.
     t : float or array_like, shape (n,)
         End time (then 1001 even samples), or strictly increasing sample times >= 0 [s].
-    model : {"auto", "rolling"}
+    model : {"auto", "rolling", "multipliers"}
         "rolling" is rolling without slip; "auto" chooses it where it starts. On level ground the
         certificate (see `certify`) says until when rolling is true, on a slope the forces along
-        the computed motion.
+        the computed motion. "multipliers" is the same motion in the report's five coordinates
+        with four constraints and their Lagrange multipliers, for study: "dop853" (also its
+        "auto"), "dopri5", "rk4", or "radau" with the stabilization "ggl".
     method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
         "exact" inverts the energy integral at each time; nothing is stepped, and neither
         tolerances nor the span matter. It needs level ground. The others integrate the equation
@@ -55,6 +59,14 @@ def simulate(
         take fixed steps without error control. The last step may be shorter.
     stages : {4, 3, 2}, optional
         Of "gauss".
+    stabilization : {"projection", "none", "baumgarte", "projection+energy", "ggl"}
+        Of the constraints of "multipliers": "none" is the index-1 system, whose constraints
+        drift; "baumgarte" feeds the drift back [5]_; "projection" moves each state, also between
+        steps, to the nearest one, in the kinetic metric, that meets the constraints [6]_, and
+        "projection+energy" to one with the energy of the start; "ggl" is the index-2 system of
+        Gear, Gupta and Leimkuhler [7]_.
+    baumgarte : (float, float)
+        Gains (alpha, beta) [1/s] of ``f'' + 2 alpha f' + beta**2 f = 0``.
     max_steps : int
         Most steps taken before the integration ends with the status MAX_STEPS.
     raise_on_failure : bool
@@ -87,6 +99,9 @@ def simulate(
     .. [3] M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861.
     .. [4] E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Springer 1996,
        IV.8.
+    .. [5] J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1.
+    .. [6] Ch. Lubich, Ch. Engstler, U. Nowak, U. Poehle, Mech. Struct. Mach. 23 (1995) 473.
+    .. [7] C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12-13 (1985) 77.
     """
     require_scene(scene)
     settings = Settings(
@@ -96,6 +111,8 @@ def simulate(
         atol=atol,
         step=step,
         stages=stages,
+        stabilization=stabilization,
+        baumgarte=baumgarte,
         max_steps=max_steps,
     )
     times = _sample_times(t)

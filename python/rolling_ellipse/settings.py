@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from operator import index
 from typing import Any
 
 from . import _core
 from ._check import choice, number, optional_number
 
-MODELS = tuple(model.lower() for model in _core.Model.__members__)
-METHODS = tuple(method.lower() for method in _core.Method.__members__)
+MODELS = tuple(name.lower() for name in _core.Model.__members__)
+METHODS = tuple(name.lower() for name in _core.Method.__members__)
+STABILIZATIONS = tuple(name.lower().replace("_", "+") for name in _core.Stabilization.__members__)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,33 +25,47 @@ class Settings:
     atol: float
     step: float | None
     stages: int | None
+    stabilization: str
+    baumgarte: tuple[float, float]
     max_steps: int
 
     def __post_init__(self) -> None:
         choice("model", self.model, MODELS)
         choice("method", self.method, METHODS)
+        choice("stabilization", self.stabilization, STABILIZATIONS)
         checked = {
             "rtol": number("rtol", self.rtol),
             "atol": number("atol", self.atol),
             "step": optional_number("step", self.step),
             "stages": None if self.stages is None else _whole("stages", self.stages),
+            "baumgarte": _pair("baumgarte", self.baumgarte),
             "max_steps": _whole("max_steps", self.max_steps),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
-    def solve(self, scene: _core.Scene, t_end: float) -> _core.Solution:
-        """Return the core's solution of a scene: the motion at any time in [0, t_end]."""
-        settings = _core.Settings(
+    @cached_property
+    def core(self) -> _core.Settings:
+        """The same for the core."""
+        return _core.Settings(
             model=_core.Model[self.model.upper()],
             method=_core.Method[self.method.upper()],
             rtol=self.rtol,
             atol=self.atol,
             step=self.step,
             stages=self.stages,
+            stabilization=_core.Stabilization[self.stabilization.upper().replace("+", "_")],
+            baumgarte=self.baumgarte,
             max_steps=self.max_steps,
         )
-        return _core.simulate(scene, settings, t_end)
+
+
+def _pair(name: str, value: Any) -> tuple[float, float]:
+    try:
+        first, second = value
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be two numbers, got {value!r}") from None
+    return number(name, first), number(name, second)
 
 
 def _whole(name: str, value: Any) -> int:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import enum
-import json
 import math
 import os
-import zipfile
 from collections.abc import Callable
-from dataclasses import KW_ONLY, asdict, dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -19,7 +17,7 @@ from . import _core
 from ._check import FloatArray, array, number
 from .geometry import support_slope
 from .kinematics import ConstraintResiduals, constraints
-from .scene import Impulse, Scene
+from .scene import Scene
 from .settings import Settings
 
 if TYPE_CHECKING:
@@ -28,9 +26,7 @@ if TYPE_CHECKING:
 
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
-_SCHEMA = 2
 _ARRAYS = ("t", "theta", "omega", "x")
-_FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
 
 
 class Status(enum.Enum):
@@ -115,8 +111,14 @@ class Trajectory:
         Time from which on the model is not true [s]; infinite if it always is.
     t_end : float
         Last time that was reached [s]; `sol` goes up to it.
+    span : float
+        Last time that was asked for [s].
     settings : Settings
         The arguments of `simulate` that it was computed with.
+    coordinates, start : tuple of ndarray, or None
+        Of the model "multipliers", whose state is not a function of theta and omega: q and q_dot
+        at the samples, (n, 5) each; and those that it started from, (5,) each, where they are not
+        the scene's.
     events : tuple
         Changes of mode; empty for rolling.
     stats : dict
@@ -139,6 +141,8 @@ class Trajectory:
     t_end: float
     span: float
     settings: Settings
+    coordinates: tuple[FloatArray, FloatArray] | None = None
+    start: tuple[FloatArray, FloatArray] | None = None
     events: tuple[()] = ()
     stats: dict[str, int] = field(default_factory=dict)
 
@@ -149,20 +153,28 @@ class Trajectory:
             object.__setattr__(self, name, values)
 
     @classmethod
-    def computed(cls, scene: Scene, settings: Settings, times: FloatArray) -> Trajectory:
-        """Solve a scene up to the last of the times, and sample it at all that are reached."""
+    def computed(
+        cls,
+        scene: Scene,
+        settings: Settings,
+        times: FloatArray,
+        start: tuple[FloatArray, FloatArray] | None = None,
+    ) -> Trajectory:
+        """Solve a scene up to the last of the times, and sample it at all that are reached.
+
+        With a start (q, q_dot) in coordinates that is the start, and the scene only the body and
+        its ground.
+        """
         span = float(times[-1])
-        solution = settings.solve(scene._core_scene, span)
+        solution = _solve(scene, settings, span, start)
         times = times[times <= solution.followed_until]
-        theta, omega, x = solution.sample(times) if times.size else np.empty((3, 0))
         status = Status[solution.status.name]
+        model = "rolling" if settings.model == "auto" else settings.model
         trajectory = cls(
             np.array(times),
-            theta,
-            omega,
-            x,
+            **_samples(solution, model, times),
             scene=scene,
-            model="rolling",
+            model=model,
             method=solution.method.name.lower(),
             status=status,
             message=solution.message or status.value,
@@ -171,6 +183,7 @@ class Trajectory:
             t_end=solution.followed_until,
             span=span,
             settings=settings,
+            start=start,
             stats=solution.stats,
         )
         trajectory.__dict__["_solution"] = solution
@@ -178,13 +191,21 @@ class Trajectory:
 
     @cached_property
     def _solution(self) -> _core.Solution:
-        return self.settings.solve(self.scene._core_scene, self.span)
+        return _solve(self.scene, self.settings, self.span, self.start)
 
     # -- what follows from the samples ----------------------------------------------------------
 
     @cached_property
     def _detail(self) -> tuple[FloatArray, ...]:
-        found = _core.rolling_detail(self.scene._core_scene, self.theta, self.omega, self.x)
+        """q, q_dot, q_ddot, normal and friction force, multipliers."""
+        scene = self.scene._core_scene
+        if self.coordinates is None:
+            found = _core.rolling_detail(scene, self.theta, self.omega, self.x)
+        else:
+            q, q_dot = self.coordinates
+            q_ddot, multipliers = _core.multiplier_detail(scene, self.settings.core, q, q_dot)
+            friction, normal = np.ascontiguousarray(multipliers.T[:2])
+            found = q, q_dot, q_ddot, normal, friction, multipliers
         for values in found:
             values.flags.writeable = False
         return found
@@ -276,8 +297,8 @@ class Trajectory:
         outside = times[~((times >= 0) & (times <= self.t_end))]
         if outside.size:
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
-        theta, omega, x = self._solution.sample(times)
-        other = replace(self, t=np.array(times), theta=theta, omega=omega, x=x)
+        samples = _samples(self._solution, self.model, times)
+        other = replace(self, t=np.array(times), **samples)
         other.__dict__["_solution"] = self._solution
         return other
 
@@ -317,16 +338,9 @@ class Trajectory:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit."""
-        about = {
-            "schema": _SCHEMA,
-            "scene": asdict(self.scene),
-            "settings": asdict(self.settings),
-            "status": self.status.name,
-            **{name: getattr(self, name) for name in _FACTS},
-        }
-        arrays = {name: getattr(self, name) for name in _ARRAYS}
-        with open(path, "wb") as file:
-            np.savez(file, about=np.array(json.dumps(about)), **arrays)
+        from ._files import write
+
+        write(self, path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Trajectory:
@@ -337,13 +351,9 @@ class Trajectory:
         ValueError
             If the file holds no trajectory, or one of another schema version.
         """
-        about, arrays = _read(path)
-        scene = about.pop("scene")
-        if scene["impulse"] is not None:
-            scene["impulse"] = Impulse(**scene["impulse"])
-        status = Status[about.pop("status")]
-        settings = Settings(**about.pop("settings"))
-        return cls(*arrays, scene=Scene(**scene), settings=settings, status=status, **about)
+        from ._files import read
+
+        return cls(**read(path))
 
     def _require_motion(self) -> None:
         if self.t_end < 0:
@@ -359,20 +369,31 @@ class Trajectory:
         )
 
 
-def _read(path: str | os.PathLike[str]) -> tuple[dict[str, Any], list[FloatArray]]:
-    """Return what `Trajectory.save` wrote: the facts and the arrays."""
-    with open(path, "rb") as file:
-        try:
-            data = np.load(file, allow_pickle=False)
-            about = json.loads(str(data["about"]))
-            arrays = [data[name] for name in _ARRAYS]
-        except (ValueError, KeyError, IndexError, EOFError, zipfile.BadZipFile) as error:
-            name = os.fspath(path)
-            raise ValueError(f"path must name a file written by save, got {name!r}") from error
-    if (schema := about.pop("schema", None)) != _SCHEMA:
-        name = os.fspath(path)
-        raise ValueError(f"path must name a file of schema {_SCHEMA}, got {name!r} of {schema!r}")
-    return about, arrays
+def _solve(
+    scene: Scene,
+    settings: Settings,
+    t_end: float,
+    start: tuple[FloatArray, FloatArray] | None,
+) -> _core.Solution:
+    """Return the core's solution: the motion at any time in [0, t_end]."""
+    if start is None:
+        return _core.simulate(scene._core_scene, settings.core, t_end)
+    q, q_dot = (np.atleast_2d(values) for values in start)
+    return _core.simulate_coordinates(scene._core_scene, q, q_dot, settings.core, t_end)
+
+
+def _samples(solution: _core.Solution, model: str, times: FloatArray) -> dict[str, Any]:
+    """Return the arrays that a Trajectory holds."""
+    if not times.size:
+        return {"theta": times, "omega": times, "x": times}
+    if model == "multipliers":
+        q, q_dot = solution.sample_coordinates(times)
+        columns = {"theta": q[:, 2], "omega": q_dot[:, 2], "x": q[:, 0]}
+        return {name: values.copy() for name, values in columns.items()} | {
+            "coordinates": (q, q_dot)
+        }
+    theta, omega, x = solution.sample(times)
+    return {"theta": theta, "omega": omega, "x": x}
 
 
 def load(path: str | os.PathLike[str]) -> Trajectory:

@@ -1,8 +1,9 @@
-// What all integrators share. They see a system y' = f(t, y),
+// What all integrators share. They see a system y' = f(t, y), or diag(mass) y' = f(t, y),
 //     struct System {
 //         static constexpr int size;
 //         Vector<size> operator()(double t, const Vector<size>& y) const;
-//         Matrix<size> jacobian(double t, const Vector<size>& y) const;   // for implicit methods
+//         Matrix<size> jacobian(double t, const Vector<size>& y) const;   // for Radau
+//         Vector<size> mass() const;                                      // for Radau
 //     };
 // and know nothing of what it describes. Nothing is allocated in a step; a step that cannot be
 // done is a status.
@@ -62,7 +63,7 @@ enum class Ending {
 
 // Steps of one size up to t_end, the last one shorter. `method.advance(point, h)` takes all of the
 // point but its time on by h, and says whether it could; `visit(point)` sees each new point and may
-// move its origin. Times are not summed, so that no rounding collects.
+// change it. Times are not summed, so that no rounding collects.
 template <class Method, int N, class Visit>
 Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, double t_end,
                                 long max_steps, Visit visit) {

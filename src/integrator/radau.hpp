@@ -1,6 +1,7 @@
-// Radau IIA with three stages, order 5: implicit, L-stable. E. Hairer, G. Wanner, Solving Ordinary
-// Differential Equations II, IV.8: simplified Newton iteration in coordinates in which the stages
-// fall apart into a real and a complex system of the size of y.
+// Radau IIA with three stages, order 5: implicit, L-stable, also for differential-algebraic systems
+// diag(mass) y' = f(t, y). E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, IV.8:
+// simplified Newton iteration in coordinates in which the stages fall apart into a real and a
+// complex system of the size of y.
 #pragma once
 
 #include <Eigen/LU>
@@ -27,10 +28,13 @@ class Radau {
         constexpr int most_iterations = 200;
         const std::complex<double> pair(C::alpha, C::beta);
         const Matrix<N> jacobian = f_.jacobian(point.t, point.y);
-        const Matrix<N> one = Matrix<N>::Identity();
-        const Eigen::PartialPivLU<Matrix<N>> real(C::gamma / h * one - jacobian);
-        const Eigen::PartialPivLU<ComplexMatrix> complex(
-            pair / h * one.template cast<std::complex<double>>() - jacobian);
+        const Vector<N> mass = f_.mass() / h;
+        Matrix<N> real_matrix = -jacobian;
+        real_matrix.diagonal() += C::gamma * mass;
+        ComplexMatrix complex_matrix = -jacobian.template cast<std::complex<double>>();
+        complex_matrix.diagonal() += pair * mass.template cast<std::complex<double>>();
+        const Eigen::PartialPivLU<Matrix<N>> real(real_matrix);
+        const Eigen::PartialPivLU<ComplexMatrix> complex(complex_matrix);
 
         StageVectors<N, 3> z;  // the stages less y
         StageVectors<N, 3> w;  // inverse_transform z
@@ -46,11 +50,11 @@ class Radau {
             }
             counts_.evaluations += 3;
             const StageVectors<N, 3> g = transformed(C::inverse_transform, slopes);
-            const Vector<N> real_change = real.solve(g[0] - C::gamma / h * w[0]);
-            ComplexVector residual(N);
+            const Vector<N> real_change = real.solve(g[0] - C::gamma * mass.cwiseProduct(w[0]));
+            ComplexVector residual;
             for (int k = 0; k < N; ++k) {
                 residual[k] = std::complex<double>(g[1][k], g[2][k]) -
-                              pair / h * std::complex<double>(w[1][k], w[2][k]);
+                              pair * mass[k] * std::complex<double>(w[1][k], w[2][k]);
             }
             const ComplexVector complex_change = complex.solve(residual);
             w[0] += real_change;

@@ -90,8 +90,9 @@ class ExplicitMethod {
         return dense;
     }
 
-    // Steps of controlled error up to t_end; `visit(point)` sees each new point and may move its
-    // origin. The elementary controller of HNW II.4, with the limits that SciPy takes.
+    // Steps of controlled error up to t_end; `visit(point)` sees each new point, may change it and
+    // says whether f changes with that. The elementary controller of HNW II.4, with the limits that
+    // SciPy takes.
     template <class Visit>
     Ending integrate(Point<N> point, double t_end, const Tolerance& tolerance, long max_steps,
                      Visit visit) {
@@ -126,8 +127,9 @@ class ExplicitMethod {
                 ++counts_.rejected;
             }
             ++counts_.steps;
-            visit(point);
+            const bool changed = visit(point);
             if (!(point.t < t_end)) return Ending::reached;
+            if (changed) evaluate<0, 1>(point, 0.0);
         }
         return Ending::max_steps;
     }
