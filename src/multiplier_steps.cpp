@@ -164,6 +164,7 @@ MultiplierIntegration integrate_multipliers(const Scene& scene, const Coordinate
                                             const Settings& settings, double t_end,
                                             const Checkpoint& checkpoint) {
     MultiplierIntegration result{motion_from(scene, start, settings), Ending::reached, {}};
+    if (start.at_rest) return result;
     SteppedMultipliers& motion = result.motion;
     with_integrator(motion, [&](auto integrator, auto& steps) {
         result.ending = integrate(
@@ -171,6 +172,7 @@ MultiplierIntegration integrate_multipliers(const Scene& scene, const Coordinate
             [&](auto& point) { return adjust(motion, point); },
             [](auto& point) { return reduce(point); }, checkpoint);
         result.counts = integrator.counts();
+        result.counts.steps = static_cast<long>(steps.knots.size()) - 1;
     });
     return result;
 }
@@ -209,7 +211,7 @@ MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& se
 
 CoordinateState coordinate_state(const Scene& scene, const State& start) {
     const KinematicState state = kinematics({scene.a, scene.b}, start.theta, start.omega);
-    CoordinateState result{state.q, state.q_dot};
+    CoordinateState result{state.q, state.q_dot, start.mode == Mode::rest};
     result.q[coordinate::x] = start.x;
     return result;
 }

@@ -12,6 +12,7 @@ namespace rolling_ellipse {
 struct CoordinateState {
     Coordinates q;
     Coordinates q_dot;
+    bool at_rest = false;  // for ever
 };
 
 struct SteppedMultipliers {

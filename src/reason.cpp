@@ -45,7 +45,8 @@ std::string why_stopped(Ending ending, const Settings& settings, double t, doubl
             return {};
         case Ending::max_steps:
             return "max_steps = " + std::to_string(settings.max_steps) + " steps ended" + place +
-                   ": allow more of them, or larger ones";
+                   ": allow more of them, or " +
+                   (settings.step ? "larger ones" : "loosen rtol and atol");
         case Ending::step_too_small:
             return "no step of a size that changes t meets rtol and atol" + place + ": loosen them";
         case Ending::step_too_large:

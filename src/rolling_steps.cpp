@@ -63,6 +63,7 @@ RollingIntegration integrate_rolling(const Scene& scene, const State& start,
                                      const Checkpoint& checkpoint) {
     RollingIntegration result{motion_from(scene, start, settings), Ending::reached, {}};
     SteppedRolling& motion = result.motion;
+    if (start.mode == Mode::rest) return result;
     const auto keep = [](Point<2>&) { return false; };
     const auto reduce = [&](Point<2>& point) {
         const double half_turns = take_half_turns_off(point.y[0], point.carry[0]);
@@ -74,6 +75,7 @@ RollingIntegration integrate_rolling(const Scene& scene, const State& start,
                                   settings.max_steps, t_end, keep, reduce, checkpoint);
         result.counts = integrator.counts();
     });
+    result.counts.steps = static_cast<long>(motion.steps.knots.size()) - 1;
     return result;
 }
 

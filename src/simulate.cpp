@@ -88,8 +88,8 @@ Solution stepped(Integration integration, Mode mode, const Settings& settings, d
     solution.method = integration.motion.method();
     solution.counts = integration.counts;
     solution.status = status(integration.ending);
-    Segment segment{mode, 0.0, 0.0, std::move(integration.motion)};
-    segment.t1 = segment.knot_times().back();
+    Segment segment{mode, 0.0, t_end, std::move(integration.motion)};
+    if (integration.ending != Ending::reached) segment.t1 = segment.knot_times().back();
     solution.followed_until = segment.t1;
     solution.message = why_stopped(integration.ending, settings, solution.followed_until, t_end);
     solution.segments.push_back(std::move(segment));

@@ -48,6 +48,13 @@ struct Tolerance {
     double absolute;
 };
 
+// Is no component beyond anything that a state may be?
+template <int N>
+bool in_range(const Vector<N>& y) {
+    constexpr double most = 1e50;
+    return (y.array().abs() <= most).all();
+}
+
 struct StepCounts {
     long steps = 0;
     long rejected = 0;
@@ -58,7 +65,7 @@ enum class Ending {
     reached,
     max_steps,
     step_too_small,  // the tolerance cannot be met
-    step_too_large,  // of a fixed step: stages without a solution, or a state that is not finite
+    step_too_large,  // of a fixed step: stages without a solution, or a state out of range
 };
 
 // Steps of one size up to t_end, the last one shorter. `method.advance(point, h)` takes all of the
@@ -73,7 +80,7 @@ Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, dou
         if (n == max_steps) return Ending::max_steps;
         const double rest = std::fma(-static_cast<double>(n), step, t_end - start);
         const bool last = rest <= step * (1 + no_step);
-        if (!method.advance(point, last ? rest : step) || !point.y.allFinite()) {
+        if (!method.advance(point, last ? rest : step) || !in_range<N>(point.y)) {
             return Ending::step_too_large;
         }
         point.t = last ? t_end : start + (n + 1) * step;

@@ -24,13 +24,15 @@ class Gauss {
 
     // One step; false if the stages do not converge, the step being too large for that.
     bool advance(Point<N>& point, double h) {
-        constexpr int most_iterations = 200;
         const std::array<double, S> hb = weights(h);
         StageVectors<N, S> stages = h == last_step_ ? foreseen(point) : constant(point);
         Stagnation<N, S> stagnation;
         bool shrinking = true;
-        for (int i = 0; shrinking || !stagnation.settled(size(point)); ++i) {
-            if (i == most_iterations) return false;
+        for (int i = 0; shrinking || stagnation.most_left(size(point)) > small_change; ++i) {
+            if (i == most_iterations) {
+                if (stagnation.least_left(size(point)) <= small_change) break;
+                return false;
+            }
             for (int j = 0; j < S; ++j) {
                 increments_[j] = hb[j] * f_(point.t + Coefficients::c[j] * h, stages[j]);
             }
@@ -47,7 +49,6 @@ class Gauss {
         for (int j = 1; j < S; ++j) sum += increments_[j];
         add<N>(point, sum);
         last_step_ = h;
-        ++counts_.steps;
         return true;
     }
 

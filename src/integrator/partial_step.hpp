@@ -1,4 +1,5 @@
-// Dense output of an implicit method, of its full order: the method itself, with a shorter step.
+// Dense output of an implicit method, of its full order: the method itself, with a shorter step. A
+// step so large that its parts cannot be solved has no more than its start.
 #pragma once
 
 #include "common.hpp"
@@ -16,7 +17,7 @@ struct PartialStep {
     // y at the fraction s of the step less y at its start.
     Vector<N> change(double s) const {
         Point<N> point = from;
-        Method(f).advance(point, s * h);
+        if (!Method(f).advance(point, s * h)) return Vector<N>::Zero();
         return (point.y - from.y) + (point.carry - from.carry);
     }
 };

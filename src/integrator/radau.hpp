@@ -25,7 +25,6 @@ class Radau {
 
     // One step; false if the stages do not converge, the step being too large for that.
     bool advance(Point<N>& point, double h) {
-        constexpr int most_iterations = 200;
         const std::complex<double> pair(C::alpha, C::beta);
         const Matrix<N> jacobian = f_.jacobian(point.t, point.y);
         const Vector<N> mass = f_.mass() / h;
@@ -42,8 +41,11 @@ class Radau {
         w.fill(Vector<N>::Zero());
         Stagnation<N, 3> stagnation;
         bool shrinking = true;
-        for (int i = 0; shrinking || !stagnation.settled(size(point, z)); ++i) {
-            if (i == most_iterations) return false;
+        for (int i = 0; shrinking || stagnation.most_left(size(point, z)) > small_change; ++i) {
+            if (i == most_iterations) {
+                if (stagnation.least_left(size(point, z)) <= small_change) break;
+                return false;
+            }
             StageVectors<N, 3> slopes;
             for (int j = 0; j < 3; ++j) {
                 slopes[j] = f_(point.t + C::c[j] * h, point.y + (point.carry + z[j]));
@@ -67,7 +69,6 @@ class Radau {
             shrinking = stagnation.shrinks(changes);
         }
         add<N>(point, z[2]);  // the last stage is the end of the step
-        ++counts_.steps;
         return true;
     }
 

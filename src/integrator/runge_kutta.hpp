@@ -72,7 +72,6 @@ class ExplicitMethod {
     bool advance(Point<N>& point, double h) {
         evaluate<0, Tableau::stages>(point, h);
         add<N>(point, increment(h));
-        ++counts_.steps;
         return true;
     }
 
@@ -87,6 +86,10 @@ class ExplicitMethod {
         dense.terms[1] = h * slope_before - change;
         dense.terms[2] = 2 * change - h * (slope_before + slope_after);
         add_dense_terms(h, dense, std::make_index_sequence<Tableau::dense_terms>{});
+        for (Vector<N>& term : dense.terms) {
+            // Where a stage overflows a step has no more than its ends.
+            if (!in_range<N>(term)) term.setZero();
+        }
         return dense;
     }
 
@@ -112,7 +115,8 @@ class ExplicitMethod {
                 evaluate<1, error_stages>(point, h);
                 Point<N> next = point;
                 add<N>(next, increment(h));
-                const double error = error_norm(point, next, h, tolerance);
+                const double error =
+                    in_range<N>(next.y) ? error_norm(point, next, h, tolerance) : infinity;
                 const double factor = safety * std::pow(error, -1.0 / Tableau::order);
                 if (error < 1) {
                     evaluate<error_stages, Tableau::stages + 1>(point, h);
@@ -126,7 +130,6 @@ class ExplicitMethod {
                 growth_limit = 1.0;
                 ++counts_.rejected;
             }
-            ++counts_.steps;
             const bool changed = visit(point);
             if (!(point.t < t_end)) return Ending::reached;
             if (changed) evaluate<0, 1>(point, 0.0);
@@ -190,7 +193,7 @@ class ExplicitMethod {
         } else {  // HNW II.10: the estimate of order 5, damped by that of order 3
             const double rough = h * norm(weighted_sum<ErrorRow<Tableau, 1>>(k_), allowed);
             if (error == 0.0 && rough == 0.0) return 0.0;
-            return error * error / std::sqrt(square(error) + 0.01 * square(rough));
+            return error * (error / std::hypot(error, 0.1 * rough));
         }
     }
 

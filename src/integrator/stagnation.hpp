@@ -14,17 +14,23 @@ using StageVectors = std::array<Vector<N>, Stages>;
 template <int N, int Stages>
 class Stagnation {
   public:
-    Stagnation() { smallest_.fill(Vector<N>::Constant(infinity)); }
+    Stagnation() {
+        last_.fill(Vector<N>::Constant(infinity));
+        smallest_ = last_;
+    }
 
-    // Take note of the changes of an iteration, and say whether they still shrink somewhere.
+    // Take note of the changes of an iteration, and say whether they still shrink somewhere. Two in
+    // turn are taken together: in second-order equations small and large ones alternate.
     bool shrinks(const StageVectors<N, Stages>& changes) {
         bool shrinking = false;
         largest_ = Vector<N>::Zero();
         for (int i = 0; i < Stages; ++i) {
             for (int k = 0; k < N; ++k) {
-                const double change = std::abs(changes[i][k]);
+                const double now = std::abs(changes[i][k]);
+                const double change = std::fmax(now, last_[i][k]);
+                last_[i][k] = now;
                 largest_[k] = std::fmax(largest_[k], change);
-                if (change != 0.0 && change < smallest_[i][k]) {
+                if (change != 0.0 && (change < smallest_[i][k] || std::isinf(change))) {
                     smallest_[i][k] = change;
                     shrinking = true;
                 }
@@ -33,16 +39,29 @@ class Stagnation {
         return shrinking;
     }
 
-    // Were the last changes small beside the size of the step? Stages that diverge do so in every
-    // component; what is left where a component vanishes by cancellation is rounding of the others.
-    bool settled(const Vector<N>& size) const {
-        constexpr double small = 1e-6;
-        return (largest_.array() <= small * size.array()).any();
-    }
+    // How large the last changes were beside the size of the step, in the component in which that
+    // is most, and least.
+    double most_left(const Vector<N>& size) const { return left(size).maxCoeff(); }
+    double least_left(const Vector<N>& size) const { return left(size).minCoeff(); }
 
   private:
+    Vector<N> left(const Vector<N>& size) const {
+        Vector<N> ratio = Vector<N>::Zero();
+        for (int k = 0; k < N; ++k) {
+            if (largest_[k] != 0.0) ratio[k] = largest_[k] / size[k];
+        }
+        return ratio;
+    }
+
+    StageVectors<N, Stages> last_;
     StageVectors<N, Stages> smallest_;
     Vector<N> largest_ = Vector<N>::Zero();
 };
+
+// An iteration is over when its changes are small and do not shrink any more; it has failed when
+// they never become small. Where a component vanishes by cancellation the rounding of the others
+// may go on to move it, so that one small component is enough in the end.
+inline constexpr int most_iterations = 200;
+inline constexpr double small_change = 1e-6;
 
 }  // namespace rolling_ellipse

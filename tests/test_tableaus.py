@@ -1,0 +1,315 @@
+"""The coefficients of the integrators: what they must satisfy, from the doubles themselves.
+
+Explicit methods by rooted trees: a method has order p where, for every tree of up to p nodes,
+phi(tree) = 1/gamma(tree) (J. C. Butcher; E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
+Differential Equations I, II.2). Implicit ones by the simplifying assumptions B, C, D of II.7 and
+IV.5 there. Everything in long double, whose own rounding is 2000 times below that of the doubles.
+"""
+
+from collections.abc import Callable, Iterator
+from functools import cache, reduce
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from rolling_ellipse import _core
+
+Long = Any  # arrays of np.longdouble
+Tree = tuple[Any, ...]  # its branches, sorted; () is a single node
+TABLEAUS = _core.tableaus()
+EXPLICIT = ("rk4", "dopri5", "dop853")
+GAUSS = ("gauss2", "gauss3", "gauss4")
+ROUNDING = 2.0**-53  # of one coefficient, relative
+
+
+def long(values: Any) -> Long:
+    return np.array(values, np.longdouble)
+
+
+class Violation(AssertionError):
+    """A condition that the coefficients do not meet."""
+
+
+def require(actual: Long, exact: Any, terms: Long, factors: int) -> None:
+    """`actual` is a sum of products of up to `factors` rounded numbers, `terms` the sum of their
+    sizes: each factor may be off by its rounding, once more for a number that was computed."""
+    off = np.abs(long(actual) - exact)
+    allowed = 2 * factors * ROUNDING * long(terms)
+    if not np.all(off <= allowed):
+        raise Violation(f"off by {float(np.max(off)):.3g}, allowed {float(np.max(allowed)):.3g}")
+
+
+# ------------------------------------------------------------------------------ rooted trees
+
+
+@cache
+def trees(nodes: int) -> tuple[Tree, ...]:
+    """All rooted trees of so many nodes."""
+    return tuple(forests(nodes - 1, nodes - 1))
+
+
+def forests(nodes: int, largest: int) -> Iterator[Tree]:
+    """Multisets of trees with so many nodes together, none larger than `largest`."""
+    if nodes == 0:
+        yield ()
+        return
+    for size in range(min(nodes, largest), 0, -1):
+        for branch in trees(size):
+            for rest in forests(nodes - size, size):
+                if not rest or (size_of(branch), branch) >= (size_of(rest[0]), rest[0]):
+                    yield (branch, *rest)
+
+
+@cache
+def size_of(tree: Tree) -> int:
+    return 1 + sum(size_of(branch) for branch in tree)
+
+
+@cache
+def gamma(tree: Tree) -> int:
+    return size_of(tree) * prod(gamma(branch) for branch in tree)
+
+
+def elementary_weight(a: Long, b: Long) -> Callable[[Tree], Long]:
+    """phi of a method, for one tree after the other."""
+
+    @cache
+    def stage_weight(tree: Tree) -> Long:
+        return reduce(np.multiply, (a @ stage_weight(branch) for branch in tree), np.ones_like(b))
+
+    return lambda tree: b @ stage_weight(tree)
+
+
+def require_order(a: Long, b: Long, sizes: Long, order: int, s: float = 1.0) -> None:
+    """The weights b, sums of terms of these sizes, give the solution at the fraction s of a step
+    to that order."""
+    phi, size = elementary_weight(a, b), elementary_weight(np.abs(a), sizes)
+    for nodes in range(1, order + 1):
+        for tree in trees(nodes):
+            require(phi(tree), long(s) ** nodes / gamma(tree), size(tree), nodes)
+
+
+def require_no_effect(a: Long, weights: Long, sizes: Long, order: int) -> None:
+    """The weights, as a difference of two results of that order, give nothing up to it."""
+    phi, size = elementary_weight(a, weights), elementary_weight(np.abs(a), sizes)
+    for nodes in range(1, order + 1):
+        for tree in trees(nodes):
+            require(phi(tree), 0, size(tree), nodes)
+
+
+def test_trees_are_counted_right() -> None:
+    """Numbers of rooted trees (OEIS A000081), the double factorials that gamma must not exceed."""
+    assert [len(trees(n)) for n in range(1, 10)] == [1, 1, 2, 4, 9, 20, 48, 115, 286]
+    assert all(len(set(trees(n))) == len(trees(n)) for n in range(1, 10))
+    assert {gamma(tree) for tree in trees(3)} == {3, 6}
+    assert sorted(gamma(tree) for tree in trees(4)) == [4, 8, 12, 24]
+
+
+# -------------------------------------------------------------------------- explicit methods
+
+
+class Explicit(NamedTuple):
+    """Coefficients of an explicit method, in long double."""
+
+    order: int
+    stages: int
+    c: Long
+    a: Long  # all stages: those of the step, the slope at its end, those of the dense output
+    error: Long
+    dense: Long
+
+    @property
+    def b(self) -> Long:
+        return self.a[self.stages]
+
+
+def explicit(name: str) -> Explicit:
+    t = TABLEAUS[name]
+    error, dense = t["error"][: t["error_estimates"]], t["dense"][: t["dense_terms"]]
+    return Explicit(t["order"], t["stages"], *map(long, (t["c"], t["a"], error, dense)))
+
+
+# orders of the results that each row of the error estimate compares with, and of dense output
+ERROR_ORDERS = {"rk4": (), "dopri5": (4,), "dop853": (5, 3)}
+DENSE_ORDERS = {"rk4": 3, "dopri5": 4, "dop853": 7}
+
+
+def dense_weights(method: Explicit, s: float) -> tuple[Long, Long]:
+    """b_j(s) of y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))), with
+    F0 = y(1) - y(0), F1 = h y'(0) - F0, F2 = 2 F0 - h (y'(0) + y'(1)); and the sizes added up."""
+    b = method.b
+    before, after = np.eye(len(b), dtype=np.longdouble)[[0, method.stages]]
+    terms = [b, before - b, 2 * b - before - after, *method.dense]
+    sizes = [np.abs(b), before + np.abs(b), 2 * np.abs(b) + before + after, *np.abs(method.dense)]
+
+    def nested(values: list[Long]) -> Long:
+        total = np.zeros_like(b)
+        for i in reversed(range(len(values))):
+            total = values[i] + (1 - long(s) if i % 2 == 0 else long(s)) * total
+        return long(s) * total
+
+    return nested(terms), nested(sizes)
+
+
+def check_explicit(method: Explicit, error_orders: tuple[int, ...], dense_order: int) -> None:
+    a, b = method.a, method.b
+    require(a.sum(axis=1), method.c, np.abs(a).sum(axis=1) + method.c, 1)
+    require_order(a, b, np.abs(b), method.order)
+    for weights, order in zip(method.error, error_orders, strict=True):
+        require_no_effect(a, weights, np.abs(weights) + np.abs(b), order)
+    for weights in method.dense:  # what the cubic gives exactly needs no more terms
+        require_no_effect(a, weights, np.abs(weights), 3)
+    for s in (0.1, 0.37, 0.5, 0.83, 1.0):
+        require_order(a, *dense_weights(method, s), dense_order, s)
+
+
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_explicit_methods_have_their_orders(name: str) -> None:
+    check_explicit(explicit(name), ERROR_ORDERS[name], DENSE_ORDERS[name])
+
+
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_explicit_methods_are_explicit(name: str) -> None:
+    method = explicit(name)
+    assert np.all(np.triu(method.a) == 0)
+    assert method.c[0] == 0 and method.c[method.stages] == 1
+    assert np.all(method.error[:, method.stages + 1 :] == 0)
+
+
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_no_order_is_higher_than_it_says(name: str) -> None:
+    """So that the conditions are seen to tell methods apart: one order more is refused."""
+    method = explicit(name)
+    with pytest.raises(Violation):
+        require_order(method.a, method.b, np.abs(method.b), method.order + 1)
+    with pytest.raises(Violation):
+        require_order(method.a, *dense_weights(method, 0.37), DENSE_ORDERS[name] + 1, 0.37)
+    for weights, order in zip(method.error, ERROR_ORDERS[name], strict=True):
+        phi = elementary_weight(method.a, weights)
+        assert any(abs(phi(tree)) > 1e-6 for tree in trees(order + 1))
+
+
+def test_the_error_estimate_of_dopri5_compares_with_its_fourth_order_weights() -> None:
+    """Weights of J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19, Table 2."""
+    lower = [5179 / 57600, 0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40]
+    method = explicit("dopri5")
+    require(method.error[0], method.b - lower, np.abs(method.b) + np.abs(lower), 1)
+
+
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_a_wrong_digit_in_an_explicit_method_is_seen(name: str) -> None:
+    """Every coefficient in turn off by 1e-12: some condition breaks."""
+    check_explicit(explicit(name), ERROR_ORDERS[name], DENSE_ORDERS[name])
+    for field in ("c", "a", "error", "dense"):
+        for index in zip(*np.nonzero(getattr(explicit(name), field)), strict=True):
+            method = explicit(name)
+            getattr(method, field)[index] += 1e-12
+            with pytest.raises(Violation):
+                check_explicit(method, ERROR_ORDERS[name], DENSE_ORDERS[name])
+
+
+# ----------------------------------------------------------------- collocation: Gauss, Radau
+
+
+def powers(c: Long, highest: int) -> tuple[Long, Long]:
+    """Exponents k = 1 ... highest as a row, and c_i^(k-1) in row i."""
+    k = np.arange(1, highest + 1)
+    return k, c[:, None] ** (k - 1)
+
+
+def check_quadrature(b: Long, c: Long, order: int) -> None:
+    """B(order): the weights integrate polynomials of degree below it."""
+    k, ck = powers(c, order)
+    require(b @ ck, long(1) / k, b @ ck, order)
+
+
+def check_stages(a: Long, sizes: Long, c: Long, order: int) -> None:
+    """C(order): so do the stages."""
+    k, ck = powers(c, order)
+    exact = c[:, None] ** k / k
+    require(a @ ck, exact, sizes @ ck + exact, order + 1)
+
+
+def check_dual(a: Long, sizes: Long, b: Long, c: Long, order: int) -> None:
+    """D(order): sum_i b_i c_i^(k-1) a_ij = b_j (1 - c_j^k)/k."""
+    k, ck = powers(c, order)
+    weighted = b[:, None] * ck
+    exact = b[:, None] * (1 - c[:, None] ** k) / k
+    require(a.T @ weighted, exact, sizes.T @ weighted + b[:, None], order + 2)
+
+
+def check_gauss(c: Long, b: Long, mu: Long, nu: Long) -> None:
+    stages = len(c)
+    if np.any(mu + mu.T != 1):  # long double holds these sums exactly
+        raise Violation("mu_ij + mu_ji is not 1")
+    sizes = (np.abs(mu) + 1) * b  # mu_ij is rounded with mu_ji, not by its own size
+    check_quadrature(b, c, 2 * stages)
+    check_stages(mu * b, sizes, c, stages)
+    check_dual(mu * b, sizes, b, c, stages)
+    # stages of the next step: the slopes of this one as a polynomial of degree below the number
+    # of stages, integrated from the end of the step to 1 + c_i
+    k, ck = powers(c, stages)
+    foreseen = ((1 + c[:, None]) ** k - 1) / k
+    require((nu * b) @ ck, foreseen, np.abs(nu * b) @ ck + foreseen, stages + 2)
+
+
+def check_radau(
+    c: Long, a: Long, gamma: Long, alpha: Long, beta: Long, transform: Long, inverse_transform: Long
+) -> None:
+    if c[-1] != 1:
+        raise Violation("the last stage is not the end of the step")
+    check_quadrature(a[-1], c, 5)
+    check_stages(a, np.abs(a), c, 3)
+    check_dual(a, np.abs(a), a[-1], c, 2)
+    zero, one = np.zeros_like(alpha), np.eye(3)
+    eigenvalues = long([[gamma, zero, zero], [zero, alpha, -beta], [zero, beta, alpha]])
+    for product in (
+        (transform, inverse_transform),
+        (a, transform, eigenvalues, inverse_transform),  # inverse(a) = T eigenvalues T^-1
+    ):
+        sizes = np.linalg.multi_dot([np.abs(m) for m in product])
+        require(np.linalg.multi_dot(product), one, sizes, len(product))
+
+
+def collocation(name: str) -> dict[str, Long]:
+    return {key: long(values) for key, values in TABLEAUS[name].items()}
+
+
+CHECKS = {**dict.fromkeys(GAUSS, check_gauss), "radau": check_radau}
+
+
+@pytest.mark.parametrize("name", CHECKS)
+def test_collocation_methods_have_their_orders(name: str) -> None:
+    """Order 2s for Gauss, from B(2s), C(s), D(s); order 5 for Radau IIA, from B(5), C(3), D(2)."""
+    CHECKS[name](**collocation(name))
+
+
+@pytest.mark.parametrize("name", GAUSS)
+def test_no_gauss_order_is_higher_than_it_says(name: str) -> None:
+    method = collocation(name)
+    with pytest.raises(Violation):
+        check_quadrature(method["b"], method["c"], 2 * len(method["c"]) + 1)
+    with pytest.raises(Violation):
+        sizes = (np.abs(method["mu"]) + 1) * method["b"]
+        check_stages(method["mu"] * method["b"], sizes, method["c"], len(method["c"]) + 1)
+
+
+@pytest.mark.parametrize("name", GAUSS)
+def test_gauss_weights_are_symmetric(name: str) -> None:
+    """c_i + c_(s+1-i) = 1 and b_i = b_(s+1-i): run backwards, the step undoes itself."""
+    method = collocation(name)
+    assert np.array_equal(method["b"], method["b"][::-1])
+    require(method["c"] + method["c"][::-1], 1, np.ones_like(method["c"]), 1)
+    require(method["mu"] + method["mu"][::-1, ::-1], 1, np.abs(method["mu"]) + 1, 1)
+
+
+@pytest.mark.parametrize("name", CHECKS)
+def test_a_wrong_digit_in_a_collocation_method_is_seen(name: str) -> None:
+    CHECKS[name](**collocation(name))
+    for key, values in collocation(name).items():
+        for index in np.ndindex(values.shape):
+            method = collocation(name)
+            method[key][index] += 1e-12
+            with pytest.raises(Violation):
+                CHECKS[name](**method)
