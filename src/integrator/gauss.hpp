@@ -43,6 +43,7 @@ class Gauss {
                 changes[j] = stage - stages[j];
                 stages[j] = stage;
             }
+            if (!in_range<N>(stages[S - 1])) return false;
             shrinking = stagnation.shrinks(changes);
         }
         Vector<N> sum = increments_[0];

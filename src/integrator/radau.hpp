@@ -66,6 +66,7 @@ class Radau {
             StageVectors<N, 3> changes;
             for (int j = 0; j < 3; ++j) changes[j] = next[j] - z[j];
             z = next;
+            if (!in_range<N>(z[2])) return false;
             shrinking = stagnation.shrinks(changes);
         }
         add<N>(point, z[2]);  // the last stage is the end of the step
