@@ -12,7 +12,8 @@ double theta_of(const Body& body, double angle_from_flat) {
     return body.a >= body.b ? angle_from_flat : half_pi - angle_from_flat;
 }
 
-// Friction mu suffices where mu^2 P^2 - G Q^2 >= 0; divided by mu^2 above 1, so that any mu fits.
+// Friction mu suffices where mu^2 P^2 - G Q^2 >= 0, physics (35); divided by mu^2 above 1, so that
+// any mu fits.
 Polynomial grip(const ForcePolynomials& p, double friction) {
     const Polynomial held = p.normal * p.normal;
     const Polynomial needed = p.slope_square * p.friction * p.friction;
@@ -35,6 +36,7 @@ Start start_on_range(const FlatView& at, const EnergyRange& range, const Body& b
             rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
 }
 
+// What is left of the law of the contact, physics (25).
 double slack(const RollingForces& forces, double friction) {
     if (std::isinf(friction)) return forces.normal;
     return friction * forces.normal - std::abs(forces.friction);

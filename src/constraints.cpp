@@ -6,7 +6,8 @@ namespace rolling_ellipse {
 namespace {
 
 // The lowest point of an ellipse with its centre at height z, seen from the centre, by its implicit
-// equation d^T M d = 1 in ground axes: no support function, so that each road checks the other.
+// equation d^T M d = 1 in ground axes, physics (11): no support function, so that each road checks
+// the other.
 struct LowestPoint {
     double height;  // over the ground [m]
     double depth;   // under the centre [m]
@@ -32,7 +33,7 @@ ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q) {
     const double c = std::cos(psi - theta);
     ConstraintMatrix matrix;
     // clang-format off
-    // columns: x, z, theta, psi, r
+    // physics (14); columns: x, z, theta, psi, r
     matrix <<
         1, 0, -r * c, 0, 0,
         0, 1, -r * s, r * s, -c,
@@ -52,6 +53,7 @@ Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const C
     const double psi_dot = q_dot[coordinate::psi];
     const double r_dot = q_dot[coordinate::r];
     const double turn = psi_dot - omega;
+    // physics (15)
     return {(r * s * turn - r_dot * c) * omega, 2 * r_dot * s * turn + r * c * turn * turn,
             -polar_radius_second(axes, psi) * psi_dot * psi_dot,
             -contact_angle_second(axes, geometry(axes, theta)) * omega * omega};
@@ -61,6 +63,7 @@ Eigen::Vector3d position_residuals(const Axes& axes, const Coordinates& q) {
     const double theta = q[coordinate::theta];
     const double psi = q[coordinate::psi];
     const double r = q[coordinate::r];
+    // physics (13)
     return {q[coordinate::z] - r * std::cos(psi - theta), r - polar_radius(axes, psi),
             (psi - theta) - contact_angle_offset(geometry(axes, theta))};
 }
@@ -71,7 +74,7 @@ ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Co
     result.velocity = constraint_matrix(axes, q) * q_dot;
     const LowestPoint lowest = lowest_point(axes, q[coordinate::theta], q[coordinate::z]);
     result.gap = lowest.height;
-    // v + omega x d for the clockwise omega: x. + omega d_z.
+    // v + omega x d for the clockwise omega, x. + omega d_z: physics (12).
     result.slip = q_dot[coordinate::x] - q_dot[coordinate::theta] * lowest.depth;
     return result;
 }
@@ -83,6 +86,7 @@ KinematicState kinematics(const Axes& axes, double theta, double omega) {
     // r from psi as it is rounded: then f3 is zero to rounding, and f2 is flat in psi.
     KinematicState state;
     state.q << centre_path(axes, theta), at.h, theta, psi, polar_radius(axes, psi);
+    // physics (12)
     state.q_dot << at.h * omega, at.dh * omega, omega, psi_dot,
         polar_radius_slope(axes, psi) * psi_dot;
     return state;

@@ -1,4 +1,5 @@
-// The four constraints of the report's coordinates q = (x, z, theta, psi, r), at any state:
+// The four constraints of the report's coordinates q = (x, z, theta, psi, r), at any state,
+// physics (13):
 //     f1 = x. - r cos(psi - theta) theta.
 //     f2 = z - r cos(psi - theta)
 //     f3 = r - a b/sqrt(b^2 sin^2 psi + a^2 cos^2 psi)
@@ -20,10 +21,11 @@ namespace coordinate {
 enum : int { x, z, theta, psi, r };
 }
 
-// Rows: the coefficients of q. in f1 and in the rates of f2, f3, f4.
+// Rows: the coefficients of q. in f1 and in the rates of f2, f3, f4: physics (14).
 ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q);
 
-// What the second derivatives of the constraints have beside matrix q..: the matrix' rate times q.
+// What the second derivatives of the constraints have beside matrix q.., physics (15): the matrix'
+// rate times q.
 Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const Coordinates& q_dot);
 
 // f2 [m], f3 [m], f4 [rad].

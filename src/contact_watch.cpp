@@ -37,7 +37,8 @@ class Watcher {
     const ContactWatch& result() const { return watch_; }
 
   private:
-    // What is left until rolling ends: of N, and of the friction where there is a limit to it.
+    // What is left until rolling ends: of N, and of the friction where there is a limit to it:
+    // physics (25).
     double margin(const ContactForce& force) const {
         if (std::isinf(friction_)) return force.normal;
         return friction_ * force.normal - std::abs(force.friction);

@@ -69,8 +69,8 @@ CarlsonPair carlson(double x, double y, double z) {
     return result;
 }
 
-// The arc between the contact at the tip and that at an offset: DLMF 19.25.10 without its last
-// term, which is the lead -h' of the centre.
+// The arc between the contact at the tip and that at an offset, physics (10): DLMF 19.25.10 without
+// its last term, which is the lead -h' of the centre.
 double arc_from_tip(double long_axis, double short_axis, double s, double c) {
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
     const double h = std::hypot(long_axis * c, short_axis * s);
@@ -80,7 +80,7 @@ double arc_from_tip(double long_axis, double short_axis, double s, double c) {
 }
 
 // Way of the centre, or of the contact along the ellipse (h' more), from theta = 0 over an offset
-// with sine and cosine >= 0. No form is a difference of terms.
+// with sine and cosine >= 0: physics (9). No form is a difference of terms.
 struct QuarterPath {
     double centre;
     double contact;
@@ -110,7 +110,7 @@ QuarterPath unwrapped_path(const Axes& axes, double theta) {
 
 }  // namespace
 
-// DLMF 19.25.9 with negative parameter: every term is positive.
+// physics (10), DLMF 19.25.9 with negative parameter: every term is positive.
 double path_from_flat(double long_axis, double short_axis, double s, double c) {
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
     const double s2 = short_axis * short_axis;
@@ -132,11 +132,11 @@ Geometry geometry(const Axes& axes, double theta) {
 Geometry geometry(const Axes& axes, double s, double c) {
     const auto [a, b] = axes;
     const double c2 = (a - b) * (a + b);
-    Geometry at{s, c, std::sqrt(a * a * s * s + b * b * c * c), 0.0, 0.0, 0.0};
-    at.dh = c2 * s * c / at.h;
+    Geometry at{s, c, std::sqrt(a * a * s * s + b * b * c * c), 0.0, 0.0, 0.0};  // physics (1)
+    at.dh = c2 * s * c / at.h;                                                   // physics (2)
     const double h3 = at.h * at.h * at.h;
-    at.rho = a * a * b * b / h3;
-    // rho - h, factorised so that it keeps its digits for nearly circular bodies.
+    at.rho = a * a * b * b / h3;  // physics (4)
+    // rho - h, factorised so that it keeps its digits for nearly circular bodies: physics (3).
     at.ddh = c2 * (b * c * c - a * s * s) * (b * c * c + a * s * s) / h3;
     return at;
 }
@@ -155,13 +155,15 @@ bool is_equilibrium(const Geometry& at) {
     return std::abs(at.dh) <= equilibrium_ulps * epsilon * at.h;
 }
 
+// physics (5)
 double contact_angle_offset(const Geometry& at) { return std::atan2(at.dh, at.h); }
 
 double contact_angle(const Axes& axes, double theta) {
     return theta + contact_angle_offset(geometry(axes, theta));
 }
 
-// From tan(psi) = (a^2/b^2) tan(theta): psi' = a^2 b^2 / w, w = b^4 cos^2 + a^4 sin^2 = (r h)^2.
+// From tan(psi) = (a^2/b^2) tan(theta): psi' = a^2 b^2 / w, w = b^4 cos^2 + a^4 sin^2 = (r h)^2;
+// physics (6), with psi'' below.
 double contact_angle_rate(const Axes& axes, const Geometry& at) {
     const double rh = contact_distance(axes, at) * at.h;
     const double ratio = axes.a * axes.b / rh;
@@ -176,17 +178,20 @@ double contact_angle_second(const Axes& axes, const Geometry& at) {
     return -contact_angle_rate(axes, at) * dw / (rh * rh);
 }
 
+// physics (5)
 double contact_distance(const Axes& axes, const Geometry& at) {
     return std::hypot(axes.a * axes.a * at.sin, axes.b * axes.b * at.cos) / at.h;
 }
 
+// physics (7)
 double polar_radius(const Axes& axes, double psi) {
     const double s = axes.b * std::sin(psi);
     const double c = axes.a * std::cos(psi);
     return axes.a * axes.b / std::sqrt(s * s + c * c);
 }
 
-// R = a b w^(-1/2), w = b^2 sin^2 + a^2 cos^2, so R' = R^3 (a^2 - b^2) sin cos/(a b)^2.
+// R = a b w^(-1/2), w = b^2 sin^2 + a^2 cos^2, so R' = R^3 (a^2 - b^2) sin cos/(a b)^2;
+// physics (8), with R'' below.
 double polar_radius_slope(const Axes& axes, double psi) {
     const double radius = polar_radius(axes, psi);
     const double scale = radius / (axes.a * axes.b);

@@ -1,5 +1,7 @@
 // Geometry of an ellipse that touches a straight ground, by its support function.
 //
+// Here and everywhere, "physics (4)" is formula (4) of notebooks/02_physics.ipynb.
+//
 // theta is the clockwise rotation of the body; at theta = 0 the axis a is parallel to the ground.
 // All functions hold for a > b, a = b and a < b and for any angle.
 #pragma once
@@ -54,12 +56,12 @@ double contact_angle_second(const Axes& axes, const Geometry& at);
 // Distance from the centre to the contact, r^2 = h^2 + h'^2.
 double contact_distance(const Axes& axes, const Geometry& at);
 
-// Radius of the ellipse in the body direction psi (report eq 6), and its derivatives.
+// Radius of the ellipse in the body direction psi (report eq 6, physics (7)), and its derivatives.
 double polar_radius(const Axes& axes, double psi);
 double polar_radius_slope(const Axes& axes, double psi);
 double polar_radius_second(const Axes& axes, double psi);
 
-// The integral of h from 0 to theta: way of the centre in rolling; unwrapped.
+// The integral of h from 0 to theta, physics (9): way of the centre in rolling; unwrapped.
 double centre_path(const Axes& axes, double theta);
 
 // centre_path + h' = arc length along the ellipse from the contact at 0 to that at theta.

@@ -6,20 +6,20 @@
 namespace rolling_ellipse {
 namespace {
 
-// Numerator of dN/dx, N = h P/V^2.
+// Numerator of dN/dx, N = h P/V^2: physics (36).
 Polynomial normal_slope(const ForcePolynomials& p) {
     const Polynomial moment = p.height * p.normal;
     return derivative(moment) * p.weight - 2.0 * (moment * derivative(p.weight));
 }
 
-// Numerator of d(F/N)^2/dx beside Q, (F/N)^2 = G Q^2/P^2.
+// Numerator of d(F/N)^2/dx beside Q, (F/N)^2 = G Q^2/P^2: physics (36).
 Polynomial needed_slope(const ForcePolynomials& p) {
     const Polynomial bracket =
         derivative(p.friction) * p.normal - p.friction * derivative(p.normal);
     return derivative(p.slope_square) * p.friction * p.normal + 2.0 * (p.slope_square * bracket);
 }
 
-// D = k^2 + h^2 + h'^2.
+// D = k^2 + h^2 + h'^2: physics (16).
 double inertia(const EnergyRange& range, double h2, double sin2, double cos2) {
     return range.gyration2 + h2 + square(range.c2) * sin2 * cos2 / h2;
 }
@@ -64,16 +64,17 @@ ForcePolynomials force_polynomials(const EnergyRange& range) {
     p.height = polynomial({b, w});
     const Polynomial y = polynomial({0, 2 * b * w, w * w});
     const Polynomial energy = polynomial({range.energy_gap + w, -w});
-    p.weight = polynomial({b2 * kb}) + s * y;
+    p.weight = polynomial({b2 * kb}) + s * y;  // physics (32)
     p.normal_at_rest = p.height * p.weight * (polynomial({kb}) + y);
     p.normal_moving = 2.0 * (b2 * kb * (polynomial({c2}) - 2.0 * y) - s * (y * y));
-    p.normal = p.normal_at_rest + energy * p.normal_moving;
-    p.friction = 2.0 * energy * (friction_flat + s * y) - p.height * p.weight;
-    // (h - S)(h + S)(1 - h)(1 + h), with h - S = w x and 1 - h = tip_gap + w (1 - x).
+    p.normal = p.normal_at_rest + energy * p.normal_moving;                     // physics (33)
+    p.friction = 2.0 * energy * (friction_flat + s * y) - p.height * p.weight;  // physics (34)
+    // physics (35): (h - S)(h + S)(1 - h)(1 + h), with h - S = w x and 1 - h = tip_gap + w (1 - x).
     p.slope_square = y * polynomial({range.tip_gap + w, -w}) * polynomial({1 + b, w});
     return p;
 }
 
+// physics (25)
 double RollingForces::needed() const {
     if (normal > 0) return friction / normal;
     return friction == 0 && normal == 0 ? 0.0 : infinity;
@@ -87,8 +88,8 @@ RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2,
     const double ddh = range.c2 * (b * cos2 - sin2) * (b * cos2 + sin2) / (h * h2);
     const double kh = range.gyration2 + h2;
     const double d = inertia(range, h2, sin2, cos2);
-    const double normal = (kh + omega2 * (ddh * kh - h * dh2)) / d;
-    // F = h theta'' + h' omega^2 with theta'' = -h' (1 + rho omega^2)/D, rho h = S^2/h^2
+    const double normal = (kh + omega2 * (ddh * kh - h * dh2)) / d;  // physics (23)
+    // physics (24): F = h theta'' + h' omega^2 with theta'' of physics (18), rho h = S^2/h^2
     const double friction = std::sqrt(dh2) * std::abs(omega2 * (d - square(b) / h2) - h) / d;
     return {std::atan2(std::sqrt(sin2), std::sqrt(cos2)), normal, friction};
 }

@@ -2,12 +2,12 @@
 //
 // Lengths in units of the long semi-axis, forces in units of m g. With B = S^2, c2 = 1 - B, K =
 // k^2, u = h^2, y = u - B, s = K + 1 + B and the energy over the height e = H - h, H = E/(m g):
-//     V = s u - B = B (K + B) + s y,           D = V/u,   omega^2 = 2 e/D
-//     P = h V (K + u) + 2 e (B (K + B) (c2 - 2y) - s y^2),   N = h P/V^2
-//     Q = -h V + 2 e (B (K - c2) + s y),                     F = h' u Q/V^2
-//     G = (h h')^2 = (1 - u) y
-// from N and F of rolling. Nothing cancels for nearly circular bodies (c2), nor, for thin ones,
-// near a turning point (e).
+//     V = s u - B = B (K + B) + s y,           D = V/u,   omega^2 = 2 e/D    physics (32)
+//     P = h V (K + u) + 2 e (B (K + B) (c2 - 2y) - s y^2),   N = h P/V^2     physics (33)
+//     Q = -h V + 2 e (B (K - c2) + s y),                     F = h' u Q/V^2  physics (34)
+//     G = (h h')^2 = (1 - u) y                                               physics (35)
+// from N and F of rolling, physics (23, 24). Nothing cancels for nearly circular bodies (c2), nor,
+// for thin ones, near a turning point (e).
 #pragma once
 
 #include "flow.hpp"

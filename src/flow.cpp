@@ -26,7 +26,7 @@ struct MotionPoint {
     double quarters;  // whole turns made, in quarters, beside what sin_phi and cos_phi say
 };
 
-// Angle and angular velocity at a phase: the energy integral read at the point itself.
+// Angle and angular velocity at a phase: physics (30), the energy integral at the point itself.
 MotionPoint motion_point(const RollingFlow& flow, const PhasePoint& at) {
     const double sin_phi = flow.amplitude * at.sin;
     const double factor = shape_factor(flow.phase.rate, sin_phi);
@@ -79,7 +79,7 @@ double short_path(const RollingFlow& flow, double t) {
     return double(integrate(gauss_rule(8), 0.0, t, velocity));
 }
 
-// The constants of the energy integral; see phase_time.hpp.
+// The constants of the energy integral, physics (28, 29); see phase_time.hpp.
 PhaseRate phase_rate(const Body& body, const FlatView& at, const EnergyHeight& height,
                      MotionKind kind) {
     const double s2 = square(at.short_axis);
@@ -108,6 +108,7 @@ PhasePoint start_phase(const RollingFlow& flow) {
 
 }  // namespace
 
+// physics (26)
 EnergyHeight energy_height(const FlatView& at, double gyration2, double gravity, double omega) {
     const double h2 = square(at.short_axis) + at.c2 * square(at.sin);
     const double h = std::sqrt(h2);

@@ -56,7 +56,7 @@ double period(const RollingFlow& flow);
 double time_of_passing(const RollingFlow& flow, double theta, double heading);
 
 // The height H = E/(m g) of the energy [m], and how far it is over the tip (H - L, negative in
-// libration) and over the flat position (H - S), by forms that do not cancel.
+// libration) and over the flat position (H - S), by forms that do not cancel: physics (26).
 struct EnergyHeight {
     double total;
     double over_tip;

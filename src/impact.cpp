@@ -10,8 +10,9 @@ namespace {
 // The law approaches its limit for infinite friction like 1/friction: beyond this, within rounding.
 constexpr double practically_infinite = 1e20;
 
-// Velocity of the material contact point: v along the ground, u away from it; and the matrix that
-// takes an impulse there to its change (Delassus). W. J. Stronge, Impact Mechanics (2000), ch. 3.
+// Velocity of the material contact point, physics (12): v along the ground, u away from it; and the
+// matrix that takes an impulse there to its change (Delassus), physics (39). W. J. Stronge, Impact
+// Mechanics (2000), ch. 3.
 struct Contact {
     double v;
     double u;
@@ -38,7 +39,7 @@ struct Reaction {
     bool sticks = false;  // ends with v = 0
 };
 
-// mu = infinity: the limit of the law below (no product infinity * 0 is ever formed).
+// mu = infinity: the limit of the law below, physics (42) (no product infinity * 0 is ever formed).
 Reaction unlimited_friction(const Contact& c) {
     const double u_without_slip = c.u - c.v * c.gtn / c.gtt;
     if (u_without_slip <= 0) {
@@ -49,7 +50,8 @@ Reaction unlimited_friction(const Contact& c) {
     return {-c.u / c.gtn, 0.0, false};  // friction alone stops the approach
 }
 
-// Coulomb friction along the path of the normal impulse, until the approach u < 0 is stopped.
+// Coulomb friction along the path of the normal impulse, until the approach u < 0 is stopped:
+// physics (41).
 Reaction coulomb_friction(const Contact& c, double friction) {
     Reaction reaction;
     double u = c.u;
@@ -81,8 +83,8 @@ Reaction coulomb_friction(const Contact& c, double friction) {
 }
 
 // u = 0 afterwards, and v = 0 where it sticks, exactly. The sticking angular velocity is that of
-// the angular momentum about the contact, which no reaction changes: D omega = k^2 omega + h x. +
-// h' z.
+// the angular momentum about the contact, which no reaction changes, physics (40):
+// D omega = k^2 omega + h x. + h' z.
 void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, State& state) {
     if (reaction.sticks) {
         const double k2 = scene.inertia / scene.mass;
@@ -97,7 +99,7 @@ void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, Sta
 }
 
 Mode mode_in_contact(const Scene& scene, const Geometry& at, const State& state, bool sticks) {
-    // Gap acceleration of the free body is -c.
+    // Gap acceleration of the free body is -c: physics (43).
     const double c = scene.gravity * std::cos(scene.slope) + at.ddh * state.omega * state.omega;
     if (c <= 0) return Mode::flight;
     return sticks ? Mode::rolling : Mode::sliding;
@@ -111,7 +113,7 @@ InitialState initial_state(const Scene& scene) {
     const Geometry at = geometry(Axes{scene.a, scene.b}, state.theta);
     const bool touching = state.z == at.h;
     if (scene.impulse) {
-        const Impulse& j = *scene.impulse;
+        const Impulse& j = *scene.impulse;  // physics (38)
         state.x_dot += j.jx / scene.mass;
         state.z_dot += j.jz / scene.mass;
         state.omega += (j.jx * j.dz - j.jz * j.dx) / scene.inertia;

@@ -63,6 +63,7 @@ MultiplierSolution ConstrainedBody::solve(const Coordinates& q, const Coordinate
     return solve(q, Eigen::Vector4d(-constraint_drift(axes_, q, q_dot)));
 }
 
+// physics (17)
 double ConstrainedBody::specific_energy(const Coordinates& q, const Coordinates& q_dot) const {
     return 0.5 * q_dot.dot(specific_mass().cwiseProduct(q_dot)) - specific_force().dot(q);
 }

@@ -1,5 +1,5 @@
 // The report's system: coordinates q = (x, z, theta, psi, r), the constraints f1 ... f4 and their
-// Lagrange multipliers, from its Lagrangian (eqs 11-15):
+// Lagrange multipliers, from its Lagrangian (eqs 11-15), physics (21):
 //     M q.. = Q + A^T lambda,   A q. = 0,   M = diag(m, m, I, 0, 0),   Q = (m g sin, -m g cos, 0,
 //     0, 0)
 // with the slope in Q. M is singular in psi and r (eqs 19, 20); with A it is not.

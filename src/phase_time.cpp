@@ -19,7 +19,8 @@ double length(const Half& half, Panel panel) {
     return panel == Panel::end ? half.end_length : half.slope_length;
 }
 
-// Tangent of the offset from the end of the half: g sinh(v), with v = W - w on the slope.
+// Tangent of the offset from the end of the half: g sinh(v), with v = W - w on the slope;
+// physics (31).
 double tangent(const Half& half, Panel panel, double v) {
     if (panel == Panel::end) return half.grade * std::sinh(v);
     if (v > constant_from) return std::exp(-v);
@@ -43,13 +44,13 @@ double sin2_phase(const Half& half, double tan) {
     return half.at_tip ? cos2 : square(tan) * cos2;
 }
 
-// scale^2 D (H + h), the square of the factor that depends on the shape.
+// scale^2 D (H + h), the square of the factor that depends on the shape: physics (28, 29).
 double shape_factor2(const PhaseRate& rate, double sin2_phi) {
     const double h2 = square(rate.short_axis) + rate.c2 * sin2_phi;
     return rate.scale2 * (rate.d0 + rate.d1 * sin2_phi) * (rate.energy_height + std::sqrt(h2)) / h2;
 }
 
-// |dt/dv| where the tangent is `tan`.
+// |dt/dv| where the tangent is `tan`: physics (31).
 double time_rate(const PhaseRate& rate, const Half& half, double tan) {
     const double tan2 = square(tan);
     double squared = shape_factor2(rate, rate.amplitude2 * sin2_phase(half, tan)) / (1 + tan2);

@@ -1,7 +1,8 @@
 // Time as a function of the phase of an exact rolling motion, and its inverse.
 //
 // With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
-// H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2,
+// H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral
+// of physics (27) becomes that of physics (29),
 //     dt/dphase = scale sqrt(D (H + h)) / sqrt(cos^2 phase + kappa^2 sin^2 phase),
 //     sin phi   = amplitude sin phase,
 // rotation (phase = phi) and libration (phase = u of sin phi = sin phi_max sin u) are one integral:
@@ -9,11 +10,11 @@
 //     libration: amplitude^2 = (H^2 - S^2)/c^2, scale^2 = 1/(2 g c^2), kappa^2 = (L^2 - H^2)/c^2
 // No term is a difference that cancels, but for H - L itself.
 //
-// A quarter of the phase is split at 45 degrees. Each half is graded by tan(offset) = g sinh(v)
-// from its end (flat or tip), which places the singularities of the integrand at Im v = +-pi/2; g
-// is kappa at the tip, at the flat the place of the zero of D. The part next to the split is
-// measured from the split, w = W - v, sinh W = 1/g, so that nothing is lost however long the tip
-// is.
+// A quarter of the phase is split at 45 degrees. Each half is graded by tan(offset) = g sinh(v),
+// physics (31), from its end (flat or tip), which places the singularities of the integrand at
+// Im v = +-pi/2; g is kappa at the tip, at the flat the place of the zero of D. The part next to
+// the split is measured from the split, w = W - v, sinh W = 1/g, so that nothing is lost however
+// long the tip is.
 #pragma once
 
 #include "double_double.hpp"

@@ -181,6 +181,7 @@ Polynomial derivative(const Polynomial& p) {
     return slope;
 }
 
+// physics (37)
 Bernstein bernstein(const Polynomial& p) {
     Bernstein result;
     result.degree = p.degree;

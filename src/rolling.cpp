@@ -15,10 +15,11 @@ Accelerations rolling_accelerations(const Scene& scene, const Geometry& at, doub
     const RollingEquation equation(scene.body(), scene.slope);
     const double omega2 = omega * omega;
     const double omega_dot = equation.acceleration(at.sin, at.cos, omega);
+    // physics (20)
     return {omega_dot, at.h * omega_dot + at.dh * omega2, at.dh * omega_dot + at.ddh * omega2};
 }
 
-// Newton's law for the centre.
+// Newton's law for the centre: physics (20).
 ContactForce contact_force(const Scene& scene, const Accelerations& of_centre) {
     return {scene.mass * (scene.gravity * std::cos(scene.slope) + of_centre.z),
             scene.mass * (of_centre.x - scene.gravity * std::sin(scene.slope))};
@@ -26,7 +27,7 @@ ContactForce contact_force(const Scene& scene, const Accelerations& of_centre) {
 
 // The multipliers of the gradients of f1 ... f4: lambda1 = F, lambda2 = N, and from the rows of psi
 // and r, which carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3.
-// At the contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0.
+// At the contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
 Eigen::Vector4d multipliers(const Coordinates& q, const ContactForce& force) {
     const double offset = q[coordinate::psi] - q[coordinate::theta];
     return {force.friction, force.normal, force.normal * std::cos(offset), 0.0};
@@ -43,7 +44,7 @@ RollingEquation::RollingEquation(const Body& body, double slope)
       weight_(body.gravity * std::cos(slope)),
       pull_(body.gravity * std::sin(slope)) {}
 
-// The equation times h^4, so that one root and one division are enough: with u = h^2, p = h h',
+// physics (18) times h^4, so that one root and one division are enough: with u = h^2, p = h h',
 //     theta'' u (u (k^2 + u) + p^2) = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
 double RollingEquation::acceleration(double s, double c, double omega) const {
     const double u = a2_ * s * s + b2_ * c * c;
@@ -57,7 +58,7 @@ Vector<2> RollingEquation::operator()(double, const Vector<2>& y) const {
     return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
 }
 
-// With D' = 2 h' rho and rho' = -3 rho h'/h.
+// physics (19), with D' = 2 h' rho and rho' = -3 rho h'/h.
 Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {
     const Geometry at = geometry(axes_, y[0]);
     const double omega = y[1];

@@ -8,8 +8,8 @@
 
 namespace rolling_ellipse {
 
-// D theta'' + h' (g cos(alpha) + rho omega^2) - h g sin(alpha) = 0 for y = (theta, omega), alpha
-// the slope, D = k^2 + h^2 + h'^2.
+// D theta'' + h' (g cos(alpha) + rho omega^2) - h g sin(alpha) = 0, physics (18), for
+// y = (theta, omega), alpha the slope, D = k^2 + h^2 + h'^2.
 class RollingEquation {
   public:
     static constexpr int size = 2;

@@ -137,7 +137,7 @@ State state_before_impulse(const Scene& scene) {
         state.z_dot = scene.z_dot.value_or(0.0);
         return state;
     }
-    const double rolling_x_dot = at.h * state.omega;
+    const double rolling_x_dot = at.h * state.omega;  // physics (12)
     const double rolling_z_dot = at.dh * state.omega;
     state.x_dot = scene.x_dot.value_or(rolling_x_dot);
     state.z_dot = scene.z_dot.value_or(rolling_z_dot);

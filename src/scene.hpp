@@ -58,6 +58,7 @@ struct Scene {
     Body body() const { return {a, b, inertia / mass, gravity}; }
 };
 
+// physics (16)
 inline double uniform_disc_gyration2(double a, double b) { return (a * a + b * b) / 4; }
 
 // Slower than 1e-100 rad/s is at rest: its energy is no longer a normal double.

@@ -23,7 +23,7 @@ struct Place {
     double dh;
     double kh;           // k^2 + h^2
     double d;            // D
-    double normal_part;  // N/m = (kh + omega^2 normal_part)/D
+    double normal_part;  // N/m = (kh + omega^2 normal_part)/D, physics (23)
 };
 
 Place place_at(const Shape& shape, double sin2, double cos2) {
@@ -41,7 +41,7 @@ Place place_at(const Shape& shape, double sin2, double cos2) {
             ddh * kh - h * dh * dh};
 }
 
-// Energy over the flat position, H - S, of a motion that has omega^2 at the place.
+// Energy over the flat position, H - S, of a motion that has omega^2 at the place: physics (26).
 double energy_over_flat(const Place& at, double omega2) {
     return 0.5 * at.d * omega2 + at.over_flat;
 }
@@ -56,7 +56,7 @@ void take_if_lower(Onset& onset, double energy, double angle) {
 }
 
 // N of rolling vanishes at H = h - r/p, with r = normal_at_rest and p = normal_moving; the least
-// such H is a root of h' p^2 - r' p + r p'.
+// such H is a root of h' p^2 - r' p + r p': physics (46).
 Onset contact_loss(const Shape& shape) {
     const EnergyRange range = separatrix_range(shape.short_axis, shape.gyration2, shape.c2);
     const ForcePolynomials p = force_polynomials(range);
@@ -78,7 +78,7 @@ Onset contact_loss(const Shape& shape) {
     return onset;
 }
 
-// The least omega^2 at which rolling needs |F| >= mu N at a place:
+// The least omega^2 at which rolling needs |F| >= mu N at a place, physics (47):
 //     |h'| |omega^2 (D - h rho) - h| = mu (kh + omega^2 normal_part),  rho h = S^2/h^2.
 double slip_omega2(const Shape& shape, const Place& at, double friction) {
     if (at.h * at.dh >= friction * at.kh) return 0.0;
@@ -93,7 +93,7 @@ double slip_omega2(const Shape& shape, const Place& at, double friction) {
 }
 
 // The lowest place at which a body at rest needs |F| = mu N: h |h'| = mu (k^2 + h^2), a quadratic
-// equation in y = h^2 - B.
+// equation in y = h^2 - B, physics (48).
 Onset slip_at_rest(const Shape& shape, double friction) {
     const double b = shape.short_axis;
     const double mu2 = square(friction);
@@ -140,7 +140,7 @@ Onset slip(const Shape& shape, double friction) {
 }
 
 // mu = (K + Y/u)/sqrt(Y), Y = (1 - u)(u - B) = (h h')^2: stationary where
-// -K Y' u^2 + Y Y' u - 2 Y^2 = 0.
+// -K Y' u^2 + Y Y' u - 2 Y^2 = 0: physics (49).
 Onset painleve(const Shape& shape) {
     const double b2 = square(shape.short_axis);
     const double k2 = shape.gyration2;
@@ -169,6 +169,7 @@ Thresholds thresholds(const Body& body, double friction) {
     const double tip_inertia = body.gyration2 + square(at.long_axis);
 
     Thresholds result{};
+    // physics (44, 45)
     result.roll_over_speed =
         std::sqrt(2 * body.gravity * (at.long_axis - at.short_axis) / flat_inertia);
     result.rocking_rate = std::sqrt(body.gravity * at.c2 / (at.short_axis * flat_inertia));
@@ -178,7 +179,7 @@ Thresholds thresholds(const Body& body, double friction) {
     result.painleve_friction = infinity;
     if (at.c2 == 0) return result;
 
-    const auto flat_speed = [&](const Onset& onset) {
+    const auto flat_speed = [&](const Onset& onset) {  // physics (44)
         return std::sqrt(2 * body.gravity * unit * onset.energy / flat_inertia);
     };
     const auto theta_of = [&](std::optional<double> angle) {

@@ -13,7 +13,15 @@ from ._simulate import simulate
 from .animation import animate
 from .kinematics import ConstraintResiduals, constraints, kinematics
 from .motion import flow, period
-from .plotting import plot, plot_strobe
+from .plotting import (
+    plot,
+    plot_constraints,
+    plot_energy,
+    plot_forces,
+    plot_paths,
+    plot_phase,
+    plot_strobe,
+)
 from .scene import Impulse, InitialState, Scene
 from .trajectory import IntegrationError, Status, Trajectory, ValidityWarning, load
 from .validity import Certificate, Thresholds, certify, thresholds
@@ -24,5 +32,6 @@ __all__ = [
     "Certificate", "ConstraintResiduals", "Impulse", "InitialState", "IntegrationError", "Mode",
     "Scene", "Status", "Thresholds", "Trajectory", "Validity", "ValidityWarning", "__version__",
     "animate", "certify", "constraints", "flow", "geometry", "kinematics", "load", "period", "plot",
-    "plot_strobe", "scenes", "simulate", "thresholds",
+    "plot_constraints", "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_strobe",
+    "scenes", "simulate", "thresholds",
 ]  # fmt: skip

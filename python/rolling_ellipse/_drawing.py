@@ -20,6 +20,8 @@ from matplotlib.transforms import Affine2D
 from ._core import Mode
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
 
     from ._check import FloatArray
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
+SKY, PLUM = "#8fc3e0", "#7a2e4d"
 FILL = to_rgb(BLUE)
 TIMES = LinearSegmentedColormap.from_list("times", ["#bcd9ea", BLUE, INK])  # early to late
 SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be a thin stripe
@@ -58,12 +61,17 @@ def contact_points(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
 
 def view(path: Trajectory) -> tuple[float, float, float, float]:
     """Left, right, bottom, top [m] of what the eye sees of a motion, with a little air."""
-    size = max(path.scene.a, path.scene.b)
-    top_z = path.z + np.minimum(path.z, size)  # on the ground G is midway up
+    return view_of(path.scene, path.x, path.z)
+
+
+def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
+    """The same for the centres x, z [m] of a body."""
+    size = max(scene.a, scene.b)
+    top_z = z + np.minimum(z, size)  # on the ground G is midway up
     corners = [
-        tilted(path.scene).transform(np.column_stack([path.x + dx, z]))
+        tilted(scene).transform(np.column_stack([x + dx, height]))
         for dx in (-size, size)
-        for z in (np.zeros_like(path.z), top_z)
+        for height in (np.zeros_like(z), top_z)
     ]
     seen = np.concatenate(corners)
     (left, bottom), (right, top) = seen.min(axis=0), seen.max(axis=0)
@@ -92,12 +100,16 @@ def camera(motion: Trajectory, shape: float | None) -> tuple[FloatArray, float]:
 
 def draw_ground(ax: Axes, path: Trajectory) -> Polygon:
     """Fill the earth below z = 0, well past both ends of the path and past any view of it."""
-    reach = float(np.ptp(path.x)) + 100 * max(path.scene.a, path.scene.b)
-    left, right = path.x.min() - reach, path.x.max() + reach
+    return fill_earth(ax, path.scene, float(path.x.min()), float(path.x.max()))
+
+
+def fill_earth(ax: Axes, scene: Scene, left: float, right: float) -> Polygon:
+    """Fill the earth below z = 0 between two places [m], and well past both."""
+    reach = right - left + 100 * max(scene.a, scene.b)
+    left, right = left - reach, right + reach
     earth = Polygon(
         [(left, -reach), (left, 0.0), (right, 0.0), (right, -reach)],
-        facecolor=EARTH, edgecolor=GREY, lw=1, zorder=1,
-        transform=tilted(path.scene) + ax.transData,
+        facecolor=EARTH, edgecolor=GREY, lw=1, zorder=1, transform=tilted(scene) + ax.transData,
     )  # fmt: skip
     ax.add_artist(earth)  # add_patch would make room for all of it
     return earth
@@ -139,9 +151,10 @@ class Ruler:
             label.set_text(f"{place:.10g} m".replace("-", "−"))
 
 
-def legend_above(ax: Axes) -> None:
+def legend_above(ax: Axes, handles: Sequence[Any] | None = None, columns: int = 3) -> None:
     """A legend above the axes on the right, where it covers nothing."""
+    given = {} if handles is None else {"handles": handles}
     ax.legend(
-        loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize="small",
-        borderaxespad=0.1, handlelength=1.8, columnspacing=1.2, markerscale=2,
+        loc="lower right", bbox_to_anchor=(1, 1), ncols=columns, frameon=False, fontsize="small",
+        borderaxespad=0.1, handlelength=1.8, columnspacing=1.2, markerscale=2, **given,
     )  # fmt: skip

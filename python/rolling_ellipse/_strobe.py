@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Ellipse, Polygon
 
+    from .scene import Scene
     from .trajectory import Trajectory
 
 
@@ -80,14 +81,13 @@ def plot_strobe(
     end = _uncrowded_until(trajectory) if t_end is None else t_end
     at = trajectory.sol(np.linspace(first, end, count))
     path = trajectory.sol(np.linspace(first, end, 801))
-    if ax is None:
-        left, right, bottom, top = drawing.view(path)
-        tall = 0.8 + min(max(9 * (top - bottom) / (right - left), 1.5), 4)
-        ax = plt.figure(figsize=(10, tall), layout="constrained").add_subplot()
+    view = drawing.view(path)
+    ax = ax or axes_for(view)
     ground = drawing.draw_ground(ax, path)
     bodies, hands = _draw_bodies(ax, at)
     centre_path, contact_path, contacts = _draw_paths(ax, at, path)
-    _dress_strobe(ax, path)
+    dress_ground_axes(ax, path.scene, view)
+    legend_above(ax)
     title = f"{count} positions over " + (
         "" if end == last else f"the first {end - first:.3g} s of "
     )
@@ -95,13 +95,26 @@ def plot_strobe(
     return Strobe(ax, bodies, hands, centre_path, contact_path, contacts, ground)
 
 
-def _uncrowded_until(trajectory: Trajectory) -> float:
-    """Time of three turns or as far a way, or of turning back for the second time [s]."""
-    t, x, omega, scene = trajectory.t, trajectory.x, trajectory.omega, trajectory.scene
+def axes_for(view: tuple[float, float, float, float]) -> Axes:
+    """Axes of a new pyplot figure that fits left, right, bottom, top [m] of what is shown."""
+    left, right, bottom, top = view
+    tall = 0.8 + min(max(9 * (top - bottom) / (right - left), 1.5), 4)
+    return plt.figure(figsize=(10, tall), layout="constrained").add_subplot()
+
+
+def turned_until(trajectory: Trajectory) -> float:
+    """Time of three turns or of as far a way, or the last time [s]."""
+    t, x, scene = trajectory.t, trajectory.x, trajectory.scene
     turned = np.abs(trajectory.theta - trajectory.theta[0]) / (2 * np.pi)
     moved = np.abs(x - x[0]) / (2 * np.pi * max(scene.a, scene.b))
     used = np.maximum.accumulate(np.maximum(turned, moved)) / SHOWN_TURNS
-    end = float(t[-1] if used[-1] <= 1 else np.interp(1.0, used, t))
+    return float(t[-1] if used[-1] <= 1 else np.interp(1.0, used, t))
+
+
+def _uncrowded_until(trajectory: Trajectory) -> float:
+    """Time of three turns or as far a way, or of turning back for the second time [s]."""
+    t, omega = trajectory.t, trajectory.omega
+    end = turned_until(trajectory)
     for i in np.flatnonzero(omega[:-1] * omega[1:] < 0)[1:2]:
         zero = t[i] + (t[i + 1] - t[i]) * omega[i] / (omega[i] - omega[i + 1])
         end = min(end, float(zero))
@@ -146,14 +159,13 @@ def _draw_paths(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
     ]  # fmt: skip
 
 
-def _dress_strobe(ax: Axes, path: Trajectory) -> None:
-    left, right, bottom, top = drawing.view(path)
+def dress_ground_axes(ax: Axes, scene: Scene, view: tuple[float, float, float, float]) -> None:
+    """Show a view of the ground with equal scales, and label what its axes are."""
+    left, right, bottom, top = view
     ax.set_xlim(left, right, auto=True)  # auto, because the aspect may widen either
     ax.set_ylim(bottom, top, auto=True)
     ax.set_aspect("equal", adjustable="datalim")  # so that the ground fills the whole width
-    level = path.scene.slope == 0
-    ax.set_xlabel("x [m]" if level else "horizontal [m]")
-    ax.set_ylabel("z [m]" if level else "vertical [m]")
+    ax.set_xlabel("x [m]" if scene.slope == 0 else "horizontal [m]")
+    ax.set_ylabel("z [m]" if scene.slope == 0 else "vertical [m]")
     ax.yaxis.set_major_locator(MaxNLocator(3, steps=[1, 2, 5, 10]))
     ax.spines[["top", "right"]].set_visible(False)
-    legend_above(ax)
