@@ -50,6 +50,17 @@ struct IndexTwo {
         return mass;
     }
 
+    Vector<17> typical() const {
+        const Axes& axes = motion.body.axes();
+        const double length = std::fmax(axes.a, axes.b);
+        const double gravity = motion.body.specific_force().norm();
+        const double rate = std::sqrt(gravity / length);
+        Vector<17> typical;
+        typical << length, length, 1.0, 1.0, length, rate * length, rate * length, rate, rate,
+            rate * length, gravity, gravity, gravity, gravity * length, rate, rate, rate * length;
+        return typical;
+    }
+
     // Differences by q, which a simplified Newton iteration can do with; the rest is linear.
     Matrix<17> jacobian(double t, const Vector<17>& y) const {
         const Axes& axes = motion.body.axes();
@@ -90,32 +101,19 @@ void with_integrator(Motion& motion, Action action) {
     }
 }
 
-// The start with its angles within a turn.
-CoordinateState without_turns(const CoordinateState& start) {
-    CoordinateState rest = start;
-    rest.q[coordinate::theta] = within_a_turn(start.q[coordinate::theta]);
-    rest.q[coordinate::psi] -= start.q[coordinate::theta] - rest.q[coordinate::theta];
-    return rest;
-}
-
-SteppedMultipliers motion_from(const Scene& scene, const CoordinateState& start,
+SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
                                const Settings& settings) {
     const ConstrainedBody body(scene);
-    const CoordinateState rest = without_turns(start);
-    SteppedMultipliers motion{body,
-                              settings,
-                              body.specific_energy(rest.q, rest.q_dot),
-                              two_sum(start.q[coordinate::theta], -rest.q[coordinate::theta]),
-                              {}};
+    const auto& [q, q_dot] = start.state;
+    SteppedMultipliers motion{body, settings, body.specific_energy(q, q_dot), start.angle_base, {}};
     const double size = settings.step.value_or(0.0);
     if (settings.stabilization == Stabilization::ggl) {
         Vector<17> y;
-        y << rest.q, rest.q_dot, body.solve(rest.q, rest.q_dot).multipliers / scene.mass,
-            Eigen::Vector3d::Zero();
+        y << q, q_dot, body.solve(q, q_dot).multipliers / scene.mass, Eigen::Vector3d::Zero();
         motion.steps = Steps<17>{size, {{0.0, y, Vector<17>::Zero(), 0.0}}};
     } else {
         Vector<10> y;
-        y << rest.q, rest.q_dot;
+        y << q, q_dot;
         motion.steps = Steps<10>{size, {{0.0, y, Vector<10>::Zero(), 0.0}}};
     }
     return motion;
@@ -160,11 +158,30 @@ double reduce(Point<N>& point) {
 
 }  // namespace
 
-MultiplierIntegration integrate_multipliers(const Scene& scene, const CoordinateState& start,
+CoordinateStart coordinate_start(const Scene& scene, const State& start) {
+    const double rest = within_a_turn(start.theta);
+    const KinematicState state = kinematics({scene.a, scene.b}, rest, start.omega);
+    CoordinateStart result{
+        {state.q, state.q_dot}, two_sum(start.theta, -rest), start.mode == Mode::rest};
+    result.state.q[coordinate::x] = start.x;
+    return result;
+}
+
+CoordinateStart coordinate_start(const CoordinateState& state) {
+    const double theta = state.q[coordinate::theta];
+    const double rest = within_a_turn(theta);
+    CoordinateStart result{state, two_sum(theta, -rest)};
+    result.state.q[coordinate::theta] = rest;
+    result.state.q[coordinate::psi] =
+        static_cast<double>(DoubleDouble{state.q[coordinate::psi], 0.0} - result.angle_base);
+    return result;
+}
+
+MultiplierIntegration integrate_multipliers(const Scene& scene, const CoordinateStart& start,
                                             const Settings& settings, double t_end,
                                             const Checkpoint& checkpoint) {
     MultiplierIntegration result{motion_from(scene, start, settings), Ending::reached, {}};
-    if (start.at_rest) return result;
+    if (start.rests) return result;
     SteppedMultipliers& motion = result.motion;
     with_integrator(motion, [&](auto integrator, auto& steps) {
         result.ending = integrate(
@@ -187,7 +204,7 @@ void sample(const SteppedMultipliers& motion, const double* times, std::size_t n
             for (const int angle : {coordinate::theta, coordinate::psi}) {
                 const DoubleDouble rest = two_sum(state.q[angle], 0.0);
                 state.q[angle] =
-                    static_cast<double>(motion.theta_base + half_turn * knot.periods + rest);
+                    static_cast<double>(motion.angle_base + half_turn * knot.periods + rest);
             }
             samples[i] = state;
         });
@@ -207,13 +224,6 @@ MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& se
     demand -= 2 * settings.baumgarte_alpha * (constraint_matrix(axes, state.q) * state.q_dot);
     demand.tail<3>() -= beta2 * position_residuals(axes, state.q);
     return body.solve(state.q, demand);
-}
-
-CoordinateState coordinate_state(const Scene& scene, const State& start) {
-    const KinematicState state = kinematics({scene.a, scene.b}, start.theta, start.omega);
-    CoordinateState result{state.q, state.q_dot, start.mode == Mode::rest};
-    result.q[coordinate::x] = start.x;
-    return result;
 }
 
 }  // namespace rolling_ellipse

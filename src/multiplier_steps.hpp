@@ -12,22 +12,25 @@ namespace rolling_ellipse {
 struct CoordinateState {
     Coordinates q;
     Coordinates q_dot;
-    bool at_rest = false;  // for ever
+};
+
+// A start whose angles are measured from a base.
+struct CoordinateStart {
+    CoordinateState state;
+    DoubleDouble angle_base;
+    bool rests = false;  // for ever
 };
 
 struct SteppedMultipliers {
     ConstrainedBody body;
     Settings settings;
     double specific_energy;   // of the start [J/kg]
-    DoubleDouble theta_base;  // angle at which half turns and rest are 0
+    DoubleDouble angle_base;  // angle at which half turns and rest are 0
     // (q, q_dot); of the index-2 system, then lambda per mass and the multipliers of the positions.
     std::variant<Steps<10>, Steps<17>> steps;
 
     Method method() const { return settings.method; }
 };
-
-// The state that meets the constraints where the body rolls.
-CoordinateState coordinate_state(const Scene& scene, const State& start);
 
 struct MultiplierIntegration {
     SteppedMultipliers motion;
@@ -35,7 +38,11 @@ struct MultiplierIntegration {
     StepCounts counts;
 };
 
-MultiplierIntegration integrate_multipliers(const Scene& scene, const CoordinateState& start,
+// The start of a body that rolls, and that from any coordinates and velocities.
+CoordinateStart coordinate_start(const Scene& scene, const State& start);
+CoordinateStart coordinate_start(const CoordinateState& state);
+
+MultiplierIntegration integrate_multipliers(const Scene& scene, const CoordinateStart& start,
                                             const Settings& settings, double t_end,
                                             const Checkpoint& checkpoint);
 

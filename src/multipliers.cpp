@@ -73,9 +73,10 @@ void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
     project_velocity(q, q_dot);
 }
 
-// Along the rolling direction the energy changes by D (omega domega - theta.. dtheta), since it is
-// conserved; the correction is the least in domega^2 + (g/L) dtheta^2, which is regular at turning
-// points, too. Newton's method, until the excess stops to shrink.
+// Along the rolling direction the energy changes by D (omega domega - pull dtheta), pull the part
+// of the force in it over D, for a velocity that is projected with its kinetic energy; the
+// correction is the least in domega^2 + (g/L) dtheta^2, which is regular at turning points, too.
+// Newton's method, until the excess stops to shrink.
 void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy) const {
     constexpr int most_iterations = 20;
     const double rate2 = std::hypot(weight_, pull_) / length_;
@@ -86,12 +87,12 @@ void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy)
         if (excess == 0 || !(std::abs(excess) < last)) return;
         last = std::abs(excess);
         const double omega = q_dot[coordinate::theta];
-        const double omega_dot = solve(q, q_dot).q_ddot[coordinate::theta];
         const Coordinates along = rolling_direction(constraint_matrix(axes_, q));
         const double inertia = along.dot(specific_mass().cwiseProduct(along));
-        const double steepness = inertia * (omega_dot * omega_dot / rate2 + omega * omega);
+        const double pull = specific_force().dot(along) / inertia;
+        const double steepness = inertia * (pull * pull / rate2 + omega * omega);
         if (steepness == 0) return;
-        q += excess / steepness * omega_dot / rate2 * along;
+        q += excess / steepness * pull / rate2 * along;
         q_dot -= excess / steepness * omega * along;
         project(q, q_dot);
     }

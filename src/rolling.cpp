@@ -1,5 +1,6 @@
 #include "rolling.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rolling_ellipse {
@@ -42,21 +43,8 @@ RollingEquation::RollingEquation(const Body& body, double slope)
       c2_((body.a - body.b) * (body.a + body.b)),
       gyration2_(body.gyration2),
       weight_(body.gravity * std::cos(slope)),
-      pull_(body.gravity * std::sin(slope)) {}
-
-// physics (18) times h^4, so that one root and one division are enough: with u = h^2, p = h h',
-//     theta'' u (u (k^2 + u) + p^2) = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
-double RollingEquation::acceleration(double s, double c, double omega) const {
-    const double u = a2_ * s * s + b2_ * c * c;
-    const double p = c2_ * s * c;
-    const double drive = u * std::sqrt(u) * (u * pull_ - p * weight_);
-    const double turning = p * a2_ * b2_ * omega * omega;
-    return (drive - turning) / (u * (u * (gyration2_ + u) + p * p));
-}
-
-Vector<2> RollingEquation::operator()(double, const Vector<2>& y) const {
-    return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
-}
+      pull_(body.gravity * std::sin(slope)),
+      long_axis_(std::max(body.a, body.b)) {}
 
 // physics (19), with D' = 2 h' rho and rho' = -3 rho h'/h.
 Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {

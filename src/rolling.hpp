@@ -2,6 +2,8 @@
 // theta and omega.
 #pragma once
 
+#include <cmath>
+
 #include "constraints.hpp"
 #include "integrator/common.hpp"
 #include "scene.hpp"
@@ -21,6 +23,7 @@ class RollingEquation {
     Vector<2> operator()(double t, const Vector<2>& y) const;
     Matrix<2> jacobian(double t, const Vector<2>& y) const;
     Vector<2> mass() const { return Vector<2>::Ones(); }
+    Vector<2> typical() const { return {1.0, std::sqrt(std::hypot(weight_, pull_) / long_axis_)}; }
 
   private:
     Axes axes_;
@@ -30,7 +33,22 @@ class RollingEquation {
     double gyration2_;
     double weight_;  // g cos(alpha)
     double pull_;    // g sin(alpha)
+    double long_axis_;
 };
+
+// physics (18) times h^4, so that one root and one division are enough: with u = h^2, p = h h',
+//     theta'' u (u (k^2 + u) + p^2) = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
+inline double RollingEquation::acceleration(double s, double c, double omega) const {
+    const double u = a2_ * s * s + b2_ * c * c;
+    const double p = c2_ * s * c;
+    const double drive = u * std::sqrt(u) * (u * pull_ - p * weight_);
+    const double turning = p * a2_ * b2_ * omega * omega;
+    return (drive - turning) / (u * (u * (gyration2_ + u) + p * p));
+}
+
+inline Vector<2> RollingEquation::operator()(double, const Vector<2>& y) const {
+    return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
+}
 
 struct ContactForce {
     double normal;    // [N]

@@ -137,7 +137,7 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
     Solution solution = [&] {
         if (settings.method == Method::exact) return exact_rolling(scene, start, t_end);
         if (settings.model == Model::multipliers) {
-            return stepped(integrate_multipliers(scene, coordinate_state(scene, start), settings,
+            return stepped(integrate_multipliers(scene, coordinate_start(scene, start), settings,
                                                  t_end, checkpoint),
                            start.mode, settings, t_end);
         }
@@ -156,8 +156,9 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
                   double t_end, const Checkpoint& checkpoint) {
     validate(asked, t_end);
     const Settings settings = chosen(asked, scene);
-    Solution solution = stepped(integrate_multipliers(scene, start, settings, t_end, checkpoint),
-                                Mode::rolling, settings, t_end);
+    Solution solution =
+        stepped(integrate_multipliers(scene, coordinate_start(start), settings, t_end, checkpoint),
+                Mode::rolling, settings, t_end);
     judge_by_watch(scene, settings, t_end, checkpoint, solution);
     return solution;
 }

@@ -4,6 +4,7 @@
 //         Vector<size> operator()(double t, const Vector<size>& y) const;
 //         Matrix<size> jacobian(double t, const Vector<size>& y) const;   // for Radau
 //         Vector<size> mass() const;                                      // for Radau
+//         Vector<size> typical() const;  // sizes of an ordinary state, for implicit methods
 //     };
 // and know nothing of what it describes. Nothing is allocated in a step; a step that cannot be
 // done is a status.

@@ -28,11 +28,8 @@ class Gauss {
         StageVectors<N, S> stages = h == last_step_ ? foreseen(point) : constant(point);
         Stagnation<N, S> stagnation;
         bool shrinking = true;
-        for (int i = 0; shrinking || stagnation.most_left(size(point)) > small_change; ++i) {
-            if (i == most_iterations) {
-                if (stagnation.least_left(size(point)) <= small_change) break;
-                return false;
-            }
+        for (int i = 0; shrinking || stagnation.left(size(point)) > small_change; ++i) {
+            if (i == most_iterations) return false;
             for (int j = 0; j < S; ++j) {
                 increments_[j] = hb[j] * f_(point.t + Coefficients::c[j] * h, stages[j]);
             }
@@ -92,7 +89,7 @@ class Gauss {
     }
 
     Vector<N> size(const Point<N>& point) const {
-        Vector<N> sum = point.y.cwiseAbs();
+        Vector<N> sum = f_.typical() + point.y.cwiseAbs();
         for (const Vector<N>& increment : increments_) sum += increment.cwiseAbs();
         return sum;
     }

@@ -25,6 +25,7 @@ class Radau {
 
     // One step; false if the stages do not converge, the step being too large for that.
     bool advance(Point<N>& point, double h) {
+        constexpr double rounding = 2 * epsilon;
         const std::complex<double> pair(C::alpha, C::beta);
         const Matrix<N> jacobian = f_.jacobian(point.t, point.y);
         const Vector<N> mass = f_.mass() / h;
@@ -41,11 +42,8 @@ class Radau {
         w.fill(Vector<N>::Zero());
         Stagnation<N, 3> stagnation;
         bool shrinking = true;
-        for (int i = 0; shrinking || stagnation.most_left(size(point, z)) > small_change; ++i) {
-            if (i == most_iterations) {
-                if (stagnation.least_left(size(point, z)) <= small_change) break;
-                return false;
-            }
+        for (int i = 0; shrinking || stagnation.left(size(point, z)) > small_change; ++i) {
+            if (i == most_iterations) return false;
             StageVectors<N, 3> slopes;
             for (int j = 0; j < 3; ++j) {
                 slopes[j] = f_(point.t + C::c[j] * h, point.y + (point.carry + z[j]));
@@ -67,7 +65,7 @@ class Radau {
             for (int j = 0; j < 3; ++j) changes[j] = next[j] - z[j];
             z = next;
             if (!in_range<N>(z[2])) return false;
-            shrinking = stagnation.shrinks(changes);
+            shrinking = stagnation.shrinks(changes) && stagnation.left(size(point, z)) > rounding;
         }
         add<N>(point, z[2]);  // the last stage is the end of the step
         return true;
@@ -90,8 +88,8 @@ class Radau {
         return result;
     }
 
-    static Vector<N> size(const Point<N>& point, const StageVectors<N, 3>& z) {
-        Vector<N> sum = point.y.cwiseAbs();
+    Vector<N> size(const Point<N>& point, const StageVectors<N, 3>& z) const {
+        Vector<N> sum = f_.typical() + point.y.cwiseAbs();
         for (const Vector<N>& change : z) sum += change.cwiseAbs();
         return sum;
     }

@@ -39,28 +39,17 @@ class Stagnation {
         return shrinking;
     }
 
-    // How large the last changes were beside the size of the step, in the component in which that
-    // is most, and least.
-    double most_left(const Vector<N>& size) const { return left(size).maxCoeff(); }
-    double least_left(const Vector<N>& size) const { return left(size).minCoeff(); }
+    // The largest of the last changes, relative to a size of each component.
+    double left(const Vector<N>& size) const { return largest_.cwiseQuotient(size).maxCoeff(); }
 
   private:
-    Vector<N> left(const Vector<N>& size) const {
-        Vector<N> ratio = Vector<N>::Zero();
-        for (int k = 0; k < N; ++k) {
-            if (largest_[k] != 0.0) ratio[k] = largest_[k] / size[k];
-        }
-        return ratio;
-    }
-
     StageVectors<N, Stages> last_;
     StageVectors<N, Stages> smallest_;
     Vector<N> largest_ = Vector<N>::Zero();
 };
 
 // An iteration is over when its changes are small and do not shrink any more; it has failed when
-// they never become small. Where a component vanishes by cancellation the rounding of the others
-// may go on to move it, so that one small component is enough in the end.
+// they do not become small.
 inline constexpr int most_iterations = 200;
 inline constexpr double small_change = 1e-6;
 
