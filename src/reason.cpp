@@ -57,8 +57,10 @@ std::string why_stopped(Ending ending, const Settings& settings, double t, doubl
 }
 
 std::string reason(const Scene& scene, const ContactWatch& watch) {
-    return "rolling: on a slope of " + brief(scene.slope) +
-           " rad nothing is proved in advance; along the motion computed the smallest N is " +
+    const std::string start = scene.slope == 0 ? "of a start in coordinates"
+                                               : "on a slope of " + brief(scene.slope) + " rad";
+    return "rolling: " + start +
+           " nothing is proved in advance; along the motion computed the smallest N is " +
            brief(watch.smallest_normal_force) +
            " N (t = " + brief(watch.smallest_normal_force_time) + " s), the largest |F|/N " +
            brief(watch.largest_friction_needed) +

@@ -21,6 +21,9 @@ Settings chosen(Settings settings, const Scene& scene) {
     return settings;
 }
 
+// What is said of rolling, for the model that has the same motion in more coordinates.
+std::string in_coordinates(const std::string& reason) { return "multipliers, " + reason; }
+
 Status status(Ending ending) {
     switch (ending) {
         case Ending::reached:
@@ -149,6 +152,7 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
     } else {
         judge_by_watch(scene, settings, t_end, checkpoint, solution);
     }
+    if (settings.model == Model::multipliers) solution.reason = in_coordinates(solution.reason);
     return solution;
 }
 
@@ -160,6 +164,7 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
         stepped(integrate_multipliers(scene, coordinate_start(start), settings, t_end, checkpoint),
                 Mode::rolling, settings, t_end);
     judge_by_watch(scene, settings, t_end, checkpoint, solution);
+    solution.reason = in_coordinates(solution.reason);
     return solution;
 }
 

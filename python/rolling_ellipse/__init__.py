@@ -7,7 +7,7 @@
 
 from importlib.metadata import version as _version
 
-from . import geometry, scenes
+from . import geometry, report, scenes
 from ._core import Mode, Validity
 from ._simulate import simulate
 from .animation import animate
@@ -33,5 +33,5 @@ __all__ = [
     "Scene", "Status", "Thresholds", "Trajectory", "Validity", "ValidityWarning", "__version__",
     "animate", "certify", "constraints", "flow", "geometry", "kinematics", "load", "period", "plot",
     "plot_constraints", "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_strobe",
-    "scenes", "simulate", "thresholds",
+    "report", "scenes", "simulate", "thresholds",
 ]  # fmt: skip

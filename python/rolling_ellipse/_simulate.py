@@ -53,7 +53,8 @@ def simulate(
         rounding errors that only walk at random [2]_ [3]_; "radau" is Radau IIA of order 5 [4]_.
         "auto" is "exact" on level ground and "dop853" on a slope.
     rtol, atol : float
-        Allowed local error of the pairs, of each of theta and omega: atol + rtol times its size.
+        Allowed local error of the pairs in each component of the state (theta and omega, or the
+        five coordinates and their rates): atol + rtol times its size.
     step : float, optional
         Size of steps [s]: required by "rk4", "gauss" and "radau"; with it "dop853" and "dopri5"
         take fixed steps without error control. The last step may be shorter.
@@ -66,7 +67,8 @@ def simulate(
         "projection+energy" to one with the energy of the start; "ggl" is the index-2 system of
         Gear, Gupta and Leimkuhler [7]_.
     baumgarte : (float, float)
-        Gains (alpha, beta) [1/s] of ``f'' + 2 alpha f' + beta**2 f = 0``.
+        Gains (alpha, beta) [1/s] of ``f'' + 2 alpha f' + beta**2 f = 0``, for the velocity
+        constraint f1 of ``f1' + 2 alpha f1 = 0``.
     max_steps : int
         Most steps taken before the integration ends with the status MAX_STEPS.
     raise_on_failure : bool
@@ -115,16 +117,21 @@ def simulate(
         baumgarte=baumgarte,
         max_steps=max_steps,
     )
-    times = _sample_times(t)
-    trajectory = Trajectory.computed(scene, settings, times)
-    if trajectory.status is Status.VALIDITY_LOST:
-        warnings.warn(trajectory.message, ValidityWarning, stacklevel=2)
-    elif not trajectory.success and raise_on_failure:
-        raise IntegrationError(trajectory)
+    trajectory = Trajectory.computed(scene, settings, sample_times(t))
+    report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=3)
     return trajectory
 
 
-def _sample_times(t: Any) -> FloatArray:
+def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel: int) -> None:
+    """Warn of lost validity; raise for an integration that stopped before its end."""
+    if trajectory.status is Status.VALIDITY_LOST:
+        warnings.warn(trajectory.message, ValidityWarning, stacklevel=stacklevel)
+    elif not trajectory.success and raise_on_failure:
+        raise IntegrationError(trajectory)
+
+
+def sample_times(t: Any) -> FloatArray:
+    """Return the times to sample at: those given, or 1001 even ones up to an end time."""
     times = array("t", t)
     if not np.all(np.isfinite(times)):
         raise ValueError(f"t must be finite [s], got {t!r}")

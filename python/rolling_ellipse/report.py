@@ -1,0 +1,223 @@
+"""The report taken apart: its equations as printed, their errata as numbers, and its simulation.
+
+Arrays hold the report's coordinates q = (x, z, theta, psi, r) along the last axis [m, rad], in the
+order of its section 2; its constraint matrix has (x, r, psi, theta, z) and its state space
+(x, z, r, theta, psi), which are reordered here. Printed equations carry their numbers; the right
+ones beside them, and the rest of the package, have names. SI units, theta clockwise positive.
+
+Common arguments: ``q``, ``q_dot``, ``q_ddot`` array_like of shape (..., 5), whose leading axes
+broadcast; semi-axes ``a``, ``b`` [m], ``mass`` [kg], ``gravity`` [m/s^2]. Everything raises
+ValueError naming the argument if a shape or a number is out of its range.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ._check import FloatArray, choice, number, optional_number
+from ._errata import Erratum, errata, errata_table
+from ._errata_numbers import Comparison
+from ._explicit import Steps
+from ._printed import (
+    appendix_b_r_x,
+    appendix_b_radius,
+    case_lead,
+    case_sign,
+    constraint_rates,
+    contact_x,
+    eq_5,
+    eq_38,
+    eq_48,
+    eqs_33_to_37,
+    equations_of_motion,
+    f1,
+    f2,
+    f3,
+    f4,
+    struck_speed,
+)
+from ._printed_motion import PrintedMotion, follow
+from ._printed_multipliers import (
+    complete_f,
+    eq_39,
+    eq_40,
+    eq_41,
+    eq_42,
+    lambda4_numerator,
+    multipliers,
+)
+from ._printed_rows import (
+    CODE,
+    EQ_32,
+    MATRIX,
+    MISPRINTS,
+    consistent_rates,
+    constraint_matrix,
+    misprints,
+)
+from ._printed_start import InconsistentStartWarning, Start, project, violations
+from ._simulate import report_status, sample_times
+from .kinematics import COORDINATES
+from .scene import Scene
+from .settings import Settings
+from .trajectory import Trajectory
+
+__all__ = [
+    "CODE", "EQ_32", "MATRIX", "MISPRINTS", "Comparison", "Erratum", "InconsistentStartWarning",
+    "PrintedMotion", "Start", "appendix_b_r_x", "appendix_b_radius", "case_lead", "case_sign",
+    "complete_f", "consistent_rates", "constraint_matrix", "constraint_rates", "contact_x", "eq_5",
+    "eq_38", "eq_39", "eq_40", "eq_41", "eq_42", "eq_48", "eqs_33_to_37", "equations_of_motion",
+    "errata", "errata_table", "f1", "f2", "f3", "f4", "lambda4_numerator", "multipliers",
+    "simulate", "struck_speed",
+]  # fmt: skip
+
+
+def simulate(
+    q: Any,
+    q_dot: Any,
+    t: Any,
+    *,
+    a: float,
+    b: float,
+    mass: float = 1.0,
+    gravity: float = 9.81,
+    equations: str = "corrected",
+    consistent: str = "refuse",
+    printed: Any = CODE,
+    method: str | None = None,
+    stabilization: str | None = None,
+    baumgarte: tuple[float, float] = (10.0, 10.0),
+    rtol: float = 1e-8,
+    atol: float = 1e-10,
+    step: float | None = None,
+    max_steps: int = 100_000,
+) -> Trajectory | PrintedMotion:
+    """Simulate from the report's coordinates, as its section 4 does; the body is a uniform disc.
+
+    Three things lift the report's ellipse off the ground: wrong equations (``printed``), a start
+    that violates the constraints (``consistent="as_given"``), and the drift of accelerations
+    integrated without looking back (large steps). Each can be had by itself.
+
+    Parameters
+    ----------
+    q, q_dot : array_like, shape (5,)
+        x, z, theta, psi, r [m, rad] and their rates at t = 0.
+    t : float or array_like, shape (n,)
+        End time (then 1001 even samples), or strictly increasing sample times >= 0 [s].
+    a, b : float
+        Semi-axes [m].
+    mass, gravity : float
+        Mass [kg], acceleration of gravity [m/s^2].
+    equations : {"corrected", "printed"}
+        The corrected ones are the model "multipliers"; the printed ones are integrated in index-1
+        form, without stabilisation.
+    consistent : {"refuse", "project", "as_given"}
+        What to do with a start that violates f2, f3, f4 or the rates: with "printed" equations
+        the rows in use must allow the rates. "project" takes the nearest consistent state in the
+        metric of the kinetic energy (theta and z move, x stays, psi and r follow); "as_given"
+        runs it after an InconsistentStartWarning.
+    printed : sequence of str
+        Of the printed equations only: what is as printed, see `constraint_matrix`; default is
+        the report's code. () has all rows right.
+    method : str, optional
+        "dopri5" (default) or "rk4" for the printed equations; for the corrected ones what
+        `rolling_ellipse.simulate` has for its model "multipliers", default "dop853" ("radau" with
+        the stabilization "ggl").
+    stabilization, baumgarte : str, optional; (float, float)
+        Of the corrected equations only, as in `rolling_ellipse.simulate`.
+    rtol, atol, step, max_steps
+        As in `rolling_ellipse.simulate`: error control, or with `step` fixed steps.
+
+    Returns
+    -------
+    Trajectory or PrintedMotion
+        ``start`` of the latter says what a projection changed.
+
+    Raises
+    ------
+    ValueError
+        If the start is inconsistent and to be refused (naming each violated constraint and its
+        size), or an argument is out of range or of no use.
+    IntegrationError
+        If the integration of the corrected equations stops before the last time.
+    """
+    choice("equations", equations, ("corrected", "printed"))
+    choice("consistent", consistent, ("refuse", "project", "as_given"))
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    times = sample_times(t)
+    state = _vector("q", q), _vector("q_dot", q_dot)
+    if equations == "corrected":
+        settings = Settings(
+            model="multipliers",
+            method=method or ("radau" if stabilization == "ggl" else "dop853"),
+            rtol=rtol,
+            atol=atol,
+            step=step,
+            stages=None,
+            stabilization=stabilization or "projection",
+            baumgarte=baumgarte,
+            max_steps=max_steps,
+        )
+        start = _checked_start(*state, body, (), consistent)
+        return _corrected(start, times, body, settings)
+    if stabilization is not None:
+        raise ValueError(
+            f"stabilization must be None for the printed equations, got {stabilization!r}"
+        )
+    steps = _steps(method or "dopri5", rtol, atol, step, max_steps)
+    names = misprints(printed)
+    return follow(_checked_start(*state, body, names, consistent), times, body, names, steps)
+
+
+def _corrected(start: Start, t: FloatArray, body: Scene, settings: Settings) -> Trajectory:
+    """Return the motion of the model "multipliers" from a start."""
+    x, _, theta, _, _ = start.q.tolist()
+    scene = replace(body, theta=theta, omega=float(start.q_dot[2]), x=x)
+    trajectory = Trajectory.computed(scene, settings, t, (start.q, start.q_dot))
+    report_status(trajectory, raise_on_failure=True, stacklevel=4)
+    return trajectory
+
+
+def _checked_start(
+    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...], consistent: str
+) -> Start:
+    violated = violations(q, q_dot, body, printed)
+    begun = q, q_dot
+    if violated and consistent == "project":
+        begun = project(q, q_dot, body, printed)
+    elif violated:
+        got = "; ".join(violated)
+        if consistent == "refuse":
+            raise ValueError(f"q and q_dot must meet the constraints at t = 0, got {got}")
+        warnings.warn(
+            f"the start violates constraints: {got}", InconsistentStartWarning, stacklevel=3
+        )
+    return Start(*begun, begun[0] - q, begun[1] - q_dot, violated)
+
+
+def _vector(name: str, value: Any) -> FloatArray:
+    found = np.array(value, dtype=np.float64)
+    if found.shape != (COORDINATES,):
+        raise ValueError(
+            f"{name} must have 5 entries (x, z, theta, psi, r), got shape {found.shape}"
+        )
+    if not np.all(np.isfinite(found)):
+        raise ValueError(f"{name} must be finite, got {value!r}")
+    return found
+
+
+def _steps(method: str, rtol: float, atol: float, step: float | None, max_steps: int) -> Steps:
+    choice("method", method, ("dopri5", "rk4"))
+    size = optional_number("step", step)
+    if size is None and method == "rk4":
+        raise ValueError("step must be a positive time for the method 'rk4', got None")
+    for name, value in (("rtol", rtol), ("atol", atol), ("step", 1.0 if size is None else size)):
+        if not 0 < number(name, value) < np.inf:
+            raise ValueError(f"{name} must be positive and finite, got {value!r}")
+    if not max_steps >= 1:
+        raise ValueError(f"max_steps must be at least 1, got {max_steps!r}")
+    return Steps(method, number("rtol", rtol), number("atol", atol), size, max_steps)
