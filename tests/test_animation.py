@@ -22,6 +22,7 @@ from pictures import ORDINARY_SCENES, outline, support
 from PIL import Image
 from rolling_ellipse import _movies as movies
 from rolling_ellipse import animation as animation_module
+from rolling_ellipse._strip import Strip
 from rolling_ellipse.animation import RollingAnimation
 
 SCENES = {
@@ -48,7 +49,13 @@ def short(report: re.Trajectory) -> RollingAnimation:
 
 
 def frames(animation: RollingAnimation) -> range:
-    return range(animation.motion.t.size)
+    return range(animation.t.size)
+
+
+def only(animation: RollingAnimation) -> Strip:
+    """The strip of an animation of one motion."""
+    (strip,) = animation.strips
+    return strip
 
 
 def rolled(body: tuple[float, float], theta: float, other: float) -> float:
@@ -72,16 +79,17 @@ def test_in_every_frame_the_body_touches_the_ground_at_the_contact(
     trajectory: re.Trajectory,
 ) -> None:
     animation = re.animate(trajectory, width=160)
+    strip = only(animation)
     scene = trajectory.scene
     size = max(scene.a, scene.b)
     assert len(frames(animation)) == 101
     for i in frames(animation):
         animation.draw(i)
-        lowest_x, lowest_z = support(animation.body)
-        ((contact_x,), (contact_z,)) = animation.contact.get_data()
+        lowest_x, lowest_z = support(strip.body)
+        ((contact_x,), (contact_z,)) = strip.contact.get_data()
         # the angle goes through degrees: 20 rad keep 1e-14 rad, times size for the height and
         # rho for the place of the contact
-        rho = (scene.a * scene.b) ** 2 / animation.motion.z[i] ** 3
+        rho = (scene.a * scene.b) ** 2 / strip.motion.z[i] ** 3
         assert abs(lowest_z) <= 1e-13 * size
         assert abs(lowest_x - contact_x) <= 1e-13 * (size + rho + abs(contact_x))
         assert contact_z == 0
@@ -89,7 +97,7 @@ def test_in_every_frame_the_body_touches_the_ground_at_the_contact(
 
 def test_from_frame_to_frame_the_body_moves_as_far_as_it_rolls(trajectory: re.Trajectory) -> None:
     animation = re.animate(trajectory, width=160)
-    body, scene = animation.body, trajectory.scene
+    body, scene = only(animation).body, trajectory.scene
     place, angle = body.get_center()[0], body.angle
     for i in frames(animation):
         animation.draw(i)
@@ -100,22 +108,24 @@ def test_from_frame_to_frame_the_body_moves_as_far_as_it_rolls(trajectory: re.Tr
 
 
 def test_the_checks_see_a_millimetre(short: RollingAnimation) -> None:
-    x, z = short.body.get_center()
-    short.body.set_center((x, z - 1e-3))
-    assert support(short.body)[1] == pytest.approx(-1e-3, abs=1e-12)
+    strip = only(short)
+    x, z = strip.body.get_center()
+    strip.body.set_center((x, z - 1e-3))
+    assert support(strip.body)[1] == pytest.approx(-1e-3, abs=1e-12)
     half_turn = rolled((2.0, 1.0), 0.0, math.pi)
     assert half_turn == pytest.approx(9.6884482205476762 / 2, rel=1e-15)
 
 
 def test_frames_are_the_trajectory_in_true_time(report: re.Trajectory) -> None:
     animation = re.animate(report, fps=20, speed=0.5, t_end=1.0, width=160)
+    strip = only(animation)
     assert len(frames(animation)) == 41
     for i in frames(animation):
         animation.draw(i)
         at = report.sol(min(i * 0.5 / 20, 1.0))
-        assert animation.motion.t[i] == pytest.approx(i * 0.5 / 20, abs=1e-16)
-        assert animation.body.get_center() == (at.x[0], at.z[0])
-        assert animation.body.angle == -math.degrees(at.theta[0])
+        assert animation.t[i] == pytest.approx(i * 0.5 / 20, abs=1e-16)
+        assert strip.body.get_center() == (at.x[0], at.z[0])
+        assert strip.body.angle == -math.degrees(at.theta[0])
         assert animation.clock.get_text() == f"t = {i * 0.025:.3f} s   speed × 0.5"
 
 
@@ -141,28 +151,30 @@ def test_the_clock_has_the_digits_that_tell_frames_apart(
 
 def test_axes_tip_and_traces_belong_to_the_body(report: re.Trajectory) -> None:
     animation = re.animate(report, width=160)
+    strip = only(animation)
     ends: list[np.ndarray] = []
     for i in frames(animation):
         animation.draw(i)
-        transform = animation.body.get_patch_transform()
+        transform = strip.body.get_patch_transform()
         along = transform.transform([(-1.0, 0.0), (1.0, 0.0)])
         across = transform.transform([(0.0, -1.0), (0.0, 1.0)])
         ends.append(along[1])
-        assert animation.axis_a.get_xydata() == pytest.approx(along, abs=1e-13)
-        assert animation.axis_b.get_xydata() == pytest.approx(across, abs=1e-13)
-        assert animation.tip.get_xydata() == pytest.approx(along[1:], abs=1e-13)
-        path = np.column_stack([animation.motion.x, animation.motion.z])[: i + 1]
-        assert np.array_equal(animation.centre_trace.get_xydata(), path)
-        assert animation.tip_trace.get_xydata() == pytest.approx(np.array(ends), abs=1e-13)
+        assert strip.axis_a.get_xydata() == pytest.approx(along, abs=1e-13)
+        assert strip.axis_b.get_xydata() == pytest.approx(across, abs=1e-13)
+        assert strip.tip.get_xydata() == pytest.approx(along[1:], abs=1e-13)
+        path = np.column_stack([strip.motion.x, strip.motion.z])[: i + 1]
+        assert np.array_equal(strip.centre_trace.get_xydata(), path)
+        assert strip.tip_trace.get_xydata() == pytest.approx(np.array(ends), abs=1e-13)
 
 
 def test_frames_may_be_drawn_in_any_order(short: RollingAnimation) -> None:
+    strip = only(short)
     short.draw(7)
-    first = [short.body.get_center(), short.body.angle, short.contact.get_xdata()[0]]
+    first = [strip.body.get_center(), strip.body.angle, strip.contact.get_xdata()[0]]
     short.draw(2)
-    assert short.body.get_center() != first[0]
-    assert short.body in short.draw(7)
-    assert [short.body.get_center(), short.body.angle, short.contact.get_xdata()[0]] == first
+    assert strip.body.get_center() != first[0]
+    assert strip.body in short.draw(7)
+    assert [strip.body.get_center(), strip.body.angle, strip.contact.get_xdata()[0]] == first
 
 
 def test_no_contact_is_drawn_in_flight(report: re.Trajectory) -> None:
@@ -170,28 +182,33 @@ def test_no_contact_is_drawn_in_flight(report: re.Trajectory) -> None:
     flying = dataclasses.replace(at)
     flying.__dict__["mode"] = np.array([re.Mode.ROLLING, re.Mode.FLIGHT, re.Mode.ROLLING], np.int8)
     flying.__dict__["_solution"] = at.__dict__["_solution"]
-    animation = RollingAnimation(flying, fps=10, speed=1, width=160, dpi=50, figure=None)
-    seen = [np.isfinite(animation.draw(i) and animation.contact.get_xdata()[0]) for i in range(3)]
+    animation = RollingAnimation(
+        [flying], flying.t, [""], fps=10, speed=1, width=160, dpi=50, figure=None
+    )
+    contact = only(animation).contact
+    seen = [np.isfinite(animation.draw(i) and contact.get_xdata()[0]) for i in range(3)]
     assert seen == [True, False, True]
 
 
-def test_the_clock_says_when_rolling_is_no_longer_valid() -> None:
+def test_the_caption_says_when_rolling_is_no_longer_valid() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", re.ValidityWarning)
         jump = re.simulate(re.scenes.jump, 1.0, model="rolling")
     animation = re.animate(jump, width=160)
+    said = []
     for i in frames(animation):
         animation.draw(i)
-        late = jump.valid_until <= animation.motion.t[i]
-        assert ("no longer valid" in animation.clock.get_text()) == late
-    assert "no longer valid" in animation.clock.get_text()
+        said.append(only(animation).caption.get_text())
+    late = jump.valid_until <= animation.t
+    assert late.any() and not late.all()
+    assert said == ["rolling is no longer valid" if it_is else "" for it_is in late]
 
 
 # ------------------------------------------------------------------------------------- camera
 
 
 def view_of(animation: RollingAnimation) -> tuple[tuple[float, float], tuple[float, float]]:
-    return animation.ax.get_xlim(), animation.ax.get_ylim()
+    return only(animation).ax.get_xlim(), only(animation).ax.get_ylim()
 
 
 @pytest.mark.parametrize(
@@ -205,7 +222,7 @@ def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
     for i in frames(animation):
         animation.draw(i)
         (left, right), (bottom, top) = view_of(animation)
-        points = outline(animation.body)
+        points = outline(only(animation).body)
         assert left < points[:, 0].min() and points[:, 0].max() < right
         assert bottom < 0 and points[:, 1].max() < top
         width, height = animation.figure.get_size_inches()
@@ -219,23 +236,24 @@ def test_the_body_is_always_seen_whole(trajectory: re.Trajectory) -> None:
     for i in frames(animation):
         animation.draw(i)
         (left, right), (_, top) = view_of(animation)
-        points = outline(animation.body)
+        points = outline(only(animation).body)
         assert left < points[:, 0].min() and points[:, 0].max() < right
         assert points[:, 1].max() < top
 
 
 def test_the_ground_is_ruled_where_the_body_is() -> None:
     animation = re.animate(re.simulate(re.Scene(1.0, 1.0, omega=1e6), 9.0), width=160)
+    strip = only(animation)
     for i in (0, 100, 200):  # 4e6 m on
         animation.draw(i)
         (left, right), _ = view_of(animation)
-        ticks = np.array([tick[0, 0] for tick in animation.ruler.ticks.get_segments()])
+        ticks = np.array([tick[0, 0] for tick in strip.ruler.ticks.get_segments()])
         assert ticks.size < 200
         seen = ticks[(left < ticks) & (ticks < right)]
         assert seen.size >= 5
-        assert np.diff(seen) == pytest.approx(animation.ruler.step, rel=1e-9)
+        assert np.diff(seen) == pytest.approx(strip.ruler.step, rel=1e-9)
         assert ticks[0] <= left and right <= ticks[-1]
-        texts = {label.get_position()[0]: label.get_text() for label in animation.ruler.labels}
+        texts = {label.get_position()[0]: label.get_text() for label in strip.ruler.labels}
         assert all(float(text[:-2].replace("−", "-")) == place for place, text in texts.items())
 
 
@@ -274,7 +292,8 @@ def test_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path) 
         difference = [np.abs(picture - other).mean() for other in drawn]
         assert np.argmin(difference) == i
         assert difference[i] < 2  # of 255: what the palette rounds away
-    orange = 255 * np.array(to_rgb(short.centre_trace.get_color()))  # a thin line, not averaged out
+    # a thin line, not averaged out
+    orange = 255 * np.array(to_rgb(only(short).centre_trace.get_color()))
     assert np.abs(pictures[-1] - orange).max(axis=2).min() < 20
 
 
@@ -408,14 +427,14 @@ def test_a_notebook_is_not_flooded(report: re.Trajectory, monkeypatch: pytest.Mo
 def test_how_much_is_shown(options: dict[str, float], count: int, last: float) -> None:
     trajectory = re.simulate(re.scenes.report, 40.0)
     animation = re.animate(trajectory, width=160, **options)
-    assert animation.motion.t.size == count
-    assert animation.motion.t[-1] == pytest.approx(last, abs=1e-14)
+    assert animation.t.size == count
+    assert animation.t[-1] == pytest.approx(last, abs=1e-14)
 
 
 def test_the_last_frame_never_leaves_the_trajectory() -> None:
     for k in range(1, 60):
         end = k * 0.04  # may be an ulp below k / 25
-        assert re.animate(re.simulate(re.scenes.report, end)).motion.t[-1] <= end
+        assert re.animate(re.simulate(re.scenes.report, end)).t[-1] <= end
 
 
 @pytest.mark.parametrize(

@@ -101,7 +101,7 @@ def test_nothing_to_draw_is_refused(picture: Callable[..., Any], report: re.Traj
     none = np.empty(0)
     empty = dataclasses.replace(report, t=none, theta=none, omega=none, x=none)
     for wrong in (empty, [report, empty]):
-        with pytest.raises(ValueError, match="trajectories must have samples"):
+        with pytest.raises(ValueError, match="every trajectory must have samples"):
             picture(wrong, ax=new_axes())
     with pytest.raises(ValueError, match=r"trajectories must .*, got none"):
         picture([], ax=new_axes())

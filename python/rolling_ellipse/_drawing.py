@@ -78,29 +78,9 @@ def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, f
     return left - 0.2 * size, right + 0.2 * size, bottom - 0.35 * size, top + 0.25 * size
 
 
-def camera(motion: Trajectory, shape: float | None) -> tuple[FloatArray, float]:
-    """View (left, right, bottom, top) [m] of each frame, (n, 4), and its height over its width."""
-    scene = motion.scene
-    size = max(scene.a, scene.b)
-    left, right, bottom, top = view(motion)
-    follow = right - left > 2 * np.pi * size * SHOWN_TURNS + 4 * size
-    if follow:  # every frame has the size that the tallest needs, relative to its place on the way
-        height = float(np.max(motion.z + np.minimum(motion.z, size)))
-        left, right, bottom, top = -5 * size, 4 * size, -0.8 * size, height + 0.3 * size
-    bottom -= 0.04 * (right - left)  # for the ruler's figures
-    shape = shape or min(max((top - bottom) / (right - left), 0.25), 0.55)
-    wide = max(right - left, (top - bottom) / shape)
-    air, sky = wide - (right - left), wide * shape - (top - bottom)
-    fixed = np.array([left - air / 2, right + air / 2, bottom, top + sky])
-    if not follow:
-        return np.tile(fixed, (motion.t.size, 1)), shape
-    below = tilted(scene).transform(np.column_stack([motion.x, np.zeros_like(motion.x)]))
-    return fixed + below[:, [0, 0, 1, 1]], shape
-
-
-def draw_ground(ax: Axes, path: Trajectory) -> Polygon:
-    """Fill the earth below z = 0, well past both ends of the path and past any view of it."""
-    return fill_earth(ax, path.scene, float(path.x.min()), float(path.x.max()))
+def draw_ground(ax: Axes, path: Trajectory, span: float = 0.0) -> Polygon:
+    """Fill the earth below z = 0, past any view of the path, or past `span` [m] around it."""
+    return fill_earth(ax, path.scene, float(path.x.min()) - span, float(path.x.max()) + span)
 
 
 def fill_earth(ax: Axes, scene: Scene, left: float, right: float) -> Polygon:
@@ -124,7 +104,7 @@ class Ruler:
 
     def __init__(self, ax: Axes, scene: Scene, span: float) -> None:
         on_slope = tilted(scene) + ax.transData
-        steps = MaxNLocator(24, steps=[1, 2, 10]).tick_values(0, span)
+        steps = MaxNLocator(24, steps=[1, 2, 5, 10]).tick_values(0, span)
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
         self._fifths = math.ceil(span / (5 * self.step))
         self.ticks = LineCollection([], colors=GREY, lw=1, transform=on_slope, zorder=2)

@@ -41,7 +41,7 @@ def motions_of(trajectories: Trajectory | Sequence[Trajectory]) -> tuple[Traject
             raise ValueError(f"{wanted}, got none")
     for motion in motions:
         if motion.t.size == 0:
-            raise ValueError(f"trajectories must have samples, got {motion!r}")
+            raise ValueError(f"every trajectory must have samples, got {motion!r}")
     return motions
 
 

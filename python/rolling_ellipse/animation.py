@@ -1,4 +1,4 @@
-"""A trajectory as a moving picture in true time, for files and notebooks."""
+"""Trajectories as a moving picture in true time, for files and notebooks."""
 
 from __future__ import annotations
 
@@ -14,23 +14,30 @@ from matplotlib import rc_context
 from matplotlib.animation import AbstractMovieWriter, FuncAnimation
 from matplotlib.figure import Figure
 
-from . import _drawing as drawing
-from ._drawing import BLUE, FILL, INK, ORANGE
+from ._camera import cameras
+from ._drawing import INK
+from ._labels import labels_of, motions_of
 from ._movies import gif_delay, movie_writer, progress_bar
+from ._strip import Strip
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.lines import Line2D
+    from collections.abc import Sequence
 
+    from matplotlib.artist import Artist
+
+    from ._check import FloatArray
     from .trajectory import Trajectory
 
 NOTEBOOK_FRAMES = 500  # more would make a notebook too heavy to share
+CAPTION = 0.3  # height of a line of text with its margins [inch]
+TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
 
 
 def animate(
-    trajectory: Trajectory,
+    trajectories: Trajectory | Sequence[Trajectory],
     path: str | PathLike[str] | None = None,
     *,
+    labels: Sequence[str] | None = None,
     t_end: float | None = None,
     fps: float = 25.0,
     speed: float = 1.0,
@@ -42,17 +49,25 @@ def animate(
 ) -> RollingAnimation:
     """Make a moving picture in true time: frame i shows t = i · speed / fps and lasts 1 / fps.
 
-    The camera stands still where the motion fits into about three turns; else it goes along.
+    Several motions are shown in strips over one another: one clock, one scale, and the same
+    stretch of ground, so that one sees which is ahead. The camera stands still where all fit
+    into about three turns; else it goes along with their middle. Motions that part by more than
+    fits are followed each in its own strip, and the captions say where they are. A motion that
+    ends before the others stays where it ended, and its caption says so.
 
     Parameters
     ----------
-    trajectory : Trajectory
+    trajectories : Trajectory or sequence of Trajectory
+        One motion, or several to compare.
     path : path, optional
         File to write: .gif, .mp4 (needs ffmpeg: the extra rolling_ellipse[video]) or .html.
         Without it nothing is written; a notebook shows the returned object by itself.
+    labels : sequence of str, optional
+        Names of the motions; without them, several are told apart by what differs among them:
+        method, model, fields of the scene, else 1, 2, 3.
     t_end : float, optional
-        Last time shown [s]. Without it the whole trajectory is shown, or as much of it as
-        `max_frames` frames hold: its first 10 s by default.
+        Last time shown [s]. Without it all is shown up to the latest end, or as much of it as
+        `max_frames` frames hold: the first 10 s by default.
     fps : float
         Frames per second. A GIF counts in 1/100 s: there 100 / fps must be whole and at least 2.
     speed : float
@@ -71,12 +86,15 @@ def animate(
     Returns
     -------
     RollingAnimation
-        A matplotlib FuncAnimation with its artists as attributes, and `draw(i)`.
+        A matplotlib FuncAnimation with its artists in `strips`, and `draw(i)`.
 
     Raises
     ------
     ValueError
-        If an argument is out of range, `path` has another suffix or a GIF cannot keep the time.
+        If an argument is out of range, there is nothing to show or not a label for each,
+        `path` has another suffix or a GIF cannot keep the time.
+    TypeError
+        If something to show is no Trajectory.
     FileNotFoundError
         If an .mp4 is asked for and there is no ffmpeg.
     """
@@ -85,19 +103,22 @@ def animate(
             raise ValueError(f"{name} must be positive and finite, got {value!r}")
     if max_frames < 1:
         raise ValueError(f"max_frames must be at least 1, got {max_frames!r}")
-    if trajectory.t.size == 0:
-        raise ValueError("trajectory must have samples, got none")
-    last = float(trajectory.t[-1]) if t_end is None else t_end
-    if not 0 <= last <= trajectory.t[-1]:
-        raise ValueError(f"t_end must be within [0, {trajectory.t[-1]:g}] s, got {t_end!r}")
+    motions = motions_of(trajectories)
+    names = labels_of(motions, labels)
+    latest = max(float(motion.t[-1]) for motion in motions)
+    last = latest if t_end is None else t_end
+    if not 0 <= last <= latest:
+        raise ValueError(f"t_end must be within [0, {latest:g}] s, got {t_end!r}")
     if path is not None:
         movie_writer(path, fps)  # a wrong path is refused before any work
     count = 1 + math.floor(last * fps / speed * (1 + 1e-12))  # 0.58 s · 50 / s is 29, not 28.99…
     if t_end is None:
         count = min(count, max_frames)
-    times = np.minimum(np.arange(count) * speed / fps, last)
-    motion = trajectory.sol(times)
-    animation = RollingAnimation(motion, fps=fps, speed=speed, width=width, dpi=dpi, figure=figure)
+    t = np.minimum(np.arange(count) * speed / fps, last)
+    shown = [motion.sol(np.minimum(t, motion.t[-1])) for motion in motions]
+    animation = RollingAnimation(
+        shown, t, names, fps=fps, speed=speed, width=width, dpi=dpi, figure=figure
+    )
     if path is not None:
         animation.save(path, progress=progress)
     return animation
@@ -108,18 +129,23 @@ class RollingAnimation(FuncAnimation):
 
     Attributes
     ----------
-    motion : Trajectory
-        The trajectory at the times of the frames: frame i shows its sample i.
-    figure, ax
+    t : ndarray, shape (n,)
+        Time that each frame shows [s].
+    strips : tuple of Strip
+        One for each motion, from top to bottom: its `ax`, `motion` (whose sample i is what frame
+        i shows) and artists `body`, `axis_a`, `axis_b`, `tip`, `contact`, `centre_trace`,
+        `tip_trace`, `ruler` and `caption`.
+    clock : Text
+        The time.
+    figure : Figure
         Where it is drawn.
-    body, axis_a, axis_b, tip, contact, centre_trace, tip_trace, clock
-        The moving artists, their data in ground axes (x along the ground, z normal to it) [m].
-        `tip` is the end of axis a that lies on the right at theta = 0.
     """
 
     def __init__(
         self,
-        motion: Trajectory,
+        motions: Sequence[Trajectory],
+        t: FloatArray,
+        labels: Sequence[str],
         *,
         fps: float,
         speed: float,
@@ -127,78 +153,53 @@ class RollingAnimation(FuncAnimation):
         dpi: float,
         figure: Figure | None,
     ) -> None:
-        self.motion, self.fps, self.speed = motion, fps, speed
+        self.t, self.fps, self.speed = t, fps, speed
         self._decimals = _decimals(speed / fps)
-        self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
         shape = None if figure is None else figure.get_figheight() / figure.get_figwidth()
-        self._views, shape = drawing.camera(motion, shape)
+        inches = width / dpi if figure is None else figure.get_figwidth()
+        head = CAPTION / inches if any(labels) else 0.0
+        seen = cameras(motions, shape, head, TICKS + FIGURES / inches)
         if figure is None:  # not pyplot's: nothing to close, nothing shown twice
-            height = 2 * math.ceil(width * shape / 2)  # video wants even numbers
+            height = 2 * math.ceil(width * seen.shape / 2)  # video wants even numbers
             figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi)
         self.figure = figure
-        self._build()
+        floors = 1 - np.cumsum(seen.heights)
+        self.strips = tuple(
+            Strip(figure.add_axes((0, floor, 1, share)), motion, t, views, label, not seen.together)
+            for motion, views, label, floor, share in zip(
+                motions, seen.views, labels, floors, seen.heights, strict=True
+            )
+        )
+        top = self.strips[0].ax
+        self.clock = top.text(
+            0.985, 0.95, "", transform=top.transAxes, ha="right", va="top", color=INK
+        )
+        self._fit_captions()
+        self.draw(0)
         super().__init__(
-            figure, self.draw, frames=motion.t.size, interval=1000 / fps, cache_frame_data=False
+            figure, self.draw, frames=t.size, interval=1000 / fps, cache_frame_data=False
         )
 
     def __del__(self) -> None:
         """Matplotlib warns of an animation never shown; reading its frames back is use enough."""
 
-    def _build(self) -> None:
-        self.ax = ax = self.figure.add_axes((0, 0, 1, 1))
-        ax.set_axis_off()
-        ax.autoscale(False)
-        on_slope = drawing.tilted(self.motion.scene) + ax.transData
-        drawing.draw_ground(ax, self.motion)
-        span = float(self._views[0, 1] - self._views[0, 0])
-        self.ruler = drawing.Ruler(ax, self.motion.scene, span)
-
-        def line(zorder: int, **style: Any) -> Line2D:
-            return ax.plot([], [], transform=on_slope, zorder=zorder, **style)[0]
-
-        self.body = drawing.body_patch(
-            self.motion, 0, facecolor=(*FILL, 0.25), edgecolor=INK, lw=1.8, zorder=4
-        )
-        self.body.set_transform(on_slope)
-        ax.add_patch(self.body)
-        self.tip_trace = line(3, color=BLUE, lw=1, alpha=0.6)
-        self.centre_trace = line(5, color=ORANGE, lw=1.8)
-        self.axis_a = line(5, color=INK, lw=1.2)
-        self.axis_b = line(5, color=INK, lw=1.2, ls=(0, (4, 3)))
-        self.tip = line(6, color=BLUE, marker="o", ms=6)
-        self.contact = line(7, ls="none", marker="o", ms=6, mfc="white", mec=INK, mew=1.5)
-        self.clock = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=INK)
-        self.draw(0)
+    def _fit_captions(self) -> None:
+        """Make captions small enough to leave room for the clock, but no smaller than a third."""
+        self.clock.set_text(self._clock(float(self.t[-1])))
+        room = 0.92 * self.figure.bbox.width - self.clock.get_window_extent().width
+        widest = max(strip.widest_caption() for strip in self.strips)
+        size = float(self.clock.get_fontsize()) * min(1.0, max(1 / 3, room / max(widest, 1.0)))
+        for strip in self.strips:
+            strip.caption.set_fontsize(size)
 
     def draw(self, i: int) -> list[Artist]:
         """Put every artist where frame i has it, and return the moving ones."""
-        motion, scene = self.motion, self.motion.scene
-        x, z, theta = float(motion.x[i]), float(motion.z[i]), float(motion.theta[i])
-        cosine, sine = math.cos(theta), math.sin(theta)
-        self.body.set_center((x, z))
-        self.body.set_angle(-math.degrees(theta))
-        along, across = scene.a * np.array([-1, 1]), scene.b * np.array([-1, 1])
-        self.axis_a.set_data(x + along * cosine, z - along * sine)
-        self.axis_b.set_data(x + across * sine, z + across * cosine)
-        here, past = slice(i, i + 1), slice(None, i + 1)
-        self.tip.set_data(self._tip[0][here], self._tip[1][here])
-        self.contact.set_data(self._contact[0][here], self._contact[1][here])
-        self.tip_trace.set_data(self._tip[0][past], self._tip[1][past])
-        self.centre_trace.set_data(motion.x[past], motion.z[past])
-        self.clock.set_text(self._clock(float(motion.t[i])))
-        self.ruler.move(x)
-        left, right, bottom, top = self._views[i]
-        self.ax.set(xlim=(left, right), ylim=(bottom, top))
-        return [self.body, self.axis_a, self.axis_b, self.tip, self.contact, self.tip_trace,
-                self.centre_trace, self.clock]  # fmt: skip
+        self.clock.set_text(self._clock(float(self.t[i])))
+        return [self.clock, *(artist for strip in self.strips for artist in strip.draw(i))]
 
     def _clock(self, t: float) -> str:
         text = f"t = {t:.{self._decimals}f} s"
-        if self.speed != 1:
-            text += f"   speed × {self.speed:g}"
-        if t >= self.motion.valid_until:
-            text += "   (rolling is no longer valid)"
-        return text
+        return text if self.speed == 1 else f"{text}   speed × {self.speed:g}"
 
     def save(  # type: ignore[override]
         self,
@@ -221,11 +222,11 @@ class RollingAnimation(FuncAnimation):
             super().save(fspath(filename), writer=writer, **{"dpi": self.figure.dpi, **options})
 
     def __repr__(self) -> str:
-        return f"<RollingAnimation: {self.motion.t.size} frames, {self.motion.t[-1]:g} s>"
+        return f"<RollingAnimation: {self.t.size} frames, {self.t[-1]:g} s>"
 
     def _repr_html_(self) -> str:
         """A GIF, which plays everywhere; a player where a GIF cannot keep the time."""
-        frames = self.motion.t.size
+        frames = self.t.size
         if frames > NOTEBOOK_FRAMES:
             return (
                 f"{frames} frames are too many for a notebook (at most {NOTEBOOK_FRAMES}): "

@@ -21,6 +21,9 @@ from .scene import Scene
 from .settings import Settings
 
 if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import Dataset
+
     from .animation import RollingAnimation
     from .plotting import Overview
 
@@ -333,6 +336,39 @@ class Trajectory:
 
         self._require_motion()
         return animate(self, path, **options)
+
+    # -- tables ----------------------------------------------------------------------------------
+
+    def to_dataframe(self) -> DataFrame:
+        """Return a pandas DataFrame indexed by t, its columns named as the attributes.
+
+        The multipliers are ``lambda1`` to ``lambda4``, ``mode`` holds names of `Mode`. ``attrs``
+        has the units by column (``"units"``), the numbers of the scene, model, method and status.
+
+        Raises
+        ------
+        ImportError
+            Without pandas: it comes with ``rolling_ellipse[data]``.
+        """
+        from ._tables import dataframe
+
+        return dataframe(self)
+
+    def to_xarray(self) -> Dataset:
+        """Return an xarray Dataset over t, its variables named as the attributes.
+
+        ``multipliers`` have a second dimension, ``constraint``; ``mode`` holds codes of `Mode`.
+        Every variable has ``units`` and ``long_name``; ``attrs`` has the numbers of the scene,
+        model, method and status, all of which a netCDF file can hold.
+
+        Raises
+        ------
+        ImportError
+            Without xarray: it comes with ``rolling_ellipse[data]``.
+        """
+        from ._tables import dataset
+
+        return dataset(self)
 
     # -- files -----------------------------------------------------------------------------------
 

@@ -1,0 +1,131 @@
+"""One motion in Axes of its own: the strip of an animation that shows it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _drawing as drawing
+from ._drawing import BLUE, FILL, INK, ORANGE
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+    from ._check import FloatArray
+    from .trajectory import Trajectory
+
+
+class Strip:
+    """The body of one motion on its ground, where a frame has it.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where to draw, without axes of its own to see.
+    motion : Trajectory
+        Its sample i is what frame i shows.
+    times : ndarray, shape (n,)
+        The clock at each frame [s]; a motion that ends earlier stays at its last sample.
+    views : ndarray, shape (n, 4)
+        Left, right, bottom and top of each frame [m], as the eye sees them.
+    label : str
+        Name of the motion.
+    show_place : bool
+        Whether the caption says where the body is.
+
+    Attributes
+    ----------
+    motion, ax
+        As given.
+    body, axis_a, axis_b, tip, contact, centre_trace, tip_trace
+        The moving artists, their data in ground axes (x along the ground, z normal to it) [m].
+        `tip` is the end of axis a that lies on the right at theta = 0.
+    ruler
+        The ticks of the ground and their figures.
+    caption
+        Name of the motion, and what has to be said of this frame.
+    """
+
+    def __init__(
+        self,
+        ax: Axes,
+        motion: Trajectory,
+        times: FloatArray,
+        views: FloatArray,
+        label: str,
+        show_place: bool,
+    ) -> None:
+        self.ax, self.motion = ax, motion
+        self._times, self._views = times, views
+        self._label, self._show_place = label, show_place
+        self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
+        self._build()
+
+    def _build(self) -> None:
+        ax, motion = self.ax, self.motion
+        ax.set_axis_off()
+        ax.autoscale(False)
+        on_slope = drawing.tilted(motion.scene) + ax.transData
+        span = float(self._views[0, 1] - self._views[0, 0])
+        drawing.draw_ground(ax, motion, span)
+        self.ruler = drawing.Ruler(ax, motion.scene, span)
+
+        def line(zorder: int, **style: Any) -> Line2D:
+            return ax.plot([], [], transform=on_slope, zorder=zorder, **style)[0]
+
+        self.body = drawing.body_patch(
+            motion, 0, facecolor=(*FILL, 0.25), edgecolor=INK, lw=1.8, zorder=4
+        )
+        self.body.set_transform(on_slope)
+        ax.add_patch(self.body)
+        self.tip_trace = line(3, color=BLUE, lw=1, alpha=0.6)
+        self.centre_trace = line(5, color=ORANGE, lw=1.8)
+        self.axis_a = line(5, color=INK, lw=1.2)
+        self.axis_b = line(5, color=INK, lw=1.2, ls=(0, (4, 3)))
+        self.tip = line(6, color=BLUE, marker="o", ms=6)
+        self.contact = line(7, ls="none", marker="o", ms=6, mfc="white", mec=INK, mew=1.5)
+        self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=INK)
+
+    def draw(self, i: int) -> list[Artist]:
+        """Put every artist where frame i has it, and return the moving ones."""
+        motion, scene = self.motion, self.motion.scene
+        x, z, theta = float(motion.x[i]), float(motion.z[i]), float(motion.theta[i])
+        cosine, sine = math.cos(theta), math.sin(theta)
+        self.body.set_center((x, z))
+        self.body.set_angle(-math.degrees(theta))
+        along, across = scene.a * np.array([-1, 1]), scene.b * np.array([-1, 1])
+        self.axis_a.set_data(x + along * cosine, z - along * sine)
+        self.axis_b.set_data(x + across * sine, z + across * cosine)
+        here, past = slice(i, i + 1), slice(None, i + 1)
+        self.tip.set_data(self._tip[0][here], self._tip[1][here])
+        self.contact.set_data(self._contact[0][here], self._contact[1][here])
+        self.tip_trace.set_data(self._tip[0][past], self._tip[1][past])
+        self.centre_trace.set_data(motion.x[past], motion.z[past])
+        self.caption.set_text(self._caption(i))
+        left, right, bottom, top = self._views[i]
+        self.ruler.move((left + right) / 2 / math.cos(scene.slope))
+        self.ax.set(xlim=(left, right), ylim=(bottom, top))
+        return [self.body, self.axis_a, self.axis_b, self.tip, self.contact, self.tip_trace,
+                self.centre_trace, self.caption]  # fmt: skip
+
+    def widest_caption(self) -> float:
+        """Width of the longest caption of all frames [pixels]."""
+        captions = (self._caption(i) for i in range(self._times.size))
+        self.caption.set_text(max(captions, key=len))
+        return float(self.caption.get_window_extent().width)
+
+    def _caption(self, i: int) -> str:
+        motion, parts = self.motion, [self._label] if self._label else []
+        if self._show_place:
+            size = max(motion.scene.a, motion.scene.b)
+            digits = max(0, 1 - math.floor(math.log10(size)))
+            parts.append(f"x = {motion.x[i]:.{digits}f} m".replace("-", "−"))
+        if motion.t[i] >= motion.valid_until:
+            parts.append("rolling is no longer valid")
+        if motion.t[i] < self._times[i]:
+            parts.append(f"ended at {motion.t[i]:g} s")
+        return "   ".join(parts)

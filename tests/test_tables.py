@@ -1,0 +1,196 @@
+"""Tables of a trajectory: the same numbers, in the units they say, in files and back."""
+
+import dataclasses
+import sys
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas
+import pytest
+import rolling_ellipse as re
+import xarray
+from rolling_ellipse._labels import SCENE_UNITS
+from rolling_ellipse._tables import MODE, MULTIPLIERS, QUANTITIES, TIME
+
+BLOWN = re.Scene(
+    2.0, 1.0, mass=3.0, inertia=2.0, friction=5.0, impulse=re.Impulse(1.0, -4.0, dx=0.5)
+)
+SCENES = {"report": re.scenes.report, "rocking": re.scenes.rocking, "blown": BLOWN}
+
+
+@pytest.fixture(scope="module", params=SCENES.values(), ids=SCENES)
+def motion(request: pytest.FixtureRequest) -> re.Trajectory:
+    return re.simulate(request.param, np.linspace(0.5, 2.0, 31))
+
+
+def scene_in(facts: Mapping[str, Any]) -> re.Scene:
+    """The scene that the attributes of a table tell of."""
+    names = {field.name for field in dataclasses.fields(re.Scene)}
+    blow = {k.removeprefix("impulse_"): v for k, v in facts.items() if k.startswith("impulse_")}
+    given = {name: facts[name] for name in names & set(facts)}
+    return re.Scene(**given, impulse=re.Impulse(**blow) if blow else None)
+
+
+def test_the_dataframe_holds_the_arrays(motion: re.Trajectory) -> None:
+    frame = motion.to_dataframe()
+    assert frame.index.name == "t" and np.array_equal(frame.index, motion.t)
+    for each in QUANTITIES:
+        assert np.array_equal(frame[each.name], getattr(motion, each.name)), each.name
+    for i in range(4):
+        assert np.array_equal(frame[f"lambda{i + 1}"], motion.multipliers[:, i])
+    assert list(frame.columns) == [each.name for each in (*QUANTITIES, *MULTIPLIERS, MODE)]
+    assert set(frame.attrs["units"]) == {"t", *frame.columns}
+
+
+def test_the_dataset_holds_the_arrays(motion: re.Trajectory) -> None:
+    found = motion.to_xarray()
+    assert np.array_equal(found["t"], motion.t)
+    for each in (*QUANTITIES, MODE):
+        assert found[each.name].dims == ("t",)
+        assert np.array_equal(found[each.name], getattr(motion, each.name)), each.name
+    assert found["multipliers"].dims == ("t", "constraint")
+    assert np.array_equal(found["multipliers"], motion.multipliers)
+    assert np.array_equal(found["multipliers"].sel(constraint="f2"), motion.normal_force)
+    for variable in found.data_vars.values():
+        assert set(variable.attrs) >= {"units", "long_name"}
+    assert found["t"].attrs == {"units": "s", "long_name": "time"}
+
+
+def test_no_array_of_a_trajectory_is_left_out(motion: re.Trajectory) -> None:
+    public = [name for name in dir(motion) if not name.startswith("_")]
+    arrays = {name for name in public if isinstance(getattr(motion, name), np.ndarray)}
+    listed = {each.name for each in (TIME, *QUANTITIES, MODE)}
+    assert listed | {"multipliers", "q", "q_dot"} == arrays  # q: x, z, theta, psi, r once more
+
+
+LENGTH, DURATION, MASS = 4.0, 2.0, 8.0  # powers of two: the scaled motion has the same digits
+SCALES = {
+    "m": LENGTH, "s": DURATION, "rad": 1.0, "1": 1.0, "s^2": DURATION**2,
+    "N": MASS * LENGTH / DURATION**2, "J": MASS * LENGTH**2 / DURATION**2,
+}  # fmt: skip
+
+
+def scale(unit: str) -> float:
+    """Factor of a quantity in a world whose metre, second and kilogram are these."""
+    over, _, under = unit.partition("/")
+    factors = [SCALES[part] for part in over.split()]
+    return float(np.prod(factors)) / (SCALES[under] if under else 1.0)
+
+
+def test_the_units_are_those_of_the_numbers() -> None:
+    """In a world scaled in length, time and mass each quantity grows as its unit does."""
+    small = re.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
+    large = dataclasses.replace(
+        small,
+        a=small.a * LENGTH,
+        b=small.b * LENGTH,
+        x=small.x * LENGTH,
+        mass=small.mass * MASS,
+        gravity=small.gravity * LENGTH / DURATION**2,
+        omega=small.omega / DURATION,
+    )
+    times = np.linspace(0.0, 2.0, 21)
+    one = re.simulate(small, times).to_dataframe()
+    other = re.simulate(large, times * DURATION).to_dataframe()
+    units = one.attrs["units"]
+    assert np.array_equal(other.index, one.index * scale(units["t"]))
+    for name in one.columns.drop("mode"):
+        expected = one[name].to_numpy() * scale(units[name])
+        largest = np.max(np.abs(expected))
+        assert largest > 0 or name == "lambda4"  # zero while the body rolls
+        # rounding apart; a wrong unit is wrong by a factor of 2 or more
+        assert other[name].to_numpy() == pytest.approx(expected, rel=0, abs=1e-12 * largest), name
+
+
+def test_scenes_and_tables_agree_on_units() -> None:
+    units = {each.name: each.unit for each in QUANTITIES}
+    shared = set(units) & set(SCENE_UNITS)
+    assert shared == {"x", "z", "theta", "omega", "x_dot", "z_dot"}
+    assert all(units[name] == SCENE_UNITS[name] for name in shared)
+
+
+def test_the_attributes_tell_the_whole_scene(motion: re.Trajectory) -> None:
+    for facts in (motion.to_dataframe().attrs, motion.to_xarray().attrs):
+        assert scene_in(facts) == motion.scene
+        assert (facts["model"], facts["method"], facts["status"]) == (
+            "rolling",
+            "exact",
+            "COMPLETED",
+        )
+        assert facts["reason"] == motion.reason
+    assert all(isinstance(value, float | str) for value in motion.to_xarray().attrs.values())
+
+
+def test_a_lost_validity_is_told() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", re.ValidityWarning)
+        jump = re.simulate(re.scenes.jump, 1.0, model="rolling")
+    facts = jump.to_xarray().attrs
+    assert facts["status"] == "VALIDITY_LOST"
+    assert facts["valid_until"] == jump.valid_until < 1.0
+
+
+def test_netcdf_and_back(motion: re.Trajectory, tmp_path: Path) -> None:
+    written = motion.to_xarray()
+    written.to_netcdf(tmp_path / "motion.nc")
+    read = xarray.load_dataset(tmp_path / "motion.nc")
+    assert read.identical(written)
+    again = re.simulate(scene_in(read.attrs), read["t"].to_numpy())
+    assert np.array_equal(again.theta, motion.theta)
+
+
+def test_a_dataframe_and_back(motion: re.Trajectory) -> None:
+    frame = motion.to_dataframe()
+    again = re.simulate(scene_in(frame.attrs), frame.index.to_numpy()).to_dataframe()
+    pandas.testing.assert_frame_equal(again, frame, check_exact=True)
+    assert again.attrs == frame.attrs
+
+
+def test_modes_have_their_names() -> None:
+    motion = dataclasses.replace(re.simulate(re.scenes.rocking, [0.0, 1.0, 2.0, 3.0]))
+    codes = [re.Mode.FLIGHT, re.Mode.SLIDING, re.Mode.REST, re.Mode.ROLLING]
+    motion.__dict__["mode"] = np.array(codes, np.int8)
+    column = motion.to_dataframe()["mode"]
+    assert list(column) == ["FLIGHT", "SLIDING", "REST", "ROLLING"]
+    assert (column == "SLIDING").sum() == 1
+    variable = motion.to_xarray()["mode"]
+    assert variable.dtype == np.int8
+    meanings = variable.attrs["flag_meanings"].split()
+    names = dict(zip(variable.attrs["flag_values"], meanings, strict=True))
+    assert [names[code] for code in variable.to_numpy()] == list(column)
+
+
+def test_tables_may_be_changed_and_the_trajectory_stays(motion: re.Trajectory) -> None:
+    frame, found = motion.to_dataframe(), motion.to_xarray()
+    before = motion.x[0]
+    frame.loc[frame.index[0], "x"] = 99.0
+    found["x"][0] = 99.0
+    found["multipliers"][0] = 99.0
+    assert frame["x"].iloc[0] == found["x"][0] == 99.0
+    assert motion.x[0] == before
+    assert 99.0 not in motion.multipliers
+
+
+def test_a_trajectory_without_samples_makes_empty_tables() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", re.ValidityWarning)
+        motion = re.simulate(re.scenes.drop, 1.0)
+    frame, found = motion.to_dataframe(), motion.to_xarray()
+    assert len(frame) == found.sizes["t"] == 0
+    assert list(frame.columns) == [each.name for each in (*QUANTITIES, *MULTIPLIERS, MODE)]
+    assert scene_in(found.attrs) == re.scenes.drop
+
+
+@pytest.mark.parametrize(
+    ("package", "method"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")]
+)
+def test_a_missing_package_names_the_extra(
+    package: str, method: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    motion = re.simulate(re.scenes.rocking, 1.0)
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(ImportError, match=rf"{method} needs {package}: .*rolling_ellipse\[data\]"):
+        getattr(motion, method)()
