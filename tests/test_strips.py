@@ -193,3 +193,8 @@ def test_wrong_input_is_refused_by_name() -> None:
         re.animate([SLOW])  # type: ignore[list-item]
     with pytest.raises(ValueError, match=r"t_end must be within \[0, 20\] s, got 21"):
         re.animate([*FOLLOWED, *PARTED], t_end=21)
+
+
+def test_the_user_s_layout_is_left_alone() -> None:
+    with matplotlib.rc_context({"figure.constrained_layout.use": True}):
+        re.animate(re.simulate(re.scenes.rocking, 0.1))  # any warning is an error

@@ -162,6 +162,7 @@ class RollingAnimation(FuncAnimation):
         if figure is None:  # not pyplot's: nothing to close, nothing shown twice
             height = 2 * math.ceil(width * seen.shape / 2)  # video wants even numbers
             figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi)
+            figure.set_layout_engine("none")  # the strips have their places
         self.figure = figure
         floors = 1 - np.cumsum(seen.heights)
         self.strips = tuple(

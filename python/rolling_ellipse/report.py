@@ -87,10 +87,10 @@ def simulate(
     gravity: float = 9.81,
     equations: str = "corrected",
     consistent: str = "refuse",
-    printed: Any = CODE,
+    printed: Any = None,
     method: str | None = None,
     stabilization: str | None = None,
-    baumgarte: tuple[float, float] = (10.0, 10.0),
+    baumgarte: tuple[float, float] | None = None,
     rtol: float = 1e-8,
     atol: float = 1e-10,
     step: float | None = None,
@@ -120,9 +120,9 @@ def simulate(
         the rows in use must allow the rates. "project" takes the nearest consistent state in the
         metric of the kinetic energy (theta and z move, x stays, psi and r follow); "as_given"
         runs it after an InconsistentStartWarning.
-    printed : sequence of str
+    printed : sequence of str, optional
         Of the printed equations only: what is as printed, see `constraint_matrix`; default is
-        the report's code. () has all rows right.
+        the report's code, `CODE`. () has all rows right.
     method : str, optional
         "dopri5" (default) or "rk4" for the printed equations; for the corrected ones what
         `rolling_ellipse.simulate` has for its model "multipliers", default "dop853" ("radau" with
@@ -151,6 +151,7 @@ def simulate(
     times = sample_times(t)
     state = _vector("q", q), _vector("q_dot", q_dot)
     if equations == "corrected":
+        _require_none("printed", printed, equations)
         settings = Settings(
             model="multipliers",
             method=method or ("radau" if stabilization == "ggl" else "dop853"),
@@ -159,17 +160,15 @@ def simulate(
             step=step,
             stages=None,
             stabilization=stabilization or "projection",
-            baumgarte=baumgarte,
+            baumgarte=(10.0, 10.0) if baumgarte is None else baumgarte,
             max_steps=max_steps,
         )
         start = _checked_start(*state, body, (), consistent)
         return _corrected(start, times, body, settings)
-    if stabilization is not None:
-        raise ValueError(
-            f"stabilization must be None for the printed equations, got {stabilization!r}"
-        )
+    _require_none("stabilization", stabilization, equations)
+    _require_none("baumgarte", baumgarte, equations)
     steps = _steps(method or "dopri5", rtol, atol, step, max_steps)
-    names = misprints(printed)
+    names = misprints(CODE if printed is None else printed)
     return follow(_checked_start(*state, body, names, consistent), times, body, names, steps)
 
 
@@ -197,6 +196,11 @@ def _checked_start(
             f"the start violates constraints: {got}", InconsistentStartWarning, stacklevel=3
         )
     return Start(*begun, begun[0] - q, begun[1] - q_dot, violated)
+
+
+def _require_none(name: str, value: Any, equations: str) -> None:
+    if value is not None:
+        raise ValueError(f"{name} must be None for the {equations} equations, got {value!r}")
 
 
 def _vector(name: str, value: Any) -> FloatArray:
