@@ -128,9 +128,33 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
     return py::make_tuple(out[0], out[1], out[2]);
 }
 
+// theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution, each with n elements, or one:
+// x_dot, z_dot, omega just after the collision of a touching body, by the law of impact.hpp.
+py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
+    std::vector<Array> out = empty_arrays(3, n);
+    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
+    std::array<Argument, 9> of{};
+    std::transform(arguments.begin(), arguments.end(), of.begin(), argument);
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            // Neither mass nor gravity nor height matters; a scene may move down only in the air.
+            const double mass = 1.0, gravity = 1.0, slope = 0.0, x = 0.0, z = of[4][i] + of[5][i];
+            const Scene scene{of[4][i], of[5][i], mass,     gravity,  of[6][i],
+                              slope,    of[7][i], of[8][i], of[0][i], of[3][i],
+                              x,        z,        of[1][i], of[2][i], std::nullopt};
+            validate(scene.body());  // by its own names: k^2 is no inertia
+            validate(scene);
+            const State after = after_collision(scene, state_before_impulse(scene));
+            columns[0][i] = after.x_dot;
+            columns[1][i] = after.z_dot;
+            columns[2][i] = after.omega;
+        }
+    });
+    return py::make_tuple(out[0], out[1], out[2]);
+}
+
 // theta, omega, x at each time.
 py::tuple sample_solution(const Solution& solution, const Array& t) {
-    if (solution.segments.empty()) throw py::value_error(solution.message);
     const py::ssize_t n = t.size();
     std::vector<Array> out = empty_arrays(3, n);
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
@@ -187,6 +211,71 @@ py::tuple sample_coordinates(const Solution& solution, const Array& t) {
         }
     });
     return py::make_tuple(q, q_dot);
+}
+
+// q and q_dot, (n, 5), normal and friction force and mode of the contact model at each time.
+py::tuple sample_contact(const Solution& solution, const Array& t, const Scene& scene) {
+    const py::ssize_t n = t.size();
+    Array q = matrix(n, 5);
+    Array q_dot = matrix(n, 5);
+    Array normal(n);
+    Array friction(n);
+    py::array_t<std::int8_t> mode(n);
+    const double* const times = t.data();
+    double* const normals = normal.mutable_data();
+    double* const frictions = friction.mutable_data();
+    std::int8_t* const modes = mode.mutable_data();
+    std::vector<ContactSample> samples(std::min<std::size_t>(n, chunk));
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        sample(solution, times + begin, end - begin, samples.data());
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const auto& [state, force] = samples[i - begin];
+            const CoordinateState of = coordinate_state({scene.a, scene.b}, state);
+            store(q, i, of.q.data());
+            store(q_dot, i, of.q_dot.data());
+            normals[i] = force.normal;
+            frictions[i] = force.friction;
+            modes[i] = static_cast<std::int8_t>(state.mode);
+        }
+    });
+    return py::make_tuple(q, q_dot, normal, friction, mode);
+}
+
+// q_ddot and multipliers that follow from the contact forces.
+py::tuple contact_arrays(const Scene& scene, const Array& q, const Array& q_dot,
+                         const Array& normal, const Array& friction) {
+    const py::ssize_t n = q.shape(0);
+    Array q_ddot = matrix(n, 5);
+    Array multipliers = matrix(n, 4);
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const MultiplierSolution of = accelerations(
+                scene, state_at(q, q_dot, i), ContactForce{normal.data()[i], friction.data()[i]});
+            store(q_ddot, i, of.q_ddot.data());
+            store(multipliers, i, of.multipliers.data());
+        }
+    });
+    return py::make_tuple(q_ddot, multipliers);
+}
+
+py::tuple state_tuple(const State& s) {
+    return py::make_tuple(s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot, s.mode);
+}
+
+py::list event_list(const Solution& solution) {
+    py::list events;
+    if (const auto* motion = std::get_if<ContactMotion>(&solution.motion)) {
+        for (const Event& event : motion->events) {
+            events.append(py::make_tuple(event.t, event.kind, state_tuple(event.before),
+                                         state_tuple(event.after)));
+        }
+    }
+    return events;
+}
+
+std::size_t segment_count(const Solution& solution) {
+    const auto* motion = std::get_if<ContactMotion>(&solution.motion);
+    return motion ? motion->arcs.size() : 1;
 }
 
 // q_ddot and multipliers of the multiplier model.
@@ -481,6 +570,7 @@ void bind_motion(py::module_& m) {
         .value("AUTO", Model::automatic)
         .value("ROLLING", Model::rolling)
         .value("MULTIPLIERS", Model::multipliers)
+        .value("CONTACT", Model::contact)
         .finalize();
     py::native_enum<Stabilization>(m, "Stabilization", "enum.Enum", "How constraints are kept.")
         .value("NONE", Stabilization::none)
@@ -488,6 +578,15 @@ void bind_motion(py::module_& m) {
         .value("PROJECTION", Stabilization::projection)
         .value("PROJECTION_ENERGY", Stabilization::projection_energy)
         .value("GGL", Stabilization::ggl)
+        .finalize();
+    py::native_enum<EventKind>(m, "EventKind", "enum.Enum", "What changes at an event.")
+        .value("SLIP", EventKind::slip)
+        .value("STICK", EventKind::stick)
+        .value("REVERSE", EventKind::reverse)
+        .value("LIFT_OFF", EventKind::lift_off)
+        .value("IMPACT", EventKind::impact)
+        .value("REST", EventKind::rest)
+        .value("JAM", EventKind::jam)
         .finalize();
     py::native_enum<Method>(m, "Method", "enum.Enum", "How the model is solved.")
         .value("AUTO", Method::automatic)
@@ -500,7 +599,9 @@ void bind_motion(py::module_& m) {
         .finalize();
     py::native_enum<Status>(m, "Status", "enum.Enum", "How a simulation ended.")
         .value("COMPLETED", Status::completed)
+        .value("JAMMED", Status::jammed)
         .value("VALIDITY_LOST", Status::validity_lost)
+        .value("MAX_EVENTS", Status::max_events)
         .value("MAX_STEPS", Status::max_steps)
         .value("STEP_TOO_SMALL", Status::step_too_small)
         .value("STEP_TOO_LARGE", Status::step_too_large)
@@ -509,38 +610,44 @@ void bind_motion(py::module_& m) {
         .def(py::init([](Model model, Method method, double rtol, double atol,
                          std::optional<double> step, std::optional<int> stages,
                          Stabilization stabilization, std::array<double, 2> baumgarte,
-                         long max_steps) {
-                 return Settings{model,  method,        rtol,         atol,         step,
-                                 stages, stabilization, baumgarte[0], baumgarte[1], max_steps};
+                         long max_steps, long max_events, std::optional<double> rest_speed) {
+                 return Settings{model,        method,    rtol,          atol,
+                                 step,         stages,    stabilization, baumgarte[0],
+                                 baumgarte[1], max_steps, max_events,    rest_speed};
              }),
              py::kw_only(), "model"_a, "method"_a, "rtol"_a, "atol"_a, "step"_a, "stages"_a,
-             "stabilization"_a, "baumgarte"_a, "max_steps"_a);
+             "stabilization"_a, "baumgarte"_a, "max_steps"_a, "max_events"_a, "rest_speed"_a);
     py::class_<Solution>(m, "Solution")
         .def_readonly("status", &Solution::status)
         .def_readonly("followed_until", &Solution::followed_until)
         .def_readonly("valid_until", &Solution::valid_until)
         .def_readonly("reason", &Solution::reason)
         .def_readonly("message", &Solution::message)
+        .def_readonly("model", &Solution::model)
         .def_readonly("method", &Solution::method)
         .def_property_readonly("stats",
                                [](const Solution& s) {
-                                   return py::dict("segments"_a = s.segments.size(),
+                                   return py::dict("segments"_a = segment_count(s),
                                                    "steps"_a = s.counts.steps,
                                                    "rejected_steps"_a = s.counts.rejected,
                                                    "evaluations"_a = s.counts.evaluations);
                                })
         .def("sample", sample_solution, "t"_a)
-        .def("sample_coordinates", sample_coordinates, "t"_a);
+        .def("sample_coordinates", sample_coordinates, "t"_a)
+        .def("sample_contact", sample_contact, "t"_a, "scene"_a)
+        .def_property_readonly("events", event_list);
     m.def("simulate", simulate_interruptible, "scene"_a, "settings"_a, "t_end"_a);
     m.def("simulate_coordinates", simulate_coordinates, "scene"_a, "q"_a, "q_dot"_a, "settings"_a,
           "t_end"_a);
     m.def("multiplier_detail", multiplier_arrays, "scene"_a, "settings"_a, "q"_a, "q_dot"_a);
+    m.def("contact_detail", contact_arrays, "scene"_a, "q"_a, "q_dot"_a, "normal"_a, "friction"_a);
     m.def("project", projected, "scene"_a, "q"_a, "q_dot"_a);
     m.def("constraint_system", constraint_system, "q"_a, "q_dot"_a, "a"_a, "b"_a);
     m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);
     m.def("flow_scalar", flow_scalar, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a);
     m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a);
+    m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a);
     m.def("constraints", constraint_arrays, "q"_a, "q_dot"_a, "a"_a, "b"_a);
     m.def("kinematics", kinematics_arrays, "n"_a, "theta"_a, "omega"_a, "a"_a, "b"_a);
     m.def("rolling_equation", rolling_equation_arrays, "scene"_a, "theta"_a, "omega"_a);

@@ -3,22 +3,12 @@
 #include <array>
 #include <cmath>
 
+#include "integrator/first_negative.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
 constexpr int looks_per_interval = 8;
-
-struct Look {
-    double t;
-    double margin;
-};
-
-// Where the parabola through three looks is least.
-double lowest(const Look& a, const Look& b, const Look& c) {
-    const double left = (b.margin - a.margin) / (b.t - a.t);
-    const double right = (c.margin - b.margin) / (c.t - b.t);
-    return a.t + (b.t - a.t) / 2 + left / (left - right) * (c.t - a.t) / 2;
-}
 
 // Takes the forces in the order of time.
 class Watcher {
@@ -28,10 +18,9 @@ class Watcher {
 
     void take(double t, const ContactForce& force) {
         note_extremes(t, force);
-        if (watch_.holds_until < infinity) return;
-        looks_ = {looks_[1], looks_[2], Look{t, margin(force)}};
-        ++count_;
-        note_violation();
+        if (violation_.found() < infinity) return;
+        violation_.look(t, [this](double time) { return std::array<double, 1>{margin_at(time)}; });
+        watch_.holds_until = violation_.found();
     }
 
     const ContactWatch& result() const { return watch_; }
@@ -50,15 +39,6 @@ class Watcher {
         return margin(force);
     }
 
-    // The first time of a negative margin between one that is not and one that is.
-    double first_negative(double good, double bad) const {
-        for (;;) {
-            const double middle = 0.5 * (good + bad);
-            if (!(good < middle && middle < bad)) return bad;
-            (margin_at(middle) < 0 ? bad : good) = middle;
-        }
-    }
-
     void note_extremes(double t, const ContactForce& force) {
         const double friction = std::abs(force.friction);
         const double needed = friction == 0      ? 0.0
@@ -74,24 +54,10 @@ class Watcher {
         }
     }
 
-    void note_violation() {
-        const auto& [before, middle, now] = looks_;
-        if (now.margin < 0) {
-            watch_.holds_until = count_ == 1 ? now.t : first_negative(middle.t, now.t);
-        } else if (count_ > 2 && middle.margin < before.margin && middle.margin <= now.margin) {
-            const double between = lowest(before, middle, now);
-            if (margin_at(between) < 0) {
-                const double good = between < middle.t ? before.t : middle.t;
-                watch_.holds_until = first_negative(good, between);
-            }
-        }
-    }
-
     const double friction_;
     const ForcesAt& forces_at_;
     ContactWatch watch_{infinity, 0.0, 0.0, 0.0, infinity};
-    std::array<Look, 3> looks_{};
-    long count_ = 0;
+    FirstNegative<1> violation_;
 };
 
 }  // namespace

@@ -1,4 +1,6 @@
-// The applied impulse: a collision without restitution of a body that the impulse has just moved.
+// Collisions with the ground: Coulomb friction along the impulse path, energetic restitution (W. J.
+// Stronge, Impact Mechanics (2000), ch. 3 to 5). The applied impulse is a collision without
+// restitution of a body that the impulse has just moved.
 #pragma once
 
 #include "scene.hpp"
@@ -14,5 +16,8 @@ struct InitialState {
 };
 
 InitialState initial_state(const Scene& scene);
+
+// A body that touches the ground and moves into it, just after the collision; its mode is left.
+State after_collision(const Scene& scene, const State& before);
 
 }  // namespace rolling_ellipse

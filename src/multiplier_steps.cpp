@@ -133,14 +133,14 @@ bool project(const SteppedMultipliers& motion, Coordinates& q, Coordinates& q_do
 }
 
 template <int N>
-bool adjust(const SteppedMultipliers& motion, Point<N>& point) {
+AfterStep adjust(const SteppedMultipliers& motion, Point<N>& point) {
     Coordinates q = point.y.template head<5>();
     Coordinates q_dot = point.y.template segment<5>(5);
-    if (!project(motion, q, q_dot)) return false;
+    if (!project(motion, q, q_dot)) return AfterStep::go_on;
     point.y.template head<5>() = q;
     point.y.template segment<5>(5) = q_dot;
     point.carry.setZero();
-    return true;
+    return AfterStep::changed;
 }
 
 template <int N>

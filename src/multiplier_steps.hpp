@@ -9,11 +9,6 @@
 
 namespace rolling_ellipse {
 
-struct CoordinateState {
-    Coordinates q;
-    Coordinates q_dot;
-};
-
 // A start whose angles are measured from a base.
 struct CoordinateStart {
     CoordinateState state;

@@ -21,6 +21,32 @@ Coordinates rolling_direction(const ConstraintMatrix& a) {
 
 }  // namespace
 
+CoordinateState coordinate_state(const Axes& axes, const State& state) {
+    using namespace coordinate;
+    const KinematicState kinematic = kinematics(axes, state.theta, state.omega);
+    CoordinateState result{kinematic.q, kinematic.q_dot};
+    result.q[x] = state.x;
+    result.q[z] = state.z;
+    result.q_dot[x] = state.x_dot;
+    result.q_dot[z] = state.z_dot;
+    return result;
+}
+
+MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
+                                 const ContactForce& force) {
+    const Axes axes{scene.a, scene.b};
+    const Geometry at = geometry(axes, state.q[coordinate::theta]);
+    const double omega_dot = -(at.h * force.friction + at.dh * force.normal) / scene.inertia;
+    const SecondRates rates = contact_point_second_rates(axes, at, state.q[coordinate::psi],
+                                                         state.q_dot[coordinate::theta], omega_dot);
+    MultiplierSolution result;
+    result.q_ddot << force.friction / scene.mass + scene.gravity * std::sin(scene.slope),
+        force.normal / scene.mass - scene.gravity * std::cos(scene.slope), omega_dot, rates.psi,
+        rates.r;
+    result.multipliers = contact_multipliers(state.q, force);
+    return result;
+}
+
 ConstrainedBody::ConstrainedBody(const Scene& scene)
     : axes_{scene.a, scene.b},
       mass_(scene.mass),

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "constraints.hpp"
+#include "rolling.hpp"
 #include "scene.hpp"
 
 namespace rolling_ellipse {
@@ -14,6 +15,18 @@ struct MultiplierSolution {
     Coordinates q_ddot;
     Eigen::Vector4d multipliers;  // [N, N, N, N m]; the first two are F and N
 };
+
+struct CoordinateState {
+    Coordinates q;
+    Coordinates q_dot;
+};
+
+// The coordinates of a body in any mode: psi and r belong to its lowest point.
+CoordinateState coordinate_state(const Axes& axes, const State& state);
+
+// What follows from a state and the force on its contact, by Newton's and Euler's laws.
+MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
+                                 const ContactForce& force);
 
 class ConstrainedBody {
   public:

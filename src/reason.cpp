@@ -42,6 +42,7 @@ std::string why_stopped(Ending ending, const Settings& settings, double t, doubl
     const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
     switch (ending) {
         case Ending::reached:
+        case Ending::stopped:
             return {};
         case Ending::max_steps:
             return "max_steps = " + std::to_string(settings.max_steps) + " steps ended" + place +
@@ -52,6 +53,26 @@ std::string why_stopped(Ending ending, const Settings& settings, double t, doubl
         case Ending::step_too_large:
             return "a step of " + brief(*settings.step) + " s cannot be solved" + place +
                    ": take smaller ones";
+    }
+    return {};
+}
+
+std::string why_stopped(ContactEnding ending, const Settings& settings, double t, double t_end) {
+    const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
+    switch (ending) {
+        case ContactEnding::reached:
+            return {};
+        case ContactEnding::jammed:
+            return "the sliding body jams" + place +
+                   ": friction would have to push it into the ground (Painleve), and no motion of "
+                   "a rigid body goes on";
+        case ContactEnding::max_events:
+            return "max_events = " + std::to_string(settings.max_events) + " events ended" + place +
+                   ": allow more of them";
+        case ContactEnding::max_steps:
+            return why_stopped(Ending::max_steps, settings, t, t_end);
+        case ContactEnding::step_too_small:
+            return why_stopped(Ending::step_too_small, settings, t, t_end);
     }
     return {};
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "certificate.hpp"
+#include "contact.hpp"
 #include "contact_watch.hpp"
 
 namespace rolling_ellipse {
@@ -21,6 +22,7 @@ std::string reason(const Scene& scene, const ContactWatch& watch);
 
 // Why an integration stopped at t, before its end, and what helps; empty where it did not.
 std::string why_stopped(Ending ending, const Settings& settings, double t, double t_end);
+std::string why_stopped(ContactEnding ending, const Settings& settings, double t, double t_end);
 
 std::string rolling_ends(double t);
 

@@ -26,14 +26,6 @@ ContactForce contact_force(const Scene& scene, const Accelerations& of_centre) {
             scene.mass * (of_centre.x - scene.gravity * std::sin(scene.slope))};
 }
 
-// The multipliers of the gradients of f1 ... f4: lambda1 = F, lambda2 = N, and from the rows of psi
-// and r, which carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3.
-// At the contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
-Eigen::Vector4d multipliers(const Coordinates& q, const ContactForce& force) {
-    const double offset = q[coordinate::psi] - q[coordinate::theta];
-    return {force.friction, force.normal, force.normal * std::cos(offset), 0.0};
-}
-
 }  // namespace
 
 RollingEquation::RollingEquation(const Body& body, double slope)
@@ -66,6 +58,23 @@ ContactForce rolling_force(const Scene& scene, double theta, double omega) {
     return contact_force(scene, rolling_accelerations(scene, at, omega));
 }
 
+// The multipliers of the gradients of f1 ... f4: lambda1 = F, lambda2 = N, and from the rows of psi
+// and r, which carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3.
+// At the contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
+Eigen::Vector4d contact_multipliers(const Coordinates& q, const ContactForce& force) {
+    const double offset = q[coordinate::psi] - q[coordinate::theta];
+    return {force.friction, force.normal, force.normal * std::cos(offset), 0.0};
+}
+
+SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, double psi,
+                                       double omega, double omega_dot) {
+    const double psi_dot = contact_angle_rate(axes, at) * omega;
+    const double psi_ddot =
+        contact_angle_rate(axes, at) * omega_dot + contact_angle_second(axes, at) * omega * omega;
+    return {psi_ddot, polar_radius_slope(axes, psi) * psi_ddot +
+                          polar_radius_second(axes, psi) * psi_dot * psi_dot};
+}
+
 RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
     const Axes axes{scene.a, scene.b};
     const Geometry at = geometry(axes, theta);
@@ -73,15 +82,11 @@ RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
 
     RollingDetail detail;
     detail.state = kinematics(axes, theta, omega);
-    const double psi = detail.state.q[coordinate::psi];
-    const double psi_dot = detail.state.q_dot[coordinate::psi];
-    const double psi_ddot = contact_angle_rate(axes, at) * acceleration.theta +
-                            contact_angle_second(axes, at) * omega * omega;
-    const double r_ddot = polar_radius_slope(axes, psi) * psi_ddot +
-                          polar_radius_second(axes, psi) * psi_dot * psi_dot;
-    detail.q_ddot << acceleration.x, acceleration.z, acceleration.theta, psi_ddot, r_ddot;
+    const SecondRates rates = contact_point_second_rates(axes, at, detail.state.q[coordinate::psi],
+                                                         omega, acceleration.theta);
+    detail.q_ddot << acceleration.x, acceleration.z, acceleration.theta, rates.psi, rates.r;
     detail.force = contact_force(scene, acceleration);
-    detail.multipliers = multipliers(detail.state.q, detail.force);
+    detail.multipliers = contact_multipliers(detail.state.q, detail.force);
     return detail;
 }
 

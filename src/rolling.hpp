@@ -57,6 +57,15 @@ struct ContactForce {
 
 ContactForce rolling_force(const Scene& scene, double theta, double omega);
 
+// psi.. and r.. of the contact point, and the multipliers that a contact force makes.
+struct SecondRates {
+    double psi;
+    double r;
+};
+SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, double psi,
+                                       double omega, double omega_dot);
+Eigen::Vector4d contact_multipliers(const Coordinates& q, const ContactForce& force);
+
 struct RollingDetail {
     KinematicState state;  // its x is the integral of h from 0
     Coordinates q_ddot;

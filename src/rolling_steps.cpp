@@ -33,7 +33,18 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     }
 }
 
-SteppedRolling motion_from(const Scene& scene, const State& start, const Settings& settings) {
+FlowSample flow_sample(const SteppedRolling& motion, const Knot<2>& knot, const Vector<2>& change) {
+    const DoubleDouble theta = DoubleDouble{knot.y[0], knot.carry[0]} + change[0];
+    const double path = centre_path(motion.axes, static_cast<double>(theta));
+    return {
+        static_cast<double>(motion.theta_base + half_turn * knot.periods + theta),
+        knot.y[1] + (knot.carry[1] + change[1]),
+        static_cast<double>(motion.x_base + std::fma(knot.periods, motion.half_turn_path, path))};
+}
+
+}  // namespace
+
+SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings) {
     const Axes axes{scene.a, scene.b};
     const double rest = within_a_turn(start.theta);
     SteppedRolling motion{RollingEquation(scene.body(), scene.slope),
@@ -47,24 +58,13 @@ SteppedRolling motion_from(const Scene& scene, const State& start, const Setting
     return motion;
 }
 
-FlowSample flow_sample(const SteppedRolling& motion, const Knot<2>& knot, const Vector<2>& change) {
-    const DoubleDouble theta = DoubleDouble{knot.y[0], knot.carry[0]} + change[0];
-    const double path = centre_path(motion.axes, static_cast<double>(theta));
-    return {
-        static_cast<double>(motion.theta_base + half_turn * knot.periods + theta),
-        knot.y[1] + (knot.carry[1] + change[1]),
-        static_cast<double>(motion.x_base + std::fma(knot.periods, motion.half_turn_path, path))};
-}
-
-}  // namespace
-
 RollingIntegration integrate_rolling(const Scene& scene, const State& start,
                                      const Settings& settings, double t_end,
                                      const Checkpoint& checkpoint) {
-    RollingIntegration result{motion_from(scene, start, settings), Ending::reached, {}};
+    RollingIntegration result{rolling_from(scene, start, settings), Ending::reached, {}};
     SteppedRolling& motion = result.motion;
     if (start.mode == Mode::rest) return result;
-    const auto keep = [](Point<2>&) { return false; };
+    const auto keep = [](Point<2>&) { return AfterStep::go_on; };
     const auto reduce = [&](Point<2>& point) {
         const double half_turns = take_half_turns_off(point.y[0], point.carry[0]);
         point.origin[0] += half_turns * pi;

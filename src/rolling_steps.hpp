@@ -28,6 +28,9 @@ struct RollingIntegration {
     StepCounts counts;
 };
 
+// The motion that is to be integrated: its first knot.
+SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings);
+
 RollingIntegration integrate_rolling(const Scene& scene, const State& start,
                                      const Settings& settings, double t_end,
                                      const Checkpoint& checkpoint);

@@ -19,6 +19,12 @@ void require_tolerance(const std::string& name, double value) {
     }
 }
 
+void require_positive(const std::string& name, long count) {
+    if (count < 1) {
+        throw std::invalid_argument(name + " must be at least 1, got " + std::to_string(count));
+    }
+}
+
 void validate_step(const Settings& settings, double t_end) {
     const Method method = settings.method;
     if (!settings.step) {
@@ -41,6 +47,10 @@ void validate_method(const Settings& settings) {
     const Method method = settings.method;
     const Stabilization stabilization = settings.stabilization;
     const std::string came = ", got '" + name(stabilization) + "'";
+    if (settings.model == Model::contact && method != Method::automatic) {
+        throw std::invalid_argument("method must be 'auto' for model 'contact', got '" +
+                                    name(method) + "'");
+    }
     if (settings.model != Model::multipliers) {
         if (stabilization == Stabilization::projection) return;
         throw std::invalid_argument(
@@ -93,6 +103,8 @@ std::string name(Model model) {
             return "rolling";
         case Model::multipliers:
             return "multipliers";
+        case Model::contact:
+            return "contact";
     }
     return {};
 }
@@ -143,9 +155,10 @@ void validate(const Settings& settings, double t_end) {
     validate_baumgarte(settings);
     validate_step(settings, t_end);
     validate_stages(settings);
-    if (settings.max_steps < 1) {
-        throw std::invalid_argument("max_steps must be at least 1, got " +
-                                    std::to_string(settings.max_steps));
+    require_positive("max_steps", settings.max_steps);
+    require_positive("max_events", settings.max_events);
+    if (settings.rest_speed && !(*settings.rest_speed > 0 && std::isfinite(*settings.rest_speed))) {
+        refuse("rest_speed", "a positive finite speed [m/s]", *settings.rest_speed);
     }
 }
 

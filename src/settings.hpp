@@ -7,7 +7,7 @@
 
 namespace rolling_ellipse {
 
-enum class Model { automatic, rolling, multipliers };
+enum class Model { automatic, rolling, multipliers, contact };
 
 enum class Method { automatic, exact, dop853, dopri5, rk4, gauss, radau };
 
@@ -27,6 +27,8 @@ struct Settings {
     double baumgarte_alpha;  // [1/s]
     double baumgarte_beta;   // [1/s]
     long max_steps;
+    long max_events;
+    std::optional<double> rest_speed;  // [m/s] under which bounces are summed; absent: by size
 };
 
 // Called now and then during long work; throws to stop it.

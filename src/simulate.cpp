@@ -8,25 +8,30 @@
 namespace rolling_ellipse {
 namespace {
 
-// What "auto" stands for.
-Settings chosen(Settings settings, const Scene& scene) {
-    if (settings.model == Model::automatic) settings.model = Model::rolling;
+// What "auto" stands for: no more model than the scene needs.
+Settings chosen(Settings settings, const Scene& scene, Validity validity) {
+    if (settings.model == Model::automatic) {
+        const bool fixed = settings.method != Method::automatic;  // asks for rolling, solved so
+        settings.model = fixed || validity == Validity::valid ? Model::rolling : Model::contact;
+    }
     if (settings.method == Method::exact && scene.slope != 0) {
         refuse("slope", "0 for method 'exact'", scene.slope);
     }
     if (settings.method == Method::automatic) {
-        settings.method =
-            settings.model == Model::rolling && scene.slope == 0 ? Method::exact : Method::dop853;
+        const bool exact = settings.model == Model::rolling && scene.slope == 0;
+        settings.method = exact ? Method::exact : Method::dop853;
     }
     return settings;
 }
 
 // What is said of rolling, for the model that has the same motion in more coordinates.
 std::string in_coordinates(const std::string& reason) { return "multipliers, " + reason; }
+std::string in_contact(const std::string& reason) { return "contact (" + reason + ")"; }
 
 Status status(Ending ending) {
     switch (ending) {
         case Ending::reached:
+        case Ending::stopped:
             return Status::completed;
         case Ending::max_steps:
             return Status::max_steps;
@@ -68,7 +73,7 @@ void judge_by_watch(const Scene& scene, const Settings& settings, double t_end,
         contact_forces(solution, scene, settings, times, n, found);
     };
     const ContactWatch watch =
-        watch_contact(scene.friction, solution.segments.front().knot_times(), forces, checkpoint);
+        watch_contact(scene.friction, knot_times(solution), forces, checkpoint);
     solution.reason = reason(scene, watch);
     end_validity(watch.holds_until, t_end, solution);
 }
@@ -79,32 +84,48 @@ Solution exact_rolling(const Scene& scene, const State& start, double t_end) {
         refuse("t", "at most 1e15 half turns or swings, " + text(longest_time(flow)) + " [s]",
                t_end);
     }
-    Solution solution;
-    solution.segments.push_back({start.mode, 0.0, t_end, flow});
+    Solution solution{flow};
     solution.followed_until = t_end;
     return solution;
 }
 
 template <class Integration>
-Solution stepped(Integration integration, Mode mode, const Settings& settings, double t_end) {
-    Solution solution;
-    solution.method = integration.motion.method();
+Solution stepped(Integration integration, const Settings& settings, double t_end) {
+    Solution solution{std::move(integration.motion), settings.model, settings.method};
     solution.counts = integration.counts;
     solution.status = status(integration.ending);
-    Segment segment{mode, 0.0, t_end, std::move(integration.motion)};
-    if (integration.ending != Ending::reached) segment.t1 = segment.knot_times().back();
-    solution.followed_until = segment.t1;
+    solution.followed_until =
+        integration.ending == Ending::reached ? t_end : knot_times(solution).back();
     solution.message = why_stopped(integration.ending, settings, solution.followed_until, t_end);
-    solution.segments.push_back(std::move(segment));
     return solution;
 }
 
-Solution not_followed(const CertifiedScene& certified, const std::string& obstacle) {
-    Solution solution;
-    solution.status = Status::validity_lost;
-    solution.valid_until = 0.0;
-    solution.reason = certified.reason;
-    solution.message = "no model here follows this motion: " + obstacle;
+Status status(ContactEnding ending) {
+    switch (ending) {
+        case ContactEnding::reached:
+            return Status::completed;
+        case ContactEnding::jammed:
+            return Status::jammed;
+        case ContactEnding::max_events:
+            return Status::max_events;
+        case ContactEnding::max_steps:
+            return Status::max_steps;
+        case ContactEnding::step_too_small:
+            return Status::step_too_small;
+    }
+    return Status::completed;
+}
+
+Solution contact(const Scene& scene, const CertifiedScene& certified, const Settings& settings,
+                 double t_end, const Checkpoint& checkpoint) {
+    ContactIntegration found =
+        integrate_contact(scene, certified.start.state, settings, t_end, checkpoint);
+    Solution solution{std::move(found.motion), settings.model, settings.method};
+    solution.counts = found.counts;
+    solution.status = status(found.ending);
+    solution.followed_until = found.ending == ContactEnding::reached ? t_end : found.reached_until;
+    solution.message = why_stopped(found.ending, settings, solution.followed_until, t_end);
+    solution.reason = in_contact(certified.reason);
     return solution;
 }
 
@@ -128,24 +149,25 @@ CertifiedScene certify(const Scene& scene) {
 Solution simulate(const Scene& scene, const Settings& asked, double t_end,
                   const Checkpoint& checkpoint) {
     validate(asked, t_end);
-    const Settings settings = chosen(asked, scene);
     const CertifiedScene certified = certify(scene);
+    const Settings settings = chosen(asked, scene, certified.certificate.validity);
     const State& start = certified.start.state;
-
+    if (settings.model == Model::contact) {
+        return contact(scene, certified, settings, t_end, checkpoint);
+    }
     if (const std::string obstacle = why_not_rolling(scene, start); !obstacle.empty()) {
-        if (asked.model == Model::automatic) return not_followed(certified, obstacle);
-        throw std::invalid_argument("model '" + name(asked.model) + "' must start rolling, but " +
-                                    obstacle);
+        throw std::invalid_argument("model '" + name(settings.model) +
+                                    "' must start rolling, but " + obstacle);
     }
     Solution solution = [&] {
         if (settings.method == Method::exact) return exact_rolling(scene, start, t_end);
         if (settings.model == Model::multipliers) {
             return stepped(integrate_multipliers(scene, coordinate_start(scene, start), settings,
                                                  t_end, checkpoint),
-                           start.mode, settings, t_end);
+                           settings, t_end);
         }
-        return stepped(integrate_rolling(scene, start, settings, t_end, checkpoint), start.mode,
-                       settings, t_end);
+        return stepped(integrate_rolling(scene, start, settings, t_end, checkpoint), settings,
+                       t_end);
     }();
     if (scene.slope == 0) {
         judge_by_proof(scene, certified, t_end, solution);
@@ -159,10 +181,10 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& asked,
                   double t_end, const Checkpoint& checkpoint) {
     validate(asked, t_end);
-    const Settings settings = chosen(asked, scene);
+    const Settings settings = chosen(asked, scene, Validity::no_proof);
     Solution solution =
         stepped(integrate_multipliers(scene, coordinate_start(start), settings, t_end, checkpoint),
-                Mode::rolling, settings, t_end);
+                settings, t_end);
     judge_by_watch(scene, settings, t_end, checkpoint, solution);
     solution.reason = in_coordinates(solution.reason);
     return solution;

@@ -23,30 +23,33 @@ std::vector<double> times_of(const SteppedMultipliers& motion) {
 
 }  // namespace
 
-std::vector<double> Segment::knot_times() const {
-    if (const auto* rolling = std::get_if<SteppedRolling>(&motion)) return times_of(*rolling);
-    if (const auto* all = std::get_if<SteppedMultipliers>(&motion)) return times_of(*all);
-    return {t0, t1};
-}
-
 void sample(const Solution& solution, const double* times, std::size_t n, FlowSample* samples) {
-    const auto& motion = solution.segments.front().motion;
-    if (const auto* flow = std::get_if<RollingFlow>(&motion)) {
+    if (const auto* flow = std::get_if<RollingFlow>(&solution.motion)) {
         sample(*flow, times, n, samples);
     } else {
-        sample(std::get<SteppedRolling>(motion), times, n, samples);
+        sample(std::get<SteppedRolling>(solution.motion), times, n, samples);
     }
 }
 
 void sample(const Solution& solution, const double* times, std::size_t n,
             CoordinateState* samples) {
-    sample(std::get<SteppedMultipliers>(solution.segments.front().motion), times, n, samples);
+    sample(std::get<SteppedMultipliers>(solution.motion), times, n, samples);
+}
+
+void sample(const Solution& solution, const double* times, std::size_t n, ContactSample* samples) {
+    sample(std::get<ContactMotion>(solution.motion), times, n, samples);
+}
+
+std::vector<double> knot_times(const Solution& solution) {
+    if (const auto* rolling = std::get_if<SteppedRolling>(&solution.motion)) {
+        return times_of(*rolling);
+    }
+    return times_of(std::get<SteppedMultipliers>(solution.motion));
 }
 
 void contact_forces(const Solution& solution, const Scene& scene, const Settings& settings,
                     const double* times, std::size_t n, ContactForce* forces) {
-    const auto& motion = solution.segments.front().motion;
-    if (const auto* multipliers = std::get_if<SteppedMultipliers>(&motion)) {
+    if (const auto* multipliers = std::get_if<SteppedMultipliers>(&solution.motion)) {
         std::vector<CoordinateState> states(n);
         sample(*multipliers, times, n, states.data());
         for (std::size_t i = 0; i < n; ++i) {

@@ -1,4 +1,4 @@
-// A motion: segments in time order, each with an evaluator for any time inside.
+// A motion and what is known of it: an evaluator for any time.
 #pragma once
 
 #include <cstddef>
@@ -6,40 +6,42 @@
 #include <variant>
 #include <vector>
 
-#include "flow.hpp"
+#include "contact.hpp"
 #include "multiplier_steps.hpp"
-#include "rolling_steps.hpp"
 
 namespace rolling_ellipse {
 
-struct Segment {
-    Mode mode;
-    double t0;
-    double t1;
-    std::variant<RollingFlow, SteppedRolling, SteppedMultipliers> motion;
-
-    // Start and end, and the points between the steps.
-    std::vector<double> knot_times() const;
+enum class Status {
+    completed,
+    jammed,
+    validity_lost,
+    max_events,
+    max_steps,
+    step_too_small,
+    step_too_large
 };
-
-enum class Status { completed, validity_lost, max_steps, step_too_small, step_too_large };
 
 struct Solution {
-    std::vector<Segment> segments;
+    std::variant<RollingFlow, SteppedRolling, SteppedMultipliers, ContactMotion> motion;
+    Model model = Model::rolling;
     Method method = Method::exact;
-    StepCounts counts;
+    StepCounts counts = {};
     Status status = Status::completed;
-    double followed_until = -infinity;  // last time that the segments describe
-    double valid_until = infinity;      // time at which the model stops being true
-    std::string reason;
-    std::string message;
+    double followed_until = 0.0;    // last time that the motion describes
+    double valid_until = infinity;  // time at which the model stops being true
+    std::string reason = {};
+    std::string message = {};
 };
 
-// The state at n times that the segments describe: of rolling, and of the multiplier model.
+// The state at n times: of rolling, of the multiplier model, and of the contact model.
 void sample(const Solution& solution, const double* times, std::size_t n, FlowSample* samples);
 void sample(const Solution& solution, const double* times, std::size_t n, CoordinateState* samples);
+void sample(const Solution& solution, const double* times, std::size_t n, ContactSample* samples);
 
-// The force of the ground on the body at n times.
+// Start and end, and the points between the steps, of a motion that is integrated.
+std::vector<double> knot_times(const Solution& solution);
+
+// The force of the ground on the body at n times, of a motion that is integrated.
 void contact_forces(const Solution& solution, const Scene& scene, const Settings& settings,
                     const double* times, std::size_t n, ContactForce* forces);
 

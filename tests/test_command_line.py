@@ -22,7 +22,7 @@ from rolling_ellipse.__main__ import main
 KEYS = {
     "status", "message", "reason", "valid_until", "smallest_normal_force",
     "largest_friction_needed", "period", "distance", "turns", "largest_position_residual",
-    "largest_velocity_residual", "largest_gap", "largest_slip",
+    "largest_velocity_residual", "largest_gap", "largest_slip", "events",
 }  # fmt: skip
 
 
@@ -140,11 +140,15 @@ def test_time_is_the_end_time(command: Any) -> None:
 
 
 def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
+    """The motion is followed beyond it: it slips, jumps and lands."""
     code, out, err = command("--omega", "5.2", "--friction", "1")
-    assert (code, err) == (0, "")  # a hard answer is an answer
-    assert "VALIDITY_LOST" in out and "ends at theta" in out
+    assert (code, err) == (0, "")
+    assert "COMPLETED" in out and out.startswith("contact") and "ends at theta" in out
     found = strict_json(command("--omega", "5.2", "--friction", "1", "--json").out)
-    assert found["status"] == "VALIDITY_LOST" and 0 < found["valid_until"] < 1
+    assert found["status"] == "COMPLETED" and found["valid_until"] is None
+    assert [kind for _, kind in found["events"]][:3] == ["slip", "lift_off", "impact"]
+    assert "lift_off" in out and found["largest_gap"] < 1e-14  # while it touches
+    assert found["period"] is None and found["smallest_normal_force"] is None
 
 
 def test_a_slope_has_a_summary_too(command: Any) -> None:

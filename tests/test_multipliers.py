@@ -46,6 +46,8 @@ def settings(**changes: Any) -> Settings:
         "stabilization": "none",
         "baumgarte": (10.0, 10.0),
         "max_steps": 1_000_000,
+        "max_events": 10_000,
+        "rest_speed": None,
     }
     return Settings(**(defaults | changes))
 

@@ -307,13 +307,10 @@ def test_simulate_refuses_unknown_names_and_lists_the_known(name: str, value: st
         assert re.search(rf"\b{word}\b", str(caught.value))
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [("model", "contact")],
-)
-def test_simulate_refuses_what_it_cannot_do_yet(name: str, value: str) -> None:
-    given = {"scene": scene(omega=1.0), "t": 1.0, name: value}
-    assert_refused(ValueError, name, repr(value), simulate, **given)
+@pytest.mark.parametrize("method", ["exact", "dop853", "dopri5", "rk4", "gauss", "radau"])
+def test_the_contact_model_chooses_its_methods(method: str) -> None:
+    given = {"scene": scene(omega=1.0), "t": 1.0, "model": "contact", "method": method}
+    assert_refused(ValueError, "method", repr(method), simulate, **given)
 
 
 @pytest.mark.parametrize("name", ["model", "method"])

@@ -175,13 +175,12 @@ def test_tables_may_be_changed_and_the_trajectory_stays(motion: re.Trajectory) -
 
 
 def test_a_trajectory_without_samples_makes_empty_tables() -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", re.ValidityWarning)
-        motion = re.simulate(re.scenes.drop, 1.0)
+    jams = re.Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
+    motion = re.simulate(jams, [0.5, 1.0])
     frame, found = motion.to_dataframe(), motion.to_xarray()
     assert len(frame) == found.sizes["t"] == 0
     assert list(frame.columns) == [each.name for each in (*QUANTITIES, *MULTIPLIERS, MODE)]
-    assert scene_in(found.attrs) == re.scenes.drop
+    assert scene_in(found.attrs) == jams
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,11 @@
 
 from importlib.metadata import version as _version
 
-from . import geometry, report, scenes
-from ._core import Mode, Validity
+from . import geometry, impacts, report, scenes
+from ._core import EventKind, Mode, Validity
 from ._simulate import simulate
 from .animation import animate
+from .events import Event
 from .kinematics import ConstraintResiduals, constraints, kinematics
 from .motion import flow, period
 from .plotting import (
@@ -29,9 +30,10 @@ from .validity import Certificate, Thresholds, certify, thresholds
 __version__ = _version("rolling-ellipse")
 
 __all__ = [
-    "Certificate", "ConstraintResiduals", "Impulse", "InitialState", "IntegrationError", "Mode",
-    "Scene", "Status", "Thresholds", "Trajectory", "Validity", "ValidityWarning", "__version__",
-    "animate", "certify", "constraints", "flow", "geometry", "kinematics", "load", "period", "plot",
-    "plot_constraints", "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_strobe",
-    "report", "scenes", "simulate", "thresholds",
+    "Certificate", "ConstraintResiduals", "Event", "EventKind", "Impulse", "InitialState",
+    "IntegrationError", "Mode", "Scene", "Status", "Thresholds", "Trajectory", "Validity",
+    "ValidityWarning", "__version__", "animate", "certify", "constraints", "flow", "geometry",
+    "impacts", "kinematics", "load", "period", "plot", "plot_constraints", "plot_energy",
+    "plot_forces", "plot_paths", "plot_phase", "plot_strobe", "report", "scenes", "simulate",
+    "thresholds",
 ]  # fmt: skip

@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from . import Scene, Trajectory, certify, period, scenes, simulate
+from . import Mode, Scene, Trajectory, certify, period, scenes, simulate
 from .animation import animate
 
 _SCENE_OPTIONS = {
@@ -25,6 +25,8 @@ _SCENE_OPTIONS = {
     "restitution": "coefficient of restitution",
     "slope": "angle of the ground [rad]",
 }
+
+_SHOWN_EVENTS = 10
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -64,30 +66,33 @@ def summary(trajectory: Trajectory) -> dict[str, Any]:
     """Return what a reader wants to know first; None for what does not exist."""
     scene = trajectory.scene
     certificate = certify(scene)
+    proved = trajectory.model != "contact"  # what the certificate says is said of rolling
     found: dict[str, Any] = {
         "status": trajectory.status.name,
         "message": trajectory.message,
         "reason": trajectory.reason,
         "valid_until": _finite(trajectory.valid_until),
-        "smallest_normal_force": certificate.smallest_normal_force,
-        "largest_friction_needed": _finite(certificate.largest_friction_needed),
+        "smallest_normal_force": certificate.smallest_normal_force if proved else None,
+        "largest_friction_needed": _finite(certificate.largest_friction_needed if proved else None),
+        "events": [[event.t, event.kind.name.lower()] for event in trajectory.events],
     }
     if trajectory.t.size:
         residuals = trajectory.constraint_residuals()
+        touching, rolling = trajectory.mode != Mode.FLIGHT, trajectory.mode == Mode.ROLLING
         found |= {
-            "period": _finite(period(scene)) if scene.slope == 0 else None,
+            "period": _finite(period(scene)) if proved and scene.slope == 0 else None,
             "distance": float(trajectory.x[-1] - trajectory.x[0]),
             "turns": float(trajectory.turns[-1]),
-            "largest_position_residual": _largest(residuals.position),
-            "largest_velocity_residual": _largest(residuals.velocity),
-            "largest_gap": _largest(residuals.gap),
-            "largest_slip": _largest(residuals.slip),
+            "largest_position_residual": _largest(residuals.position[touching]),
+            "largest_velocity_residual": _largest(residuals.velocity[rolling]),
+            "largest_gap": _largest(residuals.gap[touching]),
+            "largest_slip": _largest(residuals.slip[rolling]),
         }
     return found
 
 
 def _largest(values: np.ndarray[Any, Any]) -> float:
-    return float(np.max(np.abs(values)))
+    return float(np.max(np.abs(values), initial=0.0))
 
 
 def _finite(value: float | None) -> float | None:
@@ -109,6 +114,9 @@ def _lines(found: dict[str, Any], t_end: float) -> list[str]:
                 f"smallest N        {found['smallest_normal_force']:.6g} N",
                 f"largest |F|/N     {'unbounded' if needed is None else format(needed, '.6g')}",
             ]
+        lines += [f"{kind:<17} at {t:.9g} s" for t, kind in found["events"][:_SHOWN_EVENTS]]
+        if len(found["events"]) > _SHOWN_EVENTS:
+            lines.append(f"… and {len(found['events']) - _SHOWN_EVENTS} events more")
         lines += [
             f"residuals         position {found['largest_position_residual']:.2g}, velocity "
             f"{found['largest_velocity_residual']:.2g}, gap {found['largest_gap']:.2g} m, "

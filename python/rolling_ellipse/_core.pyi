@@ -3,7 +3,12 @@
 import enum
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from ._check import FloatArray
+
+_State = tuple[float, float, float, float, float, float, Mode]
 
 class Mode(enum.IntEnum):
     """What the body does, one code a sample."""
@@ -25,6 +30,18 @@ class Model(enum.Enum):
     AUTO = 0
     ROLLING = 1
     MULTIPLIERS = 2
+    CONTACT = 3
+
+class EventKind(enum.Enum):
+    """What changes at an event."""
+
+    SLIP = 0
+    STICK = 1
+    REVERSE = 2
+    LIFT_OFF = 3
+    IMPACT = 4
+    REST = 5
+    JAM = 6
 
 class Stabilization(enum.Enum):
     NONE = 0
@@ -44,10 +61,12 @@ class Method(enum.Enum):
 
 class Status(enum.Enum):
     COMPLETED = 0
-    VALIDITY_LOST = 1
-    MAX_STEPS = 2
-    STEP_TOO_SMALL = 3
-    STEP_TOO_LARGE = 4
+    JAMMED = 1
+    VALIDITY_LOST = 2
+    MAX_EVENTS = 3
+    MAX_STEPS = 4
+    STEP_TOO_SMALL = 5
+    STEP_TOO_LARGE = 6
 
 class Settings:
     def __init__(
@@ -62,6 +81,8 @@ class Settings:
         stabilization: Stabilization,
         baumgarte: tuple[float, float],
         max_steps: int,
+        max_events: int,
+        rest_speed: float | None,
     ) -> None: ...
 
 class Impulse:
@@ -102,11 +123,18 @@ class Solution:
     @property
     def message(self) -> str: ...
     @property
+    def model(self) -> Model: ...
+    @property
     def method(self) -> Method: ...
+    @property
+    def events(self) -> list[tuple[float, EventKind, _State, _State]]: ...
     @property
     def stats(self) -> dict[str, int]: ...
     def sample(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]: ...
     def sample_coordinates(self, t: FloatArray) -> tuple[FloatArray, FloatArray]: ...
+    def sample_contact(
+        self, t: FloatArray, scene: Scene
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, npt.NDArray[np.int8]]: ...
 
 def support(n: int, arguments: list[FloatArray]) -> FloatArray: ...
 def support_slope(n: int, arguments: list[FloatArray]) -> FloatArray: ...
@@ -134,6 +162,9 @@ def simulate_coordinates(
 def multiplier_detail(
     scene: Scene, settings: Settings, q: FloatArray, q_dot: FloatArray
 ) -> tuple[FloatArray, FloatArray]: ...
+def contact_detail(
+    scene: Scene, q: FloatArray, q_dot: FloatArray, normal: FloatArray, friction: FloatArray
+) -> tuple[FloatArray, FloatArray]: ...
 def project(scene: Scene, q: FloatArray, q_dot: FloatArray) -> tuple[FloatArray, FloatArray]: ...
 def constraint_system(
     q: FloatArray, q_dot: FloatArray, a: float, b: float
@@ -150,6 +181,9 @@ def flow_scalar(
 ) -> tuple[float, float, float]: ...
 def flow_array(
     n: int, arguments: list[FloatArray], workers: int
+) -> tuple[FloatArray, FloatArray, FloatArray]: ...
+def collide_arrays(
+    n: int, arguments: list[FloatArray]
 ) -> tuple[FloatArray, FloatArray, FloatArray]: ...
 def constraints(
     q: FloatArray, q_dot: FloatArray, a: float, b: float

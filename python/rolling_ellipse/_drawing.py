@@ -32,6 +32,7 @@ INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e
 SKY, PLUM = "#8fc3e0", "#7a2e4d"
 FILL = to_rgb(BLUE)
 TIMES = LinearSegmentedColormap.from_list("times", ["#bcd9ea", BLUE, INK])  # early to late
+SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
 SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be a thin stripe
 
 
@@ -57,6 +58,12 @@ def contact_points(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Where body and ground touch: x and z, (n,) [m]; NaN in flight."""
     touching = trajectory.mode != Mode.FLIGHT
     return np.where(touching, trajectory.contact_x, np.nan), np.where(touching, 0.0, np.nan)
+
+
+def skids(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """Where the contact slides: x and z, (n,) [m]; NaN elsewhere."""
+    sliding = trajectory.mode == Mode.SLIDING
+    return np.where(sliding, trajectory.contact_x, np.nan), np.where(sliding, 0.0, np.nan)
 
 
 def view(path: Trajectory) -> tuple[float, float, float, float]:

@@ -21,6 +21,7 @@ from ._curves import (
     worst,
 )
 from ._labels import motions_of
+from ._modes import mode_handles
 from ._motions import (
     motion_handles,
     name_curves,
@@ -78,8 +79,8 @@ def plot_energy(
     """Draw the energies of a motion [J], or by how much the energy of several motions is off.
 
     The error is |E - E0| over the largest |kinetic| + |potential| energy of its motion, on a
-    logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. Dotted
-    lines mark events; where the model is not valid, the ground of the curves is grey.
+    logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. Modes,
+    events and lost validity are marked as in `plot_forces`.
 
     Parameters
     ----------
@@ -121,12 +122,15 @@ def plot_energy(
             label = "energy error" if look is None else look.label
             errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, look))
     if kind == "error":
-        dress_errors(ax, errors, "relative energy error")
-        name_curves(ax, some_of(errors))
+        changes = any(motion.events for motion in motions)  # friction and impacts are no errors
+        dress_errors(ax, errors, f"relative energy {'change' if changes else 'error'}")
+        name_curves(ax, [*some_of(errors), *mode_handles(motions)])
     else:
         quantities = list(zip(("total", "kinetic", "potential"), DASHES, strict=True))
-        handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
-        name_curves(ax, None if alone else handles)
+        handles: list[Artist] = ax.get_legend_handles_labels()[0]
+        if not alone:
+            handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
+        name_curves(ax, [*handles, *mode_handles(motions)])
     marks = dress_over_time(ax, motions, None if alone else styles)
     total, kinetic, potential = zip(*energies, strict=True) if energies else ((), (), ())
     return Energy(ax, total, kinetic, potential, tuple(errors), marks)
@@ -144,8 +148,8 @@ def plot_constraints(
     well, so that rounding shows as 1e-16 whatever the size of the body. The upper panel shows f2,
     f3, f4 and the gap, the lower one f1, the rates of the others and the slip (see
     `ConstraintResiduals`); of several motions each panel shows the worst. An exact zero has no
-    place on the scale. Dotted lines mark events; where the model is not valid, the ground of the
-    curves is grey.
+    place on the scale, nor has what the ground does not hold: the slip while sliding, the gap in
+    flight. Modes, events and lost validity are marked as in `plot_forces`.
 
     Parameters
     ----------
@@ -182,7 +186,8 @@ def plot_constraints(
     for panel, drawn, name in zip(panels, lines, names, strict=True):
         dress_errors(panel, drawn, name)
         if alone or panel is panels[0]:
-            name_curves(panel, some_of(drawn))
+            modes = mode_handles(motions) if panel is panels[0] else []
+            name_curves(panel, [*some_of(drawn), *modes])
     marks = dress_panels(panels, motions, None if alone else styles)
     return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
 

@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .events import as_numbers, from_numbers
 from .scene import Impulse, Scene
 from .settings import Settings
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
 
-_SCHEMA = 2
+_SCHEMA = 3
 _ARRAYS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")
+_CONTACT = ("normal_force", "friction_force", "mode")
 _FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
 
 
@@ -29,12 +31,15 @@ def write(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
         "scene": asdict(trajectory.scene),
         "settings": asdict(trajectory.settings),
         "status": trajectory.status.name,
+        "events": [as_numbers(found) for found in trajectory.events],
         **{name: getattr(trajectory, name) for name in _FACTS},
     }
     arrays = {name: getattr(trajectory, name) for name in _ARRAYS}
     for name in _PAIRS:
         if (pair := getattr(trajectory, name)) is not None:
             arrays[name] = np.stack(pair)
+    if trajectory.contact is not None:
+        arrays |= zip(_CONTACT, trajectory.contact, strict=True)
     with open(path, "wb") as file:
         np.savez(file, about=np.array(json.dumps(about)), **arrays)
 
@@ -50,11 +55,14 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
             about = json.loads(str(data["about"]))
             found: dict[str, Any] = {array: data[array] for array in _ARRAYS}
             found |= {pair: tuple(data[pair]) for pair in _PAIRS if pair in data}
+            if _CONTACT[0] in data:
+                found["contact"] = tuple(data[array] for array in _CONTACT)
         except (ValueError, KeyError, IndexError, EOFError, zipfile.BadZipFile) as error:
             raise ValueError(f"path must name a file written by save, got {name!r}") from error
     if (schema := about.pop("schema", None)) != _SCHEMA:
         raise ValueError(f"path must name a file of schema {_SCHEMA}, got {name!r} of {schema!r}")
     scene, settings = about.pop("scene"), about.pop("settings")
+    events = tuple(from_numbers(scene["mass"], found) for found in about.pop("events"))
     if scene["impulse"] is not None:
         scene["impulse"] = Impulse(**scene["impulse"])
     return {
@@ -63,4 +71,5 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
         "scene": Scene(**scene),
         "settings": Settings(**settings),
         "status": Status[about["status"]],
+        "events": events,
     }

@@ -11,6 +11,7 @@ import numpy as np
 from ._curves import DASHES, draw_forces, dress_forces, dress_panels
 from ._drawing import GREY, INK
 from ._labels import motions_of
+from ._modes import mode_handles
 from ._motions import (
     motion_handles,
     name_curves,
@@ -61,8 +62,10 @@ def plot_forces(
 
     The upper panel shows N and F [N], F over the band +-friction N; where a spike towers over the
     weight, the scale is linear up to about the weight and logarithmic beyond. The lower panel shows
-    |F|/N against the coefficient of friction; it is infinite where N <= 0. Dotted lines mark
-    events; where the model is not valid, the ground of the curves is grey.
+    |F|/N against the coefficient of friction; it is infinite where N <= 0. The ground of the curves
+    is hatched while the body slides, grey in flight, where both forces are 0, and dotted at rest
+    (of several motions, each has a row at the top); dotted lines mark events, those of a single
+    motion with their names where there is room. Where the model is not valid, all ground is grey.
 
     Parameters
     ----------
@@ -103,8 +106,10 @@ def plot_forces(
         _dress_needed(panels[1], motions, any(available))
     marks = dress_panels(panels, motions, None if alone else styles)
     quantities = [("normal", DASHES[0]), ("friction", DASHES[1])]
-    handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
-    name_curves(panels[0], None if alone else handles)
+    handles: list[Artist] = panels[0].get_legend_handles_labels()[0]
+    if not alone:
+        handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
+    name_curves(panels[0], [*handles, *mode_handles(motions)])
     normal, friction, limits = zip(*drawn, strict=True)
     return Forces(tuple(panels), normal, friction, limits, tuple(needed), tuple(available), marks)
 

@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.lines import Line2D
 
 from . import _drawing as drawing
+from ._core import EventKind
 from ._curves import sparse_markers
 from ._drawing import BLUE, INK, ORANGE
 from ._labels import motions_of
+from ._modes import EVENT_NAMES, events_shown
 from ._motions import (
     draw_invalid_ground,
     motion_handles,
@@ -23,27 +26,38 @@ from ._strobe import axes_for, dress_ground_axes, turned_until
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
     from matplotlib.patches import Polygon
 
     from ._motions import Style
     from .trajectory import Trajectory
 
 _CENTRE, _TIP = "-", "--"
+_EVENTS = {
+    EventKind.SLIP: ">",
+    EventKind.STICK: "o",
+    EventKind.REVERSE: "<",
+    EventKind.LIFT_OFF: "^",
+    EventKind.IMPACT: "v",
+    EventKind.REST: "s",
+    EventKind.JAM: "X",
+}
 
 
 @dataclass(frozen=True, repr=False)
 class Paths:
-    """Artists of `plot_paths`; item i of each tuple belongs to motion i.
+    """Artists of `plot_paths`; item i of each tuple but `marks` belongs to motion i.
 
-    All data are in ground axes: x along the ground, z normal to it [m].
+    All data are in ground axes: x along the ground, z normal to it [m]. A line of `events` has
+    all places of one kind of event.
     """
 
     ax: Axes
     centres: tuple[Line2D, ...]
     tips: tuple[Line2D, ...]
     contacts: tuple[Line2D, ...]
+    events: tuple[tuple[Line2D, ...], ...]
     ground: Polygon
     marks: tuple[Line2D, ...]
 
@@ -57,8 +71,10 @@ def plot_paths(
     """Draw the paths of the centre, of the contact and of the end of axis a over the ground.
 
     That end is the one on the right at theta = 0. On a slope the picture is tilted, so that down
-    is down. A long way is shown over its first three turns (the title then says so); the lines
-    hold all of it. Where the model is not valid, the path of the centre has grey ground.
+    is down. The path of the contact ends where the body leaves the ground and goes on where it hits
+    it; markers on it are events. A long way is shown over its first three turns (the title then
+    says so); the lines hold all of it. Where the model is not valid, the path of the centre has
+    grey ground.
 
     Parameters
     ----------
@@ -99,11 +115,15 @@ def plot_paths(
     dress_ground_axes(ax, motions[0].scene, view)
     _title(ax, end, max(float(motion.t[-1]) for motion in motions))
     quantities = [("centre", _CENTRE), ("end of axis a", _TIP)]
-    handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
-    name_curves(ax, None if len(motions) == 1 else handles)
+    handles: list[Artist] = ax.get_legend_handles_labels()[0]
+    if len(motions) > 1:
+        handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
+    colours = [INK] if len(motions) == 1 else [style.colour for style in styles]
+    events = [_draw_events(ax, m, colour) for m, colour in zip(motions, colours, strict=True)]
+    name_curves(ax, [*handles, *_event_handles(motions)])
     centres, tips, contacts = zip(*drawn, strict=True)
     marks = tuple(_draw_invalid(ax, m) for m in motions if m.valid_until < m.t[-1])
-    return Paths(ax, centres, tips, contacts, ground, marks)
+    return Paths(ax, centres, tips, contacts, tuple(events), ground, marks)
 
 
 def _view(motions: Sequence[Trajectory], end: float) -> tuple[float, float, float, float]:
@@ -138,6 +158,33 @@ def _draw_paths(
         solid_capstyle="butt", label=f"{name}contact", transform=on_slope, zorder=3 - share,
     )  # fmt: skip
     return centre, tip, contact
+
+
+def _draw_events(ax: Axes, motion: Trajectory, colour: str) -> tuple[Line2D, ...]:
+    """Mark where the body touches the ground at its events, a line for each kind."""
+    on_slope = drawing.tilted(motion.scene) + ax.transData
+    events = events_shown(motion)
+    places = motion.sol([event.t for event in events]).contact_x if events else np.empty(0)
+    kinds = np.array([event.kind.value for event in events])
+    lines: list[Line2D] = []
+    for kind in dict.fromkeys(event.kind for event in events):
+        x = places[kinds == kind.value]
+        lines += ax.plot(
+            x, np.zeros_like(x), ls="none", marker=_EVENTS[kind], ms=6, mfc="white", mec=colour,
+            mew=1.2, label=f"_{EVENT_NAMES[kind]}", transform=on_slope, zorder=6,
+        )  # fmt: skip
+    return tuple(lines)
+
+
+def _event_handles(motions: Sequence[Trajectory]) -> list[Line2D]:
+    kinds = dict.fromkeys(event.kind for motion in motions for event in events_shown(motion))
+    return [
+        Line2D(
+            [], [], ls="none", marker=_EVENTS[kind], ms=3, mfc="white", mec=INK, mew=1.0,
+            label=EVENT_NAMES[kind],
+        )
+        for kind in kinds
+    ]  # fmt: skip
 
 
 def _draw_invalid(ax: Axes, motion: Trajectory) -> Line2D:

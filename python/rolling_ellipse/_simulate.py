@@ -28,6 +28,8 @@ def simulate(
     stabilization: str = "projection",
     baumgarte: tuple[float, float] = (10.0, 10.0),
     max_steps: int = 1_000_000,
+    max_events: int = 10_000,
+    rest_speed: float | None = None,
     raise_on_failure: bool = True,
 ) -> Trajectory:
     """Simulate a scene from t = 0 and sample the motion.
@@ -38,10 +40,13 @@ def simulate(
         Its state is that at t = 0; an impulse acts there first.
     t : float or array_like, shape (n,)
         End time (then 1001 even samples), or strictly increasing sample times >= 0 [s].
-    model : {"auto", "rolling", "multipliers"}
-        "rolling" is rolling without slip; "auto" chooses it where it starts. On level ground the
-        certificate (see `certify`) says until when rolling is true, on a slope the forces along
-        the computed motion. "multipliers" is the same motion in the report's five coordinates
+    model : {"auto", "rolling", "multipliers", "contact"}
+        "rolling" is rolling without slip; on level ground the certificate (see `certify`) says
+        until when it is true, on a slope the forces along the computed motion. "contact" is the
+        whole motion: it rolls, slides, flies, hits the ground and comes to rest, on arcs joined
+        by ``events``; exact rolling and flight, "dop853" at 1e-13 for the rest. "auto" is
+        "rolling" where the certificate proves it, and "contact" elsewhere; with a method given it
+        is "rolling". "multipliers" is the same motion in the report's five coordinates
         with four constraints and their Lagrange multipliers, for study: "dop853" (also its
         "auto"), "dopri5", "rk4", or "radau" with the stabilization "ggl".
     method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
@@ -71,6 +76,11 @@ def simulate(
         constraint f1 of ``f1' + 2 alpha f1 = 0``.
     max_steps : int
         Most steps taken before the integration ends with the status MAX_STEPS.
+    max_events : int
+        Most events of "contact" before it ends with the status MAX_EVENTS.
+    rest_speed : float, optional
+        Rebound speed [m/s] under which "contact" sums the infinitely many bounces that are left;
+        default 1e-6 sqrt(g min(a, b)).
     raise_on_failure : bool
         Whether an integration that stops before the last time raises; otherwise it returns what
         there is up to then.
@@ -78,19 +88,20 @@ def simulate(
     Returns
     -------
     Trajectory
-        ``status`` COMPLETED; or VALIDITY_LOST, where the span goes beyond ``valid_until``: the
-        arrays are complete and obey the rolling equation, and a ValidityWarning is issued. A scene
-        that does not start rolling has ``valid_until`` 0 with "auto", and no samples. Samples
-        between steps have the accuracy of the method.
+        ``status`` COMPLETED; or VALIDITY_LOST, where the span of "rolling" or "multipliers" goes
+        beyond ``valid_until``: the arrays are complete and obey the rolling equation, and a
+        ValidityWarning is issued; or JAMMED, where no motion of a rigid body goes on (Painleve):
+        the arrays end there. At an event samples show what holds after it. Samples between steps
+        have the accuracy of the method.
 
     Raises
     ------
     ValueError
         If times are negative, not increasing or not finite, a name is unknown, an argument is out
-        of range or of no use to the method, or the model "rolling" is asked for a scene that does
-        not start rolling, or the method "exact" for a slope.
+        of range or of no use to the method, or the models "rolling" or "multipliers" are asked
+        for a scene that does not start rolling, or the method "exact" for a slope.
     IntegrationError
-        If the integration stops before the last time (MAX_STEPS, STEP_TOO_SMALL or
+        If the integration stops before the last time (MAX_EVENTS, MAX_STEPS, STEP_TOO_SMALL or
         STEP_TOO_LARGE); its ``trajectory`` holds what there is.
 
     References
@@ -116,6 +127,8 @@ def simulate(
         stabilization=stabilization,
         baumgarte=baumgarte,
         max_steps=max_steps,
+        max_events=max_events,
+        rest_speed=rest_speed,
     )
     trajectory = Trajectory.computed(scene, settings, sample_times(t))
     report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=3)

@@ -6,9 +6,12 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.markers import MarkerStyle
 
 from . import _drawing as drawing
-from ._drawing import BLUE, FILL, INK, ORANGE
+from ._core import Mode
+from ._drawing import BLUE, FILL, GREY, INK, ORANGE, PLUM, SKID
+from .geometry import support
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -41,9 +44,11 @@ class Strip:
     ----------
     motion, ax
         As given.
-    body, axis_a, axis_b, tip, contact, centre_trace, tip_trace
+    body, axis_a, axis_b, tip, contact, slip, shadow, centre_trace, tip_trace, skid_trace
         The moving artists, their data in ground axes (x along the ground, z normal to it) [m].
-        `tip` is the end of axis a that lies on the right at theta = 0.
+        `tip` is the end of axis a that lies on the right at theta = 0. `contact` is where the body
+        touches; while it slides, `slip` is there too and points the way that it slides. In flight
+        neither is seen, but the `shadow` below the body.
     ruler
         The ticks of the ground and their figures.
     caption
@@ -63,6 +68,7 @@ class Strip:
         self._times, self._views = times, views
         self._label, self._show_place = label, show_place
         self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
+        self._skids, self._slip = drawing.skids(motion), motion.constraint_residuals().slip
         self._build()
 
     def _build(self) -> None:
@@ -82,12 +88,15 @@ class Strip:
         )
         self.body.set_transform(on_slope)
         ax.add_patch(self.body)
+        self.shadow = line(2, color=GREY, lw=5, solid_capstyle="round")
+        self.skid_trace = line(2, **SKID)
         self.tip_trace = line(3, color=BLUE, lw=1, alpha=0.6)
         self.centre_trace = line(5, color=ORANGE, lw=1.8)
         self.axis_a = line(5, color=INK, lw=1.2)
         self.axis_b = line(5, color=INK, lw=1.2, ls=(0, (4, 3)))
         self.tip = line(6, color=BLUE, marker="o", ms=6)
         self.contact = line(7, ls="none", marker="o", ms=6, mfc="white", mec=INK, mew=1.5)
+        self.slip = line(8, ls="none", ms=11, mfc=PLUM, mec="white", mew=0.8)
         self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=INK)
 
     def draw(self, i: int) -> list[Artist]:
@@ -103,14 +112,32 @@ class Strip:
         here, past = slice(i, i + 1), slice(None, i + 1)
         self.tip.set_data(self._tip[0][here], self._tip[1][here])
         self.contact.set_data(self._contact[0][here], self._contact[1][here])
+        self.slip.set_data(self._skids[0][here], self._skids[1][here])
+        self.slip.set_marker(self._arrow(float(self._slip[i])))
+        self.shadow.set_data(*self._shadow(i))
+        self.skid_trace.set_data(self._skids[0][past], self._skids[1][past])
         self.tip_trace.set_data(self._tip[0][past], self._tip[1][past])
         self.centre_trace.set_data(motion.x[past], motion.z[past])
         self.caption.set_text(self._caption(i))
         left, right, bottom, top = self._views[i]
         self.ruler.move((left + right) / 2 / math.cos(scene.slope))
         self.ax.set(xlim=(left, right), ylim=(bottom, top))
-        return [self.body, self.axis_a, self.axis_b, self.tip, self.contact, self.tip_trace,
-                self.centre_trace, self.caption]  # fmt: skip
+        return [self.body, self.axis_a, self.axis_b, self.tip, self.contact, self.slip,
+                self.shadow, self.tip_trace, self.centre_trace, self.skid_trace,
+                self.caption]  # fmt: skip
+
+    def _arrow(self, slip: float) -> MarkerStyle:
+        """A triangle along the ground, the way of the slip."""
+        along = drawing.tilted(self.motion.scene)
+        return MarkerStyle(">" if slip > 0 else "<", transform=along)
+
+    def _shadow(self, i: int) -> tuple[list[float], list[float]]:
+        """The ground below the body in flight, nothing else."""
+        if self.motion.mode[i] != Mode.FLIGHT:
+            return [], []
+        scene, x = self.motion.scene, float(self.motion.x[i])
+        half = float(support(self.motion.theta[i] + math.pi / 2, a=scene.a, b=scene.b))
+        return [x - half, x + half], [0.0, 0.0]
 
     def widest_caption(self) -> float:
         """Width of the longest caption of all frames [pixels]."""
@@ -124,6 +151,8 @@ class Strip:
             size = max(motion.scene.a, motion.scene.b)
             digits = max(0, 1 - math.floor(math.log10(size)))
             parts.append(f"x = {motion.x[i]:.{digits}f} m".replace("-", "−"))
+        if motion.mode[i] in (Mode.SLIDING, Mode.FLIGHT):
+            parts.append("slides" if motion.mode[i] == Mode.SLIDING else "flies")
         if motion.t[i] >= motion.valid_until:
             parts.append("rolling is no longer valid")
         if motion.t[i] < self._times[i]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from . import _drawing as drawing
-from ._drawing import FILL, INK, ORANGE, SHOWN_TURNS, TIMES, legend_above
+from ._drawing import FILL, INK, ORANGE, PLUM, SHOWN_TURNS, SKID, TIMES
+from ._motions import name_curves
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
 class Strobe:
     """Artists of `plot_strobe`; bodies[i], hands[i] and point i of `contacts` belong together.
 
-    All data are in ground axes: x along the ground, z normal to it [m].
+    All data are in ground axes: x along the ground, z normal to it [m]. Points of `contacts` and
+    `contact_path` are NaN in flight, those of `slides` and `skid_path` wherever nothing slides.
     """
 
     ax: Axes
@@ -34,6 +36,8 @@ class Strobe:
     centre_path: Line2D
     contact_path: Line2D
     contacts: Line2D
+    skid_path: Line2D
+    slides: Line2D
     ground: Polygon
 
 
@@ -47,8 +51,9 @@ def plot_strobe(
     """Draw the body at even times over the ground, early ones light and late ones dark.
 
     The hand of each body points to the end of axis a that lies on the right at theta = 0. On a
-    slope the picture is tilted, so that down is down. Positions that the model is not valid for
-    are dotted.
+    slope the picture is tilted, so that down is down. A ring marks where the body touches the
+    ground, a diamond where it slides there, and a broad line on the ground how far it slides.
+    Positions that the model is not valid for are dotted.
 
     Parameters
     ----------
@@ -85,14 +90,22 @@ def plot_strobe(
     ax = ax or axes_for(view)
     ground = drawing.draw_ground(ax, path)
     bodies, hands = _draw_bodies(ax, at)
-    centre_path, contact_path, contacts = _draw_paths(ax, at, path)
+    centre_path, contact_path, contacts, skid_path, slides = _draw_paths(ax, at, path)
     dress_ground_axes(ax, path.scene, view)
-    legend_above(ax)
-    title = f"{count} positions over " + (
-        "" if end == last else f"the first {end - first:.3g} s of "
-    )
-    ax.set_title(f"{title}{last - first:.4g} s", loc="left", fontsize="medium")
-    return Strobe(ax, bodies, hands, centre_path, contact_path, contacts, ground)
+    name_curves(ax)
+    part = "" if end == last else f"the first {end - first:.3g} s of "
+    _title(ax, f"{count} positions over {part}{last - first:.4g} s")
+    return Strobe(ax, bodies, hands, centre_path, contact_path, contacts, skid_path, slides, ground)
+
+
+def _title(ax: Axes, text: str) -> None:
+    """Set a title beside the legend, or above it where there is no room."""
+    title, legend = ax.set_title(text, loc="left", fontsize="medium"), ax.get_legend()
+    assert legend is not None
+    taken = legend.get_window_extent()
+    if title.get_window_extent().width + taken.width > ax.get_window_extent().width:
+        above = taken.height * 72 / ax.figure.dpi + 4  # and the descent of its letters
+        ax.set_title(text, loc="left", fontsize="medium", pad=above)
 
 
 def axes_for(view: tuple[float, float, float, float]) -> Axes:
@@ -143,7 +156,11 @@ def _draw_bodies(ax: Axes, at: Trajectory) -> tuple[tuple[Ellipse, ...], tuple[L
 
 
 def _draw_paths(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
+    """Draw the paths of the centre and the contact, and where the bodies touch and slide."""
     on_slope = drawing.tilted(at.scene) + ax.transData
+    marker: dict[str, Any] = {"ls": "none", "mec": INK, "transform": on_slope}
+    skids = drawing.skids(path)
+    name = "sliding" if np.isfinite(skids[0]).any() else "_sliding"
     return [
         *ax.plot(
             path.x, path.z, color=ORANGE, lw=1.8, transform=on_slope, zorder=5, label="centre"
@@ -152,10 +169,9 @@ def _draw_paths(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
             *drawing.contact_points(path), color=INK, lw=2.4, solid_capstyle="round",
             transform=on_slope, zorder=5, label="contact",
         ),
-        *ax.plot(
-            *drawing.contact_points(at), ls="none", marker="o", ms=5, mfc="white", mec=INK,
-            transform=on_slope, zorder=6,
-        ),
+        *ax.plot(*drawing.contact_points(at), marker="o", ms=5, mfc="white", zorder=6, **marker),
+        *ax.plot(*skids, **SKID, transform=on_slope, zorder=4.5, label=name),
+        *ax.plot(*drawing.skids(at), marker="D", ms=6, mfc=PLUM, zorder=7, **marker),
     ]  # fmt: skip
 
 

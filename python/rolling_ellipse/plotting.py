@@ -25,6 +25,7 @@ from ._curves import (
 from ._drawing import INK
 from ._errors import Constraints, Energy, plot_constraints, plot_energy
 from ._forces import Forces, plot_forces
+from ._modes import mode_handles
 from ._motions import name_curves
 from ._paths import Paths, plot_paths
 from ._phase import Phase, plot_phase
@@ -50,7 +51,7 @@ __all__ = [
 
 @dataclass(frozen=True, repr=False)
 class Overview:
-    """Artists of `plot`: curves over `trajectory.t`, and `marks` of events and of lost validity."""
+    """Artists of `plot`: curves over `trajectory.t`, and `marks` of what happens when."""
 
     figure: Figure
     strobe: Strobe
@@ -78,7 +79,8 @@ def plot(
 ) -> Overview:
     """Draw one figure of a motion: positions, angle, speed, height, forces, energies and errors.
 
-    Dotted lines mark events; where the model is not valid, the ground of the curves is grey.
+    Under the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
+    Where the model is not valid, all ground is grey.
 
     Parameters
     ----------
@@ -130,7 +132,7 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
     errors = {
         "positions": worst(position_errors(trajectory)),
         "velocities": worst(velocity_errors(trajectory)),
-        "energy": energy_error(trajectory),
+        "energy change" if trajectory.events else "energy": energy_error(trajectory),
     }
     position, velocity, energy = (
         draw_dots(ax, trajectory, values, name, rank, None)
@@ -144,13 +146,15 @@ def _dress_panels(panels: Sequence[Axes], trajectory: Trajectory) -> tuple[Artis
     """Give two columns of three panels one time axis, and legends where there are several lines."""
     marks: list[Artist] = []
     for panel in panels:
-        marks += dress_over_time(panel, [trajectory])
+        marks += dress_over_time(panel, [trajectory], named=False)
         if panel is not panels[0]:
             panel.sharex(panels[0])
         if panel not in (panels[2], panels[5]):
             panel.set_xlabel("")
             panel.tick_params(labelbottom=False)
-    for panel in panels[3:]:
+    modes = mode_handles([trajectory])
+    name_curves(panels[3], [*panels[3].get_legend_handles_labels()[0], *modes])
+    for panel in panels[4:]:
         name_curves(panel)
     panels[0].figure.align_ylabels(panels[:3])
     panels[0].figure.align_ylabels(panels[3:])

@@ -162,6 +162,8 @@ def simulate(
             stabilization=stabilization or "projection",
             baumgarte=(10.0, 10.0) if baumgarte is None else baumgarte,
             max_steps=max_steps,
+            max_events=1,
+            rest_speed=None,
         )
         start = _checked_start(*state, body, (), consistent)
         return _corrected(start, times, body, settings)

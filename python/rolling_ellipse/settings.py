@@ -28,6 +28,8 @@ class Settings:
     stabilization: str
     baumgarte: tuple[float, float]
     max_steps: int
+    max_events: int
+    rest_speed: float | None
 
     def __post_init__(self) -> None:
         choice("model", self.model, MODELS)
@@ -40,6 +42,8 @@ class Settings:
             "stages": None if self.stages is None else _whole("stages", self.stages),
             "baumgarte": _pair("baumgarte", self.baumgarte),
             "max_steps": _whole("max_steps", self.max_steps),
+            "max_events": _whole("max_events", self.max_events),
+            "rest_speed": optional_number("rest_speed", self.rest_speed),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
@@ -57,6 +61,8 @@ class Settings:
             stabilization=_core.Stabilization[self.stabilization.upper().replace("+", "_")],
             baumgarte=self.baumgarte,
             max_steps=self.max_steps,
+            max_events=self.max_events,
+            rest_speed=self.rest_speed,
         )
 
 

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._check import FloatArray, array, number
+from .events import Event, event
 from .geometry import support_slope
 from .kinematics import ConstraintResiduals, constraints
 from .scene import Scene
@@ -36,10 +37,15 @@ class Status(enum.Enum):
     """How a simulation ended; the value is the sentence."""
 
     COMPLETED = "the motion was followed to the end"
+    JAMMED = (
+        "the sliding body jams (Painleve): no motion of a rigid body goes on; less friction, or "
+        "another shape"
+    )
     VALIDITY_LOST = (
         "rolling without slip stops being true at valid_until: use samples before it, "
         "more friction or a slower start"
     )
+    MAX_EVENTS = "the motion stopped after max_events events: allow more of them"
     MAX_STEPS = (
         "the integration stopped after max_steps steps: allow more of them, loosen rtol and atol "
         "or take larger steps"
@@ -119,11 +125,12 @@ class Trajectory:
     settings : Settings
         The arguments of `simulate` that it was computed with.
     coordinates, start : tuple of ndarray, or None
-        Of the model "multipliers", whose state is not a function of theta and omega: q and q_dot
-        at the samples, (n, 5) each; and those that it started from, (5,) each, where they are not
-        the scene's.
-    events : tuple
-        Changes of mode; empty for rolling.
+        Where the state is not a function of theta and omega: q and q_dot at the samples, (n, 5)
+        each; and those that it started from, (5,) each, where they are not the scene's.
+    contact : tuple of ndarray, or None
+        Of the model "contact": normal force, friction force and mode at the samples.
+    events : tuple of Event
+        Changes of mode and impacts of the model "contact", in the order of time.
     stats : dict
         Figures of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
         the right-hand side, without those for the dense output).
@@ -146,7 +153,8 @@ class Trajectory:
     settings: Settings
     coordinates: tuple[FloatArray, FloatArray] | None = None
     start: tuple[FloatArray, FloatArray] | None = None
-    events: tuple[()] = ()
+    contact: tuple[FloatArray, FloatArray, npt.NDArray[np.int8]] | None = None
+    events: tuple[Event, ...] = ()
     stats: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -172,12 +180,11 @@ class Trajectory:
         solution = _solve(scene, settings, span, start)
         times = times[times <= solution.followed_until]
         status = Status[solution.status.name]
-        model = "rolling" if settings.model == "auto" else settings.model
         trajectory = cls(
             np.array(times),
-            **_samples(solution, model, times),
+            **_samples(scene, solution, times),
             scene=scene,
-            model=model,
+            model=solution.model.name.lower(),
             method=solution.method.name.lower(),
             status=status,
             message=solution.message or status.value,
@@ -187,6 +194,7 @@ class Trajectory:
             span=span,
             settings=settings,
             start=start,
+            events=tuple(event(scene.mass, *found) for found in solution.events),
             stats=solution.stats,
         )
         trajectory.__dict__["_solution"] = solution
@@ -204,6 +212,10 @@ class Trajectory:
         scene = self.scene._core_scene
         if self.coordinates is None:
             found = _core.rolling_detail(scene, self.theta, self.omega, self.x)
+        elif self.contact is not None:
+            (q, q_dot), (normal, friction, _) = self.coordinates, self.contact
+            q_ddot, multipliers = _core.contact_detail(scene, q, q_dot, normal, friction)
+            found = q, q_dot, q_ddot, normal, friction, multipliers
         else:
             q, q_dot = self.coordinates
             q_ddot, multipliers = _core.multiplier_detail(scene, self.settings.core, q, q_dot)
@@ -268,11 +280,13 @@ class Trajectory:
 
     @_derived
     def mode(self) -> npt.NDArray[np.int8]:
+        if self.contact is not None:
+            return self.contact[2]
         return np.full(self.t.shape, self.scene.initial_state.mode, dtype=np.int8)
 
     @property
     def success(self) -> bool:
-        return self.status is Status.COMPLETED
+        return self.status in (Status.COMPLETED, Status.JAMMED)
 
     def constraint_residuals(self) -> ConstraintResiduals:
         """Return by how much each sample misses the constraints (see `constraints`)."""
@@ -300,7 +314,7 @@ class Trajectory:
         outside = times[~((times >= 0) & (times <= self.t_end))]
         if outside.size:
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
-        samples = _samples(self._solution, self.model, times)
+        samples = _samples(self.scene, self._solution, times)
         other = replace(self, t=np.array(times), **samples)
         other.__dict__["_solution"] = self._solution
         return other
@@ -313,10 +327,8 @@ class Trajectory:
             theta=float(at.theta[0]),
             omega=float(at.omega[0]),
             x=float(at.x[0]),
-            z=None,
-            x_dot=None,
-            z_dot=None,
             impulse=None,
+            **_placement(at),
         )
 
     # -- pictures --------------------------------------------------------------------------------
@@ -405,6 +417,16 @@ class Trajectory:
         )
 
 
+def _placement(at: Trajectory) -> dict[str, Any]:
+    """Return z, x_dot and z_dot of the first sample as a Scene takes them: None where rolling."""
+    if at.mode[0] in (_core.Mode.ROLLING, _core.Mode.REST):
+        return {"z": None, "x_dot": None, "z_dot": None}
+    x_dot = float(at.x_dot[0])
+    if at.mode[0] == _core.Mode.SLIDING:
+        return {"z": None, "x_dot": x_dot, "z_dot": None}
+    return {"z": float(at.z[0]), "x_dot": x_dot, "z_dot": float(at.z_dot[0])}
+
+
 def _solve(
     scene: Scene,
     settings: Settings,
@@ -418,18 +440,21 @@ def _solve(
     return _core.simulate_coordinates(scene._core_scene, q, q_dot, settings.core, t_end)
 
 
-def _samples(solution: _core.Solution, model: str, times: FloatArray) -> dict[str, Any]:
+def _samples(scene: Scene, solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     """Return the arrays that a Trajectory holds."""
-    if not times.size:
-        return {"theta": times, "omega": times, "x": times}
-    if model == "multipliers":
-        q, q_dot = solution.sample_coordinates(times)
-        columns = {"theta": q[:, 2], "omega": q_dot[:, 2], "x": q[:, 0]}
-        return {name: values.copy() for name, values in columns.items()} | {
-            "coordinates": (q, q_dot)
-        }
+    if solution.model is _core.Model.CONTACT:
+        q, q_dot, *contact = solution.sample_contact(times, scene._core_scene)
+        return _columns(q, q_dot) | {"contact": tuple(contact)}
+    if solution.model is _core.Model.MULTIPLIERS:
+        return _columns(*solution.sample_coordinates(times))
     theta, omega, x = solution.sample(times)
     return {"theta": theta, "omega": omega, "x": x}
+
+
+def _columns(q: FloatArray, q_dot: FloatArray) -> dict[str, Any]:
+    columns = {"theta": q[:, 2], "omega": q_dot[:, 2], "x": q[:, 0]}
+    copies: dict[str, Any] = {name: values.copy() for name, values in columns.items()}
+    return copies | {"coordinates": (q, q_dot)}
 
 
 def load(path: str | os.PathLike[str]) -> Trajectory:

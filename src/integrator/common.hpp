@@ -62,16 +62,20 @@ struct StepCounts {
     long evaluations = 0;  // of f
 };
 
+// What is to happen after a step: nothing, f to be evaluated anew, or an end.
+enum class AfterStep { go_on, changed, stop };
+
 enum class Ending {
     reached,
+    stopped,
     max_steps,
     step_too_small,  // the tolerance cannot be met
     step_too_large,  // of a fixed step: stages without a solution, or a state out of range
 };
 
 // Steps of one size up to t_end, the last one shorter. `method.advance(point, h)` takes all of the
-// point but its time on by h, and says whether it could; `visit(point)` sees each new point and may
-// change it. Times are not summed, so that no rounding collects.
+// point but its time on by h, and says whether it could; `visit(point)` sees each new point, may
+// change or stop it. Times are not summed, so that no rounding collects.
 template <class Method, int N, class Visit>
 Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, double t_end,
                                 long max_steps, Visit visit) {
@@ -85,7 +89,7 @@ Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, dou
             return Ending::step_too_large;
         }
         point.t = last ? t_end : start + (n + 1) * step;
-        visit(point);
+        if (visit(point) == AfterStep::stop) return Ending::stopped;
     }
     return Ending::reached;
 }

@@ -93,9 +93,8 @@ class ExplicitMethod {
         return dense;
     }
 
-    // Steps of controlled error up to t_end; `visit(point)` sees each new point, may change it and
-    // says whether f changes with that. The elementary controller of HNW II.4, with the limits that
-    // SciPy takes.
+    // Steps of controlled error up to t_end; `visit(point)` sees each new point, may change or stop
+    // it. The elementary controller of HNW II.4, with the limits that SciPy takes.
     template <class Visit>
     Ending integrate(Point<N> point, double t_end, const Tolerance& tolerance, long max_steps,
                      Visit visit) {
@@ -130,9 +129,10 @@ class ExplicitMethod {
                 growth_limit = 1.0;
                 ++counts_.rejected;
             }
-            const bool changed = visit(point);
+            const AfterStep next = visit(point);
+            if (next == AfterStep::stop) return Ending::stopped;
             if (!(point.t < t_end)) return Ending::reached;
-            if (changed) evaluate<0, 1>(point, 0.0);
+            if (next == AfterStep::changed) evaluate<0, 1>(point, 0.0);
         }
         return Ending::max_steps;
     }

@@ -27,20 +27,20 @@ struct Steps {
     std::vector<Knot<N>> knots;
 };
 
-// Integrate from the last knot to t_end. `adjust(point)` may change each new point, `reduce(point)`
-// take periods off it, and says how many; `checkpoint()` is called now and then.
-template <class Integrator, int N, class Adjust, class Reduce, class Checkpoint>
+// Integrate from the last knot to t_end. `after_step(point)` may change each new point;
+// `reduce(point)` takes periods off it, and says how many; `checkpoint()` is called now and then.
+template <class Integrator, int N, class Rule, class Reduce, class Checkpoint>
 Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& tolerance,
-                 long max_steps, double t_end, Adjust adjust, Reduce reduce,
+                 long max_steps, double t_end, Rule after_step, Reduce reduce,
                  const Checkpoint& checkpoint) {
     constexpr std::size_t steps_between_checks = 1024;
     double periods = steps.knots.back().periods;
     const auto visit = [&](Point<N>& point) {
-        const bool adjusted = adjust(point);
+        const AfterStep next = after_step(point);
         periods += reduce(point);
         steps.knots.push_back({point.t, point.y, point.carry, periods});
         if (steps.knots.size() % steps_between_checks == 0) checkpoint();
-        return adjusted;
+        return next;
     };
     const Point<N> start = steps.knots.back().point();
     if constexpr (Integrator::controls_error) {

@@ -1,0 +1,311 @@
+#include "contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "certificate.hpp"
+#include "continuation.hpp"
+#include "impact.hpp"
+#include "integrator/event_rule.hpp"
+#include "integrator/runge_kutta.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// Arcs that have to be integrated are, to rounding, as exact as the others.
+constexpr Tolerance finest = {1e-13, 1e-15};
+
+class ContactRun {
+  public:
+    ContactRun(const Scene& scene, const State& start, const Settings& settings, double t_end,
+               const Checkpoint& checkpoint)
+        : scene_(scene),
+          axes_{scene.a, scene.b},
+          settings_(settings),
+          t_end_(t_end),
+          checkpoint_(checkpoint),
+          state_(start),
+          motion_{scene, {}, {}} {}
+
+    ContactIntegration run() {
+        if (state_.mode == Mode::flight) {
+            next_ = {Mode::flight};
+        } else {
+            next_ = continuation(scene_, state_);
+            if (next_.jams) note(EventKind::jam, state_);
+        }
+        while (!ending_) {
+            checkpoint_();
+            state_.mode = next_.mode;
+            if (next_.jams) {
+                jam();
+            } else {
+                follow();
+            }
+        }
+        return {std::move(motion_), *ending_, t_, counts_};
+    }
+
+  private:
+    void follow() {
+        switch (next_.mode) {
+            case Mode::rest:
+                return rest();
+            case Mode::rolling:
+                return scene_.slope == 0 ? roll_exactly() : roll_by_steps();
+            case Mode::sliding:
+                return slide();
+            case Mode::flight:
+                return fly();
+        }
+    }
+
+    void rest() {
+        add_arc(t_end_, Resting{state_});
+        finish();
+    }
+
+    void jam() {
+        add_arc(t_, Jam{state_});
+        ending_ = ContactEnding::jammed;
+    }
+
+    void roll_exactly() {
+        const RollingFlow flow = rolling_flow(scene_.body(), state_.theta, state_.omega, state_.x);
+        const Certificate proof = certify_rolling(scene_.body(), scene_.mass, scene_.friction,
+                                                  state_.theta, state_.omega);
+        double lasts = infinity;
+        if (proof.validity == Validity::invalid && proof.ends_at) {
+            lasts = *proof.ends_at == state_.theta
+                        ? 0.0
+                        : time_of_passing(flow, *proof.ends_at, proof.ends_heading);
+        }
+        if (lasts > 0) add_arc(std::min(t_ + lasts, t_end_), ExactRolling{axes_, flow});
+        if (t_ + lasts > t_end_) return finish();
+        const FlowSample last = sample(flow, lasts);
+        stop_rolling(lasts, last.theta, last.omega, last.x);
+    }
+
+    void roll_by_steps() {
+        const Scene& scene = scene_;
+        const auto margins = [&scene](const Vector<2>& y) -> std::array<double, 1> {
+            const ContactForce force = rolling_force(scene, y[0], y[1]);
+            if (std::isinf(scene.friction)) return {force.normal};
+            return {scene.friction * force.normal - std::abs(force.friction)};
+        };
+        SteppedRolling motion = rolling_from(scene_, state_, dop853());
+        const auto [lasts, which] = step_until<1>(motion.equation, motion.steps, margins);
+        const double t0 = t_;
+        if (lasts > 0) add_arc(std::min(t0 + lasts, t_end_), motion);
+        if (ending_ || t0 + lasts > t_end_) return finish();
+        FlowSample last{};
+        sample(motion, &lasts, 1, &last);
+        stop_rolling(lasts, last.theta, last.omega, last.x);
+    }
+
+    void stop_rolling(double after, double theta, double omega, double x) {
+        const Geometry at = geometry(axes_, theta);
+        const State before = in_contact(at, theta, omega, x, 0.0, Mode::rolling);
+        t_ += after;
+        state_ = before;
+        go_on_with(continuation(scene_, before, false), EventKind::slip, before);
+    }
+
+    void slide() {
+        SteppedSliding motion{SlidingEquation(scene_, next_.side), axes_, {0.0, {}}};
+        const Geometry at = geometry(axes_, state_.theta);
+        motion.steps.knots.push_back(
+            {0.0,
+             {state_.theta, state_.omega, state_.x, slip_velocity(state_, at)},
+             Vector<4>::Zero(),
+             0.0});
+        const bool rubs = next_.side != 0;
+        const SlidingEquation equation = motion.equation;
+        const auto margins = [equation, rubs](const Vector<4>& y) -> std::array<double, 3> {
+            const SlidingEquation::Margins found = equation.margins(y);
+            return {rubs ? found.slip : 1.0, found.c, found.b};
+        };
+        const auto [lasts, which] = step_until<3>(motion.equation, motion.steps, margins);
+        const double t0 = t_;
+        add_arc(std::min(t0 + lasts, t_end_), motion);
+        if (ending_ || t0 + lasts > t_end_) return finish();
+        const State before = state_at(motion, lasts);
+        t_ += lasts;
+        state_ = before;
+        end_slide(which, before);
+    }
+
+    // Which of the margins of sliding has come to an end: slip, c, B.
+    void end_slide(int which, const State& before) {
+        if (which == 2) {
+            next_.jams = true;
+            return note(EventKind::jam, before);
+        }
+        if (which == 1) return go_on_with({Mode::flight}, EventKind::lift_off, before);
+        const Geometry at = geometry(axes_, before.theta);
+        state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
+        const Continuation next = continuation(scene_, state_);
+        const EventKind kind = next.mode == Mode::sliding  ? EventKind::reverse
+                               : next.mode == Mode::flight ? EventKind::lift_off
+                               : next.mode == Mode::rest   ? EventKind::rest
+                                                           : EventKind::stick;
+        go_on_with(next, kind, before);
+    }
+
+    void fly() {
+        const Flight flight{axes_, scene_.gravity * std::cos(scene_.slope),
+                            scene_.gravity * std::sin(scene_.slope), state_};
+        const double lasts = touch_down(flight);
+        add_arc(std::min(t_ + lasts, t_end_), flight);
+        if (t_ + lasts > t_end_) return finish();
+        State before = state_at(flight, lasts);
+        before.z = geometry(axes_, before.theta).h;
+        t_ += lasts;
+        hit(before);
+    }
+
+    void hit(const State& before) {
+        const Geometry at = geometry(axes_, before.theta);
+        state_ = after_collision(scene_, before);
+        const double rebound = std::max(state_.z_dot - at.dh * state_.omega, 0.0);
+        const double c = free_contact(scene_, at, state_.omega).c;
+        const double ratio = rebound / (at.dh * before.omega - before.z_dot);
+        if (rebound > 0 && (rebound > rest_speed() || c <= 0 || !(ratio < most_settling))) {
+            return go_on_with({Mode::flight}, EventKind::impact, before);
+        }
+        if (rebound > 0) {
+            state_.mode = Mode::flight;
+            note(EventKind::impact, before);
+            return ending_ ? void() : settle(rebound, c);
+        }
+        go_on_with(continuation(scene_, state_), EventKind::impact, before);
+    }
+
+    // Infinitely many bounces that shrink by a ratio take a finite time; so small ones do it in
+    // place, under the c of their beginning.
+    void settle(double rebound, double c) {
+        constexpr double nothing = 1e-12;
+        const Geometry at = geometry(axes_, state_.theta);
+        const double pull = scene_.gravity * std::sin(scene_.slope);
+        State moving = state_;
+        double lasts = 0.0;
+        double turned = 0.0;
+        double speed = rebound;
+        while (speed > nothing * rebound) {
+            const double hop = 2 * speed / c;
+            const double gained = (pull - at.dh * square(moving.omega)) * hop;  // slip in flight
+            lasts += hop;
+            turned += moving.omega * hop;
+            moving.x += (moving.x_dot + 0.5 * gained) * hop;
+            moving.x_dot += gained;
+            moving.z_dot = at.dh * moving.omega - speed;
+            moving = after_collision(scene_, moving);
+            const double next = moving.z_dot - at.dh * moving.omega;
+            if (!(next < most_settling * speed)) break;
+            speed = std::max(next, 0.0);
+        }
+        const double theta = state_.theta + turned;
+        const State settled = in_contact(geometry(axes_, theta), theta, noticeable(moving.omega),
+                                         moving.x, noticeable_slip(moving, at), Mode::flight);
+        add_arc(std::min(t_ + lasts, t_end_), Settling{axes_, lasts, state_, settled});
+        if (t_ + lasts > t_end_) return finish();
+        t_ += lasts;
+        state_ = settled;
+        const State before = state_;
+        const Continuation next = continuation(scene_, state_);
+        const EventKind kind = next.mode == Mode::rest      ? EventKind::rest
+                               : next.mode == Mode::rolling ? EventKind::stick
+                               : next.mode == Mode::flight  ? EventKind::lift_off
+                                                            : EventKind::slip;
+        go_on_with(next, kind, before);
+    }
+
+    void go_on_with(const Continuation& next, EventKind kind, const State& before) {
+        next_ = next;
+        state_.mode = next.mode;
+        note(kind, before);
+        if (next.jams && !ending_) note(EventKind::jam, state_);
+    }
+
+    void note(EventKind kind, const State& before) {
+        if (static_cast<long>(motion_.events.size()) == settings_.max_events) {
+            ending_ = ContactEnding::max_events;
+        } else {
+            motion_.events.push_back({t_, kind, before, state_});
+        }
+    }
+
+    template <class Motion>
+    void add_arc(double until, Motion motion) {
+        motion_.arcs.push_back({next_.mode, t_, until, std::move(motion)});
+    }
+
+    void finish() {
+        t_ = t_end_;
+        if (!ending_) ending_ = ContactEnding::reached;
+    }
+
+    Settings dop853() const {
+        Settings settings = settings_;
+        settings.method = Method::dop853;
+        settings.step.reset();
+        return settings;
+    }
+
+    double rest_speed() const {
+        constexpr double small = 1e-6;
+        return settings_.rest_speed.value_or(
+            small * std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b)));
+    }
+
+    struct Until {
+        double lasts;
+        int which;
+    };
+
+    // Integrate until a margin becomes negative, or to the end.
+    template <int M, class Equation, int N, class Margins>
+    Until step_until(const Equation& f, Steps<N>& steps, Margins margins) {
+        using Integrator = ExplicitMethod<DormandPrince853, Equation>;
+        Integrator integrator(f);
+        EventRule<M, Integrator, Equation, Margins> rule(f, steps, margins);
+        const Tolerance tolerance{std::min(settings_.rtol, finest.relative),
+                                  std::min(settings_.atol, finest.absolute)};
+        const Ending ending = integrate(
+            integrator, steps, tolerance, settings_.max_steps - counts_.steps, t_end_ - t_,
+            [&](Point<N>& point) { return rule(point); }, [](Point<N>&) { return 0.0; },
+            checkpoint_);
+        counts_.steps += static_cast<long>(steps.knots.size()) - 1;
+        counts_.rejected += integrator.counts().rejected;
+        counts_.evaluations += integrator.counts().evaluations;
+        if (ending == Ending::max_steps) ending_ = ContactEnding::max_steps;
+        if (ending == Ending::step_too_small) ending_ = ContactEnding::step_too_small;
+        if (ending_) t_end_ = t_ + steps.knots.back().t;  // all there is
+        return {rule.time(), rule.which()};
+    }
+
+    static constexpr double most_settling = 0.9999;  // the ratio of bounces that come to an end
+
+    const Scene& scene_;
+    Axes axes_;
+    const Settings& settings_;
+    double t_end_;
+    const Checkpoint& checkpoint_;
+    State state_;
+    Continuation next_{Mode::flight};
+    double t_ = 0.0;
+    ContactMotion motion_;
+    StepCounts counts_;
+    std::optional<ContactEnding> ending_;
+};
+
+}  // namespace
+
+ContactIntegration integrate_contact(const Scene& scene, const State& start,
+                                     const Settings& settings, double t_end,
+                                     const Checkpoint& checkpoint) {
+    return ContactRun(scene, start, settings, t_end, checkpoint).run();
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,76 @@
+// The first time at which one of several quantities becomes negative, from looks at them in the
+// order of time.
+#pragma once
+
+#include <array>
+
+#include "../numbers.hpp"
+
+namespace rolling_ellipse {
+
+// A dip below zero between two looks that are both in order is found by the parabola through three
+// of them.
+template <int N>
+class FirstNegative {
+  public:
+    // The next look; margins: t -> std::array<double, N>. True once something was found.
+    template <class Margins>
+    bool look(double t, const Margins& margins) {
+        looks_ = {looks_[1], looks_[2], Look{t, margins(t)}};
+        ++count_;
+        for (int i = 0; i < N; ++i) examine(i, margins);
+        return found() < infinity;
+    }
+
+    double found() const { return time_; }
+    int which() const { return which_; }
+
+  private:
+    struct Look {
+        double t;
+        std::array<double, N> margins;
+    };
+
+    template <class Margins>
+    void examine(int i, const Margins& margins) {
+        const auto& [before, middle, now] = looks_;
+        if (now.margins[i] < 0) {
+            keep(i, count_ == 1 ? now.t : crossing(i, middle.t, now.t, margins));
+        } else if (count_ > 2 && middle.margins[i] < before.margins[i] &&
+                   middle.margins[i] <= now.margins[i]) {
+            const double bottom = lowest(before, middle, now, i);
+            if (margins(bottom)[i] < 0) {
+                keep(i, crossing(i, bottom < middle.t ? before.t : middle.t, bottom, margins));
+            }
+        }
+    }
+
+    void keep(int i, double t) {
+        if (!(t < time_)) return;
+        time_ = t;
+        which_ = i;
+    }
+
+    // The first negative double between a time that is in order and one that is not.
+    template <class Margins>
+    static double crossing(int i, double good, double bad, const Margins& margins) {
+        for (;;) {
+            const double middle = good + 0.5 * (bad - good);
+            if (!(good < middle && middle < bad)) return bad;
+            (margins(middle)[i] < 0 ? bad : good) = middle;
+        }
+    }
+
+    static double lowest(const Look& a, const Look& b, const Look& c, int i) {
+        const double left = (b.margins[i] - a.margins[i]) / (b.t - a.t);
+        const double right = (c.margins[i] - b.margins[i]) / (c.t - b.t);
+        return 0.5 * (a.t + b.t) + left / (left - right) * 0.5 * (c.t - a.t);
+    }
+
+    std::array<Look, 3> looks_{};
+    long count_ = 0;
+    double time_ = infinity;
+    int which_ = 0;
+};
+
+}  // namespace rolling_ellipse
