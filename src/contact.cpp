@@ -13,7 +13,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// Arcs that have to be integrated are, to rounding, as exact as the others.
+// Of arcs that have to be integrated; what lies between their steps is right to about 1e-11.
 constexpr Tolerance finest = {1e-13, 1e-15};
 
 class ContactRun {

@@ -150,7 +150,8 @@ double touch_down(const Flight& flight) {
     const Gap gap(flight);
     const Curvature curvature(flight);
     const double tall = std::max(flight.axes.a, flight.axes.b);
-    const double sure = gap.falls_to(std::min(flight.axes.a, flight.axes.b));
+    // By then it touches, however h is rounded.
+    const double sure = gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - 8 * epsilon));
     const auto value = [&](double t) { return gap.value(t); };
     const auto rate = [&](double t) { return gap.rate(t); };
 

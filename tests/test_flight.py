@@ -165,3 +165,13 @@ def test_samples_in_flight_are_the_parabola() -> None:
     assert np.all(motion.normal_force == 0) and np.all(motion.friction_force == 0)
     assert np.allclose(motion.x_ddot, along, rtol=1e-15)
     assert np.allclose(motion.z_ddot, -away, rtol=1e-15)
+
+
+@pytest.mark.parametrize("omega", [1.0, 10.0])
+def test_small_hops_of_a_turning_circle(omega: float) -> None:
+    """Its h is rounded to one side or the other of its radius; the hops are far lower than that."""
+    scene = Scene(1.0, 1.0, z=1.5, omega=omega, x_dot=1.0, friction=0.0, restitution=0.6)
+    events = simulate(scene, 3.0).events
+    landing = math.sqrt(2 * 0.5 / 9.81)
+    # 28 impacts and the sum of the others, each time right to a few ulp
+    assert events[-1].t == pytest.approx(landing * (1 + 2 * 0.6 / 0.4), rel=1e-14)

@@ -133,8 +133,8 @@ class RollingAnimation(FuncAnimation):
         Time that each frame shows [s].
     strips : tuple of Strip
         One for each motion, from top to bottom: its `ax`, `motion` (whose sample i is what frame
-        i shows) and artists `body`, `axis_a`, `axis_b`, `tip`, `contact`, `centre_trace`,
-        `tip_trace`, `ruler` and `caption`.
+        i shows) and artists `body`, `axis_a`, `axis_b`, `tip`, `contact`, `slip`, `shadow`,
+        `centre_trace`, `tip_trace`, `skid_trace`, `ruler` and `caption`.
     clock : Text
         The time.
     figure : Figure

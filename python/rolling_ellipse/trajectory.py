@@ -307,7 +307,6 @@ class Trajectory:
         ValueError
             If a time is outside.
         """
-        self._require_motion()
         times = np.atleast_1d(array("t", t))
         if times.ndim != 1:
             raise ValueError(f"t must be a time or a 1-D array of times, got shape {times.shape}")
@@ -337,7 +336,6 @@ class Trajectory:
         """Draw the overview figure; see `rolling_ellipse.plot`."""
         from .plotting import plot
 
-        self._require_motion()
         return plot(self, **options)
 
     def animate(
@@ -346,7 +344,6 @@ class Trajectory:
         """Animate the motion; see `rolling_ellipse.animate`."""
         from .animation import animate
 
-        self._require_motion()
         return animate(self, path, **options)
 
     # -- tables ----------------------------------------------------------------------------------
@@ -402,10 +399,6 @@ class Trajectory:
         from ._files import read
 
         return cls(**read(path))
-
-    def _require_motion(self) -> None:
-        if self.t_end < 0:
-            raise ValueError(f"the trajectory must hold a motion, got none: {self.message}")
 
     def __repr__(self) -> str:
         if self.t.size == 0:
