@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "classify.hpp"
 #include "constraints.hpp"
 #include "integrator/collocation.hpp"
 #include "integrator/explicit_tableaus.hpp"
@@ -128,6 +129,26 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
     return py::make_tuple(out[0], out[1], out[2]);
 }
 
+// a, b, omega, theta, friction, gravity, gyration2, each with n elements, or one.
+py::array_t<std::int8_t> classify_array(py::ssize_t n, const std::array<Array, 7>& arguments,
+                                        int workers) {
+    py::array_t<std::int8_t> out(n);
+    std::int8_t* const outcomes = out.mutable_data();
+    std::array<Argument, 7> of{};
+    std::transform(arguments.begin(), arguments.end(), of.begin(), argument);
+    run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const Body body{of[0][i], of[1][i], of[6][i], of[5][i]};
+            const double omega = of[2][i], theta = of[3][i], friction = of[4][i];
+            validate(body);
+            validate_motion(body, theta, omega);
+            validate_friction(friction);
+            outcomes[i] = static_cast<std::int8_t>(classify(body, friction, theta, omega));
+        }
+    });
+    return out;
+}
+
 // theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution, each with n elements, or one:
 // x_dot, z_dot, omega just after the collision of a touching body, by the law of impact.hpp.
 py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
@@ -213,49 +234,52 @@ py::tuple sample_coordinates(const Solution& solution, const Array& t) {
     return py::make_tuple(q, q_dot);
 }
 
-// q and q_dot, (n, 5), normal and friction force and mode of the contact model at each time.
-py::tuple sample_contact(const Solution& solution, const Array& t, const Scene& scene) {
+// theta, omega, x, z, x_dot, z_dot, normal and friction force, mode of the contact model.
+py::tuple sample_contact(const Solution& solution, const Array& t) {
     const py::ssize_t n = t.size();
-    Array q = matrix(n, 5);
-    Array q_dot = matrix(n, 5);
-    Array normal(n);
-    Array friction(n);
+    std::vector<Array> out = empty_arrays(8, n);
+    std::array<double*, 8> columns{};
+    std::transform(out.begin(), out.end(), columns.begin(),
+                   [](Array& array) { return array.mutable_data(); });
     py::array_t<std::int8_t> mode(n);
-    const double* const times = t.data();
-    double* const normals = normal.mutable_data();
-    double* const frictions = friction.mutable_data();
     std::int8_t* const modes = mode.mutable_data();
+    const double* const times = t.data();
     std::vector<ContactSample> samples(std::min<std::size_t>(n, chunk));
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         sample(solution, times + begin, end - begin, samples.data());
         for (py::ssize_t i = begin; i < end; ++i) {
-            const auto& [state, force] = samples[i - begin];
-            const CoordinateState of = coordinate_state({scene.a, scene.b}, state);
-            store(q, i, of.q.data());
-            store(q_dot, i, of.q_dot.data());
-            normals[i] = force.normal;
-            frictions[i] = force.friction;
-            modes[i] = static_cast<std::int8_t>(state.mode);
+            const auto& [s, force] = samples[i - begin];
+            const double row[] = {s.theta, s.omega, s.x,          s.z,
+                                  s.x_dot, s.z_dot, force.normal, force.friction};
+            for (std::size_t column = 0; column < columns.size(); ++column) {
+                columns[column][i] = row[column];
+            }
+            modes[i] = static_cast<std::int8_t>(s.mode);
         }
     });
-    return py::make_tuple(q, q_dot, normal, friction, mode);
+    return py::make_tuple(out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], mode);
 }
 
-// q_ddot and multipliers that follow from the contact forces.
-py::tuple contact_arrays(const Scene& scene, const Array& q, const Array& q_dot,
-                         const Array& normal, const Array& friction) {
-    const py::ssize_t n = q.shape(0);
+// q, q_dot, q_ddot and multipliers that follow from the first eight of those.
+py::tuple contact_arrays(const Scene& scene, const std::array<Array, 8>& columns) {
+    const py::ssize_t n = columns[0].size();
+    Array q = matrix(n, 5);
+    Array q_dot = matrix(n, 5);
     Array q_ddot = matrix(n, 5);
     Array multipliers = matrix(n, 4);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
-            const MultiplierSolution of = accelerations(
-                scene, state_at(q, q_dot, i), ContactForce{normal.data()[i], friction.data()[i]});
-            store(q_ddot, i, of.q_ddot.data());
-            store(multipliers, i, of.multipliers.data());
+            const auto of = [&](std::size_t column) { return columns[column].data()[i]; };
+            const State state{of(0), of(1), of(2), of(3), of(4), of(5), Mode::flight};
+            const CoordinateState at = coordinate_state({scene.a, scene.b}, state);
+            const MultiplierSolution found = accelerations(scene, at, ContactForce{of(6), of(7)});
+            store(q, i, at.q.data());
+            store(q_dot, i, at.q_dot.data());
+            store(q_ddot, i, found.q_ddot.data());
+            store(multipliers, i, found.multipliers.data());
         }
     });
-    return py::make_tuple(q_ddot, multipliers);
+    return py::make_tuple(q, q_dot, q_ddot, multipliers);
 }
 
 py::tuple state_tuple(const State& s) {
@@ -497,26 +521,34 @@ void bind_certificate(py::module_& m) {
         .value("EDGE", Validity::edge)
         .value("NO_PROOF", Validity::no_proof)
         .finalize();
+    py::native_enum<Outcome>(m, "Outcome", "enum.IntEnum", "What a rolling body comes to first.")
+        .value("RESTS", Outcome::rests)
+        .value("ROCKS", Outcome::rocks)
+        .value("ROLLS_OVER", Outcome::rolls_over)
+        .value("SLIPS", Outcome::slips)
+        .value("LOSES_CONTACT", Outcome::loses_contact)
+        .value("JAMS", Outcome::jams)
+        .value("EDGE", Outcome::edge)
+        .finalize();
+    m.def("classify_array", classify_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("certify", [](const Scene& scene) {
         const CertifiedScene certified = certify(scene);
         const Certificate& c = certified.certificate;
-        return py::make_tuple(c.validity, c.smallest_normal_force, c.smallest_normal_force_angle,
-                              c.largest_friction_needed, c.largest_friction_needed_angle, c.ends_at,
-                              certified.reason);
+        return py::make_tuple(c.end.validity, c.smallest_normal_force,
+                              c.smallest_normal_force_angle, c.largest_friction_needed,
+                              c.largest_friction_needed_angle, c.end.angle, certified.reason);
     });
     m.def(
         "thresholds",
         [](double a, double b, double gravity, std::optional<double> gyration2, double friction) {
             const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
             validate(body);
-            if (!(friction >= 0)) {
-                refuse("friction", "a coefficient of at least 0 (inf allowed)", friction);
-            }
+            validate_friction(friction);
             const Thresholds t = thresholds(body, friction);
             return py::make_tuple(t.roll_over_speed, t.contact_loss_speed, t.contact_loss_angle,
-                                  t.slip_speed, t.slip_angle, t.friction_to_roll_over,
-                                  t.painleve_friction, t.painleve_angle, t.rocking_rate,
-                                  t.tip_rate);
+                                  t.slip_speed, t.slip_angle, t.lift_off_speed,
+                                  t.friction_to_roll_over, t.painleve_friction, t.painleve_angle,
+                                  t.rocking_rate, t.tip_rate);
         },
         "a"_a, "b"_a, "gravity"_a, "gyration2"_a, "friction"_a);
 }
@@ -634,13 +666,13 @@ void bind_motion(py::module_& m) {
                                })
         .def("sample", sample_solution, "t"_a)
         .def("sample_coordinates", sample_coordinates, "t"_a)
-        .def("sample_contact", sample_contact, "t"_a, "scene"_a)
+        .def("sample_contact", sample_contact, "t"_a)
         .def_property_readonly("events", event_list);
     m.def("simulate", simulate_interruptible, "scene"_a, "settings"_a, "t_end"_a);
     m.def("simulate_coordinates", simulate_coordinates, "scene"_a, "q"_a, "q_dot"_a, "settings"_a,
           "t_end"_a);
     m.def("multiplier_detail", multiplier_arrays, "scene"_a, "settings"_a, "q"_a, "q_dot"_a);
-    m.def("contact_detail", contact_arrays, "scene"_a, "q"_a, "q_dot"_a, "normal"_a, "friction"_a);
+    m.def("contact_detail", contact_arrays, "scene"_a, "columns"_a);
     m.def("project", projected, "scene"_a, "q"_a, "q_dot"_a);
     m.def("constraint_system", constraint_system, "q"_a, "q_dot"_a, "a"_a, "b"_a);
     m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);

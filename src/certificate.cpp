@@ -12,15 +12,6 @@ double theta_of(const Body& body, double angle_from_flat) {
     return body.a >= body.b ? angle_from_flat : half_pi - angle_from_flat;
 }
 
-// Friction mu suffices where mu^2 P^2 - G Q^2 >= 0, physics (35); divided by mu^2 above 1, so that
-// any mu fits.
-Polynomial grip(const ForcePolynomials& p, double friction) {
-    const Polynomial held = p.normal * p.normal;
-    const Polynomial needed = p.slope_square * p.friction * p.friction;
-    if (friction > 1) return held - (1 / friction / friction) * needed;
-    return friction * friction * held - needed;
-}
-
 // The start in the frame in which the motion goes forwards.
 struct Start {
     double angle;  // from the nearest flat position, signed: negative while the body sinks
@@ -83,8 +74,9 @@ double refined_zero(const EnergyRange& range, double friction, double angle, dou
 
 // Where the law may be broken, as angles from the flat position, ascending: its zeros, and those of
 // N, at which it is broken anyway.
-std::vector<double> breaking_angles(const EnergyRange& range, const Bernstein& contact,
-                                    const Bernstein& law, double friction) {
+template <int N>
+std::vector<double> breaking_angles(const EnergyRange& range, const Bernstein<5>& contact,
+                                    const Bernstein<N>& law, double friction) {
     const auto angle_at = [&](double x) { return rolling_forces(range, x).angle; };
     const std::vector<double> roots = roots_on_unit_interval(law);
     std::vector<double> angles;
@@ -121,55 +113,81 @@ std::optional<Turn> first_meeting(const EnergyRange& range, const Start& start,
     return Turn{on * (pi - angles.back() - start.angle), on};
 }
 
+// The law holds where both polynomials are positive.
+template <int N>
+EndOfRolling end_under_law(const EnergyRange& range, const ForcePolynomials& polynomials,
+                           const Polynomial<N>& law_polynomial, double friction, double theta,
+                           const Start& start) {
+    const Bernstein<5> contact = bernstein(polynomials.normal);
+    const Bernstein<N> law = bernstein(law_polynomial);
+    const Sign contact_sign = sign_on_unit_interval(contact);
+    const Sign law_sign = sign_on_unit_interval(law);
+    if (contact_sign == Sign::positive && law_sign == Sign::positive) return {Validity::valid};
+
+    const bool broken = contact_sign == Sign::negative || law_sign == Sign::negative;
+    EndOfRolling end{broken ? Validity::invalid : Validity::edge, theta, start.direction};
+    if (!holds_at_start(range, friction, start)) return end;
+    std::vector<double> angles = breaking_angles(range, contact, law, friction);
+    if (angles.empty()) {  // on the edge: the least margin is where the law may be broken
+        const ForceExtremes extremes = force_extremes(range, polynomials);
+        angles.push_back(std::isinf(friction) ? extremes.least_normal.angle
+                                              : extremes.most_friction.angle);
+    }
+    const std::optional<Turn> turn = first_meeting(range, start, angles);
+    if (!turn) return {end.validity};
+    return {end.validity, theta + turn->angle, turn->heading};
+}
+
+EndOfRolling end_of_rolling(const EnergyRange& range, const ForcePolynomials& polynomials,
+                            double friction, double theta, const Start& start) {
+    return std::isinf(friction)
+               ? end_under_law(range, polynomials, polynomials.normal, friction, theta, start)
+               : end_under_law(range, polynomials, grip_polynomial(polynomials, friction), friction,
+                               theta, start);
+}
+
+// A circle, or a body that stays where it is, needs no friction.
+bool rolls_freely(const Body& body, const FlatView& at, double theta, double omega) {
+    return at.c2 == 0 || (omega == 0 && is_equilibrium(geometry({body.a, body.b}, theta)));
+}
+
 }  // namespace
+
+Polynomial<10> grip_polynomial(const ForcePolynomials& p, double friction) {
+    const Polynomial<10> held = p.normal * p.normal;
+    const Polynomial<10> needed = p.slope_square * p.friction * p.friction;
+    if (friction > 1) return held - (1 / friction / friction) * needed;
+    return friction * friction * held - needed;
+}
+
+EndOfRolling end_of_rolling(const Body& body, double friction, double theta, double omega) {
+    const FlatView at = flat_view({body.a, body.b}, theta);
+    if (rolls_freely(body, at, theta, omega)) return {Validity::valid};
+    const EnergyRange range = energy_range(at, body, omega);
+    return end_of_rolling(range, force_polynomials(range), friction, theta,
+                          start_on_range(at, range, body, omega));
+}
+
+double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
+    if (!end.angle) return infinity;
+    return *end.angle == flow.theta ? 0.0 : time_of_passing(flow, *end.angle, end.heading);
+}
 
 Certificate certify_rolling(const Body& body, double mass, double friction, double theta,
                             double omega) {
     const double weight = mass * body.gravity;
     const FlatView at = flat_view({body.a, body.b}, theta);
-    const bool at_rest = omega == 0 && is_equilibrium(geometry({body.a, body.b}, theta));
-    if (at.c2 == 0 || at_rest) {
+    if (rolls_freely(body, at, theta, omega)) {
         const double angle = theta_of(body, std::atan2(std::abs(at.sin), at.cos));
-        return {Validity::valid, weight, angle, 0.0, angle, std::nullopt, 0.0};
+        return {{Validity::valid}, weight, angle, 0.0, angle};
     }
-
     const EnergyRange range = energy_range(at, body, omega);
     const ForcePolynomials polynomials = force_polynomials(range);
     const ForceExtremes extremes = force_extremes(range, polynomials);
-    Certificate certificate{Validity::valid,
-                            weight * extremes.least_normal.normal,
-                            theta_of(body, extremes.least_normal.angle),
-                            extremes.most_friction.needed(),
-                            theta_of(body, extremes.most_friction.angle),
-                            std::nullopt,
-                            0.0};
-
-    const Bernstein contact = bernstein(polynomials.normal);
-    const bool finite_friction = std::isfinite(friction);
-    const Bernstein law = finite_friction ? bernstein(grip(polynomials, friction)) : contact;
-    const Sign contact_sign = sign_on_unit_interval(contact);
-    const Sign law_sign = finite_friction ? sign_on_unit_interval(law) : contact_sign;
-    if (contact_sign == Sign::positive && law_sign == Sign::positive) return certificate;
-
-    const bool broken = contact_sign == Sign::negative || law_sign == Sign::negative;
-    certificate.validity = broken ? Validity::invalid : Validity::edge;
-    const Start start = start_on_range(at, range, body, omega);
-    certificate.ends_at = theta;
-    certificate.ends_heading = start.direction;
-    if (!holds_at_start(range, friction, start)) return certificate;
-    std::vector<double> angles = breaking_angles(range, contact, law, friction);
-    if (angles.empty()) {  // on the edge: the least margin is where the law may be broken
-        angles.push_back(finite_friction ? extremes.most_friction.angle
-                                         : extremes.least_normal.angle);
-    }
-    const std::optional<Turn> turn = first_meeting(range, start, angles);
-    if (!turn) {
-        certificate.ends_at.reset();
-        return certificate;
-    }
-    certificate.ends_at = theta + turn->angle;
-    certificate.ends_heading = turn->heading;
-    return certificate;
+    return {
+        end_of_rolling(range, polynomials, friction, theta, start_on_range(at, range, body, omega)),
+        weight * extremes.least_normal.normal, theta_of(body, extremes.least_normal.angle),
+        extremes.most_friction.needed(), theta_of(body, extremes.most_friction.angle)};
 }
 
 }  // namespace rolling_ellipse

@@ -7,14 +7,13 @@
 #include "certificate.hpp"
 #include "continuation.hpp"
 #include "impact.hpp"
-#include "integrator/event_rule.hpp"
 #include "integrator/runge_kutta.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
 // Of arcs that have to be integrated; what lies between their steps is right to about 1e-11.
-constexpr Tolerance finest = {1e-13, 1e-15};
+constexpr Tolerance finest = {2e-15, 2e-17};
 
 class ContactRun {
   public:
@@ -73,14 +72,9 @@ class ContactRun {
 
     void roll_exactly() {
         const RollingFlow flow = rolling_flow(scene_.body(), state_.theta, state_.omega, state_.x);
-        const Certificate proof = certify_rolling(scene_.body(), scene_.mass, scene_.friction,
-                                                  state_.theta, state_.omega);
-        double lasts = infinity;
-        if (proof.validity == Validity::invalid && proof.ends_at) {
-            lasts = *proof.ends_at == state_.theta
-                        ? 0.0
-                        : time_of_passing(flow, *proof.ends_at, proof.ends_heading);
-        }
+        const EndOfRolling end =
+            end_of_rolling(scene_.body(), scene_.friction, state_.theta, state_.omega);
+        const double lasts = end.validity == Validity::invalid ? time_of_end(flow, end) : infinity;
         if (lasts > 0) add_arc(std::min(t_ + lasts, t_end_), ExactRolling{axes_, flow});
         if (t_ + lasts > t_end_) return finish();
         const FlowSample last = sample(flow, lasts);
@@ -95,7 +89,11 @@ class ContactRun {
             return {scene.friction * force.normal - std::abs(force.friction)};
         };
         SteppedRolling motion = rolling_from(scene_, state_, dop853());
-        const auto [lasts, which] = step_until<1>(motion.equation, motion.steps, margins);
+        ExplicitMethod<DormandPrince853, RollingEquation> integrator(motion.equation);
+        const Until until = integrate_until(integrator, motion.steps, tolerance(), steps_left(),
+                                            t_end_ - t_, margins, checkpoint_);
+        count(until, motion.steps);
+        const double lasts = until.time;
         const double t0 = t_;
         if (lasts > 0) add_arc(std::min(t0 + lasts, t_end_), motion);
         if (ending_ || t0 + lasts > t_end_) return finish();
@@ -113,36 +111,28 @@ class ContactRun {
     }
 
     void slide() {
-        SteppedSliding motion{SlidingEquation(scene_, next_.side), axes_, {0.0, {}}};
-        const Geometry at = geometry(axes_, state_.theta);
-        motion.steps.knots.push_back(
-            {0.0,
-             {state_.theta, state_.omega, state_.x, slip_velocity(state_, at)},
-             Vector<4>::Zero(),
-             0.0});
-        const bool rubs = next_.side != 0;
-        const SlidingEquation equation = motion.equation;
-        const auto margins = [equation, rubs](const Vector<4>& y) -> std::array<double, 3> {
-            const SlidingEquation::Margins found = equation.margins(y);
-            return {rubs ? found.slip : 1.0, found.c, found.b};
-        };
-        const auto [lasts, which] = step_until<3>(motion.equation, motion.steps, margins);
+        SteppedSliding motion = sliding_from(scene_, state_, next_.side);
+        const Until until =
+            integrate_sliding(motion, tolerance(), steps_left(), t_end_ - t_, checkpoint_);
+        count(until, motion.steps);
         const double t0 = t_;
-        add_arc(std::min(t0 + lasts, t_end_), motion);
-        if (ending_ || t0 + lasts > t_end_) return finish();
-        const State before = state_at(motion, lasts);
-        t_ += lasts;
+        add_arc(std::min(t0 + until.time, t_end_), motion);
+        if (ending_ || t0 + until.time > t_end_) return finish();
+        State before{};
+        sample(motion, &until.time, 1, &before);
+        t_ += until.time;
         state_ = before;
-        end_slide(which, before);
+        end_slide(until.which, before);
     }
 
-    // Which of the margins of sliding has come to an end: slip, c, B.
     void end_slide(int which, const State& before) {
-        if (which == 2) {
+        if (which == jams) {
             next_.jams = true;
             return note(EventKind::jam, before);
         }
-        if (which == 1) return go_on_with({Mode::flight}, EventKind::lift_off, before);
+        if (which == pressure_vanishes) {
+            return go_on_with({Mode::flight}, EventKind::lift_off, before);
+        }
         const Geometry at = geometry(axes_, before.theta);
         state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
@@ -259,30 +249,21 @@ class ContactRun {
             small * std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b)));
     }
 
-    struct Until {
-        double lasts;
-        int which;
-    };
+    Tolerance tolerance() const {
+        return {std::min(settings_.rtol, finest.relative),
+                std::min(settings_.atol, finest.absolute)};
+    }
 
-    // Integrate until a margin becomes negative, or to the end.
-    template <int M, class Equation, int N, class Margins>
-    Until step_until(const Equation& f, Steps<N>& steps, Margins margins) {
-        using Integrator = ExplicitMethod<DormandPrince853, Equation>;
-        Integrator integrator(f);
-        EventRule<M, Integrator, Equation, Margins> rule(f, steps, margins);
-        const Tolerance tolerance{std::min(settings_.rtol, finest.relative),
-                                  std::min(settings_.atol, finest.absolute)};
-        const Ending ending = integrate(
-            integrator, steps, tolerance, settings_.max_steps - counts_.steps, t_end_ - t_,
-            [&](Point<N>& point) { return rule(point); }, [](Point<N>&) { return 0.0; },
-            checkpoint_);
-        counts_.steps += static_cast<long>(steps.knots.size()) - 1;
-        counts_.rejected += integrator.counts().rejected;
-        counts_.evaluations += integrator.counts().evaluations;
-        if (ending == Ending::max_steps) ending_ = ContactEnding::max_steps;
-        if (ending == Ending::step_too_small) ending_ = ContactEnding::step_too_small;
+    long steps_left() const { return settings_.max_steps - counts_.steps; }
+
+    template <int N>
+    void count(const Until& until, const Steps<N>& steps) {
+        counts_.steps += until.counts.steps;
+        counts_.rejected += until.counts.rejected;
+        counts_.evaluations += until.counts.evaluations;
+        if (until.ending == Ending::max_steps) ending_ = ContactEnding::max_steps;
+        if (until.ending == Ending::step_too_small) ending_ = ContactEnding::step_too_small;
         if (ending_) t_end_ = t_ + steps.knots.back().t;  // all there is
-        return {rule.time(), rule.which()};
     }
 
     static constexpr double most_settling = 0.9999;  // the ratio of bounces that come to an end

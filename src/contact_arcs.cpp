@@ -1,22 +1,13 @@
 #include "contact_arcs.hpp"
 
 #include <algorithm>
-#include <cmath>
-
-#include "integrator/runge_kutta.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
 // The state of an arc, by the time since its start.
 void sample_arc(const SteppedSliding& motion, const double* times, std::size_t n, State* states) {
-    ExplicitMethod<DormandPrince853, SlidingEquation> integrator(motion.equation);
-    look(integrator, motion.steps, times, n,
-         [&](std::size_t i, const Knot<4>& knot, const Vector<4>& change) {
-             const Vector<4> y = knot.y + (knot.carry + change);
-             states[i] =
-                 in_contact(geometry(motion.axes, y[0]), y[0], y[1], y[2], y[3], Mode::sliding);
-         });
+    sample(motion, times, n, states);
 }
 
 void sample_arc(const SteppedRolling& motion, const double* times, std::size_t n, State* states) {
@@ -80,25 +71,6 @@ ContactForce force_on(const Scene& scene, const Rolling&, const State& state) {
 }
 
 }  // namespace
-
-double slip_velocity(const State& state, const Geometry& at) {
-    return state.x_dot - at.h * state.omega;
-}
-
-double noticeable_slip(const State& state, const Geometry& at) {
-    const double slip = slip_velocity(state, at);
-    return std::abs(slip) <= 8 * epsilon * std::abs(state.x_dot) ? 0.0 : slip;
-}
-
-State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode) {
-    return {theta, omega, x, at.h, slip + at.h * omega, at.dh * omega, mode};
-}
-
-State state_at(const SteppedSliding& motion, double t) {
-    State state{};
-    sample_arc(motion, &t, 1, &state);
-    return state;
-}
 
 void sample(const ContactMotion& motion, const double* times, std::size_t n,
             ContactSample* samples) {

@@ -8,18 +8,9 @@
 
 #include "flight.hpp"
 #include "rolling_steps.hpp"
-#include "sliding.hpp"
+#include "sliding_steps.hpp"
 
 namespace rolling_ellipse {
-
-// Velocity along the ground of the material point at the contact.
-double slip_velocity(const State& state, const Geometry& at);
-
-// The same; within 8 ulp of none it is none, as in a scene.
-double noticeable_slip(const State& state, const Geometry& at);
-
-// The state of a body that keeps to the ground.
-State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode);
 
 enum class EventKind : std::int8_t { slip, stick, reverse, lift_off, impact, rest, jam };
 
@@ -33,12 +24,6 @@ struct Event {
 struct ExactRolling {
     Axes axes;
     RollingFlow flow;
-};
-
-struct SteppedSliding {
-    SlidingEquation equation;
-    Axes axes;
-    Steps<4> steps;
 };
 
 // Bounces that are too small to tell apart, with what they do on average.
@@ -76,9 +61,6 @@ struct ContactSample {
     State state;
     ContactForce force;
 };
-
-// The state at the time since the start of an arc of sliding.
-State state_at(const SteppedSliding& motion, double t);
 
 // The state and the force at n times; at an event, what holds after it.
 void sample(const ContactMotion& motion, const double* times, std::size_t n,

@@ -7,14 +7,14 @@ namespace rolling_ellipse {
 namespace {
 
 // Numerator of dN/dx, N = h P/V^2: physics (36).
-Polynomial normal_slope(const ForcePolynomials& p) {
-    const Polynomial moment = p.height * p.normal;
+Polynomial<7> normal_slope(const ForcePolynomials& p) {
+    const Polynomial<6> moment = p.height * p.normal;
     return derivative(moment) * p.weight - 2.0 * (moment * derivative(p.weight));
 }
 
 // Numerator of d(F/N)^2/dx beside Q, (F/N)^2 = G Q^2/P^2: physics (36).
-Polynomial needed_slope(const ForcePolynomials& p) {
-    const Polynomial bracket =
+Polynomial<11> needed_slope(const ForcePolynomials& p) {
+    const Polynomial<7> bracket =
         derivative(p.friction) * p.normal - p.friction * derivative(p.normal);
     return derivative(p.slope_square) * p.friction * p.normal + 2.0 * (p.slope_square * bracket);
 }
@@ -57,20 +57,20 @@ ForcePolynomials force_polynomials(const EnergyRange& range) {
     const double w = range.width;
     const double kb = k2 + b2;
     const double s = kb + 1;
-    Polynomial friction_flat;  // B (K - c2), which may cancel
+    Polynomial<0> friction_flat;  // B (K - c2), which may cancel
     friction_flat.coefficients[0] = tracked(b2) * (tracked(k2) - tracked(c2));
 
     ForcePolynomials p;
-    p.height = polynomial({b, w});
-    const Polynomial y = polynomial({0, 2 * b * w, w * w});
-    const Polynomial energy = polynomial({range.energy_gap + w, -w});
-    p.weight = polynomial({b2 * kb}) + s * y;  // physics (32)
-    p.normal_at_rest = p.height * p.weight * (polynomial({kb}) + y);
-    p.normal_moving = 2.0 * (b2 * kb * (polynomial({c2}) - 2.0 * y) - s * (y * y));
+    p.height = polynomial(b, w);
+    const Polynomial<2> y = polynomial(0.0, 2 * b * w, w * w);
+    const Polynomial<1> energy = polynomial(range.energy_gap + w, -w);
+    p.weight = polynomial(b2 * kb) + s * y;  // physics (32)
+    p.normal_at_rest = p.height * p.weight * (polynomial(kb) + y);
+    p.normal_moving = 2.0 * (b2 * kb * (polynomial(c2) - 2.0 * y) - s * (y * y));
     p.normal = p.normal_at_rest + energy * p.normal_moving;                     // physics (33)
     p.friction = 2.0 * energy * (friction_flat + s * y) - p.height * p.weight;  // physics (34)
     // physics (35): (h - S)(h + S)(1 - h)(1 + h), with h - S = w x and 1 - h = tip_gap + w (1 - x).
-    p.slope_square = y * polynomial({range.tip_gap + w, -w}) * polynomial({1 + b, w});
+    p.slope_square = y * polynomial(range.tip_gap + w, -w) * polynomial(1 + b, w);
     return p;
 }
 
@@ -128,9 +128,13 @@ ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& p
         forces.normal = 0.0;
         take(forces);
     }
-    for (const Polynomial& p : {normal_slope(polynomials), needed_slope(polynomials)}) {
-        for (const double x : roots_on_unit_interval(bernstein(p))) take(rolling_forces(range, x));
-    }
+    const auto take_at_roots = [&](const auto& slope) {
+        for (const double x : roots_on_unit_interval(bernstein(slope))) {
+            take(rolling_forces(range, x));
+        }
+    };
+    take_at_roots(normal_slope(polynomials));
+    take_at_roots(needed_slope(polynomials));
     take(rolling_forces(range, 1.0));
     return extremes;
 }

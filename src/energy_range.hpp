@@ -34,13 +34,13 @@ EnergyRange separatrix_range(double short_axis, double gyration2, double c2);
 
 // Polynomials in x. P = normal_at_rest + e normal_moving.
 struct ForcePolynomials {
-    Polynomial height;
-    Polynomial normal_at_rest;
-    Polynomial normal_moving;
-    Polynomial normal;        // P
-    Polynomial friction;      // Q
-    Polynomial slope_square;  // G
-    Polynomial weight;        // V
+    Polynomial<1> height;
+    Polynomial<2> weight;  // V
+    Polynomial<5> normal_at_rest;
+    Polynomial<4> normal_moving;
+    Polynomial<5> normal;        // P
+    Polynomial<3> friction;      // Q
+    Polynomial<4> slope_square;  // G
 };
 
 ForcePolynomials force_polynomials(const EnergyRange& range);

@@ -90,7 +90,7 @@ std::string reason(const Scene& scene, const ContactWatch& watch) {
 }
 
 std::string reason(const Scene& scene, const State& start, const Certificate& c) {
-    if (c.validity == Validity::no_proof) {
+    if (c.end.validity == Validity::no_proof) {
         return "rolling: nothing to prove, " + why_no_proof(scene, start);
     }
     const std::string extremes = "the smallest N is " + brief(*c.smallest_normal_force) +
@@ -98,28 +98,28 @@ std::string reason(const Scene& scene, const State& start, const Certificate& c)
                                  "), the largest |F|/N " + brief(*c.largest_friction_needed) +
                                  " (theta = " + in_degrees(*c.largest_friction_needed_angle) +
                                  "), the friction coefficient " + brief(scene.friction);
-    if (c.validity != Validity::valid && !c.ends_at) {
+    if (c.end.validity != Validity::valid && !c.end.angle) {
         return "rolling: holds from the start on, towards the tip it never reaches; before the "
                "start "
                "the same motion would break it; on the whole motion " +
                extremes;
     }
-    switch (c.validity) {
+    switch (c.end.validity) {
         case Validity::valid:
             return (start.mode == Mode::rest ? "rest: in equilibrium, "
                                              : "rolling: proved valid for the whole motion, ") +
                    extremes;
         case Validity::edge:
-            return "rolling: on the edge of its validity at theta = " + brief(*c.ends_at) +
+            return "rolling: on the edge of its validity at theta = " + brief(*c.end.angle) +
                    " rad, closer than rounding can tell; " + extremes;
         default:
             break;
     }
-    const bool at_once = *c.ends_at == start.theta;
+    const bool at_once = *c.end.angle == start.theta;
     const std::string what = std::isinf(scene.friction) ? "N would have to pull"
                                                         : "it would need more than the friction";
     return (at_once ? "rolling: cannot start at theta = " : "rolling: ends at theta = ") +
-           brief(*c.ends_at) + " rad, where " + what + "; on the whole motion " + extremes;
+           brief(*c.end.angle) + " rad, where " + what + "; on the whole motion " + extremes;
 }
 
 }  // namespace rolling_ellipse

@@ -88,6 +88,10 @@ void validate_motion(const Body& body, double theta, double omega) {
     }
 }
 
+void validate_friction(double friction) {
+    if (!(friction >= 0)) refuse("friction", "a coefficient of at least 0 (inf allowed)", friction);
+}
+
 void validate(const Impulse& impulse) {
     require_finite("jx", " [N s]", impulse.jx);
     require_finite("jz", " [N s]", impulse.jz);
@@ -106,9 +110,7 @@ void validate(const Scene& scene) {
     if (!(std::abs(scene.slope) < half_pi)) {
         refuse("slope", "an angle [rad] strictly between -pi/2 and pi/2", scene.slope);
     }
-    if (!(scene.friction >= 0)) {
-        refuse("friction", "a coefficient of at least 0 (inf allowed)", scene.friction);
-    }
+    validate_friction(scene.friction);
     if (!(scene.restitution >= 0 && scene.restitution <= 1)) {
         refuse("restitution", "between 0 and 1", scene.restitution);
     }

@@ -43,12 +43,6 @@ Status status(Ending ending) {
     return Status::completed;
 }
 
-double end_of_validity(const RollingFlow& flow, const Certificate& certificate) {
-    if (!certificate.ends_at) return infinity;
-    if (*certificate.ends_at == flow.theta) return 0.0;
-    return time_of_passing(flow, *certificate.ends_at, certificate.ends_heading);
-}
-
 void end_validity(double t, double t_end, Solution& solution) {
     solution.valid_until = t;
     if (solution.status == Status::completed && t < t_end) {
@@ -63,7 +57,7 @@ void judge_by_proof(const Scene& scene, const CertifiedScene& certified, double 
     const State& start = certified.start.state;
     const RollingFlow flow = rolling_flow(scene.body(), start.theta, start.omega, start.x);
     solution.reason = certified.reason;
-    end_validity(end_of_validity(flow, certified.certificate), t_end, solution);
+    end_validity(time_of_end(flow, certified.certificate.end), t_end, solution);
 }
 
 // On a slope, and where the constraints may be broken, the motion has to be watched.
@@ -140,7 +134,7 @@ CertifiedScene certify(const Scene& scene) {
         result.certificate =
             certify_rolling(scene.body(), scene.mass, scene.friction, start.theta, start.omega);
     } else {
-        result.certificate = {Validity::no_proof, {}, {}, {}, {}, {}, 0.0};
+        result.certificate = {{Validity::no_proof}, {}, {}, {}, {}};
     }
     result.reason = reason(scene, start, result.certificate);
     return result;
@@ -150,7 +144,7 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
                   const Checkpoint& checkpoint) {
     validate(asked, t_end);
     const CertifiedScene certified = certify(scene);
-    const Settings settings = chosen(asked, scene, certified.certificate.validity);
+    const Settings settings = chosen(asked, scene, certified.certificate.end.validity);
     const State& start = certified.start.state;
     if (settings.model == Model::contact) {
         return contact(scene, certified, settings, t_end, checkpoint);

@@ -1,11 +1,22 @@
 // Sliding with Coulomb friction in one direction: contact force, equation, and what ends it.
 #pragma once
 
+#include <array>
+
 #include "integrator/common.hpp"
 #include "rolling.hpp"
 #include "scene.hpp"
 
 namespace rolling_ellipse {
+
+// Velocity along the ground of the material point at the contact.
+double slip_velocity(const State& state, const Geometry& at);
+
+// The same; within 8 ulp of none it is none, as in a scene.
+double noticeable_slip(const State& state, const Geometry& at);
+
+// The state of a body that keeps to the ground.
+State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode);
 
 // The contact as a free body has it, per mass: what an impulse (along, away from) the ground
 // changes of the contact velocity (Delassus), and the acceleration -c of the gap without a force.
@@ -18,6 +29,8 @@ struct FreeContact {
 
 FreeContact free_contact(const Scene& scene, const Geometry& at, double omega);
 
+enum SlideEnd { slip_vanishes, pressure_vanishes, jams };
+
 // y = (theta, omega, x, slip velocity); side is the sign of the slip. With infinite friction the
 // limit holds: no normal force, and friction alone keeps the gap closed.
 class SlidingEquation {
@@ -28,22 +41,38 @@ class SlidingEquation {
 
     Vector<4> operator()(double t, const Vector<4>& y) const;
 
-    // What stays positive while it slides on: slip, the free acceleration c into the ground, and B,
-    // the normal acceleration that a unit of normal force makes (Painleve).
-    struct Margins {
-        double slip;
-        double c;
-        double b;
-    };
-    Margins margins(const Vector<4>& y) const;
+    // What stays positive while it slides on, in the order of SlideEnd: the slip, the free
+    // acceleration c into the ground, and B, the normal acceleration that a unit of normal force
+    // makes (Painleve).
+    std::array<double, 3> margins(const Vector<4>& y) const;
+
+    // With infinite friction B is small near the tip, and nothing grows there.
+    bool may_jam() const { return normal_share_ != 0; }
+
+    // The same motion, (y, t), by a clock tau that slows down near B = 0, dt = B dtau, where N =
+    // c/B grows without bound.
+    Vector<5> slowed(const Vector<5>& y) const;
+
+    // Where a slide ends that has come to B = 0 with c > 0: in a moment N drives c to 0.
+    Vector<5> jam(const Vector<5>& y) const;
 
     ContactForce force(double theta, double omega) const;
 
   private:
-    double normal_response(const FreeContact& contact) const;
+    struct Contact {
+        double c;
+        double b;
+    };
+    Contact contact(const Geometry& at, double omega) const;
 
-    Scene scene_;
+    Axes axes_;
     double side_;
+    double mass_;
+    double gyration2_;
+    double weight_;          // g cos(alpha)
+    double pull_;            // g sin(alpha)
+    double normal_share_;    // of the contact force: 1, and 0 with infinite friction
+    double friction_share_;  // -mu s; -s with infinite friction
 };
 
 }  // namespace rolling_ellipse

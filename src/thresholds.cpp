@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "energy_range.hpp"
+#include "lift_off.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -60,7 +61,7 @@ void take_if_lower(Onset& onset, double energy, double angle) {
 Onset contact_loss(const Shape& shape) {
     const EnergyRange range = separatrix_range(shape.short_axis, shape.gyration2, shape.c2);
     const ForcePolynomials p = force_polynomials(range);
-    const Polynomial& moving = p.normal_moving;
+    const Polynomial<4>& moving = p.normal_moving;
     std::vector<double> places = roots_on_unit_interval(
         bernstein(range.width * (moving * moving) - derivative(p.normal_at_rest) * moving +
                   p.normal_at_rest * derivative(moving)));
@@ -145,10 +146,10 @@ Onset painleve(const Shape& shape) {
     const double b2 = square(shape.short_axis);
     const double k2 = shape.gyration2;
     const double w = shape.c2;  // u = B + w x
-    const Polynomial u = polynomial({b2, w});
-    const Polynomial y = polynomial({0, w}) * polynomial({w, -w});
-    const Polynomial dy = polynomial({w, -2 * w});
-    const Polynomial stationary = (-k2) * (dy * u * u) + y * dy * u - 2.0 * (y * y);
+    const Polynomial<1> u = polynomial(b2, w);
+    const Polynomial<2> y = polynomial(0.0, w) * polynomial(w, -w);
+    const Polynomial<1> dy = polynomial(w, -2 * w);
+    const Polynomial<4> stationary = (-k2) * (dy * u * u) + y * dy * u - 2.0 * (y * y);
     Onset onset;
     for (const double x : roots_on_unit_interval(bernstein(stationary))) {
         const double y_here = w * x * w * (1 - x);
@@ -176,6 +177,7 @@ Thresholds thresholds(const Body& body, double friction) {
     result.tip_rate = std::sqrt(body.gravity * at.c2 / (at.long_axis * tip_inertia));
     result.contact_loss_speed = infinity;
     result.slip_speed = infinity;
+    result.lift_off_speed = infinity;
     result.painleve_friction = infinity;
     if (at.c2 == 0) return result;
 
@@ -192,6 +194,7 @@ Thresholds thresholds(const Body& body, double friction) {
     const Onset slipping = slip(shape, friction);
     result.slip_speed = flat_speed(slipping);
     result.slip_angle = theta_of(slipping.angle);
+    result.lift_off_speed = lift_off_speed(body, friction, result.slip_speed);
     const EnergyRange separatrix = separatrix_range(shape.short_axis, shape.gyration2, shape.c2);
     result.friction_to_roll_over =
         force_extremes(separatrix, force_polynomials(separatrix)).most_friction.needed();

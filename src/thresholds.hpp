@@ -15,6 +15,7 @@ struct Thresholds {
     std::optional<double> contact_loss_angle;
     double slip_speed;  // from it on rolling needs more than the friction
     std::optional<double> slip_angle;
+    double lift_off_speed;         // from it on the body really leaves the ground
     double friction_to_roll_over;  // max |F|/N of rolling at the roll-over speed
     double painleve_friction;      // least mu for which sliding may jam
     std::optional<double> painleve_angle;

@@ -565,7 +565,7 @@ def test_files_hold_no_pickle(report: Trajectory, tmp_path: Path) -> None:
     with np.load(path, allow_pickle=False) as data:
         assert {"t", "theta", "omega", "x", "about"} <= set(data.files)
         about = json.loads(str(data["about"]))
-    assert about["schema"] == 3
+    assert about["schema"] == 4
 
 
 def rewritten(path: Path, **changes: Any) -> None:

@@ -8,12 +8,13 @@
 from importlib.metadata import version as _version
 
 from . import geometry, impacts, report, scenes
-from ._core import EventKind, Mode, Validity
+from ._core import EventKind, Mode, Outcome, Validity
 from ._simulate import simulate
 from .animation import animate
 from .events import Event
 from .kinematics import ConstraintResiduals, constraints, kinematics
 from .motion import flow, period
+from .outcome import classify
 from .plotting import (
     plot,
     plot_constraints,
@@ -31,9 +32,9 @@ __version__ = _version("rolling-ellipse")
 
 __all__ = [
     "Certificate", "ConstraintResiduals", "Event", "EventKind", "Impulse", "InitialState",
-    "IntegrationError", "Mode", "Scene", "Status", "Thresholds", "Trajectory", "Validity",
-    "ValidityWarning", "__version__", "animate", "certify", "constraints", "flow", "geometry",
-    "impacts", "kinematics", "load", "period", "plot", "plot_constraints", "plot_energy",
-    "plot_forces", "plot_paths", "plot_phase", "plot_strobe", "report", "scenes", "simulate",
-    "thresholds",
+    "IntegrationError", "Mode", "Outcome", "Scene", "Status", "Thresholds", "Trajectory",
+    "Validity", "ValidityWarning", "__version__", "animate", "certify", "classify", "constraints",
+    "flow", "geometry", "impacts", "kinematics", "load", "period", "plot", "plot_constraints",
+    "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_strobe", "report", "scenes",
+    "simulate", "thresholds",
 ]  # fmt: skip

@@ -26,6 +26,17 @@ class Validity(enum.Enum):
     EDGE = 2
     NO_PROOF = 3
 
+class Outcome(enum.IntEnum):
+    """What a rolling body comes to first."""
+
+    RESTS = 0
+    ROCKS = 1
+    ROLLS_OVER = 2
+    SLIPS = 3
+    LOSES_CONTACT = 4
+    JAMS = 5
+    EDGE = 6
+
 class Model(enum.Enum):
     AUTO = 0
     ROLLING = 1
@@ -132,9 +143,7 @@ class Solution:
     def stats(self) -> dict[str, int]: ...
     def sample(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]: ...
     def sample_coordinates(self, t: FloatArray) -> tuple[FloatArray, FloatArray]: ...
-    def sample_contact(
-        self, t: FloatArray, scene: Scene
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, npt.NDArray[np.int8]]: ...
+    def sample_contact(self, t: FloatArray) -> tuple[Any, ...]: ...
 
 def support(n: int, arguments: list[FloatArray]) -> FloatArray: ...
 def support_slope(n: int, arguments: list[FloatArray]) -> FloatArray: ...
@@ -150,10 +159,11 @@ def initial_state(
 def certify(
     scene: Scene,
 ) -> tuple[Validity, float | None, float | None, float | None, float | None, float | None, str]: ...
+def classify_array(n: int, arguments: list[FloatArray], workers: int) -> npt.NDArray[np.int8]: ...
 def thresholds(
     a: float, b: float, gravity: float, gyration2: float | None, friction: float
 ) -> tuple[
-    float, float, float | None, float, float | None, float, float, float | None, float, float
+    float, float, float | None, float, float | None, float, float, float, float | None, float, float
 ]: ...
 def simulate(scene: Scene, settings: Settings, t_end: float) -> Solution: ...
 def simulate_coordinates(
@@ -163,8 +173,8 @@ def multiplier_detail(
     scene: Scene, settings: Settings, q: FloatArray, q_dot: FloatArray
 ) -> tuple[FloatArray, FloatArray]: ...
 def contact_detail(
-    scene: Scene, q: FloatArray, q_dot: FloatArray, normal: FloatArray, friction: FloatArray
-) -> tuple[FloatArray, FloatArray]: ...
+    scene: Scene, columns: list[FloatArray]
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]: ...
 def project(scene: Scene, q: FloatArray, q_dot: FloatArray) -> tuple[FloatArray, FloatArray]: ...
 def constraint_system(
     q: FloatArray, q_dot: FloatArray, a: float, b: float

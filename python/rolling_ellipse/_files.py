@@ -17,10 +17,9 @@ from .settings import Settings
 if TYPE_CHECKING:
     from .trajectory import Trajectory
 
-_SCHEMA = 3
+_SCHEMA = 4
 _ARRAYS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")
-_CONTACT = ("normal_force", "friction_force", "mode")
 _FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
 
 
@@ -39,14 +38,14 @@ def write(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
         if (pair := getattr(trajectory, name)) is not None:
             arrays[name] = np.stack(pair)
     if trajectory.contact is not None:
-        arrays |= zip(_CONTACT, trajectory.contact, strict=True)
+        arrays |= trajectory.contact._asdict()
     with open(path, "wb") as file:
         np.savez(file, about=np.array(json.dumps(about)), **arrays)
 
 
 def read(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Return the arguments of the Trajectory that a file holds."""
-    from .trajectory import Status
+    from .trajectory import ContactSamples, Status
 
     name = os.fspath(path)
     with open(path, "rb") as file:
@@ -55,8 +54,8 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
             about = json.loads(str(data["about"]))
             found: dict[str, Any] = {array: data[array] for array in _ARRAYS}
             found |= {pair: tuple(data[pair]) for pair in _PAIRS if pair in data}
-            if _CONTACT[0] in data:
-                found["contact"] = tuple(data[array] for array in _CONTACT)
+            if "mode" in data:
+                found["contact"] = ContactSamples(*(data[n] for n in ContactSamples._fields))
         except (ValueError, KeyError, IndexError, EOFError, zipfile.BadZipFile) as error:
             raise ValueError(f"path must name a file written by save, got {name!r}") from error
     if (schema := about.pop("schema", None)) != _SCHEMA:

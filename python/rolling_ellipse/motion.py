@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import broadcast
+from ._check import FloatArray, broadcast
 from .scene import Scene, require_scene
 
 _SCALARS = (float, int)
@@ -72,13 +72,18 @@ def flow(
         arguments["gyration2"] = gyration2
     shape, columns = broadcast(**arguments)
     if gyration2 is None:
-        with np.errstate(over="ignore"):  # the core refuses by name what is too large
-            columns.append((columns[1] ** 2 + columns[2] ** 2) / 4)
+        columns.append(uniform_disc_gyration2(columns[1], columns[2]))
     results = _core.flow_array(math.prod(shape), columns, threads)
     if shape == ():
         return tuple(float(v[0]) for v in results)  # type: ignore[return-value]
     theta_t, omega_t, x_t = (v.reshape(shape) for v in results)
     return theta_t, omega_t, x_t
+
+
+def uniform_disc_gyration2(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return k^2 of uniform discs, of the shape that `a` and `b` have together."""
+    with np.errstate(over="ignore"):  # the core refuses by name what is too large
+        return (a**2 + b**2) / 4
 
 
 def worker_count(workers: int) -> int:

@@ -8,7 +8,7 @@ import os
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -76,6 +76,28 @@ def _column(which: int, column: int) -> cached_property[FloatArray]:
     return _derived(lambda self: np.ascontiguousarray(self._detail[which][:, column]))
 
 
+def _sampled(
+    name: str, otherwise: Callable[[Trajectory], FloatArray]
+) -> cached_property[FloatArray]:
+    """What the contact model has sampled, and others derive."""
+
+    def values(self: Trajectory) -> FloatArray:
+        return otherwise(self) if self.contact is None else getattr(self.contact, name)
+
+    return _derived(values)
+
+
+class ContactSamples(NamedTuple):
+    """What a contact motion knows beside theta, omega and x."""
+
+    z: FloatArray
+    x_dot: FloatArray
+    z_dot: FloatArray
+    normal_force: FloatArray
+    friction_force: FloatArray
+    mode: npt.NDArray[np.int8]
+
+
 class IntegrationError(RuntimeError):
     """An integration stopped before its last time; `trajectory` holds what there is."""
 
@@ -127,8 +149,8 @@ class Trajectory:
     coordinates, start : tuple of ndarray, or None
         Where the state is not a function of theta and omega: q and q_dot at the samples, (n, 5)
         each; and those that it started from, (5,) each, where they are not the scene's.
-    contact : tuple of ndarray, or None
-        Of the model "contact": normal force, friction force and mode at the samples.
+    contact : ContactSamples or None
+        Of the model "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the samples.
     events : tuple of Event
         Changes of mode and impacts of the model "contact", in the order of time.
     stats : dict
@@ -153,15 +175,16 @@ class Trajectory:
     settings: Settings
     coordinates: tuple[FloatArray, FloatArray] | None = None
     start: tuple[FloatArray, FloatArray] | None = None
-    contact: tuple[FloatArray, FloatArray, npt.NDArray[np.int8]] | None = None
+    contact: ContactSamples | None = None
     events: tuple[Event, ...] = ()
     stats: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in _ARRAYS:
             values = np.ascontiguousarray(getattr(self, name))
-            values.flags.writeable = False
             object.__setattr__(self, name, values)
+        for values in (self.t, self.theta, self.omega, self.x, *(self.contact or ())):
+            values.flags.writeable = False
 
     @classmethod
     def computed(
@@ -182,7 +205,7 @@ class Trajectory:
         status = Status[solution.status.name]
         trajectory = cls(
             np.array(times),
-            **_samples(scene, solution, times),
+            **_samples(solution, times),
             scene=scene,
             model=solution.model.name.lower(),
             method=solution.method.name.lower(),
@@ -210,12 +233,13 @@ class Trajectory:
     def _detail(self) -> tuple[FloatArray, ...]:
         """q, q_dot, q_ddot, normal and friction force, multipliers."""
         scene = self.scene._core_scene
-        if self.coordinates is None:
-            found = _core.rolling_detail(scene, self.theta, self.omega, self.x)
-        elif self.contact is not None:
-            (q, q_dot), (normal, friction, _) = self.coordinates, self.contact
-            q_ddot, multipliers = _core.contact_detail(scene, q, q_dot, normal, friction)
+        if self.contact is not None:
+            *columns, normal, friction, _ = self.contact
+            state = [self.theta, self.omega, self.x, *columns, normal, friction]
+            q, q_dot, q_ddot, multipliers = _core.contact_detail(scene, state)
             found = q, q_dot, q_ddot, normal, friction, multipliers
+        elif self.coordinates is None:
+            found = _core.rolling_detail(scene, self.theta, self.omega, self.x)
         else:
             q, q_dot = self.coordinates
             q_ddot, multipliers = _core.multiplier_detail(scene, self.settings.core, q, q_dot)
@@ -233,17 +257,15 @@ class Trajectory:
     def q_dot(self) -> FloatArray:
         return self._detail[1]
 
-    z, psi, r = _column(0, 1), _column(0, 3), _column(0, 4)
-    x_dot, z_dot, psi_dot, r_dot = (_column(1, i) for i in (0, 1, 3, 4))
+    psi, r = _column(0, 3), _column(0, 4)
+    psi_dot, r_dot = _column(1, 3), _column(1, 4)
     x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot = (_column(2, i) for i in range(5))
 
-    @property
-    def normal_force(self) -> FloatArray:
-        return self._detail[3]
-
-    @property
-    def friction_force(self) -> FloatArray:
-        return self._detail[4]
+    z = _sampled("z", lambda self: self._detail[0][:, 1].copy())
+    x_dot = _sampled("x_dot", lambda self: self._detail[1][:, 0].copy())
+    z_dot = _sampled("z_dot", lambda self: self._detail[1][:, 1].copy())
+    normal_force = _sampled("normal_force", lambda self: self._detail[3])
+    friction_force = _sampled("friction_force", lambda self: self._detail[4])
 
     @property
     def multipliers(self) -> FloatArray:
@@ -281,7 +303,7 @@ class Trajectory:
     @_derived
     def mode(self) -> npt.NDArray[np.int8]:
         if self.contact is not None:
-            return self.contact[2]
+            return self.contact.mode
         return np.full(self.t.shape, self.scene.initial_state.mode, dtype=np.int8)
 
     @property
@@ -313,7 +335,7 @@ class Trajectory:
         outside = times[~((times >= 0) & (times <= self.t_end))]
         if outside.size:
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
-        samples = _samples(self.scene, self._solution, times)
+        samples = _samples(self._solution, times)
         other = replace(self, t=np.array(times), **samples)
         other.__dict__["_solution"] = self._solution
         return other
@@ -433,21 +455,17 @@ def _solve(
     return _core.simulate_coordinates(scene._core_scene, q, q_dot, settings.core, t_end)
 
 
-def _samples(scene: Scene, solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
+def _samples(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     """Return the arrays that a Trajectory holds."""
     if solution.model is _core.Model.CONTACT:
-        q, q_dot, *contact = solution.sample_contact(times, scene._core_scene)
-        return _columns(q, q_dot) | {"contact": tuple(contact)}
+        theta, omega, x, *contact = solution.sample_contact(times)
+        return {"theta": theta, "omega": omega, "x": x, "contact": ContactSamples(*contact)}
     if solution.model is _core.Model.MULTIPLIERS:
-        return _columns(*solution.sample_coordinates(times))
+        q, q_dot = solution.sample_coordinates(times)
+        theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
+        return {"theta": theta, "omega": omega, "x": x, "coordinates": (q, q_dot)}
     theta, omega, x = solution.sample(times)
     return {"theta": theta, "omega": omega, "x": x}
-
-
-def _columns(q: FloatArray, q_dot: FloatArray) -> dict[str, Any]:
-    columns = {"theta": q[:, 2], "omega": q_dot[:, 2], "x": q[:, 0]}
-    copies: dict[str, Any] = {name: values.copy() for name, values in columns.items()}
-    return copies | {"coordinates": (q, q_dot)}
 
 
 def load(path: str | os.PathLike[str]) -> Trajectory:

@@ -58,6 +58,9 @@ class Thresholds:
         From it on rolling would need the ground to pull (N = 0), first at this angle.
     slip_speed, slip_angle : float
         From it on rolling needs more than the given friction, first at this angle.
+    lift_off_speed : float
+        From it on a body of the given friction really leaves the ground: it slips first, and then
+        its pressure on the ground ends before it passes the tip.
     friction_to_roll_over : float
         Largest |F/N| of rolling at the roll-over speed (infinite where N vanishes before).
     painleve_friction, painleve_angle : float
@@ -73,6 +76,7 @@ class Thresholds:
     contact_loss_angle: float | None
     slip_speed: float
     slip_angle: float | None
+    lift_off_speed: float
     friction_to_roll_over: float
     painleve_friction: float
     painleve_angle: float | None
@@ -119,7 +123,8 @@ def thresholds(
     gyration2 : float, optional
         k^2 = I/m [m^2]; default: a uniform disc.
     friction : float
-        Coefficient of friction that `slip_speed` is for; if infinite, it is the contact loss speed.
+        Coefficient that `slip_speed` and `lift_off_speed` are for; if infinite, the slip speed is
+        the contact loss speed.
 
     Returns
     -------

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <tuple>
 
 #include "first_negative.hpp"
 #include "stepped.hpp"
@@ -11,20 +12,20 @@ namespace rolling_ellipse {
 
 // To be called after each step (see `integrate`); margins: y -> std::array<double, M>. Looks
 // several times into each step, by its dense output.
-template <int M, class Integrator, class System, class Margins>
+template <int M, class Integrator, class Margins>
 class EventRule {
   public:
-    static constexpr int N = System::size;
+    static constexpr int N = Integrator::N;
 
-    EventRule(const System& f, const Steps<N>& steps, Margins margins)
-        : integrator_(f), steps_(steps), margins_(margins) {}
+    EventRule(Integrator& integrator, const Steps<N>& steps, Margins margins)
+        : integrator_(integrator), steps_(steps), margins_(margins) {}
 
     AfterStep operator()(const Point<N>& point) {
         constexpr int looks_per_step = 8;
         const Knot<N>& from = steps_.knots.back();
         const double h = point.t - from.t;
         before_ = now_;
-        now_.emplace(View{from, h, integrator_.dense_output(from.point(), h)});
+        now_.emplace(View{from, h, integrator_.dense_output_of_last_step(from.point(), h)});
         const auto at = [this](double t) { return margins_at(t); };
         for (int j = before_ ? 1 : 0; j <= looks_per_step; ++j) {
             const double t = j == looks_per_step ? point.t : from.t + j * h / looks_per_step;
@@ -51,12 +52,72 @@ class EventRule {
         return margins_(view.from.y + (view.from.carry + change));
     }
 
-    Integrator integrator_;
+    Integrator& integrator_;
     const Steps<N>& steps_;
     Margins margins_;
     FirstNegative<M> finder_;
     std::optional<View> before_;
     std::optional<View> now_;
 };
+
+// How an integration ended, and where: the time since its start.
+struct Until {
+    Ending ending;
+    double time;  // at which a margin became negative, if that stopped it; infinite else
+    int which;    // that margin
+    StepCounts counts;
+};
+
+// Ends the solution where a margin became negative: the dense output knows the time to its order
+// only, a step that ends there to that of the method. Returns the time.
+template <class Integrator, int N, class Margins>
+double end_at_event(Integrator& integrator, Steps<N>& steps, double t, int which,
+                    const Margins& margins) {
+    constexpr int corrections = 4;
+    while (steps.knots.back().t >= t && steps.knots.size() > 1) steps.knots.pop_back();
+    const Knot<N> from = steps.knots.back();
+    const auto step_to = [&](double time) {
+        Point<N> point = from.point();
+        if (time > from.t) integrator.advance(point, time - from.t);
+        point.t = time;
+        return point;
+    };
+    const auto margin = [&](const Point<N>& point) {
+        return margins(Vector<N>(point.y + point.carry))[which];
+    };
+    Point<N> end = step_to(t);
+    double other = from.t;
+    double margin_there = margin(from.point());
+    for (int i = 0; i < corrections; ++i) {  // the secant through the last two
+        const double margin_here = margin(end);
+        const double change = margin_here * (end.t - other) / (margin_there - margin_here);
+        if (!(std::abs(change) <= 1e-6 * (end.t - from.t)) || end.t + change == end.t) break;
+        other = end.t;
+        margin_there = margin_here;
+        end = step_to(end.t + change);
+    }
+    if (end.t > from.t) steps.knots.push_back({end.t, end.y, end.carry, from.periods});
+    return end.t;
+}
+
+// Integrate from the last knot until a margin becomes negative, or to t_end.
+template <class Integrator, int N, class Margins, class Checkpoint>
+Until integrate_until(Integrator& integrator, Steps<N>& steps, const Tolerance& tolerance,
+                      long max_steps, double t_end, Margins margins, const Checkpoint& checkpoint) {
+    constexpr int M = std::tuple_size_v<decltype(margins(Vector<N>{}))>;
+    EventRule<M, Integrator, Margins> rule(integrator, steps, margins);
+    const std::size_t before = steps.knots.size();
+    const Ending ending = integrate(
+        integrator, steps, tolerance, max_steps, t_end,
+        [&](const Point<N>& point) { return rule(point); }, [](Point<N>&) { return 0.0; },
+        checkpoint);
+    double time = rule.time();
+    if (ending == Ending::stopped) {
+        time = end_at_event(integrator, steps, time, rule.which(), margins);
+    }
+    StepCounts counts = integrator.counts();
+    counts.steps = static_cast<long>(steps.knots.size() - before);
+    return {ending, time, rule.which(), counts};
+}
 
 }  // namespace rolling_ellipse

@@ -77,7 +77,13 @@ class ExplicitMethod {
 
     // The dense output of the step of size h from a point.
     Dense dense_output(const Point<N>& from, double h) {
-        evaluate<0, Tableau::all_stages>(from, h);
+        evaluate<0, Tableau::stages + 1>(from, h);
+        return dense_output_of_last_step(from, h);
+    }
+
+    // The same of the step just taken, while `integrate` lets its point be seen.
+    Dense dense_output_of_last_step(const Point<N>& from, double h) {
+        evaluate<Tableau::stages + 1, Tableau::all_stages>(from, h);
         const Vector<N> change = increment(h);
         const Vector<N>& slope_before = k_[0];
         const Vector<N>& slope_after = k_[Tableau::stages];
@@ -119,7 +125,6 @@ class ExplicitMethod {
                 const double factor = safety * std::pow(error, -1.0 / Tableau::order);
                 if (error < 1) {
                     evaluate<error_stages, Tableau::stages + 1>(point, h);
-                    k_[0] = k_[Tableau::stages];
                     point = next;
                     point.t = t;
                     h *= std::min(growth_limit, factor);
@@ -132,7 +137,11 @@ class ExplicitMethod {
             const AfterStep next = visit(point);
             if (next == AfterStep::stop) return Ending::stopped;
             if (!(point.t < t_end)) return Ending::reached;
-            if (next == AfterStep::changed) evaluate<0, 1>(point, 0.0);
+            if (next == AfterStep::changed) {
+                evaluate<0, 1>(point, 0.0);
+            } else {
+                k_[0] = k_[Tableau::stages];
+            }
         }
         return Ending::max_steps;
     }

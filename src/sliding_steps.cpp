@@ -1,0 +1,113 @@
+#include "sliding_steps.hpp"
+
+#include "integrator/runge_kutta.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+using Integrator = ExplicitMethod<DormandPrince853, SlidingEquation>;
+
+// Of B: below it the slower clock is the better one.
+constexpr double small_response = 1e-2;
+
+// Sliding by the clock that slows down near B = 0.
+struct SlowedSliding {
+    static constexpr int size = 5;
+    SlidingEquation equation;
+
+    Vector<5> operator()(double, const Vector<5>& y) const { return equation.slowed(y); }
+};
+
+void count(const StepCounts& more, StepCounts& counts) {
+    counts.steps += more.steps;
+    counts.rejected += more.rejected;
+    counts.evaluations += more.evaluations;
+}
+
+struct Slowed {
+    Until until;
+    bool passed;  // B is no longer small: it slides on
+};
+
+Slowed slide_slowly(SteppedSliding& motion, const Tolerance& tolerance, long max_steps,
+                    double t_end, const Checkpoint& checkpoint) {
+    constexpr double no_response = 1e-13;
+    const Knot<4> from = motion.steps.knots.back();
+    const SlowedSliding f{motion.equation};
+    ExplicitMethod<DormandPrince853, SlowedSliding> integrator(f);
+    Vector<5> start;
+    start << from.y, from.t;
+    Steps<5> steps{0.0, {{0.0, start, Vector<5>::Zero(), 0.0}}};
+    const auto margins = [&](const Vector<5>& y) -> std::array<double, 5> {
+        const auto [slip, c, b] = motion.equation.margins(y.head<4>());
+        return {slip, c, b - no_response, 2 * small_response - b, t_end - y[4]};
+    };
+    Until until =
+        integrate_until(integrator, steps, tolerance, max_steps, infinity, margins, checkpoint);
+    for (std::size_t i = 1; i < steps.knots.size(); ++i) {
+        const Vector<5> y = steps.knots[i].y + steps.knots[i].carry;
+        motion.steps.knots.push_back({y[4], y.head<4>(), Vector<4>::Zero(), from.periods});
+    }
+    until.time = motion.steps.knots.back().t;
+    if (until.ending != Ending::stopped || until.which < jams) return {until, false};
+    if (until.which > jams) {
+        until.ending = Ending::reached;
+        until.time = infinity;
+        return {until, until.which == jams + 1};
+    }
+    Vector<5> y = motion.equation.jam(steps.knots.back().y);
+    if (y[3] * start[3] <= 0) {  // its slip vanishes in that moment
+        y[3] = 0.0;
+        until.which = slip_vanishes;
+    }
+    until.time = y[4];
+    motion.steps.knots.push_back({y[4], y.head<4>(), Vector<4>::Zero(), from.periods});
+    return {until, false};
+}
+
+}  // namespace
+
+SteppedSliding sliding_from(const Scene& scene, const State& start, double side) {
+    const Axes axes{scene.a, scene.b};
+    const double slip = slip_velocity(start, geometry(axes, start.theta));
+    return {SlidingEquation(scene, side),
+            axes,
+            {0.0, {{0.0, {start.theta, start.omega, start.x, slip}, Vector<4>::Zero(), 0.0}}}};
+}
+
+Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long max_steps,
+                        double t_end, const Checkpoint& checkpoint) {
+    const SlidingEquation& f = motion.equation;
+    const auto margins = [&f](const Vector<4>& y) -> std::array<double, 3> {
+        const auto [slip, c, b] = f.margins(y);
+        return {slip, c, f.may_jam() ? b - small_response : b};
+    };
+    StepCounts counts;
+    for (;;) {
+        Integrator integrator(f);
+        Until until = integrate_until(integrator, motion.steps, tolerance, max_steps - counts.steps,
+                                      t_end, margins, checkpoint);
+        count(until.counts, counts);
+        if (f.may_jam() && until.ending == Ending::stopped && until.which == jams) {
+            const auto [slow, passed] =
+                slide_slowly(motion, tolerance, max_steps - counts.steps, t_end, checkpoint);
+            count(slow.counts, counts);
+            if (passed) continue;
+            until = slow;
+        }
+        until.counts = counts;
+        return until;
+    }
+}
+
+void sample(const SteppedSliding& motion, const double* times, std::size_t n, State* states) {
+    Integrator integrator(motion.equation);
+    look(integrator, motion.steps, times, n,
+         [&](std::size_t i, const Knot<4>& knot, const Vector<4>& change) {
+             const Vector<4> y = knot.y + (knot.carry + change);
+             states[i] =
+                 in_contact(geometry(motion.axes, y[0]), y[0], y[1], y[2], y[3], Mode::sliding);
+         });
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,28 @@
+// Sliding in one direction as a list of steps, and what ends it.
+#pragma once
+
+#include <cstddef>
+
+#include "integrator/event_rule.hpp"
+#include "settings.hpp"
+#include "sliding.hpp"
+
+namespace rolling_ellipse {
+
+struct SteppedSliding {
+    SlidingEquation equation;
+    Axes axes;
+    Steps<4> steps;  // of (theta, omega, x, slip velocity)
+};
+
+// The start of sliding, with the slip to the given side (0: without friction there is none).
+SteppedSliding sliding_from(const Scene& scene, const State& start, double side);
+
+// Slide on until a margin of the equation has come to an end, or to t_end.
+Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long max_steps,
+                        double t_end, const Checkpoint& checkpoint);
+
+// The states at n times since the start.
+void sample(const SteppedSliding& motion, const double* times, std::size_t n, State* states);
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,300 @@
+"""What a motion with impacts, slip and flight costs: python tests/benchmarks/bench_contact.py
+
+Each scene has about ten events. `simulate` is timed beside SciPy's solve_ivp (DOP853) with terminal
+events, started anew after each of them; both give the events, and theta, omega, x, z at the same
+1001 times. SciPy's right-hand sides and events are Python or compiled by numba; its flights are
+integrated like the rest, or are parabolas whose end brentq finds. Before anything is timed the
+motions are compared: other events than the package's make a gap in the table. As in
+bench_integrators.py every case is run in each of many rounds; compare ratios of one run.
+"""
+
+import argparse
+import math
+import os
+import platform
+from collections.abc import Callable
+from functools import partial
+from itertools import product
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import rolling_ellipse
+from bench_flow import processor
+from bench_integrators import Cases, Run, interleaved, peer
+from rolling_ellipse import EventKind, Mode, Scene, certify, simulate
+
+DROPPED = {"z": 2.5, "theta": 0.3, "omega": 8.0, "restitution": 0.5}
+ON_A_SLOPE = {"slope": 0.1, "omega": -2.0}
+SCENES = {  # with their end times
+    "Jumps: slip, lift-off, impact, stick": (Scene(2.0, 1.0, friction=0.3, omega=7.0), 3.55),
+    "Bounces with spin, e = 0.5": (Scene(2.0, 1.0, friction=0.3, **DROPPED), 2.255),
+    "Rocking: slip, reverse, stick": (Scene(2.0, 1.0, friction=0.2, **ON_A_SLOPE), 8.4),
+}
+TOLERANCES = (1e-10, 1e-6)  # atol is a hundredth
+SAMPLES = 1001  # what simulate gives
+MOST_EVENTS = 100  # of a motion that has gone astray
+FIRST_STEP = 1e-3  # [s] of flights: with no error to control solve_ivp steps over short hops
+Found = tuple[list[tuple[float, EventKind]], Any, Run]  # events; rows of theta, omega, x, z
+
+
+def laws(scene: Scene, compiled: Callable[..., Any]) -> SimpleNamespace:
+    """Rates and ends of arcs; y is theta, omega, x, then slip velocity, or z, x_dot, z_dot."""
+    a2, b2, k2, mu = scene.a**2, scene.b**2, scene.gyration2, scene.friction
+    along, down = (scene.gravity * part(scene.slope) for part in (math.sin, math.cos))
+
+    @compiled
+    def support(theta: float) -> Any:  # h, h', h''
+        s, c = math.sin(theta), math.cos(theta)
+        h = math.sqrt(a2 * s * s + b2 * c * c)
+        return h, (a2 - b2) * s * c / h, a2 * b2 / (h * h * h) - h
+
+    @compiled
+    def grip(theta: float, omega: float) -> Any:  # theta'', F/m and (mu N - |F|)/m of rolling
+        h, dh, ddh = support(theta)
+        w2 = omega * omega
+        turn = (h * along - dh * (down + (h + ddh) * w2)) / (k2 + h * h + dh * dh)
+        friction = h * turn + dh * w2 - along
+        return turn, friction, mu * (down + dh * turn + ddh * w2) - abs(friction)
+
+    @compiled
+    def roll(t: float, y: Any) -> Any:
+        theta, omega = float(y[0]), float(y[1])
+        return np.array((omega, grip(theta, omega)[0], support(theta)[0] * omega))
+
+    @compiled
+    def slide(t: float, y: Any, side: float) -> Any:
+        theta, omega, v = float(y[0]), float(y[1]), float(y[3])
+        h, dh, ddh = support(theta)
+        w2, gnt = omega * omega, h * dh / k2
+        normal = (down + ddh * w2) / (1 + dh * dh / k2 - mu * side * gnt)
+        friction = -mu * side * normal
+        turn = -(h * friction + dh * normal) / k2
+        slip_rate = along - dh * w2 + (1 + h * h / k2) * friction + gnt * normal
+        return np.array((omega, turn, v + h * omega, slip_rate))
+
+    @compiled
+    def jams(t: float, y: Any, side: float) -> Any:
+        h, dh, _ = support(float(y[0]))
+        return 1 + dh * (dh - mu * side * h) / k2
+
+    slips = compiled(lambda t, y: grip(float(y[0]), float(y[1]))[2])
+    sticks = compiled(lambda t, y, side: side * y[3])
+    leaves = compiled(lambda t, y, side: down + support(float(y[0]))[2] * y[1] * y[1])
+    fly = compiled(lambda t, y: np.array((y[1], 0.0, y[4], y[5], along, -down)))
+    hits = compiled(lambda t, y: y[3] - support(float(y[0]))[0])
+    slide_ends = {EventKind.STICK: sticks, EventKind.LIFT_OFF: leaves, EventKind.JAM: jams}
+    for event in (slips, *slide_ends.values(), hits):
+        event.terminal, event.direction = True, -1
+    arcs = {Mode.ROLLING: (roll, {EventKind.SLIP: slips}), Mode.SLIDING: (slide, slide_ends)}
+    arcs[Mode.FLIGHT] = (fly, {EventKind.IMPACT: hits})
+    return SimpleNamespace(support=support, grip=grip, arcs=arcs, along=along, down=down)
+
+
+def collision(scene: Scene, h: float, dh: float, v: float, u: float) -> tuple[float, ...]:
+    """Impulses per mass along and away from the ground; v and u afterwards, 0 where they end so.
+
+    In pieces: until slip or compression ends, or restitution has done e^2 of the latter's work.
+    """
+    k2, mu, e = scene.gyration2, scene.friction, scene.restitution
+    gtt, gnt, gnn = 1 + h * h / k2, h * dh / k2, 1 + dh * dh / k2
+    tangential = normal = work = 0.0
+    while True:
+        sticks = v == 0 and abs(gnt) <= mu * gtt
+        ratio = -gnt / gtt if sticks else -mu * math.copysign(1, v or gnt)
+        du, dv = gnn + gnt * ratio, 0.0 if sticks else gnt + gtt * ratio
+        to_stick = -v / dv if v * dv < 0 else math.inf
+        compresses = u < 0
+        if compresses:
+            to_end = -u / du if du > 0 else math.inf
+        else:
+            to_end = 2 * work / (u + math.sqrt(u * u + 2 * du * work)) if work > 0 else 0.0
+        p = min(to_stick, to_end)
+        work -= (e * e if compresses else 1) * p * (u + du * p / 2)
+        tangential, normal = tangential + ratio * p, normal + p
+        v = 0.0 if p == to_stick else v + dv * p
+        u = 0.0 if compresses and p == to_end else u + du * p
+        if not compresses and p == to_end:
+            return tangential, normal, v, u
+
+
+class SciPyMotion:
+    """A scene followed by SciPy arc after arc; in between it keeps time, mode and state."""
+
+    def __init__(self, scene: Scene, laws: Any, t_end: float, rtol: float, parabolas: bool) -> None:
+        how = {"method": "DOP853", "dense_output": True, "rtol": rtol, "atol": rtol * 1e-2}
+        self.solve = partial(peer("scipy.integrate").solve_ivp, **how)
+        self.root = partial(peer("scipy.optimize").brentq, xtol=1e-15, rtol=1e-15)
+        self.scene, self.laws, self.t_end, self.parabolas = scene, laws, t_end, parabolas
+        self.times = np.linspace(0, t_end, SAMPLES)
+        self.height = lambda theta: np.hypot(scene.a * np.sin(theta), scene.b * np.cos(theta))
+
+    def __call__(self) -> Found:
+        """The whole motion."""
+        at = self.scene.initial_state
+        self.t, self.mode, self.side, self.v = 0.0, at.mode, 0.0, 0.0
+        self.state = [at.theta, at.omega, at.x, at.z, at.x_dot, at.z_dot]
+        self.samples, self.counts = np.empty((4, SAMPLES)), np.zeros(2, int)
+        events: list[tuple[float, EventKind]] = []
+        arcs = {Mode.ROLLING: self.roll, Mode.SLIDING: self.slide, Mode.FLIGHT: self.fly}
+        while len(events) < MOST_EVENTS and (kind := arcs[self.mode]()):
+            events.append((self.t, kind))
+        return events, self.samples, Run(*self.counts.tolist(), self.samples[0, -1])
+
+    def roll(self) -> EventKind | None:
+        kind, y = self.integrate(self.state[:3])
+        self.touch(*y, v=0.0, u=0.0)
+        self.go_on(may_roll=False)
+        return kind
+
+    def slide(self) -> EventKind | None:
+        kind, (*y, v) = self.integrate([*self.state[:3], self.v], args=(self.side,))
+        self.touch(*y, v=0.0 if kind is EventKind.STICK else v, u=0.0)
+        self.mode = Mode.FLIGHT if kind is EventKind.LIFT_OFF else Mode.SLIDING
+        if kind is not EventKind.STICK:
+            return kind
+        self.go_on()
+        return EventKind.REVERSE if self.mode is Mode.SLIDING else kind
+
+    def fly(self) -> EventKind | None:
+        step = min(FIRST_STEP, self.t_end - self.t)
+        kind, y = self.parabola() if self.parabolas else self.integrate(self.state, first_step=step)
+        theta, omega, x, _, x_dot, z_dot = y
+        h, dh, _ = self.laws.support(theta)
+        v, u = x_dot - h * omega, z_dot - dh * omega
+        if kind:
+            tangential, normal, v, u = collision(self.scene, h, dh, v, u)
+            omega -= (h * tangential + dh * normal) / self.scene.gyration2
+            self.touch(theta, omega, x, v, u)
+            if u == 0:
+                self.go_on()
+        return kind
+
+    def touch(self, theta: float, omega: float, x: float, v: float, u: float) -> None:
+        """Stand on the ground with these velocities of the contact."""
+        h, dh, _ = self.laws.support(theta)
+        self.state, self.v = [theta, omega, x, h, v + h * omega, u + dh * omega], v
+
+    def go_on(self, may_roll: bool = True) -> None:
+        """Choose what a body on the ground does next."""
+        theta, omega = self.state[:2]
+        _, friction, margin = self.laws.grip(theta, omega)
+        rolls = may_roll and self.v == 0 and margin >= 0
+        presses = self.laws.down + self.laws.support(theta)[2] * omega**2 > 0
+        self.mode = Mode.ROLLING if rolls else Mode.SLIDING if presses else Mode.FLIGHT
+        self.side = math.copysign(1, self.v or -friction)
+
+    def integrate(self, y: Any, **how: Any) -> tuple[EventKind | None, list[float]]:
+        """An arc by solve_ivp: what ended it, and its last y."""
+        rates, ends = self.laws.arcs[self.mode]
+        arc = self.solve(rates, (self.t, self.t_end), y, events=list(ends.values()), **how)
+        if not arc.success:
+            raise ArithmeticError(arc.message)
+        self.counts += arc.nfev, len(arc.t) - 1
+        kind = next((k for k, found in zip(ends, arc.t_events, strict=True) if found.size), None)
+        self.record(float(arc.t[-1]), kind, arc.sol)
+        return kind, arc.y[:, -1].tolist()
+
+    def parabola(self) -> tuple[EventKind | None, list[float]]:
+        """A flight in closed form: at ever rarer looks the gap is positive, then negative."""
+        (theta, omega, x, z, x_dot, z_dot), begin = self.state, self.t
+        along, down, height = self.laws.along, self.laws.down, self.laws.support
+
+        def at(s: Any) -> list[Any]:
+            path = x + s * (x_dot + 0.5 * along * s), z + s * (z_dot - 0.5 * down * s)
+            return [theta + omega * s, omega + 0 * s, *path, x_dot + along * s, z_dot - down * s]
+
+        fall = z - 0.99 * min(self.scene.a, self.scene.b)  # by which it has touched
+        sure = (z_dot + math.sqrt(z_dot**2 + 2 * down * fall)) / down
+        looks = np.geomspace(1e-4 * sure, sure, 200)
+        y = at(looks)
+        i = int(np.argmax(y[3] < self.height(y[0])))
+        lasts = self.root(lambda s: at(s)[3] - height(at(s)[0])[0], looks[i - 1], looks[i])
+        kind = EventKind.IMPACT if begin + lasts <= self.t_end else None
+        self.record(begin + lasts, kind, lambda times: at(times - begin))
+        return kind, at(lasts)
+
+    def record(self, until: float, kind: EventKind | None, solution: Callable[..., Any]) -> None:
+        """Sample an arc; what holds after an event belongs to the next one."""
+        part = slice(*np.searchsorted(self.times, (self.t, until if kind else math.inf)))
+        if part.start < part.stop:
+            y = solution(self.times[part])
+            self.samples[:3, part] = y[:3]
+            self.samples[3, part] = y[3] if self.mode is Mode.FLIGHT else self.height(y[0])
+        self.t = until
+
+
+def own_motion(scene: Scene, t: Any) -> Found:
+    """The package, asked for the same arrays."""
+    motion = simulate(scene, t)
+    samples = motion.theta, motion.omega, motion.x, motion.z
+    run = Run(motion.stats["evaluations"], motion.stats["steps"], float(motion.theta[-1]))
+    return [(event.t, event.kind) for event in motion.events], samples, run
+
+
+def peers(scene: Scene, t_end: float, flies: bool) -> dict[str, SciPyMotion]:
+    """SciPy's ways to do it; what numba compiles is compiled by the first call."""
+    if peer("scipy.integrate") is None:
+        return {}
+    written = {"Python": laws(scene, lambda f: f)}
+    if numba := peer("numba"):
+        written["numba"] = laws(scene, numba.njit)
+    found = {}
+    for parabolas, rtol, name in product((False, True)[: 1 + flies], TOLERANCES, written):
+        title = f"SciPy, {name}, rtol {rtol:.0e}" + ", parabolas" * parabolas
+        found[title] = SciPyMotion(scene, written[name], t_end, rtol, parabolas)
+    return found
+
+
+def compared(truth: Found, other: Found) -> str:
+    """Largest differences of event times and of the end state; raise where events differ."""
+    (times, kinds), (others, found) = (zip(*events, strict=True) for events, *_ in (truth, other))
+    if kinds != found:
+        raise ArithmeticError("other events: " + ", ".join(kind.name for kind in found[:12]))
+    late = np.abs(np.subtract(times, others)).max()
+    ends = ([row[-1] for row in samples] for _, samples, _ in (truth, other))
+    return f"{late:14.1e}{np.abs(np.subtract(*ends)).max():12.1e}"
+
+
+def compare(scene: Scene, t_end: float, rounds: int) -> None:
+    """The table of a scene; ratios are those of the least times to the first line."""
+    truth, notes = own_motion(scene, t_end), {}
+    cases: Cases = {
+        f"simulate, {SAMPLES} samples": lambda: own_motion(scene, t_end)[2],
+        "simulate, 1 sample": lambda: own_motion(scene, [t_end])[2],
+        "certify": lambda: certify(scene) and Run(0, 0, 0.0),
+    }
+    flies = any(kind is EventKind.IMPACT for _, kind in truth[0])
+    for name, motion in peers(scene, t_end, flies).items():
+        try:
+            notes[name] = compared(truth, motion())
+            cases[name] = lambda motion=motion: motion()[2]
+        except (ArithmeticError, ValueError) as error:
+            notes[name] = f"{'-':>12}  {error}"
+    found = interleaved(cases, rounds)
+    first = min(next(iter(found.values()))[0])
+    for name in cases | notes:
+        line = f"{name:36}"
+        if name in found:
+            times, run = found[name]
+            line += f"{min(times) * 1e6:12.1f}{np.median(times) * 1e6:10.1f}"
+            line += f"{min(times) / first:10.2f}{run.steps:8d}{run.evaluations:13d}"
+        print(line + notes.get(name, ""))
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--rounds", type=int, default=20, help="at least 20 for figures to keep")
+    rounds = options.parse_args().rounds
+    modules = [rolling_ellipse, np, *filter(None, (peer("scipy"), peer("numba")))]
+    versions = ", ".join(f"{module.__name__} {module.__version__}" for module in modules)
+    print(f"{processor()}, {os.cpu_count()} cores, {platform.platform()}")
+    print(f"{versions}, Python {platform.python_version()}; {rounds} rounds")
+    for title, (scene, t_end) in SCENES.items():
+        print(f"\n{title}; {len(simulate(scene, t_end).events)} events in {t_end} s")
+        print(f"{'[us]':44}call    median     ratio   steps  evaluations   event times   end state")
+        compare(scene, t_end, rounds)
+
+
+if __name__ == "__main__":
+    main()
