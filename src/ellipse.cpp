@@ -125,22 +125,6 @@ double path_from_tip(double long_axis, double short_axis, double s, double c) {
            c2 * s * c / std::hypot(long_axis * c, short_axis * s);
 }
 
-Geometry geometry(const Axes& axes, double theta) {
-    return geometry(axes, std::sin(theta), std::cos(theta));
-}
-
-Geometry geometry(const Axes& axes, double s, double c) {
-    const auto [a, b] = axes;
-    const double c2 = (a - b) * (a + b);
-    Geometry at{s, c, std::sqrt(a * a * s * s + b * b * c * c), 0.0, 0.0, 0.0};  // physics (1)
-    at.dh = c2 * s * c / at.h;                                                   // physics (2)
-    const double h3 = at.h * at.h * at.h;
-    at.rho = a * a * b * b / h3;  // physics (4)
-    // rho - h, factorised so that it keeps its digits for nearly circular bodies: physics (3).
-    at.ddh = c2 * (b * c * c - a * s * s) * (b * c * c + a * s * s) / h3;
-    return at;
-}
-
 FlatView flat_view(const Axes& axes, double theta) {
     const bool a_is_long = axes.a >= axes.b;
     const double long_axis = a_is_long ? axes.a : axes.b;

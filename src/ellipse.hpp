@@ -6,6 +6,8 @@
 // All functions hold for a > b, a = b and a < b and for any angle.
 #pragma once
 
+#include <cmath>
+
 #include "scene.hpp"
 
 namespace rolling_ellipse {
@@ -25,8 +27,21 @@ struct Geometry {
     double rho;  // h + h'', radius of curvature at the contact [m]
 };
 
-Geometry geometry(const Axes& axes, double theta);
-Geometry geometry(const Axes& axes, double sin_theta, double cos_theta);
+inline Geometry geometry(const Axes& axes, double s, double c) {
+    const auto [a, b] = axes;
+    const double c2 = (a - b) * (a + b);
+    Geometry at{s, c, std::sqrt(a * a * s * s + b * b * c * c), 0.0, 0.0, 0.0};  // physics (1)
+    at.dh = c2 * s * c / at.h;                                                   // physics (2)
+    const double h3 = at.h * at.h * at.h;
+    at.rho = a * a * b * b / h3;  // physics (4)
+    // rho - h, factorised so that it keeps its digits for nearly circular bodies: physics (3).
+    at.ddh = c2 * (b * c * c - a * s * s) * (b * c * c + a * s * s) / h3;
+    return at;
+}
+
+inline Geometry geometry(const Axes& axes, double theta) {
+    return geometry(axes, std::sin(theta), std::cos(theta));
+}
 
 // The same position seen from the flat one, long axis first: phi is theta for a >= b, otherwise
 // theta - pi/2, and folded by half turns (under which the ellipse is the same) to cos phi >= 0.

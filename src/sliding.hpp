@@ -75,4 +75,35 @@ class SlidingEquation {
     double friction_share_;  // -mu s; -s with infinite friction
 };
 
+// The force along its direction closes the gap: N = c/B, B = Gnn - mu s Gnt.
+inline SlidingEquation::Contact SlidingEquation::contact(const Geometry& at, double omega) const {
+    const double c = weight_ + at.ddh * omega * omega;
+    const double gnn = 1 + at.dh * at.dh / gyration2_;
+    const double gtn = at.h * at.dh / gyration2_;
+    const double b = normal_share_ * gnn + friction_share_ * gtn;
+    return {c, b};
+}
+
+inline Vector<5> SlidingEquation::slowed(const Vector<5>& y) const {
+    const double omega = y[1];
+    const Geometry at = geometry(axes_, y[0]);
+    const auto [c, b] = contact(at, omega);
+    const double normal = normal_share_ * c;  // B times the forces
+    const double friction = friction_share_ * c;
+    const double omega_dot = -(at.h * friction + at.dh * normal) / gyration2_;
+    const double slip_dot = friction - at.h * omega_dot + b * (pull_ - at.dh * omega * omega);
+    return {b * omega, omega_dot, b * (y[3] + at.h * omega), slip_dot, b};
+}
+
+inline Vector<4> SlidingEquation::operator()(double t, const Vector<4>& y) const {
+    const Vector<5> rates = slowed({y[0], y[1], y[2], y[3], t});
+    return rates.head<4>() / rates[4];
+}
+
+inline std::array<double, 3> SlidingEquation::margins(const Vector<4>& y) const {
+    const auto [c, b] = contact(geometry(axes_, y[0]), y[1]);
+    const double slip = side_ == 0 ? 1.0 : side_ * y[3];  // without friction it goes on for ever
+    return {slip, c, b};
+}
+
 }  // namespace rolling_ellipse

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as re
+import scipy.integrate
 from contact_scenes import random_scenes, response, support
 from oracles import EPS
 from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, simulate
@@ -116,6 +117,71 @@ def test_where_the_body_leaves_the_ground_in_its_first_slide(friction: float, sp
         found = kinds(simulate(Scene(2.0, 1.0, omega=omega, friction=friction), 2.0))
         assert found[0] is EventKind.SLIP
         assert (found[1] is EventKind.LIFT_OFF) == leaves
+
+
+JAMS_ON_THE_WAY = [
+    Scene(0.114, 1.0, friction=1.825, slope=-1.211, theta=1.528, omega=1.868, x_dot=-3.155),
+    Scene(0.034, 1.0, friction=3.145, slope=-0.45, theta=1.462, omega=-2.939, x_dot=-10.645),
+    Scene(10.083, 1.0, friction=1.766, slope=1.028, theta=3.522, omega=0.795, x_dot=11.086),
+    Scene(0.0181, 1.0, friction=2.0, slope=-1.2, theta=-0.434, omega=0.0116),
+]
+
+
+def slowed_slide(scene: Scene, side: float) -> Any:
+    """B and c, and rates of theta, omega, slip and t by a clock that stands still at B = 0."""
+
+    def forces(theta: float, omega: float) -> tuple[Any, float, float]:
+        at, k2 = support(theta, scene.a, scene.b), scene.gyration2
+        c = GRAVITY * math.cos(scene.slope) + at.curvature * omega**2
+        b = 1 + at.slope**2 / k2 - scene.friction * side * at.h * at.slope / k2
+        return at, b, c
+
+    def rates(_: float, y: Any) -> list[float]:
+        (theta, omega, *_), mu = y, scene.friction
+        at, b, c = forces(theta, omega)
+        turning = c * (mu * side * at.h - at.slope) / scene.gyration2
+        along = b * GRAVITY * math.sin(scene.slope) - mu * side * c
+        return [
+            b * omega, turning, along - at.h * turning - b * at.slope * omega**2, b
+        ]  # fmt: skip
+
+    return forces, rates
+
+
+@pytest.mark.parametrize("scene", JAMS_ON_THE_WAY)
+def test_a_jam_on_the_way(scene: Scene) -> None:
+    """B = 0 and c = 0 at once, where the same slide gets by SciPy in its own clock: t, theta, slip.
+
+    There c dies out more slowly than B (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999)
+    653), so it is left out of the comparison: SciPy stops where B is 1e-12.
+    """
+    motion = simulate(scene, 5.0, model="contact")
+    assert motion.status is Status.JAMMED and motion.events[-1].kind is EventKind.JAM
+    jam = motion.events[-1]
+    starts = [(event.t, event.state_after) for event in motion.events[:-1]]
+    t0, start = starts[-1] if starts else (0.0, scene.initial_state)
+    slip = response(scene, start).slip
+    side = math.copysign(1, response(scene, jam.state_before).slip)
+    forces, rates = slowed_slide(scene, side)
+
+    def jams(_: float, y: Any) -> float:
+        return forces(y[0], y[1])[1] - 1e-12
+
+    jams.terminal = True  # type: ignore[attr-defined]
+    how: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": jams}
+    begin = [start.theta, start.omega, slip, t0]
+    end = scipy.integrate.solve_ivp(rates, (0.0, 1e6), begin, **how).y[:, -1]
+    assert jam.t == pytest.approx(end[3], abs=1e-11)
+    assert jam.state_before.theta == pytest.approx(end[0], abs=1e-11)
+    at, b, c = forces(jam.state_before.theta, jam.state_before.omega)
+    assert abs(b) <= 1e-11 and abs(c) <= 1e-11 * GRAVITY
+    assert side * response(scene, jam.state_before).slip > 0
+    # Where B is 1e-12 some c is left, with it omega and slip, in a fixed ratio.
+    turning = (scene.friction * side * at.h - at.slope) / scene.gyration2
+    ratio = -scene.friction * side / turning - at.h
+    change = response(scene, jam.state_before).slip - end[2]
+    assert change == pytest.approx(ratio * (jam.state_before.omega - end[1]), abs=1e-10)
+    assert motion.t[-1] <= jam.t and motion.t_end == jam.t
 
 
 def test_every_transition_does_what_its_name_says() -> None:

@@ -2,14 +2,16 @@
 
 import math
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import mpmath as mp
 import numpy as np
 import oracles
 import pytest
 from oracles import EPS, Long
-from rolling_ellipse import thresholds
+from rolling_ellipse import EventKind, Scene, simulate, thresholds
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 Shape = tuple[float, float]
 SHAPES = [(2.0, 1.0), (0.7, 1.9), (1.05, 1.0), (1.6, 1.0), (9.0, 1.0), (1.0, 25.0), (1.0, 1e-3)]
@@ -245,3 +247,304 @@ def test_speeds_scale_like_the_root_of_gravity() -> None:
         assert getattr(four, name) == pytest.approx(2 * getattr(one, name), rel=16 * EPS), name
     assert four.friction_to_roll_over == pytest.approx(one.friction_to_roll_over, rel=1e-13)
     assert four.painleve_friction == pytest.approx(one.painleve_friction, rel=16 * EPS)
+
+
+# --------------------------------------------------------------------- lift_off_speed
+#
+# At the threshold c = g + h'' omega^2 vanishes on the tip. Where c = 0 while the body slides, N = F
+# = 0 and omega stands still, so that the slope of c is omega^2 times that of h'', which falls up to
+# the tip: c cannot touch zero there, only cross it; on the tip h'' is least, and so can c be.
+
+
+def lift_off(shape: Shape, gyration2: float, friction: float) -> float:
+    return thresholds(
+        *shape, gravity=GRAVITY, gyration2=gyration2, friction=friction
+    ).lift_off_speed
+
+
+def tip_speed2(shape: Shape) -> float:
+    """omega^2 = g L/(L^2 - S^2): with h'' = S^2/L - L the free body just leaves the ground."""
+    long, short = max(shape), min(shape)
+    return GRAVITY * long / ((long - short) * (long + short))
+
+
+class Body(NamedTuple):
+    """By the semi-axes, whichever is which: the angle is the one from the flat position."""
+
+    long: float
+    short: float
+    gyration2: float
+
+    def outline(self, angle: float) -> tuple[float, float, float]:
+        """h, h', h'' [m]."""
+        sine, cosine = math.sin(angle), math.cos(angle)
+        h = math.hypot(self.long * sine, self.short * cosine)
+        slope = (self.long**2 - self.short**2) * sine * cosine / h
+        return h, slope, (self.long * self.short) ** 2 / h**3 - h
+
+    def rolling(self, angle: float, energy: float) -> tuple[float, float, float]:
+        """omega^2, N/m and F/m of rolling with an energy E/m."""
+        h, slope, curvature = self.outline(angle)
+        inertia = self.gyration2 + h * h + slope * slope
+        omega2 = 2 * (energy - GRAVITY * h) / inertia
+        turning = -slope * (GRAVITY + (h + curvature) * omega2) / inertia
+        normal = GRAVITY + slope * turning + curvature * omega2
+        return omega2, normal, h * turning + slope * omega2
+
+    def grip(self, angle: float, energy: float, friction: float) -> float:
+        _, normal, force = self.rolling(angle, energy)
+        return friction * normal - abs(force)
+
+    def sliding(self, side: float, friction: float) -> Any:
+        """The rates, by the angle, of omega^2/2 and of the slip v. For c < 0 they go on smoothly,
+        with a ground that pulls: so the c found on the tip changes its sign with the speed."""
+
+        def rates(angle: float, y: Any) -> list[float]:
+            h, slope, curvature = self.outline(angle)
+            c = GRAVITY + 2 * curvature * y[0]
+            normal = c / (1 + slope * (slope - friction * side * h) / self.gyration2)
+            force = -friction * side * normal
+            turning = -(h * force + slope * normal) / self.gyration2
+            omega = math.sqrt(2 * y[0])
+            return [turning, (force - h * turning) / omega - slope * omega]
+
+        return rates
+
+
+class Climb(NamedTuple):
+    pressure: float  # c on the tip, per mass
+    slides: int
+
+
+def climb(
+    body: Body, friction: float, speed: float, rtol: float = 1e-12, longest: float = 0.02
+) -> Climb:
+    """From rolling over the flat up to the tip: rolling by the energy, slides integrated."""
+    tip, angle, slides = math.pi / 2, 0.0, 0
+    energy = (body.gyration2 + body.short**2) * speed**2 / 2 + GRAVITY * body.short
+    side = half_square = 0.0
+    rolls = True
+    while True:
+        if rolls:
+            grid = np.linspace(angle, tip, 2001)
+            broken = [p for p in grid[1:] if body.grip(p, energy, friction) < 0]
+            if not broken:
+                return Climb(GRAVITY + body.outline(tip)[2] * body.rolling(tip, energy)[0], slides)
+            step = grid[1] - grid[0]
+            angle = brentq(body.grip, broken[0] - step, broken[0], (energy, friction), xtol=1e-15)
+            omega2, _, force = body.rolling(angle, energy)
+            side, half_square = -math.copysign(1.0, force), omega2 / 2
+
+        def slip(_: float, y: Any) -> float:
+            return float(y[1])
+
+        slip.terminal, slip.direction = True, -side  # type: ignore[attr-defined]
+        slides += 1
+        slide = solve_ivp(
+            body.sliding(side, friction),
+            (angle, tip),
+            [half_square, 0.0],
+            method="DOP853",
+            rtol=rtol,
+            atol=1e-15,
+            max_step=longest,
+            events=slip,
+        )
+        angle, half_square = slide.t[-1], slide.y[0, -1]
+        h, slope, curvature = body.outline(angle)
+        if slide.status == 0:
+            return Climb(GRAVITY + 2 * curvature * half_square, slides)
+        energy = (body.gyration2 + h * h + slope * slope) * half_square + GRAVITY * h
+        rolls, side = body.grip(angle, energy, friction) >= 0, -side
+
+
+def climbed(shape: Shape, gyration2: float, friction: float, **settings: float) -> float:
+    """The speed at which c on the tip vanishes, between 1 % off what is claimed."""
+    body = Body(max(shape), min(shape), gyration2)
+    claimed = lift_off(shape, gyration2, friction)
+    found: float = brentq(
+        lambda speed: climb(body, friction, speed, **settings).pressure,
+        0.99 * claimed,
+        1.01 * claimed,
+        xtol=1e-15 * claimed,
+        rtol=1e-14,
+    )
+    return found
+
+
+LIFTS = [
+    ((2.0, 1.0), "disc", 0.2, 1),
+    ((2.0, 1.0), "disc", 1.3, 1),
+    ((2.0, 1.0), "disc", 20.0, 1),
+    ((2.0, 1.0), "disc", 0.05, 2),
+    ((1.0, 5.0), "disc", 0.05, 2),
+    ((0.7, 1.9), "hoop", 0.3, 1),
+    ((9.0, 1.0), "disc", 0.5, 1),
+    ((1.0, 1.05), "disc", 0.05, 1),
+    ((1.3, 1.0), "core", 0.1, 1),
+]
+
+
+def test_lift_off_printed_numbers() -> None:
+    """2:1 disc, g = 9.81: five decimals."""
+    for friction, speed in (
+        (0.2, 4.56387),
+        (0.5, 4.65376),
+        (1.0, 4.72602),
+        (1.3, 4.74999),
+        (math.inf, 4.85896),
+    ):
+        assert round(thresholds(2.0, 1.0, friction=friction).lift_off_speed, 5) == speed
+
+
+@pytest.mark.parametrize(("shape", "kind", "friction", "slides"), LIFTS)
+def test_lift_off_by_an_independent_climb(
+    shape: Shape, kind: str, friction: float, slides: int
+) -> None:
+    """Ten digits. The climb's speed is converged to 1e-13 (the next test). The package steps to
+    1e-13 an estimate, some dozens of steps, and what they leave in omega grows on the way to the
+    tip, where c feels it, no more than the start speed's own share does: 1e-11, and ten times
+    that for what the estimates do not see. The slides counted are of the motion at the threshold:
+    with little friction the first one ends below the tip."""
+    gyration2 = gyration2_of(shape, kind)
+    found = climbed(shape, gyration2, friction)
+    assert lift_off(shape, gyration2, friction) == pytest.approx(found, rel=1e-10)
+    body = Body(max(shape), min(shape), gyration2)
+    assert climb(body, friction, found).slides == slides
+
+
+@pytest.mark.parametrize("friction", [0.05, 1.3])
+def test_the_climb_has_converged(friction: float) -> None:
+    """Thirty times the accuracy asked for and a quarter of the step: the same to 1e-13."""
+    fine = climbed((2.0, 1.0), 1.25, friction, rtol=3e-14, longest=0.005)
+    assert climbed((2.0, 1.0), 1.25, friction) == pytest.approx(fine, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("shape", "kind"),
+    [((2.0, 1.0), "disc"), ((1.0, 5.0), "disc"), ((0.7, 1.9), "hoop"), ((9.0, 1.0), "core")],
+)
+def test_lift_off_with_infinite_friction(shape: Shape, kind: str) -> None:
+    """Rolling ends where N = 0, and the slide after it has N = 0 too: the centre is in free fall,
+    with contact, which just reaches the tip if z.^2 = h'^2 omega^2 = 2 g (L - h). Two equations
+    for the angle and the speed at which the slide begins, to 30 digits; the package decides the
+    first by the root of a polynomial and the second in closed form: 1e-11 allows 1e-13 of forces
+    that cancel down to N = 0 a hundredfold."""
+    mp.mp.dps = oracles.DIGITS
+    gyration2 = gyration2_of(shape, kind)
+    long, short = mp.mpf(max(shape)), mp.mpf(min(shape))
+
+    def state(angle: Any) -> tuple[Any, Any]:
+        """N/m of rolling at that speed, and E/m."""
+        sine, cosine = mp.sin(angle), mp.cos(angle)
+        h = mp.sqrt((long * sine) ** 2 + (short * cosine) ** 2)
+        slope = (long**2 - short**2) * sine * cosine / h
+        rho = (long * short) ** 2 / h**3
+        omega2 = 2 * GRAVITY * (long - h) / slope**2
+        inertia = gyration2 + h**2 + slope**2
+        turning = -slope * (GRAVITY + rho * omega2) / inertia
+        normal = GRAVITY + slope * turning + (rho - h) * omega2
+        return normal, inertia * omega2 / 2 + GRAVITY * h
+
+    grid = [mp.pi / 2 * k / 200 for k in range(20, 199)]
+    signs = [state(angle)[0] > 0 for angle in grid]
+    changes = [k for k, (one, next_) in enumerate(pairwise(signs)) if one != next_]
+    assert len(changes) == 1
+    angle = mp.findroot(
+        lambda angle: state(angle)[0],
+        (grid[changes[0]], grid[changes[0] + 1]),
+        solver="anderson",
+        tol=1e-60,
+    )
+    energy = state(angle)[1]
+    exact = mp.sqrt(2 * (energy - GRAVITY * short) / (gyration2 + short**2))
+    assert lift_off(shape, gyration2, math.inf) == pytest.approx(float(exact), rel=1e-11)
+    body = Body(max(shape), min(shape), gyration2)
+    before = np.linspace(0, float(angle) * (1 - 1e-6), 1000)
+    assert min(body.rolling(angle, float(energy))[1] for angle in before) > 0
+
+
+@both
+@inertias
+def test_lift_off_without_friction(shape: Shape, kind: str) -> None:
+    """(k^2 + h'^2) omega^2/2 + g h stays: nothing pushes sideways; h' = 0 in the flat and on the
+    tip. The package integrates, to 1e-13 a step; one slide from the flat to the tip is some ten
+    steps, whose errors nothing amplifies here: 1e-12."""
+    gyration2 = gyration2_of(shape, kind)
+    rise = GRAVITY * abs(shape[0] - shape[1])
+    exact = math.sqrt(tip_speed2(shape) + 2 * rise / gyration2)
+    assert lift_off(shape, gyration2, 0.0) == pytest.approx(exact, rel=1e-12)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.05, 0.2, 1.3, 5.0, math.inf])
+@pytest.mark.parametrize(
+    ("shape", "kind"), [((2.0, 1.0), "disc"), ((0.7, 1.9), "hoop"), ((1.6, 1.0), "core")]
+)
+def test_lift_off_is_a_threshold(shape: Shape, kind: str, friction: float) -> None:
+    """Slower, it keeps the ground up to the tip; faster, it leaves it before; not only beside the
+    threshold, where 1e-6 of the speed makes the c that vanishes on the tip vanish some 1e-3 rad
+    before, but everywhere."""
+    gyration2 = gyration2_of(shape, kind)
+    speed = lift_off(shape, gyration2, friction)
+    flat = 0.0 if shape[0] > shape[1] else math.pi / 2
+    tip = flat + math.pi / 2
+    for share in (0.5, 0.8, 0.95, 0.99, 1 - 1e-6, 1 + 1e-6, 1.01, 1.05, 1.3, 3.0):
+        scene = Scene(
+            *shape,
+            gravity=GRAVITY,
+            inertia=gyration2,
+            friction=friction,
+            theta=flat,
+            omega=share * speed,
+        )
+        span = 8 * math.sqrt(max(shape) / GRAVITY)
+        motion = simulate(scene, span, model="contact", max_events=4, raise_on_failure=False)
+        left = [
+            event.state_before.theta < tip
+            for event in motion.events
+            if event.kind is EventKind.LIFT_OFF
+        ]
+        assert any(left) == (share > 1), share
+
+
+def test_a_circle_never_lifts_off() -> None:
+    for friction in (0.0, 0.3, math.inf):
+        assert math.isinf(thresholds(0.7, 0.7, friction=friction).lift_off_speed)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.05, 0.4, 3.0, math.inf])
+def test_lift_off_scales_and_swaps(friction: float) -> None:
+    """omega^2/g is a matter of lengths alone, and which semi-axis is called a is none at all. The
+    same body in other numbers is integrated in other roundings: 1e-10, as above."""
+    for shape in SHAPES[:6]:
+        one = thresholds(*shape, friction=friction).lift_off_speed
+        other = thresholds(*shape[::-1], friction=friction).lift_off_speed
+        four = thresholds(*shape, gravity=4 * 9.81, friction=friction).lift_off_speed
+        assert other == pytest.approx(one, rel=1e-10)
+        assert four == pytest.approx(2 * one, rel=1e-10)
+
+
+def test_it_slips_before_it_lifts_off() -> None:
+    """Random bodies; where the slip begins on the tip itself the two speeds are the same."""
+    rng = np.random.default_rng(41)
+    for _ in range(150):
+        long, short = 10 ** rng.uniform(0.05, 2.9), 10 ** rng.uniform(-1, 1)
+        gyration2 = (long * short) ** 2 * 10 ** rng.uniform(-2, 0)
+        friction = float(rng.choice([0.0, 0.05, 0.3, 1.0, 10.0, math.inf]))
+        shape = (long * short, short) if rng.random() < 0.5 else (short, long * short)
+        found = thresholds(*shape, gyration2=gyration2, friction=friction)
+        assert 0 <= found.slip_speed <= found.lift_off_speed < math.inf
+
+
+def test_lift_off_of_nearly_circles_with_infinite_friction() -> None:
+    """Up to a/b = root three N of rolling vanishes on the tip first, with omega^2 = g a/(a^2 - b^2)
+    and N = c = 0: slip and lift-off are one."""
+    for k in range(60):
+        ratio = 1 + 10 ** (-4 + 0.06 * k)
+        found = thresholds(ratio, 1.0, friction=math.inf)
+        speed2 = 9.81 * ratio / ((ratio - 1) * (ratio + 1))
+        gyration2 = (ratio * ratio + 1) / 4
+        flat2 = ((gyration2 + ratio**2) * speed2 + 2 * 9.81 * (ratio - 1)) / (gyration2 + 1)
+        # closed forms, and rolling that ends some 1e-7 beside the tip: c feels the square of that
+        assert found.lift_off_speed == pytest.approx(math.sqrt(flat2), rel=1e-12)
+        assert found.slip_speed <= found.lift_off_speed

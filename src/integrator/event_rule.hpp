@@ -38,6 +38,12 @@ class EventRule {
     double time() const { return finder_.found(); }
     int which() const { return finder_.which(); }
 
+    // How fast it did.
+    double slope() const {
+        const double ahead = 1e-3 * now_->h;
+        return (margins_at(time())[which()] - margins_at(time() - ahead)[which()]) / ahead;
+    }
+
   private:
     struct View {
         Knot<N> from;
@@ -71,9 +77,9 @@ struct Until {
 // Ends the solution where a margin became negative: the dense output knows the time to its order
 // only, a step that ends there to that of the method. Returns the time.
 template <class Integrator, int N, class Margins>
-double end_at_event(Integrator& integrator, Steps<N>& steps, double t, int which,
+double end_at_event(Integrator& integrator, Steps<N>& steps, double t, int which, double slope,
                     const Margins& margins) {
-    constexpr int corrections = 4;
+    constexpr int corrections = 3;
     while (steps.knots.back().t >= t && steps.knots.size() > 1) steps.knots.pop_back();
     const Knot<N> from = steps.knots.back();
     const auto step_to = [&](double time) {
@@ -86,14 +92,10 @@ double end_at_event(Integrator& integrator, Steps<N>& steps, double t, int which
         return margins(Vector<N>(point.y + point.carry))[which];
     };
     Point<N> end = step_to(t);
-    double other = from.t;
-    double margin_there = margin(from.point());
-    for (int i = 0; i < corrections; ++i) {  // the secant through the last two
-        const double margin_here = margin(end);
-        const double change = margin_here * (end.t - other) / (margin_there - margin_here);
-        if (!(std::abs(change) <= 1e-6 * (end.t - from.t)) || end.t + change == end.t) break;
-        other = end.t;
-        margin_there = margin_here;
+    for (int i = 0; i < corrections; ++i) {
+        const double change = -margin(end) / slope;
+        const double size = std::abs(change);
+        if (!(size <= 1e-6 * (end.t - from.t)) || size <= epsilon * end.t) break;
         end = step_to(end.t + change);
     }
     if (end.t > from.t) steps.knots.push_back({end.t, end.y, end.carry, from.periods});
@@ -113,7 +115,7 @@ Until integrate_until(Integrator& integrator, Steps<N>& steps, const Tolerance& 
         checkpoint);
     double time = rule.time();
     if (ending == Ending::stopped) {
-        time = end_at_event(integrator, steps, time, rule.which(), margins);
+        time = end_at_event(integrator, steps, time, rule.which(), rule.slope(), margins);
     }
     StepCounts counts = integrator.counts();
     counts.steps = static_cast<long>(steps.knots.size() - before);

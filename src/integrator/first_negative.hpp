@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "../numbers.hpp"
 
@@ -38,7 +39,7 @@ class FirstNegative {
             keep(i, count_ == 1 ? now.t : crossing(i, middle.t, now.t, margins));
         } else if (count_ > 2 && middle.margins[i] < before.margins[i] &&
                    middle.margins[i] <= now.margins[i]) {
-            const double bottom = lowest(before, middle, now, i);
+            const double bottom = lowest(before, middle, now, i, margins);
             if (margins(bottom)[i] < 0) {
                 keep(i, crossing(i, bottom < middle.t ? before.t : middle.t, bottom, margins));
             }
@@ -61,7 +62,20 @@ class FirstNegative {
         }
     }
 
-    static double lowest(const Look& a, const Look& b, const Look& c, int i) {
+    // The bottom of the parabola through three looks, and of one through closer ones around it.
+    template <class Margins>
+    static double lowest(const Look& a, const Look& b, const Look& c, int i,
+                         const Margins& margins) {
+        const double rough = bottom_of_parabola(a, b, c, i);
+        const double beside = 0.05 * (c.t - a.t);
+        const auto at = [&](double t) { return Look{t, margins(t)}; };
+        if (!(a.t < rough - beside && rough + beside < c.t)) return rough;
+        const double fine =
+            bottom_of_parabola(at(rough - beside), at(rough), at(rough + beside), i);
+        return std::abs(fine - rough) < beside ? fine : rough;
+    }
+
+    static double bottom_of_parabola(const Look& a, const Look& b, const Look& c, int i) {
         const double left = (b.margins[i] - a.margins[i]) / (b.t - a.t);
         const double right = (c.margins[i] - b.margins[i]) / (c.t - b.t);
         return 0.5 * (a.t + b.t) + left / (left - right) * 0.5 * (c.t - a.t);

@@ -25,15 +25,18 @@ struct DenseRow {
     static constexpr const auto& weights = Tableau::dense[Row];
 };
 
-template <class Row, std::size_t J, class K, class Sum>
-void add_weighted(const K& k, Sum& sum) {
-    if constexpr (Row::weights[J] != 0.0) sum += Row::weights[J] * k[J];
+// By components: as expressions of vectors they are not inlined.
+template <class Row, std::size_t J, class K, int N>
+void add_weighted(const K& k, Vector<N>& sum) {
+    if constexpr (Row::weights[J] != 0.0) {
+        for (int i = 0; i < N; ++i) sum[i] += Row::weights[J] * k[J][i];
+    }
 }
 
 template <class Row, int N, std::size_t Size, std::size_t... J>
 Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k, std::index_sequence<J...>) {
     Vector<N> sum = Vector<N>::Zero();
-    (add_weighted<Row, J>(k, sum), ...);
+    (add_weighted<Row, J, std::array<Vector<N>, Size>, N>(k, sum), ...);
     return sum;
 }
 
