@@ -22,6 +22,7 @@ from .plotting import (
     plot_forces,
     plot_paths,
     plot_phase,
+    plot_phase_map,
     plot_strobe,
 )
 from .scene import Impulse, InitialState, Scene
@@ -35,6 +36,6 @@ __all__ = [
     "IntegrationError", "Mode", "Outcome", "Scene", "Status", "Thresholds", "Trajectory",
     "Validity", "ValidityWarning", "__version__", "animate", "certify", "classify", "constraints",
     "flow", "geometry", "impacts", "kinematics", "load", "period", "plot", "plot_constraints",
-    "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_strobe", "report", "scenes",
-    "simulate", "thresholds",
+    "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_phase_map", "plot_strobe",
+    "report", "scenes", "simulate", "thresholds",
 ]  # fmt: skip

@@ -29,6 +29,7 @@ from ._modes import mode_handles
 from ._motions import name_curves
 from ._paths import Paths, plot_paths
 from ._phase import Phase, plot_phase
+from ._phase_map import PhaseMap, plot_phase_map
 from ._strobe import Strobe, plot_strobe
 
 if TYPE_CHECKING:
@@ -44,8 +45,9 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 __all__ = [
-    "Constraints", "Energy", "Forces", "Overview", "Paths", "Phase", "Strobe", "plot",
-    "plot_constraints", "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_strobe",
+    "Constraints", "Energy", "Forces", "Overview", "Paths", "Phase", "PhaseMap", "Strobe", "plot",
+    "plot_constraints", "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_phase_map",
+    "plot_strobe",
 ]  # fmt: skip
 
 
