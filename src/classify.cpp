@@ -8,12 +8,13 @@ namespace rolling_ellipse {
 namespace {
 
 // A slip out of rolling never begins inside the Painleve region. Where |F| exceeds mu N > 0, with
-// side s = -sign F and the rolling equation c = Gnn N + Gnt F, the response of
-// sliding B = Gnn - mu s Gnt is positive: if s Gnt <= 0 as a sum of positive terms, else because of
+// side s = -sign F and c = Gnn N + Gtn F in rolling too, physics (50), the response of sliding
+// B = Gnn - mu s Gtn is positive: if s Gtn <= 0 as a sum of positive terms, else because of
 // c <= N B with c > 0, which N > 0 implies (N D = c (k^2 + h^2) - omega^2 h h'^2 per mass). Where
 // N <= 0 and c > 0, a body without slip finds a side on which B > 0. So `jams` is not returned.
 
-// The acceleration of the gap into the ground of a free body, c = g + h'' omega^2; h'' = rho - h.
+// The acceleration of the gap into the ground of a free body, c = g + h'' omega^2, physics (43);
+// h'' = rho - h.
 Sign pressed_by_gravity(const Body& body, const Geometry& at, double omega) {
     const double omega2 = square(omega);
     return sign({body.gravity + at.ddh * omega2, body.gravity + (at.rho + at.h) * omega2});

@@ -172,8 +172,8 @@ class ContactRun {
         go_on_with(continuation(scene_, state_), EventKind::impact, before);
     }
 
-    // Infinitely many bounces that shrink by a ratio take a finite time; so small ones do it in
-    // place, under the c of their beginning.
+    // Infinitely many bounces that shrink by a ratio take a finite time, physics (57); so small
+    // ones do it in place, under the c of their beginning.
     void settle(double rebound, double c) {
         constexpr double nothing = 1e-12;
         const Geometry at = geometry(axes_, state_.theta);

@@ -17,6 +17,7 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
            std::abs(incline) <= scene.friction;
 }
 
+// It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52).
 Continuation sliding(const Scene& scene, const Geometry& at, double omega, double side) {
     const FreeContact free = free_contact(scene, at, omega);
     if (free.c <= 0) return {Mode::flight};

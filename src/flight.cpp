@@ -29,7 +29,7 @@ class Gap {
     }
 
     // As what it was at the start and what it has gained: hops far lower than the body is high keep
-    // their digits. h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + omega t) sin(omega t).
+    // their digits. h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + omega t) sin(omega t): physics (55).
     double value(double t) const {
         const State& s = flight_.start;
         const auto [a, b] = flight_.axes;
@@ -65,8 +65,8 @@ class Gap {
 // The second derivative of the gap, -(g cos(alpha) + h'' omega^2) with h'' = a^2 b^2/h^3 - h, is
 // positive where h is over the only positive root of
 //     h^4 - (g cos(alpha)/omega^2) h^3 - a^2 b^2,
-// that is around the tip, and negative elsewhere. So time falls into convex and concave intervals,
-// in each of which the first root is certain.
+// that is around the tip, and negative elsewhere: physics (55). So time falls into convex and
+// concave intervals, in each of which the first root is certain.
 class Curvature {
   public:
     explicit Curvature(const Flight& flight) {

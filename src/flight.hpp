@@ -1,4 +1,4 @@
-// Flight: the centre on a parabola, the angular velocity constant; exact. And its end.
+// Flight: centre on a parabola, angular velocity constant; exact. And its end: physics (55).
 #pragma once
 
 #include "ellipse.hpp"

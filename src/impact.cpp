@@ -55,7 +55,7 @@ Reaction unlimited_friction(const Contact& c, double restitution) {
 
 // The impulse path of Coulomb friction, physics (41), its normal impulse p as time: u and v change
 // linearly while it slips, and while it sticks. Compression ends with u = 0, restitution when its
-// normal work is -e^2 times that of compression (Stronge's energetic coefficient).
+// normal work is -e^2 times that of compression (Stronge's energetic coefficient), physics (56).
 class ImpulsePath {
   public:
     ImpulsePath(const Contact& c, double restitution)
@@ -72,7 +72,7 @@ class ImpulsePath {
             left -= p;
             if (!compressed) return true;
         }
-        // The rest of the work: u p + du p^2/2.
+        // The rest of the work, u p + du p^2/2: physics (56).
         const double end = std::sqrt(u_ * u_ + 2 * du * work_);
         const double p = work_ == 0 ? 0.0 : 2 * work_ / (u_ + end);
         if (p < left) {

@@ -24,9 +24,9 @@ Scene level_scene(const Body& body, double friction) {
 }
 
 // With infinite friction the slide has N = 0: its centre is in free fall, h'^2 omega^2 + 2 g h
-// stays what it is. Below 2 g L it turns back under the tip with c > 0: from the flat to the tip
-// h'' falls, so that c h'^2 = g h'^2 + h'' h'^2 omega^2 falls as well, but to g h'^2 where omega
-// vanishes.
+// stays what it is, physics (52). Below 2 g L it turns back under the tip with c > 0: from the flat
+// to the tip h'' falls, so that c h'^2 = g h'^2 + h'' h'^2 omega^2 falls as well, but to g h'^2
+// where omega vanishes.
 bool reaches_the_tip(const Scene& scene, const State& start) {
     const FlatView at = flat_view({scene.a, scene.b}, start.theta);
     const double h = geometry({scene.a, scene.b}, start.theta).h;
@@ -72,7 +72,7 @@ std::optional<EndOfSlide> end_of_slide(const Scene& scene, const State& from, do
 }
 
 // Follows a body that rolls over the flat position up to the tip. Only on the way up can c vanish:
-// where it does N and with it the change of omega vanish as well, and h'' falls from flat to tip.
+// where it does, its rate is h''' omega^3, physics (53), and h'' falls from the flat to the tip.
 bool leaves_the_ground(const Scene& scene, double flat, double omega) {
     const double tip = flat + half_pi;
     const Geometry at = geometry({scene.a, scene.b}, flat);
@@ -100,7 +100,7 @@ bool leaves_the_ground(const Scene& scene, double flat, double omega) {
     return next.mode == Mode::flight;
 }
 
-// At lift-off omega^2 >= g/|h''| >= g L/c^2, physics (43), with no more energy than at the start.
+// At lift-off omega^2 >= g/|h''| >= g L/c^2, physics (53), with no more energy than at the start.
 double too_slow(const Body& body, const FlatView& at) {
     const double flat_inertia = body.gyration2 + square(at.short_axis);
     return std::sqrt(body.gravity * at.long_axis / at.c2 * body.gyration2 / flat_inertia);

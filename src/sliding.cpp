@@ -39,18 +39,26 @@ ContactForce SlidingEquation::force(double theta, double omega) const {
     return {mass_ * normal_share_ * c / b, mass_ * friction_share_ * c / b};
 }
 
-// B = 0 gives theta, c = 0 gives omega; the impulse of N that does it changes the slip as well.
-Vector<5> SlidingEquation::jam(const Vector<5>& y) const {
+// The impulse of N changes omega and slip in a fixed ratio, physics (54).
+SlidingEquation::LastMoment SlidingEquation::last_moment(const Vector<5>& y) const {
     const Geometry at = geometry(axes_, y[0]);
     const double b_slope =
         (2 * normal_share_ * at.dh * at.ddh + friction_share_ * (at.dh * at.dh + at.h * at.ddh)) /
         gyration2_;
     const double turn = -contact(at, y[1]).b / b_slope;
     const double after = turn / y[1];
-    const double omega = std::copysign(std::sqrt(std::max(-weight_ / at.ddh, 0.0)), y[1]);
     const double spin = -(at.h * friction_share_ + at.dh * normal_share_) / gyration2_;
-    const double slip = y[3] + (friction_share_ / spin - at.h) * (omega - y[1]);
-    return {y[0] + turn, omega, y[2] + (y[3] + at.h * y[1]) * after, slip, y[4] + after};
+    const double slip_by_turning = friction_share_ / spin - at.h;
+    const double without_slip = y[1] - y[3] / slip_by_turning;
+    const double without_c = std::copysign(std::sqrt(-weight_ / at.ddh), y[1]);
+    const double impulse_to_stop = (without_slip - y[1]) / spin;
+    const double impulse_to_jam =
+        at.ddh < 0 && (without_c - y[1]) / spin >= 0 ? (without_c - y[1]) / spin : infinity;
+    const bool stops = impulse_to_stop >= 0 && impulse_to_stop <= impulse_to_jam;
+    const double omega = stops ? without_slip : without_c;
+    const double slip = stops ? 0.0 : y[3] + slip_by_turning * (omega - y[1]);
+    return {stops ? slip_vanishes : jams,
+            {y[0] + turn, omega, y[2] + (y[3] + at.h * y[1]) * after, slip, y[4] + after}};
 }
 
 }  // namespace rolling_ellipse

@@ -19,7 +19,8 @@ double noticeable_slip(const State& state, const Geometry& at);
 State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode);
 
 // The contact as a free body has it, per mass: what an impulse (along, away from) the ground
-// changes of the contact velocity (Delassus), and the acceleration -c of the gap without a force.
+// changes of the contact velocity (Delassus), physics (39), and the acceleration -c of the gap
+// without a force, physics (43).
 struct FreeContact {
     double gtt;
     double gtn;
@@ -31,8 +32,8 @@ FreeContact free_contact(const Scene& scene, const Geometry& at, double omega);
 
 enum SlideEnd { slip_vanishes, pressure_vanishes, jams };
 
-// y = (theta, omega, x, slip velocity); side is the sign of the slip. With infinite friction the
-// limit holds: no normal force, and friction alone keeps the gap closed.
+// y = (theta, omega, x, slip velocity), physics (51); side is the sign of the slip. With infinite
+// friction the limit holds, physics (52): no normal force, and friction alone keeps the gap closed.
 class SlidingEquation {
   public:
     static constexpr int size = 4;
@@ -42,19 +43,24 @@ class SlidingEquation {
     Vector<4> operator()(double t, const Vector<4>& y) const;
 
     // What stays positive while it slides on, in the order of SlideEnd: the slip, the free
-    // acceleration c into the ground, and B, the normal acceleration that a unit of normal force
-    // makes (Painleve).
+    // acceleration c into the ground, physics (53), and B, the normal acceleration that a unit of
+    // normal force makes (Painleve), physics (49, 50).
     std::array<double, 3> margins(const Vector<4>& y) const;
 
     // With infinite friction B is small near the tip, and nothing grows there.
     bool may_jam() const { return normal_share_ != 0; }
 
     // The same motion, (y, t), by a clock tau that slows down near B = 0, dt = B dtau, where N =
-    // c/B grows without bound.
+    // c/B grows without bound: physics (54).
     Vector<5> slowed(const Vector<5>& y) const;
 
-    // Where a slide ends that has come to B = 0 with c > 0: in a moment N drives c to 0.
-    Vector<5> jam(const Vector<5>& y) const;
+    // Where a slide ends that has come to B = 0 with c > 0: in a moment, N makes either the slip or
+    // c vanish.
+    struct LastMoment {
+        SlideEnd end;
+        Vector<5> y;
+    };
+    LastMoment last_moment(const Vector<5>& y) const;
 
     ContactForce force(double theta, double omega) const;
 
@@ -75,7 +81,8 @@ class SlidingEquation {
     double friction_share_;  // -mu s; -s with infinite friction
 };
 
-// The force along its direction closes the gap: N = c/B, B = Gnn - mu s Gnt.
+// The force along its direction cancels the acceleration -c of the gap: per mass N = c/B with B =
+// Gnn - mu s Gtn, physics (50); with infinite friction F = c/Gtn and N = 0, physics (52).
 inline SlidingEquation::Contact SlidingEquation::contact(const Geometry& at, double omega) const {
     const double c = weight_ + at.ddh * omega * omega;
     const double gnn = 1 + at.dh * at.dh / gyration2_;
@@ -88,7 +95,7 @@ inline Vector<5> SlidingEquation::slowed(const Vector<5>& y) const {
     const double omega = y[1];
     const Geometry at = geometry(axes_, y[0]);
     const auto [c, b] = contact(at, omega);
-    const double normal = normal_share_ * c;  // B times the forces
+    const double normal = normal_share_ * c;  // B times the forces, physics (51, 54)
     const double friction = friction_share_ * c;
     const double omega_dot = -(at.h * friction + at.dh * normal) / gyration2_;
     const double slip_dot = friction - at.h * omega_dot + b * (pull_ - at.dh * omega * omega);

@@ -7,7 +7,7 @@ namespace {
 
 using Integrator = ExplicitMethod<DormandPrince853, SlidingEquation>;
 
-// Of B: below it the slower clock is the better one.
+// Of B: below it the slower clock is the better one, physics (54).
 constexpr double small_response = 1e-2;
 
 // Sliding by the clock that slows down near B = 0.
@@ -44,9 +44,13 @@ Slowed slide_slowly(SteppedSliding& motion, const Tolerance& tolerance, long max
     };
     Until until =
         integrate_until(integrator, steps, tolerance, max_steps, infinity, margins, checkpoint);
+    const auto append = [&](const Vector<5>& y) {  // times may differ by less than their rounding
+        auto& knots = motion.steps.knots;
+        while (knots.size() > 1 && knots.back().t >= y[4]) knots.pop_back();
+        knots.push_back({y[4], y.head<4>(), Vector<4>::Zero(), from.periods});
+    };
     for (std::size_t i = 1; i < steps.knots.size(); ++i) {
-        const Vector<5> y = steps.knots[i].y + steps.knots[i].carry;
-        motion.steps.knots.push_back({y[4], y.head<4>(), Vector<4>::Zero(), from.periods});
+        append(steps.knots[i].y + steps.knots[i].carry);
     }
     until.time = motion.steps.knots.back().t;
     if (until.ending != Ending::stopped || until.which < jams) return {until, false};
@@ -55,13 +59,10 @@ Slowed slide_slowly(SteppedSliding& motion, const Tolerance& tolerance, long max
         until.time = infinity;
         return {until, until.which == jams + 1};
     }
-    Vector<5> y = motion.equation.jam(steps.knots.back().y);
-    if (y[3] * start[3] <= 0) {  // its slip vanishes in that moment
-        y[3] = 0.0;
-        until.which = slip_vanishes;
-    }
+    const auto [end, y] = motion.equation.last_moment(steps.knots.back().y);
+    append(y);
+    until.which = end;
     until.time = y[4];
-    motion.steps.knots.push_back({y[4], y.head<4>(), Vector<4>::Zero(), from.periods});
     return {until, false};
 }
 

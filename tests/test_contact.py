@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as re
 import scipy.integrate
+import scipy.optimize
 from contact_scenes import random_scenes, response, support
 from oracles import EPS
 from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, simulate
@@ -128,60 +129,95 @@ JAMS_ON_THE_WAY = [
 
 
 def slowed_slide(scene: Scene, side: float) -> Any:
-    """B and c, and rates of theta, omega, slip and t by a clock that stands still at B = 0."""
+    """B and c of an angle and speed; rates of theta, omega, slip, time and ln B in a clock of its
+    own, dt = B dtau, so that nothing cancels or grows near B = 0."""
+    k2, grip = scene.gyration2, scene.friction * side
 
     def forces(theta: float, omega: float) -> tuple[Any, float, float]:
-        at, k2 = support(theta, scene.a, scene.b), scene.gyration2
+        at = support(theta, scene.a, scene.b)
         c = GRAVITY * math.cos(scene.slope) + at.curvature * omega**2
-        b = 1 + at.slope**2 / k2 - scene.friction * side * at.h * at.slope / k2
-        return at, b, c
+        return at, 1 + at.slope * (at.slope - grip * at.h) / k2, c
 
     def rates(_: float, y: Any) -> list[float]:
-        (theta, omega, *_), mu = y, scene.friction
-        at, b, c = forces(theta, omega)
-        turning = c * (mu * side * at.h - at.slope) / scene.gyration2
-        along = b * GRAVITY * math.sin(scene.slope) - mu * side * c
-        return [
-            b * omega, turning, along - at.h * turning - b * at.slope * omega**2, b
-        ]  # fmt: skip
+        theta, omega, *_, log_b = y
+        at, _, c = forces(theta, omega)
+        b = math.exp(log_b)
+        turning = c * (grip * at.h - at.slope) / k2
+        along = b * GRAVITY * math.sin(scene.slope) - grip * c
+        growth = 2 * at.slope * at.curvature - grip * (at.slope**2 + at.h * at.curvature)
+        slip = along - at.h * turning - b * at.slope * omega**2
+        return [b * omega, turning, slip, b, omega * growth / k2]
 
     return forces, rates
 
 
+def slide_in_its_own_clock(
+    scene: Scene, start: Any, t0: float, side: float, least_b: float = 0.0
+) -> Any:
+    """By SciPy: theta, omega, slip and t where the slip vanishes, or B is so small."""
+    forces, rates = slowed_slide(scene, side)
+    ends = [lambda _, y: side * y[2], lambda _, y: math.exp(y[4]) - least_b]
+    for end in ends:
+        end.terminal, end.direction = True, -1  # type: ignore[attr-defined]
+    b = forces(start.theta, start.omega)[1]
+    begin = [start.theta, start.omega, response(scene, start).slip, t0, math.log(b)]
+    how: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": ends}
+    return scipy.integrate.solve_ivp(rates, (0.0, 1e6), begin, **how).y[:4, -1]
+
+
 @pytest.mark.parametrize("scene", JAMS_ON_THE_WAY)
 def test_a_jam_on_the_way(scene: Scene) -> None:
-    """B = 0 and c = 0 at once, where the same slide gets by SciPy in its own clock: t, theta, slip.
+    """B = 0 and c = 0 at once (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653).
 
-    There c dies out more slowly than B (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999)
-    653), so it is left out of the comparison: SciPy stops where B is 1e-12.
+    c dies out more slowly than B: where SciPy stops some is left of it, and with it of omega and
+    slip, in the fixed ratio in which the impulse of N changes them.
     """
     motion = simulate(scene, 5.0, model="contact")
     assert motion.status is Status.JAMMED and motion.events[-1].kind is EventKind.JAM
     jam = motion.events[-1]
     starts = [(event.t, event.state_after) for event in motion.events[:-1]]
     t0, start = starts[-1] if starts else (0.0, scene.initial_state)
-    slip = response(scene, start).slip
-    side = math.copysign(1, response(scene, jam.state_before).slip)
-    forces, rates = slowed_slide(scene, side)
-
-    def jams(_: float, y: Any) -> float:
-        return forces(y[0], y[1])[1] - 1e-12
-
-    jams.terminal = True  # type: ignore[attr-defined]
-    how: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": jams}
-    begin = [start.theta, start.omega, slip, t0]
-    end = scipy.integrate.solve_ivp(rates, (0.0, 1e6), begin, **how).y[:, -1]
-    assert jam.t == pytest.approx(end[3], abs=1e-11)
-    assert jam.state_before.theta == pytest.approx(end[0], abs=1e-11)
-    at, b, c = forces(jam.state_before.theta, jam.state_before.omega)
+    slip = response(scene, jam.state_before).slip
+    side = math.copysign(1, slip)
+    theta, omega, slip_before, t = slide_in_its_own_clock(scene, start, t0, side, 1e-14)
+    assert jam.t == pytest.approx(t, abs=1e-11)
+    assert jam.state_before.theta == pytest.approx(theta, abs=1e-11)
+    at, b, c = slowed_slide(scene, side)[0](jam.state_before.theta, jam.state_before.omega)
     assert abs(b) <= 1e-11 and abs(c) <= 1e-11 * GRAVITY
-    assert side * response(scene, jam.state_before).slip > 0
-    # Where B is 1e-12 some c is left, with it omega and slip, in a fixed ratio.
     turning = (scene.friction * side * at.h - at.slope) / scene.gyration2
     ratio = -scene.friction * side / turning - at.h
-    change = response(scene, jam.state_before).slip - end[2]
-    assert change == pytest.approx(ratio * (jam.state_before.omega - end[1]), abs=1e-10)
+    left = ratio * (jam.state_before.omega - omega)
+    assert slip - slip_before == pytest.approx(left, abs=1e-9)
     assert motion.t[-1] <= jam.t and motion.t_end == jam.t
+
+
+NO_JAMS = [  # a, b, friction, slip 0.05 rad before B = 0
+    (5.0, 1.0, 2.6, 100.0), (1.0, 0.05, 6.0, 100.0), (1.0, 0.05, 5.0, 50.0),
+    (5.0, 1.0, 2.45, 60.0), (5.0, 1.0, 3.0, 1000.0),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("a", "b", "friction", "slip"), NO_JAMS)
+def test_a_slip_that_ends_just_before_a_jam(
+    a: float, b: float, friction: float, slip: float
+) -> None:
+    """So near B = 0 that the impulse of N takes no time; omega and what is left of the energy."""
+    body = Scene(a, b, friction=friction)
+    response_of = slowed_slide(body, 1.0)[0]
+    angles = np.linspace(0.0, math.pi / 2, 10001)
+    falls = next(i for i, angle in enumerate(angles) if response_of(angle, 0.0)[1] < 0)
+    bracket = angles[falls - 1], angles[falls]
+    theta = scipy.optimize.brentq(lambda angle: response_of(angle, 0.0)[1], *bracket) - 0.05
+    omega = 0.1
+    x_dot = slip + float(support(theta, a, b).h) * omega
+    scene = dataclasses.replace(body, theta=theta, omega=omega, x_dot=x_dot)
+    motion = simulate(scene, 1.0, max_events=2, raise_on_failure=False)
+    stops = motion.events[0]
+    theta, omega, _, t = slide_in_its_own_clock(scene, scene.initial_state, 0.0, 1.0)
+    assert stops.kind in (EventKind.REVERSE, EventKind.STICK)
+    assert stops.t == pytest.approx(t, abs=1e-11)
+    assert stops.state_before.theta == pytest.approx(theta, abs=1e-11)
+    assert stops.state_before.omega == pytest.approx(omega, rel=1e-10)
 
 
 def test_every_transition_does_what_its_name_says() -> None:
