@@ -12,7 +12,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// Of arcs that have to be integrated; what lies between their steps is right to about 1e-11.
+// Of arcs that have to be integrated; what lies between their steps is right to about 1e-13.
 constexpr Tolerance finest = {2e-15, 2e-17};
 
 class ContactRun {
