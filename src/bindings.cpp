@@ -82,12 +82,24 @@ struct Argument {
 
 Argument argument(const Array& array) { return {array.data(), array.size() == 1 ? 0 : 1}; }
 
-FlowSample validated_sample(const RollingFlow& flow, double t) {
+void validate_time(double t, double longest) {
     if (!std::isfinite(t)) refuse("t", "finite [s]", t);
-    if (std::abs(t) > longest_time(flow)) {
-        refuse("t", "at most 1e15 half turns or swings, " + text(longest_time(flow)) + " [s]", t);
+    if (std::abs(t) > longest) {
+        refuse("t", "at most 1e15 half turns or swings, " + text(longest) + " [s]", t);
     }
-    return sample(flow, t);
+}
+
+// theta, omega, x at the times begin .. end.
+template <class Sampler>
+void store_samples(const Sampler& sampler, const double* times, py::ssize_t begin, py::ssize_t end,
+                   double* const columns[3]) {
+    std::array<FlowSample, chunk> samples;
+    sampler(times + begin, end - begin, samples.data());
+    for (py::ssize_t i = begin; i < end; ++i) {
+        columns[0][i] = samples[i - begin].theta;
+        columns[1][i] = samples[i - begin].omega;
+        columns[2][i] = samples[i - begin].x;
+    }
 }
 
 RollingFlow validated_flow(const Body& body, double theta, double omega) {
@@ -99,8 +111,28 @@ RollingFlow validated_flow(const Body& body, double theta, double omega) {
 py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
                       std::optional<double> gyration2) {
     const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
-    const FlowSample now = validated_sample(validated_flow(body, theta, omega), t);
+    const RollingFlow flow = validated_flow(body, theta, omega);
+    validate_time(t, longest_time(flow));
+    const FlowSample now = sample(flow, t);
     return py::make_tuple(now.theta, now.omega, now.x);
+}
+
+// The same at many times.
+py::tuple flow_times(const Array& t, double a, double b, double theta, double omega, double gravity,
+                     std::optional<double> gyration2, int workers) {
+    const py::ssize_t n = t.size();
+    const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
+    const RollingFlow flow = validated_flow(body, theta, omega);
+    const FlowSampler sampler(flow, infinity, n);
+    const double longest = longest_time(flow);
+    std::vector<Array> out = empty_arrays(3, n);
+    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
+    const double* const times = t.data();
+    run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) validate_time(times[i], longest);
+        store_samples(sampler, times, begin, end, columns);
+    });
+    return py::make_tuple(out[0], out[1], out[2]);
 }
 
 // t, a, b, theta, omega, gravity, gyration2, each with n elements, or one.
@@ -120,7 +152,8 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
                 flow = validated_flow({now[0], now[1], now[5], now[4]}, now[2], now[3]);
                 last = now;
             }
-            const FlowSample at = validated_sample(flow, times[i]);
+            validate_time(times[i], longest_time(flow));
+            const FlowSample at = sample(flow, times[i]);
             columns[0][i] = at.theta;
             columns[1][i] = at.omega;
             columns[2][i] = at.x;
@@ -180,14 +213,9 @@ py::tuple sample_solution(const Solution& solution, const Array& t) {
     std::vector<Array> out = empty_arrays(3, n);
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
     const double* const times = t.data();
-    std::vector<FlowSample> samples(std::min<std::size_t>(n, chunk));
+    const RollingSampler sampler(solution, n);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        sample(solution, times + begin, end - begin, samples.data());
-        for (py::ssize_t i = begin; i < end; ++i) {
-            columns[0][i] = samples[i - begin].theta;
-            columns[1][i] = samples[i - begin].omega;
-            columns[2][i] = samples[i - begin].x;
-        }
+        store_samples(sampler, times, begin, end, columns);
     });
     return py::make_tuple(out[0], out[1], out[2]);
 }
@@ -678,6 +706,8 @@ void bind_motion(py::module_& m) {
     m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);
     m.def("flow_scalar", flow_scalar, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a);
+    m.def("flow_times", flow_times, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
+          "gyration2"_a, "workers"_a);
     m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a);
     m.def("constraints", constraint_arrays, "q"_a, "q_dot"_a, "a"_a, "b"_a);

@@ -10,20 +10,22 @@ void sample_arc(const SteppedSliding& motion, const double* times, std::size_t n
     sample(motion, times, n, states);
 }
 
-void sample_arc(const SteppedRolling& motion, const double* times, std::size_t n, State* states) {
-    std::vector<FlowSample> samples(n);
-    sample(motion, times, n, samples.data());
-    for (std::size_t i = 0; i < n; ++i) {
-        const auto [theta, omega, x] = samples[i];
-        states[i] = in_contact(geometry(motion.axes, theta), theta, omega, x, 0.0, Mode::rolling);
+void store_rolling(const Axes& axes, const std::vector<FlowSample>& samples, State* states) {
+    for (const auto& [theta, omega, x] : samples) {
+        *states++ = in_contact(geometry(axes, theta), theta, omega, x, 0.0, Mode::rolling);
     }
 }
 
+void sample_arc(const SteppedRolling& motion, const double* times, std::size_t n, State* states) {
+    std::vector<FlowSample> samples(n);
+    sample(motion, times, n, samples.data());
+    store_rolling(motion.axes, samples, states);
+}
+
 void sample_arc(const ExactRolling& rolling, const double* times, std::size_t n, State* states) {
-    for (std::size_t i = 0; i < n; ++i) {
-        const auto [theta, omega, x] = sample(rolling.flow, times[i]);
-        states[i] = in_contact(geometry(rolling.axes, theta), theta, omega, x, 0.0, Mode::rolling);
-    }
+    std::vector<FlowSample> samples(n);
+    FlowSampler{rolling.flow, times[n - 1], n}(times, n, samples.data());
+    store_rolling(rolling.axes, samples, states);
 }
 
 void sample_arc(const Flight& flight, const double* times, std::size_t n, State* states) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flight.hpp"
+#include "flow_table.hpp"
 #include "rolling_steps.hpp"
 #include "sliding_steps.hpp"
 

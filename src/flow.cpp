@@ -26,43 +26,23 @@ struct MotionPoint {
     double quarters;  // whole turns made, in quarters, beside what sin_phi and cos_phi say
 };
 
-// Angle and angular velocity at a phase: physics (30), the energy integral at the point itself.
+// Angle and angular velocity at a phase, on the way up: physics (30), the energy integral at the
+// point itself.
 MotionPoint motion_point(const RollingFlow& flow, const PhasePoint& at) {
     const double sin_phi = flow.amplitude * at.sin;
     const double factor = shape_factor(flow.phase.rate, sin_phi);
     const double root = std::hypot(at.cos, flow.phase.rate.kappa * at.sin);
-    if (flow.kind == MotionKind::rotation) {
-        return {flow.direction * sin_phi, at.cos, flow.direction * root / factor, 0.0};
-    }
+    if (flow.kind == MotionKind::rotation) return {sin_phi, at.cos, root / factor, 0.0};
     return {sin_phi, root, flow.amplitude * at.cos / factor, 0.0};
 }
 
 MotionPoint point_after(const RollingFlow& flow, double t) {
-    // Whole half turns first; t - n T is formed without rounding, T being a double-double.
-    const DoubleDouble& period = flow.phase.half_turn;
-    double half_turns = 0.0;
-    DoubleDouble time = flow.start_time + t;
-    if (std::isfinite(period.high)) {
-        half_turns = std::nearbyint(t / period.high);
-        time = flow.start_time + std::fma(-half_turns, period.high, t) +
-               two_product(-half_turns, period.low);
-        while (double(time * 2.0 - period) > 0) {
-            time = time - period;
-            half_turns += 1;
-        }
-        while (double(time * 2.0 + period) < 0) {
-            time = time + period;
-            half_turns -= 1;
-        }
-    }
-    const PhasePoint phase = point_at_time(flow.phase, time);
-    if (flow.kind == MotionKind::libration) {
-        const bool odd = std::fmod(half_turns, 2.0) != 0.0;
-        const double sign = odd == flow.start_on_way_back ? 1.0 : -1.0;
-        return motion_point(flow, {sign * phase.sin, sign * phase.cos});
-    }
-    MotionPoint point = motion_point(flow, phase);
-    point.quarters = 2 * flow.direction * half_turns;
+    const auto [time, half_turns] = phase_instant(flow, t);
+    const double heading = heading_after(flow, half_turns);
+    MotionPoint point = motion_point(flow, point_at_time(flow.phase, time));
+    point.sin_phi *= heading;
+    point.omega *= heading;
+    if (flow.kind == MotionKind::rotation) point.quarters = 2 * heading * half_turns;
     return point;
 }
 
@@ -123,6 +103,7 @@ RollingFlow rolling_flow(const Body& body, double theta, double omega, double x)
     flow.theta = theta;
     flow.omega = omega = noticeable(omega);
     flow.x = x;
+    flow.gravity = body.gravity;
     flow.start = flat_view({body.a, body.b}, theta);
     const FlatView& at = flow.start;
     if (omega == 0 && is_equilibrium(geometry({body.a, body.b}, theta))) {
@@ -147,6 +128,45 @@ RollingFlow rolling_flow(const Body& body, double theta, double omega, double x)
     flow.start_position = quarter_position(at, at.sin, at.cos);
     flow.quarter_path = path_from_flat(at.long_axis, at.short_axis, 1.0, 0.0);
     return flow;
+}
+
+PhaseInstant phase_instant(const RollingFlow& flow, double t) {
+    // Whole half turns first; t - n T is formed without rounding, T being a double-double.
+    const DoubleDouble& period = flow.phase.half_turn;
+    double half_turns = 0.0;
+    DoubleDouble time = flow.start_time + t;
+    if (std::isfinite(period.high)) {
+        half_turns = std::nearbyint(t / period.high);
+        time = flow.start_time + std::fma(-half_turns, period.high, t) +
+               two_product(-half_turns, period.low);
+        while (double(time * 2.0 - period) > 0) {
+            time = time - period;
+            half_turns += 1;
+        }
+        while (double(time * 2.0 + period) < 0) {
+            time = time + period;
+            half_turns -= 1;
+        }
+    }
+    return {time, half_turns};
+}
+
+double heading_after(const RollingFlow& flow, double half_turns) {
+    if (flow.kind == MotionKind::rotation) return flow.direction;
+    const bool odd = std::fmod(half_turns, 2.0) != 0.0;
+    return odd == flow.start_on_way_back ? 1.0 : -1.0;
+}
+
+PhasePoint phase_of(const RollingFlow& flow, double sin, double cos, double omega) {
+    if (flow.kind == MotionKind::rotation) return {sin, cos};
+    const double adjacent = omega * shape_factor(flow.phase.rate, sin);
+    const double size = std::hypot(sin, adjacent);
+    return {sin / size, adjacent / size};
+}
+
+QuarterState quarter_state(const RollingFlow& flow, const PhasePoint& phase) {
+    const MotionPoint at = motion_point(flow, phase);
+    return {at.sin_phi, at.cos_phi, at.omega, quarter_position(flow.start, at.sin_phi, at.cos_phi)};
 }
 
 FlowSample sample(const RollingFlow& flow, double t) {

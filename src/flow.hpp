@@ -23,6 +23,7 @@ struct RollingFlow {
     double theta;
     double omega;
     double x;
+    double gravity;
     FlatView start;
     // The motion.
     double direction;  // of rotation; +1 for libration
@@ -48,6 +49,28 @@ FlowSample sample(const RollingFlow& flow, double t);
 
 // 1e15 half turns: beyond, a double does not know the phase.
 double longest_time(const RollingFlow& flow);
+
+// A time since the start as one since the flat position, half turns (or swings) made in between.
+struct PhaseInstant {
+    DoubleDouble time;  // within half a half turn of it
+    double half_turns;
+};
+PhaseInstant phase_instant(const RollingFlow& flow, double t);
+
+// +1 or -1: which way the motion goes after so many half turns, for angles and for omega.
+double heading_after(const RollingFlow& flow, double half_turns);
+
+// On the way up, at a phase between that of the flat position and a quarter turn later.
+struct QuarterState {
+    double sin;  // of the angle from the flat position
+    double cos;
+    double omega;
+    QuarterPosition position;
+};
+QuarterState quarter_state(const RollingFlow& flow, const PhasePoint& phase);
+
+// The phase of such a state, from the sine and cosine of its angle and its angular velocity.
+PhasePoint phase_of(const RollingFlow& flow, double sin, double cos, double omega);
 
 // Time of a full swing or of a full turn; infinite for a body at rest and on the separatrix.
 double period(const RollingFlow& flow);

@@ -3,10 +3,6 @@
 namespace rolling_ellipse {
 namespace {
 
-void sample(const RollingFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
-    for (std::size_t i = 0; i < n; ++i) samples[i] = sample(flow, times[i]);
-}
-
 template <int N>
 std::vector<double> times_of(const Steps<N>& steps) {
     std::vector<double> times;
@@ -23,12 +19,16 @@ std::vector<double> times_of(const SteppedMultipliers& motion) {
 
 }  // namespace
 
-void sample(const Solution& solution, const double* times, std::size_t n, FlowSample* samples) {
+RollingSampler::RollingSampler(const Solution& solution, std::size_t expected)
+    : solution_(solution) {
     if (const auto* flow = std::get_if<RollingFlow>(&solution.motion)) {
-        sample(*flow, times, n, samples);
-    } else {
-        sample(std::get<SteppedRolling>(solution.motion), times, n, samples);
+        exact_.emplace(*flow, solution.followed_until, expected);
     }
+}
+
+void RollingSampler::operator()(const double* times, std::size_t n, FlowSample* samples) const {
+    if (exact_) return (*exact_)(times, n, samples);
+    sample(std::get<SteppedRolling>(solution_.motion), times, n, samples);
 }
 
 void sample(const Solution& solution, const double* times, std::size_t n,
@@ -59,7 +59,7 @@ void contact_forces(const Solution& solution, const Scene& scene, const Settings
         return;
     }
     std::vector<FlowSample> states(n);
-    sample(solution, times, n, states.data());
+    RollingSampler{solution, n}(times, n, states.data());
     for (std::size_t i = 0; i < n; ++i) {
         forces[i] = rolling_force(scene, states[i].theta, states[i].omega);
     }

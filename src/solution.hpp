@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -33,8 +34,19 @@ struct Solution {
     std::string message = {};
 };
 
-// The state at n times: of rolling, of the multiplier model, and of the contact model.
-void sample(const Solution& solution, const double* times, std::size_t n, FlowSample* samples);
+// The state of rolling at so many times in all, in parts.
+class RollingSampler {
+  public:
+    RollingSampler(const Solution& solution, std::size_t expected);
+
+    void operator()(const double* times, std::size_t n, FlowSample* samples) const;
+
+  private:
+    const Solution& solution_;
+    std::optional<FlowSampler> exact_;
+};
+
+// The state at n times: of the multiplier model, and of the contact model.
 void sample(const Solution& solution, const double* times, std::size_t n, CoordinateState* samples);
 void sample(const Solution& solution, const double* times, std::size_t n, ContactSample* samples);
 

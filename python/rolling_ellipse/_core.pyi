@@ -189,6 +189,16 @@ def flow_scalar(
     gravity: float,
     gyration2: float | None,
 ) -> tuple[float, float, float]: ...
+def flow_times(
+    t: FloatArray,
+    a: float,
+    b: float,
+    theta: float,
+    omega: float,
+    gravity: float,
+    gyration2: float | None,
+    workers: int,
+) -> tuple[FloatArray, FloatArray, FloatArray]: ...
 def flow_array(
     n: int, arguments: list[FloatArray], workers: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]: ...

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, broadcast
+from ._check import FloatArray, array, broadcast
 from .scene import Scene, require_scene
 
-_SCALARS = (float, int)
+_SCALARS = (float, int, np.float64)
 
 
 def flow(
@@ -55,7 +55,8 @@ def flow(
     theta, omega, x : float or ndarray
         Angle [rad], angular velocity [rad/s], way of the centre since the start [m]; floats if all
         arguments are scalars, else of the broadcast shape. A body in equilibrium (omega = 0 and
-        |h'| within 8 ulp of h) stays.
+        |h'| within 8 ulp of h) stays. The last bits may depend on how many times there are: many
+        of one motion are read off Taylor series about points of it.
 
     Raises
     ------
@@ -63,21 +64,28 @@ def flow(
         If a number is out of its range or shapes do not broadcast.
     """
     threads = worker_count(workers)
-    given = (t, a, b, theta, omega, gravity)
-    if all(type(v) in _SCALARS for v in given) and type(gyration2) in (*_SCALARS, NoneType):
+    one = (a, b, theta, omega, gravity)
+    if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):
         with suppress(TypeError):  # an int beyond the doubles: refused by name below
-            return _core.flow_scalar(*given, gyration2)
-    arguments = dict(zip(("t", "a", "b", "theta", "omega", "gravity"), given, strict=True))
+            if type(t) in _SCALARS:
+                return _core.flow_scalar(t, *one, gyration2)
+            times = array("t", t)
+            found = _core.flow_times(times.ravel(), *one, gyration2, threads)
+            return _shaped(found, times.shape)
+    arguments = {"t": t, "a": a, "b": b, "theta": theta, "omega": omega, "gravity": gravity}
     if gyration2 is not None:
         arguments["gyration2"] = gyration2
     shape, columns = broadcast(**arguments)
     if gyration2 is None:
         columns.append(uniform_disc_gyration2(columns[1], columns[2]))
-    results = _core.flow_array(math.prod(shape), columns, threads)
+    return _shaped(_core.flow_array(math.prod(shape), columns, threads), shape)
+
+
+def _shaped(results: tuple[FloatArray, ...], shape: tuple[int, ...]) -> tuple[Any, Any, Any]:
     if shape == ():
         return tuple(float(v[0]) for v in results)  # type: ignore[return-value]
-    theta_t, omega_t, x_t = (v.reshape(shape) for v in results)
-    return theta_t, omega_t, x_t
+    theta, omega, x = (v.reshape(shape) for v in results)
+    return theta, omega, x
 
 
 def uniform_disc_gyration2(a: FloatArray, b: FloatArray) -> FloatArray:
