@@ -244,7 +244,7 @@ def lightness(colour: str) -> float:
 @pytest.mark.parametrize("picture", OVER_TIME)
 def test_events_are_dotted_lines(picture: Callable[..., Any], report: re.Trajectory) -> None:
     events = tuple(SimpleNamespace(t=t, kind="slip") for t in (1.5, 4.0))
-    shown = picture(dataclasses.replace(report, events=events), ax=new_axes())
+    shown = picture(dataclasses.replace(report, kept_events=events), ax=new_axes())
     (mark,) = shown.marks
     assert [segment[0, 0] for segment in mark.get_segments()] == [1.5, 4.0]
 

@@ -1,4 +1,4 @@
-"""Types of the C++ core (src/bindings.cpp)."""
+"""Types of the C++ core (src/bindings)."""
 
 import enum
 from typing import Any

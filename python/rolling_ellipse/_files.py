@@ -70,5 +70,5 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
         "scene": Scene(**scene),
         "settings": Settings(**settings),
         "status": Status[about["status"]],
-        "events": events,
+        "kept_events": events,
     }

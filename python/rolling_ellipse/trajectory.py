@@ -153,6 +153,8 @@ class Trajectory:
         Of the model "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the samples.
     events : tuple of Event
         Changes of mode and impacts of the model "contact", in the order of time.
+    kept_events : tuple of Event, or None
+        Those that a file brought along.
     stats : dict
         Figures of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
         the right-hand side, without those for the dense output).
@@ -176,7 +178,7 @@ class Trajectory:
     coordinates: tuple[FloatArray, FloatArray] | None = None
     start: tuple[FloatArray, FloatArray] | None = None
     contact: ContactSamples | None = None
-    events: tuple[Event, ...] = ()
+    kept_events: tuple[Event, ...] | None = None
     stats: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -217,7 +219,6 @@ class Trajectory:
             span=span,
             settings=settings,
             start=start,
-            events=tuple(event(scene.mass, *found) for found in solution.events),
             stats=solution.stats,
         )
         trajectory.__dict__["_solution"] = solution
@@ -305,6 +306,12 @@ class Trajectory:
         if self.contact is not None:
             return self.contact.mode
         return np.full(self.t.shape, self.scene.initial_state.mode, dtype=np.int8)
+
+    @cached_property
+    def events(self) -> tuple[Event, ...]:
+        if self.kept_events is not None:
+            return self.kept_events
+        return tuple(event(self.scene.mass, *found) for found in self._solution.events)
 
     @property
     def success(self) -> bool:

@@ -1,0 +1,111 @@
+#include "bindings.hpp"
+#include "rolling.hpp"
+#include "solution.hpp"
+
+namespace rolling_ellipse::bindings {
+namespace {
+
+// q, q_dot, q_ddot and multipliers of the contact model, from theta, omega, x, z, x_dot, z_dot,
+// normal and friction force.
+py::tuple contact_arrays(const Scene& scene, const std::array<Array, 8>& columns) {
+    const py::ssize_t n = columns[0].size();
+    Array q = matrix(n, 5);
+    Array q_dot = matrix(n, 5);
+    Array q_ddot = matrix(n, 5);
+    Array multipliers = matrix(n, 4);
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const auto of = [&](std::size_t column) { return columns[column].data()[i]; };
+            const State state{of(0), of(1), of(2), of(3), of(4), of(5), Mode::flight};
+            const CoordinateState at = coordinate_state({scene.a, scene.b}, state);
+            const MultiplierSolution found = accelerations(scene, at, ContactForce{of(6), of(7)});
+            store(q, i, at.q.data());
+            store(q_dot, i, at.q_dot.data());
+            store(q_ddot, i, found.q_ddot.data());
+            store(multipliers, i, found.multipliers.data());
+        }
+    });
+    return py::make_tuple(q, q_dot, q_ddot, multipliers);
+}
+
+// q_ddot and multipliers of the multiplier model.
+py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const Array& q,
+                            const Array& q_dot) {
+    const py::ssize_t n = q.shape(0);
+    const ConstrainedBody body(scene);
+    Array q_ddot = matrix(n, 5);
+    Array multipliers = matrix(n, 4);
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const MultiplierSolution solution =
+                accelerations(body, settings, state_at(q, q_dot, i));
+            store(q_ddot, i, solution.q_ddot.data());
+            store(multipliers, i, solution.multipliers.data());
+        }
+    });
+    return py::make_tuple(q_ddot, multipliers);
+}
+
+// The nearest state that meets the constraints.
+py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
+    CoordinateState state = state_at(q, q_dot, 0);
+    ConstrainedBody(scene).project(state.q, state.q_dot);
+    return py::make_tuple(Array(5, state.q.data()), Array(5, state.q_dot.data()));
+}
+
+// q (its x replaced by the one given), q_dot, q_ddot, normal and friction force, multipliers.
+py::tuple rolling_arrays(const Scene& scene, const Array& theta, const Array& omega,
+                         const Array& x) {
+    const py::ssize_t n = theta.size();
+    Array q = matrix(n, 5);
+    Array q_dot = matrix(n, 5);
+    Array q_ddot = matrix(n, 5);
+    Array multipliers = matrix(n, 4);
+    Array normal(n);
+    Array friction(n);
+    double* const normals = normal.mutable_data();
+    double* const frictions = friction.mutable_data();
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            RollingDetail detail = rolling_detail(scene, theta.data()[i], omega.data()[i]);
+            detail.state.q[coordinate::x] = x.data()[i];
+            store(q, i, detail.state.q.data());
+            store(q_dot, i, detail.state.q_dot.data());
+            store(q_ddot, i, detail.q_ddot.data());
+            store(multipliers, i, detail.multipliers.data());
+            normals[i] = detail.force.normal;
+            frictions[i] = detail.force.friction;
+        }
+    });
+    return py::make_tuple(q, q_dot, q_ddot, normal, friction, multipliers);
+}
+
+// theta'' of rolling at each angle and angular velocity, and its derivatives by both.
+py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const Array& omega) {
+    const RollingEquation equation(scene.body(), scene.slope);
+    const py::ssize_t n = theta.size();
+    Array acceleration(n);
+    Array jacobian = matrix(n, 2);
+    double* const accelerations = acceleration.mutable_data();
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const Vector<2> y{theta.data()[i], omega.data()[i]};
+            accelerations[i] = equation(0.0, y)[1];
+            const Vector<2> row = equation.jacobian(0.0, y).row(1);
+            store(jacobian, i, row.data());
+        }
+    });
+    return py::make_tuple(acceleration, jacobian);
+}
+
+}  // namespace
+
+void bind_details(py::module_& m) {
+    m.def("multiplier_detail", multiplier_arrays, "scene"_a, "settings"_a, "q"_a, "q_dot"_a);
+    m.def("contact_detail", contact_arrays, "scene"_a, "columns"_a);
+    m.def("project", projected, "scene"_a, "q"_a, "q_dot"_a);
+    m.def("rolling_detail", rolling_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a);
+    m.def("rolling_equation", rolling_equation_arrays, "scene"_a, "theta"_a, "omega"_a);
+}
+
+}  // namespace rolling_ellipse::bindings

@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+
+#include "bindings.hpp"
+#include "simulate.hpp"
+
+namespace rolling_ellipse::bindings {
+namespace {
+
+void validate_time(double t, double longest) {
+    if (!std::isfinite(t)) refuse("t", "finite [s]", t);
+    if (std::abs(t) > longest) {
+        refuse("t", "at most 1e15 half turns or swings, " + text(longest) + " [s]", t);
+    }
+}
+
+RollingFlow validated_flow(const Body& body, double theta, double omega) {
+    validate(body);
+    validate_motion(body, theta, omega);
+    return rolling_flow(body, theta, omega);
+}
+
+py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
+                      std::optional<double> gyration2) {
+    const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
+    const RollingFlow flow = validated_flow(body, theta, omega);
+    validate_time(t, longest_time(flow));
+    const FlowSample now = sample(flow, t);
+    return py::make_tuple(now.theta, now.omega, now.x);
+}
+
+// The same at many times.
+py::tuple flow_times(const Array& t, double a, double b, double theta, double omega, double gravity,
+                     std::optional<double> gyration2, int workers) {
+    const py::ssize_t n = t.size();
+    const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
+    const RollingFlow flow = validated_flow(body, theta, omega);
+    const FlowSampler sampler(flow, infinity, n);
+    const double longest = longest_time(flow);
+    std::vector<Array> out = empty_arrays(3, n);
+    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
+    const double* const times = t.data();
+    run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) validate_time(times[i], longest);
+        store_samples(sampler, times, begin, end, columns);
+    });
+    return py::make_tuple(out[0], out[1], out[2]);
+}
+
+// t, a, b, theta, omega, gravity, gyration2, each with n elements, or one.
+py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers) {
+    std::vector<Array> out = empty_arrays(3, n);
+    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
+    const Argument times = argument(arguments[0]);
+    std::array<Argument, 6> parameters{};
+    std::transform(arguments.begin() + 1, arguments.end(), parameters.begin(), argument);
+    run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
+        std::array<double, 6> last{};
+        RollingFlow flow{};
+        for (py::ssize_t i = begin; i < end; ++i) {
+            std::array<double, 6> now{};
+            for (std::size_t p = 0; p < now.size(); ++p) now[p] = parameters[p][i];
+            if (i == begin || now != last) {
+                flow = validated_flow({now[0], now[1], now[5], now[4]}, now[2], now[3]);
+                last = now;
+            }
+            validate_time(times[i], longest_time(flow));
+            const FlowSample at = sample(flow, times[i]);
+            columns[0][i] = at.theta;
+            columns[1][i] = at.omega;
+            columns[2][i] = at.x;
+        }
+    });
+    return py::make_tuple(out[0], out[1], out[2]);
+}
+
+}  // namespace
+
+void bind_flow(py::module_& m) {
+    m.def("period", py::overload_cast<const Scene&>(period), "scene"_a);
+    m.def("flow_scalar", flow_scalar, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
+          "gyration2"_a);
+    m.def("flow_times", flow_times, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
+          "gyration2"_a, "workers"_a);
+    m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a);
+}
+
+}  // namespace rolling_ellipse::bindings
