@@ -82,11 +82,11 @@ class ContactRun {
     }
 
     void roll_by_steps() {
-        const Scene& scene = scene_;
-        const auto margins = [&scene](const Vector<2>& y) -> std::array<double, 1> {
-            const ContactForce force = rolling_force(scene, y[0], y[1]);
-            if (std::isinf(scene.friction)) return {force.normal};
-            return {scene.friction * force.normal - std::abs(force.friction)};
+        const RollingDynamics dynamics(scene_);
+        const auto margins = [&](const Vector<2>& y) -> std::array<double, 1> {
+            const ContactForce force = dynamics.force(geometry(axes_, y[0]), y[1]);
+            if (std::isinf(scene_.friction)) return {force.normal};
+            return {scene_.friction * force.normal - std::abs(force.friction)};
         };
         SteppedRolling motion = rolling_from(scene_, state_, dop853());
         ExplicitMethod<DormandPrince853, RollingEquation> integrator(motion.equation);
@@ -118,11 +118,11 @@ class ContactRun {
         const double t0 = t_;
         add_arc(std::min(t0 + until.time, t_end_), motion);
         if (ending_ || t0 + until.time > t_end_) return finish();
-        State before{};
-        sample(motion, &until.time, 1, &before);
+        ContactSample last{};
+        sample(motion, &until.time, 1, &last);
         t_ += until.time;
-        state_ = before;
-        end_slide(until.which, before);
+        state_ = last.state;
+        end_slide(until.which, last.state);
     }
 
     void end_slide(int which, const State& before) {

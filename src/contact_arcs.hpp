@@ -58,11 +58,6 @@ struct ContactMotion {
     std::vector<Event> events;
 };
 
-struct ContactSample {
-    State state;
-    ContactForce force;
-};
-
 // The state and the force at n times; at an event, what holds after it.
 void sample(const ContactMotion& motion, const double* times, std::size_t n,
             ContactSample* samples);

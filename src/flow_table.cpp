@@ -122,8 +122,10 @@ class TableMaker {
         const FlatView& at = flow_.start;
         const MotionSeries start = motion_series(body_, at.sin, at.cos, flow_.omega * unit_);
         table_.start = piece(start, {0.0, 0.0}, {0.0, 0.0, 0.0});
-        const auto [low, high] = quarter_range(span);
-        fill(low, high);
+        if (!(span <= table_.start.high)) {
+            const auto [low, high] = quarter_range(span);
+            fill(low, high);
+        }
         return std::move(table_);
     }
 
@@ -330,7 +332,8 @@ void sample(const FlowTable& table, const double* times, std::size_t n, FlowSamp
 }
 
 FlowSampler::FlowSampler(const RollingFlow& flow, double span, std::size_t expected) : flow_(flow) {
-    constexpr std::size_t few = 64;
+    // A table of a short move is small.
+    const std::size_t few = span < double(flow.phase.quarter_turn) ? 8 : 40;
     if (expected >= few) table_ = flow_table(flow, span);
 }
 

@@ -66,9 +66,9 @@ std::optional<EndOfSlide> end_of_slide(const Scene& scene, const State& from, do
     const Until until =
         integrate_until(integrator, motion.steps, tolerance, most_steps, infinity, margins, [] {});
     if (until.ending != Ending::stopped || until.which > jams) return std::nullopt;
-    State state{};
-    sample(motion, &until.time, 1, &state);
-    return EndOfSlide{state, until.which};
+    ContactSample last{};
+    sample(motion, &until.time, 1, &last);
+    return EndOfSlide{last.state, until.which};
 }
 
 // Follows a body that rolls over the flat position up to the tip. Only on the way up can c vanish:

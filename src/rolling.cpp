@@ -4,30 +4,6 @@
 #include <cmath>
 
 namespace rolling_ellipse {
-namespace {
-
-struct Accelerations {
-    double theta;
-    double x;
-    double z;
-};
-
-Accelerations rolling_accelerations(const Scene& scene, const Geometry& at, double omega) {
-    const RollingEquation equation(scene.body(), scene.slope);
-    const double omega2 = omega * omega;
-    const double omega_dot = equation.acceleration(at.sin, at.cos, omega);
-    // physics (20)
-    return {omega_dot, at.h * omega_dot + at.dh * omega2, at.dh * omega_dot + at.ddh * omega2};
-}
-
-// Newton's law for the centre: physics (20).
-ContactForce contact_force(const Scene& scene, const Accelerations& of_centre) {
-    return {scene.mass * (scene.gravity * std::cos(scene.slope) + of_centre.z),
-            scene.mass * (of_centre.x - scene.gravity * std::sin(scene.slope))};
-}
-
-}  // namespace
-
 RollingEquation::RollingEquation(const Body& body, double slope)
     : axes_{body.a, body.b},
       a2_(body.a * body.a),
@@ -53,9 +29,25 @@ Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {
     return jacobian;
 }
 
+RollingDynamics::RollingDynamics(const Scene& scene)
+    : equation_(scene.body(), scene.slope),
+      mass_(scene.mass),
+      weight_(scene.gravity * std::cos(scene.slope)),
+      pull_(scene.gravity * std::sin(scene.slope)) {}
+
+RollingDynamics::Accelerations RollingDynamics::accelerations(const Geometry& at,
+                                                              double omega) const {
+    const double omega2 = omega * omega;
+    const double omega_dot = equation_.acceleration(at.sin, at.cos, omega);
+    return {omega_dot, at.h * omega_dot + at.dh * omega2, at.dh * omega_dot + at.ddh * omega2};
+}
+
+ContactForce RollingDynamics::force(const Accelerations& of_centre) const {
+    return {mass_ * (weight_ + of_centre.z), mass_ * (of_centre.x - pull_)};
+}
+
 ContactForce rolling_force(const Scene& scene, double theta, double omega) {
-    const Geometry at = geometry({scene.a, scene.b}, theta);
-    return contact_force(scene, rolling_accelerations(scene, at, omega));
+    return RollingDynamics(scene).force(geometry({scene.a, scene.b}, theta), omega);
 }
 
 // The multipliers of the gradients of f1 ... f4: lambda1 = F, lambda2 = N, and from the rows of psi
@@ -78,14 +70,15 @@ SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, dou
 RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
     const Axes axes{scene.a, scene.b};
     const Geometry at = geometry(axes, theta);
-    const Accelerations acceleration = rolling_accelerations(scene, at, omega);
+    const RollingDynamics dynamics(scene);
+    const RollingDynamics::Accelerations acceleration = dynamics.accelerations(at, omega);
 
     RollingDetail detail;
     detail.state = kinematics(axes, theta, omega);
     const SecondRates rates = contact_point_second_rates(axes, at, detail.state.q[coordinate::psi],
                                                          omega, acceleration.theta);
     detail.q_ddot << acceleration.x, acceleration.z, acceleration.theta, rates.psi, rates.r;
-    detail.force = contact_force(scene, acceleration);
+    detail.force = dynamics.force(acceleration);
     detail.multipliers = contact_multipliers(detail.state.q, detail.force);
     return detail;
 }

@@ -55,6 +55,35 @@ struct ContactForce {
     double friction;  // [N], on the body, along x
 };
 
+// A state of a body on or over the ground, and the force of the ground on it.
+struct ContactSample {
+    State state;
+    ContactForce force;
+};
+
+// Everything that rolling does at a place: physics (20), Newton's law for the centre.
+class RollingDynamics {
+  public:
+    explicit RollingDynamics(const Scene& scene);
+
+    struct Accelerations {
+        double theta;
+        double x;
+        double z;
+    };
+    Accelerations accelerations(const Geometry& at, double omega) const;
+    ContactForce force(const Accelerations& of_centre) const;
+    ContactForce force(const Geometry& at, double omega) const {
+        return force(accelerations(at, omega));
+    }
+
+  private:
+    RollingEquation equation_;
+    double mass_;
+    double weight_;  // g cos(alpha)
+    double pull_;    // g sin(alpha)
+};
+
 ContactForce rolling_force(const Scene& scene, double theta, double omega);
 
 // psi.. and r.. of the contact point, and the multipliers that a contact force makes.

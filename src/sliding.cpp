@@ -34,8 +34,8 @@ SlidingEquation::SlidingEquation(const Scene& scene, double side)
       normal_share_(std::isinf(scene.friction) ? 0.0 : 1.0),
       friction_share_(std::isinf(scene.friction) ? -side : -scene.friction * side) {}
 
-ContactForce SlidingEquation::force(double theta, double omega) const {
-    const auto [c, b] = contact(geometry(axes_, theta), omega);
+ContactForce SlidingEquation::force(const Geometry& at, double omega) const {
+    const auto [c, b] = contact(at, omega);
     return {mass_ * normal_share_ * c / b, mass_ * friction_share_ * c / b};
 }
 

@@ -62,7 +62,7 @@ class SlidingEquation {
     };
     LastMoment last_moment(const Vector<5>& y) const;
 
-    ContactForce force(double theta, double omega) const;
+    ContactForce force(const Geometry& at, double omega) const;
 
   private:
     struct Contact {

@@ -101,13 +101,15 @@ Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long
     }
 }
 
-void sample(const SteppedSliding& motion, const double* times, std::size_t n, State* states) {
+void sample(const SteppedSliding& motion, const double* times, std::size_t n,
+            ContactSample* samples) {
     Integrator integrator(motion.equation);
     look(integrator, motion.steps, times, n,
          [&](std::size_t i, const Knot<4>& knot, const Vector<4>& change) {
              const Vector<4> y = knot.y + (knot.carry + change);
-             states[i] =
-                 in_contact(geometry(motion.axes, y[0]), y[0], y[1], y[2], y[3], Mode::sliding);
+             const Geometry at = geometry(motion.axes, y[0]);
+             samples[i] = {in_contact(at, y[0], y[1], y[2], y[3], Mode::sliding),
+                           motion.equation.force(at, y[1])};
          });
 }
 

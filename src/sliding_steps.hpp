@@ -22,7 +22,8 @@ SteppedSliding sliding_from(const Scene& scene, const State& start, double side)
 Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long max_steps,
                         double t_end, const Checkpoint& checkpoint);
 
-// The states at n times since the start.
-void sample(const SteppedSliding& motion, const double* times, std::size_t n, State* states);
+// The states and forces at n times since the start.
+void sample(const SteppedSliding& motion, const double* times, std::size_t n,
+            ContactSample* samples);
 
 }  // namespace rolling_ellipse

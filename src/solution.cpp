@@ -60,8 +60,9 @@ void contact_forces(const Solution& solution, const Scene& scene, const Settings
     }
     std::vector<FlowSample> states(n);
     RollingSampler{solution, n}(times, n, states.data());
+    const RollingDynamics dynamics(scene);
     for (std::size_t i = 0; i < n; ++i) {
-        forces[i] = rolling_force(scene, states[i].theta, states[i].omega);
+        forces[i] = dynamics.force(geometry({scene.a, scene.b}, states[i].theta), states[i].omega);
     }
 }
 
