@@ -76,15 +76,9 @@ def _column(which: int, column: int) -> cached_property[FloatArray]:
     return _derived(lambda self: np.ascontiguousarray(self._detail[which][:, column]))
 
 
-def _sampled(
-    name: str, otherwise: Callable[[Trajectory], FloatArray]
-) -> cached_property[FloatArray]:
-    """What the contact model has sampled, and others derive."""
-
-    def values(self: Trajectory) -> FloatArray:
-        return otherwise(self) if self.contact is None else getattr(self.contact, name)
-
-    return _derived(values)
+def _touching(which: int) -> cached_property[FloatArray]:
+    """z, x_dot, z_dot, normal or friction force."""
+    return _derived(lambda self: self._touch[which])
 
 
 class ContactSamples(NamedTuple):
@@ -262,11 +256,17 @@ class Trajectory:
     psi_dot, r_dot = _column(1, 3), _column(1, 4)
     x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot = (_column(2, i) for i in range(5))
 
-    z = _sampled("z", lambda self: self._detail[0][:, 1].copy())
-    x_dot = _sampled("x_dot", lambda self: self._detail[1][:, 0].copy())
-    z_dot = _sampled("z_dot", lambda self: self._detail[1][:, 1].copy())
-    normal_force = _sampled("normal_force", lambda self: self._detail[3])
-    friction_force = _sampled("friction_force", lambda self: self._detail[4])
+    @cached_property
+    def _touch(self) -> tuple[FloatArray, ...]:
+        """z, x_dot, z_dot, normal and friction force, without all that `_detail` computes."""
+        if self.contact is not None:
+            return self.contact[:5]
+        if self.coordinates is None:
+            return _core.rolling_contact(self.scene._core_scene, self.theta, self.omega)
+        q, q_dot, _, normal, friction, _ = self._detail
+        return q[:, 1].copy(), q_dot[:, 0].copy(), q_dot[:, 1].copy(), normal, friction
+
+    z, x_dot, z_dot, normal_force, friction_force = (_touching(i) for i in range(5))
 
     @property
     def multipliers(self) -> FloatArray:

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "bindings.hpp"
 #include "rolling.hpp"
 #include "solution.hpp"
@@ -80,6 +82,28 @@ py::tuple rolling_arrays(const Scene& scene, const Array& theta, const Array& om
     return py::make_tuple(q, q_dot, q_ddot, normal, friction, multipliers);
 }
 
+// z, x_dot, z_dot, normal and friction force of rolling.
+py::tuple rolling_contact_arrays(const Scene& scene, const Array& theta, const Array& omega) {
+    const py::ssize_t n = theta.size();
+    const RollingDynamics dynamics(scene);
+    std::vector<Array> out = empty_arrays(5, n);
+    std::array<double*, 5> columns{};
+    std::transform(out.begin(), out.end(), columns.begin(),
+                   [](Array& array) { return array.mutable_data(); });
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const double speed = omega.data()[i];
+            const Geometry at = geometry({scene.a, scene.b}, theta.data()[i]);
+            const ContactForce force = dynamics.force(at, speed);
+            const double row[] = {at.h, at.h * speed, at.dh * speed, force.normal, force.friction};
+            for (std::size_t column = 0; column < columns.size(); ++column) {
+                columns[column][i] = row[column];
+            }
+        }
+    });
+    return py::make_tuple(out[0], out[1], out[2], out[3], out[4]);
+}
+
 // theta'' of rolling at each angle and angular velocity, and its derivatives by both.
 py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const Array& omega) {
     const RollingEquation equation(scene.body(), scene.slope);
@@ -104,6 +128,7 @@ void bind_details(py::module_& m) {
     m.def("multiplier_detail", multiplier_arrays, "scene"_a, "settings"_a, "q"_a, "q_dot"_a);
     m.def("contact_detail", contact_arrays, "scene"_a, "columns"_a);
     m.def("project", projected, "scene"_a, "q"_a, "q_dot"_a);
+    m.def("rolling_contact", rolling_contact_arrays, "scene"_a, "theta"_a, "omega"_a);
     m.def("rolling_detail", rolling_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a);
     m.def("rolling_equation", rolling_equation_arrays, "scene"_a, "theta"_a, "omega"_a);
 }
