@@ -74,6 +74,7 @@ from typing import Any, NamedTuple
 
 import gmpy2  # type: ignore[import-untyped]
 from gmpy2 import mpfr
+from series import product, quotient, square_root, value
 
 TABLE = Path(__file__).with_name("contact_reference.csv")
 AGREEMENT = 1e-34
@@ -145,31 +146,6 @@ MOST_STEPS = 3000
 MOST_EVENTS = 6
 REST_SPEED = 1e-6  # times sqrt(g min(a, b)): smaller rebounds are summed
 LEAST_REBOUND = 1e-3  # the same, of all other scenes
-
-
-def product(p: list[Any], q: list[Any]) -> Any:
-    """The next coefficient of p q, from two lists of one length."""
-    return sum(map(mul, p, reversed(q)))
-
-
-def quotient(p: Any, q: list[Any], known: list[Any]) -> Any:
-    """The next coefficient of y = p / q: p_n = sum q_j y_(n-j), y so far known."""
-    return (p - sum(map(mul, q[1:], reversed(known)))) / q[0]
-
-
-def square_root(squared: Any, known: list[Any]) -> Any:
-    """The next coefficient of a root, from that of its square."""
-    if not known:
-        return gmpy2.sqrt(squared)
-    return (squared - sum(map(mul, known[1:], reversed(known[1:])))) / (2 * known[0])
-
-
-def value(coefficients: list[Any], step: Any) -> Any:
-    """The sum of a Taylor series."""
-    total = mpfr(0)
-    for coefficient in reversed(coefficients):
-        total = total * step + coefficient
-    return total
 
 
 # ---------------------------------------------------------------- the first root of a polynomial

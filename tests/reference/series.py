@@ -1,0 +1,32 @@
+"""Taylor coefficients one after the other (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99)."""
+
+from operator import mul
+from typing import Any
+
+import gmpy2  # type: ignore[import-untyped]
+from gmpy2 import mpfr
+
+
+def product(p: list[Any], q: list[Any]) -> Any:
+    """The next coefficient of p q, from two lists of one length."""
+    return sum(map(mul, p, reversed(q)))
+
+
+def quotient(p: Any, q: list[Any], known: list[Any]) -> Any:
+    """The next coefficient of y = p / q: p_n = sum q_j y_(n-j), y so far known."""
+    return (p - sum(map(mul, q[1:], reversed(known)))) / q[0]
+
+
+def square_root(squared: Any, known: list[Any]) -> Any:
+    """The next coefficient of a root, from that of its square."""
+    if not known:
+        return gmpy2.sqrt(squared)
+    return (squared - sum(map(mul, known[1:], reversed(known[1:])))) / (2 * known[0])
+
+
+def value(coefficients: list[Any], step: Any) -> Any:
+    """The sum of a Taylor series."""
+    total = mpfr(0)
+    for coefficient in reversed(coefficients):
+        total = total * step + coefficient
+    return total
