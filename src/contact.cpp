@@ -12,8 +12,20 @@
 namespace rolling_ellipse {
 namespace {
 
-// Of arcs that have to be integrated; what lies between their steps is right to about 1e-13.
-constexpr Tolerance finest = {2e-15, 2e-17};
+// What an event is called that leads to a mode; sliding has two names.
+EventKind kind_of(Mode next, EventKind sliding) {
+    switch (next) {
+        case Mode::rest:
+            return EventKind::rest;
+        case Mode::rolling:
+            return EventKind::stick;
+        case Mode::flight:
+            return EventKind::lift_off;
+        case Mode::sliding:
+            return sliding;
+    }
+    return sliding;
+}
 
 class ContactRun {
   public:
@@ -136,11 +148,7 @@ class ContactRun {
         const Geometry at = geometry(axes_, before.theta);
         state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
-        const EventKind kind = next.mode == Mode::sliding  ? EventKind::reverse
-                               : next.mode == Mode::flight ? EventKind::lift_off
-                               : next.mode == Mode::rest   ? EventKind::rest
-                                                           : EventKind::stick;
-        go_on_with(next, kind, before);
+        go_on_with(next, kind_of(next.mode, EventKind::reverse), before);
     }
 
     void fly() {
@@ -159,7 +167,7 @@ class ContactRun {
         const Geometry at = geometry(axes_, before.theta);
         state_ = after_collision(scene_, before);
         const double rebound = std::max(state_.z_dot - at.dh * state_.omega, 0.0);
-        const double c = free_contact(scene_, at, state_.omega).c;
+        const double c = SlidingEquation(scene_, 0.0).contact(at, state_.omega).c;
         const double ratio = rebound / (at.dh * before.omega - before.z_dot);
         if (rebound > 0 && (rebound > rest_speed() || c <= 0 || !(ratio < most_settling))) {
             return go_on_with({Mode::flight}, EventKind::impact, before);
@@ -204,11 +212,7 @@ class ContactRun {
         state_ = settled;
         const State before = state_;
         const Continuation next = continuation(scene_, state_);
-        const EventKind kind = next.mode == Mode::rest      ? EventKind::rest
-                               : next.mode == Mode::rolling ? EventKind::stick
-                               : next.mode == Mode::flight  ? EventKind::lift_off
-                                                            : EventKind::slip;
-        go_on_with(next, kind, before);
+        go_on_with(next, kind_of(next.mode, EventKind::slip), before);
     }
 
     void go_on_with(const Continuation& next, EventKind kind, const State& before) {
@@ -258,9 +262,7 @@ class ContactRun {
 
     template <int N>
     void count(const Until& until, const Steps<N>& steps) {
-        counts_.steps += until.counts.steps;
-        counts_.rejected += until.counts.rejected;
-        counts_.evaluations += until.counts.evaluations;
+        counts_ += until.counts;
         if (until.ending == Ending::max_steps) ending_ = ContactEnding::max_steps;
         if (until.ending == Ending::step_too_small) ending_ = ContactEnding::step_too_small;
         if (ending_) t_end_ = t_ + steps.knots.back().t;  // all there is

@@ -19,11 +19,9 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
 
 // It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52).
 Continuation sliding(const Scene& scene, const Geometry& at, double omega, double side) {
-    const FreeContact free = free_contact(scene, at, omega);
-    if (free.c <= 0) return {Mode::flight};
-    const double response =
-        std::isinf(scene.friction) ? -side * free.gtn : free.gnn - scene.friction * side * free.gtn;
-    return {Mode::sliding, side, response <= 0};
+    const auto [c, b] = SlidingEquation(scene, side).contact(at, omega);
+    if (c <= 0) return {Mode::flight};
+    return {Mode::sliding, side, b <= 0};
 }
 
 // Without slip, where rolling is not possible: to the side to which the contact accelerates.

@@ -313,14 +313,7 @@ std::optional<Stretch> stretch_at(const FlowTable& table, double t) {
 
 }  // namespace
 
-FlowTable flow_table(const RollingFlow& flow, double span) {
-    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) {
-        FlowTable nothing{flow, 1.0, {}, {}};  // it is as easy without
-        nothing.start.low = 1.0;
-        return nothing;
-    }
-    return TableMaker(flow).make(span);
-}
+FlowTable flow_table(const RollingFlow& flow, double span) { return TableMaker(flow).make(span); }
 
 void sample(const FlowTable& table, const double* times, std::size_t n, FlowSample* samples) {
     for (std::size_t i = 0; i < n;) {
@@ -338,6 +331,7 @@ void sample(const FlowTable& table, const double* times, std::size_t n, FlowSamp
 }
 
 FlowSampler::FlowSampler(const RollingFlow& flow, double span, std::size_t expected) : flow_(flow) {
+    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
     // A table of a short move is small.
     const std::size_t few = span < double(flow.phase.quarter_turn) ? 8 : 40;
     if (expected >= few) table_ = flow_table(flow, span);

@@ -37,13 +37,14 @@ struct FlowTable {
     std::vector<FlowPiece> pieces;
 };
 
-// For times from 0 to `span`; with an infinite span for any.
+// Of a rotation or a libration, for times from 0 to `span`; with an infinite span for any.
 FlowTable flow_table(const RollingFlow& flow, double span);
 
 // Quickest for times in order; outside of the table's span it is as slow as without.
 void sample(const FlowTable& table, const double* times, std::size_t n, FlowSample* samples);
 
-// A motion to be sampled at so many times in all: few of them are not worth a table.
+// A motion to be sampled at so many times in all: few of them are not worth a table, nor are rest
+// and uniform rotation.
 class FlowSampler {
   public:
     FlowSampler(const RollingFlow& flow, double span, std::size_t expected);

@@ -54,7 +54,6 @@ struct EndOfSlide {
 std::optional<EndOfSlide> end_of_slide(const Scene& scene, const State& from, double side,
                                        double tip) {
     if (std::isinf(scene.friction) && !reaches_the_tip(scene, from)) return std::nullopt;
-    constexpr Tolerance tolerance{2e-15, 2e-17};
     constexpr long most_steps = 2000;  // of half a turn; more only where N = F = 0 at the tip
     SteppedSliding motion = sliding_from(scene, from, side);
     const SlidingEquation& f = motion.equation;
@@ -64,7 +63,7 @@ std::optional<EndOfSlide> end_of_slide(const Scene& scene, const State& from, do
     };
     ExplicitMethod<DormandPrince853, SlidingEquation> integrator(f);
     const Until until =
-        integrate_until(integrator, motion.steps, tolerance, most_steps, infinity, margins, [] {});
+        integrate_until(integrator, motion.steps, finest, most_steps, infinity, margins, [] {});
     if (until.ending != Ending::stopped || until.which > jams) return std::nullopt;
     ContactSample last{};
     sample(motion, &until.time, 1, &last);

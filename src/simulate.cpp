@@ -55,9 +55,11 @@ void end_validity(double t, double t_end, Solution& solution) {
 void judge_by_proof(const Scene& scene, const CertifiedScene& certified, double t_end,
                     Solution& solution) {
     const State& start = certified.start.state;
-    const RollingFlow flow = rolling_flow(scene.body(), start.theta, start.omega, start.x);
+    const EndOfRolling& end = certified.certificate.end;
     solution.reason = certified.reason;
-    end_validity(time_of_end(flow, certified.certificate.end), t_end, solution);
+    if (!end.angle) return;
+    const RollingFlow flow = rolling_flow(scene.body(), start.theta, start.omega, start.x);
+    end_validity(time_of_end(flow, end), t_end, solution);
 }
 
 // On a slope, and where the constraints may be broken, the motion has to be watched.

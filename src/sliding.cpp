@@ -18,12 +18,6 @@ State in_contact(const Geometry& at, double theta, double omega, double x, doubl
     return {theta, omega, x, at.h, slip + at.h * omega, at.dh * omega, mode};
 }
 
-FreeContact free_contact(const Scene& scene, const Geometry& at, double omega) {
-    const double k2 = scene.body().gyration2;
-    return {1 + at.h * at.h / k2, at.h * at.dh / k2, 1 + at.dh * at.dh / k2,
-            scene.gravity * std::cos(scene.slope) + at.ddh * omega * omega};
-}
-
 SlidingEquation::SlidingEquation(const Scene& scene, double side)
     : axes_{scene.a, scene.b},
       side_(side),

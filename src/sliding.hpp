@@ -18,18 +18,6 @@ double noticeable_slip(const State& state, const Geometry& at);
 // The state of a body that keeps to the ground.
 State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode);
 
-// The contact as a free body has it, per mass: what an impulse (along, away from) the ground
-// changes of the contact velocity (Delassus), physics (39), and the acceleration -c of the gap
-// without a force, physics (43).
-struct FreeContact {
-    double gtt;
-    double gtn;
-    double gnn;
-    double c;
-};
-
-FreeContact free_contact(const Scene& scene, const Geometry& at, double omega);
-
 enum SlideEnd { slip_vanishes, pressure_vanishes, jams };
 
 // y = (theta, omega, x, slip velocity), physics (51); side is the sign of the slip. With infinite
@@ -64,13 +52,13 @@ class SlidingEquation {
 
     ContactForce force(const Geometry& at, double omega) const;
 
-  private:
     struct Contact {
         double c;
         double b;
     };
     Contact contact(const Geometry& at, double omega) const;
 
+  private:
     Axes axes_;
     double side_;
     double mass_;

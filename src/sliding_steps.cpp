@@ -18,12 +18,6 @@ struct SlowedSliding {
     Vector<5> operator()(double, const Vector<5>& y) const { return equation.slowed(y); }
 };
 
-void count(const StepCounts& more, StepCounts& counts) {
-    counts.steps += more.steps;
-    counts.rejected += more.rejected;
-    counts.evaluations += more.evaluations;
-}
-
 struct Slowed {
     Until until;
     bool passed;  // B is no longer small: it slides on
@@ -88,11 +82,11 @@ Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long
         Integrator integrator(f);
         Until until = integrate_until(integrator, motion.steps, tolerance, max_steps - counts.steps,
                                       t_end, margins, checkpoint);
-        count(until.counts, counts);
+        counts += until.counts;
         if (f.may_jam() && until.ending == Ending::stopped && until.which == jams) {
             const auto [slow, passed] =
                 slide_slowly(motion, tolerance, max_steps - counts.steps, t_end, checkpoint);
-            count(slow.counts, counts);
+            counts += slow.counts;
             if (passed) continue;
             until = slow;
         }

@@ -9,6 +9,9 @@
 
 namespace rolling_ellipse {
 
+// Of arcs that have to be integrated; what lies between their steps is right to about 1e-13.
+inline constexpr Tolerance finest = {2e-15, 2e-17};
+
 struct SteppedSliding {
     SlidingEquation equation;
     Axes axes;

@@ -162,6 +162,12 @@ Onset painleve(const Shape& shape) {
 
 }  // namespace
 
+double roll_over_speed(const Body& body) {
+    const FlatView at = flat_view({body.a, body.b}, 0.0);
+    const double flat_inertia = body.gyration2 + square(at.short_axis);
+    return std::sqrt(2 * body.gravity * (at.long_axis - at.short_axis) / flat_inertia);
+}
+
 Thresholds thresholds(const Body& body, double friction) {
     const FlatView at = flat_view({body.a, body.b}, 0.0);
     const double unit = at.long_axis;
@@ -171,8 +177,7 @@ Thresholds thresholds(const Body& body, double friction) {
 
     Thresholds result{};
     // physics (44, 45)
-    result.roll_over_speed =
-        std::sqrt(2 * body.gravity * (at.long_axis - at.short_axis) / flat_inertia);
+    result.roll_over_speed = roll_over_speed(body);
     result.rocking_rate = std::sqrt(body.gravity * at.c2 / (at.short_axis * flat_inertia));
     result.tip_rate = std::sqrt(body.gravity * at.c2 / (at.long_axis * tip_inertia));
     result.contact_loss_speed = infinity;

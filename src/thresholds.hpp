@@ -25,4 +25,7 @@ struct Thresholds {
 
 Thresholds thresholds(const Body& body, double friction);
 
+// The first of them alone: it needs no search.
+double roll_over_speed(const Body& body);
+
 }  // namespace rolling_ellipse

@@ -55,6 +55,13 @@ def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
     ]
 
 
+def uniform_disc(a: Any, b: Any) -> FloatArray:
+    """Return k^2 = I/m of uniform discs."""
+    with np.errstate(over="ignore"):  # the core refuses by name what is too large
+        squares: FloatArray = (array("a", a) ** 2 + array("b", b) ** 2) / 4
+    return squares
+
+
 def choice(name: str, value: Any, valid: tuple[str, ...]) -> str:
     """Return ``value`` if it is one of the valid names, or raise ValueError listing them."""
     if isinstance(value, str) and value in valid:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _restitution
-from ._check import FloatArray, array, broadcast, choice
+from ._check import FloatArray, broadcast, choice, uniform_disc
 
 LAWS = ("stronge", "poisson", "newton")
 
@@ -112,11 +112,6 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     require("gyration2", "a positive finite area [m^2]", k2, (k2 > 0) & np.isfinite(k2))
     spin = np.sqrt(k2) * omega
     return _shaped(np.hypot(np.hypot(x_dot, z_dot), spin), shape)
-
-
-def uniform_disc(a: Any, b: Any) -> Any:
-    with np.errstate(over="ignore"):  # the core refuses by name what is too large
-        return (array("a", a) ** 2 + array("b", b) ** 2) / 4
 
 
 def require(name: str, requirement: str, values: FloatArray, holds: npt.NDArray[np.bool_]) -> None:

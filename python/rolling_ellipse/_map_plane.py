@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ._check import FloatArray, choice, number
-from .motion import uniform_disc_gyration2
+from ._check import FloatArray, choice, number, uniform_disc
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")
 _LEVELS = {"energy", "speed"}  # of which one follows from the other
@@ -53,7 +52,7 @@ class Plane:
     def roll_over_speed(self, aspect: Any) -> Any:
         """What rolling over takes, at the flat position [rad/s], physics (44)."""
         a = np.asarray(aspect) * self.b
-        inertia = uniform_disc_gyration2(a, np.asarray(self.b)) + self.b**2
+        inertia = uniform_disc(a, np.asarray(self.b)) + self.b**2
         return np.sqrt(2 * self.gravity * (a - self.b) / inertia)
 
     def scenes(self, x: FloatArray, y: FloatArray) -> dict[str, Any]:

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from . import geometry
-from ._check import FloatArray, array, choice
-from ._collisions import LAWS, collide, kinetic_speed, require, uniform_disc
+from ._check import FloatArray, array, choice, uniform_disc
+from ._collisions import LAWS, collide, kinetic_speed, require
 
 __all__ = ["LAWS", "FittedImpacts", "collide", "fit", "kinetic_speed"]
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, array, broadcast
+from ._check import FloatArray, array, broadcast, uniform_disc
 from .scene import Scene, require_scene
 
 _SCALARS = (float, int, np.float64)
@@ -77,7 +77,7 @@ def flow(
         arguments["gyration2"] = gyration2
     shape, columns = broadcast(**arguments)
     if gyration2 is None:
-        columns.append(uniform_disc_gyration2(columns[1], columns[2]))
+        columns.append(uniform_disc(columns[1], columns[2]))
     return _shaped(_core.flow_array(math.prod(shape), columns, threads), shape)
 
 
@@ -86,12 +86,6 @@ def _shaped(results: tuple[FloatArray, ...], shape: tuple[int, ...]) -> tuple[An
         return tuple(float(v[0]) for v in results)  # type: ignore[return-value]
     theta, omega, x = (v.reshape(shape) for v in results)
     return theta, omega, x
-
-
-def uniform_disc_gyration2(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return k^2 of uniform discs, of the shape that `a` and `b` have together."""
-    with np.errstate(over="ignore"):  # the core refuses by name what is too large
-        return (a**2 + b**2) / 4
 
 
 def worker_count(workers: int) -> int:

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._check import broadcast
+from ._check import broadcast, uniform_disc
 from ._core import Outcome
-from .motion import uniform_disc_gyration2, worker_count
+from .motion import worker_count
 
 
 def classify(
@@ -78,6 +78,6 @@ def classify(
         arguments["gyration2"] = gyration2
     shape, columns = broadcast(**arguments)
     if gyration2 is None:
-        columns.append(uniform_disc_gyration2(columns[0], columns[1]))
+        columns.append(uniform_disc(columns[0], columns[1]))
     codes = _core.classify_array(math.prod(shape), columns, threads)
     return Outcome(int(codes[0])) if shape == () else codes.reshape(shape)

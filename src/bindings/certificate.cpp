@@ -54,6 +54,7 @@ void bind_certificate(py::module_& m) {
                               c.smallest_normal_force_angle, c.largest_friction_needed,
                               c.largest_friction_needed_angle, c.end.angle, certified.reason);
     });
+    m.def("roll_over_speed", [](const Scene& scene) { return roll_over_speed(scene.body()); });
     m.def(
         "thresholds",
         [](double a, double b, double gravity, std::optional<double> gyration2, double friction) {

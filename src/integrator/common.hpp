@@ -60,6 +60,13 @@ struct StepCounts {
     long steps = 0;
     long rejected = 0;
     long evaluations = 0;  // of f
+
+    StepCounts& operator+=(const StepCounts& more) {
+        steps += more.steps;
+        rejected += more.rejected;
+        evaluations += more.evaluations;
+        return *this;
+    }
 };
 
 // What is to happen after a step: nothing, f to be evaluated anew, or an end.

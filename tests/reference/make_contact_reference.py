@@ -74,7 +74,7 @@ from typing import Any, NamedTuple
 
 import gmpy2  # type: ignore[import-untyped]
 from gmpy2 import mpfr
-from series import product, quotient, square_root, value
+from series import Road, product, quotient, square_root, value
 
 TABLE = Path(__file__).with_name("contact_reference.csv")
 AGREEMENT = 1e-34
@@ -124,18 +124,6 @@ COLUMNS = ["name", *INPUTS, "event", *Row._fields, *(f"unit_{name}" for name in 
 
 
 # ---------------------------------------------------------------- Taylor series
-
-
-class Road(NamedTuple):
-    """How a motion is computed: working digits, order of the series, first term left out."""
-
-    digits: int
-    order: int
-    tolerance: float
-
-    def context(self) -> Any:
-        """The arithmetic to work in."""
-        return gmpy2.context(precision=math.ceil(self.digits * math.log2(10)))
 
 
 TABLE_ROAD = Road(64, 50, 1e-50)

@@ -49,7 +49,7 @@ from typing import Any, NamedTuple
 
 import gmpy2  # type: ignore[import-untyped]
 from gmpy2 import mpfr
-from series import product, quotient, square_root, value
+from series import Road, product, quotient, square_root, value
 
 TABLE = Path(__file__).with_name("slope_reference.csv")
 LEVEL_TABLE = Path(__file__).with_name("rolling_reference.csv")
@@ -87,18 +87,6 @@ COLUMNS = ["kind", *INPUTS, *Answer._fields, *(f"unit_{name}" for name in Answer
 
 
 # ---------------------------------------------------------------- Taylor series of the motion
-
-
-class Road(NamedTuple):
-    """How a motion is computed: working digits, order of the series, first term left out."""
-
-    digits: int
-    order: int
-    tolerance: float
-
-    def context(self) -> Any:
-        """The arithmetic to work in."""
-        return gmpy2.context(precision=math.ceil(self.digits * math.log2(10)))
 
 
 TABLE_ROAD = Road(60, 50, 1e-50)

@@ -1,10 +1,23 @@
 """Taylor coefficients one after the other (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99)."""
 
+import math
 from operator import mul
-from typing import Any
+from typing import Any, NamedTuple
 
 import gmpy2  # type: ignore[import-untyped]
 from gmpy2 import mpfr
+
+
+class Road(NamedTuple):
+    """How a motion is computed: working digits, order of the series, first term left out."""
+
+    digits: int
+    order: int
+    tolerance: float
+
+    def context(self) -> Any:
+        """The arithmetic to work in."""
+        return gmpy2.context(precision=math.ceil(self.digits * math.log2(10)))
 
 
 def product(p: list[Any], q: list[Any]) -> Any:
