@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "certificate.hpp"
@@ -31,31 +32,28 @@ class ContactRun {
   public:
     ContactRun(const Scene& scene, const State& start, const Settings& settings, double t_end,
                const Checkpoint& checkpoint)
-        : scene_(scene),
-          axes_{scene.a, scene.b},
+        : units_(natural_units(scene)),
+          scene_(body_in_units(scene, units_)),
+          axes_{scene_.a, scene_.b},
           settings_(settings),
-          t_end_(t_end),
+          t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
           checkpoint_(checkpoint),
-          state_(start),
-          motion_{scene, {}, {}} {}
+          state_(in_units(start, units_)),
+          motion_{units_, scene_, {}, {}} {}
 
     ContactIntegration run() {
-        if (state_.mode == Mode::flight) {
-            next_ = {Mode::flight};
-        } else {
-            next_ = continuation(scene_, state_);
-            if (next_.jams) note(EventKind::jam, state_);
-        }
+        next_ = first_continuation(scene_, state_);
+        if (is_stuck()) note(EventKind::jam, state_);
         while (!ending_) {
             checkpoint_();
             state_.mode = next_.mode;
-            if (next_.jams) {
-                jam();
+            if (is_stuck()) {
+                stop_stuck();
             } else {
                 follow();
             }
         }
-        return {std::move(motion_), *ending_, t_, counts_};
+        return {std::move(motion_), *ending_, t_ * units_.time, counts_};
     }
 
   private:
@@ -77,9 +75,12 @@ class ContactRun {
         finish();
     }
 
-    void jam() {
+    bool is_stuck() const { return next_.paradox != Painleve::determined; }
+
+    void stop_stuck() {
         add_arc(t_, Jam{state_});
-        ending_ = ContactEnding::jammed;
+        ending_ = next_.paradox == Painleve::no_motion ? ContactEnding::jammed
+                                                       : ContactEnding::undetermined;
     }
 
     void roll_exactly() {
@@ -87,6 +88,9 @@ class ContactRun {
         const EndOfRolling end =
             end_of_rolling(scene_.body(), scene_.friction, state_.theta, state_.omega);
         const double lasts = end.validity == Validity::invalid ? time_of_end(flow, end) : infinity;
+        if (lasts == infinity) {
+            validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
+        }
         if (lasts > 0) add_arc(std::min(t_ + lasts, t_end_), ExactRolling{axes_, flow});
         if (t_ + lasts > t_end_) return finish();
         const FlowSample last = sample(flow, lasts);
@@ -119,7 +123,8 @@ class ContactRun {
         const State before = in_contact(at, theta, omega, x, 0.0, Mode::rolling);
         t_ += after;
         state_ = before;
-        go_on_with(continuation(scene_, before, false), EventKind::slip, before);
+        const Continuation next = continuation(scene_, before, false);
+        go_on_with(next, kind_of(next.mode, EventKind::slip), before);
     }
 
     void slide() {
@@ -139,7 +144,7 @@ class ContactRun {
 
     void end_slide(int which, const State& before) {
         if (which == jams) {
-            next_.jams = true;
+            next_.paradox = Painleve::no_motion;
             return note(EventKind::jam, before);
         }
         if (which == pressure_vanishes) {
@@ -219,14 +224,15 @@ class ContactRun {
         next_ = next;
         state_.mode = next.mode;
         note(kind, before);
-        if (next.jams && !ending_) note(EventKind::jam, state_);
+        if (is_stuck() && !ending_) note(EventKind::jam, state_);
     }
 
     void note(EventKind kind, const State& before) {
         if (static_cast<long>(motion_.events.size()) == settings_.max_events) {
             ending_ = ContactEnding::max_events;
         } else {
-            motion_.events.push_back({t_, kind, before, state_});
+            motion_.events.push_back(
+                {t_ * units_.time, kind, in_si(before, units_), in_si(state_, units_)});
         }
     }
 
@@ -249,8 +255,8 @@ class ContactRun {
 
     double rest_speed() const {
         constexpr double small = 1e-6;
-        return settings_.rest_speed.value_or(
-            small * std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b)));
+        if (settings_.rest_speed) return *settings_.rest_speed / units_.speed();
+        return small * std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b));
     }
 
     Tolerance tolerance() const {
@@ -270,8 +276,10 @@ class ContactRun {
 
     static constexpr double most_settling = 0.9999;  // the ratio of bounces that come to an end
 
-    const Scene& scene_;
-    Axes axes_;
+    // Times, states and arcs are in units, which the settings are not.
+    const Units units_;
+    const Scene scene_;
+    const Axes axes_;
     const Settings& settings_;
     double t_end_;
     const Checkpoint& checkpoint_;

@@ -7,12 +7,13 @@
 
 namespace rolling_ellipse {
 
-enum class ContactEnding { reached, jammed, max_events, max_steps, step_too_small };
+// undetermined: more than one motion goes on.
+enum class ContactEnding { reached, jammed, undetermined, max_events, max_steps, step_too_small };
 
 struct ContactIntegration {
     ContactMotion motion;
     ContactEnding ending;
-    double reached_until;  // time of the event that ended it
+    double reached_until;  // time at which it ended [s]
     StepCounts counts;
 };
 

@@ -77,23 +77,25 @@ void sample(const ContactMotion& motion, const double* times, std::size_t n,
             ContactSample* samples) {
     std::vector<double> since;
     for (std::size_t i = 0; i < n;) {
-        // The last arc that has begun at times[i], and all that follow in it.
+        // The last arc that has begun at the time i, and all that follow in it.
+        const auto time = [&](std::size_t j) { return times[j] / motion.units.time; };
         const auto later =
-            std::upper_bound(motion.arcs.begin(), motion.arcs.end(), times[i],
+            std::upper_bound(motion.arcs.begin(), motion.arcs.end(), time(i),
                              [](double t, const ContactArc& arc) { return t < arc.t0; });
         const ContactArc& arc = *(later - 1);
+        const double end = later == motion.arcs.end() ? infinity : later->t0;
         since.clear();
-        for (std::size_t j = i;
-             j < n && times[j] >= arc.t0 && (later == motion.arcs.end() || times[j] < later->t0);
-             ++j) {
-            since.push_back(times[j] - arc.t0);
+        for (std::size_t j = i; j < n && time(j) >= arc.t0 && time(j) < end; ++j) {
+            since.push_back(time(j) - arc.t0);
         }
         std::visit(
             [&](const auto& of) {
                 sample_arc(motion.scene, of, since.data(), since.size(), samples + i);
             },
             arc.motion);
-        i += since.size();
+        for (const std::size_t last = i + since.size(); i < last; ++i) {
+            samples[i] = in_si(samples[i], motion.units);
+        }
     }
 }
 

@@ -10,6 +10,7 @@
 #include "flow_table.hpp"
 #include "rolling_steps.hpp"
 #include "sliding_steps.hpp"
+#include "units.hpp"
 
 namespace rolling_ellipse {
 
@@ -53,12 +54,14 @@ struct ContactArc {
 };
 
 struct ContactMotion {
-    Scene scene;
+    Units units;  // of scene and arcs; events are in SI units
+    Scene scene;  // body and ground
     std::vector<ContactArc> arcs;
     std::vector<Event> events;
 };
 
-// The state and the force at n times; at an event, what holds after it.
+// The state and the force at n times, all in SI units; at an event, what holds after it. A motion
+// without arcs has none.
 void sample(const ContactMotion& motion, const double* times, std::size_t n,
             ContactSample* samples);
 

@@ -135,8 +135,8 @@ FlatView flat_view(const Axes& axes, double theta) {
     return {long_axis, short_axis, c2, c < 0 ? -s : s, std::abs(c)};
 }
 
-bool is_equilibrium(const Geometry& at) {
-    return std::abs(at.dh) <= equilibrium_ulps * epsilon * at.h;
+bool is_equilibrium(const Geometry& at, double incline) {
+    return std::abs(at.dh - incline * at.h) <= equilibrium_ulps * epsilon * at.h;
 }
 
 // physics (5)

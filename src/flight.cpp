@@ -95,6 +95,9 @@ class Curvature {
 
     Interval first() const { return {0.0, switching_ ? first_end_ : infinity, convex_}; }
 
+    // When a convex interval has its tip below, in its middle.
+    double tip_time(const Interval& interval) const { return interval.end - convex_time_ / 2; }
+
     Interval after(const Interval& last) const {
         const bool convex = !last.convex;
         return {last.end, last.end + (convex ? convex_time_ : concave_time_), convex};
@@ -171,6 +174,10 @@ double touch_down(const Flight& flight) {
             if (before < 0) {
                 const double lowest = after > 0 ? bisected(rate, now.begin, end) : end;
                 if (gap.value(lowest) <= 0) return bisected(value, now.begin, lowest);
+                // Where the tip passes below a centre no higher than that, it touches, though the
+                // gap may be rounded to more than nothing where the body spins fast for its fall.
+                const double tip = curvature.tip_time(now);
+                if (now.begin < tip && tip <= end && gap.height(tip) <= tall) return lowest;
             }
         } else if (after < 0 && gap.value(end) <= 0) {
             return bisected(value, before > 0 ? bisected(rate, now.begin, end) : now.begin, end);

@@ -193,6 +193,13 @@ double longest_time(const RollingFlow& flow) {
     return 1e15 * flow.phase.half_turn.high;
 }
 
+void validate_time(double t, double longest) {
+    if (!std::isfinite(t)) refuse("t", "finite [s]", t);
+    if (std::abs(t) > longest) {
+        refuse("t", "at most 1e15 half turns or swings, " + text(longest) + " [s]", t);
+    }
+}
+
 double period(const RollingFlow& flow) {
     if (flow.kind == MotionKind::rest) return infinity;
     if (flow.kind == MotionKind::uniform) return 2 * pi / std::abs(flow.omega);

@@ -50,6 +50,9 @@ FlowSample sample(const RollingFlow& flow, double t);
 // 1e15 half turns: beyond, a double does not know the phase.
 double longest_time(const RollingFlow& flow);
 
+// Throws std::invalid_argument for a time that is not finite or longer, in either direction.
+void validate_time(double t, double longest);
+
 // A time since the start as one since the flat position, half turns (or swings) made in between.
 struct PhaseInstant {
     DoubleDouble time;  // within half a half turn of it

@@ -178,7 +178,8 @@ InitialState initial_state(const Scene& scene) {
     apply(scene, at, reaction, state);
     state.omega = noticeable(state.omega);
     state.mode = mode_in_contact(scene, at, state, reaction.sticks);
-    if (state.mode == Mode::rolling && state.omega == 0 && scene.slope == 0 && is_equilibrium(at)) {
+    if (state.mode == Mode::rolling && state.omega == 0 &&
+        is_equilibrium(at, std::tan(scene.slope))) {
         state.mode = Mode::rest;
     }
     return result;

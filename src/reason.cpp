@@ -66,6 +66,10 @@ std::string why_stopped(ContactEnding ending, const Settings& settings, double t
             return "the sliding body jams" + place +
                    ": friction would have to push it into the ground (Painleve), and no motion of "
                    "a rigid body goes on";
+        case ContactEnding::undetermined:
+            return "two motions of the sliding body go on" + place +
+                   ": it flies off, or its contact is pressed by the friction that it needs for "
+                   "that (Painleve), and rigid mechanics does not choose";
         case ContactEnding::max_events:
             return "max_events = " + std::to_string(settings.max_events) + " events ended" + place +
                    ": allow more of them";

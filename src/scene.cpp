@@ -15,7 +15,7 @@ constexpr double smallest = 1e-30;
 constexpr double largest = 1e30;
 constexpr double largest_number = 1e50;  // of positions, velocities, impulses
 constexpr double inertia_limit = 1e30;   // of k^2 beside the long semi-axis squared, either way
-constexpr double energy_limit = 1e100;   // of the kinetic energy beside m g times that axis
+constexpr double energy_limit = 1e100;   // of a kinetic energy beside m g times that axis
 constexpr double aspect_limit = 1e3;
 constexpr double touching_ulps = 8;
 
@@ -88,6 +88,17 @@ void validate_motion(const Body& body, double theta, double omega) {
     }
 }
 
+void validate_velocity(const Body& body, double x_dot, double z_dot) {
+    const double most = std::sqrt(energy_limit * body.gravity * std::max(body.a, body.b));
+    const auto require = [&](const std::string& name, double speed) {
+        require_finite(name, " [m/s]", speed);
+        if (std::abs(speed) <= most) return;
+        refuse(name, "at most " + text(most) + " [m/s] in size for this body", speed);
+    };
+    require("x_dot", x_dot);
+    require("z_dot", z_dot);
+}
+
 void validate_friction(double friction) {
     if (!(friction >= 0)) refuse("friction", "a coefficient of at least 0 (inf allowed)", friction);
 }
@@ -117,8 +128,7 @@ void validate(const Scene& scene) {
     validate_motion(scene.body(), scene.theta, scene.omega);
     require_finite("x", " [m]", scene.x);
     if (scene.z) require_finite("z", " [m]", *scene.z);
-    if (scene.x_dot) require_finite("x_dot", " [m/s]", *scene.x_dot);
-    if (scene.z_dot) require_finite("z_dot", " [m/s]", *scene.z_dot);
+    validate_velocity(scene.body(), scene.x_dot.value_or(0.0), scene.z_dot.value_or(0.0));
     if (scene.impulse) validate(*scene.impulse);
     state_before_impulse(scene);
 }
@@ -153,7 +163,7 @@ State state_before_impulse(const Scene& scene) {
     }
     if (state.z_dot == rolling_z_dot) {
         const bool at_rest =
-            scene.slope == 0 && state.omega == 0 && state.x_dot == 0 && is_equilibrium(at);
+            state.omega == 0 && state.x_dot == 0 && is_equilibrium(at, std::tan(scene.slope));
         state.mode = at_rest                        ? Mode::rest
                      : state.x_dot == rolling_x_dot ? Mode::rolling
                                                     : Mode::sliding;

@@ -74,6 +74,7 @@ std::string text(double value);
 void validate_axes(double a, double b);
 void validate(const Body& body);
 void validate_motion(const Body& body, double theta, double omega);
+void validate_velocity(const Body& body, double x_dot, double z_dot);
 void validate_friction(double friction);
 void validate(const Impulse& impulse);
 void validate(const Scene& scene);

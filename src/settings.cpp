@@ -26,6 +26,7 @@ void require_positive(const std::string& name, long count) {
 }
 
 void validate_step(const Settings& settings, double t_end) {
+    constexpr double smallest_step_ulps = 10;  // of the last time, as for steps of controlled error
     const Method method = settings.method;
     if (!settings.step) {
         if (!needs_step(method)) return;
@@ -39,6 +40,11 @@ void validate_step(const Settings& settings, double t_end) {
     if (!(step > 0 && std::isfinite(step))) refuse("step", "a positive finite time [s]", step);
     if (step > t_end && t_end > 0) {
         refuse("step", "at most the time simulated, " + text(t_end) + " [s]", step);
+    }
+    const double smallest = smallest_step_ulps * (t_end - std::nextafter(t_end, 0.0));
+    if (step < smallest && step < t_end) {
+        refuse("step", "at least " + text(smallest) + " [s], which the last time still knows",
+               step);
     }
 }
 
@@ -74,9 +80,10 @@ void validate_method(const Settings& settings) {
 }
 
 void validate_baumgarte(const Settings& settings) {
+    constexpr double largest_gain = 1e50;  // its square times a residual is still a force
     for (const double gain : {settings.baumgarte_alpha, settings.baumgarte_beta}) {
-        if (!(gain >= 0 && std::isfinite(gain))) {
-            refuse("baumgarte", "two finite gains of at least 0 [1/s]", gain);
+        if (!(gain >= 0 && gain <= largest_gain)) {
+            refuse("baumgarte", "two gains of at least 0 and at most 1e50 [1/s]", gain);
         }
     }
 }

@@ -76,10 +76,7 @@ void judge_by_watch(const Scene& scene, const Settings& settings, double t_end,
 
 Solution exact_rolling(const Scene& scene, const State& start, double t_end) {
     const RollingFlow flow = rolling_flow(scene.body(), start.theta, start.omega, start.x);
-    if (t_end > longest_time(flow)) {
-        refuse("t", "at most 1e15 half turns or swings, " + text(longest_time(flow)) + " [s]",
-               t_end);
-    }
+    validate_time(t_end, longest_time(flow));
     Solution solution{flow};
     solution.followed_until = t_end;
     return solution;
@@ -101,6 +98,7 @@ Status status(ContactEnding ending) {
         case ContactEnding::reached:
             return Status::completed;
         case ContactEnding::jammed:
+        case ContactEnding::undetermined:
             return Status::jammed;
         case ContactEnding::max_events:
             return Status::max_events;
@@ -132,6 +130,7 @@ CertifiedScene certify(const Scene& scene) {
     result.start = initial_state(scene);
     const State& start = result.start.state;
     validate_motion(scene.body(), start.theta, start.omega);
+    validate_velocity(scene.body(), start.x_dot, start.z_dot);
     if (why_no_proof(scene, start).empty()) {
         result.certificate =
             certify_rolling(scene.body(), scene.mass, scene.friction, start.theta, start.omega);

@@ -7,9 +7,6 @@ namespace {
 
 using Integrator = ExplicitMethod<DormandPrince853, SlidingEquation>;
 
-// Of B: below it the slower clock is the better one, physics (54).
-constexpr double small_response = 1e-2;
-
 // Sliding by the clock that slows down near B = 0.
 struct SlowedSliding {
     static constexpr int size = 5;
@@ -67,7 +64,8 @@ SteppedSliding sliding_from(const Scene& scene, const State& start, double side)
     const double slip = slip_velocity(start, geometry(axes, start.theta));
     return {SlidingEquation(scene, side),
             axes,
-            {0.0, {{0.0, {start.theta, start.omega, start.x, slip}, Vector<4>::Zero(), 0.0}}}};
+            start.x,
+            {0.0, {{0.0, {start.theta, start.omega, 0.0, slip}, Vector<4>::Zero(), 0.0}}}};
 }
 
 Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long max_steps,
@@ -79,6 +77,8 @@ Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long
     };
     StepCounts counts;
     for (;;) {
+        checkpoint();
+        const double begin = motion.steps.knots.back().t;
         Integrator integrator(f);
         Until until = integrate_until(integrator, motion.steps, tolerance, max_steps - counts.steps,
                                       t_end, margins, checkpoint);
@@ -87,8 +87,10 @@ Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long
             const auto [slow, passed] =
                 slide_slowly(motion, tolerance, max_steps - counts.steps, t_end, checkpoint);
             counts += slow.counts;
-            if (passed) continue;
+            ++counts.steps;  // a change of the clock counts as one: there is no end of them else
+            if (passed && motion.steps.knots.back().t > begin) continue;
             until = slow;
+            if (passed) until.ending = Ending::step_too_small;
         }
         until.counts = counts;
         return until;
@@ -102,7 +104,7 @@ void sample(const SteppedSliding& motion, const double* times, std::size_t n,
          [&](std::size_t i, const Knot<4>& knot, const Vector<4>& change) {
              const Vector<4> y = knot.y + (knot.carry + change);
              const Geometry at = geometry(motion.axes, y[0]);
-             samples[i] = {in_contact(at, y[0], y[1], y[2], y[3], Mode::sliding),
+             samples[i] = {in_contact(at, y[0], y[1], motion.x0 + y[2], y[3], Mode::sliding),
                            motion.equation.force(at, y[1])};
          });
 }

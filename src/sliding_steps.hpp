@@ -12,10 +12,14 @@ namespace rolling_ellipse {
 // Of arcs that have to be integrated; what lies between their steps is right to about 1e-13.
 inline constexpr Tolerance finest = {2e-15, 2e-17};
 
+// Of B, physics (50): below it the slower clock is the better one, physics (54).
+inline constexpr double small_response = 1e-2;
+
 struct SteppedSliding {
     SlidingEquation equation;
     Axes axes;
-    Steps<4> steps;  // of (theta, omega, x, slip velocity)
+    double x0;
+    Steps<4> steps;  // of (theta, omega, x - x0, slip velocity)
 };
 
 // The start of sliding, with the slip to the given side (0: without friction there is none).

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "energy_range.hpp"
-#include "lift_off.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -168,7 +167,7 @@ double roll_over_speed(const Body& body) {
     return std::sqrt(2 * body.gravity * (at.long_axis - at.short_axis) / flat_inertia);
 }
 
-Thresholds thresholds(const Body& body, double friction) {
+Thresholds thresholds(const Body& body, double friction, const Checkpoint& checkpoint) {
     const FlatView at = flat_view({body.a, body.b}, 0.0);
     const double unit = at.long_axis;
     const Shape shape{at.short_axis / unit, body.gyration2 / square(unit), at.c2 / square(unit)};
@@ -182,7 +181,7 @@ Thresholds thresholds(const Body& body, double friction) {
     result.tip_rate = std::sqrt(body.gravity * at.c2 / (at.long_axis * tip_inertia));
     result.contact_loss_speed = infinity;
     result.slip_speed = infinity;
-    result.lift_off_speed = infinity;
+    result.lift_off = {infinity, {}};
     result.painleve_friction = infinity;
     if (at.c2 == 0) return result;
 
@@ -199,13 +198,14 @@ Thresholds thresholds(const Body& body, double friction) {
     const Onset slipping = slip(shape, friction);
     result.slip_speed = flat_speed(slipping);
     result.slip_angle = theta_of(slipping.angle);
-    result.lift_off_speed = lift_off_speed(body, friction, result.slip_speed);
     const EnergyRange separatrix = separatrix_range(shape.short_axis, shape.gyration2, shape.c2);
     result.friction_to_roll_over =
         force_extremes(separatrix, force_polynomials(separatrix)).most_friction.needed();
     const Onset jamming = painleve(shape);
     result.painleve_friction = jamming.energy;
     result.painleve_angle = theta_of(jamming.angle);
+    result.lift_off =
+        lift_off(body, friction, result.slip_speed, result.painleve_friction, checkpoint);
     return result;
 }
 

@@ -18,6 +18,13 @@ class Mode(enum.IntEnum):
     FLIGHT = 2
     REST = 3
 
+class Painleve(enum.Enum):
+    """Does exactly one motion go on?"""
+
+    DETERMINED = 0
+    NO_MOTION = 1
+    TWO_MOTIONS = 2
+
 class Validity(enum.Enum):
     """Is rolling valid for the whole motion?"""
 
@@ -155,7 +162,9 @@ def centre_path(n: int, arguments: list[FloatArray]) -> FloatArray: ...
 def arc_length(n: int, arguments: list[FloatArray]) -> FloatArray: ...
 def initial_state(
     scene: Scene,
-) -> tuple[float, float, float, float, float, float, Mode, float, float, float]: ...
+) -> tuple[
+    float, float, float, float, float, float, Mode, float, float, float, Mode, Painleve
+]: ...
 def certify(
     scene: Scene,
 ) -> tuple[Validity, float | None, float | None, float | None, float | None, float | None, str]: ...
@@ -164,7 +173,18 @@ def roll_over_speed(scene: Scene) -> float: ...
 def thresholds(
     a: float, b: float, gravity: float, gyration2: float | None, friction: float
 ) -> tuple[
-    float, float, float | None, float, float | None, float, float, float, float | None, float, float
+    float,
+    float,
+    float | None,
+    float,
+    float | None,
+    float | None,
+    tuple[tuple[float, float], ...],
+    float,
+    float,
+    float | None,
+    float,
+    float,
 ]: ...
 def simulate(scene: Scene, settings: Settings, t_end: float) -> Solution: ...
 def simulate_coordinates(

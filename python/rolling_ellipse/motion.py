@@ -16,6 +16,7 @@ from ._check import FloatArray, array, broadcast, uniform_disc
 from .scene import Scene, require_scene
 
 _SCALARS = (float, int, np.float64)
+_MOST_WORKERS = 1024
 
 
 def flow(
@@ -48,7 +49,8 @@ def flow(
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
     workers : int
-        Number of threads, -1 for all; the same bits for any number.
+        Number of threads, up to 1024, -1 for all cores; the same bits for any number. Where fewer
+        can be started, fewer do the work.
 
     Returns
     -------
@@ -95,8 +97,10 @@ def worker_count(workers: int) -> int:
     workers = operator.index(workers)
     if workers == -1:
         return os.cpu_count() or 1
-    if workers < 1:
-        raise ValueError(f"workers must be a positive int, or -1 for all cores, got {workers}")
+    if not 1 <= workers <= _MOST_WORKERS:
+        raise ValueError(
+            f"workers must be an int from 1 to {_MOST_WORKERS}, or -1 for all cores, got {workers}"
+        )
     return workers
 
 

@@ -59,7 +59,7 @@ def classify(
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
     workers : int
-        Number of threads, -1 for all; the same answers for any number.
+        Number of threads, up to 1024, -1 for all cores; the same answers for any number.
 
     Returns
     -------

@@ -61,13 +61,14 @@ class InitialState:
     theta, omega, x, z, x_dot, z_dot : float
         Angle [rad], angular velocity [rad/s], centre [m] and its velocity [m/s].
     mode : Mode
-        What the body does now: ROLLING, SLIDING, FLIGHT or REST.
+        What the body does from now on, as the contact with its friction allows it: ROLLING,
+        SLIDING, FLIGHT or REST.
     reaction_x, reaction_z : float
         Impulse of the ground on the body during the blow [N s].
     free_omega : float
         Angular velocity without the ground's reaction, the report's eq 48 [rad/s].
     reason : str
-        One sentence on what the blow did and why.
+        One sentence on what the blow did, what the body then does, and why.
     """
 
     theta: float
@@ -105,7 +106,7 @@ class Scene:
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     theta, omega : float
-        Angle [rad] and angular velocity [rad/s].
+        Angle [rad] and angular velocity [rad/s]; less than 1e-100 rad/s in size counts as rest.
     x : float
         Position of the centre along the ground [m].
     z : float, optional
@@ -168,8 +169,10 @@ class Scene:
     @cached_property
     def initial_state(self) -> InitialState:
         """State just after the impulse: the collision law without restitution (InitialState)."""
-        state = InitialState(*_core.initial_state(self._core_scene), reason="")
-        return replace(state, reason=_what_happened(self, state))
+        *numbers, moves, paradox = _core.initial_state(self._core_scene)
+        state = InitialState(*numbers, reason="")
+        did = _what_the_blow_did(self, state, moves)
+        return replace(state, reason=f"{did}; {_what_follows(self, state.mode, moves, paradox)}")
 
 
 def require_scene(scene: object) -> Scene:
@@ -179,12 +182,12 @@ def require_scene(scene: object) -> Scene:
     return scene
 
 
-def _what_happened(scene: Scene, state: InitialState) -> str:
+def _what_the_blow_did(scene: Scene, state: InitialState, moves: Mode) -> str:
     if scene.impulse is None:
-        return f"no impulse; the body starts {state.mode.name.lower()}"
-    if state.mode is Mode.FLIGHT:
+        return "no impulse"
+    if moves is Mode.FLIGHT:
         return "the blow lifts the body off the ground"
-    if state.mode is Mode.SLIDING:
+    if moves is Mode.SLIDING:
         return (
             f"the blow makes the contact slip: friction {scene.friction:g} gives an impulse of "
             f"{state.reaction_x:.6g} N s against {state.reaction_z:.6g} N s of pressure"
@@ -194,3 +197,27 @@ def _what_happened(scene: Scene, state: InitialState) -> str:
         f"{state.reaction_z:.6g} N s away from it; without it omega would be "
         f"{state.free_omega:.6g} rad/s"
     )
+
+
+_DOES = {
+    Mode.ROLLING: "rolls",
+    Mode.SLIDING: "slides",
+    Mode.FLIGHT: "flies",
+    Mode.REST: "rests",
+}
+
+
+def _what_follows(scene: Scene, mode: Mode, moves: Mode, paradox: _core.Painleve) -> str:
+    """Say what the body does; `moves` is what its velocities alone look like."""
+    if paradox is _core.Painleve.NO_MOTION:
+        return "the contact slides and jams: no motion of a rigid body goes on (Painleve)"
+    if paradox is _core.Painleve.TWO_MOTIONS:
+        return (
+            "the contact slides and two motions go on (Painleve), in flight and pressed against "
+            "the ground: rigid mechanics does not choose"
+        )
+    if mode is moves or mode is Mode.REST:
+        return f"the body {_DOES[mode]}"
+    if mode is Mode.SLIDING:
+        return f"friction {scene.friction:g} cannot hold the contact: the body slides"
+    return "the ground would have to pull: the body flies"

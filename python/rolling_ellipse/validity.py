@@ -58,9 +58,16 @@ class Thresholds:
         From it on rolling would need the ground to pull (N = 0), first at this angle.
     slip_speed, slip_angle : float
         From it on rolling needs more than the given friction, first at this angle.
-    lift_off_speed : float
-        From it on a body of the given friction really leaves the ground: it slips first, and then
-        its pressure on the ground ends before it passes the tip.
+    lift_off_speed : float or None
+        The least speed at which a body of the given friction really leaves the ground: it slips
+        first, and then its pressure on the ground ends before it passes the tip. From it on the
+        body always leaves, but for `jam_speeds`. None where the slides are too stiff to be
+        followed: where k^2 is less than about 1e-6 max(a, b)^2.
+    jam_speeds : tuple of (float, float)
+        Ranges of speed, ascending, in which the slide jams before it would leave the ground or
+        pass the tip; inf ends one that goes on for ever. Empty up to `painleve_friction` and for
+        infinite friction; above, they are found by a scan in steps of 1 % up to 50 times the slip
+        speed (narrower ranges may be missed) and their ends refined to the last bit.
     friction_to_roll_over : float
         Largest |F/N| of rolling at the roll-over speed (infinite where N vanishes before).
     painleve_friction, painleve_angle : float
@@ -76,7 +83,8 @@ class Thresholds:
     contact_loss_angle: float | None
     slip_speed: float
     slip_angle: float | None
-    lift_off_speed: float
+    lift_off_speed: float | None
+    jam_speeds: tuple[tuple[float, float], ...]
     friction_to_roll_over: float
     painleve_friction: float
     painleve_angle: float | None

@@ -3,27 +3,49 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <stdexcept>
 #include <thread>
 
 namespace rolling_ellipse::bindings {
 
-void check_signals() {
+namespace {
+
+std::string shape_of(const Array& array) {
+    std::string text = "(";
+    for (py::ssize_t axis = 0; axis < array.ndim(); ++axis) {
+        text += (axis == 0 ? "" : ", ") + std::to_string(array.shape(axis));
+    }
+    return text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+[[noreturn]] void refuse_shape(const std::string& name, const std::string& wanted,
+                               const Array& array) {
+    throw std::invalid_argument(name + " must have shape " + wanted + ", got " + shape_of(array));
+}
+
+}  // namespace
+
+void SignalWatch::operator()() {
+    constexpr std::chrono::milliseconds between_looks(50);
+    const Clock::time_point now = Clock::now();
+    if (now - last_look_ < between_looks) return;
     const py::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    last_look_ = Clock::now();
 }
 
 void run_interruptible(py::ssize_t n, int workers, const Range& body) {
     if (n <= chunk) return body(0, n);
-    constexpr py::ssize_t most_threads = 256;
-    workers = static_cast<int>(std::min({py::ssize_t{workers}, most_threads, n / chunk + 1}));
+    workers = static_cast<int>(std::min<py::ssize_t>(workers, n / chunk + 1));
     const py::gil_scoped_release release;
     std::atomic<py::ssize_t> next{0};
     std::vector<std::exception_ptr> failures(workers);
     const auto work = [&](int worker, bool interruptible) {
         try {
+            SignalWatch look_for_signals;
             for (py::ssize_t begin; (begin = next.fetch_add(chunk)) < n;) {
                 body(begin, std::min(begin + chunk, n));
-                if (interruptible) check_signals();
+                if (interruptible) look_for_signals();
             }
         } catch (...) {
             failures[worker] = std::current_exception();
@@ -31,7 +53,11 @@ void run_interruptible(py::ssize_t n, int workers, const Range& body) {
         }
     };
     std::vector<std::thread> threads;
-    for (int worker = 1; worker < workers; ++worker) threads.emplace_back(work, worker, false);
+    try {
+        for (int worker = 1; worker < workers; ++worker) threads.emplace_back(work, worker, false);
+    } catch (const std::exception&) {
+        // The system has no room for one more thread: nothing is lost, the others take its chunks.
+    }
     work(0, true);
     for (std::thread& thread : threads) thread.join();
     for (const std::exception_ptr& failure : failures) {
@@ -53,11 +79,40 @@ void store(Array& array, py::ssize_t row, const double* values) {
     std::copy_n(values, array.shape(1), array.mutable_data(row, 0));
 }
 
-Argument argument(const Array& array) { return {array.data(), array.size() == 1 ? 0 : 1}; }
+void require_length(const std::string& name, const Array& array, py::ssize_t n) {
+    if (array.ndim() == 1 && array.size() == n) return;
+    refuse_shape(name, "(" + std::to_string(n) + ",)", array);
+}
+
+void require_matrix(const std::string& name, const Array& array, py::ssize_t rows,
+                    py::ssize_t columns) {
+    if (array.ndim() == 2 && array.shape(0) == rows && array.shape(1) == columns) return;
+    refuse_shape(name, "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")", array);
+}
+
+Argument argument(const std::string& name, const Array& array, py::ssize_t n) {
+    if (array.size() == 1) return {array.data(), 0};
+    require_length(name, array, n);
+    return {array.data(), 1};
+}
+
+py::ssize_t require_coordinates(const Array& q, const Array& q_dot) {
+    if (q.ndim() != 2) refuse_shape("q", "(n, 5)", q);
+    const py::ssize_t n = q.shape(0);
+    require_matrix("q", q, n, 5);
+    require_matrix("q_dot", q_dot, n, 5);
+    return n;
+}
 
 CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row) {
     return {Eigen::Map<const Coordinates>(q.data(row, 0)),
             Eigen::Map<const Coordinates>(q_dot.data(row, 0))};
+}
+
+CoordinateState single_state(const Array& q, const Array& q_dot) {
+    require_matrix("q", q, 1, 5);
+    require_matrix("q_dot", q_dot, 1, 5);
+    return state_at(q, q_dot, 0);
 }
 
 }  // namespace rolling_ellipse::bindings

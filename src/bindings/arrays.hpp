@@ -5,7 +5,9 @@
 #include <pybind11/pybind11.h>
 
 #include <array>
+#include <chrono>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "flow_table.hpp"
@@ -19,11 +21,21 @@ using namespace pybind11::literals;
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Range = std::function<void(py::ssize_t, py::ssize_t)>;
 
-// Ctrl-C, as the exception that Python knows.
-void check_signals();
+// Looks for Ctrl-C whenever 50 ms have passed since it last did, and throws it as the exception
+// that Python knows. It asks by time, because a look takes the GIL, for which a busy Python thread
+// makes it wait 5 ms.
+class SignalWatch {
+  public:
+    void operator()();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point last_look_ = Clock::now();
+};
 
 // Run body(begin, end) over 0 .. n in chunks, without the GIL; Ctrl-C stops it between chunks.
-// What a chunk computes does not depend on which thread takes it.
+// What a chunk computes does not depend on which thread takes it: where fewer threads can be
+// started than asked for, those that there are do all of the work.
 inline constexpr py::ssize_t chunk = 1024;
 void run_interruptible(py::ssize_t n, int workers, const Range& body);
 
@@ -31,7 +43,12 @@ std::vector<Array> empty_arrays(int count, py::ssize_t n);
 Array matrix(py::ssize_t rows, py::ssize_t columns);
 void store(Array& array, py::ssize_t row, const double* values);
 
-// One argument : an array of n numbers, or one number for all.
+// Throws std::invalid_argument naming an array that has not the shape that a function reads.
+void require_length(const std::string& name, const Array& array, py::ssize_t n);
+void require_matrix(const std::string& name, const Array& array, py::ssize_t rows,
+                    py::ssize_t columns);
+
+// One argument: an array of n numbers, or one number for all.
 struct Argument {
     const double* data;
     py::ssize_t stride;
@@ -39,10 +56,23 @@ struct Argument {
     double operator[](py::ssize_t i) const { return data[i * stride]; }
 };
 
-Argument argument(const Array& array);
+Argument argument(const std::string& name, const Array& array, py::ssize_t n);
 
-// A row of q and q_dot, (n, 5).
+// Arguments by their names.
+template <std::size_t Count>
+std::array<Argument, Count> arguments_of(const std::array<const char*, Count>& names,
+                                         const std::array<Array, Count>& arrays, py::ssize_t n) {
+    std::array<Argument, Count> found{};
+    for (std::size_t i = 0; i < Count; ++i) found[i] = argument(names[i], arrays[i], n);
+    return found;
+}
+
+// q and q_dot, (n, 5) each; returns n.
+py::ssize_t require_coordinates(const Array& q, const Array& q_dot);
+
+// A row of q and q_dot, (n, 5); and the only one.
 CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row);
+CoordinateState single_state(const Array& q, const Array& q_dot);
 
 // theta, omega, x at the times begin .. end.
 template <class Sampler>

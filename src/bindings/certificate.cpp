@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "bindings.hpp"
 #include "classify.hpp"
 #include "simulate.hpp"
@@ -13,8 +11,8 @@ py::array_t<std::int8_t> classify_array(py::ssize_t n, const std::array<Array, 7
                                         int workers) {
     py::array_t<std::int8_t> out(n);
     std::int8_t* const outcomes = out.mutable_data();
-    std::array<Argument, 7> of{};
-    std::transform(arguments.begin(), arguments.end(), of.begin(), argument);
+    const std::array<Argument, 7> of = arguments_of<7>(
+        {"a", "b", "omega", "theta", "friction", "gravity", "gyration2"}, arguments, n);
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
             const Body body{of[0][i], of[1][i], of[6][i], of[5][i]};
@@ -61,9 +59,17 @@ void bind_certificate(py::module_& m) {
             const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
             validate(body);
             validate_friction(friction);
-            const Thresholds t = thresholds(body, friction);
+            const Thresholds t = [&] {
+                const py::gil_scoped_release release;
+                return thresholds(body, friction, SignalWatch());
+            }();
+            py::tuple jam_speeds(t.lift_off.jam_speeds.size());
+            for (std::size_t i = 0; i < jam_speeds.size(); ++i) {
+                const auto [from, to] = t.lift_off.jam_speeds[i];
+                jam_speeds[i] = py::make_tuple(from, to);
+            }
             return py::make_tuple(t.roll_over_speed, t.contact_loss_speed, t.contact_loss_angle,
-                                  t.slip_speed, t.slip_angle, t.lift_off_speed,
+                                  t.slip_speed, t.slip_angle, t.lift_off.speed, jam_speeds,
                                   t.friction_to_roll_over, t.painleve_friction, t.painleve_angle,
                                   t.rocking_rate, t.tip_rate);
         },

@@ -11,6 +11,9 @@ namespace {
 // normal and friction force.
 py::tuple contact_arrays(const Scene& scene, const std::array<Array, 8>& columns) {
     const py::ssize_t n = columns[0].size();
+    const std::array<const char*, 8> names{
+        "theta", "omega", "x", "z", "x_dot", "z_dot", "normal_force", "friction_force"};
+    for (std::size_t i = 0; i < names.size(); ++i) require_length(names[i], columns[i], n);
     Array q = matrix(n, 5);
     Array q_dot = matrix(n, 5);
     Array q_ddot = matrix(n, 5);
@@ -33,7 +36,7 @@ py::tuple contact_arrays(const Scene& scene, const std::array<Array, 8>& columns
 // q_ddot and multipliers of the multiplier model.
 py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const Array& q,
                             const Array& q_dot) {
-    const py::ssize_t n = q.shape(0);
+    const py::ssize_t n = require_coordinates(q, q_dot);
     const ConstrainedBody body(scene);
     Array q_ddot = matrix(n, 5);
     Array multipliers = matrix(n, 4);
@@ -50,7 +53,7 @@ py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const 
 
 // The nearest state that meets the constraints.
 py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
-    CoordinateState state = state_at(q, q_dot, 0);
+    CoordinateState state = single_state(q, q_dot);
     ConstrainedBody(scene).project(state.q, state.q_dot);
     return py::make_tuple(Array(5, state.q.data()), Array(5, state.q_dot.data()));
 }
@@ -59,6 +62,9 @@ py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
 py::tuple rolling_arrays(const Scene& scene, const Array& theta, const Array& omega,
                          const Array& x) {
     const py::ssize_t n = theta.size();
+    require_length("theta", theta, n);
+    require_length("omega", omega, n);
+    require_length("x", x, n);
     Array q = matrix(n, 5);
     Array q_dot = matrix(n, 5);
     Array q_ddot = matrix(n, 5);
@@ -85,6 +91,8 @@ py::tuple rolling_arrays(const Scene& scene, const Array& theta, const Array& om
 // z, x_dot, z_dot, normal and friction force of rolling.
 py::tuple rolling_contact_arrays(const Scene& scene, const Array& theta, const Array& omega) {
     const py::ssize_t n = theta.size();
+    require_length("theta", theta, n);
+    require_length("omega", omega, n);
     const RollingDynamics dynamics(scene);
     std::vector<Array> out = empty_arrays(5, n);
     std::array<double*, 5> columns{};
@@ -108,6 +116,8 @@ py::tuple rolling_contact_arrays(const Scene& scene, const Array& theta, const A
 py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const Array& omega) {
     const RollingEquation equation(scene.body(), scene.slope);
     const py::ssize_t n = theta.size();
+    require_length("theta", theta, n);
+    require_length("omega", omega, n);
     Array acceleration(n);
     Array jacobian = matrix(n, 2);
     double* const accelerations = acceleration.mutable_data();

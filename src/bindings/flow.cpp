@@ -1,18 +1,8 @@
-#include <algorithm>
-#include <cmath>
-
 #include "bindings.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {
-
-void validate_time(double t, double longest) {
-    if (!std::isfinite(t)) refuse("t", "finite [s]", t);
-    if (std::abs(t) > longest) {
-        refuse("t", "at most 1e15 half turns or swings, " + text(longest) + " [s]", t);
-    }
-}
 
 RollingFlow validated_flow(const Body& body, double theta, double omega) {
     validate(body);
@@ -33,6 +23,7 @@ py::tuple flow_scalar(double t, double a, double b, double theta, double omega, 
 py::tuple flow_times(const Array& t, double a, double b, double theta, double omega, double gravity,
                      std::optional<double> gyration2, int workers) {
     const py::ssize_t n = t.size();
+    require_length("t", t, n);
     const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
     const RollingFlow flow = validated_flow(body, theta, omega);
     const FlowSampler sampler(flow, infinity, n);
@@ -51,21 +42,20 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
 py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers) {
     std::vector<Array> out = empty_arrays(3, n);
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
-    const Argument times = argument(arguments[0]);
-    std::array<Argument, 6> parameters{};
-    std::transform(arguments.begin() + 1, arguments.end(), parameters.begin(), argument);
+    const std::array<Argument, 7> of =
+        arguments_of<7>({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         std::array<double, 6> last{};
         RollingFlow flow{};
         for (py::ssize_t i = begin; i < end; ++i) {
             std::array<double, 6> now{};
-            for (std::size_t p = 0; p < now.size(); ++p) now[p] = parameters[p][i];
+            for (std::size_t p = 0; p < now.size(); ++p) now[p] = of[1 + p][i];
             if (i == begin || now != last) {
                 flow = validated_flow({now[0], now[1], now[5], now[4]}, now[2], now[3]);
                 last = now;
             }
-            validate_time(times[i], longest_time(flow));
-            const FlowSample at = sample(flow, times[i]);
+            validate_time(of[0][i], longest_time(flow));
+            const FlowSample at = sample(flow, of[0][i]);
             columns[0][i] = at.theta;
             columns[1][i] = at.omega;
             columns[2][i] = at.x;

@@ -8,22 +8,24 @@ namespace {
 // The constraint matrix, row after row, and the drift term.
 py::tuple constraint_system(const Array& q, const Array& q_dot, double a, double b) {
     validate_axes(a, b);
-    const py::ssize_t n = q.shape(0);
+    const py::ssize_t n = require_coordinates(q, q_dot);
     Array rows = matrix(n, 20);
     Array drift = matrix(n, 4);
-    for (py::ssize_t i = 0; i < n; ++i) {
-        const CoordinateState state = state_at(q, q_dot, i);
-        const Eigen::Matrix<double, 5, 4> columns = constraint_matrix({a, b}, state.q).transpose();
-        store(rows, i, columns.data());
-        store(drift, i, constraint_drift({a, b}, state.q, state.q_dot).data());
-    }
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            const CoordinateState state = state_at(q, q_dot, i);
+            const Eigen::Matrix<double, 5, 4> columns =
+                constraint_matrix({a, b}, state.q).transpose();
+            store(rows, i, columns.data());
+            store(drift, i, constraint_drift({a, b}, state.q, state.q_dot).data());
+        }
+    });
     return py::make_tuple(rows, drift);
 }
 
-// q and q_dot as (n, 5); the caller has checked the shapes.
 py::tuple constraint_arrays(const Array& q, const Array& q_dot, double a, double b) {
     validate_axes(a, b);
-    const py::ssize_t n = q.shape(0);
+    const py::ssize_t n = require_coordinates(q, q_dot);
     Array position = matrix(n, 3);
     Array velocity = matrix(n, 4);
     Array gap(n);
@@ -47,8 +49,8 @@ py::tuple constraint_arrays(const Array& q, const Array& q_dot, double a, double
 py::tuple kinematics_arrays(py::ssize_t n, const Array& theta, const Array& omega, double a,
                             double b) {
     validate_axes(a, b);
-    const Argument thetas = argument(theta);
-    const Argument omegas = argument(omega);
+    const Argument thetas = argument("theta", theta, n);
+    const Argument omegas = argument("omega", omega, n);
     Array q = matrix(n, 5);
     Array q_dot = matrix(n, 5);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
@@ -67,17 +69,16 @@ void define_geometry(py::module_& module, const char* name, Function function) {
     module.def(
         name,
         [function](py::ssize_t n, const std::array<Array, 3>& arguments) {
-            const Argument theta = argument(arguments[0]);
-            const Argument a = argument(arguments[1]);
-            const Argument b = argument(arguments[2]);
+            const auto [theta, a, b] = arguments_of<3>({"theta", "a", "b"}, arguments, n);
             Array out(n);
             double* const values = out.mutable_data();
-            run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-                for (py::ssize_t i = begin; i < end; ++i) {
-                    validate_axes(a[i], b[i]);
-                    values[i] = function(Axes{a[i], b[i]}, theta[i]);
-                }
-            });
+            run_interruptible(n, 1,
+                              [&, theta = theta, a = a, b = b](py::ssize_t begin, py::ssize_t end) {
+                                  for (py::ssize_t i = begin; i < end; ++i) {
+                                      validate_axes(a[i], b[i]);
+                                      values[i] = function(Axes{a[i], b[i]}, theta[i]);
+                                  }
+                              });
             return out;
         },
         "n"_a, "arguments"_a);

@@ -6,14 +6,35 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
+std::size_t segment_count(const Solution& solution) {
+    const auto* motion = std::get_if<ContactMotion>(&solution.motion);
+    return motion ? motion->arcs.size() : 1;
+}
+
+// A solution says nothing of other times than those that it went through, and nothing at all where
+// it ended before it began.
+void validate_times(const Solution& solution, const double* times, py::ssize_t begin,
+                    py::ssize_t end) {
+    if (begin < end && segment_count(solution) == 0) {
+        throw std::invalid_argument("t must be empty, for the motion ended before its first arc: " +
+                                    solution.message);
+    }
+    for (py::ssize_t i = begin; i < end; ++i) {
+        if (times[i] >= 0 && times[i] <= solution.followed_until) continue;
+        refuse("t", "within [0, " + text(solution.followed_until) + "] [s]", times[i]);
+    }
+}
+
 // theta, omega, x at each time.
 py::tuple sample_solution(const Solution& solution, const Array& t) {
     const py::ssize_t n = t.size();
+    require_length("t", t, n);
     std::vector<Array> out = empty_arrays(3, n);
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
     const double* const times = t.data();
     const RollingSampler sampler(solution, n);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        validate_times(solution, times, begin, end);
         store_samples(sampler, times, begin, end, columns);
     });
     return py::make_tuple(out[0], out[1], out[2]);
@@ -21,24 +42,26 @@ py::tuple sample_solution(const Solution& solution, const Array& t) {
 
 Solution simulate_interruptible(const Scene& scene, const Settings& settings, double t_end) {
     const py::gil_scoped_release release;
-    return simulate(scene, settings, t_end, check_signals);
+    return simulate(scene, settings, t_end, SignalWatch());
 }
 
 Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q_dot,
                               const Settings& settings, double t_end) {
-    const CoordinateState start = state_at(q, q_dot, 0);
+    const CoordinateState start = single_state(q, q_dot);
     const py::gil_scoped_release release;
-    return simulate(scene, start, settings, t_end, check_signals);
+    return simulate(scene, start, settings, t_end, SignalWatch());
 }
 
 // q and q_dot, (n, 5), of the multiplier model at each time.
 py::tuple sample_coordinates(const Solution& solution, const Array& t) {
     const py::ssize_t n = t.size();
+    require_length("t", t, n);
     Array q = matrix(n, 5);
     Array q_dot = matrix(n, 5);
     const double* const times = t.data();
     std::vector<CoordinateState> samples(std::min<std::size_t>(n, chunk));
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        validate_times(solution, times, begin, end);
         sample(solution, times + begin, end - begin, samples.data());
         for (py::ssize_t i = begin; i < end; ++i) {
             store(q, i, samples[i - begin].q.data());
@@ -51,6 +74,7 @@ py::tuple sample_coordinates(const Solution& solution, const Array& t) {
 // theta, omega, x, z, x_dot, z_dot, normal and friction force, mode of the contact model.
 py::tuple sample_contact(const Solution& solution, const Array& t) {
     const py::ssize_t n = t.size();
+    require_length("t", t, n);
     std::vector<Array> out = empty_arrays(8, n);
     std::array<double*, 8> columns{};
     std::transform(out.begin(), out.end(), columns.begin(),
@@ -60,6 +84,7 @@ py::tuple sample_contact(const Solution& solution, const Array& t) {
     const double* const times = t.data();
     std::vector<ContactSample> samples(std::min<std::size_t>(n, chunk));
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        validate_times(solution, times, begin, end);
         sample(solution, times + begin, end - begin, samples.data());
         for (py::ssize_t i = begin; i < end; ++i) {
             const auto& [s, force] = samples[i - begin];
@@ -87,11 +112,6 @@ py::list event_list(const Solution& solution) {
         }
     }
     return events;
-}
-
-std::size_t segment_count(const Solution& solution) {
-    const auto* motion = std::get_if<ContactMotion>(&solution.motion);
-    return motion ? motion->arcs.size() : 1;
 }
 
 }  // namespace

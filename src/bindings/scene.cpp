@@ -1,6 +1,5 @@
-#include <algorithm>
-
 #include "bindings.hpp"
+#include "continuation.hpp"
 #include "impact.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -11,8 +10,9 @@ namespace {
 py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
     std::vector<Array> out = empty_arrays(3, n);
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
-    std::array<Argument, 9> of{};
-    std::transform(arguments.begin(), arguments.end(), of.begin(), argument);
+    const std::array<Argument, 9> of = arguments_of<9>(
+        {"theta", "x_dot", "z_dot", "omega", "a", "b", "gyration2", "friction", "restitution"},
+        arguments, n);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
             // Neither mass nor gravity nor height matters; a scene may move down only in the air.
@@ -39,6 +39,11 @@ void bind_scene(py::module_& m) {
         .value("SLIDING", Mode::sliding)
         .value("FLIGHT", Mode::flight)
         .value("REST", Mode::rest)
+        .finalize();
+    py::native_enum<Painleve>(m, "Painleve", "enum.Enum", "Does exactly one motion go on?")
+        .value("DETERMINED", Painleve::determined)
+        .value("NO_MOTION", Painleve::no_motion)
+        .value("TWO_MOTIONS", Painleve::two_motions)
         .finalize();
     py::class_<Impulse>(m, "Impulse")
         .def(py::init([](double jx, double jz, double dx, double dz) {
@@ -78,8 +83,10 @@ void bind_scene(py::module_& m) {
     m.def("initial_state", [](const Scene& scene) {
         const InitialState initial = initial_state(scene);
         const State& s = initial.state;
-        return py::make_tuple(s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot, s.mode,
-                              initial.reaction_x, initial.reaction_z, initial.free_omega);
+        const Continuation next = first_continuation(scene, s);
+        return py::make_tuple(s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot, next.mode,
+                              initial.reaction_x, initial.reaction_z, initial.free_omega, s.mode,
+                              next.paradox);
     });
     m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a);
 }

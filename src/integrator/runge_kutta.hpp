@@ -211,7 +211,8 @@ class ExplicitMethod {
 
     // HNW II.4: from the sizes of y, y' and y''.
     double starting_step(const Point<N>& point, double t_end, const Tolerance& tolerance) {
-        const double span = t_end - point.t;
+        constexpr double longest = 1e300;  // where there is no end: infinity would not shrink
+        const double span = std::min(t_end - point.t, longest);
         const Vector<N> size = (point.origin + point.y).cwiseAbs();
         const Vector<N> allowed = scale(tolerance, size);
         const double d0 = norm(size, allowed);
