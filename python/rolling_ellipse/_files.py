@@ -45,7 +45,8 @@ def write(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
 
 def read(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Return the arguments of the Trajectory that a file holds."""
-    from .trajectory import ContactSamples, Status
+    from ._samples import ContactSamples
+    from .trajectory import Status
 
     name = os.fspath(path)
     with open(path, "rb") as file:
