@@ -58,7 +58,7 @@ def _untouchable(values: _Values) -> _Values:
     layer: Any = values
     while isinstance(layer, np.ndarray) and not layer.flags.writeable:
         layer = layer.base
-    if isinstance(layer, np.ndarray) or not values.flags.c_contiguous:
+    if isinstance(layer, np.ndarray) or not (values.flags.c_contiguous and values.flags.aligned):
         return frozen(values.copy())
     return values
 

@@ -178,6 +178,8 @@ class Trajectory(FieldsOnly):
             checked["start"] = coordinate_pair("start", self.start, (COORDINATES,))
         if self.contact is not None:
             checked["contact"] = contact_samples(self.contact, t.size)
+        for name in ("valid_until", "t_end", "span"):
+            checked[name] = number(name, getattr(self, name))
         self.__dict__.update(checked)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -201,7 +203,7 @@ class Trajectory(FieldsOnly):
         its ground.
         """
         span = float(times[-1])
-        solution = _solve(scene, settings, span, start)
+        solution = solve(scene, settings, span, start)
         times = times[times <= solution.followed_until]
         status = Status[solution.status.name]
         trajectory = cls(
@@ -228,7 +230,7 @@ class Trajectory(FieldsOnly):
 
     @cached_property
     def _solution(self) -> _core.Solution:
-        return _solve(self.scene, self.settings, self.span, self.start)
+        return solve(self.scene, self.settings, self.span, self.start)
 
     # -- what follows from the samples ----------------------------------------------------------
 
@@ -416,7 +418,17 @@ class Trajectory(FieldsOnly):
     # -- files -----------------------------------------------------------------------------------
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit."""
+        """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
+
+        The file is there when it is whole: whatever goes wrong, an old one of that name stays.
+
+        Raises
+        ------
+        ValueError
+            If something was put into it that `simulate` never does, and `load` would refuse.
+        OSError
+            If the file cannot be written.
+        """
         from ._files import write
 
         write(self, path)
@@ -428,11 +440,14 @@ class Trajectory(FieldsOnly):
         Raises
         ------
         ValueError
-            If the file holds no trajectory, or one of another schema version.
+            If the file is damaged, holds something else, or has another schema version; it names
+            the file and what is wrong.
+        OSError
+            If there is no such file, or it cannot be read.
         """
         from ._files import read
 
-        return cls(**read(path))
+        return read(cls, path)
 
     def __repr__(self) -> str:
         if self.t.size == 0:
@@ -454,7 +469,7 @@ def _placement(at: Trajectory) -> dict[str, Any]:
     return {"z": float(at.z[0]), "x_dot": x_dot, "z_dot": float(at.z_dot[0])}
 
 
-def _solve(
+def solve(
     scene: Scene,
     settings: Settings,
     t_end: float,
