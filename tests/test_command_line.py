@@ -16,6 +16,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import rolling_ellipse as re
+from matplotlib.figure import Figure
 from PIL import Image
 from rolling_ellipse.__main__ import main
 
@@ -198,6 +199,27 @@ def test_plot_writes_a_figure(command: Any, tmp_path: Path) -> None:
         assert len(picture.convert("L").getcolors() or []) > 10  # something is drawn
     assert command("--plot", "overview.svg", "--time", "2", "--json").code == 0
     assert "<svg" in (tmp_path / "overview.svg").read_text()
+
+
+def test_a_figure_that_fails_leaves_the_old_one(
+    command: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(figure: Figure, path: Path, **options: Any) -> None:
+        path.write_bytes(b"half a picture")
+        raise OSError("the disk is full")
+
+    (tmp_path / "overview.png").write_text("what was there")
+    monkeypatch.setattr(Figure, "savefig", interrupted)
+    assert command("--plot", "overview.png", "--time", "0.1").code == 2
+    assert [file.name for file in tmp_path.iterdir()] == ["overview.png"]
+    assert (tmp_path / "overview.png").read_text() == "what was there"
+
+
+def test_a_figure_without_a_suffix_is_a_png(command: Any, tmp_path: Path) -> None:
+    assert command("--plot", "overview", "--time", "0.1").code == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["overview.png"]
+    with Image.open(tmp_path / "overview.png") as picture:
+        assert picture.format == "PNG"
 
 
 def test_json_goes_with_files(command: Any, tmp_path: Path) -> None:

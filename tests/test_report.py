@@ -444,6 +444,15 @@ def run(q: Array, q_dot: Array, t: Any, **options: Any) -> report.PrintedMotion:
     return motion
 
 
+def test_the_given_times_are_left_alone() -> None:
+    """And what becomes of them later is nothing to the motion."""
+    times = np.linspace(0.0, 0.1, 5)
+    q, q_dot = re.kinematics(0.3, 2.0, a=2.0, b=1.0)
+    motion = report.simulate(q, q_dot, times, a=2.0, b=1.0, equations="printed", printed=())
+    assert times.flags.writeable and not np.shares_memory(motion.t, times)
+    assert motion.t.tolist() == times.tolist()
+
+
 @pytest.mark.parametrize(("printed", "gap"), GAPS)
 @pytest.mark.parametrize("mass", [1.0, 10.0])
 def test_wrong_equations_lift_it_off(printed: tuple[str, ...], gap: float, mass: float) -> None:

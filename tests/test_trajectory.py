@@ -531,6 +531,99 @@ def test_scene_at_takes_another_impulse() -> None:
     assert simulate(again, 1.0, model="rolling").omega[0] == again.initial_state.omega
 
 
+# -------------------------------------------------------------------- what it is made of
+
+WRONG_PARTS = {
+    "shorter x": ("x", np.zeros(3), r"^x must have the length of t, 5, got 3$"),
+    "longer theta": ("theta", np.zeros(6), r"^theta must have the length of t, 5, got 6$"),
+    "flat omega": ("omega", 1.0, r"^omega must be a 1-D array, got shape \(\)$"),
+    "table of times": ("t", np.zeros((5, 1)), r"^t must be a 1-D array, got shape \(5, 1\)$"),
+    "shorter t": ("t", [0.0], r"^theta must have the length of t, 1, got 5$"),
+    "short q": (
+        "coordinates",
+        (np.zeros((4, 5)),) * 2,
+        r"^coordinates must be .* \(5, 5\).*\(4, 5",
+    ),
+    "narrow q": ("coordinates", (np.zeros((5, 5)), np.zeros(5)), r"^coordinates must be .*\(5,\)$"),
+    "one q": ("coordinates", (np.zeros((5, 5)),), r"^coordinates must be q and q_dot, arrays of"),
+    "no q": ("coordinates", 1, r"^coordinates must be q and q_dot, arrays of .*, got 1$"),
+    "start of samples": ("start", (np.zeros((5, 5)),) * 2, r"^start must be .*\(5,\), got shapes"),
+    "short z": ("contact", {"z": np.zeros(4)}, r"^z must have the length of t, 5, got 4$"),
+    "short mode": ("contact", {"mode": np.zeros(4)}, r"^mode must have the length of t, 5, got 4$"),
+    "unknown mode": ("contact", {"mode": [0, 0, 7, 0, 0]}, r"^mode must hold codes .*, got 7"),
+    "half a mode": ("contact", {"mode": [0, 0, 0.5, 0, 0]}, r"^mode must hold codes .*, got 0\.5"),
+}
+
+
+def five_samples() -> Trajectory:
+    return simulate(re.scenes.bounce, np.linspace(0.0, 0.4, 5))
+
+
+@pytest.mark.parametrize(("name", "value", "said"), WRONG_PARTS.values(), ids=WRONG_PARTS)
+def test_arrays_of_another_shape_are_refused(name: str, value: Any, said: str) -> None:
+    """They would be read beyond their ends."""
+    motion = five_samples()
+    if isinstance(value, dict):
+        assert motion.contact is not None
+        value = motion.contact._replace(**value)
+    with pytest.raises(ValueError, match=said):
+        dataclasses.replace(motion, **{name: value})
+
+
+@pytest.mark.parametrize("value", [1j * np.zeros(5), ["a"] * 5, [[0.0], [1.0, 2.0]], None])
+def test_what_is_no_array_of_numbers_is_refused(value: Any) -> None:
+    for name in ("t", "theta", "omega", "x"):
+        with pytest.raises(TypeError, match=f"^{name} must be"):
+            dataclasses.replace(five_samples(), **{name: value})
+    with pytest.raises(TypeError, match=r"^contact must be ContactSamples or None, got \(1, 2\)"):
+        dataclasses.replace(five_samples(), contact=(1, 2))
+
+
+def test_any_numbers_become_float64() -> None:
+    for x in ([0, 1, 2, 3, 4], range(5), np.arange(5, dtype=np.float32), np.arange(10.0)[::2] / 2):
+        made = dataclasses.replace(five_samples(), x=x)
+        assert made.x.dtype == np.float64 and made.x.tolist() == [0, 1, 2, 3, 4]
+        assert made.x.flags.c_contiguous and not made.x.flags.writeable
+    contact = five_samples().contact
+    assert contact is not None
+    made = dataclasses.replace(five_samples(), contact=contact._replace(mode=[2, 2, 2, 1, 3]))
+    assert made.mode.dtype == np.int8 and made.mode.tolist() == [2, 2, 2, 1, 3]
+
+
+def test_the_arrays_of_others_are_left_alone() -> None:
+    """Neither locked nor shared, also where they came as read-only views of what can change."""
+    mine, mode = np.arange(5.0), np.full(5, 2, np.int8)
+    view = mine[:]
+    view.flags.writeable = False
+    contact = five_samples().contact
+    assert contact is not None
+    for x in (mine, view):
+        made = dataclasses.replace(
+            five_samples(), x=x, contact=contact._replace(z=x, mode=mode), start=(x, x)
+        )
+        assert made.contact is not None and made.start is not None
+        for values in (made.x, made.contact.z, *made.start):
+            assert not np.shares_memory(values, mine) and not values.flags.writeable
+        _ = made.q, made.energy, made.mode
+        assert not np.shares_memory(made.mode, mode)
+        assert mine.flags.writeable and mode.flags.writeable
+    again = dataclasses.replace(made)
+    assert again.x is made.x and again.contact is not None
+    assert again.contact.z is made.contact.z  # what nobody can write to need not be copied
+
+
+@pytest.mark.parametrize("model", ["rolling", "multipliers", "contact"])
+def test_nothing_can_be_written_to(model: str) -> None:
+    motion = simulate(re.scenes.report, np.linspace(0.0, 1.0, 5), model=model)
+    start = (motion.q[0], motion.q_dot[0])
+    for one in (motion, motion.sol([0.5]), dataclasses.replace(motion, start=start)):
+        pairs = *(one.coordinates or ()), *(one.start or ()), *(one.contact or ())
+        for values in (*(getattr(one, n) for n in (*VECTORS, *MATRICES, "mode")), *pairs):
+            assert not values.flags.writeable
+            with pytest.raises(ValueError, match="read-only"):
+                values[...] = 0
+
+
 # ---------------------------------------------------------------------------------- files
 
 SAVED = {**SCENES, "jump": re.scenes.jump, "drop": re.scenes.drop, "rest": Scene(2.0, 1.0)}

@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from . import Mode, Scene, Trajectory, certify, period, scenes, simulate
+from ._atomic import replacing
 from .animation import animate
 
 _SCENE_OPTIONS = {
@@ -125,6 +126,12 @@ def _lines(found: dict[str, Any], t_end: float) -> list[str]:
     return lines
 
 
+def _draw(trajectory: Trajectory, path: str) -> None:
+    kind = Path(path).suffix[1:]
+    with replacing(path if kind else f"{path}.png") as new:
+        trajectory.plot().figure.savefig(new, format=kind or "png")
+
+
 def _check_options(options: argparse.Namespace) -> None:
     if not 0 <= options.time < math.inf:
         raise ValueError(f"--time must be a finite time >= 0 [s], got {options.time!r}")
@@ -144,7 +151,7 @@ def main(arguments: list[str] | None = None) -> int:
             trajectory = simulate(chosen_scene(options), options.time)
             found = summary(trajectory)
             if options.plot:
-                trajectory.plot().figure.savefig(options.plot)
+                _draw(trajectory, options.plot)
             if options.save:
                 animate(trajectory, options.save)
     except (ValueError, OSError) as error:

@@ -122,4 +122,4 @@ def require(name: str, requirement: str, values: FloatArray, holds: npt.NDArray[
 def _shaped(values: FloatArray, shape: tuple[int, ...]) -> Any:
     if shape == ():
         return float(values.item())
-    return np.broadcast_to(values, math.prod(shape)).reshape(shape)
+    return np.array(np.broadcast_to(values, math.prod(shape))).reshape(shape)  # one to write to

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from . import _errata_numbers as numbers
 from ._errata_numbers import Comparison
@@ -47,17 +48,17 @@ _ERRATA = (
     Erratum(
         "eq 32, df2, row 2", "−r sin(ψ−θ) dψ + r sin(ψ−θ) dθ",
         "both signs are wrong: d(−r cos(ψ−θ)) gives +r sin(ψ−θ) (dψ − dθ)",
-        "row 2 times exact rates [m/s]", numbers.row(1, ("df2", "tan")),
+        "row 2 times exact rates [m/s]", partial(numbers.row, 1, ("df2", "tan")),
     ),
     Erratum(
         "eq 32, df3", "2 (…) dr − a b (a²−b²) sin²ψ dψ",
         "the exponent 3/2 is missing and sin²ψ stands for sin 2ψ; the matrix has both right",
-        "row 3 times exact rates [m⁴/s]", numbers.row(2, EQ_32),
+        "row 3 times exact rates [m⁴/s]", partial(numbers.row, 2, EQ_32),
     ),
     Erratum(
         "eq 35, code a44", "−λ4 a² sec²θ, a44 = +a² (tan²θ + 1)",
         "the sign is opposite to df4",
-        "row 4 times exact rates [m²/s]", numbers.row(3, CODE),
+        "row 4 times exact rates [m²/s]", partial(numbers.row, 3, CODE),
     ),
     Erratum(
         "eq 37", "+λ3 a b (a²−b²) sin 2ψ", "the sign is opposite to the matrix",
@@ -70,12 +71,12 @@ _ERRATA = (
     ),
     Erratum(
         "eq 39, λ2", "λ2 = m (z̈ − g)", "eq 34 gives m (z̈ + g), the normal force",
-        "λ2 [N]", numbers.eq_39(1, numbers.GENERIC),
+        "λ2 [N]", partial(numbers.eq_39, 1, numbers.GENERIC),
     ),
     Erratum(
         "eq 39, λ3", "F / (4 a³b³ sin 2ψ (a²−b²))",
         "singular at every quarter turn and for a circle: the equation of r has no such divisor",
-        "λ3 at θ = π/2 − 0.001 [N/m³]", numbers.eq_39(2, math.pi / 2 - 1e-3),
+        "λ3 at θ = π/2 − 0.001 [N/m³]", partial(numbers.eq_39, 2, math.pi / 2 - 1e-3),
     ),
     Erratum(
         "eq 39, λ4", "denominator 4 a²b²",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -83,15 +82,11 @@ def cases() -> Comparison:
     return Comparison(float(lead), support_slope(THIRD, a=_A, b=_B))
 
 
-def row(number: int, printed: tuple[str, ...]) -> Callable[[], Comparison]:
+def row(number: int, printed: tuple[str, ...]) -> Comparison:
     """A row, as printed and right, times the rates of the exact motion."""
-
-    def evaluate() -> Comparison:
-        at = _at(GENERIC)
-        both = (constraint_matrix(at.q, printed=p, **at.shape) for p in (printed, ("tan",)))
-        return Comparison(*(float(matrix[number] @ at.q_dot) for matrix in both))
-
-    return evaluate
+    at = _at(GENERIC)
+    both = (constraint_matrix(at.q, printed=p, **at.shape) for p in (printed, ("tan",)))
+    return Comparison(*(float(matrix[number] @ at.q_dot) for matrix in both))
 
 
 def eq_37() -> Comparison:
@@ -107,13 +102,10 @@ def eq_38() -> Comparison:
     return Comparison(*(float(rates(at.q, at.q_dot, **at.shape)[1]) for rates in both))
 
 
-def eq_39(number: int, theta: float) -> Callable[[], Comparison]:
-    def evaluate() -> Comparison:
-        at = _at(theta)
-        as_printed = forces.eq_39(at.q, at.q_ddot, **at.body)
-        return Comparison(float(as_printed[number]), float(at.multipliers[number]))
-
-    return evaluate
+def eq_39(number: int, theta: float) -> Comparison:
+    at = _at(theta)
+    as_printed = forces.eq_39(at.q, at.q_ddot, **at.body)
+    return Comparison(float(as_printed[number]), float(at.multipliers[number]))
 
 
 def lambda4() -> Comparison:

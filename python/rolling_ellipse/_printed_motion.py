@@ -132,5 +132,5 @@ def follow(
     samples = samples.reshape(-1, 2 * COORDINATES)
     q, q_dot = samples[:, :COORDINATES], samples[:, COORDINATES:]
     q_ddot, multipliers = accelerations(q, q_dot, body, printed)
-    reached = t[: len(samples)]
+    reached = t[: len(samples)].copy()  # the caller's own times may change
     return PrintedMotion(reached, q, q_dot, q_ddot, multipliers, body, printed, start, message)

@@ -10,6 +10,7 @@ from typing import Any
 from . import _core
 from ._check import number, optional_number
 from ._core import Mode
+from ._fields import FieldsOnly
 
 _NUMBERS = (
     "a", "b", "mass", "gravity", "slope", "friction", "restitution", "theta", "omega", "x",
@@ -85,7 +86,7 @@ class InitialState:
 
 
 @dataclass(frozen=True)
-class Scene:
+class Scene(FieldsOnly):
     """An ellipse, its ground, its state at t = 0 and, if any, the impulse it then receives.
 
     SI units, radians; theta is clockwise positive, so that rolling forwards increases x. At
@@ -156,10 +157,6 @@ class Scene:
         values: dict[str, Any] = {name: getattr(self, name) for name in _NUMBERS + _OPTIONAL}
         impulse = None if self.impulse is None else self.impulse._to_core()
         return _core.Scene(**values, impulse=impulse)
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Leave what the core keeps out of pickles and copies."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @property
     def gyration2(self) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 
 from . import _core
 from ._check import choice, number, optional_number
+from ._fields import FieldsOnly
 
 MODELS = tuple(name.lower() for name in _core.Model.__members__)
 METHODS = tuple(name.lower() for name in _core.Method.__members__)
@@ -16,7 +17,7 @@ STABILIZATIONS = tuple(name.lower().replace("_", "+") for name in _core.Stabiliz
 
 
 @dataclass(frozen=True, kw_only=True)
-class Settings:
+class Settings(FieldsOnly):
     """The arguments of `simulate` that say how, as they came; ranges are checked by the core."""
 
     model: str

@@ -8,16 +8,18 @@ import os
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._check import FloatArray, array, number
+from ._fields import FieldsOnly
+from ._samples import ContactSamples, contact_samples, coordinate_pair, frozen, sampled, vector
 from .events import Event, event
 from .geometry import support_slope
-from .kinematics import ConstraintResiduals, constraints
+from .kinematics import COORDINATES, ConstraintResiduals, constraints
 from .scene import Scene
 from .settings import Settings
 
@@ -29,8 +31,6 @@ if TYPE_CHECKING:
     from .plotting import Overview
 
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
-
-_ARRAYS = ("t", "theta", "omega", "x")
 
 
 class Status(enum.Enum):
@@ -64,9 +64,7 @@ def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Valu
     """A read-only array, computed when first asked for."""
 
     def values(self: Trajectory) -> _Values:
-        found = function(self)
-        found.flags.writeable = False
-        return found
+        return frozen(function(self))
 
     return cached_property(values)
 
@@ -81,17 +79,6 @@ def _touching(which: int) -> cached_property[FloatArray]:
     return _derived(lambda self: self._touch[which])
 
 
-class ContactSamples(NamedTuple):
-    """What a contact motion knows beside theta, omega and x."""
-
-    z: FloatArray
-    x_dot: FloatArray
-    z_dot: FloatArray
-    normal_force: FloatArray
-    friction_force: FloatArray
-    mode: npt.NDArray[np.int8]
-
-
 class IntegrationError(RuntimeError):
     """An integration stopped before its last time; `trajectory` holds what there is."""
 
@@ -99,9 +86,13 @@ class IntegrationError(RuntimeError):
         super().__init__(trajectory.message)
         self.trajectory = trajectory
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Be made again of the trajectory: exceptions are made of their message by default."""
+        return type(self), (self.trajectory,), self.__dict__
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trajectory:
+class Trajectory(FieldsOnly):
     """A motion sampled at n times. Arrays are float64 and read-only, time is the first axis.
 
     Attributes
@@ -176,11 +167,27 @@ class Trajectory:
     stats: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in _ARRAYS:
-            values = np.ascontiguousarray(getattr(self, name))
-            object.__setattr__(self, name, values)
-        for values in (self.t, self.theta, self.omega, self.x, *(self.contact or ())):
-            values.flags.writeable = False
+        t = vector("t", self.t)
+        checked: dict[str, Any] = {"t": t}
+        for name in ("theta", "omega", "x"):
+            checked[name] = vector(name, getattr(self, name), t.size)
+        if self.coordinates is not None:
+            shape = t.size, COORDINATES
+            checked["coordinates"] = coordinate_pair("coordinates", self.coordinates, shape)
+        if self.start is not None:
+            checked["start"] = coordinate_pair("start", self.start, (COORDINATES,))
+        if self.contact is not None:
+            checked["contact"] = contact_samples(self.contact, t.size)
+        for name in ("valid_until", "t_end", "span"):
+            checked[name] = number(name, getattr(self, name))
+        self.__dict__.update(checked)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Make the arrays read-only again: those of pickles and deep copies are not."""
+        self.__dict__.update(state)
+        pairs = *(self.coordinates or ()), *(self.start or ())
+        for values in (self.t, self.theta, self.omega, self.x, *pairs):
+            frozen(values)
 
     @classmethod
     def computed(
@@ -196,12 +203,11 @@ class Trajectory:
         its ground.
         """
         span = float(times[-1])
-        solution = _solve(scene, settings, span, start)
+        solution = solve(scene, settings, span, start)
         times = times[times <= solution.followed_until]
         status = Status[solution.status.name]
         trajectory = cls(
-            np.array(times),
-            **_samples(solution, times),
+            **sampled(solution, times),
             scene=scene,
             model=solution.model.name.lower(),
             method=solution.method.name.lower(),
@@ -215,12 +221,16 @@ class Trajectory:
             start=start,
             stats=solution.stats,
         )
-        trajectory.__dict__["_solution"] = solution
-        return trajectory
+        return trajectory._solved_by(solution)
+
+    def _solved_by(self, solution: _core.Solution) -> Trajectory:
+        """Keep a solution where `_solution` would, so that it is not computed again."""
+        self.__dict__["_solution"] = solution
+        return self
 
     @cached_property
     def _solution(self) -> _core.Solution:
-        return _solve(self.scene, self.settings, self.span, self.start)
+        return solve(self.scene, self.settings, self.span, self.start)
 
     # -- what follows from the samples ----------------------------------------------------------
 
@@ -241,7 +251,7 @@ class Trajectory:
             friction, normal = np.ascontiguousarray(multipliers.T[:2])
             found = q, q_dot, q_ddot, normal, friction, multipliers
         for values in found:
-            values.flags.writeable = False
+            frozen(values)
         return found
 
     @property
@@ -342,10 +352,7 @@ class Trajectory:
         outside = times[~((times >= 0) & (times <= self.t_end))]
         if outside.size:
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
-        samples = _samples(self._solution, times)
-        other = replace(self, t=np.array(times), **samples)
-        other.__dict__["_solution"] = self._solution
-        return other
+        return replace(self, **sampled(self._solution, times))._solved_by(self._solution)
 
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that goes on from time t [s]; give it an impulse with `replace`."""
@@ -411,7 +418,17 @@ class Trajectory:
     # -- files -----------------------------------------------------------------------------------
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit."""
+        """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
+
+        The file is there when it is whole: whatever goes wrong, an old one of that name stays.
+
+        Raises
+        ------
+        ValueError
+            If something was put into it that `simulate` never does, and `load` would refuse.
+        OSError
+            If the file cannot be written.
+        """
         from ._files import write
 
         write(self, path)
@@ -423,11 +440,14 @@ class Trajectory:
         Raises
         ------
         ValueError
-            If the file holds no trajectory, or one of another schema version.
+            If the file is damaged, holds something else, or has another schema version; it names
+            the file and what is wrong.
+        OSError
+            If there is no such file, or it cannot be read.
         """
         from ._files import read
 
-        return cls(**read(path))
+        return read(cls, path)
 
     def __repr__(self) -> str:
         if self.t.size == 0:
@@ -449,7 +469,7 @@ def _placement(at: Trajectory) -> dict[str, Any]:
     return {"z": float(at.z[0]), "x_dot": x_dot, "z_dot": float(at.z_dot[0])}
 
 
-def _solve(
+def solve(
     scene: Scene,
     settings: Settings,
     t_end: float,
@@ -460,19 +480,6 @@ def _solve(
         return _core.simulate(scene._core_scene, settings.core, t_end)
     q, q_dot = (np.atleast_2d(values) for values in start)
     return _core.simulate_coordinates(scene._core_scene, q, q_dot, settings.core, t_end)
-
-
-def _samples(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
-    """Return the arrays that a Trajectory holds."""
-    if solution.model is _core.Model.CONTACT:
-        theta, omega, x, *contact = solution.sample_contact(times)
-        return {"theta": theta, "omega": omega, "x": x, "contact": ContactSamples(*contact)}
-    if solution.model is _core.Model.MULTIPLIERS:
-        q, q_dot = solution.sample_coordinates(times)
-        theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
-        return {"theta": theta, "omega": omega, "x": x, "coordinates": (q, q_dot)}
-    theta, omega, x = solution.sample(times)
-    return {"theta": theta, "omega": omega, "x": x}
 
 
 def load(path: str | os.PathLike[str]) -> Trajectory:

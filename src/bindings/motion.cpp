@@ -157,7 +157,7 @@ void bind_motion(py::module_& m) {
         .value("STEP_TOO_SMALL", Status::step_too_small)
         .value("STEP_TOO_LARGE", Status::step_too_large)
         .finalize();
-    py::class_<Settings>(m, "Settings")
+    bind_class<Settings>(m, "Settings")
         .def(py::init([](Model model, Method method, double rtol, double atol,
                          std::optional<double> step, std::optional<int> stages,
                          Stabilization stabilization, std::array<double, 2> baumgarte,
@@ -168,7 +168,7 @@ void bind_motion(py::module_& m) {
              }),
              py::kw_only(), "model"_a, "method"_a, "rtol"_a, "atol"_a, "step"_a, "stages"_a,
              "stabilization"_a, "baumgarte"_a, "max_steps"_a, "max_events"_a, "rest_speed"_a);
-    py::class_<Solution>(m, "Solution")
+    bind_class<Solution>(m, "Solution")
         .def_readonly("status", &Solution::status)
         .def_readonly("followed_until", &Solution::followed_until)
         .def_readonly("valid_until", &Solution::valid_until)

@@ -45,14 +45,14 @@ void bind_scene(py::module_& m) {
         .value("NO_MOTION", Painleve::no_motion)
         .value("TWO_MOTIONS", Painleve::two_motions)
         .finalize();
-    py::class_<Impulse>(m, "Impulse")
+    bind_class<Impulse>(m, "Impulse")
         .def(py::init([](double jx, double jz, double dx, double dz) {
                  const Impulse impulse{jx, jz, dx, dz};
                  validate(impulse);
                  return impulse;
              }),
              "jx"_a, "jz"_a, "dx"_a, "dz"_a);
-    py::class_<Scene>(m, "Scene")
+    bind_class<Scene>(m, "Scene")
         .def(py::init([](double a, double b, double mass, double gravity,
                          std::optional<double> inertia, double slope, double friction,
                          double restitution, double theta, double omega, double x,

@@ -1,0 +1,47 @@
+"""Arrays out of .npz files that anybody may have damaged or made."""
+
+from __future__ import annotations
+
+import io
+import math
+import zipfile
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+_VERSION = 1, 0  # of the format that NumPy writes unless a header is very long
+
+
+def arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[Any]]:
+    """Return the arrays in the bytes of a file as `numpy.savez` writes it, read-only.
+
+    Nothing is unpacked and nothing unpickled, and no array is larger than the file. Whatever is
+    not as it must be raises some exception.
+    """
+    found: dict[str, npt.NDArray[Any]] = {}
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        for member in archive.infolist():
+            name = member.filename.removesuffix(".npy")
+            if name in found or name not in names or name == member.filename:
+                raise ValueError(f"it must hold known arrays, once each, got {member.filename!r}")
+            if member.compress_type != zipfile.ZIP_STORED:
+                raise ValueError(f"{name} must not be compressed")
+            found[name] = _array(name, archive.read(member))
+    return found
+
+
+def _array(name: str, content: bytes) -> npt.NDArray[Any]:
+    """Return the array of a .npy file, whose size is compared before anything is made of it."""
+    file = io.BytesIO(content)
+    if (version := np.lib.format.read_magic(file)) != _VERSION:
+        raise ValueError(f"{name} must be of version {_VERSION}, got {version}")
+    shape, fortran_order, dtype = np.lib.format.read_array_header_1_0(file)
+    if dtype.kind not in "fiU" or fortran_order:
+        raise ValueError(f"{name} must hold numbers or text row by row, got {dtype}")
+    size, start = math.prod(shape) * dtype.itemsize, file.tell()
+    if size != len(content) - start:
+        raise ValueError(f"{name} must have {size} bytes, got {len(content) - start}")
+    values: npt.NDArray[Any] = np.ndarray(shape, dtype, buffer=content, offset=start)
+    return values if dtype.isnative else values.astype(dtype.newbyteorder("="))

@@ -1,0 +1,113 @@
+"""The arrays of a Trajectory: of one length, of one type, and never to be written to."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._check import FloatArray, array
+
+_Values = TypeVar("_Values", bound=npt.NDArray[Any])
+
+
+class ContactSamples(NamedTuple):
+    """What a contact motion knows beside theta, omega and x."""
+
+    z: FloatArray
+    x_dot: FloatArray
+    z_dot: FloatArray
+    normal_force: FloatArray
+    friction_force: FloatArray
+    mode: npt.NDArray[np.int8]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Come back read-only, which arrays in a plain tuple would not."""
+        return _frozen_contact, tuple(self)
+
+
+def _frozen_contact(*arrays: Any) -> ContactSamples:
+    return ContactSamples._make(frozen(values) for values in arrays)
+
+
+def frozen(values: _Values) -> _Values:
+    """Make an array read-only that nobody else has."""
+    values.flags.writeable = False
+    return values
+
+
+def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
+    """Return the arrays that a Trajectory holds, at so many times."""
+    found: dict[str, Any] = {"t": frozen(np.array(times))}
+    if solution.model is _core.Model.CONTACT:
+        theta, omega, x, *contact = solution.sample_contact(times)
+        found["contact"] = _frozen_contact(*contact)
+    elif solution.model is _core.Model.MULTIPLIERS:
+        q, q_dot = solution.sample_coordinates(times)
+        theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
+        found["coordinates"] = frozen(q), frozen(q_dot)
+    else:
+        theta, omega, x = solution.sample(times)
+    return found | {"theta": frozen(theta), "omega": frozen(omega), "x": frozen(x)}
+
+
+def _untouchable(values: _Values) -> _Values:
+    """Return an array that stays as it is: a copy if anybody may write to this one."""
+    layer: Any = values
+    while isinstance(layer, np.ndarray) and not layer.flags.writeable:
+        layer = layer.base
+    if isinstance(layer, np.ndarray) or not (values.flags.c_contiguous and values.flags.aligned):
+        return frozen(values.copy())
+    return values
+
+
+def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
+    """Return one number a sample; without a size, any number of samples.
+
+    Raises
+    ------
+    TypeError
+        If it holds something else than numbers.
+    ValueError
+        If it has another shape.
+    """
+    found = array(name, values)
+    if found.ndim != 1:
+        raise ValueError(f"{name} must be a 1-D array, got shape {found.shape}")
+    if size is not None and found.size != size:
+        raise ValueError(f"{name} must have the length of t, {size}, got {found.size}")
+    return _untouchable(found)
+
+
+def coordinate_pair(
+    name: str, values: Any, shape: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Return q and q_dot, both of a shape; `vector` says what is raised."""
+    required = f"{name} must be q and q_dot, arrays of shape {shape}"
+    try:
+        q, q_dot = values
+    except (TypeError, ValueError):
+        raise ValueError(f"{required}, got {values!r}") from None
+    pair = array(f"{name}[0]", q), array(f"{name}[1]", q_dot)
+    if any(found.shape != shape for found in pair):
+        raise ValueError(f"{required}, got shapes {pair[0].shape} and {pair[1].shape}")
+    return _untouchable(pair[0]), _untouchable(pair[1])
+
+
+def contact_samples(values: Any, size: int) -> ContactSamples:
+    """Return the samples of a contact motion; `vector` says what is raised."""
+    if not isinstance(values, ContactSamples):
+        raise TypeError(f"contact must be ContactSamples or None, got {values!r}")
+    *columns, mode = ContactSamples._fields
+    found = [vector(name, getattr(values, name), size) for name in columns]
+    return ContactSamples._make([*found, _codes(mode, values.mode, size)])
+
+
+def _codes(name: str, values: Any, size: int) -> npt.NDArray[np.int8]:
+    numbers = vector(name, values, size)
+    wrong = numbers[~np.isin(numbers, list(_core.Mode))]
+    if wrong.size:
+        raise ValueError(f"{name} must hold codes of Mode, got {float(wrong[0])!r}")
+    return _untouchable(np.asarray(values).astype(np.int8, copy=False))
