@@ -18,6 +18,7 @@ SEVERITY = (
     "crash", "deaf", "hang", "exception", "nan", "broken", "copy", "sol", "mode", "energy", "inf",
     "warning", "unnamed",
 )  # fmt: skip
+DEADLY = ("crash", "deaf", "hang")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -37,11 +38,14 @@ def parser() -> argparse.ArgumentParser:
     return found
 
 
-def signature(finding: Finding) -> tuple[str, str, str]:
+def signature(finding: Finding) -> tuple[str, ...]:
     """Findings alike in this are one: numbers and what was passed make no difference."""
     what = re.sub(r"got .*|\(ended.*", "", finding.what, flags=re.DOTALL)
     what = re.sub(r"0x[0-9a-f]+|[-+]?\d[\d.e+-]*|'[^']*'", "#", what)
-    return finding.kind, finding.does, what[:120]
+    if finding.forged:  # many ways to fall over the same thing
+        return finding.kind, finding.does.partition(".")[0], what.partition(":")[0]
+    manner = re.findall(r"(?:model|method|stabilization)='[a-z0-9+]+'", finding.code)
+    return finding.kind, finding.does, what[:120], *(manner if finding.kind in DEADLY else ())
 
 
 def distinct(findings: list[Finding]) -> list[Finding]:

@@ -375,7 +375,7 @@ def _range(draw: Draw, name: str) -> tuple[float, float]:
 def load(draw: Draw) -> Iterator[Line]:
     """What is no file of ours; files of ours are read where trajectories are asked."""
     content = draw.pick("b''", "b'PK'", "b'PK\\x05\\x06' + bytes(18)", "b'{}'", "bytes(1000)")
-    yield Line(f"open('other.npz', 'wb').write({content})", does="open")
+    yield Line(f"Path('other.npz').write_bytes({content})", does="write_bytes")
     path = draw.pick("'other.npz'", "'other.npz'", "'.'", "'missing'", "'\\0'", draw.hostile())
     if path.lstrip("-")[:1].isdigit() or path.startswith(("True", "type(")):
         path = "'missing'"  # an open file of the fuzzer's own, by number

@@ -51,3 +51,4 @@ class Finding:
     seed: int = 0
     index: int = 0
     count: int = 1
+    forged: bool = False

@@ -131,7 +131,8 @@ def replaced(draw: Draw, _: Body) -> Iterator[Line]:
     field = draw.pick("t", "theta", "omega", "x", "theta", "omega", "x", "contact", "coordinates")
     if field == "contact" and draw.chance(0.7):
         inner = draw.pick("z", "x_dot", "z_dot", "normal_force", "friction_force", "mode")
-        values = f"trajectory.contact._replace({inner}={values})"
+        whole = "trajectory.contact"
+        values = f"{whole} and {whole}._replace({inner}={values})"
     elif field == "coordinates" and draw.chance(0.7):
         values = f"({values}, trajectory.q_dot)"
     yield Line(f"replace(trajectory, {field}={values})", "forged", "replace", forgery=True)

@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from dataclasses import fields, replace
 from decimal import Decimal
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -35,6 +36,7 @@ from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from math import inf, nan, nextafter, pi
+from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import rolling_ellipse as rl
@@ -59,9 +61,12 @@ _NOT_FINITE = re.compile(
 def command(arguments: list[str]) -> str:
     """What the command line prints; as an expression."""
     said = io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        with contextlib.suppress(SystemExit):
-            main(arguments)
+    with (
+        contextlib.redirect_stdout(said),
+        contextlib.redirect_stderr(said),
+        contextlib.suppress(SystemExit),
+    ):
+        main(arguments)
     return said.getvalue()
 
 
@@ -70,7 +75,7 @@ def namespace() -> dict[str, Any]:
     return {
         "Decimal": Decimal, "Fraction": Fraction, "command": command, "copy": copy,
         "damage": damage, "inf": math.inf, "nan": math.nan, "nextafter": math.nextafter,
-        "np": np, "pi": math.pi, "pickle": pickle, "plt": plt, "replace": replace, "rl": rl,
+        "Path": Path, "np": np, "pi": math.pi, "pickle": pickle, "plt": plt, "replace": replace, "rl": rl,
     }  # fmt: skip
 
 
@@ -137,7 +142,8 @@ class Case:
 
     def _finding(self, line: Line, kind: str, what: str) -> Finding:
         until = self.lines[: self.lines.index(line) + 1]
-        return Finding(kind, line.does, what, "\n".join(map(str, until)))
+        code = "\n".join(map(str, until))
+        return Finding(kind, line.does, what, code, forged=line.forgery)
 
     def _of_exception(self, line: Line, error: Exception) -> Iterator[Finding]:
         said = f"{type(error).__name__}: {error}"[:300].encode("ascii", "replace").decode()

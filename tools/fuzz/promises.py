@@ -115,7 +115,9 @@ def same_as(original: str) -> Promise:
             if (mine is None) != (yours is None):
                 yield "copy", f"{name} got lost"
             elif mine is not None:
-                pairs |= {f"{name}[{i}]": pair for i, pair in enumerate(zip(mine, yours))}
+                pairs |= {
+                    f"{name}[{i}]": pair for i, pair in enumerate(zip(mine, yours, strict=True))
+                }
         for name, (mine, yours) in pairs.items():
             if mine.dtype != yours.dtype or mine.tobytes() != yours.tobytes():
                 yield "copy", f"{name} is not the same"

@@ -204,7 +204,8 @@ def settings(draw: Draw, last: float, mild: bool) -> dict[str, str]:
             gain = draw.pick(10.0, 0.0, draw.power(-3, 3), draw.power(-300, 308))
             found["baumgarte"] = text((gain, draw.pick(gain, 0.0, 1.0)))
     if method in NEED_A_STEP or (method in ("dop853", "dopri5") and draw.chance(0.15)):
-        share = draw.power(0.7, 3.3) if draw.chance(0.9) else draw.power(0, 300)
+        most = 2.3 if method == "radau" else 3.3  # implicit steps of the multipliers cost 2 ms
+        share = draw.power(0.7, most) if draw.chance(0.9) else draw.power(0, 300)
         found["step"] = text(last / share or 5e-324)
     if method == "gauss" and draw.chance(0.5):
         found["stages"] = text(draw.pick(2, 3, 4))
@@ -214,7 +215,8 @@ def settings(draw: Draw, last: float, mild: bool) -> dict[str, str]:
         found["atol"] = text(draw.pick(1e-6, 1e-13, 0.0, draw.power(-300, 300)))
     if draw.chance(0.1):
         found["rest_speed"] = text(draw.power(-12, 0) if mild else draw.power(-320, 308))
-    steps, events = draw.count(draw.pick(2000, 2000, 20_000)), draw.count(200)
+    most_steps = 300 if method == "radau" else draw.pick(2000, 2000, 20_000)
+    steps, events = draw.count(most_steps), draw.count(200)
     found |= {"max_steps": text(steps), "max_events": text(events)}
     if draw.chance(0.5):
         found["raise_on_failure"] = text(draw.chance(0.1))
