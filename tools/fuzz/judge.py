@@ -75,7 +75,8 @@ def namespace() -> dict[str, Any]:
     return {
         "Decimal": Decimal, "Fraction": Fraction, "command": command, "copy": copy,
         "damage": damage, "inf": math.inf, "nan": math.nan, "nextafter": math.nextafter,
-        "Path": Path, "np": np, "pi": math.pi, "pickle": pickle, "plt": plt, "replace": replace, "rl": rl,
+        "Path": Path, "np": np, "pi": math.pi, "pickle": pickle, "plt": plt, "replace": replace,
+        "rl": rl,
     }  # fmt: skip
 
 
