@@ -10,7 +10,7 @@ import time
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from .calls import CALLS, case
+from .calls import CALLS
 from .case import Finding
 from .workers import Task, Worker, run, shares
 
@@ -18,7 +18,7 @@ SEVERITY = (
     "crash", "deaf", "hang", "exception", "nan", "broken", "copy", "sol", "mode", "energy", "inf",
     "warning", "unnamed",
 )  # fmt: skip
-DEADLY = ("crash", "deaf", "hang")
+SLOW = ("deaf", "hang")  # of each manner of solving another finding
 
 
 def parser() -> argparse.ArgumentParser:
@@ -30,6 +30,7 @@ def parser() -> argparse.ArgumentParser:
     found.add_argument("--calls", type=int, default=2000, help="cases to run (default 2000)")
     found.add_argument("--seed", type=int, default=1)
     found.add_argument("--index", type=int, help="run this case alone, and print it")
+    found.add_argument("--code", default="", help="judge these lines instead of drawn ones")
     found.add_argument("--workers", type=int, default=1, help="processes (default 1)")
     found.add_argument("--seconds-per-call", type=float, default=2.0, help="what is a hang")
     found.add_argument("--only", default="", choices=[entry.name for entry in CALLS])
@@ -45,7 +46,7 @@ def signature(finding: Finding) -> tuple[str, ...]:
     if finding.forged:  # many ways to fall over the same thing
         return finding.kind, finding.does.partition(".")[0], what.partition(":")[0]
     manner = re.findall(r"(?:model|method|stabilization)='[a-z0-9+]+'", finding.code)
-    return finding.kind, finding.does, what[:120], *(manner if finding.kind in DEADLY else ())
+    return finding.kind, finding.does, what[:120], *(manner if finding.kind in SLOW else ())
 
 
 def distinct(findings: list[Finding]) -> list[Finding]:
@@ -78,10 +79,9 @@ def summary(workers: list[Worker], seconds: float) -> str:
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; 0 if nothing was found."""
     options = parser().parse_args(arguments)
-    first, stop = 0, options.calls
+    first, stop = 0, 1 if options.code else options.calls
     if options.index is not None:
         first, stop = options.index, options.index + 1
-        print("\n".join(map(str, case(options.seed, options.index, options.only)[1])))
     task = Task(
         options.seed,
         first,
@@ -89,7 +89,10 @@ def main(arguments: list[str] | None = None) -> int:
         only=options.only,
         seconds=options.seconds_per_call,
         limit_memory=not options.no_memory_limit,
+        code=options.code,
     )
+    if options.index is not None:
+        print("\n".join(map(str, task.case(first)[1])))
     begin = last = time.monotonic()
 
     def heard(workers: list[Worker]) -> None:

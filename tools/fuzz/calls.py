@@ -91,6 +91,19 @@ def simulate(draw: Draw) -> Iterator[Line]:
     yield from follow(draw, drawn.body, made)
 
 
+def stopped(draw: Draw) -> Iterator[Line]:
+    """What an integration raises that stops early: it goes to other processes, too."""
+    early = draw.pick("max_events=1", "model='rolling', method='dop853', max_steps=1")
+    yield Line(f"caught(rl.simulate, rl.scenes.jump, 5.0, {early})", "error", "IntegrationError")
+    protocol = draw.random.randrange(6)
+    for code in (
+        "(str(error), repr(error), error.trajectory.t)",
+        f"pickle.loads(pickle.dumps(error, {protocol})).trajectory",
+        "copy.copy(error).trajectory",
+    ):
+        yield Line(code, does="IntegrationError")
+
+
 # ------------------------------------------------------------------------- functions of arrays
 
 
@@ -397,6 +410,7 @@ def command(draw: Draw) -> Iterator[Line]:
 CALLS = (
     Call("simulate", 45, simulate),
     Call("modes", 6, modes),
+    Call("stopped", 0.2, stopped),
     Call("scene", 8, make_scene),
     Call("impulse", 1, make_impulse),
     Call("certify", 6, certify),

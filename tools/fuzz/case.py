@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -38,6 +39,16 @@ class Line:
 
     def __str__(self) -> str:
         return f"{self.name} = {self.code}" if self.name else self.code
+
+
+def given(code: str) -> list[Line]:
+    """Lines "name = expression", or expressions only, of source text."""
+    lines = []
+    for line in filter(None, map(str.strip, code.splitlines())):
+        name, expression = re.fullmatch(r"(?:(\w+) = )?(.*)", line).groups()  # type: ignore[union-attr]
+        does = re.sub(r"\W*\(.*", "", expression)[:40]
+        lines.append(Line(expression, name or "", does))
+    return lines
 
 
 @dataclass(frozen=True)

@@ -74,9 +74,20 @@ def residuals(_draw: Draw, _: Body) -> Iterator[Line]:
 
 def save_and_load(draw: Draw, _: Body) -> Iterator[Line]:
     yield Line(f"trajectory.save({FILE})", does="Trajectory.save")
-    yield Line(f"rl.load({FILE})", "loaded", "load", promises.same_as("trajectory"))
+    yield Line(f"rl.load({FILE})", "loaded", "load", promises.same_as_trajectory)
     name = draw.pick(*ARRAYS, *FACTS)
     yield Line(f"loaded.{name}", does=f"Trajectory.{name}")
+
+
+def saved_elsewhere(draw: Draw, _: Body) -> Iterator[Line]:
+    """A path that cannot be written, or is none; numbers would be open files of the fuzzer."""
+    path = draw.hostile() if draw.chance(0.5) else draw.pick(
+        "Path('trajectory.npz')", "b'trajectory.npz'", "'missing/file.npz'", "'.'", "'a\\0b'",
+        "1.0", "['trajectory.npz']",
+    )  # fmt: skip
+    if "'" not in path:
+        path = "None"
+    yield Line(f"trajectory.save({path})", does="Trajectory.save")
 
 
 def damaged_file(draw: Draw, _: Body) -> Iterator[Line]:
@@ -109,7 +120,7 @@ def damaged_file(draw: Draw, _: Body) -> Iterator[Line]:
 
 
 def pickled(draw: Draw, _: Body) -> Iterator[Line]:
-    same = promises.same_as("trajectory")
+    same = promises.same_as_trajectory
     code = f"pickle.loads(pickle.dumps(trajectory, {draw.random.randrange(6)}))"
     yield Line(code, "copied", "pickle", same)
     yield Line("copied.sol(copied.t_end).x", does="pickle")
@@ -117,7 +128,7 @@ def pickled(draw: Draw, _: Body) -> Iterator[Line]:
 
 def copied(draw: Draw, _: Body) -> Iterator[Line]:
     does = draw.pick("copy.copy", "copy.deepcopy", "replace")
-    yield Line(f"{does}(trajectory)", "copied", does, promises.same_as("trajectory"))
+    yield Line(f"{does}(trajectory)", "copied", does, promises.same_as_trajectory)
     yield Line("copied.sol(copied.t_end).x", does=does)
 
 
@@ -175,11 +186,18 @@ def picture(draw: Draw, of: Body) -> Iterator[Line]:
         some = {"labels": draw.pick("['a']", "['a', 'b']", "'a'", "['$', '_b']")}
         some |= {"kind": draw.pick("'energies'", "'error'")} if name == "plot_energy" else {}
         some |= {"fold": draw.pick("True", "False")} if name == "plot_phase" else {}
+    if name == "plot" or name == "animate":
+        some["figure"] = draw.pick("None", "plt.figure()", "plt.figure(figsize=(3, 9))")
+    else:
+        some["ax"] = draw.pick("None", "plt.figure().add_subplot()", "plt.subplots(2)[1]")
     options |= {key: value for key, value in some.items() if draw.chance(0.4)}
     if draw.chance(0.3):
         key = draw.pick(*options, *some)
         options[key] = draw.pick(*EXTREMES[:14], draw.pick("None", "'x'", "[]", "1j", "True"))
     yield Line(call(f"rl.{name}", motions, **options), "picture", name, patience=6)
+    if name == "animate":
+        frame = draw.pick("0", "-1", "len(picture.t) - 1", draw.hostile())
+        yield Line(f"picture.draw({frame})", does="RollingAnimation.draw", patience=2)
     yield Line("plt.close('all')", does="close")
 
 
@@ -191,6 +209,7 @@ FOLLOWS: tuple[tuple[Follow, float], ...] = (
     (scene_at, 3),
     (residuals, 2),
     (save_and_load, 1.0),
+    (saved_elsewhere, 0.3),
     (damaged_file, 1.5),
     (pickled, 0.7),
     (copied, 0.5),

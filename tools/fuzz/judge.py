@@ -12,7 +12,7 @@ import pickle
 import re
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -70,13 +70,22 @@ def command(arguments: list[str]) -> str:
     return said.getvalue()
 
 
+def caught(function: Callable[..., Any], *arguments: Any, **options: Any) -> Exception | None:
+    """What a call raises; as an expression."""
+    try:
+        function(*arguments, **options)
+    except rl.IntegrationError as error:
+        return error
+    return None
+
+
 def namespace() -> dict[str, Any]:
     """The names that the lines of a case use."""
     return {
         "Decimal": Decimal, "Fraction": Fraction, "command": command, "copy": copy,
         "damage": damage, "inf": math.inf, "nan": math.nan, "nextafter": math.nextafter,
-        "Path": Path, "np": np, "pi": math.pi, "pickle": pickle, "plt": plt, "replace": replace,
-        "rl": rl,
+        "Path": Path, "caught": caught, "np": np, "pi": math.pi, "pickle": pickle, "plt": plt,
+        "replace": replace, "rl": rl,
     }  # fmt: skip
 
 
@@ -172,7 +181,7 @@ def _names_one(error: Exception, names: set[str]) -> bool:
     short = [name for name in names if len(name) == 1]
     as_word = re.search(rf"(?<!\w)({'|'.join(map(re.escape, long))})(?!\w)", message)
     letters = "|".join(map(re.escape, short)) or "(?!)"
-    as_subject = re.search(rf"(^|[\s,;:'\"]|--)({letters})( must| and |/b|[\[,=:'\"]| \()", message)
+    as_subject = re.search(rf"(^|[\s,;:]|--)({letters})( must| and |/b|[\[,=:]| \()", message)
     return bool(as_word or as_subject)
 
 

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from .calls import case
-from .case import Finding
+from .case import Finding, Line, given
 
 GRACE = 0.5  # within which Ctrl-C must end a call [s]
 PATIENT = 8  # wall clock for processor time: the machine has others to serve
@@ -32,7 +32,7 @@ MEMORY = 4 * 2**30  # of a worker [bytes]
 
 @dataclass(frozen=True)
 class Task:
-    """The cases start, start + stride, ... below stop."""
+    """The cases start, start + stride, ... below stop; or, instead, the lines in `code`."""
 
     seed: int
     start: int
@@ -41,6 +41,13 @@ class Task:
     only: str = ""
     seconds: float = 2.0
     limit_memory: bool = True
+    code: str = ""
+
+    def case(self, index: int) -> tuple[str, list[Line]]:
+        """What the case is called, and its lines."""
+        if self.code:
+            return "given", given(self.code)
+        return case(self.seed, index, self.only)
 
 
 # ------------------------------------------------------------------------------ in the worker
@@ -63,7 +70,7 @@ def work(task: Task, pipe: int) -> None:
 
     say(ready=True)
     for index in range(task.start, task.stop, task.stride):
-        name, lines = case(task.seed, index, task.only)
+        name, lines = task.case(index)
         for _ in range(3):  # an interrupt meant for the line before starts the case again
             tried = judge.Case(lines, task.seconds)
             found: list[Finding] = []
@@ -203,7 +210,7 @@ class Worker:
 
     def _report(self, kind: str, what: str) -> None:
         index = self._now["index"]
-        name, lines = case(self.task.seed, index, self.task.only)
+        name, lines = self.task.case(index)
         until = lines[: self._now["line"] + 1]
         code = "\n".join(map(str, until))
         self.cases[name] += 1
