@@ -13,7 +13,7 @@ set -eu
 cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
 folder=$PWD/build/sanitized
-flags="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -O1 -g"
+flags="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -O1 -g1"
 
 "$python" -m pip install --quiet --no-build-isolation --no-deps --upgrade \
     --target "$folder/site" -Cbuild-dir="$folder/objects" -Cinstall.strip=false \
