@@ -51,7 +51,7 @@ def signature(finding: Finding) -> tuple[str, ...]:
 
 def distinct(findings: list[Finding]) -> list[Finding]:
     """One of each, with the shortest example, the most severe first."""
-    best: dict[tuple[str, str, str], Finding] = {}
+    best: dict[tuple[str, ...], Finding] = {}
     for each in findings:
         other = best.get(signature(each), each)
         shorter = min(other, each, key=lambda f: len(f.code))

@@ -13,7 +13,7 @@ NAMED = (
 )  # fmt: skip
 
 # model, method, stabilization; weights beside
-MANNERS = {
+MANNERS: dict[tuple[str, str, str | None], float] = {
     ("auto", "auto", None): 10,
     ("contact", "auto", None): 10,
     ("rolling", "auto", None): 3,

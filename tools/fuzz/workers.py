@@ -135,6 +135,7 @@ class Worker:
                 stdout=subprocess.DEVNULL,
                 stderr=complaints,
                 stdin=subprocess.DEVNULL,
+                start_new_session=True,  # Ctrl-C is for the parent
                 env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
             )
         os.close(writing)
@@ -189,6 +190,13 @@ class Worker:
         self._process.kill()
         self._report("deaf", "takes long, and Ctrl-C does not end it")
 
+    def stop(self) -> None:
+        """Leave the rest."""
+        self._process.kill()
+        self._process.wait()
+        os.close(self.pipe)
+        self._folder.cleanup()
+
     def _ended(self) -> bool:
         """The worker is gone: after its last case, or in the middle of one."""
         os.close(self.pipe)
@@ -237,17 +245,24 @@ def _gist(complaints: str) -> str:
 
 
 def run(tasks: list[Task], heard: Callable[[list[Worker]], None]) -> list[Worker]:
-    """Run tasks side by side; `heard` is called with the workers from time to time."""
+    """Run tasks side by side until all is done, or Ctrl-C.
+
+    `heard` is called with the workers from time to time.
+    """
     workers = [Worker(task) for task in tasks if task.start < task.stop]
     busy = list(workers)
-    while busy:
-        pipes = {worker.pipe: worker for worker in busy}
-        for pipe in select.select(list(pipes), [], [], 0.05)[0]:
-            if not pipes[pipe].listen():
-                busy.remove(pipes[pipe])
+    try:
+        while busy:
+            pipes = {worker.pipe: worker for worker in busy}
+            for pipe in select.select(list(pipes), [], [], 0.05)[0]:
+                if not pipes[pipe].listen():
+                    busy.remove(pipes[pipe])
+            for worker in busy:
+                worker.look_after()
+            heard(workers)
+    except KeyboardInterrupt:
         for worker in busy:
-            worker.look_after()
-        heard(workers)
+            worker.stop()
     return workers
 
 
