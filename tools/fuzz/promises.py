@@ -18,7 +18,7 @@ _ONE_EACH = (
 _STORED = ("t", "theta", "omega", "x")
 _FACTS = ("scene", "model", "method", "status", "message", "reason", "valid_until", "t_end",
           "span", "settings", "stats", "events")  # fmt: skip
-_ENERGY_NOISE = 1e-9
+_ENERGY_NOISE = 1e-7
 _ULPS = 256
 
 
