@@ -332,7 +332,8 @@ def report_simulate(draw: Draw) -> Iterator[Line]:
         arguments["stabilization"] = text(draw.pick("none", "baumgarte", "projection"))
     if draw.chance(0.4):
         arguments = draw.mutated(arguments)
-        arguments["max_steps"] = arguments["max_steps"][:3].strip("*(") or "1"
+        if "**" in arguments["max_steps"]:  # no more work than the time of a call holds
+            arguments["max_steps"] = "50"
     made = Line(call("rl.report.simulate", **arguments), "motion", "report.simulate", patience=4)
     if not printed:
         yield from follow(draw, of, made)
