@@ -69,7 +69,8 @@ def _energy(found: rl.Trajectory) -> Broken:
         energy = found.energy
         scale = np.max(np.abs(found.kinetic_energy) + np.abs(found.potential_energy))
         grown = np.max(np.diff(energy)) / scale
-        blur = _ULPS * np.finfo(float).eps * np.abs(found.theta).max()  # of the angle itself
+        thin = max(found.scene.a / found.scene.b, found.scene.b / found.scene.a)
+        blur = thin * np.spacing(np.abs(found.theta).max())  # what the angle itself is known to
     if grown > _ENERGY_NOISE + blur:
         yield "energy", f"the energy of a contact motion grows by more than {_ENERGY_NOISE:g}"
 
