@@ -1,0 +1,1 @@
+"""A fuzzer of the whole public API: see `tools/fuzz_api.py`."""

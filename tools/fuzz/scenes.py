@@ -1,0 +1,223 @@
+"""Scenes, times and settings to simulate: mostly valid, from everyday to the end of the range."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from .values import Draw, call, text
+
+NAMED = (
+    "bounce", "circle", "drop", "jump", "report", "rocking", "rolling", "separatrix", "slip",
+    "slope", "thin",
+)  # fmt: skip
+
+# model, method, stabilization; weights beside
+MANNERS: dict[tuple[str, str, str | None], float] = {
+    ("auto", "auto", None): 10,
+    ("contact", "auto", None): 10,
+    ("rolling", "auto", None): 3,
+    ("rolling", "exact", None): 3,
+    **{("rolling", method, None): 2 for method in ("dop853", "dopri5", "rk4", "gauss", "radau")},
+    **{
+        ("multipliers", method, stabilization): 0.7
+        for method in ("auto", "dop853", "dopri5", "rk4")
+        for stabilization in (None, "none", "baumgarte", "projection", "projection+energy")
+    },
+    ("multipliers", "radau", "ggl"): 2,
+    ("auto", "dop853", None): 1,
+    ("auto", "rk4", None): 1,
+    ("contact", "exact", None): 0.2,
+    ("multipliers", "gauss", "ggl"): 0.2,
+}
+NEED_A_STEP = ("rk4", "gauss", "radau")
+
+
+@dataclass(frozen=True)
+class Body:
+    """A drawn body, and the scales that make other numbers ordinary or not for it."""
+
+    a: float
+    b: float
+    gravity: float
+    mild: bool
+
+    @property
+    def length(self) -> float:
+        return max(self.a, self.b)
+
+    @property
+    def clock(self) -> float:
+        """A time in which something happens [s]."""
+        return math.sqrt(self.length / self.gravity)
+
+    def height(self, theta: float) -> float:
+        return math.hypot(self.a * math.sin(theta), self.b * math.cos(theta))
+
+
+@dataclass(frozen=True)
+class DrawnScene:
+    """Source text of a scene, and the scales of its body."""
+
+    code: str
+    body: Body
+
+
+def body(draw: Draw) -> Body:
+    """Semi-axes and gravity that are accepted."""
+    if draw.chance(0.6):
+        a = draw.between(0.3, 3)
+        b = draw.pick(a, a * (1 + 1e-8), 1.0, draw.between(0.3, 3), draw.between(0.3, 3))
+        return Body(a, b, 9.81, mild=True)
+    b = draw.pick(1.0, draw.power(-30, 30), draw.power(-3, 3))
+    aspect = draw.pick(1.0, 1 + 2.2e-16, 2.0, 1e-3, 1e3, draw.power(-3, 3), draw.power(-3, 3))
+    a = min(max(b * aspect, 1e-30), 1e30)
+    b = min(max(b, a / 1e3), a * 1e3)
+    gravity = draw.pick(9.81, 1.0, draw.power(-30, 30))
+    return Body(draw.beside(a), draw.beside(b), gravity, mild=False)
+
+
+def angle(draw: Draw, mild: bool) -> float:
+    if mild or draw.chance(0.5):
+        return draw.pick(0.0, draw.between(-4, 4), draw.between(-4, 4), math.pi / 2)
+    quarter = draw.random.randint(-9, 9) * math.pi / 2
+    return draw.pick(
+        draw.beside(quarter),
+        quarter + draw.pick(-1, 1) * draw.power(-18, 0),
+        draw.pick(-1, 1) * draw.power(-300, 50),
+        draw.pick(-1, 1) * draw.power(0, 8),
+        1e50,
+        -1e50,
+    )
+
+
+def speed(draw: Draw, of: Body) -> float:
+    """Angular velocity [rad/s]."""
+    sign = draw.pick(-1, 1)
+    if of.mild or draw.chance(0.5):
+        return draw.pick(0.0, 1.0, sign * draw.between(0, 4)) / of.clock
+    return (
+        sign
+        * draw.pick(0.0, draw.power(-20, 2), draw.power(-300, 0), draw.power(0, 49.4))
+        / (of.clock)
+    )
+
+
+def friction(draw: Draw) -> float:
+    return draw.pick(
+        math.inf, 0.0, 1.0, draw.between(0, 2), draw.between(0, 2), draw.between(0, 0.3),
+        draw.power(-3, 3), draw.power(-320, 300),
+    )  # fmt: skip
+
+
+def gyration2(draw: Draw, of: Body) -> float:
+    """k^2, mostly between that of a point and of a ring; anything between the limits, too."""
+    share = draw.pick(0.25, 1.0, draw.between(0.01, 1), draw.power(-29.9, 29.9), draw.power(-6, 6))
+    return share * of.length**2
+
+
+def options(draw: Draw, of: Body) -> dict[str, float | None]:
+    """Keyword arguments of a Scene."""
+    theta, omega = angle(draw, of.mild), speed(draw, of)
+    size = of.length / of.clock
+    found: dict[str, float | None] = {"theta": theta, "omega": omega, "friction": friction(draw)}
+    if not of.mild or draw.chance(0.1):
+        found["gravity"] = of.gravity
+    if draw.chance(0.3):
+        found["mass"] = draw.pick(10.0, draw.power(-30, 30), draw.power(-2, 2))
+    if draw.chance(0.2):
+        found["inertia"] = (found.get("mass") or 1.0) * gyration2(draw, of)
+    if draw.chance(0.3):
+        steep = math.copysign(math.nextafter(math.pi / 2, 0), draw.between(-1, 1))
+        found["slope"] = draw.pick(
+            draw.between(-0.5, 0.5), draw.between(-1.57, 1.57), draw.power(-20, 0), 5e-324,
+            *(() if of.mild else (steep, draw.beside(steep))),
+        )  # fmt: skip
+    if draw.chance(0.4):
+        found["restitution"] = draw.pick(0.0, 1.0, 0.5, draw.between(0, 1), 5e-324, 1 - 2**-53)
+    if draw.chance(0.15):
+        found["x"] = draw.pick(1.0, draw.power(-300, 300), -draw.power(-3, 3) * of.length)
+    if draw.chance(0.2):
+        gap = draw.pick(0.0, draw.between(0, 1), draw.power(-18, 3))
+        found["z"] = draw.beside(of.height(theta)) + gap * of.length
+        if draw.chance(0.5):
+            found["z_dot"] = size * draw.pick(0.0, draw.between(-3, 3), draw.power(-20, 20))
+    if draw.chance(0.2):
+        found["x_dot"] = size * draw.pick(0.0, draw.between(-3, 3), draw.power(-20, 20))
+    return found
+
+
+def impulse(draw: Draw, of: Body) -> str:
+    """A blow; of size one for a body of 1 kg."""
+    scale = of.length / of.clock
+
+    def component(unit: float) -> str:
+        return text(unit * draw.pick(0.0, draw.between(-3, 3), draw.between(-1, 1) * 1e3))
+
+    if draw.chance(0.4):
+        return call("rl.Impulse.press", text(scale * draw.between(0, 5)), component(of.length))
+    offsets = {name: component(of.length) for name in ("dx", "dz") if draw.chance(0.6)}
+    if not of.mild and draw.chance(0.3):
+        offsets["dx"] = text(draw.power(-300, 300))
+    return call("rl.Impulse", component(scale), component(scale), **offsets)
+
+
+def scene(draw: Draw, mutate: float = 0.0) -> DrawnScene:
+    """A scene; with that probability some of its arguments are hostile."""
+    if draw.chance(0.12):
+        return DrawnScene(f"rl.scenes.{draw.pick(*NAMED)}", Body(2.0, 1.0, 9.81, mild=True))
+    of = body(draw)
+    arguments = {name: text(value) for name, value in options(draw, of).items()}
+    arguments = {"a": text(of.a), "b": text(of.b), **arguments}
+    if draw.chance(0.12):
+        arguments["impulse"] = impulse(draw, of)
+    if draw.chance(mutate):
+        arguments = draw.mutated(arguments)
+    a, b = arguments.pop("a"), arguments.pop("b")
+    return DrawnScene(call("rl.Scene", a, b, **arguments), of)
+
+
+def times(draw: Draw, of: Body) -> tuple[str, float]:
+    """Source text of sample times, and their last."""
+    last = of.clock * draw.pick(draw.between(0, 12), draw.between(0, 12), draw.power(-3, 2))
+    if draw.chance(0.12):
+        last = draw.pick(0.0, 5e-324, 1e300, draw.power(-320, 300), draw.power(-6, 6) * of.clock)
+    last = min(last, 1e300)
+    if draw.chance(0.3):
+        return text(last), last
+    if draw.chance(0.15):
+        inner = sorted({last * draw.random.random() for _ in range(draw.count(20))} - {last})
+        return draw.array([*inner, last]), last
+    if draw.chance(0.1):
+        return "[0.0]", 0.0
+    return f"np.linspace(0, {last}, {draw.count(2000)})" if last else "[0.0]", last
+
+
+def settings(draw: Draw, last: float, mild: bool) -> dict[str, str]:
+    """Options of `simulate`: work that is bounded, and mostly of use to the method."""
+    model, method, stabilization = draw.weighted(tuple(MANNERS), tuple(MANNERS.values()))
+    found = {"model": text(model), "method": text(method)}
+    found = {name: value for name, value in found.items() if value != "'auto'" or draw.chance(0.1)}
+    if stabilization:
+        found["stabilization"] = text(stabilization)
+        if stabilization == "baumgarte":
+            gain = draw.pick(10.0, 0.0, draw.power(-3, 3), draw.power(-300, 308))
+            found["baumgarte"] = text((gain, draw.pick(gain, 0.0, 1.0)))
+    if method in NEED_A_STEP or (method in ("dop853", "dopri5") and draw.chance(0.15)):
+        most = 2.3 if method == "radau" else 3.3  # implicit steps of the multipliers cost 2 ms
+        share = draw.power(0.7, most) if draw.chance(0.9) else draw.power(0, 300)
+        found["step"] = text(last / share or 5e-324)
+    if method == "gauss" and draw.chance(0.5):
+        found["stages"] = text(draw.pick(2, 3, 4))
+    if draw.chance(0.2):
+        found["rtol"] = text(draw.pick(1e-6, 1e-13, 0.0, draw.power(-300, 1), draw.power(-16, 0)))
+    if draw.chance(0.2):
+        found["atol"] = text(draw.pick(1e-6, 1e-13, 0.0, draw.power(-300, 300)))
+    if draw.chance(0.1):
+        found["rest_speed"] = text(draw.power(-12, 0) if mild else draw.power(-320, 308))
+    most_steps = 300 if method == "radau" else draw.pick(2000, 2000, 20_000)
+    steps, events = draw.count(most_steps), draw.count(200)
+    found |= {"max_steps": text(steps), "max_events": text(events)}
+    if draw.chance(0.5):
+        found["raise_on_failure"] = text(draw.chance(0.1))
+    return found

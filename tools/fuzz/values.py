@@ -1,0 +1,137 @@
+"""Arguments as source text: ordinary ones, extremes, and what is no number at all.
+
+Everything drawn is a Python expression, so that what a fuzzer found can be pasted into a shell.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from random import Random
+from typing import TypeVar
+
+T = TypeVar("T")
+
+# Limits of doubles, of the package and of integers, with both neighbours where that says something.
+EXTREMES = (
+    "0", "0.0", "-0.0", "nan", "-nan", "inf", "-inf", "5e-324", "-5e-324",
+    "2.2250738585072014e-308", "2.225073858507201e-308", "1.7976931348623157e308",
+    "-1.7976931348623157e308", "1e-300", "1e300", "1e-160", "1e160", "-1", "-1.0", "1", "1.0", "2",
+    "2**31", "2**31 - 1", "-2**31", "2**32", "2**40", "2**53 + 1", "2**63", "2**63 - 1", "2**64",
+    "1e16", "0.1", "1e-30", "1e30", "nextafter(1e-30, 0)", "nextafter(1e30, inf)", "1e-3", "1e3",
+    "nextafter(1e-3, 0)", "nextafter(1e3, inf)", "pi / 2", "-pi / 2", "nextafter(pi / 2, 0)",
+    "nextafter(pi / 2, 2)", "nextafter(1, 0)", "nextafter(1, 2)", "1e50", "1e100", "1e22",
+)  # fmt: skip
+
+# Numbers that come in another dress: to be taken as the number, or refused by name.
+DRESSED = (
+    "True", "np.bool_(True)", "np.float16(1.5)", "np.float32(1.5)", "np.int8(1)",
+    "np.uint64(2**64 - 1)", "np.longdouble(1) / 3", "Fraction(1, 3)", "Decimal('0.5')",
+    "np.array(1.0)", "np.array([1.0])", "np.float64(nan)", "np.array(2, dtype='>i4')",
+    "type('Mine', (float,), {})(2.0)", "type('Whole', (), {'__index__': lambda self: 3})()",
+)  # fmt: skip
+
+# What is no number, or not one number.
+WRONG = (
+    "None", "'1'", "'nan'", "''", "b'1'", "bytearray(b'1')", "1j", "complex(1, 0)",
+    "np.complex64(1)", "np.complex128(2)", "np.array([1 + 2j, 3])", "np.ma.masked",
+    "np.ma.masked_array([1.0, 2.0], [False, True])", "np.ma.masked_array(1.0, True)",
+    "np.array([1.0, None])", "np.array(1.0, dtype=object)", "np.datetime64('2020-01-01')",
+    "np.datetime64('NaT')", "np.timedelta64(3, 's')", "np.array('1')", "np.array(['1', '2'])",
+    "[]", "()", "[1.0]", "[[1.0], [2.0, 3.0]]", "[None]", "{}", "{1.0}", "{'a': 1.0}",
+    "(v for v in (1.0, 2.0))", "Decimal('NaN')", "Decimal('1e400')", "Decimal('sNaN')",
+    "np.longdouble('1e4000')", "10**400", "-10**400", "Fraction(10**400)", "object()", "float",
+    "range(3)", "slice(3)", "...", "NotImplemented", "np.void(b'abc')", "memoryview(b'abc')",
+    "np.array([(1.0, 2.0)], dtype='f8,f8')", "np.empty(0)", "np.empty((2, 0))", "np.ones((2, 3))",
+    "np.ones((1, 1, 1, 1))", "np.array([1.0, 2.0, 3.0])", "np.array(['NaT'], dtype='M8[s]')",
+    "[1.0, 'a']", "np.array([10**400])", "'\\ud800'", "'a' * 10000",
+)  # fmt: skip
+
+SHAPES = ((), (), (), (1,), (3,), (7,), (0,), (2, 3), (2, 1), (1, 1), (2, 0), (40,))
+
+
+class Draw:
+    """The random choices of one case: the same for the same seed and index."""
+
+    def __init__(self, seed: int, index: int) -> None:
+        self.random = Random(f"{seed}/{index}")
+
+    def chance(self, probability: float) -> bool:
+        return self.random.random() < probability
+
+    def pick(self, *options: T) -> T:
+        return self.random.choice(options)
+
+    def weighted(self, options: Sequence[T], weights: Sequence[float]) -> T:
+        return self.random.choices(options, weights)[0]
+
+    def between(self, low: float, high: float) -> float:
+        return self.random.uniform(low, high)
+
+    def power(self, low: float, high: float) -> float:
+        """A number whose size is anything between 10^low and 10^high; sometimes a pure power."""
+        if self.chance(0.2):
+            return 10.0 ** self.random.randint(math.ceil(low), math.floor(high))
+        return float(10.0 ** self.between(low, high))
+
+    def count(self, most: int) -> int:
+        """A whole number up to `most`, small ones as likely as large ones."""
+        return round(self.power(0, math.log10(most)))
+
+    def beside(self, value: float) -> float:
+        """The value, or a double a few places away from it."""
+        for _ in range(self.pick(0, 0, 1, 1, 2, 7)):
+            value = math.nextafter(value, self.pick(-math.inf, math.inf))
+        return value
+
+    def extreme(self) -> str:
+        """A number as hard as numbers get."""
+        if self.chance(0.25):
+            return repr(self.pick(1, 1, -1) * 2.0 ** self.random.randint(-1074, 1023))
+        if self.chance(0.25):
+            return repr(self.pick(1, 1, -1) * self.power(-320, 308))
+        return self.pick(*EXTREMES)
+
+    def hostile(self) -> str:
+        """Anything that a caller might pass by mistake."""
+        if self.chance(0.5):
+            return self.extreme()
+        return self.pick(*DRESSED, *WRONG, *WRONG)
+
+    def mutated(self, arguments: dict[str, str]) -> dict[str, str]:
+        """The arguments of a call, none, one or two of them replaced by something hostile."""
+        found = dict(arguments)
+        changes = self.weighted((0, 1, 2), (0.8, 0.16, 0.04))
+        for name in self.random.sample(list(found), min(changes, len(found))):
+            found[name] = self.hostile()
+        return found
+
+    def array(self, values: Sequence[float], shape: tuple[int, ...] | None = None) -> str:
+        """Numbers as an array-like of a random make; equal to them but for float32 and integers."""
+        numbers = text(list(values))
+        if shape is not None and len(shape) != 1:
+            return f"np.array({numbers}).reshape({shape})"
+        make = self.weighted(
+            (
+                "np.array({0})", "{0}", "tuple({0})", "np.array({0}, dtype='>f8')",
+                "np.repeat({0}, 2)[::2]", "np.array({0}[::-1])[::-1]",
+                "np.array({0}, dtype=np.longdouble)", "np.array({0}, dtype=np.float32)",
+                "np.array({0}).astype(np.int64)", "np.array({0}).astype(bool)",
+                "np.frombuffer(np.array({0}).tobytes())",
+            ),
+            (8, 3, 1, 1, 1, 1, 1, 0.5, 0.2, 0.2, 1),
+        )  # fmt: skip
+        if not all(abs(v) < 1e9 for v in values) and ("astype" in make or "32" in make):
+            make = "np.array({0})"
+        return make.format(numbers)
+
+
+def text(value: object) -> str:
+    """Source text of a number, a string, None, or a list or tuple of such."""
+    return repr(value)
+
+
+def call(function: str, *arguments: str, **options: str) -> str:
+    """Source text of a call; the options are passed by name."""
+    parts = [*arguments, *(f"{name}={value}" for name, value in options.items())]
+    return f"{function}({', '.join(parts)})"
