@@ -39,6 +39,7 @@ class ContactRun {
           t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
           checkpoint_(checkpoint),
           state_(in_units(start, units_)),
+          rest_speed_(rest_speed()),
           motion_{units_, scene_, {}, {}} {}
 
     ContactIntegration run() {
@@ -174,7 +175,7 @@ class ContactRun {
         const double rebound = std::max(state_.z_dot - at.dh * state_.omega, 0.0);
         const double c = SlidingEquation(scene_, 0.0).contact(at, state_.omega).c;
         const double ratio = rebound / (at.dh * before.omega - before.z_dot);
-        if (rebound > 0 && (rebound > rest_speed() || c <= 0 || !(ratio < most_settling))) {
+        if (rebound > 0 && (rebound > rest_speed_ || c <= 0 || !(ratio < most_settling))) {
             return go_on_with({Mode::flight}, EventKind::impact, before);
         }
         if (rebound > 0) {
@@ -255,8 +256,18 @@ class ContactRun {
 
     double rest_speed() const {
         constexpr double small = 1e-6;
-        if (settings_.rest_speed) return *settings_.rest_speed / units_.speed();
-        return small * std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b));
+        constexpr double large =
+            1e-2;  // in the sums of bounces c and the gap's slope stay the same
+        const double unit = std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b));
+        if (!settings_.rest_speed) return small * unit;
+        const double speed = *settings_.rest_speed / units_.speed();
+        if (speed > large * unit) {
+            refuse("rest_speed",
+                   "at most " + text(large * unit * units_.speed()) +
+                       " [m/s], a hundredth of sqrt(g min(a, b))",
+                   *settings_.rest_speed);
+        }
+        return speed;
     }
 
     Tolerance tolerance() const {
@@ -284,6 +295,7 @@ class ContactRun {
     double t_end_;
     const Checkpoint& checkpoint_;
     State state_;
+    const double rest_speed_;
     Continuation next_{Mode::flight};
     double t_ = 0.0;
     ContactMotion motion_;

@@ -120,10 +120,10 @@ class Follower {
     Until followed(SteppedSliding& motion) {
         constexpr long most_steps = 2000;  // of half a turn; more only where N = F = 0 at the tip
         const SlidingEquation& f = motion.equation;
+        const double to_go = tip_ + over_the_tip - static_cast<double>(motion.theta_base);
         const auto margins = [&](const Vector<4>& y) -> std::array<double, 5> {
             const auto [slip, c, b] = f.margins(y);
-            return {slip, c, f.may_jam() ? b - small_response : b, tip_ + over_the_tip - y[0],
-                    y[1]};
+            return {slip, c, f.may_jam() ? b - small_response : b, to_go - y[0], y[1]};
         };
         ExplicitMethod<DormandPrince853, SlidingEquation> integrator(f);
         const Until until = integrate_until(integrator, motion.steps, finest, most_steps, infinity,
@@ -175,8 +175,8 @@ LiftOff climbed(Follower& body, double low) {
 // With jams the fates may alternate: a scan up to speeds beside which gravity, in units of omega^2
 // 2500 times weaker than at the slip speed, decides nothing any more.
 LiftOff scanned(Follower& body, double low) {
-    constexpr double growth = 1.01;
-    constexpr int most_growths = 393;  // a factor of 50
+    constexpr double growth = 1.02;
+    constexpr int most_growths = 198;  // a factor of 50
     LiftOff found{infinity, {}};
     Fate fate = Fate::stays;
     double before = low;

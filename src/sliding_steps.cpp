@@ -1,11 +1,18 @@
 #include "sliding_steps.hpp"
 
+#include <cmath>
+#include <utility>
+
+#include "half_turns.hpp"
 #include "integrator/runge_kutta.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
 using Integrator = ExplicitMethod<DormandPrince853, SlidingEquation>;
+
+// Angles up to which quarter turns are taken off without loss, as a double-double of pi has them.
+constexpr double most_reduced = 1e15;
 
 // Sliding by the clock that slows down near B = 0.
 struct SlowedSliding {
@@ -62,10 +69,18 @@ Slowed slide_slowly(SteppedSliding& motion, const Tolerance& tolerance, long max
 SteppedSliding sliding_from(const Scene& scene, const State& start, double side) {
     const Axes axes{scene.a, scene.b};
     const double slip = slip_velocity(start, geometry(axes, start.theta));
-    return {SlidingEquation(scene, side),
+    const double turn = std::abs(start.theta) > most_reduced ? within_a_turn(start.theta)
+                                                             : start.theta;
+    const double quarters = std::nearbyint(turn / half_pi);
+    const DoubleDouble rest = DoubleDouble{turn, 0.0} - half_pi_exact * quarters;
+    Scene seen = scene;
+    if (std::fmod(quarters, 2.0) != 0.0) std::swap(seen.a, seen.b);
+    return {SlidingEquation(seen, side),
             axes,
+            two_sum(start.theta, -turn) + half_pi_exact * quarters,
             start.x,
-            {0.0, {{0.0, {start.theta, start.omega, 0.0, slip}, Vector<4>::Zero(), 0.0}}}};
+            {0.0,
+             {{0.0, {rest.high, start.omega, 0.0, slip}, {rest.low, 0.0, 0.0, 0.0}, 0.0}}}};
 }
 
 Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long max_steps,
@@ -103,8 +118,10 @@ void sample(const SteppedSliding& motion, const double* times, std::size_t n,
     look(integrator, motion.steps, times, n,
          [&](std::size_t i, const Knot<4>& knot, const Vector<4>& change) {
              const Vector<4> y = knot.y + (knot.carry + change);
-             const Geometry at = geometry(motion.axes, y[0]);
-             samples[i] = {in_contact(at, y[0], y[1], motion.x0 + y[2], y[3], Mode::sliding),
+             const double theta = static_cast<double>(
+                 motion.theta_base + two_sum(knot.y[0], knot.carry[0] + change[0]));
+             const Geometry at = geometry(motion.axes, theta);
+             samples[i] = {in_contact(at, theta, y[1], motion.x_base + y[2], y[3], Mode::sliding),
                            motion.equation.force(at, y[1])};
          });
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "double_double.hpp"
 #include "integrator/event_rule.hpp"
 #include "settings.hpp"
 #include "sliding.hpp"
@@ -15,11 +16,15 @@ inline constexpr Tolerance finest = {2e-15, 2e-17};
 // Of B, physics (50): below it the slower clock is the better one, physics (54).
 inline constexpr double small_response = 1e-2;
 
+// The angle is integrated from the nearest quarter turn, where a thin body is the most sensitive to
+// it: there it keeps digits that the whole angle has no room for. After an odd number of quarter
+// turns the equation is that of the body with its axes exchanged.
 struct SteppedSliding {
     SlidingEquation equation;
     Axes axes;
-    double x0;
-    Steps<4> steps;  // of (theta, omega, x - x0, slip velocity)
+    DoubleDouble theta_base;
+    double x_base;
+    Steps<4> steps;  // of (theta - theta_base, omega, x - x_base, slip velocity)
 };
 
 // The start of sliding, with the slip to the given side (0: without friction there is none).

@@ -39,12 +39,13 @@ def simulate(
     scene : Scene
         Its state is that at t = 0; an impulse acts there first.
     t : float or array_like, shape (n,)
-        End time (then 1001 even samples), or strictly increasing sample times >= 0 [s].
+        End time (then 1001 even samples), or strictly increasing sample times >= 0 [s]. Rolling
+        for more than 1e15 half turns or swings is refused: a double does not know its phase.
     model : {"auto", "rolling", "multipliers", "contact"}
         "rolling" is rolling without slip; on level ground the certificate (see `certify`) says
         until when it is true, on a slope the forces along the computed motion. "contact" is the
         whole motion: it rolls, slides, flies, hits the ground and comes to rest, on arcs joined
-        by ``events``; exact rolling and flight, "dop853" at 1e-13 for the rest. "auto" is
+        by ``events``; exact rolling and flight, "dop853" at rounding level for the rest. "auto" is
         "rolling" where the certificate proves it, and "contact" elsewhere; with a method given it
         is "rolling". "multipliers" is the same motion in the report's five coordinates
         with four constraints and their Lagrange multipliers, for study: "dop853" (also its
@@ -79,8 +80,9 @@ def simulate(
     max_events : int
         Most events of "contact" before it ends with the status MAX_EVENTS.
     rest_speed : float, optional
-        Rebound speed [m/s] under which "contact" sums the infinitely many bounces that are left;
-        default 1e-6 sqrt(g min(a, b)).
+        Rebound speed [m/s] under which "contact" sums the infinitely many bounces that are left,
+        with a relative error of its own size beside sqrt(g min(a, b)); default a millionth of
+        that, at most a hundredth.
     raise_on_failure : bool
         Whether an integration that stops before the last time raises; otherwise it returns what
         there is up to then.
@@ -90,8 +92,8 @@ def simulate(
     Trajectory
         ``status`` COMPLETED; or VALIDITY_LOST, where the span of "rolling" or "multipliers" goes
         beyond ``valid_until``: the arrays are complete and obey the rolling equation, and a
-        ValidityWarning is issued; or JAMMED, where no motion of a rigid body goes on (Painleve):
-        the arrays end there. At an event samples show what holds after it. Samples between steps
+        ValidityWarning is issued; or JAMMED, where a slide comes to a place from which no motion
+        of a rigid body goes on, or two (Painleve): the arrays end there. At an event samples show what holds after it. Samples between steps
         have the accuracy of the method.
 
     Raises

@@ -15,7 +15,7 @@ _SENTENCES = {
     EventKind.LIFT_OFF: "the body leaves the ground",
     EventKind.IMPACT: "the body hits the ground",
     EventKind.REST: "the body has come to rest",
-    EventKind.JAM: "the sliding body jams: no motion of a rigid body goes on",
+    EventKind.JAM: "the sliding body jams: no motion of a rigid body goes on, or more than one",
 }
 
 

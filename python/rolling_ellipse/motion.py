@@ -39,11 +39,12 @@ def flow(
     Parameters
     ----------
     t : float or array_like
-        Time since the start [s], any sign.
+        Time since the start [s], any sign; more than 1e15 half turns or swings are refused.
     a, b : float or array_like
         Semi-axes [m].
     theta, omega : float or array_like
-        Angle [rad] and angular velocity [rad/s] at the start.
+        Angle [rad] and angular velocity [rad/s] at the start; less than 1e-100 rad/s in size
+        counts as rest.
     gravity : float or array_like
         Acceleration of gravity [m/s^2].
     gyration2 : float or array_like, optional
@@ -58,7 +59,9 @@ def flow(
         Angle [rad], angular velocity [rad/s], way of the centre since the start [m]; floats if all
         arguments are scalars, else of the broadcast shape. A body in equilibrium (omega = 0 and
         |h'| within 8 ulp of h) stays. The last bits may depend on how many times there are: many
-        of one motion are read off Taylor series about points of it.
+        of one motion are read off Taylor series about points of it. Their x then has the rounding
+        of a length like the body's, 2e-16 max(a, b), also where the body has come back to its
+        start and x is much smaller than that.
 
     Raises
     ------

@@ -51,7 +51,8 @@ def classify(
     a, b : float or array_like
         Semi-axes [m].
     omega, theta : float or array_like
-        Angular velocity [rad/s] and angle [rad] at the start.
+        Angular velocity [rad/s] and angle [rad] at the start; less than 1e-100 rad/s in size
+        counts as rest.
     friction : float or array_like
         Coefficient of friction; inf allowed.
     gravity : float or array_like

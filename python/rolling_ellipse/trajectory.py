@@ -38,8 +38,8 @@ class Status(enum.Enum):
 
     COMPLETED = "the motion was followed to the end"
     JAMMED = (
-        "the sliding body jams (Painleve): no motion of a rigid body goes on; less friction, or "
-        "another shape"
+        "the sliding body jams (Painleve): no motion of a rigid body goes on, or more than one "
+        "does; less friction, or another shape"
     )
     VALIDITY_LOST = (
         "rolling without slip stops being true at valid_until: use samples before it, "
@@ -204,7 +204,8 @@ class Trajectory(FieldsOnly):
         """
         span = float(times[-1])
         solution = solve(scene, settings, span, start)
-        times = times[times <= solution.followed_until]
+        ends = solution.followed_until if solution.stats["segments"] else -math.inf
+        times = times[times <= ends]
         status = Status[solution.status.name]
         trajectory = cls(
             **sampled(solution, times),
@@ -315,7 +316,9 @@ class Trajectory(FieldsOnly):
     def mode(self) -> npt.NDArray[np.int8]:
         if self.contact is not None:
             return self.contact.mode
-        return np.full(self.t.shape, self.scene.initial_state.mode, dtype=np.int8)
+        rests = self.scene.initial_state.mode is _core.Mode.REST
+        mode = _core.Mode.REST if rests else _core.Mode.ROLLING
+        return np.full(self.t.shape, mode, dtype=np.int8)
 
     @cached_property
     def events(self) -> tuple[Event, ...]:

@@ -62,11 +62,11 @@ class Thresholds:
         The least speed at which a body of the given friction really leaves the ground: it slips
         first, and then its pressure on the ground ends before it passes the tip. From it on the
         body always leaves, but for `jam_speeds`. None where the slides are too stiff to be
-        followed: where k^2 is less than about 1e-6 max(a, b)^2.
+        followed: beyond Painlevé's friction, with k^2 below some 1e-8 max(a, b)^2.
     jam_speeds : tuple of (float, float)
         Ranges of speed, ascending, in which the slide jams before it would leave the ground or
         pass the tip; inf ends one that goes on for ever. Empty up to `painleve_friction` and for
-        infinite friction; above, they are found by a scan in steps of 1 % up to 50 times the slip
+        infinite friction; above, they are found by a scan in steps of 2 % up to 50 times the slip
         speed (narrower ranges may be missed) and their ends refined to the last bit.
     friction_to_roll_over : float
         Largest |F/N| of rolling at the roll-over speed (infinite where N vanishes before).
