@@ -24,7 +24,8 @@ Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega
 
 // The same of a body that slides already. Only there can a slide with N = c/B > 0, c < 0, be a
 // second motion beside flight: without slip, rolling's own N and F rule out that the slip then
-// starts to the side that this slide is for.
+// starts to the side that this slide is for. A body may be put there, but no motion leads there: a
+// slide ends before, where c or B vanishes, and an impact goes on while B < 0 until the slip stops.
 Continuation sliding(const Scene& scene, const Geometry& at, double omega, double side) {
     const auto [c, b] = SlidingEquation(scene, side).contact(at, omega);
     if (c < 0 && b < 0) return {Mode::sliding, side, Painleve::two_motions};

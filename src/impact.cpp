@@ -142,13 +142,6 @@ Reaction reaction_to(const Scene& scene, const Contact& c, double restitution) {
                                                  : coulomb_friction(c, scene.friction, restitution);
 }
 
-Mode mode_in_contact(const Scene& scene, const Geometry& at, const State& state, bool sticks) {
-    // Gap acceleration of the free body is -c: physics (43).
-    const double c = scene.gravity * std::cos(scene.slope) + at.ddh * state.omega * state.omega;
-    if (c <= 0) return Mode::flight;
-    return sticks ? Mode::rolling : Mode::sliding;
-}
-
 }  // namespace
 
 InitialState initial_state(const Scene& scene) {
@@ -177,7 +170,7 @@ InitialState initial_state(const Scene& scene) {
     result.reaction_z = reaction.normal;
     apply(scene, at, reaction, state);
     state.omega = noticeable(state.omega);
-    state.mode = mode_in_contact(scene, at, state, reaction.sticks);
+    state.mode = reaction.sticks ? Mode::rolling : Mode::sliding;
     if (state.mode == Mode::rolling && state.omega == 0 &&
         is_equilibrium(at, std::tan(scene.slope))) {
         state.mode = Mode::rest;

@@ -13,7 +13,7 @@ import scipy.integrate
 import scipy.optimize
 from contact_scenes import random_scenes, response, support
 from oracles import EPS
-from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, simulate
+from rolling_ellipse import EventKind, Impulse, Mode, Scene, Status, Trajectory, simulate
 
 GRAVITY = 9.81
 JAMMING = Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
@@ -329,6 +329,49 @@ def test_only_slip_jams() -> None:
             assert contact.normal < 3.0 * contact.coupling * math.copysign(1, contact.slip)
 
 
+INDETERMINATE = Scene(2.0, 1.0, theta=0.988, omega=6.0, friction=2.0, x_dot=11.5484)
+
+
+def test_two_motions_are_told_and_none_is_taken() -> None:
+    """Gnn < mu s Gnt with c < 0: the body flies off, or N = c/B > 0 keeps it sliding; both obey
+    Newton's and Coulomb's laws."""
+    start = INDETERMINATE.initial_state
+    contact = response(INDETERMINATE, start)
+    at = support(start.theta, 2.0, 1.0)
+    c = GRAVITY + at.curvature * start.omega**2
+    b = contact.normal - 2.0 * contact.coupling
+    assert contact.slip > 0 and c < 0 and b < 0
+    assert start.mode is Mode.SLIDING and "two motions go on (Painleve)" in start.reason
+    motion = simulate(INDETERMINATE, 1.0)
+    assert motion.status is Status.JAMMED and "two motions" in motion.message
+    assert kinds(motion) == [EventKind.JAM] and motion.t.tolist() == [0.0]
+    # with less friction, or slip to the other side, or a little air below it, it flies
+    for other in ({"friction": 1.3}, {"x_dot": 8.0}, {"z": start.z + 1e-6, "z_dot": start.z_dot}):
+        assert kinds(simulate(dataclasses.replace(INDETERMINATE, **other), 0.1)) == []
+
+
+def test_a_blow_may_lead_to_two_motions() -> None:
+    """Pushed along the ground through its centre, the body slides faster and turns as before."""
+    scene = dataclasses.replace(INDETERMINATE, x_dot=None)
+    start = scene.initial_state
+    push = Impulse(jx=INDETERMINATE.x_dot - start.x_dot)
+    struck = dataclasses.replace(scene, impulse=push)
+    assert struck.initial_state.mode is Mode.SLIDING
+    assert "two motions" in struck.initial_state.reason
+    assert "two motions" in simulate(struck, 1.0).message
+
+
+def test_no_motion_leads_to_two_motions() -> None:
+    """Slides end before they come there, and an impact ends without the slip that it takes."""
+    jams = 0
+    for scene in random_scenes(600, 43, friction=3.0, restitution=0.0):
+        motion = simulate(scene, 4.0, model="contact", max_events=200, raise_on_failure=False)
+        jams += motion.status is Status.JAMMED
+        assert "two motions" not in motion.message or motion.t_end == 0
+    print(jams)
+    assert jams > 20
+
+
 def test_unlimited_friction_never_jams() -> None:
     for scene in random_scenes(300, 37, friction=math.inf):
         motion = simulate(scene, 4.0, model="contact", max_events=200, raise_on_failure=False)
@@ -491,7 +534,7 @@ def test_max_steps_counts_all_arcs() -> None:
 
 BAD: dict[str, Any] = {
     "max_events": [0, -3],
-    "rest_speed": [0.0, -1e-3, math.nan, math.inf],
+    "rest_speed": [0.0, -1e-3, math.nan, math.inf, 0.04],
     "friction": [-0.1, math.nan],
     "restitution": [-0.01, 1.01, math.nan],
 }
@@ -506,8 +549,152 @@ def test_bad_numbers_are_refused_by_name(name: str, value: float) -> None:
             simulate(re.scenes.drop, 1.0, **{name: value})
 
 
+@pytest.mark.parametrize("scene", [re.scenes.rolling, re.scenes.slip, re.scenes.drop])
+def test_no_more_turns_than_a_double_knows(scene: Scene) -> None:
+    with pytest.raises(ValueError, match=r"^t must be at most 1e15 half turns .*, got 1e\+25$"):
+        simulate(scene, 1e25, model="contact")
+
+
+def test_a_velocity_beyond_any_scene_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"^x_dot must be at most .* for this body, got 1e\+50$"):
+        Scene(1e-20, 1e-20, x_dot=1e50)
+    with pytest.raises(ValueError, match=r"^z_dot must be at most .* for this body, got 1e\+45$"):
+        Scene(1e-20, 1e-20, z=1.0, z_dot=1e45)
+
+
 def test_a_start_in_the_ground_is_refused() -> None:
     with pytest.raises(ValueError, match=r"^z must be at least h\(theta\) = 1.0 \[m\].*got 0.9"):
         Scene(2.0, 1.0, z=0.9)
     with pytest.raises(ValueError, match=r"^z_dot must be at least .*got -0.1"):
         Scene(2.0, 1.0, z_dot=-0.1)
+
+
+# ----------------------------------------------------------------------------- the start
+
+
+def test_the_start_says_what_the_body_does() -> None:
+    """On every ground and in every state, the mode of `initial_state` is the contact model's."""
+    met = {mode: 0 for mode in Mode}
+    for scene in random_scenes(2000, 71):
+        motion = simulate(scene, [0.0], model="contact", raise_on_failure=False)
+        mode = scene.initial_state.mode
+        assert motion.mode.tolist() == [mode], scene
+        does = {"ROLLING": "rolls", "SLIDING": "slides", "FLIGHT": "flies", "REST": "rests"}
+        assert does[mode.name] in scene.initial_state.reason
+        met[mode] += 1
+    print(met)
+    assert min(met[mode] for mode in (Mode.ROLLING, Mode.SLIDING, Mode.FLIGHT)) > 50
+
+
+@pytest.mark.parametrize(
+    ("scene", "mode", "reason"),
+    [
+        (Scene(2.0, 1.0, slope=0.5, friction=0.05), Mode.SLIDING, "friction 0.05 cannot hold"),
+        (Scene(2.0, 1.0, theta=1.5, omega=30.0), Mode.FLIGHT, "the ground would have to pull"),
+        (
+            Scene(2.0, 1.0, slope=0.2, theta=0.06874278580117352, friction=0.5),
+            Mode.REST,
+            "no impulse; the body rests",
+        ),
+        (re.scenes.report, Mode.ROLLING, "without it omega would be 5.76 rad/s; the body rolls"),
+    ],
+)
+def test_starts_that_look_like_rolling(scene: Scene, mode: Mode, reason: str) -> None:
+    assert scene.initial_state.mode is mode and reason in scene.initial_state.reason
+
+
+def test_a_body_in_equilibrium_on_a_slope_stays_in_every_model() -> None:
+    scene = Scene(2.0, 1.0, slope=0.2, theta=0.06874278580117352, friction=0.5)
+    for options in ({}, {"model": "rolling"}, {"model": "multipliers"}):
+        motion = simulate(scene, 1e4, **options)
+        assert np.all(motion.mode == Mode.REST) and np.all(motion.omega == 0)
+        assert np.ptp(motion.theta) == 0
+
+
+def test_leaving_the_ground_is_no_slip() -> None:
+    """On a slope rolling may go on with c <= 0; where its grip ends then, the body flies."""
+    scene = Scene(
+        1.12284991254411, 1.0, friction=8.997344246579441, restitution=1.0,
+        slope=-0.4867737488001045, theta=1.3467715037863446, inertia=0.5651979815250789,
+        omega=-0.7914415400745813,
+    )  # fmt: skip
+    motion = simulate(scene, 2.3)
+    assert kinds(motion)[0] is EventKind.LIFT_OFF
+    assert motion.events[0].t == pytest.approx(2.152772, abs=1e-6)
+    for other in random_scenes(600, 83):
+        found = simulate(other, 4.0, model="contact", max_events=50, raise_on_failure=False)
+        for event in found.events:
+            flies = event.state_after.mode is Mode.FLIGHT
+            if event.kind is EventKind.SLIP:
+                assert not flies
+            if event.kind is EventKind.LIFT_OFF:
+                assert flies
+
+
+# ----------------------------------------------------------------------------- units
+
+SCALED = [
+    Scene(2.0, 1.0, omega=4.77, friction=0.5),
+    Scene(2.0, 1.0, omega=7.0, friction=0.3),
+    Scene(0.7, 1.9, x_dot=2.0, omega=-1.0, friction=0.4, theta=0.3, slope=0.1, restitution=0.5),
+    Scene(2.0, 1.0, theta=0.5, z=2.5, omega=1.0, friction=0.7, restitution=0.6),
+    Scene(1.0, 1e-3, theta=0.4, omega=0.2, friction=0.3, x=1e3),
+    JAMMING,
+]
+UNITS = {  # powers of two of length, time and mass
+    "lengths by 4^n, times by 2^n": (24, 12, 0),
+    "lengths and gravity": (-17, 0, 0),
+    "mass": (0, 0, 45),
+    "small": (-60, -30, -70),
+    "everything": (41, -13, -9),
+}
+
+
+@pytest.mark.parametrize("powers", UNITS.values(), ids=UNITS.keys())
+@pytest.mark.parametrize("number", range(len(SCALED)))
+def test_other_units_give_the_same_bits(number: int, powers: tuple[int, int, int]) -> None:
+    length, time, mass = (2.0**power for power in powers)
+    scene, speed = SCALED[number], length / time
+    units: dict[str, float] = {
+        "a": length, "b": length, "mass": mass, "gravity": speed / time, "omega": 1 / time,
+        "x": length, "z": length, "x_dot": speed, "z_dot": speed,
+    }  # fmt: skip
+    values = {name: getattr(scene, name) for name in units}
+    other = dataclasses.replace(
+        scene, **{name: None if v is None else v * units[name] for name, v in values.items()}
+    )
+    times = np.linspace(0.0, 4.0, 301)
+    one = simulate(scene, times, model="contact")
+    many = simulate(other, times * time, model="contact")
+    assert kinds(one) == kinds(many) and one.stats == many.stats
+    assert [event.t * time for event in one.events] == [event.t for event in many.events]
+    for name in STATE:
+        assert np.array_equal(getattr(one, name) * units.get(name, 1.0), getattr(many, name)), name
+    force = mass * speed / time
+    assert np.array_equal(one.normal_force * force, many.normal_force)
+    assert np.array_equal(one.friction_force * force, many.friction_force)
+
+
+def test_a_slide_takes_as_many_steps_whatever_its_size() -> None:
+    """Not only for powers of two: the tolerance is of the body's own size."""
+    counts = []
+    for b in (1.0, 1e-9, 1e12, 3e-25):
+        scene = Scene(2 * b, b, omega=4.77 / math.sqrt(b), friction=0.5)
+        counts.append(simulate(scene, 2 * math.sqrt(b), model="contact").stats["steps"])
+    print(counts)
+    assert max(counts) <= 1.1 * min(counts)
+
+
+def test_a_body_that_spins_too_fast_for_its_fall_still_lands() -> None:
+    """Its fall in half a turn is less than the rounding of its height: it touches with its tip."""
+    scene = Scene(
+        8.684333525875083e23, 8.684333525875074e26, mass=1e-30, friction=1e20,
+        omega=7.284644624875188e19,
+    )  # fmt: skip
+    assert simulate(scene, 5e-324).success
+    for omega in (1e14, 1e15, 3e15, 1e17, 1e30):
+        scene = Scene(1.0, 2.0, omega=omega, friction=0.3)
+        motion = simulate(scene, 1.0, max_events=20, raise_on_failure=False)
+        # it stands on its tip and leaves the ground there, for half a turn
+        assert motion.events[0].kind is EventKind.IMPACT
+        assert motion.events[0].t == pytest.approx(math.pi / omega, rel=1e-9)

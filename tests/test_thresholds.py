@@ -1,7 +1,7 @@
 """`thresholds`: closed forms, printed numbers, and each speed by what it is the threshold of."""
 
 import math
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import Any, NamedTuple
 
 import mpmath as mp
@@ -9,7 +9,7 @@ import numpy as np
 import oracles
 import pytest
 from oracles import EPS, Long
-from rolling_ellipse import EventKind, Scene, simulate, thresholds
+from rolling_ellipse import Event, EventKind, Scene, simulate, thresholds
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -505,6 +505,43 @@ def test_lift_off_is_a_threshold(shape: Shape, kind: str, friction: float) -> No
             if event.kind is EventKind.LIFT_OFF
         ]
         assert any(left) == (share > 1), share
+
+
+def on_its_way_up(event: Event) -> bool:
+    return event.state_before.theta < math.pi / 2 and event.state_before.omega > 0
+
+
+@pytest.mark.parametrize("friction", [0.25, 0.3, 0.45, 0.505])
+def test_jams_between_speeds_of_leaving(friction: float) -> None:
+    """A body with its mass near the centre, above Painleve's friction: what the numbers say of
+    each speed is what the contact model does, also right beside the ends of the ranges."""
+    gyration2 = 0.0435
+    found = thresholds(2.0, 1.0, gyration2=gyration2, friction=friction)
+    assert friction > found.painleve_friction and found.lift_off_speed is not None
+    edges = [found.lift_off_speed, *(edge for jams in found.jam_speeds for edge in jams)]
+    assert len(found.jam_speeds) == 1 and max(edges) < math.inf
+    speeds = [edge * share for edge in edges for share in (0.97, 1 - 1e-6, 1 + 1e-6, 1.01, 1.03)]
+    for speed in speeds:
+        scene = Scene(2.0, 1.0, gravity=GRAVITY, inertia=gyration2, friction=friction, omega=speed)
+        motion = simulate(scene, 3.0, model="contact", max_events=8, raise_on_failure=False)
+        upwards = list(takewhile(on_its_way_up, motion.events))
+        jams = any(one.kind is EventKind.JAM for one in upwards)
+        leaves = any(one.kind is EventKind.LIFT_OFF for one in upwards)
+        assert jams == any(low <= speed < high for low, high in found.jam_speeds), speed
+        assert leaves == (speed >= found.lift_off_speed and not jams), speed
+
+
+def test_discs_do_not_jam_before_they_leave() -> None:
+    for aspect in (1.2, 2.0, 5.0, 20.0):
+        for friction in (1.3, 2.0, 50.0):
+            assert thresholds(aspect, 1.0, friction=friction).jam_speeds == ()
+
+
+def test_what_is_too_stiff_to_follow_has_no_lift_off_speed() -> None:
+    """Hardly any inertia, and a friction that answers every pressure at once."""
+    found = thresholds(3**0.5, 1.0, gravity=1.0, gyration2=1e-12, friction=1e299)
+    assert found.lift_off_speed is None and found.jam_speeds == ()
+    assert found.contact_loss_speed == pytest.approx(found.slip_speed, rel=1e-9)
 
 
 def test_a_circle_never_lifts_off() -> None:
