@@ -516,7 +516,7 @@ def test_jams_between_speeds_of_leaving(friction: float) -> None:
     """A body with its mass near the centre, above Painleve's friction: what the numbers say of
     each speed is what the contact model does, also right beside the ends of the ranges."""
     gyration2 = 0.0435
-    found = thresholds(2.0, 1.0, gyration2=gyration2, friction=friction)
+    found = thresholds(2.0, 1.0, gravity=GRAVITY, gyration2=gyration2, friction=friction)
     assert friction > found.painleve_friction and found.lift_off_speed is not None
     edges = [found.lift_off_speed, *(edge for jams in found.jam_speeds for edge in jams)]
     assert len(found.jam_speeds) == 1 and max(edges) < math.inf
