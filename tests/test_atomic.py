@@ -1,0 +1,206 @@
+"""`replacing`: a file is the old one or the new one, whatever happens in between."""
+
+import os
+import re
+import resource
+import signal
+import stat
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+from rolling_ellipse._atomic import replacing
+
+OLD, NEW = b"what was there", b"what comes"
+
+
+@pytest.fixture
+def old(tmp_path: Path) -> Path:
+    path = tmp_path / "motion.npz"
+    path.write_bytes(OLD)
+    return path
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_the_new_file_takes_the_place(old: Path) -> None:
+    with replacing(old) as new:
+        new.write_bytes(NEW)
+        assert old.read_bytes() == OLD
+    assert old.read_bytes() == NEW and names(old.parent) == [old.name]
+
+
+@pytest.mark.parametrize(
+    "name", ["roll.mp4", "ROLL.GIF", "motion", "größe -i.npz", "a.tar.gz", "-x.html", "x" * 240]
+)
+def test_a_name_that_other_programs_take(name: str, tmp_path: Path) -> None:
+    with replacing(tmp_path / name) as new:
+        assert new.is_absolute() and new.parent == tmp_path and new.suffix == Path(name).suffix
+        assert re.fullmatch(r"[A-Za-z0-9_.]{1,64}", new.name)
+        new.write_bytes(NEW)
+    assert names(tmp_path) == [name]
+
+
+def test_odd_suffixes_are_left_out(tmp_path: Path) -> None:
+    for name in ("a.ß", "a.b c", "a." + "b" * 240, ".npz"):
+        with replacing(tmp_path / name) as new:
+            assert re.fullmatch(r"[A-Za-z0-9_.]{1,64}", new.name) and new.suffix == ""
+            new.write_bytes(NEW)
+        assert (tmp_path / name).read_bytes() == NEW
+
+
+def test_names_in_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with replacing("motion.npz") as new:
+        new.write_bytes(NEW)
+        monkeypatch.chdir("/")  # what was meant stays meant
+    assert names(tmp_path) == ["motion.npz"]
+
+
+@pytest.mark.parametrize("kind", [ValueError, KeyboardInterrupt, SystemExit, MemoryError])
+def test_an_exception_leaves_the_old_file(kind: type[BaseException], old: Path) -> None:
+    with pytest.raises(kind), replacing(old) as new:
+        new.write_bytes(NEW)
+        raise kind
+    assert old.read_bytes() == OLD and names(old.parent) == [old.name]
+
+
+def test_an_exception_leaves_nothing(tmp_path: Path) -> None:
+    with pytest.raises(ZeroDivisionError), replacing(tmp_path / "motion.npz") as new:
+        new.write_bytes(NEW)
+        raise ZeroDivisionError
+    assert names(tmp_path) == []
+
+
+def test_a_file_that_vanished_in_between_is_no_success(old: Path) -> None:
+    with pytest.raises(FileNotFoundError), replacing(old) as new:
+        new.unlink()
+    assert old.read_bytes() == OLD
+
+
+def test_a_kill_leaves_the_old_file(old: Path) -> None:
+    program = (
+        "import os, signal, sys\n"
+        "from rolling_ellipse._atomic import replacing\n"
+        "with replacing(sys.argv[1]) as new, open(new, 'wb') as file:\n"
+        "    file.write(b'half')\n"
+        "    file.flush()\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program, old], timeout=60)
+    assert done.returncode == -signal.SIGKILL
+    assert old.read_bytes() == OLD
+
+
+def test_a_full_disk_leaves_the_old_file(old: Path) -> None:
+    """A limit on the size of files stands for the disk: both are an OSError while writing."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+        with pytest.raises(OSError, match="large"), replacing(old) as new:
+            new.write_bytes(bytes(2000))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        signal.signal(signal.SIGXFSZ, ignored)
+    assert old.read_bytes() == OLD and names(old.parent) == [old.name]
+
+
+def permissions(path: Path) -> int:
+    return stat.S_IMODE(path.stat().st_mode)
+
+
+@pytest.mark.parametrize("mask", [0o022, 0o077, 0o002])
+def test_permissions_are_those_of_any_new_file(mask: int, tmp_path: Path) -> None:
+    before = os.umask(mask)
+    try:
+        with replacing(tmp_path / "motion.npz") as new:
+            new.write_bytes(NEW)
+    finally:
+        os.umask(before)
+    assert permissions(tmp_path / "motion.npz") == 0o666 & ~mask
+
+
+def test_permissions_stay(old: Path) -> None:
+    old.chmod(0o640)
+    with replacing(old) as new:
+        new.write_bytes(NEW)
+    assert permissions(old) == 0o640
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
+def test_the_owner_stays(old: Path) -> None:
+    os.chown(old, 1234, 2345)
+    with replacing(old) as new:
+        new.write_bytes(NEW)
+    assert (old.stat().st_uid, old.stat().st_gid) == (1234, 2345)
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write to any file")
+def test_a_file_that_is_not_to_be_written_is_not(old: Path) -> None:
+    old.chmod(0o444)
+    with pytest.raises(PermissionError, match=r"motion\.npz"), replacing(old):
+        pass
+    assert old.read_bytes() == OLD and names(old.parent) == [old.name]
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_link_stays_a_link(there: bool, tmp_path: Path) -> None:
+    (tmp_path / "far").mkdir()
+    file, link = tmp_path / "far" / "motion.npz", tmp_path / "link.npz"
+    if there:
+        file.write_bytes(OLD)
+    link.symlink_to(Path("far", "motion.npz"))
+    with replacing(link) as new:
+        new.write_bytes(NEW)
+    assert link.is_symlink() and file.read_bytes() == NEW and names(file.parent) == [file.name]
+
+
+def test_devices_and_pipes_are_written_not_replaced(tmp_path: Path) -> None:
+    with replacing("/dev/null") as new:
+        new.write_bytes(NEW)
+    assert stat.S_ISCHR(os.stat("/dev/null").st_mode)
+    pipe, found = tmp_path / "pipe", []
+    os.mkfifo(pipe)
+    reader = threading.Thread(target=lambda: found.append(pipe.read_bytes()), daemon=True)
+    reader.start()
+    with replacing(pipe) as new:
+        new.write_bytes(NEW)
+    reader.join(10)
+    assert found == [NEW] and stat.S_ISFIFO(pipe.stat().st_mode)
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("no/such/folder/motion.npz", FileNotFoundError),
+        ("no/../motion.npz", FileNotFoundError),
+        ("motion.npz/inside.npz", NotADirectoryError),
+        ("folder", IsADirectoryError),
+        ("folder/", IsADirectoryError),
+        ("folder/..", IsADirectoryError),
+        ("new/", OSError),
+        ("", OSError),
+        ("loop", OSError),
+        ("x" * 300, OSError),
+    ],
+)
+def test_wrong_places_are_refused_by_name(
+    name: str, kind: type[OSError], old: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the name given, not that of a file nobody asked for; before any work; as `open` does."""
+    monkeypatch.chdir(old.parent)
+    Path("folder").mkdir()
+    Path("loop").symlink_to("loop")
+    with pytest.raises(OSError), open(name, "wb"):
+        pass
+    before = names(old.parent)
+    with pytest.raises(kind) as caught, replacing(name):
+        pytest.fail("nothing can be written there")
+    assert caught.value.filename == name
+    assert names(old.parent) == before and not names(old.parent / "folder")
+    assert old.read_bytes() == OLD
