@@ -152,7 +152,7 @@ def _range(argument: str, axis: str, given: Any) -> tuple[float, float]:
     wanted = f"{argument} must be two ascending finite numbers, not below {least:g}"
     wanted += f" and not above {most:g}" if math.isfinite(most) else ""
     try:
-        low, high = (float(end) for end in given)
+        low, high = (number(argument, end) for end in given)
     except (TypeError, ValueError):
         raise ValueError(f"{wanted}, got {given!r}") from None
     if not (least <= low < high <= most and high < math.inf):

@@ -6,11 +6,12 @@ printed equation is named after its number. A printed residual less the right on
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
-from ._check import FloatArray, array, choice
+from ._check import FloatArray, choice, finite, number
 from ._printed_rows import rows
 from .geometry import support_slope
 from .kinematics import _coordinates
@@ -37,20 +38,21 @@ def polar(psi: FloatArray, body: Scene) -> FloatArray:
 def eq_5(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return psi by the arctan of eq 5 [rad]; `geometry.contact_angle` is continuous."""
     body = Scene(a, b)
-    found: FloatArray = np.arctan(body.a**2 / body.b**2 * np.tan(array("theta", theta)))
+    found: FloatArray = np.arctan(body.a**2 / body.b**2 * np.tan(finite("theta", theta)))
     return found
 
 
 def case_sign(theta: Any) -> FloatArray:
     """Return the sign of r sin(psi - theta) by the report's cases: -1 in the second quadrant."""
-    turned = np.mod(array("theta", theta), 2 * np.pi)
+    turned = np.mod(finite("theta", theta), 2 * np.pi)
     return np.where((turned >= np.pi / 2) & (turned <= np.pi), -1.0, 1.0)
 
 
 def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return x_C - x_G by eqs 5 to 7 and the two cases [m]; right: `geometry.support_slope`."""
-    psi, angle = eq_5(theta, a=a, b=b), array("theta", theta)
-    r = a * b / np.sqrt(polar(psi, Scene(a, b)))
+    psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
+    body = Scene(a, b)
+    r = body.a * body.b / np.sqrt(polar(psi, body))
     found: FloatArray = case_sign(angle) * r * np.sin(psi - angle)
     return found
 
@@ -134,7 +136,7 @@ def equations_of_motion(
 
 
 def _multipliers(values: Any) -> tuple[FloatArray, ...]:
-    found = array("multipliers", values)
+    found = finite("multipliers", values)
     if found.ndim == 0 or found.shape[-1] != 4:
         raise ValueError(f"multipliers must have 4 entries last, got shape {found.shape}")
     return tuple(found[..., i] for i in range(4))
@@ -173,18 +175,26 @@ def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 def eq_48(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
     """Return theta_dot just after the blow by eq 48 [rad/s]; right: `struck_speed`."""
     body = Scene(a, b, mass=mass)
+    _require_blow(impulse, d)
     return 4 * impulse * d / (body.mass * (body.a**2 + body.b**2))
 
 
 def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
     """Return theta_dot after a blow on the body at rest, lying flat, that sticks [rad/s]."""
+    _require_blow(impulse, d)
     return Scene(a, b, mass=mass, impulse=Impulse.press(impulse, d)).initial_state.omega
+
+
+def _require_blow(impulse: Any, d: Any) -> None:
+    for name, value in (("impulse", impulse), ("d", d)):
+        if not math.isfinite(number(name, value)):
+            raise ValueError(f"{name} must be finite, got {value}")
 
 
 def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return what appendix B's r_x has for r [m]; right: `geometry.contact_distance`."""
     body = Scene(a, b)
-    t = np.arctan(body.a * np.tan(array("theta", theta)) / body.b)  # Th_p, where eq 6 has psi
+    t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p, where eq 6 has psi
     across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)
     found: FloatArray = body.a * body.b / np.hypot(across, along)
     return found

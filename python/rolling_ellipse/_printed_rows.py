@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._check import FloatArray
+from ._check import FloatArray, finite
 from .kinematics import COORDINATES, _coordinates
 from .scene import Scene
 
@@ -142,5 +142,5 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
     """
     body = Scene(a, b)
     allowed = direction(_coordinates("q", q), body.a, body.b, misprints(printed))
-    rates: FloatArray = allowed * np.asarray(omega, dtype=np.float64)[..., None]
+    rates: FloatArray = allowed * finite("omega", omega)[..., None]
     return rates

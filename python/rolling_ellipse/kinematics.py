@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, array, broadcast, number
+from ._check import FloatArray, broadcast, finite, number, require
 
 COORDINATES = 5
 
@@ -37,7 +37,7 @@ class ConstraintResiduals:
 
 
 def _coordinates(name: str, value: Any) -> FloatArray:
-    found = array(name, value)
+    found = finite(name, value)
     if found.ndim == 0 or found.shape[-1] != COORDINATES:
         raise ValueError(
             f"{name} must have 5 entries (x, z, theta, psi, r) along its last axis, "
@@ -67,7 +67,7 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     Raises
     ------
     ValueError
-        If a shape or a semi-axis is wrong.
+        If a shape or a semi-axis is wrong, or a coordinate or rate is not finite.
     """
     states = _coordinates("q", q), _coordinates("q_dot", q_dot)
     try:
@@ -108,9 +108,11 @@ def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArra
     Raises
     ------
     ValueError
-        If a semi-axis is out of its range.
+        If a semi-axis is out of its range, or an angle or speed is not finite.
     """
     shape, (angle, speed) = broadcast(theta=theta, omega=omega)
+    require("theta", "finite", angle, np.isfinite(angle))
+    require("omega", "finite", speed, np.isfinite(speed))
     size = math.prod(shape)
     q, q_dot = _core.kinematics(size, angle, speed, number("a", a), number("b", b))
     return q.reshape(*shape, COORDINATES), q_dot.reshape(*shape, COORDINATES)

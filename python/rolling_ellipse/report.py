@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ._check import FloatArray, choice, number, optional_number
+from ._check import FloatArray, choice, finite, number, optional_number, whole
 from ._errata import Erratum, errata, errata_table
 from ._errata_numbers import Comparison
 from ._explicit import Steps
@@ -206,13 +206,11 @@ def _require_none(name: str, value: Any, equations: str) -> None:
 
 
 def _vector(name: str, value: Any) -> FloatArray:
-    found = np.array(value, dtype=np.float64)
+    found = finite(name, value)
     if found.shape != (COORDINATES,):
         raise ValueError(
             f"{name} must have 5 entries (x, z, theta, psi, r), got shape {found.shape}"
         )
-    if not np.all(np.isfinite(found)):
-        raise ValueError(f"{name} must be finite, got {value!r}")
     return found
 
 
@@ -224,6 +222,7 @@ def _steps(method: str, rtol: float, atol: float, step: float | None, max_steps:
     for name, value in (("rtol", rtol), ("atol", atol), ("step", 1.0 if size is None else size)):
         if not 0 < number(name, value) < np.inf:
             raise ValueError(f"{name} must be positive and finite, got {value!r}")
-    if not max_steps >= 1:
-        raise ValueError(f"max_steps must be at least 1, got {max_steps!r}")
-    return Steps(method, number("rtol", rtol), number("atol", atol), size, max_steps)
+    most = whole("max_steps", max_steps)
+    if most < 1:
+        raise ValueError(f"max_steps must be at least 1, got {most}")
+    return Steps(method, number("rtol", rtol), number("atol", atol), size, most)
