@@ -8,6 +8,7 @@ an array of one number.
 from __future__ import annotations
 
 import math
+import os
 from contextlib import suppress
 from operator import index
 from typing import Any
@@ -59,6 +60,24 @@ def whole(name: str, value: Any) -> int:
         with suppress(TypeError):
             return index(value)
     raise TypeError(f"{name} must be a whole number, got {shown(value)}")
+
+
+def positive(name: str, value: Any) -> float:
+    """Return ``value`` as a positive finite float."""
+    found = number(name, value)
+    if not 0 < found < math.inf:
+        raise ValueError(f"{name} must be positive and finite, got {found!r}")
+    return found
+
+
+def whole_within(name: str, value: Any, most: int) -> int:
+    """Return ``value`` as a whole number from 1 to ``most``."""
+    found = whole(name, value)
+    if found < 1:
+        raise ValueError(f"{name} must be at least 1, got {shown(value)}")
+    if found > most:
+        raise ValueError(f"{name} must be at most {most}, got {shown(value)}")
+    return found
 
 
 def flag(name: str, value: Any) -> bool:
@@ -166,6 +185,16 @@ def uniform_disc(a: Any, b: Any) -> FloatArray:
     with np.errstate(over="ignore"):  # the core refuses by name what is too large
         squares: FloatArray = (array("a", a) ** 2 + array("b", b) ** 2) / 4
     return squares
+
+
+def file_name(name: str, value: Any) -> str:
+    """Return the path of a file as text, or raise an error naming the argument."""
+    found = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
+    if not isinstance(found, str):
+        raise TypeError(f"{name} must be a path, a string or a PathLike, got {shown(value)}")
+    if not found or "\0" in found:
+        raise ValueError(f"{name} must name a file, got {found!r}")
+    return found
 
 
 def choice(name: str, value: Any, valid: tuple[str, ...]) -> str:
