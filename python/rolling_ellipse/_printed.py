@@ -14,15 +14,16 @@ import numpy as np
 from ._check import FloatArray, choice, finite, number
 from ._printed_rows import rows
 from .geometry import support_slope
-from .kinematics import _coordinates
+from .kinematics import _coordinates, require_together
 from .scene import Impulse, Scene
 
 CASES = ("as_it_is", "1", "2")
 
 
-def state(q: Any) -> tuple[FloatArray, ...]:
-    """theta, psi, r, sin and cos of psi - theta."""
+def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
+    """theta, psi, r, sin and cos of psi - theta; the others must have as many states, or one."""
     found = _coordinates("q", q)
+    require_together(q=found, **others)
     theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
     return theta, psi, r, np.sin(psi - theta), np.cos(psi - theta)
 
@@ -63,7 +64,7 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
     ``case`` "1" takes the lower signs, "2" the upper ones, "as_it_is" that of theta's quadrant.
     Right is x_dot - r cos(psi - theta) theta_dot, the first velocity residual of `constraints`.
     """
-    theta, _, r, sine, cosine = state(q)
+    theta, _, r, sine, cosine = state(q, q_dot=q_dot)
     rates = _coordinates("q_dot", q_dot)
     choice("case", case, CASES)
     sign = {"1": -1.0, "2": 1.0}.get(case, case_sign(theta))
@@ -100,7 +101,7 @@ def eqs_33_to_37(
 ) -> FloatArray:
     """Return the residuals of eqs 33, 34, 35, 37, 36 (x, z, theta, psi, r), (..., 5)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
-    theta, psi, r, sine, cosine = state(q)
+    theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot, multipliers=multipliers)
     inertia, ddot = body.mass * (body.a**2 + body.b**2) / 4, _coordinates("q_ddot", q_ddot)
     one, two, three, four = _multipliers(multipliers)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
@@ -123,6 +124,7 @@ def equations_of_motion(
 ) -> FloatArray:
     """Return what eqs 33, 34, 35, 37, 36 must be, with the corrected rows, (..., 5)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
+    require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
     ddot = _coordinates("q_ddot", q_ddot)
     pull = np.einsum(
         "...ij,...i->...j", rows(_coordinates("q", q), body.a, body.b, ("tan",)),
@@ -145,7 +147,7 @@ def _multipliers(values: Any) -> tuple[FloatArray, ...]:
 def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     """Return the rates of f1 (f1 itself), f2, f3 and f4 as eq 38 prints them, (..., 4)."""
     body = Scene(a, b)
-    theta, psi, r, sine, cosine = state(q)
+    theta, psi, r, sine, cosine = state(q, q_dot=q_dot)
     x, z, spin, turn, stretch = np.moveaxis(_coordinates("q_dot", q_dot), -1, 0)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
     tangent = np.tan(theta)
@@ -164,6 +166,7 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     """Return what eq 38 must be, in its scaling, (..., 4)."""
     body = Scene(a, b)
+    require_together(q=q, q_dot=q_dot)
     matrix = rows(_coordinates("q", q), body.a, body.b, ("tan",))
     found: FloatArray = np.einsum("...ij,...j->...i", matrix, _coordinates("q_dot", q_dot))
     return found

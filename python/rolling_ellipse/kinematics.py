@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, broadcast, finite, number, require
+from ._check import FloatArray, array, broadcast, finite, number, require
 
 COORDINATES = 5
 
@@ -46,6 +46,16 @@ def _coordinates(name: str, value: Any) -> FloatArray:
     return found
 
 
+def require_together(**arguments: Any) -> None:
+    """Raise ValueError if axes before the last do not broadcast."""
+    shapes = {name: array(name, value).shape for name, value in arguments.items()}
+    try:
+        np.broadcast_shapes(*(shape[:-1] for shape in shapes.values()))
+    except ValueError:
+        got = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        raise ValueError(f"arguments must broadcast together, got shapes {got}") from None
+
+
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
     """Evaluate the four constraints, and gap and slip by a road of their own, for any state.
 
@@ -69,12 +79,9 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     ValueError
         If a shape or a semi-axis is wrong, or a coordinate or rate is not finite.
     """
-    states = _coordinates("q", q), _coordinates("q_dot", q_dot)
-    try:
-        q, q_dot = np.broadcast_arrays(*states)
-    except ValueError:
-        shapes = f"q {states[0].shape}, q_dot {states[1].shape}"
-        raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
+    q, q_dot = _coordinates("q", q), _coordinates("q_dot", q_dot)
+    require_together(q=q, q_dot=q_dot)
+    q, q_dot = np.broadcast_arrays(q, q_dot)
     shape = q.shape[:-1]
     position, velocity, gap, slip = _core.constraints(
         q.reshape(-1, COORDINATES),
