@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -18,7 +19,9 @@ import numpy as np
 import rolling_ellipse as re
 from matplotlib.figure import Figure
 from PIL import Image
+from rolling_ellipse import __main__ as command_line
 from rolling_ellipse.__main__ import main
+from rolling_ellipse._movies import GifWriter
 
 KEYS = {
     "status", "message", "reason", "valid_until", "smallest_normal_force",
@@ -35,7 +38,7 @@ class Answer(NamedTuple):
     err: str
 
 
-def typed(folder: Path, *arguments: str) -> Answer:
+def typed(folder: Path, *arguments: str, **environment: str) -> Answer:
     """The command in a process and a folder of its own."""
     done = subprocess.run(
         [sys.executable, "-m", "rolling_ellipse", *arguments],
@@ -43,7 +46,7 @@ def typed(folder: Path, *arguments: str) -> Answer:
         capture_output=True,
         text=True,
         timeout=120,
-        env=os.environ | {"MPLBACKEND": "Agg"},
+        env=os.environ | {"MPLBACKEND": "Agg"} | environment,
     )
     return Answer(done.returncode, done.stdout, done.stderr)
 
@@ -278,3 +281,138 @@ def test_help(tmp_path: Path) -> None:
     for option in [*options, "save", "plot", "json"]:
         assert f"--{option}" in out
     assert out.startswith("usage: python -m rolling_ellipse")
+
+
+# ----------------------------------------------------------------- numbers, names and pipes
+
+
+@pytest.mark.parametrize("speed", ["-1e-3", "-.5e1", "-2", "-1E-3", "+2", "-0"])
+def test_negative_numbers_as_they_are_written(command: Any, speed: str) -> None:
+    code, out, err = command("--omega", speed, "--time", "1", "--json")
+    assert (code, err) == (0, "")
+    scene = re.Scene(2.0, 1.0, omega=float(speed))
+    assert strict_json(out)["distance"] == re.simulate(scene, 1.0).x[-1]
+
+
+def test_numbers_that_are_refused_by_what_they_are(command: Any) -> None:
+    assert "omega must be" in command("--omega", "-inf").err
+    assert "theta must be" in command("--theta", "-nan").err
+    assert "--time must be" in command("--time", "-1e-3").err
+    for wrong in (["--time", "--json"], ["--omega", "-x"], ["-1e-3"], ["--json", "-1"]):
+        code, out, err = command(*wrong)
+        assert (code, out) == (2, "") and len(err.splitlines()) == 1
+
+
+def test_a_motion_that_stops_early_has_a_summary_and_exit_code_1(tmp_path: Path) -> None:
+    options = ["--a", "2", "--b", "1", "--omega", "3", "--friction", ".2", "--restitution", "1"]
+    code, out, err = typed(tmp_path, *options, "--time", "100000")
+    assert (code, err) == (1, "")
+    assert "MAX_EVENTS: max_events = 10000 events ended at t = " in out
+    reached = re.simulate(
+        re.Scene(2.0, 1.0, omega=3.0, friction=0.2, restitution=1.0), 1e5, raise_on_failure=False
+    )
+    assert f"{reached.x[-1]:.12g} m in {reached.t[-1]:g} s, " in out
+    code, out, err = typed(tmp_path, *options, "--time", "100000", "--json")
+    assert (code, err) == (1, "")
+    found = strict_json(out)
+    assert set(found) == KEYS and found["status"] == "MAX_EVENTS"
+
+
+@pytest.mark.parametrize("name", ["12:30.mp4", "-x.mp4", "file:roll.gif", "größe %03d.html"])
+def test_files_of_any_name(tmp_path: Path, name: str) -> None:
+    code, _, err = typed(tmp_path, "--time", "0.1", f"--save={name}")
+    assert (code, err) == (0, "")
+    assert [file.name for file in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).stat().st_size > 1000
+
+
+def test_a_figure_without_a_suffix_is_matplotlibs_default(command: Any, tmp_path: Path) -> None:
+    assert command("--plot", "overview", "--time", "1").code == 0
+    with Image.open(tmp_path / "overview.png") as picture:
+        assert picture.format == "PNG"
+
+
+@pytest.mark.parametrize("option", ["--save", "--plot"])
+@pytest.mark.parametrize("name", ["", ".", "folder.gif"])
+def test_what_is_no_file_is_refused_before_any_work(
+    command: Any, tmp_path: Path, monkeypatch: Any, option: str, name: str
+) -> None:
+    (tmp_path / "folder.gif").mkdir()
+    monkeypatch.setattr(command_line, "simulate", None)
+    code, out, err = command(option, name, "--time", "1")
+    assert (code, out) == (2, "") and len(err.splitlines()) == 1 and (name or option) in err
+    assert [file.name for file in tmp_path.iterdir()] == ["folder.gif"]
+
+
+@pytest.mark.parametrize("option", ["--save=roll.gif", "--plot=overview.png"])
+def test_a_file_that_cannot_be_written_leaves_the_old_one(
+    command: Any, tmp_path: Path, monkeypatch: Any, option: str
+) -> None:
+    path = tmp_path / option.split("=")[1]
+    path.write_bytes(b"old")
+
+    def fails(*args: Any, **options: Any) -> None:
+        Path(args[-1]).write_bytes(b"half")
+        raise OSError("no space left")
+
+    monkeypatch.setattr(Figure, "savefig", fails)
+    monkeypatch.setattr(GifWriter, "finish", lambda self: fails(self.outfile))
+    code, out, err = command(option, "--time", "0.1")
+    assert (code, out, err) == (2, "", "python -m rolling_ellipse: no space left\n")
+    assert path.read_bytes() == b"old" and list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    ("program", "said"),
+    [("/no/such/ffmpeg", "No such file"), ("/bin/false", "ffmpeg could not write 'roll.mp4'")],
+)
+def test_an_ffmpeg_that_does_not_work_is_one_line(tmp_path: Path, program: str, said: str) -> None:
+    code, out, err = typed(
+        tmp_path, "--save", "roll.mp4", "--time", "0.1", IMAGEIO_FFMPEG_EXE=program
+    )
+    assert (code, out) == (2, "") and said in err
+    assert len(err.splitlines()) == 1 and list(tmp_path.iterdir()) == []
+
+
+def shell(folder: Path, command: str) -> Answer:
+    """A line of bash, `roll` being the command; its code is that of the first of a pipe."""
+    roll = f"roll() {{ {shlex.quote(sys.executable)} -m rolling_ellipse --time 1 $*; }}"
+    done = subprocess.run(
+        ["bash", "-c", f"{roll}; {command}; exit ${{PIPESTATUS[0]}}"],
+        cwd=folder, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    return Answer(done.returncode, done.stdout, done.stderr)
+
+
+@pytest.mark.parametrize("options", ["--json", "--help"])
+@pytest.mark.parametrize("unbuffered", ["PYTHONUNBUFFERED= ", "PYTHONUNBUFFERED=1 "])
+def test_where_nobody_reads_or_nothing_fits(tmp_path: Path, options: str, unbuffered: str) -> None:
+    late = f"{{ sleep 0.2; {unbuffered}roll {options}; }} | true"
+    assert shell(tmp_path, late) == Answer(141, "", "")
+    code, out, err = shell(tmp_path, f"{unbuffered}roll {options} > /dev/full")
+    assert (code, out) == (2, "")
+    assert err.startswith("python -m rolling_ellipse: ") and "No space left" in err
+    assert len(err.splitlines()) == 1
+
+
+def test_with_closed_streams(tmp_path: Path) -> None:
+    assert shell(tmp_path, "roll >&-") == Answer(0, "", "")
+    assert shell(tmp_path, "roll --a -1 2>&-") == Answer(2, "", "")
+
+
+def test_interrupted_it_says_nothing(tmp_path: Path) -> None:
+    """Ctrl-C, once the work has begun."""
+    program = (
+        "import os, signal, sys\n"
+        "from rolling_ellipse import __main__ as command_line\n"
+        "simulate = command_line.simulate\n"
+        "def interrupted(*args, **options):\n"
+        "    os.kill(os.getpid(), signal.SIGINT)\n"
+        "    return simulate(*args, **options)\n"
+        "command_line.simulate = interrupted\n"
+        "sys.exit(command_line.run())\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
+    assert Answer(done.returncode, done.stdout, done.stderr) == Answer(130, "", "")

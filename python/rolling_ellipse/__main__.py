@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import argparse
 import json
+import logging
 import math
+import os
+import re
 import sys
 import warnings
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
+from matplotlib import rcParams
 
-from . import Mode, Scene, Trajectory, certify, period, scenes, simulate
+from . import Mode, Scene, Status, Trajectory, certify, period, scenes, simulate
 from ._atomic import replacing
+from ._movies import movie_writer
 from .animation import animate
 
 _SCENE_OPTIONS = {
@@ -28,6 +34,9 @@ _SCENE_OPTIONS = {
 }
 
 _SHOWN_EVENTS = 10
+_FPS = 25.0  # of the animation
+_FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
+_INTERRUPTED, _BROKEN_PIPE = 130, 141  # as shells say it of programs ended by SIGINT and SIGPIPE
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -35,6 +44,10 @@ class OneLineParser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message}\n")
+
+    def print_help(self, file: Any = None) -> None:
+        """Without argparse's silence where nothing can be written."""
+        print(self.format_help(), end="", file=file)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -51,6 +64,26 @@ def parser() -> argparse.ArgumentParser:
     found.add_argument("--plot", metavar="FILE", help="write the overview figure")
     found.add_argument("--json", action="store_true", help="print the summary as JSON")
     return found
+
+
+def joined(arguments: list[str]) -> list[str]:
+    """Join an option and its negative number by "=": argparse takes -1e-3 for another option."""
+    found: list[str] = []
+    for argument in arguments:
+        last = found[-1] if found else ""
+        if argument.startswith("-") and _is_number(argument) and re.match("--[a-z]+$", last):
+            found[-1] += f"={argument}"
+        else:
+            found.append(argument)
+    return found
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
@@ -100,13 +133,13 @@ def _finite(value: float | None) -> float | None:
     return value if value is not None and math.isfinite(value) else None
 
 
-def _lines(found: dict[str, Any], t_end: float) -> list[str]:
+def _lines(found: dict[str, Any], trajectory: Trajectory) -> list[str]:
     lines = [found["reason"], f"status            {found['status']}: {found['message']}"]
     if "distance" in found:
         swing = "never" if found["period"] is None else f"{found['period']:.12g} s"
         lines += [
             f"swing or turn     {swing}",
-            f"distance          {found['distance']:.12g} m in {t_end:g} s, "
+            f"distance          {found['distance']:.12g} m in {trajectory.t[-1]:g} s, "
             f"{found['turns']:.6g} turns",
         ]
         if found["smallest_normal_force"] is not None:
@@ -126,40 +159,80 @@ def _lines(found: dict[str, Any], t_end: float) -> list[str]:
     return lines
 
 
-def _draw(trajectory: Trajectory, path: str) -> None:
-    kind = Path(path).suffix[1:]
-    with replacing(path if kind else f"{path}.png") as new:
-        trajectory.plot().figure.savefig(new, format=kind or "png")
-
-
 def _check_options(options: argparse.Namespace) -> None:
     if not 0 <= options.time < math.inf:
         raise ValueError(f"--time must be a finite time >= 0 [s], got {options.time!r}")
     for name in ("save", "plot"):
         path = getattr(options, name)
-        if path is not None and not Path(path).parent.is_dir():
+        if path is not None and (Path(path).is_dir() or not Path(path).parent.is_dir()):
             raise ValueError(f"--{name} must name a file in an existing folder, got {path!r}")
+    if options.save is not None:
+        movie_writer(options.save, _FPS, "--save")  # a wrong one is refused before any work
+
+
+def _write_figure(trajectory: Trajectory, path: str) -> None:
+    if not Path(path).suffix:
+        path += "." + rcParams["savefig.format"]  # as matplotlib does
+    with replacing(path) as new:
+        trajectory.plot().figure.savefig(new, format=Path(path).suffix[1:])
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command line; 0 on success, 2 (and one line) on bad input."""
-    options = parser().parse_args(arguments)
+    """Run the command line.
+
+    Returns
+    -------
+    int
+        0 on success; 1 if the motion could not be followed to its end, the summary is of what
+        there is; 2 (and one line) on bad input, or where a file cannot be written.
+    """
+    options = parser().parse_args(joined(sys.argv[1:] if arguments is None else arguments))
     try:
         _check_options(options)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the summary says it
-            trajectory = simulate(chosen_scene(options), options.time)
+            trajectory = simulate(chosen_scene(options), options.time, raise_on_failure=False)
             found = summary(trajectory)
-            if options.plot:
-                _draw(trajectory, options.plot)
-            if options.save:
-                animate(trajectory, options.save)
-    except (ValueError, OSError) as error:
-        print(f"{parser().prog}: {error}", file=sys.stderr)
+            if options.plot is not None:
+                _write_figure(trajectory, options.plot)
+            if options.save is not None:
+                animate(trajectory, options.save, fps=_FPS)
+    except (ValueError, OSError, ImportError, RuntimeError) as error:
+        _complain(error)
         return 2
-    print(json.dumps(found, indent=2) if options.json else "\n".join(_lines(found, options.time)))
-    return 0
+    lines = [json.dumps(found, indent=2)] if options.json else _lines(found, trajectory)
+    print("\n".join(lines))
+    return 0 if trajectory.status in _FOLLOWED else 1
+
+
+def _complain(error: Exception) -> None:
+    if sys.stderr is not None:  # print would take stdout
+        print(f"{parser().prog}: {' '.join(str(error).split())}", file=sys.stderr)
+
+
+def run() -> int:
+    """Run the command line for a shell, where readers leave, disks are full and Ctrl-C is typed."""
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # errors are told in one line
+    try:
+        try:
+            return main()
+        finally:  # argparse leaves by SystemExit
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except KeyboardInterrupt:
+        code = _INTERRUPTED
+    except BrokenPipeError:
+        code = _BROKEN_PIPE
+    except OSError as error:
+        code = 2
+        with suppress(OSError):
+            _complain(error)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:  # Python flushes once more at its end, and would complain
+            os.dup2(nowhere, stream.fileno())
+    return code
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run())

@@ -1,7 +1,16 @@
-"""Conversion of arguments: numbers stay numbers, everything else is refused by name."""
+"""Conversion of arguments: numbers stay numbers, everything else is refused by name.
+
+A number is real and within the doubles, of whatever kind: Python's, NumPy's (an array without axes
+as well), a Decimal or a Fraction. Text, complex numbers, times and masked entries are none, nor is
+an array of one number.
+"""
 
 from __future__ import annotations
 
+import math
+import os
+from contextlib import suppress
+from operator import index
 from typing import Any
 
 import numpy as np
@@ -9,30 +18,146 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
+_DOUBLE = np.dtype(np.float64)
+_MAY_BE_MASKED = (list, tuple, np.ma.MaskedArray)
+_LONGEST = 300  # characters of a value in a message
+
 
 def number(name: str, value: Any) -> float:
-    """Return ``value`` as a float, or raise TypeError naming the argument."""
-    if not isinstance(value, (str, bytes, complex)):
-        try:
-            return float(value)
-        except (TypeError, ValueError, OverflowError):
-            pass
-    raise TypeError(f"{name} must be a number, got {value!r}")
+    """Return ``value`` as a float, or raise an error that names the argument.
+
+    Raises
+    ------
+    TypeError
+        If it is no number.
+    ValueError
+        If it is beyond the doubles, or masked.
+    """
+    kind = type(value)
+    if kind is float:  # most are, and a scene has many
+        return value  # type: ignore[no-any-return]
+    if kind is np.float64:
+        return float(value)
+    if kind is int:
+        return _double(name, value)
+    if hasattr(kind, "__array__"):
+        found = _doubles(name, value)
+        if found is not None and found.ndim == 0:
+            return float(found)
+    elif hasattr(kind, "__float__") or hasattr(kind, "__index__"):  # text has neither
+        with suppress(TypeError):
+            return _double(name, value)
+    raise TypeError(f"{name} must be a number, got {shown(value)}")
 
 
 def optional_number(name: str, value: Any) -> float | None:
     return None if value is None else number(name, value)
 
 
+def whole(name: str, value: Any) -> int:
+    """Return ``value`` as an int, or raise TypeError naming the argument."""
+    if not isinstance(value, (bool, np.bool_)) and not np.ma.is_masked(value):
+        with suppress(TypeError):
+            return index(value)
+    raise TypeError(f"{name} must be a whole number, got {shown(value)}")
+
+
+def positive(name: str, value: Any) -> float:
+    """Return ``value`` as a positive finite float."""
+    found = number(name, value)
+    if not 0 < found < math.inf:
+        raise ValueError(f"{name} must be positive and finite, got {found!r}")
+    return found
+
+
+def whole_within(name: str, value: Any, most: int) -> int:
+    """Return ``value`` as a whole number from 1 to ``most``."""
+    found = whole(name, value)
+    if found < 1:
+        raise ValueError(f"{name} must be at least 1, got {shown(value)}")
+    if found > most:
+        raise ValueError(f"{name} must be at most {most}, got {shown(value)}")
+    return found
+
+
+def flag(name: str, value: Any) -> bool:
+    """Return ``value`` if it is True or False, or raise TypeError naming the argument."""
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    raise TypeError(f"{name} must be True or False, got {shown(value)}")
+
+
 def array(name: str, value: Any) -> FloatArray:
-    """Return ``value`` as a float64 array, or raise TypeError naming the argument."""
+    """Return ``value`` as a float64 array; errors are those of `number`."""
+    found = _doubles(name, value)
+    if found is None:
+        raise TypeError(f"{name} must be a number or an array of numbers, got {shown(value)}")
+    return found
+
+
+def _doubles(name: str, value: Any) -> FloatArray | None:
+    """``value`` as a float64 array, or None if it is nothing of the kind."""
+    if type(value) is np.ndarray and value.dtype is _DOUBLE:
+        return value
+    if isinstance(value, _MAY_BE_MASKED) and _is_masked(value):
+        raise ValueError(f"{name} must have no masked entries, got {shown(value)}")
     try:
         found = np.asarray(value)
-        if found.dtype.kind in "biuf":
-            return found.astype(np.float64, copy=False)
-    except ValueError:  # ragged sequences
-        pass
-    raise TypeError(f"{name} must be a number or an array of numbers, got {value!r}")
+    except (TypeError, ValueError):  # ragged sequences
+        return None
+    if found.dtype is _DOUBLE:
+        return found
+    if found.dtype.kind in "biuf":
+        if found.dtype.itemsize > _DOUBLE.itemsize:
+            beyond = np.isfinite(found) & (abs(found) > np.finfo(np.float64).max)
+            require(name, "within the range of doubles", found, ~beyond)
+        return found.astype(np.float64, copy=False)
+    if found.dtype.kind == "O" and not hasattr(type(value), "__array__"):
+        with suppress(TypeError):  # a list of Decimals, or of ints of more than 64 bits
+            entries = [number(name, entry) for entry in found.ravel().tolist()]
+            return np.array(entries, dtype=np.float64).reshape(found.shape)
+    return None
+
+
+def _double(name: str, value: Any) -> float:
+    """A number of Python as a float; TypeError if it is none."""
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
+    except ValueError as error:  # a signalling NaN
+        raise TypeError from error
+    if math.isinf(found) and value != found:
+        raise ValueError(f"{name} must be within the range of doubles, got {shown(value)}")
+    return found
+
+
+def _is_masked(value: Any) -> bool:
+    if isinstance(value, (list, tuple)):
+        return any(_is_masked(entry) for entry in value if isinstance(entry, _MAY_BE_MASKED))
+    return isinstance(value, np.ma.MaskedArray) and bool(np.ma.is_masked(value))
+
+
+def shown(value: Any) -> str:
+    """Return ``repr(value)``, cut to what a message has room for."""
+    try:
+        text = repr(value)
+    except Exception:  # an int of more digits than Python writes, an object that is broken
+        return f"an object of type {type(value).__name__}"
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
+
+
+def require(name: str, requirement: str, values: Any, holds: Any) -> None:
+    """Raise ValueError with the first of the values that does not hold."""
+    if not holds.all():
+        raise ValueError(f"{name} must be {requirement}, got {values[~holds][0]!s}")
+
+
+def finite(name: str, value: Any) -> FloatArray:
+    """Return ``value`` as an array of finite numbers."""
+    found = array(name, value)
+    require(name, "finite", found, np.isfinite(found))
+    return found
 
 
 def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
@@ -62,9 +187,19 @@ def uniform_disc(a: Any, b: Any) -> FloatArray:
     return squares
 
 
+def file_name(name: str, value: Any) -> str:
+    """Return the path of a file as text, or raise an error naming the argument."""
+    found = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
+    if not isinstance(found, str):
+        raise TypeError(f"{name} must be a path, a string or a PathLike, got {shown(value)}")
+    if not found or "\0" in found:
+        raise ValueError(f"{name} must name a file, got {found!r}")
+    return found
+
+
 def choice(name: str, value: Any, valid: tuple[str, ...]) -> str:
     """Return ``value`` if it is one of the valid names, or raise ValueError listing them."""
     if isinstance(value, str) and value in valid:
         return value
     names = ", ".join(repr(v) for v in valid)
-    raise ValueError(f"{name} must be one of {names}, got {value!r}")
+    raise ValueError(f"{name} must be one of {names}, got {shown(value)}")

@@ -6,10 +6,9 @@ import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _restitution
-from ._check import FloatArray, broadcast, choice, uniform_disc
+from ._check import FloatArray, broadcast, choice, require, uniform_disc
 
 LAWS = ("stronge", "poisson", "newton")
 
@@ -112,11 +111,6 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     require("gyration2", "a positive finite area [m^2]", k2, (k2 > 0) & np.isfinite(k2))
     spin = np.sqrt(k2) * omega
     return _shaped(np.hypot(np.hypot(x_dot, z_dot), spin), shape)
-
-
-def require(name: str, requirement: str, values: FloatArray, holds: npt.NDArray[np.bool_]) -> None:
-    if not np.all(holds):
-        raise ValueError(f"{name} must be {requirement}, got {values[~holds][0]}")
 
 
 def _shaped(values: FloatArray, shape: tuple[int, ...]) -> Any:

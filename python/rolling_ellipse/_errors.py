@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import matplotlib.pyplot as plt
-
+from ._axes import axes_of, leaving_no_figure, panels_of
 from ._check import choice
 from ._curves import (
     DASHES,
@@ -25,7 +24,6 @@ from ._modes import mode_handles
 from ._motions import (
     motion_handles,
     name_curves,
-    panels_of,
     quantity_handles,
     some_of,
     styles_of,
@@ -69,6 +67,7 @@ class Constraints:
     marks: tuple[Artist, ...]
 
 
+@leaving_no_figure
 def plot_energy(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -110,8 +109,7 @@ def plot_energy(
     alone = len(motions) == 1
     default = "energies" if alone else "error"
     kind = choice("kind", default if kind is None else kind, KINDS)
-    if ax is None:
-        ax = plt.figure(figsize=(7, 3.4), layout="constrained").add_subplot()
+    ax = axes_of(ax, (7, 3.4))
     looks = [None] if alone else styles
     energies: list[tuple[Line2D, Line2D, Line2D]] = []
     errors: list[Line2D] = []
@@ -136,6 +134,7 @@ def plot_energy(
     return Energy(ax, total, kinetic, potential, tuple(errors), marks)
 
 
+@leaving_no_figure
 def plot_constraints(
     trajectories: Trajectory | Sequence[Trajectory],
     *,

@@ -52,7 +52,7 @@ def integrate(
         if len(samples) == t.size:
             break
         h = min(h, end - now)
-        if not h >= 10 * math.ulp(now):
+        if not h >= smallest_step(now):
             return np.array(samples), f"no step that changes t meets rtol and atol at {now:.6g} s"
         slopes, after = _stages(slope, y, first, h, tableau)
         grow = 1.0 if steps.step else _growth(y, after, slopes, h, tableau, steps)
@@ -69,6 +69,11 @@ def integrate(
     if len(samples) < t.size:
         return np.array(samples), f"max_steps reached at {now:.6g} s"
     return np.array(samples), ""
+
+
+def smallest_step(t: float) -> float:
+    """A step [s] that changes the time t, and its stages too: ten ulp."""
+    return 10 * math.ulp(t)
 
 
 def _stages(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ._axes import leaving_no_figure, panels_of
 from ._curves import DASHES, draw_forces, dress_forces, dress_panels
 from ._drawing import GREY, INK
 from ._labels import motions_of
@@ -15,7 +16,6 @@ from ._modes import mode_handles
 from ._motions import (
     motion_handles,
     name_curves,
-    panels_of,
     quantity_handles,
     styles_of,
 )
@@ -52,6 +52,7 @@ class Forces:
     marks: tuple[Artist, ...]
 
 
+@leaving_no_figure
 def plot_forces(
     trajectories: Trajectory | Sequence[Trajectory],
     *,

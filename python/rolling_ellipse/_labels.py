@@ -6,6 +6,7 @@ from collections.abc import Hashable, Sequence
 from dataclasses import fields
 from typing import Any
 
+from ._check import shown
 from .scene import Impulse, Scene
 from .trajectory import Trajectory
 
@@ -32,17 +33,25 @@ def motions_of(trajectories: Trajectory | Sequence[Trajectory]) -> tuple[Traject
     else:
         wanted = "trajectories must be a Trajectory or a sequence of them"
         if not isinstance(trajectories, Sequence):
-            raise TypeError(f"{wanted}, got {trajectories!r}")
+            raise TypeError(f"{wanted}, got {shown(trajectories)}")
         motions = tuple(trajectories)
         for motion in motions:
             if not isinstance(motion, Trajectory):
-                raise TypeError(f"{wanted}, got {motion!r} among them")
+                raise TypeError(f"{wanted}, got {shown(motion)} among them")
         if not motions:
             raise ValueError(f"{wanted}, got none")
     for motion in motions:
         if motion.t.size == 0:
             raise ValueError(f"every trajectory must have samples, got {motion!r}")
     return motions
+
+
+def require_motion(trajectory: object) -> None:
+    """Raise TypeError for what is no Trajectory, ValueError for one without samples."""
+    if not isinstance(trajectory, Trajectory):
+        raise TypeError(f"trajectory must be a Trajectory, got {shown(trajectory)}")
+    if trajectory.t.size == 0:
+        raise ValueError("trajectory must have samples, got none")
 
 
 def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) -> list[str]:
@@ -72,7 +81,7 @@ def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) 
 def _given(labels: Sequence[str], count: int) -> list[str]:
     listed = isinstance(labels, Sequence) and not isinstance(labels, str)
     if not listed or not all(isinstance(label, str) for label in labels):
-        raise ValueError(f"labels must be a sequence of strings, got {labels!r}")
+        raise ValueError(f"labels must be a sequence of strings, got {shown(labels)}")
     if len(labels) != count:
         raise ValueError(
             f"labels must be {count}, one for each trajectory, got {len(labels)}: {labels!r}"

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ._check import FloatArray, choice, number, uniform_disc
+from ._check import FloatArray, choice, number, positive, uniform_disc
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")
 _LEVELS = {"energy", "speed"}  # of which one follows from the other
@@ -98,7 +98,7 @@ def plane_of(
             "x and y must be two of the aspect, the energy or the speed, and the friction, "
             f"got {axes[0]!r} and {axes[1]!r}"
         )
-    b, gravity = _positive("b", b), _positive("gravity", gravity)
+    b, gravity = positive("b", b), positive("gravity", gravity)
     shown = {**_SHOWN, "speed": (0.0, _FASTEST * math.sqrt(gravity / b))}
     limits = [
         shown[axis] if given is None else _range(f"{argument}_range", axis, given)
@@ -140,19 +140,12 @@ def _check_fixed(name: str, value: float) -> None:
         raise ValueError(f"{name} must be {wanted}, got {value}")
 
 
-def _positive(name: str, value: Any) -> float:
-    found = number(name, value)
-    if not 0 < found < math.inf:
-        raise ValueError(f"{name} must be positive and finite, got {found}")
-    return found
-
-
 def _range(argument: str, axis: str, given: Any) -> tuple[float, float]:
     least, most = (1.0, _WIDEST) if axis == "aspect" else (0.0, math.inf)
     wanted = f"{argument} must be two ascending finite numbers, not below {least:g}"
     wanted += f" and not above {most:g}" if math.isfinite(most) else ""
     try:
-        low, high = (float(end) for end in given)
+        low, high = (number(argument, end) for end in given)
     except (TypeError, ValueError):
         raise ValueError(f"{wanted}, got {given!r}") from None
     if not (least <= low < high <= most and high < math.inf):

@@ -10,9 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
@@ -22,6 +20,8 @@ from ._drawing import BLUE, GREY, INK, ORANGE, PLUM, SKY, TIMES, legend_above
 from ._labels import labels_of
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from .trajectory import Trajectory
 
 _Entry = TypeVar("_Entry")
@@ -40,18 +40,6 @@ class Style:
     colour: str
     dash: Any
     marker: str
-
-
-def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
-    """Return the one or two Axes given, or two of a new pyplot figure over one time axis."""
-    if ax is None:
-        figure = plt.figure(figsize=(7, 5), layout="constrained")
-        upper, lower = figure.subplots(2, sharex=True)
-        return [upper, lower]
-    panels = [ax] if isinstance(ax, Axes) else list(np.ravel(np.asarray(ax, dtype=object)))
-    if len(panels) not in (1, 2) or not all(isinstance(panel, Axes) for panel in panels):
-        raise ValueError(f"ax must be one matplotlib Axes or two, got {ax!r}")
-    return panels
 
 
 def styles_of(motions: Sequence[Trajectory], labels: Sequence[str] | None) -> list[Style]:

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
 import importlib.util
 import math
+import os
 import sys
+from contextlib import contextmanager, suppress
 from os import PathLike, fspath
 from pathlib import Path
+from subprocess import CalledProcessError
 from typing import TYPE_CHECKING, Any
 
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
 from PIL import Image
 
+from ._check import file_name
+
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 SUFFIXES = (".gif", ".mp4", ".html")
 
@@ -24,6 +30,8 @@ class GifWriter(PillowWriter):
 
     def finish(self) -> None:
         frames = [frame.convert("RGB") for frame in self._frames]  # type: ignore[attr-defined]
+        if not frames:  # interrupted before the first: matplotlib finishes all the same
+            return
         # the last frame has every colour, and this way to choose them spares those of thin lines
         palette = frames[-1].quantize(64, Image.Quantize.MAXCOVERAGE)
         first, *rest = (
@@ -37,28 +45,37 @@ class GifWriter(PillowWriter):
 def gif_delay(fps: float) -> int | None:
     """Hundredths of a second between the frames of a GIF; None if that is no whole number.
 
-    Viewers slow a delay of 1/100 s down, so 2 is the least.
+    Viewers slow a delay of 1/100 s down, so 2 is the least; the file has room for two bytes.
     """
     delay = round(100 / fps)
-    return delay if delay >= 2 and math.isclose(delay * fps, 100, rel_tol=1e-12) else None
+    return delay if 2 <= delay < 2**16 and math.isclose(delay * fps, 100, rel_tol=1e-12) else None
 
 
 def movie_writer(
-    path: str | PathLike[str], fps: float
-) -> tuple[AbstractMovieWriter, dict[str, Any]]:
+    path: str | PathLike[str], fps: float, argument: str = "path"
+) -> tuple[AbstractMovieWriter, Any]:
     """What writes the file, and the matplotlib settings to do so under.
 
     Raises
     ------
     ValueError
         If the suffix is unknown, or a GIF cannot keep the time.
+    TypeError
+        If the path is none.
+    OSError
+        If there is no such folder, or the path is one.
     FileNotFoundError
         If an .mp4 is asked for and there is no ffmpeg.
     """
-    suffix = Path(path).suffix.lower()
+    target = Path(file_name(argument, path))
+    suffix = target.suffix.lower()
+    if target.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(target))
+    if suffix in SUFFIXES and not target.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "no such folder to write to", str(target))
     if suffix == ".gif":
         if gif_delay(fps) is None:
-            delay = max(2, round(100 / fps))
+            delay = min(max(2, round(100 / fps)), 2**16 - 1)
             raise ValueError(
                 "fps must be 100 over a whole number of at least 2 for a .gif, whose delays are "
                 f"counted in 1/100 s; got {fps!r}, near it is 100 / {delay} = {100 / delay:.4g}"
@@ -69,13 +86,27 @@ def movie_writer(
     if suffix == ".html":
         html = {"embed_frames": True, "embed_limit": math.inf, "default_mode": "loop"}
         return HTMLWriter(fps=fps, **html), {}  # type: ignore[arg-type]
-    raise ValueError(f"path must end in one of {', '.join(SUFFIXES)}, got {fspath(path)!r}")
+    raise ValueError(f"{argument} must end in one of {', '.join(SUFFIXES)}, got {str(target)!r}")
+
+
+@contextmanager
+def told(path: str) -> Iterator[None]:
+    """Make of ffmpeg's failure a sentence with the name of the file."""
+    try:
+        yield
+    except CalledProcessError as error:
+        stopped = error.__context__  # matplotlib finishes after an exception too, such as Ctrl-C
+        if stopped is not None and not isinstance(stopped, OSError):
+            raise stopped from None
+        why = (error.stderr or "").strip().splitlines() or [f"exit code {error.returncode}"]
+        raise OSError(f"ffmpeg could not write {path!r}: {why[-1]}") from error
 
 
 def ffmpeg() -> str:
     """Path of an ffmpeg program: imageio_ffmpeg's, else the system's."""
     if importlib.util.find_spec("imageio_ffmpeg") is not None:
-        return str(importlib.import_module("imageio_ffmpeg").get_ffmpeg_exe())
+        with suppress(RuntimeError):  # it has none for this machine
+            return str(importlib.import_module("imageio_ffmpeg").get_ffmpeg_exe())
     if FFMpegWriter.isAvailable():
         return FFMpegWriter.bin_path()
     raise FileNotFoundError(

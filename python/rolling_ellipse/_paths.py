@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from . import _drawing as drawing
+from ._axes import axes_of, leaving_no_figure
 from ._core import EventKind
 from ._curves import sparse_markers
 from ._drawing import BLUE, INK, ORANGE
@@ -21,7 +22,7 @@ from ._motions import (
     quantity_handles,
     styles_of,
 )
-from ._strobe import axes_for, dress_ground_axes, turned_until
+from ._strobe import dress_ground_axes, figure_size, turned_until
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,6 +63,7 @@ class Paths:
     marks: tuple[Line2D, ...]
 
 
+@leaving_no_figure
 def plot_paths(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -105,7 +107,7 @@ def plot_paths(
         raise ValueError(f"trajectories must be on one slope, got {slopes!r}")
     end = max(turned_until(motion) for motion in motions)
     view = _view(motions, end)
-    ax = ax or axes_for(view)
+    ax = axes_of(ax, figure_size(view))
     places = np.concatenate([motion.x for motion in motions])
     ground = drawing.fill_earth(ax, motions[0].scene, places.min(), places.max())
     drawn = [

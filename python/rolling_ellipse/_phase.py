@@ -6,10 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from ._axes import axes_of, leaving_no_figure
+from ._check import flag
 from ._drawing import GREY
 from ._labels import motions_of
 from ._motions import (
@@ -52,6 +53,7 @@ class Phase:
     marks: tuple[Line2D, ...]
 
 
+@leaving_no_figure
 def plot_phase(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -90,10 +92,10 @@ def plot_phase(
     """
     motions = motions_of(trajectories)
     styles = styles_of(motions, labels)
-    if ax is None:
-        ax = plt.figure(figsize=(6.4, 4.2), layout="constrained").add_subplot()
     if fold is None:
         fold = any(np.ptp(motion.theta) > _FEW_TURNS * 2 * math.pi for motion in motions)
+    fold = flag("fold", fold)
+    ax = axes_of(ax, (6.4, 4.2))
     flat = flat_angle(motions[0].scene)
     lines: list[Line2D] = []
     starts: list[Line2D] = []

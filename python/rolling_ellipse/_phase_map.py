@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 
+from ._axes import axes_of, leaving_no_figure, require_axes
 from ._core import Outcome
 from ._drawing import BLUE, GREY, INK, ORANGE, PLUM, SKY
 from ._map_marks import draw_marks, marks_of
@@ -61,6 +61,7 @@ class PhaseMap:
     names: dict[str, Text]
 
 
+@leaving_no_figure
 def plot_phase_map(
     x: str = "aspect",
     y: str = "energy",
@@ -127,14 +128,15 @@ def plot_phase_map(
     TypeError
         If something is no number.
     """
+    if ax is not None:
+        require_axes(ax)  # before the work
     fixed = {"aspect": aspect, "energy": energy, "speed": speed, "friction": friction}
     plane = plane_of((x, y), (x_range, y_range), fixed, b, gravity)
     edges = [_edges(plane, axis, _count(resolution)) for axis in plane.axes]
     middles = [_middles(axis, places) for axis, places in zip(plane.axes, edges, strict=True)]
     columns, rows = np.meshgrid(*middles)
     codes = classify(**plane.scenes(columns, rows), workers=workers)
-    if ax is None:
-        ax = plt.figure(figsize=(6.4, 4.4), layout="constrained").add_subplot()
+    ax = axes_of(ax, (6.4, 4.4))
     colours = ListedColormap([COLOURS[outcome] for outcome in Outcome])
     free = ax.get_autoscalex_on(), ax.get_autoscaley_on()
     _dress_map(ax, plane)

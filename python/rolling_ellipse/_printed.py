@@ -6,22 +6,24 @@ printed equation is named after its number. A printed residual less the right on
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
-from ._check import FloatArray, array, choice
+from ._check import FloatArray, choice, finite, number
 from ._printed_rows import rows
 from .geometry import support_slope
-from .kinematics import _coordinates
+from .kinematics import _coordinates, require_together
 from .scene import Impulse, Scene
 
 CASES = ("as_it_is", "1", "2")
 
 
-def state(q: Any) -> tuple[FloatArray, ...]:
-    """theta, psi, r, sin and cos of psi - theta."""
+def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
+    """theta, psi, r, sin and cos of psi - theta; the others must have as many states, or one."""
     found = _coordinates("q", q)
+    require_together(q=found, **others)
     theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
     return theta, psi, r, np.sin(psi - theta), np.cos(psi - theta)
 
@@ -37,20 +39,21 @@ def polar(psi: FloatArray, body: Scene) -> FloatArray:
 def eq_5(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return psi by the arctan of eq 5 [rad]; `geometry.contact_angle` is continuous."""
     body = Scene(a, b)
-    found: FloatArray = np.arctan(body.a**2 / body.b**2 * np.tan(array("theta", theta)))
+    found: FloatArray = np.arctan(body.a**2 / body.b**2 * np.tan(finite("theta", theta)))
     return found
 
 
 def case_sign(theta: Any) -> FloatArray:
     """Return the sign of r sin(psi - theta) by the report's cases: -1 in the second quadrant."""
-    turned = np.mod(array("theta", theta), 2 * np.pi)
+    turned = np.mod(finite("theta", theta), 2 * np.pi)
     return np.where((turned >= np.pi / 2) & (turned <= np.pi), -1.0, 1.0)
 
 
 def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return x_C - x_G by eqs 5 to 7 and the two cases [m]; right: `geometry.support_slope`."""
-    psi, angle = eq_5(theta, a=a, b=b), array("theta", theta)
-    r = a * b / np.sqrt(polar(psi, Scene(a, b)))
+    psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
+    body = Scene(a, b)
+    r = body.a * body.b / np.sqrt(polar(psi, body))
     found: FloatArray = case_sign(angle) * r * np.sin(psi - angle)
     return found
 
@@ -61,7 +64,7 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
     ``case`` "1" takes the lower signs, "2" the upper ones, "as_it_is" that of theta's quadrant.
     Right is x_dot - r cos(psi - theta) theta_dot, the first velocity residual of `constraints`.
     """
-    theta, _, r, sine, cosine = state(q)
+    theta, _, r, sine, cosine = state(q, q_dot=q_dot)
     rates = _coordinates("q_dot", q_dot)
     choice("case", case, CASES)
     sign = {"1": -1.0, "2": 1.0}.get(case, case_sign(theta))
@@ -98,7 +101,7 @@ def eqs_33_to_37(
 ) -> FloatArray:
     """Return the residuals of eqs 33, 34, 35, 37, 36 (x, z, theta, psi, r), (..., 5)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
-    theta, psi, r, sine, cosine = state(q)
+    theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot, multipliers=multipliers)
     inertia, ddot = body.mass * (body.a**2 + body.b**2) / 4, _coordinates("q_ddot", q_ddot)
     one, two, three, four = _multipliers(multipliers)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
@@ -121,6 +124,7 @@ def equations_of_motion(
 ) -> FloatArray:
     """Return what eqs 33, 34, 35, 37, 36 must be, with the corrected rows, (..., 5)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
+    require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
     ddot = _coordinates("q_ddot", q_ddot)
     pull = np.einsum(
         "...ij,...i->...j", rows(_coordinates("q", q), body.a, body.b, ("tan",)),
@@ -134,7 +138,7 @@ def equations_of_motion(
 
 
 def _multipliers(values: Any) -> tuple[FloatArray, ...]:
-    found = array("multipliers", values)
+    found = finite("multipliers", values)
     if found.ndim == 0 or found.shape[-1] != 4:
         raise ValueError(f"multipliers must have 4 entries last, got shape {found.shape}")
     return tuple(found[..., i] for i in range(4))
@@ -143,7 +147,7 @@ def _multipliers(values: Any) -> tuple[FloatArray, ...]:
 def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     """Return the rates of f1 (f1 itself), f2, f3 and f4 as eq 38 prints them, (..., 4)."""
     body = Scene(a, b)
-    theta, psi, r, sine, cosine = state(q)
+    theta, psi, r, sine, cosine = state(q, q_dot=q_dot)
     x, z, spin, turn, stretch = np.moveaxis(_coordinates("q_dot", q_dot), -1, 0)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
     tangent = np.tan(theta)
@@ -162,6 +166,7 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     """Return what eq 38 must be, in its scaling, (..., 4)."""
     body = Scene(a, b)
+    require_together(q=q, q_dot=q_dot)
     matrix = rows(_coordinates("q", q), body.a, body.b, ("tan",))
     found: FloatArray = np.einsum("...ij,...j->...i", matrix, _coordinates("q_dot", q_dot))
     return found
@@ -173,18 +178,26 @@ def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 def eq_48(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
     """Return theta_dot just after the blow by eq 48 [rad/s]; right: `struck_speed`."""
     body = Scene(a, b, mass=mass)
+    _require_blow(impulse, d)
     return 4 * impulse * d / (body.mass * (body.a**2 + body.b**2))
 
 
 def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
     """Return theta_dot after a blow on the body at rest, lying flat, that sticks [rad/s]."""
+    _require_blow(impulse, d)
     return Scene(a, b, mass=mass, impulse=Impulse.press(impulse, d)).initial_state.omega
+
+
+def _require_blow(impulse: Any, d: Any) -> None:
+    for name, value in (("impulse", impulse), ("d", d)):
+        if not math.isfinite(number(name, value)):
+            raise ValueError(f"{name} must be finite, got {value}")
 
 
 def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return what appendix B's r_x has for r [m]; right: `geometry.contact_distance`."""
     body = Scene(a, b)
-    t = np.arctan(body.a * np.tan(array("theta", theta)) / body.b)  # Th_p, where eq 6 has psi
+    t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p, where eq 6 has psi
     across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)
     found: FloatArray = body.a * body.b / np.hypot(across, along)
     return found

@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from ._check import FloatArray
+from ._check import FloatArray, flag
 from ._printed import polar, state
 from ._printed_rows import rows
-from .kinematics import _coordinates
+from .kinematics import _coordinates, require_together
 from .scene import Scene
 
 
 def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
     """Return lambda1 ... lambda4 as eq 39 prints them (lambda3 with F of eq 40), (..., 4)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
-    _, psi, _, _, _ = state(q)
+    _, psi, _, _, _ = state(q, q_ddot=q_ddot)
     ddot = _coordinates("q_ddot", q_ddot)
     squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -38,7 +38,7 @@ def lambda4_numerator(
 ) -> FloatArray:
     """Return the numerator of lambda4 in eq 39; over 4 a^2 it follows from eqs 32 and 35."""
     body = Scene(a, b, mass=mass, gravity=gravity)
-    theta, _, r, sine, cosine = state(q)
+    theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
     x, z, spin, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
     turning = (body.a**2 + body.b**2) * spin
     levers = 4 * r * x * cosine - 4 * r * z * sine + 4 * r * body.gravity * sine
@@ -55,18 +55,19 @@ def multipliers(
     on the ground, where r cos(psi - theta) is largest against psi.
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
+    require_together(q=q, q_ddot=q_ddot)
     ddot = _coordinates("q_ddot", q_ddot)
     matrix = rows(_coordinates("q", q), body.a, body.b, ("tan",))
     friction, normal = body.mass * ddot[..., 0], body.mass * (ddot[..., 1] + body.gravity)
     third = -normal * matrix[..., 1, 4] / matrix[..., 2, 4]
     fourth = -(normal * matrix[..., 1, 3] + third * matrix[..., 2, 3]) / matrix[..., 3, 3]
-    return np.stack([friction, normal, third, fourth], axis=-1)
+    return np.stack(np.broadcast_arrays(friction, normal, third, fourth), axis=-1)
 
 
 def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
     """Return F of eq 40, term by term as printed; right: `complete_f`."""
     body = Scene(a, b, mass=mass, gravity=gravity)
-    theta, psi, r, sine, cosine = state(q)
+    theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot)
     x, z, spin, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
     a, b, m, g = body.a, body.b, body.mass, body.gravity
     c2, t2 = np.cos(theta) ** 2, np.tan(theta) ** 2
@@ -92,7 +93,7 @@ def complete_f(
     It keeps the signs of those equations, so that the difference from `eq_40` is what was lost.
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
-    theta, _, r, sine, cosine = state(q)
+    theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
     x, z, _, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
     lever = body.mass * r * (x * cosine - (z - body.gravity) * sine)
     numerator = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
@@ -109,6 +110,7 @@ def eq_41(
     Complete, it is eq 36 times -1 with the multipliers put in.
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
+    complete = flag("complete", complete)
     _, psi, _, _, _ = state(q)
     arguments: dict[str, float] = dict(a=a, b=b, mass=mass, gravity=gravity)
     if complete:
@@ -116,7 +118,8 @@ def eq_41(
     else:
         f1_ = eq_42(q, q_ddot, **arguments)
     squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
-    found: FloatArray = _head(q, q_ddot, body) - f1_ / squeeze
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found: FloatArray = _head(q, q_ddot, body) - f1_ / squeeze
     return found
 
 
@@ -136,7 +139,7 @@ def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 
 
 def _head(q: Any, q_ddot: Any, body: Scene) -> FloatArray:
-    _, _, _, sine, cosine = state(q)
+    _, _, _, sine, cosine = state(q, q_ddot=q_ddot)
     x, z, _, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
     found: FloatArray = body.mass * (cosine * (z - body.gravity) - x * sine)
     return found

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._check import FloatArray
-from .kinematics import COORDINATES, _coordinates
+from ._check import FloatArray, finite, shown
+from .kinematics import COORDINATES, _coordinates, require_together
 from .scene import Scene
 
 #: What can be as printed: the rows of f1, f2 and f3 (eq 32), the sign of a44 (appendix C), and
@@ -83,9 +83,9 @@ def misprints(printed: Any) -> tuple[str, ...]:
     """Return the names of rows to take as printed, or raise ValueError."""
     names = tuple(printed) if isinstance(printed, (tuple, list)) else (printed,)
     for name in names:
-        if name not in MISPRINTS:
+        if not isinstance(name, str) or name not in MISPRINTS:
             valid = ", ".join(map(repr, MISPRINTS))
-            raise ValueError(f"printed must hold names out of {valid}, got {name!r}")
+            raise ValueError(f"printed must hold names out of {valid}, got {shown(name)}")
     return names
 
 
@@ -141,6 +141,8 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
         If a name, a shape or a semi-axis is wrong.
     """
     body = Scene(a, b)
+    speed = finite("omega", omega)[..., None]
+    require_together(q=q, omega=speed)
     allowed = direction(_coordinates("q", q), body.a, body.b, misprints(printed))
-    rates: FloatArray = allowed * np.asarray(omega, dtype=np.float64)[..., None]
+    rates: FloatArray = allowed * speed
     return rates

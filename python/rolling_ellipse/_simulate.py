@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ._check import FloatArray, array
+from ._check import FloatArray, array, flag, shown
 from .scene import Scene, require_scene
 from .settings import Settings
 from .trajectory import IntegrationError, Status, Trajectory, ValidityWarning
@@ -119,6 +119,7 @@ def simulate(
     .. [7] C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12-13 (1985) 77.
     """
     require_scene(scene)
+    raise_on_failure = flag("raise_on_failure", raise_on_failure)
     settings = Settings(
         model=model,
         method=method,
@@ -149,7 +150,7 @@ def sample_times(t: Any) -> FloatArray:
     """Return the times to sample at: those given, or 1001 even ones up to an end time."""
     times = array("t", t)
     if not np.all(np.isfinite(times)):
-        raise ValueError(f"t must be finite [s], got {t!r}")
+        raise ValueError(f"t must be finite [s], got {shown(t)}")
     if times.size and times.min() < 0:
         raise ValueError(f"t must not be negative [s], got {float(times.min())!r}")
     if times.ndim == 0:

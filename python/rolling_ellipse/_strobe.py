@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from . import _drawing as drawing
+from ._axes import axes_of, leaving_no_figure
+from ._check import number, whole_within
 from ._drawing import FILL, INK, ORANGE, PLUM, SHOWN_TURNS, SKID, TIMES
+from ._labels import require_motion
 from ._motions import name_curves
 
 if TYPE_CHECKING:
@@ -20,6 +22,9 @@ if TYPE_CHECKING:
 
     from .scene import Scene
     from .trajectory import Trajectory
+
+
+_MOST = 10_000  # positions; each takes some milliseconds
 
 
 @dataclass(frozen=True, repr=False)
@@ -41,6 +46,7 @@ class Strobe:
     ground: Polygon
 
 
+@leaving_no_figure
 def plot_strobe(
     trajectory: Trajectory,
     *,
@@ -75,19 +81,16 @@ def plot_strobe(
     ------
     ValueError
         If `count` or `t_end` is out of range, or the trajectory has no samples.
+    TypeError
+        If it is no Trajectory, `ax` no Axes, or something no number.
     """
-    if trajectory.t.size == 0:
-        raise ValueError("trajectory must have samples, got none")
+    check_strobe(trajectory, count, t_end)
     first, last = float(trajectory.t[0]), float(trajectory.t[-1])
-    if count < 1:
-        raise ValueError(f"count must be at least 1, got {count!r}")
-    if t_end is not None and not first <= t_end <= last:
-        raise ValueError(f"t_end must be within [{first:g}, {last:g}] s, got {t_end!r}")
     end = _uncrowded_until(trajectory) if t_end is None else t_end
     at = trajectory.sol(np.linspace(first, end, count))
     path = trajectory.sol(np.linspace(first, end, 801))
     view = drawing.view(path)
-    ax = ax or axes_for(view)
+    ax = axes_of(ax, figure_size(view))
     ground = drawing.draw_ground(ax, path)
     bodies, hands = _draw_bodies(ax, at)
     centre_path, contact_path, contacts, skid_path, slides = _draw_paths(ax, at, path)
@@ -96,6 +99,15 @@ def plot_strobe(
     part = "" if end == last else f"the first {end - first:.3g} s of "
     _title(ax, f"{count} positions over {part}{last - first:.4g} s")
     return Strobe(ax, bodies, hands, centre_path, contact_path, contacts, skid_path, slides, ground)
+
+
+def check_strobe(trajectory: Trajectory, count: int, t_end: float | None) -> None:
+    """Raise as `plot_strobe` says."""
+    require_motion(trajectory)
+    whole_within("count", count, _MOST)
+    first, last = float(trajectory.t[0]), float(trajectory.t[-1])
+    if t_end is not None and not first <= number("t_end", t_end) <= last:
+        raise ValueError(f"t_end must be within [{first:g}, {last:g}] s, got {t_end}")
 
 
 def _title(ax: Axes, text: str) -> None:
@@ -108,11 +120,11 @@ def _title(ax: Axes, text: str) -> None:
         ax.set_title(text, loc="left", fontsize="medium", pad=above)
 
 
-def axes_for(view: tuple[float, float, float, float]) -> Axes:
-    """Axes of a new pyplot figure that fits left, right, bottom, top [m] of what is shown."""
+def figure_size(view: tuple[float, float, float, float]) -> tuple[float, float]:
+    """Size [inch] of a figure that fits left, right, bottom, top [m] of what is shown."""
     left, right, bottom, top = view
     tall = 0.8 + min(max(9 * (top - bottom) / (right - left), 1.5), 4)
-    return plt.figure(figsize=(10, tall), layout="constrained").add_subplot()
+    return 10, tall
 
 
 def turned_until(trajectory: Trajectory) -> float:

@@ -5,19 +5,21 @@ from __future__ import annotations
 import base64
 import math
 import tempfile
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import rc_context
-from matplotlib.animation import AbstractMovieWriter, FuncAnimation
+from matplotlib.animation import AbstractMovieWriter, FuncAnimation, writers
 from matplotlib.figure import Figure
 
+from ._atomic import replacing
 from ._camera import cameras
+from ._check import choice, file_name, flag, number, positive, shown, whole_within
 from ._drawing import INK
 from ._labels import labels_of, motions_of
-from ._movies import gif_delay, movie_writer, progress_bar
+from ._movies import gif_delay, movie_writer, progress_bar, told
 from ._strip import Strip
 
 if TYPE_CHECKING:
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 NOTEBOOK_FRAMES = 500  # more would make a notebook too heavy to share
+MOST_FRAMES = 1_000_000  # eleven hours at 25 a second
+FPS, SPEEDS = (1e-3, 1e3), (1e-12, 1e12)
+WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # more does not fit into memory, less is no picture
 CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
 
@@ -69,15 +74,16 @@ def animate(
         Last time shown [s]. Without it all is shown up to the latest end, or as much of it as
         `max_frames` frames hold: the first 10 s by default.
     fps : float
-        Frames per second. A GIF counts in 1/100 s: there 100 / fps must be whole and at least 2.
+        Frames per second, 0.001 to 1000. A GIF counts in 1/100 s: there 100 / fps must be whole
+        and at least 2.
     speed : float
         Seconds of motion in a second of film; 0.1 is slow motion.
     max_frames : int
-        Most frames made without `t_end`; with it, all frames up to `t_end` are made.
+        Most frames made without `t_end`; with it, all up to `t_end` are made, at most a million.
     width : int
-        Width of the picture [pixels]; the height follows from what there is to see.
+        Width of the picture [pixels], 16 to 16384; the height follows from what there is to see.
     dpi : float
-        Dots per inch: at the same width, more of them make text and lines larger.
+        Dots per inch, 10 to 2400: at the same width, more of them make text and lines larger.
     figure : matplotlib Figure, optional
         Where to draw, to show it in a window; `width` and `dpi` are then the figure's own.
     progress : bool
@@ -94,30 +100,39 @@ def animate(
         If an argument is out of range, there is nothing to show or not a label for each,
         `path` has another suffix or a GIF cannot keep the time.
     TypeError
-        If something to show is no Trajectory.
+        If something to show is no Trajectory, or an argument of another wrong kind.
     FileNotFoundError
-        If an .mp4 is asked for and there is no ffmpeg.
+        If there is no such folder, or an .mp4 is asked for and there is no ffmpeg.
+    OSError
+        If the file cannot be written; what was there then stays.
     """
-    for name, value in (("fps", fps), ("speed", speed), ("width", width), ("dpi", dpi)):
-        if not 0 < value < math.inf:
-            raise ValueError(f"{name} must be positive and finite, got {value!r}")
-    if max_frames < 1:
-        raise ValueError(f"max_frames must be at least 1, got {max_frames!r}")
+    fps, speed = _within("fps", fps, *FPS), _within("speed", speed, *SPEEDS)
+    width, dpi = round(_within("width", width, *WIDTHS)), _within("dpi", dpi, *DPI)
+    max_frames = whole_within("max_frames", max_frames, MOST_FRAMES)
+    if figure is not None and not isinstance(figure, Figure):
+        raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
+    progress = flag("progress", progress)
     motions = motions_of(trajectories)
     names = labels_of(motions, labels)
     latest = max(float(motion.t[-1]) for motion in motions)
-    last = latest if t_end is None else t_end
+    last = latest if t_end is None else number("t_end", t_end)
     if not 0 <= last <= latest:
         raise ValueError(f"t_end must be within [0, {latest:g}] s, got {t_end!r}")
     if path is not None:
         movie_writer(path, fps)  # a wrong path is refused before any work
-    count = 1 + math.floor(last * fps / speed * (1 + 1e-12))  # 0.58 s · 50 / s is 29, not 28.99…
+    frames = 1 + last * fps / speed * (1 + 1e-12)  # 0.58 s · 50 / s is 29, not 28.99…
     if t_end is None:
-        count = min(count, max_frames)
+        frames = min(frames, max_frames)
+    if frames > MOST_FRAMES:
+        raise ValueError(
+            f"t_end must be shown in at most {MOST_FRAMES} frames, got {t_end!r}, which is "
+            f"{frames:.4g} frames at fps = {fps:g} and speed = {speed:g}"
+        )
+    count = math.floor(frames)
     t = np.minimum(np.arange(count) * speed / fps, last)
-    shown = [motion.sol(np.minimum(t, motion.t[-1])) for motion in motions]
+    seen = [motion.sol(np.minimum(t, motion.t[-1])) for motion in motions]
     animation = RollingAnimation(
-        shown, t, names, fps=fps, speed=speed, width=width, dpi=dpi, figure=figure
+        seen, t, names, fps=fps, speed=speed, width=width, dpi=dpi, figure=figure
     )
     if path is not None:
         animation.save(path, progress=progress)
@@ -212,15 +227,19 @@ class RollingAnimation(FuncAnimation):
     ) -> None:
         """Write the file that the suffix names: .gif, .mp4 (needs ffmpeg) or .html (a player).
 
-        `writer` and `options` are matplotlib's, for those who want another writer.
+        A file that is there is replaced only by a whole film. `writer` and `options` are
+        matplotlib's, for those who want another writer.
         """
-        settings: Any = {}
-        if writer is None:
-            writer, settings = movie_writer(filename, self.fps)
-        if progress:
-            options["progress_callback"] = progress_bar(filename)
-        with rc_context(settings):
-            super().save(fspath(filename), writer=writer, **{"dpi": self.figure.dpi, **options})
+        path = file_name("filename", filename)
+        options = {"dpi": self.figure.dpi, **options}
+        if flag("progress", progress):
+            options["progress_callback"] = progress_bar(path)
+        if writer is not None:
+            super().save(path, writer=_known(writer), **options)
+            return
+        chosen, settings = movie_writer(path, self.fps, "filename")
+        with replacing(path) as film, rc_context(settings), told(path):
+            super().save(str(film), writer=chosen, **options)
 
     def __repr__(self) -> str:
         return f"<RollingAnimation: {self.t.size} frames, {self.t[-1]:g} s>"
@@ -242,6 +261,21 @@ class RollingAnimation(FuncAnimation):
             self.save(gif)
             data = base64.b64encode(gif.read_bytes()).decode()
         return f'<img alt="the ellipse in motion" src="data:image/gif;base64,{data}">'
+
+
+def _within(name: str, value: Any, least: float, most: float) -> float:
+    found = positive(name, value)
+    if not least <= found <= most:
+        raise ValueError(f"{name} must be from {least:g} to {most:g}, got {found!r}")
+    return found
+
+
+def _known(writer: Any) -> AbstractMovieWriter | str:
+    if isinstance(writer, str):
+        return choice("writer", writer, tuple(writers.list()))
+    if not isinstance(writer, AbstractMovieWriter):
+        raise TypeError(f"writer must be a matplotlib movie writer, got {shown(writer)}")
+    return writer
 
 
 def _decimals(step: float) -> int:

@@ -2,7 +2,8 @@
 
 ``theta`` is the clockwise rotation [rad]; at 0 the axis ``a`` is parallel to the ground. Any angle,
 any order of the semi-axes ``a`` and ``b`` [m]; scalars give floats, arrays broadcast. All raise
-ValueError for semi-axes that are no positive lengths or whose ratio is outside [1e-3, 1e3].
+ValueError for angles that are not finite, and for semi-axes that are no positive lengths or whose
+ratio is outside [1e-3, 1e3].
 """
 
 from __future__ import annotations
@@ -11,8 +12,10 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from . import _core
-from ._check import FloatArray, broadcast
+from ._check import FloatArray, broadcast, require
 
 __all__ = [
     "arc_length", "centre_path", "contact_angle", "contact_distance", "curvature_radius",
@@ -22,6 +25,7 @@ __all__ = [
 
 def _evaluate(function: Callable[..., FloatArray], theta: Any, a: Any, b: Any) -> Any:
     shape, arguments = broadcast(theta=theta, a=a, b=b)
+    require("theta", "finite", arguments[0], np.isfinite(arguments[0]))
     values = function(math.prod(shape), arguments)
     return float(values[0]) if shape == () else values.reshape(shape)
 

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from . import geometry
-from ._check import FloatArray, array, choice, uniform_disc
-from ._collisions import LAWS, collide, kinetic_speed, require
+from ._check import FloatArray, choice, finite, number, require, uniform_disc
+from ._collisions import LAWS, collide, kinetic_speed
 
 __all__ = ["LAWS", "FittedImpacts", "collide", "fit", "kinetic_speed"]
 
@@ -108,7 +108,8 @@ def fit(
         raise ValueError(
             f"after must have as many impacts as before, {start.shape[1]}, got {end.shape[1]}"
         )
-    k2 = uniform_disc(a, b) if gyration2 is None else gyration2
+    a, b = number("a", a), number("b", b)
+    k2 = uniform_disc(a, b) if gyration2 is None else number("gyration2", gyration2)
     _require_approach(start, a, b)
 
     def errors(restitution: float, angle: float) -> FloatArray:
@@ -144,12 +145,11 @@ def _least(objective: Callable[[float, float], float]) -> tuple[float, float]:
 
 def _series(name: str, columns: Sequence[Any], count: int) -> FloatArray:
     """Return columns of equal length as the rows of one array of finite numbers."""
-    rows = array(name, columns)
+    rows = finite(name, columns)
     if rows.ndim != 2 or len(rows) != count or rows.shape[1] == 0:
         raise ValueError(
             f"{name} must be {count} columns of one number for each impact, got shape {rows.shape}"
         )
-    require(name, "finite", rows, np.isfinite(rows))
     return rows
 
 

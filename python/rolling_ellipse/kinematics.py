@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, array, broadcast, number
+from ._check import FloatArray, array, broadcast, finite, number, require
 
 COORDINATES = 5
 
@@ -37,13 +37,23 @@ class ConstraintResiduals:
 
 
 def _coordinates(name: str, value: Any) -> FloatArray:
-    found = array(name, value)
+    found = finite(name, value)
     if found.ndim == 0 or found.shape[-1] != COORDINATES:
         raise ValueError(
             f"{name} must have 5 entries (x, z, theta, psi, r) along its last axis, "
             f"got shape {found.shape}"
         )
     return found
+
+
+def require_together(**arguments: Any) -> None:
+    """Raise ValueError if axes before the last do not broadcast."""
+    shapes = {name: array(name, value).shape for name, value in arguments.items()}
+    try:
+        np.broadcast_shapes(*(shape[:-1] for shape in shapes.values()))
+    except ValueError:
+        got = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        raise ValueError(f"arguments must broadcast together, got shapes {got}") from None
 
 
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
@@ -67,14 +77,11 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     Raises
     ------
     ValueError
-        If a shape or a semi-axis is wrong.
+        If a shape or a semi-axis is wrong, or a coordinate or rate is not finite.
     """
-    states = _coordinates("q", q), _coordinates("q_dot", q_dot)
-    try:
-        q, q_dot = np.broadcast_arrays(*states)
-    except ValueError:
-        shapes = f"q {states[0].shape}, q_dot {states[1].shape}"
-        raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
+    q, q_dot = _coordinates("q", q), _coordinates("q_dot", q_dot)
+    require_together(q=q, q_dot=q_dot)
+    q, q_dot = np.broadcast_arrays(q, q_dot)
     shape = q.shape[:-1]
     position, velocity, gap, slip = _core.constraints(
         q.reshape(-1, COORDINATES),
@@ -108,9 +115,11 @@ def kinematics(theta: Any, omega: Any, *, a: float, b: float) -> tuple[FloatArra
     Raises
     ------
     ValueError
-        If a semi-axis is out of its range.
+        If a semi-axis is out of its range, or an angle or speed is not finite.
     """
     shape, (angle, speed) = broadcast(theta=theta, omega=omega)
+    require("theta", "finite", angle, np.isfinite(angle))
+    require("omega", "finite", speed, np.isfinite(speed))
     size = math.prod(shape)
     q, q_dot = _core.kinematics(size, angle, speed, number("a", a), number("b", b))
     return q.reshape(*shape, COORDINATES), q_dot.reshape(*shape, COORDINATES)

@@ -8,8 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import matplotlib.pyplot as plt
-
+from ._axes import figure_of, leaving_no_figure
 from ._curves import (
     draw_dots,
     draw_energies,
@@ -30,7 +29,7 @@ from ._motions import name_curves
 from ._paths import Paths, plot_paths
 from ._phase import Phase, plot_phase
 from ._phase_map import PhaseMap, plot_phase_map
-from ._strobe import Strobe, plot_strobe
+from ._strobe import Strobe, check_strobe, plot_strobe
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,6 +71,7 @@ class Overview:
     marks: tuple[Artist, ...]
 
 
+@leaving_no_figure
 def plot(
     trajectory: Trajectory,
     *,
@@ -97,10 +97,8 @@ def plot(
     Overview
         The artists.
     """
-    if trajectory.t.size == 0:
-        raise ValueError("trajectory must have samples, got none")
-    if figure is None:
-        figure = plt.figure(figsize=(10, 8.5), layout="constrained")
+    check_strobe(trajectory, count, t_end)  # before anything is drawn
+    figure = figure_of(figure, (10, 8.5))
     grid = figure.add_gridspec(4, 2, height_ratios=[1.35, 1, 1, 1])
     strobe = plot_strobe(trajectory, ax=figure.add_subplot(grid[0, :]), count=count, t_end=t_end)
     panels = [figure.add_subplot(grid[i, j]) for j in (0, 1) for i in (1, 2, 3)]

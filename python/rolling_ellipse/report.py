@@ -16,12 +16,10 @@ import warnings
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
-from ._check import FloatArray, choice, number, optional_number
+from ._check import FloatArray, choice, finite, optional_number, positive, shown, whole_within
 from ._errata import Erratum, errata, errata_table
 from ._errata_numbers import Comparison
-from ._explicit import Steps
+from ._explicit import Steps, smallest_step
 from ._printed import (
     appendix_b_r_x,
     appendix_b_radius,
@@ -152,14 +150,15 @@ def simulate(
     state = _vector("q", q), _vector("q_dot", q_dot)
     if equations == "corrected":
         _require_none("printed", printed, equations)
+        default = "radau" if isinstance(stabilization, str) and stabilization == "ggl" else "dop853"
         settings = Settings(
             model="multipliers",
-            method=method or ("radau" if stabilization == "ggl" else "dop853"),
+            method=default if method is None else method,
             rtol=rtol,
             atol=atol,
             step=step,
             stages=None,
-            stabilization=stabilization or "projection",
+            stabilization="projection" if stabilization is None else stabilization,
             baumgarte=(10.0, 10.0) if baumgarte is None else baumgarte,
             max_steps=max_steps,
             max_events=1,
@@ -169,7 +168,12 @@ def simulate(
         return _corrected(start, times, body, settings)
     _require_none("stabilization", stabilization, equations)
     _require_none("baumgarte", baumgarte, equations)
-    steps = _steps(method or "dopri5", rtol, atol, step, max_steps)
+    steps = _steps("dopri5" if method is None else method, rtol, atol, step, max_steps)
+    if steps.step is not None and steps.step < (least := smallest_step(float(times[-1]))):
+        raise ValueError(
+            f"step must be at least {least:.3g} s, or times up to {float(times[-1])!r} s would not "
+            f"change by it, got {steps.step!r}"
+        )
     names = misprints(CODE if printed is None else printed)
     return follow(_checked_start(*state, body, names, consistent), times, body, names, steps)
 
@@ -202,17 +206,15 @@ def _checked_start(
 
 def _require_none(name: str, value: Any, equations: str) -> None:
     if value is not None:
-        raise ValueError(f"{name} must be None for the {equations} equations, got {value!r}")
+        raise ValueError(f"{name} must be None for the {equations} equations, got {shown(value)}")
 
 
 def _vector(name: str, value: Any) -> FloatArray:
-    found = np.array(value, dtype=np.float64)
+    found = finite(name, value)
     if found.shape != (COORDINATES,):
         raise ValueError(
             f"{name} must have 5 entries (x, z, theta, psi, r), got shape {found.shape}"
         )
-    if not np.all(np.isfinite(found)):
-        raise ValueError(f"{name} must be finite, got {value!r}")
     return found
 
 
@@ -221,9 +223,7 @@ def _steps(method: str, rtol: float, atol: float, step: float | None, max_steps:
     size = optional_number("step", step)
     if size is None and method == "rk4":
         raise ValueError("step must be a positive time for the method 'rk4', got None")
-    for name, value in (("rtol", rtol), ("atol", atol), ("step", 1.0 if size is None else size)):
-        if not 0 < number(name, value) < np.inf:
-            raise ValueError(f"{name} must be positive and finite, got {value!r}")
-    if not max_steps >= 1:
-        raise ValueError(f"max_steps must be at least 1, got {max_steps!r}")
-    return Steps(method, number("rtol", rtol), number("atol", atol), size, max_steps)
+    if size is not None:
+        positive("step", size)
+    most = whole_within("max_steps", max_steps, 2**31 - 1)
+    return Steps(method, positive("rtol", rtol), positive("atol", atol), size, most)

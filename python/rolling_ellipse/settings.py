@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from operator import index
 from typing import Any
 
 from . import _core
-from ._check import choice, number, optional_number
+from ._check import choice, number, optional_number, shown, whole
 from ._fields import FieldsOnly
 
 MODELS = tuple(name.lower() for name in _core.Model.__members__)
@@ -71,15 +70,12 @@ def _pair(name: str, value: Any) -> tuple[float, float]:
     try:
         first, second = value
     except (TypeError, ValueError):
-        raise ValueError(f"{name} must be two numbers, got {value!r}") from None
+        raise ValueError(f"{name} must be two numbers, got {shown(value)}") from None
     return number(name, first), number(name, second)
 
 
 def _whole(name: str, value: Any) -> int:
-    try:
-        found = index(value)
-    except TypeError:
-        raise TypeError(f"{name} must be a whole number, got {value!r}") from None
+    found = whole(name, value)
     if not -(2**31) <= found < 2**31:
-        raise ValueError(f"{name} must be less than 2**31 in size, got {value!r}")
+        raise ValueError(f"{name} must be less than 2**31 in size, got {shown(value)}")
     return found

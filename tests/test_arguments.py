@@ -1,0 +1,296 @@
+"""Pictures, films and the report's functions name the argument that they cannot use, and a picture
+that fails leaves nothing behind."""
+
+import math
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+import rolling_ellipse as re
+from matplotlib.animation import PillowWriter
+from matplotlib.figure import Figure
+from PIL import Image
+from rolling_ellipse import _movies as movies
+from rolling_ellipse import report
+
+MOTION = re.simulate(re.scenes.report, np.linspace(0.0, 1.0, 26))
+Q, Q_DOT = re.kinematics(0.3, 1.0, a=2.0, b=1.0)
+BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 1.0, "gravity": 9.81}
+CURVES = [re.plot_paths, re.plot_phase, re.plot_forces, re.plot_energy, re.plot_constraints]
+SMALL: dict[str, Any] = {"t_end": 0.2, "width": 160, "dpi": 50}
+
+ANYTHING: list[Any] = [
+    "a", "", b"a", 42, 1.5, -1, math.nan, math.inf, 10**400, 2j, [], [1, 2], {}, object(), len,
+    np.array([]), np.array([1.0, 2.0]), np.array("x"), np.array([None, 1.0]), np.ma.masked, Figure,
+    re.scenes.report, plt,
+]  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def no_figure_stays() -> Iterator[None]:
+    yield
+    opened = plt.get_fignums()
+    plt.close("all")
+    assert opened == []
+
+
+def refused(name: str, call: Callable[..., Any], value: Any) -> None:
+    with pytest.raises((TypeError, ValueError)) as caught:
+        call(**{name: value})
+    said = str(caught.value)
+    assert said.startswith(f"{name} must ") and "got " in said, said
+
+
+# --------------------------------------------------------------------------------- pictures
+
+
+@pytest.mark.parametrize("value", [None, *ANYTHING], ids=lambda value: repr(value)[:20])
+def test_what_is_no_trajectory(value: Any) -> None:
+    refused("trajectory", re.plot, value)
+    refused("trajectory", re.plot_strobe, value)
+    for draw in (*CURVES, re.animate):
+        refused("trajectories", draw, value)
+
+
+@pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
+def test_where_nothing_can_be_drawn(value: Any) -> None:
+    refused("figure", lambda figure: re.plot(MOTION, figure=figure), value)
+    refused("figure", lambda figure: re.animate(MOTION, figure=figure), value)
+    refused("ax", lambda ax: re.plot_strobe(MOTION, ax=ax), value)
+    refused("ax", lambda ax: re.plot_phase_map(resolution=2, ax=ax), value)
+    for draw in CURVES:
+        refused("ax", lambda ax, draw=draw: draw(MOTION, ax=ax), value)
+
+
+@pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
+def test_choices_and_switches(value: Any) -> None:
+    refused("kind", lambda kind: re.plot_energy(MOTION, kind=kind), value)
+    refused("fold", lambda fold: re.plot_phase(MOTION, fold=fold), value)
+    refused("labels", lambda labels: re.plot_forces(MOTION, labels=labels), value)
+    refused("progress", lambda progress: re.animate(MOTION, progress=progress), value)
+    refused("x", lambda x: re.plot_phase_map(x), value)
+    if repr(value) not in ("[1, 2]", "array([1., 2.])"):
+        refused("x_range", lambda x_range: re.plot_phase_map(resolution=2, x_range=x_range), value)
+
+
+@pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
+def test_numbers_of_pictures(value: Any) -> None:
+    refused("t_end", lambda t_end: re.plot(MOTION, t_end=t_end), value)
+    refused("t_end", lambda t_end: re.animate(MOTION, t_end=t_end), value)
+    if repr(value) != "42":
+        refused("count", lambda count: re.plot(MOTION, count=count), value)
+        refused("max_frames", lambda max_frames: re.animate(MOTION, max_frames=max_frames), value)
+    if repr(value) not in ("42", "1.5"):
+        for name in ("fps", "speed", "width", "dpi"):
+            refused(name, lambda name=name, **given: re.animate(MOTION, **given), value)
+
+
+def test_a_given_figure_stays_as_it_is() -> None:
+    figure = Figure()
+    with pytest.raises(ValueError, match="count must be at least 1"):
+        re.plot(MOTION, figure=figure, count=0)
+    assert figure.axes == []
+
+
+@pytest.mark.parametrize("draw", [re.plot, re.plot_strobe, *CURVES])
+def test_a_drawing_that_fails_closes_its_figure(draw: Any, monkeypatch: Any) -> None:
+    mine = plt.figure()
+    monkeypatch.setattr(plt.Axes, "plot", lambda *args, **options: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        draw(MOTION)
+    assert plt.get_fignums() == [mine.number]
+    plt.close(mine)
+
+
+def test_what_cannot_be_made() -> None:
+    """Sizes and numbers that no machine has room for, and no eye could see."""
+    with pytest.raises(ValueError, match="count must be at most 10000, got 1000000000000"):
+        re.plot_strobe(MOTION, count=10**12)
+    frames = "t_end must be shown in at most 1000000 frames, got 1.0, which is .* frames at fps = "
+    for options in ({"speed": 1e-12}, {"speed": 1e-6, "fps": 1000}):
+        with pytest.raises(ValueError, match=frames):
+            re.animate(MOTION, t_end=1.0, **options)
+    wrong: dict[str, tuple[Any, ...]] = {
+        "speed": (1e-320, 1e-13, 1e300), "fps": (1e-320, 1e-4, 1e4, 1e308),
+        "width": (1, 1e-9, 10**9), "dpi": (1e-300, 1, 1e5), "max_frames": (10**9,),
+    }  # fmt: skip
+    for name, values in wrong.items():
+        for value in values:
+            refused(name, lambda name=name, **given: re.animate(MOTION, **given), value)
+
+
+# ------------------------------------------------------------------------------------ films
+
+
+@pytest.mark.parametrize("value", [42, 1.5, b"roll.gif", object(), ["roll.gif"], np.array("x.gif")])
+def test_what_is_no_path(value: Any) -> None:
+    with pytest.raises(TypeError, match=r"^path must be a path, a string or a PathLike, got "):
+        re.animate(MOTION, value)
+    with pytest.raises(TypeError, match=r"^filename must be a path, .*, got "):
+        re.animate(MOTION, **SMALL).save(value)
+
+
+def test_paths_that_cannot_be_written(tmp_path: Path, monkeypatch: Any) -> None:
+    (tmp_path / "folder.gif").mkdir()
+    monkeypatch.setattr(re.Trajectory, "sol", None)  # before any work
+    for name in ("", "roll\0.gif"):
+        with pytest.raises(ValueError, match=r"^path must name a file, got"):
+            re.animate(MOTION, name)
+    with pytest.raises(IsADirectoryError, match=r"folder\.gif"):
+        re.animate(MOTION, tmp_path / "folder.gif")
+    with pytest.raises(FileNotFoundError, match=r"no such folder.*no/roll\.gif"):
+        re.animate(MOTION, tmp_path / "no" / "roll.gif")
+
+
+@pytest.mark.parametrize("name", ["12:30.mp4", "-x.mp4", "%03d.mp4", "concat:a|b.gif", "ä.html"])
+def test_names_that_ffmpeg_would_understand(tmp_path: Path, name: str, monkeypatch: Any) -> None:
+    monkeypatch.chdir(tmp_path)
+    re.animate(MOTION, name, **SMALL)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    if name.endswith(".mp4"):
+        assert (tmp_path / name).read_bytes()[4:8] == b"ftyp"
+
+
+@pytest.mark.parametrize("suffix", movies.SUFFIXES)
+@pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError, OSError])
+def test_an_old_film_stays_until_the_new_one_is_whole(
+    tmp_path: Path, monkeypatch: Any, suffix: str, error: type[BaseException]
+) -> None:
+    path = tmp_path / f"roll{suffix}"
+    path.write_bytes(b"old")
+    film = re.animate(MOTION, **SMALL)
+    draw, drawn = film._func, []
+
+    def stops(i: int, *args: Any) -> Any:
+        drawn.append(i)
+        if len(drawn) > 3:
+            raise error
+        return draw(i, *args)
+
+    monkeypatch.setattr(film, "_func", stops)
+    with pytest.raises(error):
+        film.save(path)
+    assert path.read_bytes() == b"old" and list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("suffix", movies.SUFFIXES)
+def test_a_killed_film_leaves_the_old_one(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"roll{suffix}"
+    path.write_bytes(b"old")
+    program = (
+        "import os, signal, sys, rolling_ellipse as re\n"
+        "film = re.animate(re.simulate(re.scenes.report, 1.0), width=160, dpi=50)\n"
+        "kill = lambda i, n: i > 5 and os.kill(os.getpid(), signal.SIGKILL)\n"
+        "film.save(sys.argv[1], progress_callback=kill)\n"
+    )
+    subprocess.run([sys.executable, "-c", program, path], timeout=120, check=False)
+    assert path.read_bytes() == b"old"
+
+
+def test_an_ffmpeg_that_fails(tmp_path: Path, monkeypatch: Any) -> None:
+    path = tmp_path / "roll.mp4"
+    path.write_bytes(b"old")
+    program = tmp_path / "ffmpeg"
+    program.write_text(
+        "#!/bin/sh\ncat > /dev/null\necho first >&2\necho disk is full >&2\nexit 1\n"
+    )
+    program.chmod(0o755)
+    monkeypatch.setattr(movies, "ffmpeg", lambda: str(program))
+    with pytest.raises(OSError, match=r"^ffmpeg could not write '.*roll\.mp4': disk is full$"):
+        re.animate(MOTION, path, **SMALL)
+    assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 2
+
+
+def test_an_extra_without_a_program(monkeypatch: Any) -> None:
+    """imageio_ffmpeg has none for this machine, and says so by a RuntimeError."""
+    imageio = pytest.importorskip("imageio_ffmpeg")
+
+    def missing() -> str:
+        raise RuntimeError("No ffmpeg exe could be found")
+
+    monkeypatch.setattr(imageio, "get_ffmpeg_exe", missing)
+    monkeypatch.setattr(movies.FFMpegWriter, "isAvailable", lambda: False)
+    with pytest.raises(FileNotFoundError, match=r"rolling_ellipse\[video\]"):
+        re.animate(MOTION, "roll.mp4")
+
+
+def test_a_gif_slower_than_its_clock_can_tell(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="fps must be 100 over a whole number"):
+        re.animate(MOTION, tmp_path / "roll.gif", fps=1e-3)
+
+
+def test_writers_of_ones_own(tmp_path: Path) -> None:
+    film = re.animate(MOTION, **SMALL)
+    film.save(tmp_path / "roll.gif", PillowWriter(fps=5))
+    with Image.open(tmp_path / "roll.gif") as picture:
+        assert picture.n_frames == film.t.size
+    for value in (42, [], np.array(["pillow"]), "no_such"):
+        refused("writer", lambda writer: film.save(tmp_path / "roll.gif", writer), value)
+
+
+# -------------------------------------------------------------------------------- the report
+
+
+@pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
+def test_arguments_of_the_report(value: Any) -> None:
+    refused("case", lambda case: report.f1(Q, Q_DOT, case=case), value)
+    refused("complete", lambda complete: report.eq_41(Q, Q_DOT, **BODY, complete=complete), value)
+    for equations in ("corrected", "printed"):
+
+        def run(q: Any = Q, q_dot: Any = Q_DOT, equations: str = equations, **given: Any) -> Any:
+            return report.simulate(q, q_dot, 0.1, **BODY, equations=equations, **given)
+
+        for name in ("q", "q_dot", "equations", "consistent", "method", "stabilization"):
+            refused(name, run, value)
+        if repr(value) not in ("[]", "42"):  # no row as printed, many steps
+            refused("max_steps", run, value)
+            refused("printed", run, value)
+
+
+def test_as_many_states_everywhere() -> None:
+    """Leading axes broadcast, or are refused with all shapes."""
+    two, three, one = (np.stack([Q] * n) for n in (2, 3, 1))
+    four = np.zeros((3, 4))
+    said = r"^arguments must broadcast together, got shapes q \(2, 5\), "
+    axes: dict[str, Any] = {"a": 2.0, "b": 1.0}
+    for call in (
+        lambda q, other: report.f1(q, other),
+        lambda q, other: report.eq_38(q, other, **axes),
+        lambda q, other: report.constraint_rates(q, other, **axes),
+        lambda q, other: re.constraints(q, other, **axes).gap,
+        lambda q, other: report.consistent_rates(q, other[:, 0], **axes),
+        lambda q, other: report.eqs_33_to_37(q, other, four[: len(other)], **BODY),
+        lambda q, other: report.equations_of_motion(q, other, four[: len(other)], **BODY),
+        *(
+            lambda q, other, name=name: getattr(report, name)(q, other, **BODY)
+            for name in (
+                "eq_39", "eq_40", "eq_41", "eq_42", "lambda4_numerator", "multipliers", "complete_f"
+            )
+        ),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=said):
+            call(two, three)
+        assert len(call(two, one)) == len(call(one, two)) == 2
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rk4"])
+def test_a_step_that_cannot_change_the_time(method: str) -> None:
+    for step, t in ((1e-300, 1.0), (2e-15, 1.0), (1e-10, 1e6)):
+        with pytest.raises(ValueError, match=rf"^step must be at least .* s, .*, got {step!r}"):
+            report.simulate(
+                Q, Q_DOT, t, **BODY, equations="printed", consistent="project", method=method,
+                step=step,
+            )  # fmt: skip
+    motion = report.simulate(
+        Q, Q_DOT, 1e-12, **BODY, equations="printed", consistent="project", step=1e-14
+    )
+    assert motion.message == "" and motion.t[-1] == 1e-12

@@ -1,0 +1,202 @@
+"""One rule for numbers, whatever takes them: what is none is refused by name, and nothing warns."""
+
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as re
+from numpy.testing import assert_array_equal
+from rolling_ellipse import geometry, impacts, report
+
+SCENE = re.Scene(2.0, 1.0, omega=1.0)
+MOTION = re.simulate(SCENE, 1.0)
+Q, Q_DOT = re.kinematics(0.3, 1.0, a=2.0, b=1.0)
+FLOW: dict[str, Any] = {"t": 1.0, "a": 2.0, "b": 1.0, "theta": 0.2, "omega": 1.0}
+BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 1.0, "gravity": 9.81}
+AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
+HIT: dict[str, Any] = {"x_dot": 0.0, "z_dot": -1.0, "omega": 0.0, "friction": 0.3}
+
+Door = Callable[[Any], Any]
+
+#: What takes one number, by the name of the argument.
+SCALAR_DOORS: list[tuple[str, Door]] = [
+    ("a", lambda v: re.Scene(v, 1.0)),
+    ("z", lambda v: re.Scene(2.0, 1.0, z=v)),
+    ("inertia", lambda v: re.Scene(2.0, 1.0, inertia=v)),
+    ("jx", lambda v: re.Impulse(v)),
+    ("F", lambda v: re.Impulse.press(v, 1.0)),
+    ("a", lambda v: re.thresholds(v, 1.0)),
+    ("friction", lambda v: re.thresholds(2.0, 1.0, friction=v)),
+    ("rtol", lambda v: re.simulate(SCENE, 1.0, rtol=v)),
+    ("baumgarte", lambda v: re.simulate(SCENE, 1.0, baumgarte=(v, 1.0))),
+    ("b", lambda v: re.constraints(Q, Q_DOT, a=2.0, b=v)),
+    ("b", lambda v: re.kinematics(0.3, 1.0, a=2.0, b=v)),
+    ("t", lambda v: MOTION.scene_at(v)),
+    ("b", lambda v: re.plot_phase_map(resolution=2, b=v)),
+    ("a", lambda v: impacts.fit([[0.0]] + [[-1.0]] * 3, [[0.0]] * 3, a=v, b=1.0)),
+    ("gyration2", lambda v: impacts.fit([[0.0]] * 4, [[0.0]] * 3, a=2.0, b=1.0, gyration2=v)),
+    ("atol", lambda v: report.simulate(Q, Q_DOT, 0.1, **AXES, equations="printed", atol=v)),
+    ("mass", lambda v: report.eq_48(48.0, 1.5, **AXES, mass=v)),
+    ("impulse", lambda v: report.eq_48(v, 1.5, **AXES, mass=10.0)),
+    ("d", lambda v: report.struck_speed(48.0, v, **AXES, mass=10.0)),
+]  # fmt: skip
+
+#: What takes one number or many.
+ARRAY_DOORS: list[tuple[str, Door]] = [
+    *((name, lambda v, name=name: re.flow(**{**FLOW, name: v})) for name in FLOW),
+    ("gravity", lambda v: re.classify(**AXES, omega=1.0, gravity=v)),
+    ("t", lambda v: re.simulate(SCENE, v)),
+    ("t", lambda v: MOTION.sol(v)),
+    ("theta", lambda v: geometry.support(v, **AXES)),
+    ("b", lambda v: geometry.arc_length(0.3, a=2.0, b=v)),
+    ("omega", lambda v: re.kinematics(0.3, v, **AXES)),
+    ("restitution", lambda v: impacts.collide(0.3, **HIT, **AXES, restitution=v)),
+    ("z_dot", lambda v: impacts.kinetic_speed(0.0, v, 0.0, gyration2=1.0)),
+    ("theta", lambda v: report.eq_5(v, **AXES)),
+    ("omega", lambda v: report.consistent_rates(Q, v, **AXES)),
+]
+
+NO_NUMBERS = [
+    None, {}, object, float, np.float64, "2", b"2", np.str_("2"), np.bytes_(b"2"), np.array("2"),
+    np.array(b"2"), 2j, np.complex64(2 + 1j), np.array(2 + 0j), np.datetime64("2020"),
+    np.timedelta64(2), np.array(2.0, dtype=object), np.zeros((), dtype=[("a", float)]),
+    Decimal("sNaN"),
+]  # fmt: skip
+NO_ARRAYS = [
+    ["1", 2.0], [1j], [None, 1.0], [[1.0], [1.0, 2.0]], [np.datetime64("2020"), 1.0],
+    np.array([1.0, 2.0], dtype=object), np.array(["1", "2"]), np.zeros(2, dtype=[("a", float)]),
+]  # fmt: skip
+BEYOND = [
+    10**400, -(10**400), 10**5000, Decimal("1e400"), Fraction(10**400), np.longdouble("1e400"),
+    np.array(np.longdouble("-1e400")),
+]  # fmt: skip
+MASKED = [
+    np.ma.masked,
+    np.ma.array(2.0, mask=True),
+    np.ma.array([0.25, 0.5], mask=[False, True]),
+]
+
+
+def names(doors: list[tuple[str, Door]]) -> Any:
+    return pytest.mark.parametrize(
+        ("name", "door"), doors, ids=[f"{i}-{name}" for i, (name, _) in enumerate(doors)]
+    )
+
+
+def refused(error: type[Exception], name: str, requirement: str, door: Door, value: Any) -> None:
+    with pytest.raises(error) as caught:
+        door(value)
+    said = str(caught.value)
+    assert said.startswith(f"{name} must be {requirement}") or (
+        said.startswith(f"{name} must have {requirement}")
+    ), said
+    assert "got " in said and len(said) < 500
+
+
+@names(SCALAR_DOORS + ARRAY_DOORS)
+def test_what_is_no_number(name: str, door: Door) -> None:
+    for value in NO_NUMBERS:
+        if value is not None or name not in ("z", "inertia", "gyration2"):
+            refused(TypeError, name, "a number", door, value)
+
+
+@names(SCALAR_DOORS)
+def test_one_number_is_no_array_of_one(name: str, door: Door) -> None:
+    for value in ([2.0], (2.0,), np.array([2.0]), np.array([[2]]), np.ma.array([2.0])):
+        refused(TypeError, name, "a number", door, value)
+
+
+@names(ARRAY_DOORS)
+def test_what_is_no_array_of_numbers(name: str, door: Door) -> None:
+    for value in NO_ARRAYS:
+        refused(TypeError, name, "a number or an array of numbers", door, value)
+    refused(ValueError, name, "no masked entries", door, [np.ma.masked, 1.0])
+    refused(ValueError, name, "within the range of doubles", door, [1, 10**400])
+    huge = np.array([1, np.longdouble("-1e400")])
+    refused(ValueError, name, "within the range of doubles, got -1e+400", door, huge)
+
+
+@names(SCALAR_DOORS + ARRAY_DOORS)
+def test_what_no_double_can_hold(name: str, door: Door) -> None:
+    for value in BEYOND:
+        refused(ValueError, name, "within the range of doubles", door, value)
+
+
+@names(SCALAR_DOORS + ARRAY_DOORS)
+def test_masked_entries(name: str, door: Door) -> None:
+    for value in MASKED:
+        refused(ValueError, name, "no masked entries", door, value)
+
+
+def test_masked_columns_of_a_series() -> None:
+    column = np.ma.array([-1.0, -1.0], mask=[False, True])
+    before, after = [[0.0, 0.0], column, [-1.0, -1.0], [0.0, 0.0]], np.zeros((3, 2))
+    with pytest.raises(ValueError, match="before must have no masked entries"):
+        impacts.fit(before, after, **AXES)
+    with pytest.raises(ValueError, match="q must have no masked entries"):
+        re.constraints(np.ma.array(Q, mask=[0, 0, 1, 0, 0]), Q_DOT, **AXES)
+
+
+def test_numbers_of_every_kind() -> None:
+    """They are worth what their doubles are, alone and in arrays."""
+    for two in (
+        2, np.float32(2), np.float16(2), np.longdouble(2), np.int8(2), np.uint64(2), Decimal(2),
+        Fraction(2), np.array(2.0), np.array(2), np.array(2, dtype=">f4"), np.ma.array(2.0),
+    ):  # fmt: skip
+        assert re.Scene(two, 1.0) == re.Scene(2.0, 1.0)
+        assert type(re.Scene(two, 1.0).a) is float
+        assert re.flow(**{**FLOW, "a": two}) == re.flow(**FLOW)
+    assert re.Scene(True, 1.0).a == 1.0
+    assert MOTION.scene_at(Fraction(1, 2)) == MOTION.scene_at(0.5)
+    times = [0.25, 0.5]
+    expected = re.flow(times, **AXES, theta=0.2, omega=1.0)
+    for given in (
+        [Decimal("0.25"), Fraction(1, 2)],
+        np.array(times, dtype=np.longdouble),
+        np.ma.array(times, mask=[False, False]),
+        np.array(times, dtype=">f8"),
+    ):
+        assert_array_equal(re.flow(given, **AXES, theta=0.2, omega=1.0), expected)
+    assert re.Scene(2.0, 1.0, x=2**70).x == 2.0**70
+    assert_array_equal(geometry.support([2**70, 1], **AXES), geometry.support([2.0**70, 1], **AXES))
+
+
+FINITE: list[tuple[str, Door]] = [
+    *(
+        ("theta", lambda v, name=name: getattr(geometry, name)(v, **AXES))
+        for name in geometry.__all__
+    ),
+    ("theta", lambda v: re.kinematics(v, 1.0, **AXES)),
+    ("omega", lambda v: re.kinematics(0.3, v, **AXES)),
+    ("q", lambda v: re.constraints([0, 1, v, 0, 1], Q_DOT, **AXES)),
+    ("q_dot", lambda v: re.constraints(Q, [v, 0, 0, 0, 0], **AXES)),
+    ("theta", lambda v: report.eq_5(v, **AXES)),
+    ("theta", lambda v: report.case_sign(v)),
+    ("theta", lambda v: report.case_lead(v, **AXES)),
+    ("theta", lambda v: report.appendix_b_radius(v, **AXES)),
+    ("q", lambda v: report.f1([0, 1, v, 0, 1], Q_DOT)),
+    ("q_dot", lambda v: report.f1(Q, [v, 0, 0, 0, 0])),
+    ("q", lambda v: report.f2([0, v, 0, 0, 1])),
+    ("q", lambda v: report.contact_x([v, 1, 0, 0, 1], **AXES)),
+    ("q", lambda v: report.constraint_matrix([0, 1, v, 0, 1], **AXES)),
+    ("omega", lambda v: report.consistent_rates(Q, v, **AXES)),
+    ("q_ddot", lambda v: report.eq_39(Q, [v, 0, 0, 0, 0], **BODY)),
+    ("multipliers", lambda v: report.eqs_33_to_37(Q, Q_DOT, [v, 0, 0, 0], **BODY)),
+    ("q", lambda v: report.simulate([0, 1, v, 0, 1], Q_DOT, 1.0, **AXES)),
+    ("impulse", lambda v: report.eq_48(v, 1.5, **AXES, mass=10.0)),
+]  # fmt: skip
+
+
+@names(FINITE)
+def test_what_must_be_finite(name: str, door: Door) -> None:
+    """What would be NaN in the answer is refused in the question."""
+    for value in (np.inf, -np.inf, np.nan):
+        refused(ValueError, name, f"finite, got {value}", door, value)
+
+
+def test_one_infinite_angle_of_many() -> None:
+    with pytest.raises(ValueError, match=r"^theta must be finite, got inf"):
+        geometry.support(np.array([[0.0, 1.0], [np.inf, 2.0]]), **AXES)
