@@ -93,8 +93,9 @@ def simulate(
         ``status`` COMPLETED; or VALIDITY_LOST, where the span of "rolling" or "multipliers" goes
         beyond ``valid_until``: the arrays are complete and obey the rolling equation, and a
         ValidityWarning is issued; or JAMMED, where a slide comes to a place from which no motion
-        of a rigid body goes on, or two (Painleve): the arrays end there. At an event samples show what holds after it. Samples between steps
-        have the accuracy of the method.
+        of a rigid body goes on, or starts at one from which two do (Painleve): the arrays end
+        there. At an event samples show what holds after it. Samples between steps have the
+        accuracy of the method.
 
     Raises
     ------

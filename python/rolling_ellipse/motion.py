@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import operator
 import os
 from contextlib import suppress
 from types import NoneType
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, array, broadcast, uniform_disc
+from ._check import FloatArray, array, broadcast, uniform_disc, whole
 from .scene import Scene, require_scene
 
 _SCALARS = (float, int, np.float64)
@@ -95,16 +94,14 @@ def _shaped(results: tuple[FloatArray, ...], shape: tuple[int, ...]) -> tuple[An
 
 def worker_count(workers: int) -> int:
     """Return the number of threads that ``workers`` stands for."""
-    if isinstance(workers, bool) or not hasattr(workers, "__index__"):
-        raise TypeError(f"workers must be an int, got {workers!r}")
-    workers = operator.index(workers)
-    if workers == -1:
-        return os.cpu_count() or 1
-    if not 1 <= workers <= _MOST_WORKERS:
+    count = whole("workers", workers)
+    if count == -1:
+        return min(os.cpu_count() or 1, _MOST_WORKERS)
+    if not 1 <= count <= _MOST_WORKERS:
         raise ValueError(
-            f"workers must be an int from 1 to {_MOST_WORKERS}, or -1 for all cores, got {workers}"
+            f"workers must be an int from 1 to {_MOST_WORKERS}, or -1 for all cores, got {count}"
         )
-    return workers
+    return count
 
 
 def period(scene: Scene) -> float:

@@ -166,8 +166,8 @@ class Scene(FieldsOnly):
     @cached_property
     def initial_state(self) -> InitialState:
         """State just after the impulse: the collision law without restitution (InitialState)."""
-        *numbers, moves, paradox = _core.initial_state(self._core_scene)
-        state = InitialState(*numbers, reason="")
+        found = _core.initial_state(self._core_scene)
+        state, (moves, paradox) = InitialState(*found[:10], reason=""), found[10:]
         did = _what_the_blow_did(self, state, moves)
         return replace(state, reason=f"{did}; {_what_follows(self, state.mode, moves, paradox)}")
 
