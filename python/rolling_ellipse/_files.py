@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._atomic import replacing
-from ._check import choice
+from ._check import choice, file_name
 from ._core import EventKind
 from ._npz import arrays as npz_arrays
 from ._samples import ContactSamples
@@ -44,9 +44,10 @@ def write(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
     OSError
         If it cannot be written; a file that was there is then still there.
     """
+    name = file_name("path", path)
     text, arrays = json.dumps(_about(trajectory)), _arrays(trajectory)
     _restored(type(trajectory), text, arrays)
-    with replacing(path) as new, open(new, "wb") as file:
+    with replacing(name) as new, open(new, "wb") as file:
         np.savez(file, about=np.array(text), **arrays)
 
 
@@ -60,7 +61,8 @@ def read(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
     OSError
         If it cannot be read.
     """
-    with open(path, "rb") as file:
+    name = file_name("path", path)
+    with open(name, "rb") as file:
         content = file.read()
     try:
         arrays = npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
@@ -72,7 +74,7 @@ def read(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
     except Exception as error:  # damaged bytes raise about every kind there is, on their way here
         wrong = str(error) or type(error).__name__
         raise ValueError(
-            f"path must name a file written by save, got {os.fspath(path)!r}: {wrong}"
+            f"path must name a file written by save, got {name!r}: {wrong}"
         ) from error
 
 
