@@ -7,8 +7,8 @@
 
 namespace rolling_ellipse {
 
-// The state just after the applied impulse (or the scene's own state, where there is none). Its mode
-// is what its velocities look like; what forces make of it, continuation.hpp says.
+// The state just after the applied impulse (or the scene's own state, where there is none). Its
+// mode is what its velocities look like; what forces make of it, continuation.hpp says.
 struct InitialState {
     State state;
     double reaction_x;  // impulse of the ground [N s]

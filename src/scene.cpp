@@ -91,7 +91,6 @@ void validate_motion(const Body& body, double theta, double omega) {
 void validate_velocity(const Body& body, double x_dot, double z_dot) {
     const double most = std::sqrt(energy_limit * body.gravity * std::max(body.a, body.b));
     const auto require = [&](const std::string& name, double speed) {
-        require_finite(name, " [m/s]", speed);
         if (std::abs(speed) <= most) return;
         refuse(name, "at most " + text(most) + " [m/s] in size for this body", speed);
     };
@@ -128,6 +127,8 @@ void validate(const Scene& scene) {
     validate_motion(scene.body(), scene.theta, scene.omega);
     require_finite("x", " [m]", scene.x);
     if (scene.z) require_finite("z", " [m]", *scene.z);
+    if (scene.x_dot) require_finite("x_dot", " [m/s]", *scene.x_dot);
+    if (scene.z_dot) require_finite("z_dot", " [m/s]", *scene.z_dot);
     validate_velocity(scene.body(), scene.x_dot.value_or(0.0), scene.z_dot.value_or(0.0));
     if (scene.impulse) validate(*scene.impulse);
     state_before_impulse(scene);

@@ -83,7 +83,7 @@ void validate_baumgarte(const Settings& settings) {
     constexpr double largest_gain = 1e50;  // its square times a residual is still a force
     for (const double gain : {settings.baumgarte_alpha, settings.baumgarte_beta}) {
         if (!(gain >= 0 && gain <= largest_gain)) {
-            refuse("baumgarte", "two gains of at least 0 and at most 1e50 [1/s]", gain);
+            refuse("baumgarte", "two finite gains of at least 0 and at most 1e50 [1/s]", gain);
         }
     }
 }

@@ -69,8 +69,8 @@ Slowed slide_slowly(SteppedSliding& motion, const Tolerance& tolerance, long max
 SteppedSliding sliding_from(const Scene& scene, const State& start, double side) {
     const Axes axes{scene.a, scene.b};
     const double slip = slip_velocity(start, geometry(axes, start.theta));
-    const double turn = std::abs(start.theta) > most_reduced ? within_a_turn(start.theta)
-                                                             : start.theta;
+    const double turn =
+        std::abs(start.theta) > most_reduced ? within_a_turn(start.theta) : start.theta;
     const double quarters = std::nearbyint(turn / half_pi);
     const DoubleDouble rest = DoubleDouble{turn, 0.0} - half_pi_exact * quarters;
     Scene seen = scene;
@@ -79,8 +79,7 @@ SteppedSliding sliding_from(const Scene& scene, const State& start, double side)
             axes,
             two_sum(start.theta, -turn) + half_pi_exact * quarters,
             start.x,
-            {0.0,
-             {{0.0, {rest.high, start.omega, 0.0, slip}, {rest.low, 0.0, 0.0, 0.0}, 0.0}}}};
+            {0.0, {{0.0, {rest.high, start.omega, 0.0, slip}, {rest.low, 0.0, 0.0, 0.0}, 0.0}}}};
 }
 
 Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long max_steps,

@@ -73,9 +73,7 @@ def read(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
         raise
     except Exception as error:  # damaged bytes raise about every kind there is, on their way here
         wrong = str(error) or type(error).__name__
-        raise ValueError(
-            f"path must name a file written by save, got {name!r}: {wrong}"
-        ) from error
+        raise ValueError(f"path must name a file written by save, got {name!r}: {wrong}") from error
 
 
 def _about(trajectory: Trajectory) -> dict[str, Any]:
