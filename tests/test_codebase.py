@@ -128,6 +128,14 @@ def test_one_version() -> None:
         assert literal not in path.read_text(encoding="utf-8"), path
 
 
+def test_every_requirement_states_its_oldest_version() -> None:
+    """Those that tools/oldest_versions.py runs the suite with."""
+    versions = run(sys.executable, ROOT / "tools" / "oldest_versions.py", "--list").split()
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    for needed in settings["project"]["dependencies"]:
+        assert needed.replace(">=", "==") in versions
+
+
 # --------------------------------------------------------------------------------- walls
 
 
