@@ -4,11 +4,14 @@ Everything is found beside this file, so that the suite runs from a source check
 package installed as users install it.
 """
 
+import os
+import platform
 import re
 import subprocess
 import sys
 import sysconfig
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -23,6 +26,17 @@ GENERATED = {
 PYTHON_FOLDERS = ("python", "tests", "tools", "docs")
 BINDINGS = ROOT / "src" / "bindings"
 CORE = [path for path in SOURCES if path.parent != BINDINGS]
+COMPLEX_PRODUCTS = """
+void one(const double* x, const double* y, double* z) {
+    const double re = x[0] * y[0] - x[1] * y[1];
+    const double im = x[0] * y[1] + x[1] * y[0];
+    z[0] = re;
+    z[1] = im;
+}
+void many(const double* __restrict x, const double* __restrict y, double* __restrict z) {
+    for (int i = 0; i < 64; ++i) one(x + 2 * i, y + 2 * i, z + 2 * i);
+}
+"""
 
 
 def run(*command: str | Path) -> str:
@@ -114,6 +128,14 @@ def test_one_version() -> None:
         assert literal not in path.read_text(encoding="utf-8"), path
 
 
+def test_every_requirement_states_its_oldest_version() -> None:
+    """Those that tools/oldest_versions.py runs the suite with."""
+    versions = run(sys.executable, ROOT / "tools" / "oldest_versions.py", "--list").split()
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    for needed in settings["project"]["dependencies"]:
+        assert needed.replace(">=", "==") in versions
+
+
 # --------------------------------------------------------------------------------- walls
 
 
@@ -132,17 +154,59 @@ def test_only_the_bindings_know_python() -> None:
 
 
 def test_no_arithmetic_that_depends_on_the_mood_of_the_compiler() -> None:
-    """-ffast-math breaks the compensated sums; -march=native the same bits on other machines."""
+    """-ffast-math breaks the compensated sums; -march=native would not run on other machines."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
-    assert "-ffp-contract=off" in build and "EIGEN_DONT_VECTORIZE" in build
+    for setting in ("-ffp-contract=off", "-fno-tree-vectorize", "EIGEN_DONT_VECTORIZE"):
+        assert setting in build
     settings = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     for text in (build, settings, *(path.read_text(encoding="utf-8") for path in SOURCES)):
         for flag in ("-ffast-math", "-Ofast", "-funsafe-math", "-march=native", "fast_math"):
             assert flag not in text
 
 
+@pytest.fixture
+def fused(tmp_path: Path) -> Callable[..., list[str]]:
+    """Fused instructions in the assembly of a source, built as in CMakeLists.txt but with -mfma."""
+    if platform.machine() != "x86_64":
+        pytest.skip(f"-mfma is a flag of x86-64, not of {platform.machine()}")
+    build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    found = re.search(r"target_compile_options\(rolling_ellipse_core PUBLIC (.+)\n", build)
+    assert found
+    flags = ["-std=c++17", "-O3", "-mavx2", "-mfma", *found[1].split()]
+
+    def instructions(source: Path, *more: str) -> list[str]:
+        assembly = tmp_path / f"{source.stem}.s"
+        run(os.environ.get("CXX", "c++"), *flags, *more, "-S", source, "-o", assembly)
+        return re.findall(r"\bvfn?m(?:add|sub)\w+", assembly.read_text())
+
+    return instructions
+
+
+def test_nothing_is_fused_unless_written(fused: Callable[..., list[str]], tmp_path: Path) -> None:
+    product = tmp_path / "product.cpp"
+    product.write_text(COMPLEX_PRODUCTS)
+    assert fused(product) == []
+    written = tmp_path / "written.cpp"
+    written.write_text("double f(double x) { return __builtin_fma(x, x, x); }")
+    assert len(fused(written)) == 1
+
+
+def test_nothing_is_fused_in_vectors_where_they_are_wanted(
+    fused: Callable[..., list[str]],
+) -> None:
+    """Packed ones would be; of single numbers are those that are written."""
+    build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    found = re.search(
+        r"set_source_files_properties\(([^)]*)PROPERTIES COMPILE_OPTIONS (.+)\)", build
+    )
+    assert found
+    for name in found[1].split():
+        assert all(each.endswith("sd") for each in fused(ROOT / name, found[2])), name
+
+
 def test_every_source_is_built_and_included_once() -> None:
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    build = "".join(re.findall(r"(?:add_library|add_module)\([^)]*\)", build))
     for path in SOURCES:
         if path.suffix == ".cpp":
             name = path.relative_to(ROOT).as_posix()

@@ -142,7 +142,8 @@ def test_strobe_view_holds_every_body_with_equal_scales(trajectory: re.Trajector
         assert bottom < points[:, 1].min() and points[:, 1].max() < top
     window = shown.ax.get_window_extent()
     across, up = window.width / (right - left), window.height / (top - bottom)
-    assert across == pytest.approx(up, rel=1e-6)
+    # to a pixel of the whole width: the layout may move an edge by part of one afterwards
+    assert across == pytest.approx(up, rel=1 / window.width)
 
 
 def test_early_bodies_are_lighter_than_late_ones() -> None:

@@ -162,8 +162,9 @@ def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: boo
     if fold:
         eyes = np.array([flat])
     elif fastest == 0 or fastest > _SMALL * separatrix_speed(np.array([flat]), body)[0]:
-        angles = [motion.theta for motion in motions]
-        eyes = flat_angles(min(map(np.min, angles)), max(map(np.max, angles)), body)
+        left = min(float(np.min(motion.theta)) for motion in motions)
+        right = max(float(np.max(motion.theta)) for motion in motions)
+        eyes = flat_angles(left, right, body)
     else:
         ax.set_xlim(ax.get_xlim())
         ax.set_ylim(ax.get_ylim())

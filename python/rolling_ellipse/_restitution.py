@@ -35,7 +35,7 @@ class _Path:
         return np.where((self.rise[0] > 0) & (first <= self.stop), first, then)
 
     def tangential_impulse(self, normal: FloatArray) -> FloatArray:
-        slipping = np.minimum(normal, self.stop)
+        slipping: FloatArray = np.minimum(normal, self.stop)
         return self.pull[0] * slipping + self.pull[1] * (normal - slipping)
 
 

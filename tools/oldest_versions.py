@@ -1,0 +1,71 @@
+"""Run the suite with exactly the oldest versions that pyproject.toml declares.
+
+    python3.11 tools/oldest_versions.py FOLDER [argument of pytest ...]
+
+makes a virtual environment in FOLDER, which must not exist, builds the package there with the
+oldest build requirements and runs pytest. With --list it only prints the versions.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+import tomllib
+import venv
+from itertools import chain
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT = SETTINGS["project"]
+
+# What old versions say of newer ones beside them is no fault of the package.
+NO_DEPRECATIONS = ("-Wignore::DeprecationWarning", "-Wignore::PendingDeprecationWarning")
+
+
+def oldest(requirement: str) -> str:
+    """The requirement met by its oldest version only: name==version."""
+    found = re.fullmatch(r"([\w-]+)(?:>=|==)([\w.]+)(?:,.*)?", requirement)
+    if found is None:
+        sys.exit(f"every requirement must state its oldest version, got {requirement!r}")
+    return f"{found[1]}=={found[2]}"
+
+
+def oldest_versions() -> list[str]:
+    """Of all that is needed to build, run and test the package."""
+    extras = PROJECT["optional-dependencies"].values()
+    groups = [SETTINGS["build-system"]["requires"], PROJECT["dependencies"], *extras]
+    own = f"{PROJECT['name']}["  # other extras, which are among them
+    return [oldest(needed) for needed in chain(*groups) if not needed.startswith(own)]
+
+
+def require_oldest_python() -> None:
+    declared = PROJECT["requires-python"].removeprefix(">=")
+    running = f"{sys.version_info.major}.{sys.version_info.minor}"
+    if running != declared:
+        sys.exit(f"this must be run by the oldest Python declared, {declared}, got {running}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(usage="%(prog)s [--list] FOLDER [argument of pytest ...]")
+    parser.add_argument("folder", nargs="?", type=Path)
+    parser.add_argument("--list", action="store_true")
+    options, arguments = parser.parse_known_args()
+    versions = oldest_versions()
+    if options.list:
+        print("\n".join(versions))
+        return
+    if options.folder is None or options.folder.exists():
+        parser.error(f"FOLDER must be a new one, got {options.folder}")
+    require_oldest_python()
+    venv.create(options.folder, with_pip=True)
+    python = options.folder.absolute() / "bin" / "python"
+    install = (python, "-m", "pip", "install", "--quiet")
+    subprocess.run([*install, *versions, "cmake", "ninja"], check=True)
+    subprocess.run([*install, "--no-build-isolation", "--no-deps", ROOT], check=True)
+    tests = subprocess.run([python, "-m", "pytest", *NO_DEPRECATIONS, *arguments], cwd=ROOT)
+    sys.exit(tests.returncode)
+
+
+if __name__ == "__main__":
+    main()
