@@ -578,6 +578,7 @@ BAD = [
     ({"method": "dop853", "step": math.nan}, "step must be a positive finite time.*got nan"),
     ({"method": "gauss", "step": math.inf}, "step must be a positive finite time.*got inf"),
     ({"method": "radau", "step": 2.5}, r"step must be at most the time simulated, 2.0 .*got 2.5"),
+    ({"method": "rk4", "step": 1e-300}, r"step must be at least 2.2\d+e-15 .*got 1e-300"),
     ({"method": "exact", "step": 0.1}, "step must be None for method 'exact'.*got 0.1"),
     ({"method": "auto", "step": 0.1}, "step must be None for method 'auto'.*got 0.1"),
     ({"method": "dop853", "rtol": -1e-3}, "rtol must be.*at least 0, got -0.001"),

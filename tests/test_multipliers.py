@@ -510,6 +510,7 @@ def test_max_steps_leaves_what_there_is() -> None:
         ({"baumgarte": (-1.0, 1.0)}, r"^baumgarte must be two finite gains .*, got -1"),
         ({"baumgarte": (1.0, math.nan)}, r"^baumgarte must be two finite gains .*, got nan"),
         ({"baumgarte": (math.inf, 1.0)}, r"^baumgarte must be two finite gains .*, got inf"),
+        ({"baumgarte": (1.0, 1e308)}, r"^baumgarte must be two .* at most 1e50 .*, got 1e\+308"),
         ({"baumgarte": 3.0}, r"^baumgarte must be two numbers, got 3\.0"),
         ({"baumgarte": (1.0,)}, r"^baumgarte must be two numbers, got \(1\.0,\)"),
         ({"baumgarte": (1.0, 2.0, 3.0)}, r"^baumgarte must be two numbers, got"),
