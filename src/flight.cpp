@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "half_turns.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
@@ -21,7 +23,9 @@ double bisected(const Function& f, double low, double high) {
 class Gap {
   public:
     explicit Gap(const Flight& flight)
-        : flight_(flight), h0_(geometry(flight.axes, flight.start.theta).h) {}
+        : flight_(flight),
+          theta0_(resolved(flight.start.theta)),
+          h0_(geometry(flight.axes, flight.start.theta).h) {}
 
     double height(double t) const {
         const State& s = flight_.start;
@@ -35,7 +39,7 @@ class Gap {
         const auto [a, b] = flight_.axes;
         const double turned = s.omega * t;
         const double rise =
-            (a - b) * (a + b) * std::sin(2 * s.theta + turned) * std::sin(turned) / (at(t).h + h0_);
+            (a - b) * (a + b) * std::sin(2 * theta0_ + turned) * std::sin(turned) / (at(t).h + h0_);
         return (s.z - h0_) + (t * (s.z_dot - 0.5 * flight_.weight * t) - rise);
     }
 
@@ -55,10 +59,11 @@ class Gap {
 
   private:
     Geometry at(double t) const {
-        return geometry(flight_.axes, flight_.start.theta + flight_.start.omega * t);
+        return geometry(flight_.axes, theta0_ + flight_.start.omega * t);
     }
 
     const Flight& flight_;
+    double theta0_;
     double h0_;
 };
 

@@ -116,6 +116,10 @@ void validate(const Scene& scene) {
     if (!(scene.inertia > 0 && std::isfinite(scene.inertia))) {
         refuse("inertia", "a positive finite moment of inertia [kg m^2]", scene.inertia);
     }
+    const double disc = scene.mass * square(std::max(scene.a, scene.b));
+    if (!(scene.inertia / disc <= inertia_limit && scene.inertia / disc * inertia_limit >= 1)) {
+        refuse("inertia", "between 1e-30 and 1e30 times mass max(a, b)^2", scene.inertia);
+    }
     validate(scene.body());
     if (!(std::abs(scene.slope) < half_pi)) {
         refuse("slope", "an angle [rad] strictly between -pi/2 and pi/2", scene.slope);

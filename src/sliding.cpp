@@ -30,7 +30,8 @@ SlidingEquation::SlidingEquation(const Scene& scene, double side)
 
 ContactForce SlidingEquation::force(const Geometry& at, double omega) const {
     const auto [c, b] = contact(at, omega);
-    return {mass_ * normal_share_ * c / b, mass_ * friction_share_ * c / b};
+    const double force = mass_ * (c / b);
+    return {normal_share_ * force, friction_share_ * force};
 }
 
 // The impulse of N changes omega and slip in a fixed ratio, physics (54).

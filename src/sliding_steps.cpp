@@ -11,9 +11,6 @@ namespace {
 
 using Integrator = ExplicitMethod<DormandPrince853, SlidingEquation>;
 
-// Angles up to which quarter turns are taken off without loss, as a double-double of pi has them.
-constexpr double most_reduced = 1e15;
-
 // Sliding by the clock that slows down near B = 0.
 struct SlowedSliding {
     static constexpr int size = 5;
@@ -69,8 +66,7 @@ Slowed slide_slowly(SteppedSliding& motion, const Tolerance& tolerance, long max
 SteppedSliding sliding_from(const Scene& scene, const State& start, double side) {
     const Axes axes{scene.a, scene.b};
     const double slip = slip_velocity(start, geometry(axes, start.theta));
-    const double turn =
-        std::abs(start.theta) > most_reduced ? within_a_turn(start.theta) : start.theta;
+    const double turn = resolved(start.theta);
     const double quarters = std::nearbyint(turn / half_pi);
     const DoubleDouble rest = DoubleDouble{turn, 0.0} - half_pi_exact * quarters;
     Scene seen = scene;

@@ -175,3 +175,18 @@ def test_small_hops_of_a_turning_circle(omega: float) -> None:
     landing = math.sqrt(2 * 0.5 / 9.81)
     # 28 impacts and the sum of the others, each time right to a few ulp
     assert events[-1].t == pytest.approx(landing * (1 + 2 * 0.6 / 0.4), rel=1e-14)
+
+
+def test_an_angle_that_a_double_does_not_resolve_ends_no_loop() -> None:
+    """Beyond 1e15 a turn is less than the angle's last digit; the body lands all the same."""
+    nearly_round = Scene(
+        0.9999999999999993, 1.0000000000000002, theta=2.4258586478366313,
+        omega=3.5689176141628386e41, friction=1.0, z=1.000000003630839,
+    )  # fmt: skip
+    thin = Scene(
+        1000.0, 1.0, theta=20571.672332613358, omega=2.4876236233651422e48, friction=1.63,
+        inertia=250000.0, z=11032.85248895422,
+    )  # fmt: skip
+    for scene, end in ((nearly_round, 2.76), (thin, 58.0)):
+        motion = simulate(scene, end, model="contact", max_events=50, raise_on_failure=False)
+        assert motion.events and np.all(np.isfinite(motion.x))

@@ -514,13 +514,15 @@ def on_its_way_up(event: Event) -> bool:
 @pytest.mark.parametrize("friction", [0.25, 0.3, 0.45, 0.505])
 def test_jams_between_speeds_of_leaving(friction: float) -> None:
     """A body with its mass near the centre, above Painleve's friction: what the numbers say of
-    each speed is what the contact model does, also right beside the ends of the ranges."""
+    each speed is what the contact model does, also beside the ends of the ranges. Not closer than
+    1e-4: slides that run into the point at which c and B vanish together tell a jam from leaving
+    by their last digits."""
     gyration2 = 0.0435
     found = thresholds(2.0, 1.0, gravity=GRAVITY, gyration2=gyration2, friction=friction)
     assert friction > found.painleve_friction and found.lift_off_speed is not None
     edges = [found.lift_off_speed, *(edge for jams in found.jam_speeds for edge in jams)]
     assert len(found.jam_speeds) == 1 and max(edges) < math.inf
-    speeds = [edge * share for edge in edges for share in (0.97, 1 - 1e-6, 1 + 1e-6, 1.01, 1.03)]
+    speeds = [edge * share for edge in edges for share in (0.97, 1 - 1e-4, 1 + 1e-4, 1.01, 1.03)]
     for speed in speeds:
         scene = Scene(2.0, 1.0, gravity=GRAVITY, inertia=gyration2, friction=friction, omega=speed)
         motion = simulate(scene, 3.0, model="contact", max_events=8, raise_on_failure=False)

@@ -192,7 +192,11 @@ def file_name(name: str, value: Any) -> str:
     found = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
     if not isinstance(found, str):
         raise TypeError(f"{name} must be a path, a string or a PathLike, got {shown(value)}")
-    if not found or "\0" in found:
+    try:
+        named = bool(os.fsencode(found)) and "\0" not in found
+    except UnicodeEncodeError:  # a lone surrogate
+        named = False
+    if not named:
         raise ValueError(f"{name} must name a file, got {found!r}")
     return found
 

@@ -70,11 +70,13 @@ def collide(
         "omega": omega,
         "a": a,
         "b": b,
-        "gyration2": uniform_disc(a, b) if gyration2 is None else gyration2,
+        "gyration2": 1.0 if gyration2 is None else gyration2,
         "friction": friction,
         "restitution": restitution,
     }
     shape, columns = broadcast(**arguments)
+    if gyration2 is None:
+        columns[6] = uniform_disc(columns[4], columns[5])
     # run for every law: it refuses by name what is out of range
     after = _core.collide_arrays(math.prod(shape), columns)
     if law != "stronge":
@@ -109,8 +111,8 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     for name, values in zip(arguments, (x_dot, z_dot, omega), strict=False):
         require(name, "finite", values, np.isfinite(values))
     require("gyration2", "a positive finite area [m^2]", k2, (k2 > 0) & np.isfinite(k2))
-    spin = np.sqrt(k2) * omega
-    return _shaped(np.hypot(np.hypot(x_dot, z_dot), spin), shape)
+    with np.errstate(over="ignore"):  # infinite, where it is beyond the doubles
+        return _shaped(np.hypot(np.hypot(x_dot, z_dot), np.sqrt(k2) * omega), shape)
 
 
 def _shaped(values: FloatArray, shape: tuple[int, ...]) -> Any:

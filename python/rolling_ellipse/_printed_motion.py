@@ -83,6 +83,8 @@ class PrintedMotion:
 
     def __repr__(self) -> str:
         rows_ = ", ".join(self.printed) or "none"
+        if self.t.size == 0:
+            return f"<PrintedMotion: no samples, as printed: {rows_}, {self.message}>"
         return (
             f"<PrintedMotion: {self.t.size} samples, t = {self.t[0]:g} ... {self.t[-1]:g} s, "
             f"as printed: {rows_}, largest |gap| {np.max(np.abs(self.gap)):.3g} m>"
@@ -112,6 +114,9 @@ def accelerations(
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
+        if q.ndim > 1:  # one of them is singular: the others have a solution
+            found = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
+            return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
         solution = np.full_like(right, np.nan)
     return solution[..., :COORDINATES], solution[..., COORDINATES:]
 
@@ -129,8 +134,14 @@ def follow(
         over="ignore", invalid="ignore", divide="ignore"
     ):  # it stops there, and says so
         samples, message = integrate(slope, np.concatenate([start.q, start.q_dot]), t, steps)
-    samples = samples.reshape(-1, 2 * COORDINATES)
-    q, q_dot = samples[:, :COORDINATES], samples[:, COORDINATES:]
-    q_ddot, multipliers = accelerations(q, q_dot, body, printed)
+        samples = samples.reshape(-1, 2 * COORDINATES)
+        q, q_dot = samples[:, :COORDINATES], samples[:, COORDINATES:]
+        q_ddot, multipliers = accelerations(q, q_dot, body, printed)
+    lost = ~np.isfinite(np.concatenate([q_ddot, multipliers], axis=1)).all(axis=1)
+    if lost.any():
+        end = int(np.argmax(lost))
+        message = f"the equations have no finite solution at {t[end]:.6g} s"
+        samples, q, q_dot = samples[:end], q[:end], q_dot[:end]
+        q_ddot, multipliers = q_ddot[:end], multipliers[:end]
     reached = t[: len(samples)].copy()  # the caller's own times may change
     return PrintedMotion(reached, q, q_dot, q_ddot, multipliers, body, printed, start, message)

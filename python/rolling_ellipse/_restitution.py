@@ -46,7 +46,7 @@ def _impulse_path(
     mu = np.minimum(mu, _PRACTICALLY_INFINITE)
     slipping = -mu * np.sign(v)
     v_gain = gtn + slipping * gtt
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         stop = np.where(v * v_gain < 0, -v / v_gain, np.where(v == 0, 0.0, np.inf))
     sticks = np.abs(gtn) <= mu * gtt
     reverse = -mu * np.sign(gtn)

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from ._atomic import replacing
 from ._camera import cameras
-from ._check import choice, file_name, flag, number, positive, shown, whole_within
+from ._check import choice, file_name, flag, number, positive, shown, whole, whole_within
 from ._drawing import INK
 from ._labels import labels_of, motions_of
 from ._movies import gif_delay, movie_writer, progress_bar, told
@@ -210,6 +210,8 @@ class RollingAnimation(FuncAnimation):
 
     def draw(self, i: int) -> list[Artist]:
         """Put every artist where frame i has it, and return the moving ones."""
+        if not 0 <= whole("i", i) < self.t.size:
+            raise ValueError(f"i must be a frame, from 0 to {self.t.size - 1}, got {shown(i)}")
         self.clock.set_text(self._clock(float(self.t[i])))
         return [self.clock, *(artist for strip in self.strips for artist in strip.draw(i))]
 

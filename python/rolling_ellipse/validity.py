@@ -67,7 +67,8 @@ class Thresholds:
         Ranges of speed, ascending, in which the slide jams before it would leave the ground or
         pass the tip; inf ends one that goes on for ever. Empty up to `painleve_friction` and for
         infinite friction; above, they are found by a scan in steps of 2 % up to 50 times the slip
-        speed (narrower ranges may be missed) and their ends refined to the last bit.
+        speed (narrower ranges may be missed). Their ends are refined by bisection; slides that run
+        into the point at which pressure and response vanish together know them to some 1e-5.
     friction_to_roll_over : float
         Largest |F/N| of rolling at the roll-over speed (infinite where N vanishes before).
     painleve_friction, painleve_angle : float

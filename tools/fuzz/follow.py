@@ -136,7 +136,8 @@ def replaced(draw: Draw, _: Body) -> Iterator[Line]:
     """A trajectory with fields that do not go together: to be refused, or to be harmless."""
     values = draw.pick(
         "np.zeros(0)", "np.zeros(1)", "np.zeros(3)", "np.zeros((3, 2))", "np.zeros(5000)", "None",
-        "trajectory.t[:-1]", "trajectory.t.astype(np.float32)", "np.full(trajectory.t.shape, nan)",
+        "trajectory.t[:-1]", "np.zeros(trajectory.t.shape, np.float32)",
+        "np.full(trajectory.t.shape, nan)",
         "trajectory.t.astype(complex)", "[1.0]", "'x'", "np.array(1.0)", "[None]",
     )  # fmt: skip
     field = draw.pick("t", "theta", "omega", "x", "theta", "omega", "x", "contact", "coordinates")

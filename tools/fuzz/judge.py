@@ -159,6 +159,8 @@ class Case:
         said = f"{type(error).__name__}: {error}"[:300].encode("ascii", "replace").decode()
         if isinstance(error, ValueError | TypeError):
             names = self._argument_names(line)
+            if line.forgery:
+                names |= {"q", "q_dot"}  # what is made of arrays that somebody has put in
             if not any(map(str(error).__contains__, _TOGETHER)) and not _names_one(error, names):
                 yield self._finding(line, "unnamed", said)
         elif not isinstance(error, OSError | MemoryError | ImportError):
