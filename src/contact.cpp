@@ -256,8 +256,8 @@ class ContactRun {
 
     double rest_speed() const {
         constexpr double small = 1e-6;
-        constexpr double large =
-            1e-2;  // in the sums of bounces c and the gap's slope stay the same
+        // Where bounces are summed, c and h' stay what they are: an error of this size.
+        constexpr double large = 1e-2;
         const double unit = std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b));
         if (!settings_.rest_speed) return small * unit;
         const double speed = *settings_.rest_speed / units_.speed();
