@@ -78,10 +78,11 @@ def _energy(found: rl.Trajectory) -> Broken:
 def mode_at_start(values: dict[str, Any]) -> Broken:
     """Of the lines that ask for `initial_state` and for the first sample."""
     state, trajectory = values["state"], values["trajectory"]
-    if abs(state.theta) > 1 / np.finfo(float).eps:
-        return  # an angle that does not know of its last quarter turn
-    if trajectory.t.size and state.mode != trajectory.mode[0]:
-        mode = rl.Mode(trajectory.mode[0]).name
+    modes = [rl.Mode(code) for code in trajectory.mode[:1]]
+    if trajectory.events and trajectory.events[0].t == 0:  # what it does lasts no time
+        modes = [trajectory.events[0].state_before.mode]
+    if modes and state.mode is not modes[0]:
+        mode = modes[0].name
         yield "mode", f"initial_state says {state.mode.name}, the first sample {mode}"
 
 
