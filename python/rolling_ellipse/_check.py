@@ -56,6 +56,8 @@ def optional_number(name: str, value: Any) -> float | None:
 
 def whole(name: str, value: Any) -> int:
     """Return ``value`` as an int, or raise TypeError naming the argument."""
+    if type(value) is int:  # nearly always
+        return value
     if not isinstance(value, (bool, np.bool_)) and not np.ma.is_masked(value):
         with suppress(TypeError):
             return index(value)

@@ -55,6 +55,8 @@ def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
 
 def _untouchable(values: _Values) -> _Values:
     """Return an array that stays as it is: a copy if anybody may write to this one."""
+    if values.base is None and not values.flags.writeable:
+        return values  # as the core's samples are
     layer: Any = values
     while isinstance(layer, np.ndarray) and not layer.flags.writeable:
         layer = layer.base

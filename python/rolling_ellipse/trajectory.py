@@ -204,7 +204,8 @@ class Trajectory(FieldsOnly):
         """
         span = float(times[-1])
         solution = solve(scene, settings, span, start)
-        ends = solution.followed_until if solution.stats["segments"] else -math.inf
+        stats = solution.stats
+        ends = solution.followed_until if stats["segments"] else -math.inf
         times = times[times <= ends]
         status = Status[solution.status.name]
         trajectory = cls(
@@ -220,7 +221,7 @@ class Trajectory(FieldsOnly):
             span=span,
             settings=settings,
             start=start,
-            stats=solution.stats,
+            stats=stats,
         )
         return trajectory._solved_by(solution)
 
