@@ -294,3 +294,13 @@ def test_a_step_that_cannot_change_the_time(method: str) -> None:
         Q, Q_DOT, 1e-12, **BODY, equations="printed", consistent="project", step=1e-14
     )
     assert motion.message == "" and motion.t[-1] == 1e-12
+
+
+@pytest.mark.parametrize("draw", [re.plot_strobe, re.plot_paths, re.plot, re.animate])
+def test_a_body_too_far_away_to_be_seen_is_refused(draw: Any) -> None:
+    """At 7.8e23 m doubles are 1.3e8 m apart; at 1e12 m a tenth of a millimetre, enough to draw."""
+    with pytest.raises(ValueError, match=r"^trajectory must stay where .*, got a centre 7\.8"):
+        draw(re.simulate(re.Scene(2.0, 1.0, theta=0.3, x=7.847959263208443e23), 1.0))
+    assert not plt.get_fignums()
+    draw(re.simulate(re.Scene(2.0, 1.0, theta=0.3, x=1e12), 1.0))
+    plt.close("all")

@@ -72,8 +72,20 @@ def view(path: Trajectory) -> tuple[float, float, float, float]:
 
 
 def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
-    """The same for the centres x, z [m] of a body."""
+    """The same for the centres x, z [m] of a body.
+
+    Raises
+    ------
+    ValueError
+        If they are so far away that a double does not know a thousandth of the body there.
+    """
     size = max(scene.a, scene.b)
+    farthest = max(float(np.max(np.abs(x))), float(np.max(np.abs(z))))
+    if not size > 1e3 * np.spacing(farthest):
+        raise ValueError(
+            "trajectory must stay where a double still knows a thousandth of its body of "
+            f"{size:.6g} m, got a centre {farthest:.6g} m away"
+        )
     top_z = z + np.minimum(z, size)  # on the ground G is midway up
     corners = [
         tilted(scene).transform(np.column_stack([x + dx, height]))
