@@ -162,6 +162,15 @@ def finite(name: str, value: Any) -> FloatArray:
     return found
 
 
+def common_shape(arrays: dict[str, FloatArray], axes: slice) -> tuple[int, ...]:
+    """Return the shape to which arrays broadcast along some of their axes, or raise ValueError."""
+    try:
+        return np.broadcast_shapes(*(values.shape[axes] for values in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {values.shape}" for name, values in arrays.items())
+        raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
+
+
 def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
     """Return the common shape and, as 1-D arrays, what the core wants: all elements, or one.
 
@@ -171,11 +180,7 @@ def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
         If the shapes do not broadcast; it names the arguments and their shapes.
     """
     arrays = {name: array(name, value) for name, value in arguments.items()}
-    try:
-        shape = np.broadcast_shapes(*(values.shape for values in arrays.values()))
-    except ValueError:
-        shapes = ", ".join(f"{name} {values.shape}" for name, values in arrays.items())
-        raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
+    shape = common_shape(arrays, slice(None))
     return shape, [
         (values if values.size == 1 else np.broadcast_to(values, shape)).ravel()
         for values in arrays.values()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, array, broadcast, finite, number, require
+from ._check import FloatArray, array, broadcast, common_shape, finite, number, require
 
 COORDINATES = 5
 
@@ -48,12 +48,7 @@ def _coordinates(name: str, value: Any) -> FloatArray:
 
 def require_together(**arguments: Any) -> None:
     """Raise ValueError if axes before the last do not broadcast."""
-    shapes = {name: array(name, value).shape for name, value in arguments.items()}
-    try:
-        np.broadcast_shapes(*(shape[:-1] for shape in shapes.values()))
-    except ValueError:
-        got = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
-        raise ValueError(f"arguments must broadcast together, got shapes {got}") from None
+    common_shape({name: array(name, value) for name, value in arguments.items()}, slice(-1))
 
 
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
