@@ -11,7 +11,7 @@
 namespace rolling_ellipse {
 
 // Of arcs that have to be integrated; what lies between their steps is right to about 1e-13.
-inline constexpr Tolerance finest = {2e-15, 2e-17};
+inline constexpr Tolerance finest = {1e-15, 1e-17};
 
 // Of B, physics (50): below it the slower clock is the better one, physics (54).
 inline constexpr double small_response = 1e-2;

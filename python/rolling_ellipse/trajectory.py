@@ -60,6 +60,10 @@ class ValidityWarning(UserWarning):
     """Part of the motion is not what a body on the ground would do."""
 
 
+# Fields of which each model needs its own.
+_UNUSED = {"coordinates": None, "start": None, "contact": None, "kept_events": None}
+
+
 def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Values]:
     """A read-only array, computed when first asked for."""
 
@@ -208,8 +212,7 @@ class Trajectory(FieldsOnly):
         ends = solution.followed_until if stats["segments"] else -math.inf
         times = times[times <= ends]
         status = Status[solution.status.name]
-        trajectory = cls(
-            **sampled(solution, times),
+        known = dict(
             scene=scene,
             model=solution.model.name.lower(),
             method=solution.method.name.lower(),
@@ -220,15 +223,20 @@ class Trajectory(FieldsOnly):
             t_end=solution.followed_until,
             span=span,
             settings=settings,
-            start=start,
+            start=start and coordinate_pair("start", start, (COORDINATES,)),
             stats=stats,
         )
-        return trajectory._solved_by(solution)
+        return cls._sampled(solution, times, known)
 
-    def _solved_by(self, solution: _core.Solution) -> Trajectory:
-        """Keep a solution where `_solution` would, so that it is not computed again."""
-        self.__dict__["_solution"] = solution
-        return self
+    @classmethod
+    def _sampled(
+        cls, solution: _core.Solution, times: FloatArray, known: dict[str, Any]
+    ) -> Trajectory:
+        """Make one of the core's own arrays, which need no check, and keep the solution."""
+        made = object.__new__(cls)
+        found = sampled(solution, times)
+        made.__dict__.update(_UNUSED | known | found, _solution=solution)
+        return made
 
     @cached_property
     def _solution(self) -> _core.Solution:
@@ -356,7 +364,7 @@ class Trajectory(FieldsOnly):
         outside = times[~((times >= 0) & (times <= self.t_end))]
         if outside.size:
             raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
-        return replace(self, **sampled(self._solution, times))._solved_by(self._solution)
+        return self._sampled(self._solution, times, self.__getstate__())
 
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that goes on from time t [s]; give it an impulse with `replace`."""
