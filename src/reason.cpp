@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "ellipse.hpp"
+#include "geometry/ellipse.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "certificate.hpp"
-#include "contact.hpp"
-#include "contact_watch.hpp"
+#include "contact/contact.hpp"
+#include "proof/certificate.hpp"
+#include "proof/watch.hpp"
 
 namespace rolling_ellipse {
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "contact_watch.hpp"
+#include "proof/watch.hpp"
 #include "reason.hpp"
 
 namespace rolling_ellipse {

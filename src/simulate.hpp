@@ -1,8 +1,8 @@
 // The table of contents: scene -> initial state -> certificate -> model -> solution.
 #pragma once
 
-#include "certificate.hpp"
-#include "impact.hpp"
+#include "proof/certificate.hpp"
+#include "scene/impact.hpp"
 #include "solution.hpp"
 
 namespace rolling_ellipse {

@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "contact.hpp"
-#include "multiplier_steps.hpp"
+#include "contact/contact.hpp"
+#include "multipliers/steps.hpp"
 
 namespace rolling_ellipse {
 

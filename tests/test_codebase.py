@@ -20,12 +20,17 @@ import rolling_ellipse
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = sorted((ROOT / "src").rglob("*.[ch]pp"))
 GENERATED = {
-    ROOT / "src" / "gauss_legendre.hpp": ROOT / "tools" / "make_gauss_legendre.py",
+    ROOT / "src" / "numerics" / "gauss_legendre.hpp": ROOT / "tools" / "make_gauss_legendre.py",
     ROOT / "src" / "integrator" / "collocation.hpp": ROOT / "tools" / "make_collocation.py",
 }
 PYTHON_FOLDERS = ("python", "tests", "tools", "docs")
 BINDINGS = ROOT / "src" / "bindings"
 CORE = [path for path in SOURCES if path.parent != BINDINGS]
+# The order of the data: a folder includes only itself and those before it; "" is src itself.
+FOLDERS = (
+    "numerics", "integrator", "geometry", "scene", "rolling", "proof", "multipliers", "contact",
+    "outcome", "", "bindings",
+)  # fmt: skip
 COMPLEX_PRODUCTS = """
 void one(const double* x, const double* y, double* z) {
     const double re = x[0] * y[0] - x[1] * y[1];
@@ -153,6 +158,22 @@ def test_only_the_bindings_know_python() -> None:
         assert "PyObject" not in path.read_text(encoding="utf-8")
 
 
+def folder_of(name: str) -> int:
+    """Place of a source in the order of the folders, by its path from src."""
+    return FOLDERS.index(name.rpartition("/")[0])
+
+
+def test_each_folder_includes_only_those_before_it() -> None:
+    between = 0
+    for path in SOURCES:
+        name = path.relative_to(ROOT / "src").as_posix()
+        for other in re.findall(r'#include "(.+)"', path.read_text(encoding="utf-8")):
+            assert (ROOT / "src" / other).is_file(), f"{name}: {other} is not a path from src"
+            assert folder_of(other) <= folder_of(name), f"{name} includes {other}"
+            between += folder_of(other) < folder_of(name)
+    assert between > 50  # fewer: the includes are no longer recognised
+
+
 def test_no_arithmetic_that_depends_on_the_mood_of_the_compiler() -> None:
     """-ffast-math breaks the compensated sums; -march=native would not run on other machines."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
@@ -172,7 +193,7 @@ def fused(tmp_path: Path) -> Callable[..., list[str]]:
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     found = re.search(r"target_compile_options\(rolling_ellipse_core PUBLIC (.+)\n", build)
     assert found
-    flags = ["-std=c++17", "-O3", "-mavx2", "-mfma", *found[1].split()]
+    flags = ["-std=c++17", "-O3", "-mavx2", "-mfma", "-Isrc", *found[1].split()]
 
     def instructions(source: Path, *more: str) -> list[str]:
         assembly = tmp_path / f"{source.stem}.s"

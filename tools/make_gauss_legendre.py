@@ -1,9 +1,9 @@
-"""Write src/gauss_legendre.hpp: Gauss-Legendre nodes and weights, correctly rounded from 40 digits.
+"""Write src/numerics/gauss_legendre.hpp: Gauss-Legendre nodes and weights, rounded from 40 digits.
 
 Rules made in double precision (numpy.polynomial.legendre.leggauss) carry weight errors of some
 1e-15, which is more than everything else in the quadrature; hence this table.
 
-Run:  python tools/make_gauss_legendre.py > src/gauss_legendre.hpp    (needs mpmath)
+Run:  python tools/make_gauss_legendre.py > src/numerics/gauss_legendre.hpp    (needs mpmath)
 """
 
 from mpmath import cos, mp, mpf, pi

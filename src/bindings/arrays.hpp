@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "flow_table.hpp"
-#include "multipliers.hpp"
+#include "multipliers/equations.hpp"
+#include "rolling/flow_table.hpp"
 
 namespace rolling_ellipse::bindings {
 

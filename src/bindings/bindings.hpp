@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "arrays.hpp"
+#include "bindings/arrays.hpp"
 
 namespace rolling_ellipse::bindings {
 

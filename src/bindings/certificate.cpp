@@ -1,7 +1,7 @@
-#include "bindings.hpp"
-#include "classify.hpp"
+#include "bindings/bindings.hpp"
+#include "outcome/classify.hpp"
+#include "outcome/thresholds.hpp"
 #include "simulate.hpp"
-#include "thresholds.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "bindings.hpp"
-#include "rolling.hpp"
+#include "bindings/bindings.hpp"
+#include "rolling/equation.hpp"
 #include "solution.hpp"
 
 namespace rolling_ellipse::bindings {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bindings.hpp"
+#include "bindings/bindings.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {

@@ -1,6 +1,6 @@
-#include "bindings.hpp"
-#include "constraints.hpp"
-#include "ellipse.hpp"
+#include "bindings/bindings.hpp"
+#include "geometry/constraints.hpp"
+#include "geometry/ellipse.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {

@@ -1,4 +1,4 @@
-#include "bindings.hpp"
+#include "bindings/bindings.hpp"
 
 PYBIND11_MODULE(_core, m) {
     using namespace rolling_ellipse::bindings;

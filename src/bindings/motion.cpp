@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "bindings.hpp"
+#include "bindings/bindings.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {

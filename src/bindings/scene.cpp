@@ -1,12 +1,12 @@
-#include "bindings.hpp"
-#include "continuation.hpp"
-#include "impact.hpp"
+#include "bindings/bindings.hpp"
+#include "contact/continuation.hpp"
+#include "scene/impact.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {
 
 // theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution, each with n elements, or one:
-// x_dot, z_dot, omega just after the collision of a touching body, by the law of impact.hpp.
+// x_dot, z_dot, omega just after the collision of a touching body, by the law of scene/impact.hpp.
 py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
     std::vector<Array> out = empty_arrays(3, n);
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};

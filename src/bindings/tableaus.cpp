@@ -1,4 +1,4 @@
-#include "bindings.hpp"
+#include "bindings/bindings.hpp"
 #include "integrator/collocation.hpp"
 #include "integrator/explicit_tableaus.hpp"
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "../numbers.hpp"
+#include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
 

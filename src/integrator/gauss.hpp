@@ -6,9 +6,9 @@
 // to h, and compensated summation.
 #pragma once
 
-#include "collocation.hpp"
-#include "partial_step.hpp"
-#include "stagnation.hpp"
+#include "integrator/collocation.hpp"
+#include "integrator/partial_step.hpp"
+#include "integrator/stagnation.hpp"
 
 namespace rolling_ellipse {
 

@@ -2,7 +2,7 @@
 // step so large that its parts cannot be solved has no more than its start.
 #pragma once
 
-#include "common.hpp"
+#include "integrator/system.hpp"
 
 namespace rolling_ellipse {
 

@@ -7,9 +7,9 @@
 #include <Eigen/LU>
 #include <complex>
 
-#include "collocation.hpp"
-#include "partial_step.hpp"
-#include "stagnation.hpp"
+#include "integrator/collocation.hpp"
+#include "integrator/partial_step.hpp"
+#include "integrator/stagnation.hpp"
 
 namespace rolling_ellipse {
 

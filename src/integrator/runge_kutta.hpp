@@ -6,8 +6,8 @@
 #include <array>
 #include <utility>
 
-#include "common.hpp"
-#include "explicit_tableaus.hpp"
+#include "integrator/explicit_tableaus.hpp"
+#include "integrator/system.hpp"
 
 namespace rolling_ellipse {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "common.hpp"
+#include "integrator/system.hpp"
 
 namespace rolling_ellipse {
 

@@ -1,0 +1,314 @@
+#include "contact/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "contact/continuation.hpp"
+#include "integrator/runge_kutta.hpp"
+#include "proof/certificate.hpp"
+#include "scene/impact.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// What an event is called that leads to a mode; sliding has two names.
+EventKind kind_of(Mode next, EventKind sliding) {
+    switch (next) {
+        case Mode::rest:
+            return EventKind::rest;
+        case Mode::rolling:
+            return EventKind::stick;
+        case Mode::flight:
+            return EventKind::lift_off;
+        case Mode::sliding:
+            return sliding;
+    }
+    return sliding;
+}
+
+class ContactRun {
+  public:
+    ContactRun(const Scene& scene, const State& start, const Settings& settings, double t_end,
+               const Checkpoint& checkpoint)
+        : units_(natural_units(scene)),
+          scene_(body_in_units(scene, units_)),
+          axes_{scene_.a, scene_.b},
+          settings_(settings),
+          t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
+          checkpoint_(checkpoint),
+          state_(in_units(start, units_)),
+          rest_speed_(rest_speed()),
+          motion_{units_, scene_, {}, {}} {}
+
+    ContactIntegration run() {
+        next_ = first_continuation(scene_, state_);
+        if (is_stuck()) note(EventKind::jam, state_);
+        while (!ending_) {
+            checkpoint_();
+            state_.mode = next_.mode;
+            if (is_stuck()) {
+                stop_stuck();
+            } else {
+                follow();
+            }
+        }
+        return {std::move(motion_), *ending_, t_ * units_.time, counts_};
+    }
+
+  private:
+    void follow() {
+        switch (next_.mode) {
+            case Mode::rest:
+                return rest();
+            case Mode::rolling:
+                return scene_.slope == 0 ? roll_exactly() : roll_by_steps();
+            case Mode::sliding:
+                return slide();
+            case Mode::flight:
+                return fly();
+        }
+    }
+
+    void rest() {
+        add_arc(t_end_, Resting{state_});
+        finish();
+    }
+
+    bool is_stuck() const { return next_.paradox != Painleve::determined; }
+
+    void stop_stuck() {
+        add_arc(t_, Jam{state_});
+        ending_ = next_.paradox == Painleve::no_motion ? ContactEnding::jammed
+                                                       : ContactEnding::undetermined;
+    }
+
+    void roll_exactly() {
+        const RollingFlow flow = rolling_flow(scene_.body(), state_.theta, state_.omega, state_.x);
+        const EndOfRolling end =
+            end_of_rolling(scene_.body(), scene_.friction, state_.theta, state_.omega);
+        const double lasts = end.validity == Validity::invalid ? time_of_end(flow, end) : infinity;
+        if (lasts == infinity) {
+            validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
+        }
+        if (lasts > 0) add_arc(std::min(t_ + lasts, t_end_), ExactRolling{axes_, flow});
+        if (t_ + lasts > t_end_) return finish();
+        const FlowSample last = sample(flow, lasts);
+        stop_rolling(lasts, last.theta, last.omega, last.x);
+    }
+
+    void roll_by_steps() {
+        const RollingDynamics dynamics(scene_);
+        const auto margins = [&](const Vector<2>& y) -> std::array<double, 1> {
+            const ContactForce force = dynamics.force(geometry(axes_, y[0]), y[1]);
+            if (std::isinf(scene_.friction)) return {force.normal};
+            return {scene_.friction * force.normal - std::abs(force.friction)};
+        };
+        SteppedRolling motion = rolling_from(scene_, state_, dop853());
+        ExplicitMethod<DormandPrince853, RollingEquation> integrator(motion.equation);
+        const Until until = integrate_until(integrator, motion.steps, tolerance(), steps_left(),
+                                            t_end_ - t_, margins, checkpoint_);
+        count(until, motion.steps);
+        const double lasts = until.time;
+        const double t0 = t_;
+        if (lasts > 0) add_arc(std::min(t0 + lasts, t_end_), motion);
+        if (ending_ || t0 + lasts > t_end_) return finish();
+        FlowSample last{};
+        sample(motion, &lasts, 1, &last);
+        stop_rolling(lasts, last.theta, last.omega, last.x);
+    }
+
+    void stop_rolling(double after, double theta, double omega, double x) {
+        const Geometry at = geometry(axes_, theta);
+        const State before = in_contact(at, theta, omega, x, 0.0, Mode::rolling);
+        t_ += after;
+        state_ = before;
+        const Continuation next = continuation(scene_, before, false);
+        go_on_with(next, kind_of(next.mode, EventKind::slip), before);
+    }
+
+    void slide() {
+        SteppedSliding motion = sliding_from(scene_, state_, next_.side);
+        const Until until =
+            integrate_sliding(motion, tolerance(), steps_left(), t_end_ - t_, checkpoint_);
+        count(until, motion.steps);
+        const double t0 = t_;
+        add_arc(std::min(t0 + until.time, t_end_), motion);
+        if (ending_ || t0 + until.time > t_end_) return finish();
+        ContactSample last{};
+        sample(motion, &until.time, 1, &last);
+        t_ += until.time;
+        state_ = last.state;
+        end_slide(until.which, last.state);
+    }
+
+    void end_slide(int which, const State& before) {
+        if (which == jams) {
+            next_.paradox = Painleve::no_motion;
+            return note(EventKind::jam, before);
+        }
+        if (which == pressure_vanishes) {
+            return go_on_with({Mode::flight}, EventKind::lift_off, before);
+        }
+        const Geometry at = geometry(axes_, before.theta);
+        state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
+        const Continuation next = continuation(scene_, state_);
+        go_on_with(next, kind_of(next.mode, EventKind::reverse), before);
+    }
+
+    void fly() {
+        const Flight flight{axes_, scene_.gravity * std::cos(scene_.slope),
+                            scene_.gravity * std::sin(scene_.slope), state_};
+        const double lasts = touch_down(flight);
+        add_arc(std::min(t_ + lasts, t_end_), flight);
+        if (t_ + lasts > t_end_) return finish();
+        State before = state_at(flight, lasts);
+        before.z = geometry(axes_, before.theta).h;
+        t_ += lasts;
+        hit(before);
+    }
+
+    void hit(const State& before) {
+        const Geometry at = geometry(axes_, before.theta);
+        state_ = after_collision(scene_, before);
+        const double rebound = std::max(state_.z_dot - at.dh * state_.omega, 0.0);
+        const double c = SlidingEquation(scene_, 0.0).contact(at, state_.omega).c;
+        const double ratio = rebound / (at.dh * before.omega - before.z_dot);
+        if (rebound > 0 && (rebound > rest_speed_ || c <= 0 || !(ratio < most_settling))) {
+            return go_on_with({Mode::flight}, EventKind::impact, before);
+        }
+        if (rebound > 0) {
+            state_.mode = Mode::flight;
+            note(EventKind::impact, before);
+            return ending_ ? void() : settle(rebound, c);
+        }
+        go_on_with(continuation(scene_, state_), EventKind::impact, before);
+    }
+
+    // Infinitely many bounces that shrink by a ratio take a finite time, physics (57); so small
+    // ones do it in place, under the c of their beginning.
+    void settle(double rebound, double c) {
+        constexpr double nothing = 1e-12;
+        const Geometry at = geometry(axes_, state_.theta);
+        const double pull = scene_.gravity * std::sin(scene_.slope);
+        State moving = state_;
+        double lasts = 0.0;
+        double turned = 0.0;
+        double speed = rebound;
+        while (speed > nothing * rebound) {
+            const double hop = 2 * speed / c;
+            const double gained = (pull - at.dh * square(moving.omega)) * hop;  // slip in flight
+            lasts += hop;
+            turned += moving.omega * hop;
+            moving.x += (moving.x_dot + 0.5 * gained) * hop;
+            moving.x_dot += gained;
+            moving.z_dot = at.dh * moving.omega - speed;
+            moving = after_collision(scene_, moving);
+            const double next = moving.z_dot - at.dh * moving.omega;
+            if (!(next < most_settling * speed)) break;
+            speed = std::max(next, 0.0);
+        }
+        const double theta = state_.theta + turned;
+        const State settled = in_contact(geometry(axes_, theta), theta, noticeable(moving.omega),
+                                         moving.x, noticeable_slip(moving, at), Mode::flight);
+        add_arc(std::min(t_ + lasts, t_end_), Settling{axes_, lasts, state_, settled});
+        if (t_ + lasts > t_end_) return finish();
+        t_ += lasts;
+        state_ = settled;
+        const State before = state_;
+        const Continuation next = continuation(scene_, state_);
+        go_on_with(next, kind_of(next.mode, EventKind::slip), before);
+    }
+
+    void go_on_with(const Continuation& next, EventKind kind, const State& before) {
+        next_ = next;
+        state_.mode = next.mode;
+        note(kind, before);
+        if (is_stuck() && !ending_) note(EventKind::jam, state_);
+    }
+
+    void note(EventKind kind, const State& before) {
+        if (static_cast<long>(motion_.events.size()) == settings_.max_events) {
+            ending_ = ContactEnding::max_events;
+        } else {
+            motion_.events.push_back(
+                {t_ * units_.time, kind, in_si(before, units_), in_si(state_, units_)});
+        }
+    }
+
+    template <class Motion>
+    void add_arc(double until, Motion motion) {
+        motion_.arcs.push_back({next_.mode, t_, until, std::move(motion)});
+    }
+
+    void finish() {
+        t_ = t_end_;
+        if (!ending_) ending_ = ContactEnding::reached;
+    }
+
+    Settings dop853() const {
+        Settings settings = settings_;
+        settings.method = Method::dop853;
+        settings.step.reset();
+        return settings;
+    }
+
+    double rest_speed() const {
+        constexpr double small = 1e-6;
+        // Where bounces are summed, c and h' stay what they are: an error of this size.
+        constexpr double large = 1e-2;
+        const double unit = std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b));
+        if (!settings_.rest_speed) return small * unit;
+        const double speed = *settings_.rest_speed / units_.speed();
+        if (speed > large * unit) {
+            refuse("rest_speed",
+                   "at most " + text(large * unit * units_.speed()) +
+                       " [m/s], a hundredth of sqrt(g min(a, b))",
+                   *settings_.rest_speed);
+        }
+        return speed;
+    }
+
+    Tolerance tolerance() const {
+        return {std::min(settings_.rtol, finest.relative),
+                std::min(settings_.atol, finest.absolute)};
+    }
+
+    long steps_left() const { return settings_.max_steps - counts_.steps; }
+
+    template <int N>
+    void count(const Until& until, const Steps<N>& steps) {
+        counts_ += until.counts;
+        if (until.ending == Ending::max_steps) ending_ = ContactEnding::max_steps;
+        if (until.ending == Ending::step_too_small) ending_ = ContactEnding::step_too_small;
+        if (ending_) t_end_ = t_ + steps.knots.back().t;  // all there is
+    }
+
+    static constexpr double most_settling = 0.9999;  // the ratio of bounces that come to an end
+
+    // Times, states and arcs are in units, which the settings are not.
+    const Units units_;
+    const Scene scene_;
+    const Axes axes_;
+    const Settings& settings_;
+    double t_end_;
+    const Checkpoint& checkpoint_;
+    State state_;
+    const double rest_speed_;
+    Continuation next_{Mode::flight};
+    double t_ = 0.0;
+    ContactMotion motion_;
+    StepCounts counts_;
+    std::optional<ContactEnding> ending_;
+};
+
+}  // namespace
+
+ContactIntegration integrate_contact(const Scene& scene, const State& start,
+                                     const Settings& settings, double t_end,
+                                     const Checkpoint& checkpoint) {
+    return ContactRun(scene, start, settings, t_end, checkpoint).run();
+}
+
+}  // namespace rolling_ellipse

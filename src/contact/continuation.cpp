@@ -1,0 +1,73 @@
+#include "contact/continuation.hpp"
+
+#include <cmath>
+
+#include "contact/arcs.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+double side_of(double v) { return std::copysign(1.0, v); }
+
+// Does it stay where it is?
+bool rests(const Scene& scene, const State& state, const Geometry& at) {
+    const double incline = std::tan(scene.slope);
+    return state.omega == 0 && is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
+}
+
+// It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52).
+Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side) {
+    const auto [c, b] = SlidingEquation(scene, side).contact(at, omega);
+    if (c <= 0) return {Mode::flight};
+    return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
+}
+
+// The same of a body that slides already. Only there can a slide with N = c/B > 0, c < 0, be a
+// second motion beside flight: without slip, rolling's own N and F rule out that the slip then
+// starts to the side that this slide is for. A body may be put there, but no motion leads there: a
+// slide ends before, where c or B vanishes, and an impact goes on while B < 0 until the slip stops.
+Continuation sliding(const Scene& scene, const Geometry& at, double omega, double side) {
+    const auto [c, b] = SlidingEquation(scene, side).contact(at, omega);
+    if (c < 0 && b < 0) return {Mode::sliding, side, Painleve::two_motions};
+    return slide_or_leave(scene, at, omega, side);
+}
+
+// Without slip, where rolling is not possible: to the side to which the contact accelerates.
+Continuation starting_to_slide(const Scene& scene, const Geometry& at, const State& state,
+                               const ContactForce& rolling) {
+    const auto to_side = [&](double side) { return slide_or_leave(scene, at, state.omega, side); };
+    if (std::isinf(scene.friction)) return to_side(-side_of(at.dh));
+    if (rolling.normal > 0) return to_side(-side_of(rolling.friction));
+    for (const double side : {1.0, -1.0}) {
+        const Continuation next = to_side(side);
+        if (next.mode == Mode::flight) return next;
+        const Vector<4> rate =
+            SlidingEquation(scene, side)(0.0, {state.theta, state.omega, 0.0, 0.0});
+        if (next.paradox == Painleve::determined && side * rate[3] > 0) return next;
+    }
+    return {Mode::sliding, 0.0, Painleve::no_motion};
+}
+
+}  // namespace
+
+Continuation continuation(const Scene& scene, const State& state, bool may_roll) {
+    const Geometry at = geometry({scene.a, scene.b}, state.theta);
+    const double slip = slip_velocity(state, at);
+    if (scene.friction == 0) {
+        const bool stays = slip == 0 && scene.slope == 0 && rests(scene, state, at);
+        return stays ? Continuation{Mode::rest} : slide_or_leave(scene, at, state.omega, 0.0);
+    }
+    if (slip != 0) return sliding(scene, at, state.omega, side_of(slip));
+    if (rests(scene, state, at)) return {Mode::rest};
+    const ContactForce force = rolling_force(scene, state.theta, state.omega);
+    const bool grips =
+        std::isinf(scene.friction) || std::abs(force.friction) <= scene.friction * force.normal;
+    if (may_roll && force.normal > 0 && grips) return {Mode::rolling};
+    return starting_to_slide(scene, at, state, force);
+}
+
+Continuation first_continuation(const Scene& scene, const State& start) {
+    return start.mode == Mode::flight ? Continuation{Mode::flight} : continuation(scene, start);
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,26 @@
+// What a body does next that touches the ground and does not move into it.
+#pragma once
+
+#include "scene/scene.hpp"
+
+namespace rolling_ellipse {
+
+// Does exactly one motion go on from here? Not always where the contact slides (P. Painleve, C. R.
+// Acad. Sci. 121 (1895) 112): pressed against the ground (c > 0) none does if B <= 0; pulled off it
+// (c < 0) two do if B < 0, flight and a slide with N = c/B > 0.
+enum class Painleve { determined, no_motion, two_motions };
+
+struct Continuation {
+    Mode mode;
+    double side = 0.0;  // sign of the slip
+    Painleve paradox = Painleve::determined;
+};
+
+// The mode that the forces allow. Without slip it rolls where it may and can; else it starts to
+// slide, or leaves the ground where its contact is not pressed any more.
+Continuation continuation(const Scene& scene, const State& state, bool may_roll = true);
+
+// What a body does from its start on, which may be in the air.
+Continuation first_continuation(const Scene& scene, const State& start);
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,198 @@
+#include "contact/flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/half_turns.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// The root of f between two points at which it has different signs, to the last bit.
+template <class Function>
+double bisected(const Function& f, double low, double high) {
+    const bool rises = f(high) > 0;
+    for (;;) {
+        const double middle = low + 0.5 * (high - low);
+        if (!(low < middle && middle < high)) return high;
+        ((f(middle) > 0) == rises ? high : low) = middle;
+    }
+}
+
+// Height of the body over the ground.
+class Gap {
+  public:
+    explicit Gap(const Flight& flight)
+        : flight_(flight),
+          theta0_(resolved(flight.start.theta)),
+          h0_(geometry(flight.axes, flight.start.theta).h) {}
+
+    double height(double t) const {
+        const State& s = flight_.start;
+        return s.z + t * (s.z_dot - 0.5 * flight_.weight * t);
+    }
+
+    // As what it was at the start and what it has gained: hops far lower than the body is high keep
+    // their digits. h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + omega t) sin(omega t): physics (55).
+    double value(double t) const {
+        const State& s = flight_.start;
+        const auto [a, b] = flight_.axes;
+        const double turned = s.omega * t;
+        const double rise =
+            (a - b) * (a + b) * std::sin(2 * theta0_ + turned) * std::sin(turned) / (at(t).h + h0_);
+        return (s.z - h0_) + (t * (s.z_dot - 0.5 * flight_.weight * t) - rise);
+    }
+
+    double rate(double t) const {
+        const State& s = flight_.start;
+        return s.z_dot - flight_.weight * t - at(t).dh * s.omega;
+    }
+
+    // When the centre comes down to a height.
+    double falls_to(double height) const {
+        const double drop = flight_.start.z - height;
+        const double v = flight_.start.z_dot;
+        const double root = std::sqrt(std::max(v * v + 2 * flight_.weight * drop, 0.0));
+        if (v > 0) return (v + root) / flight_.weight;
+        return drop > 0 ? 2 * drop / (root - v) : 0.0;
+    }
+
+  private:
+    Geometry at(double t) const {
+        return geometry(flight_.axes, theta0_ + flight_.start.omega * t);
+    }
+
+    const Flight& flight_;
+    double theta0_;
+    double h0_;
+};
+
+// The second derivative of the gap, -(g cos(alpha) + h'' omega^2) with h'' = a^2 b^2/h^3 - h, is
+// positive where h is over the only positive root of
+//     h^4 - (g cos(alpha)/omega^2) h^3 - a^2 b^2,
+// that is around the tip, and negative elsewhere: physics (55). So time falls into convex and
+// concave intervals, in each of which the first root is certain.
+class Curvature {
+  public:
+    explicit Curvature(const Flight& flight) {
+        const double omega = std::abs(flight.start.omega);
+        const FlatView view = flat_view(flight.axes, flight.start.theta);
+        const double root =
+            positive_root(flight.weight / square(omega), view.short_axis * view.long_axis);
+        if (omega == 0 || !(root < view.long_axis)) return;
+        switching_ = true;
+        const double turned = flight.start.omega > 0 ? view.sin : -view.sin;
+        const double phi = std::atan2(turned, view.cos);  // grows with time
+        const double tip_side = std::sqrt((root - view.short_axis) * (root + view.short_axis));
+        const double flat_side = std::sqrt((view.long_axis - root) * (view.long_axis + root));
+        const double edge = std::atan2(tip_side, flat_side);
+        convex_ = std::abs(phi) > edge;
+        concave_time_ = 2 * edge / omega;
+        convex_time_ = 2 * (half_pi - edge) / omega;
+        first_end_ = (!convex_ ? edge - phi : phi > 0 ? pi - edge - phi : -edge - phi) / omega;
+    }
+
+    struct Interval {
+        double begin;
+        double end;
+        bool convex;
+    };
+
+    Interval first() const { return {0.0, switching_ ? first_end_ : infinity, convex_}; }
+
+    // When a convex interval has its tip below, in its middle.
+    double tip_time(const Interval& interval) const { return interval.end - convex_time_ / 2; }
+
+    Interval after(const Interval& last) const {
+        const bool convex = !last.convex;
+        return {last.end, last.end + (convex ? convex_time_ : concave_time_), convex};
+    }
+
+    // The interval that holds a later time.
+    Interval around(Interval interval, double t) const {
+        if (t < interval.end) return {t, interval.end, interval.convex};
+        const double period = convex_time_ + concave_time_;
+        const double skipped = period * std::floor((t - interval.end) / period);
+        interval = after({interval.begin, interval.end + skipped, interval.convex});
+        while (!(t < interval.end)) {
+            const Interval next = after(interval);
+            if (!(interval.end < next.end)) return {t, t, next.convex};  // too fast for the clock
+            interval = next;
+        }
+        return {t, interval.end, interval.convex};
+    }
+
+  private:
+    // Newton's method from the right, where the quartic is convex.
+    static double positive_root(double load, double ab) {
+        double h = load + std::sqrt(ab);
+        for (;;) {
+            const double next =
+                h - (h * h * h * (h - load) - ab * ab) / (h * h * (4 * h - 3 * load));
+            if (!(next < h)) return h;
+            h = next;
+        }
+    }
+
+    bool switching_ = false;
+    bool convex_ = false;
+    double first_end_ = infinity;
+    double concave_time_ = infinity;
+    double convex_time_ = infinity;
+};
+
+}  // namespace
+
+State state_at(const Flight& flight, double t) {
+    const State& s = flight.start;
+    return {s.theta + s.omega * t,
+            s.omega,
+            s.x + t * (s.x_dot + 0.5 * flight.pull * t),
+            s.z + t * (s.z_dot - 0.5 * flight.weight * t),
+            s.x_dot + flight.pull * t,
+            s.z_dot - flight.weight * t,
+            Mode::flight};
+}
+
+double touch_down(const Flight& flight) {
+    const Gap gap(flight);
+    const Curvature curvature(flight);
+    const double tall = std::max(flight.axes.a, flight.axes.b);
+    // By then it touches, however h is rounded.
+    const double sure = gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - 8 * epsilon));
+    const auto value = [&](double t) { return gap.value(t); };
+    const auto rate = [&](double t) { return gap.rate(t); };
+
+    Curvature::Interval now = curvature.first();
+    // A body that leaves by its acceleration does so where the gap becomes convex.
+    const bool leaves_slowly = gap.value(0.0) <= 0 && gap.rate(0.0) <= 0;
+    if (leaves_slowly && !now.convex) now = curvature.after(now);
+    double before = leaves_slowly ? 0.0 : gap.rate(now.begin);  // rate at the interval's begin
+    for (;;) {
+        if (gap.height(now.begin) > tall) {
+            now = curvature.around(now, gap.falls_to(tall));
+            before = gap.rate(now.begin);
+        }
+        const double end = std::min(now.end, sure);
+        const double after = gap.rate(end);
+        if (now.convex) {
+            if (before < 0) {
+                const double lowest = after > 0 ? bisected(rate, now.begin, end) : end;
+                if (gap.value(lowest) <= 0) return bisected(value, now.begin, lowest);
+                // Where the tip passes below a centre no higher than that, it touches, though the
+                // gap may be rounded to more than nothing where the body spins fast for its fall.
+                const double tip = curvature.tip_time(now);
+                if (now.begin < tip && tip <= end && gap.height(tip) <= tall) return lowest;
+            }
+        } else if (after < 0 && gap.value(end) <= 0) {
+            return bisected(value, before > 0 ? bisected(rate, now.begin, end) : now.begin, end);
+        }
+        const Curvature::Interval next = curvature.after(now);
+        const bool too_fast = !(now.end < next.end);  // half a turn between two doubles
+        if (too_fast || !(end < sure)) return end;
+        before = after;
+        now = next;
+    }
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,59 @@
+#include "contact/sliding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rolling_ellipse {
+
+double slip_velocity(const State& state, const Geometry& at) {
+    return state.x_dot - at.h * state.omega;
+}
+
+double noticeable_slip(const State& state, const Geometry& at) {
+    const double slip = slip_velocity(state, at);
+    return std::abs(slip) <= 8 * epsilon * std::abs(state.x_dot) ? 0.0 : slip;
+}
+
+State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode) {
+    return {theta, omega, x, at.h, slip + at.h * omega, at.dh * omega, mode};
+}
+
+SlidingEquation::SlidingEquation(const Scene& scene, double side)
+    : axes_{scene.a, scene.b},
+      side_(side),
+      mass_(scene.mass),
+      gyration2_(scene.body().gyration2),
+      weight_(scene.gravity * std::cos(scene.slope)),
+      pull_(scene.gravity * std::sin(scene.slope)),
+      normal_share_(std::isinf(scene.friction) ? 0.0 : 1.0),
+      friction_share_(std::isinf(scene.friction) ? -side : -scene.friction * side) {}
+
+ContactForce SlidingEquation::force(const Geometry& at, double omega) const {
+    const auto [c, b] = contact(at, omega);
+    const double force = mass_ * (c / b);
+    return {normal_share_ * force, friction_share_ * force};
+}
+
+// The impulse of N changes omega and slip in a fixed ratio, physics (54).
+SlidingEquation::LastMoment SlidingEquation::last_moment(const Vector<5>& y) const {
+    const Geometry at = geometry(axes_, y[0]);
+    const double b_slope =
+        (2 * normal_share_ * at.dh * at.ddh + friction_share_ * (at.dh * at.dh + at.h * at.ddh)) /
+        gyration2_;
+    const double turn = -contact(at, y[1]).b / b_slope;
+    const double after = turn / y[1];
+    const double spin = -(at.h * friction_share_ + at.dh * normal_share_) / gyration2_;
+    const double slip_by_turning = friction_share_ / spin - at.h;
+    const double without_slip = y[1] - y[3] / slip_by_turning;
+    const double without_c = std::copysign(std::sqrt(-weight_ / at.ddh), y[1]);
+    const double impulse_to_stop = (without_slip - y[1]) / spin;
+    const double impulse_to_jam =
+        at.ddh < 0 && (without_c - y[1]) / spin >= 0 ? (without_c - y[1]) / spin : infinity;
+    const bool stops = impulse_to_stop >= 0 && impulse_to_stop <= impulse_to_jam;
+    const double omega = stops ? without_slip : without_c;
+    const double slip = stops ? 0.0 : y[3] + slip_by_turning * (omega - y[1]);
+    return {stops ? slip_vanishes : jams,
+            {y[0] + turn, omega, y[2] + (y[3] + at.h * y[1]) * after, slip, y[4] + after}};
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,31 @@
+// Units of a scene's own size. They are powers of two: a number in them keeps its bits, and what is
+// computed in them neither depends on the units that the scene came in nor leaves the range of
+// doubles.
+#pragma once
+
+#include "rolling/equation.hpp"
+#include "scene/scene.hpp"
+
+namespace rolling_ellipse {
+
+struct Units {
+    double length = 1.0;  // [m]
+    double time = 1.0;    // [s]
+    double mass = 1.0;    // [kg]
+
+    double speed() const { return length / time; }
+};
+
+// Next to the long semi-axis L, sqrt(L/g) and the mass.
+Units natural_units(const Scene& scene);
+
+// Body and ground in units; the start of the scene is left behind.
+Scene body_in_units(const Scene& scene, const Units& units);
+
+State in_units(const State& state, const Units& units);
+
+// Back to SI units.
+State in_si(const State& state, const Units& units);
+ContactSample in_si(const ContactSample& sample, const Units& units);
+
+}  // namespace rolling_ellipse

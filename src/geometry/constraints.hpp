@@ -1,0 +1,51 @@
+// The four constraints of the report's coordinates q = (x, z, theta, psi, r), at any state,
+// physics (13):
+//     f1 = x. - r cos(psi - theta) theta.
+//     f2 = z - r cos(psi - theta)
+//     f3 = r - a b/sqrt(b^2 sin^2 psi + a^2 cos^2 psi)
+//     f4 = psi - theta - atan2((a^2 - b^2) sin theta cos theta, b^2 cos^2 theta + a^2 sin^2 theta)
+// f1 is the report's eq 10 put right: the material point at the contact, not the geometric one, has
+// no velocity. f4 is its eq 5 on the branch that is continuous over all theta.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "geometry/ellipse.hpp"
+
+namespace rolling_ellipse {
+
+using Coordinates = Eigen::Matrix<double, 5, 1>;
+using ConstraintMatrix = Eigen::Matrix<double, 4, 5>;
+
+namespace coordinate {
+enum : int { x, z, theta, psi, r };
+}
+
+// Rows: the coefficients of q. in f1 and in the rates of f2, f3, f4: physics (14).
+ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q);
+
+// What the second derivatives of the constraints have beside matrix q.., physics (15): the matrix'
+// rate times q.
+Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const Coordinates& q_dot);
+
+// f2 [m], f3 [m], f4 [rad].
+Eigen::Vector3d position_residuals(const Axes& axes, const Coordinates& q);
+
+struct ConstraintResiduals {
+    Eigen::Vector3d position;  // f2 [m], f3 [m], f4 [rad]
+    Eigen::Vector4d velocity;  // f1 [m/s] and the rates of f2, f3, f4
+    double gap;                // height of the lowest point over the ground [m]
+    double slip;               // velocity along the ground of the material point there [m/s]
+};
+
+ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Coordinates& q_dot);
+
+// The state that meets all constraints at an angle and angular velocity; x = integral of h.
+struct KinematicState {
+    Coordinates q;
+    Coordinates q_dot;
+};
+
+KinematicState kinematics(const Axes& axes, double theta, double omega);
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,112 @@
+// A solution as the list of the points between its steps. What a step needs for its dense output is
+// computed again when somebody looks into it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "integrator/system.hpp"
+
+namespace rolling_ellipse {
+
+template <int N>
+struct Knot {
+    double t;
+    Vector<N> y;
+    Vector<N> carry;
+    double periods;  // taken off y, where f is periodic
+
+    Point<N> point() const { return {t, y, carry, Vector<N>::Zero()}; }
+};
+
+template <int N>
+struct Steps {
+    double size;  // 0: chosen by error control
+    std::vector<Knot<N>> knots;
+};
+
+// Integrate from the last knot to t_end. `after_step(point)` may change each new point;
+// `reduce(point)` takes periods off it, and says how many; `checkpoint()` is called now and then.
+template <class Integrator, int N, class Rule, class Reduce, class Checkpoint>
+Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& tolerance,
+                 long max_steps, double t_end, Rule after_step, Reduce reduce,
+                 const Checkpoint& checkpoint) {
+    constexpr std::size_t steps_between_checks = 1024;
+    double periods = steps.knots.back().periods;
+    const auto visit = [&](Point<N>& point) {
+        const AfterStep next = after_step(point);
+        periods += reduce(point);
+        steps.knots.push_back({point.t, point.y, point.carry, periods});
+        if (steps.knots.size() % steps_between_checks == 0) checkpoint();
+        return next;
+    };
+    const Point<N> start = steps.knots.back().point();
+    if constexpr (Integrator::controls_error) {
+        if (steps.size == 0) {
+            return integrator.integrate(start, t_end, tolerance, max_steps, visit);
+        }
+    }
+    return integrate_by_fixed_steps(integrator, start, steps.size, t_end, max_steps, visit);
+}
+
+// The step that a time falls into.
+template <int N>
+class StepFinder {
+  public:
+    explicit StepFinder(const Steps<N>& steps) : steps_(steps) {}
+
+    // Go to the step that holds t; true if it is another one than before.
+    bool move_to(double t) {
+        const std::vector<Knot<N>>& knots = steps_.knots;
+        if (step_ < knots.size() && knots[step_].t <= t &&
+            (step_ + 1 == knots.size() || t < knots[step_ + 1].t)) {
+            return false;
+        }
+        const auto later =
+            std::upper_bound(knots.begin(), knots.end(), t,
+                             [](double time, const Knot<N>& knot) { return time < knot.t; });
+        step_ = static_cast<std::size_t>(later - knots.begin()) - 1;
+        return true;
+    }
+
+    const Knot<N>& knot() const { return steps_.knots[step_]; }
+
+    // Time since the knot. Fixed steps lie at multiples that are not rounded.
+    double since_knot(double t) const {
+        return steps_.size == 0 ? t - knot().t
+                                : std::fma(-static_cast<double>(step_), steps_.size, t);
+    }
+
+    // Size of the step; 0 after the last knot.
+    double size() const {
+        return step_ + 1 == steps_.knots.size() ? 0.0 : since_knot(steps_.knots[step_ + 1].t);
+    }
+
+  private:
+    const Steps<N>& steps_;
+    std::size_t step_ = static_cast<std::size_t>(-1);
+};
+
+// Show take(i, knot, change) for each of n times between the first and the last knot: the state is
+// that of the knot plus the change. Quickest where the times are sorted.
+template <class Integrator, int N, class Take>
+void look(Integrator& integrator, const Steps<N>& steps, const double* times, std::size_t n,
+          Take take) {
+    StepFinder<N> finder(steps);
+    std::optional<decltype(integrator.dense_output({}, 0.0))> dense;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (finder.move_to(times[i])) dense.reset();
+        const double size = finder.size();
+        const double since = finder.since_knot(times[i]);
+        Vector<N> change = Vector<N>::Zero();
+        if (size > 0 && since != 0) {
+            if (!dense) dense.emplace(integrator.dense_output(finder.knot().point(), size));
+            change = dense->change(since / size);
+        }
+        take(i, finder.knot(), change);
+    }
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,147 @@
+#include "multipliers/equations.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace rolling_ellipse {
+namespace {
+
+// The direction in q in which theta grows by 1 and A q. = 0.
+Coordinates rolling_direction(const ConstraintMatrix& a) {
+    using namespace coordinate;
+    Coordinates direction;
+    direction[x] = -a(0, theta);
+    direction[theta] = 1.0;
+    direction[psi] = -a(3, theta);
+    direction[r] = -a(2, psi) * direction[psi];
+    direction[z] = -(a(1, theta) + a(1, psi) * direction[psi] + a(1, r) * direction[r]);
+    return direction;
+}
+
+}  // namespace
+
+CoordinateState coordinate_state(const Axes& axes, const State& state) {
+    using namespace coordinate;
+    const KinematicState kinematic = kinematics(axes, state.theta, state.omega);
+    CoordinateState result{kinematic.q, kinematic.q_dot};
+    result.q[x] = state.x;
+    result.q[z] = state.z;
+    result.q_dot[x] = state.x_dot;
+    result.q_dot[z] = state.z_dot;
+    return result;
+}
+
+MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
+                                 const ContactForce& force) {
+    const Axes axes{scene.a, scene.b};
+    const Geometry at = geometry(axes, state.q[coordinate::theta]);
+    const double omega_dot = -(at.h * force.friction + at.dh * force.normal) / scene.inertia;
+    const SecondRates rates = contact_point_second_rates(axes, at, state.q[coordinate::psi],
+                                                         state.q_dot[coordinate::theta], omega_dot);
+    MultiplierSolution result;
+    result.q_ddot << force.friction / scene.mass + scene.gravity * std::sin(scene.slope),
+        force.normal / scene.mass - scene.gravity * std::cos(scene.slope), omega_dot, rates.psi,
+        rates.r;
+    result.multipliers = contact_multipliers(state.q, force);
+    return result;
+}
+
+ConstrainedBody::ConstrainedBody(const Scene& scene)
+    : axes_{scene.a, scene.b},
+      mass_(scene.mass),
+      gyration2_(scene.body().gyration2),
+      weight_(scene.gravity * std::cos(scene.slope)),
+      pull_(scene.gravity * std::sin(scene.slope)),
+      length_(std::max(scene.a, scene.b)) {}
+
+// Angles are measured as lengths, so that pivots compare like with like; f4 is always the last row.
+template <int Rows>
+ConstrainedBody::Saddle<Rows> ConstrainedBody::solve_saddle(
+    const Eigen::Matrix<double, Rows, 5>& a, const Coordinates& force,
+    const Eigen::Matrix<double, Rows, 1>& demand) const {
+    constexpr int size = 5 + Rows;
+    const Coordinates unit{1.0, 1.0, 1 / length_, 1 / length_, 1.0};
+    Eigen::Matrix<double, Rows, 1> row_unit = Eigen::Matrix<double, Rows, 1>::Ones();
+    row_unit[Rows - 1] = length_;
+    const Eigen::Matrix<double, Rows, 5> rows = row_unit.asDiagonal() * a * unit.asDiagonal();
+
+    Eigen::Matrix<double, size, size> matrix = Eigen::Matrix<double, size, size>::Zero();
+    matrix.diagonal().template head<5>() = specific_mass().cwiseProduct(unit).cwiseProduct(unit);
+    matrix.template topRightCorner<5, Rows>() = -rows.transpose();
+    matrix.template bottomLeftCorner<Rows, 5>() = rows;
+    Eigen::Matrix<double, size, 1> right;
+    right << force.cwiseProduct(unit), row_unit.cwiseProduct(demand);
+    const Eigen::Matrix<double, size, 1> solution =
+        Eigen::PartialPivLU<Eigen::Matrix<double, size, size>>(matrix).solve(right);
+    return {solution.template head<5>().cwiseProduct(unit),
+            solution.template tail<Rows>().cwiseProduct(row_unit)};
+}
+
+MultiplierSolution ConstrainedBody::solve(const Coordinates& q,
+                                          const Eigen::Vector4d& demand) const {
+    const auto [q_ddot, specific] =
+        solve_saddle<4>(constraint_matrix(axes_, q), specific_force(), demand);
+    return {q_ddot, mass_ * specific};
+}
+
+MultiplierSolution ConstrainedBody::solve(const Coordinates& q, const Coordinates& q_dot) const {
+    return solve(q, Eigen::Vector4d(-constraint_drift(axes_, q, q_dot)));
+}
+
+// physics (17)
+double ConstrainedBody::specific_energy(const Coordinates& q, const Coordinates& q_dot) const {
+    return 0.5 * q_dot.dot(specific_mass().cwiseProduct(q_dot)) - specific_force().dot(q);
+}
+
+void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
+    project_position(q);
+    project_velocity(q, q_dot);
+}
+
+// Along the rolling direction the energy changes by D (omega domega - pull dtheta), pull the part
+// of the force in it over D, for a velocity that is projected with its kinetic energy; the
+// correction is the least in domega^2 + (g/L) dtheta^2, which is regular at turning points, too.
+// Newton's method, until the excess stops to shrink.
+void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy) const {
+    constexpr int most_iterations = 20;
+    const double rate2 = std::hypot(weight_, pull_) / length_;
+    project(q, q_dot);
+    double last = infinity;
+    for (int i = 0; i < most_iterations; ++i) {
+        const double excess = specific_energy(q, q_dot) - energy;
+        if (excess == 0 || !(std::abs(excess) < last)) return;
+        last = std::abs(excess);
+        const double omega = q_dot[coordinate::theta];
+        const Coordinates along = rolling_direction(constraint_matrix(axes_, q));
+        const double inertia = along.dot(specific_mass().cwiseProduct(along));
+        const double pull = specific_force().dot(along) / inertia;
+        const double steepness = inertia * (pull * pull / rate2 + omega * omega);
+        if (steepness == 0) return;
+        q += excess / steepness * pull / rate2 * along;
+        q_dot -= excess / steepness * omega * along;
+        project(q, q_dot);
+    }
+}
+
+// Newton's method; where rounding is reached the residuals stop to shrink.
+void ConstrainedBody::project_position(Coordinates& q) const {
+    constexpr int most_iterations = 20;
+    const Eigen::Vector3d row_unit{1.0, 1.0, length_};
+    double last = infinity;
+    for (int i = 0; i < most_iterations; ++i) {
+        const Eigen::Vector3d residuals = position_residuals(axes_, q);
+        const double size = residuals.cwiseProduct(row_unit).cwiseAbs().maxCoeff();
+        if (size == 0 || !(size < last)) return;
+        last = size;
+        const Eigen::Matrix<double, 3, 5> rows = constraint_matrix(axes_, q).bottomRows<3>();
+        q += solve_saddle<3>(rows, Coordinates::Zero(), -residuals).change;
+    }
+}
+
+void ConstrainedBody::project_velocity(const Coordinates& q, Coordinates& q_dot) const {
+    const ConstraintMatrix a = constraint_matrix(axes_, q);
+    q_dot += solve_saddle<4>(a, Coordinates::Zero(), -a * q_dot).change;
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,79 @@
+// The report's system: coordinates q = (x, z, theta, psi, r), the constraints f1 ... f4 and their
+// Lagrange multipliers, from its Lagrangian (eqs 11-15), physics (21):
+//     M q.. = Q + A^T lambda,   A q. = 0,   M = diag(m, m, I, 0, 0),   Q = (m g sin, -m g cos, 0,
+//     0, 0)
+// with the slope in Q. M is singular in psi and r (eqs 19, 20); with A it is not.
+#pragma once
+
+#include "geometry/constraints.hpp"
+#include "rolling/equation.hpp"
+#include "scene/scene.hpp"
+
+namespace rolling_ellipse {
+
+struct MultiplierSolution {
+    Coordinates q_ddot;
+    Eigen::Vector4d multipliers;  // [N, N, N, N m]; the first two are F and N
+};
+
+struct CoordinateState {
+    Coordinates q;
+    Coordinates q_dot;
+};
+
+// The coordinates of a body in any mode: psi and r belong to its lowest point.
+CoordinateState coordinate_state(const Axes& axes, const State& state);
+
+// What follows from a state and the force on its contact, by Newton's and Euler's laws.
+MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
+                                 const ContactForce& force);
+
+class ConstrainedBody {
+  public:
+    explicit ConstrainedBody(const Scene& scene);
+
+    const Axes& axes() const { return axes_; }
+
+    // Accelerations and multipliers for A q.. = demand, from one factorisation.
+    MultiplierSolution solve(const Coordinates& q, const Eigen::Vector4d& demand) const;
+
+    // As the constraints demand it.
+    MultiplierSolution solve(const Coordinates& q, const Coordinates& q_dot) const;
+
+    // Energy per mass [J/kg].
+    double specific_energy(const Coordinates& q, const Coordinates& q_dot) const;
+
+    // M/m, Q/m.
+    Coordinates specific_mass() const { return {1.0, 1.0, gyration2_, 0.0, 0.0}; }
+    Coordinates specific_force() const { return {pull_, -weight_, 0.0, 0.0, 0.0}; }
+
+    // The nearest state, in the kinetic metric, that meets the constraints.
+    void project(Coordinates& q, Coordinates& q_dot) const;
+
+    // The same, and with the given energy per mass.
+    void project(Coordinates& q, Coordinates& q_dot, double energy) const;
+
+  private:
+    template <int Rows>
+    struct Saddle {
+        Coordinates change;
+        Eigen::Matrix<double, Rows, 1> multipliers;
+    };
+
+    // [M, -A^T; A, 0] (change, multipliers) = (force, demand), per mass.
+    template <int Rows>
+    Saddle<Rows> solve_saddle(const Eigen::Matrix<double, Rows, 5>& a, const Coordinates& force,
+                              const Eigen::Matrix<double, Rows, 1>& demand) const;
+
+    void project_position(Coordinates& q) const;
+    void project_velocity(const Coordinates& q, Coordinates& q_dot) const;
+
+    Axes axes_;
+    double mass_;
+    double gyration2_;
+    double weight_;  // g cos(alpha)
+    double pull_;    // g sin(alpha)
+    double length_;  // unit in which angles weigh as much as ways
+};
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,229 @@
+#include "multipliers/steps.hpp"
+
+#include <cmath>
+
+#include "geometry/half_turns.hpp"
+#include "integrator/radau.hpp"
+#include "integrator/runge_kutta.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+CoordinateState state_of(const Vector<10>& y) { return {y.head<5>(), y.tail<5>()}; }
+
+// The index-1 system for y = (q, q_dot).
+struct IndexOne {
+    static constexpr int size = 10;
+    const SteppedMultipliers& motion;
+
+    Vector<10> operator()(double, const Vector<10>& y) const {
+        const CoordinateState state = state_of(y);
+        Vector<10> rate;
+        rate << state.q_dot, accelerations(motion.body, motion.settings, state).q_ddot;
+        return rate;
+    }
+};
+
+// C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12-13 (1985) 77, per mass, for
+// y = (q, v, lambda, mu), G being the rows of A that belong to positions:
+//     q. = v + G^T mu,   M v. = Q + A^T lambda,   0 = A v,   0 = (f2, f3, f4)
+struct IndexTwo {
+    static constexpr int size = 17;
+    const SteppedMultipliers& motion;
+
+    Vector<17> operator()(double, const Vector<17>& y) const {
+        const ConstrainedBody& body = motion.body;
+        const Coordinates q = y.head<5>();
+        const Coordinates v = y.segment<5>(5);
+        const ConstraintMatrix a = constraint_matrix(body.axes(), q);
+        Vector<17> rate;
+        rate << v + a.bottomRows<3>().transpose() * y.tail<3>(),
+            body.specific_force() + a.transpose() * y.segment<4>(10), a * v,
+            position_residuals(body.axes(), q);
+        return rate;
+    }
+
+    Vector<17> mass() const {
+        Vector<17> mass = Vector<17>::Zero();
+        mass.head<5>().setOnes();
+        mass.segment<5>(5) = motion.body.specific_mass();
+        return mass;
+    }
+
+    Vector<17> typical() const {
+        const Axes& axes = motion.body.axes();
+        const double length = std::fmax(axes.a, axes.b);
+        const double gravity = motion.body.specific_force().norm();
+        const double rate = std::sqrt(gravity / length);
+        Vector<17> typical;
+        typical << length, length, 1.0, 1.0, length, rate * length, rate * length, rate, rate,
+            rate * length, gravity, gravity, gravity, gravity * length, rate, rate, rate * length;
+        return typical;
+    }
+
+    // Differences by q, which a simplified Newton iteration can do with; the rest is linear.
+    Matrix<17> jacobian(double t, const Vector<17>& y) const {
+        const Axes& axes = motion.body.axes();
+        const double length = std::fmax(axes.a, axes.b);
+        const Coordinates unit{length, length, 1.0, 1.0, length};
+        const ConstraintMatrix a = constraint_matrix(axes, y.head<5>());
+        const Vector<17> here = (*this)(t, y);
+        Matrix<17> jacobian = Matrix<17>::Zero();
+        for (int i = 0; i < 5; ++i) {
+            Vector<17> moved = y;
+            moved[i] += std::sqrt(epsilon) * unit[i];
+            jacobian.col(i) = ((*this)(t, moved) - here) / (moved[i] - y[i]);
+        }
+        jacobian.block<5, 5>(0, 5).setIdentity();
+        jacobian.block<5, 3>(0, 14) = a.bottomRows<3>().transpose();
+        jacobian.block<5, 4>(5, 10) = a.transpose();
+        jacobian.block<4, 5>(10, 5) = a;
+        return jacobian;
+    }
+};
+
+// Call action with the integrator of a motion and its steps.
+template <class Motion, class Action>
+void with_integrator(Motion& motion, Action action) {
+    if (auto* steps = std::get_if<Steps<17>>(&motion.steps)) {
+        const IndexTwo f{motion};
+        return action(Radau<IndexTwo>(f), *steps);
+    }
+    auto& steps = std::get<Steps<10>>(motion.steps);
+    const IndexOne f{motion};
+    switch (motion.settings.method) {
+        case Method::rk4:
+            return action(ExplicitMethod<RungeKutta4, IndexOne>(f), steps);
+        case Method::dopri5:
+            return action(ExplicitMethod<DormandPrince5, IndexOne>(f), steps);
+        default:
+            return action(ExplicitMethod<DormandPrince853, IndexOne>(f), steps);
+    }
+}
+
+SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
+                               const Settings& settings) {
+    const ConstrainedBody body(scene);
+    const auto& [q, q_dot] = start.state;
+    SteppedMultipliers motion{body, settings, body.specific_energy(q, q_dot), start.angle_base, {}};
+    const double size = settings.step.value_or(0.0);
+    if (settings.stabilization == Stabilization::ggl) {
+        Vector<17> y;
+        y << q, q_dot, body.solve(q, q_dot).multipliers / scene.mass, Eigen::Vector3d::Zero();
+        motion.steps = Steps<17>{size, {{0.0, y, Vector<17>::Zero(), 0.0}}};
+    } else {
+        Vector<10> y;
+        y << q, q_dot;
+        motion.steps = Steps<10>{size, {{0.0, y, Vector<10>::Zero(), 0.0}}};
+    }
+    return motion;
+}
+
+// Project a state as the stabilization asks for it; says whether it does.
+bool project(const SteppedMultipliers& motion, Coordinates& q, Coordinates& q_dot) {
+    if (motion.settings.stabilization == Stabilization::projection) {
+        motion.body.project(q, q_dot);
+        return true;
+    }
+    if (motion.settings.stabilization == Stabilization::projection_energy) {
+        motion.body.project(q, q_dot, motion.specific_energy);
+        return true;
+    }
+    return false;
+}
+
+template <int N>
+AfterStep adjust(const SteppedMultipliers& motion, Point<N>& point) {
+    Coordinates q = point.y.template head<5>();
+    Coordinates q_dot = point.y.template segment<5>(5);
+    if (!project(motion, q, q_dot)) return AfterStep::go_on;
+    point.y.template head<5>() = q;
+    point.y.template segment<5>(5) = q_dot;
+    point.carry.setZero();
+    return AfterStep::changed;
+}
+
+template <int N>
+double reduce(Point<N>& point) {
+    using namespace coordinate;
+    const double half_turns = take_half_turns_off(point.y[theta], point.carry[theta]);
+    if (half_turns == 0) return 0.0;
+    const DoubleDouble rest = DoubleDouble{point.y[psi], point.carry[psi]} - half_turn * half_turns;
+    point.y[psi] = rest.high;
+    point.carry[psi] = rest.low;
+    point.origin[theta] += half_turns * pi;
+    point.origin[psi] += half_turns * pi;
+    return half_turns;
+}
+
+}  // namespace
+
+CoordinateStart coordinate_start(const Scene& scene, const State& start) {
+    const double rest = within_a_turn(start.theta);
+    const KinematicState state = kinematics({scene.a, scene.b}, rest, start.omega);
+    CoordinateStart result{
+        {state.q, state.q_dot}, two_sum(start.theta, -rest), start.mode == Mode::rest};
+    result.state.q[coordinate::x] = start.x;
+    return result;
+}
+
+CoordinateStart coordinate_start(const CoordinateState& state) {
+    const double theta = state.q[coordinate::theta];
+    const double rest = within_a_turn(theta);
+    CoordinateStart result{state, two_sum(theta, -rest)};
+    result.state.q[coordinate::theta] = rest;
+    result.state.q[coordinate::psi] =
+        static_cast<double>(DoubleDouble{state.q[coordinate::psi], 0.0} - result.angle_base);
+    return result;
+}
+
+MultiplierIntegration integrate_multipliers(const Scene& scene, const CoordinateStart& start,
+                                            const Settings& settings, double t_end,
+                                            const Checkpoint& checkpoint) {
+    MultiplierIntegration result{motion_from(scene, start, settings), Ending::reached, {}};
+    if (start.rests) return result;
+    SteppedMultipliers& motion = result.motion;
+    with_integrator(motion, [&](auto integrator, auto& steps) {
+        result.ending = integrate(
+            integrator, steps, {settings.rtol, settings.atol}, settings.max_steps, t_end,
+            [&](auto& point) { return adjust(motion, point); },
+            [](auto& point) { return reduce(point); }, checkpoint);
+        result.counts = integrator.counts();
+        result.counts.steps = static_cast<long>(steps.knots.size()) - 1;
+    });
+    return result;
+}
+
+void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
+            CoordinateState* samples) {
+    with_integrator(motion, [&](auto integrator, const auto& steps) {
+        look(integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
+            const auto y = (knot.y + (knot.carry + change)).eval();
+            CoordinateState state{y.template head<5>(), y.template segment<5>(5)};
+            if (!change.isZero(0)) project(motion, state.q, state.q_dot);
+            for (const int angle : {coordinate::theta, coordinate::psi}) {
+                const DoubleDouble rest = two_sum(state.q[angle], 0.0);
+                state.q[angle] =
+                    static_cast<double>(motion.angle_base + half_turn * knot.periods + rest);
+            }
+            samples[i] = state;
+        });
+    });
+}
+
+// J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1: f.. + 2 alpha f. + beta^2 f = 0 for
+// the position constraints, f1. + 2 alpha f1 = 0 for the velocity.
+MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
+                                 const CoordinateState& state) {
+    if (settings.stabilization != Stabilization::baumgarte) {
+        return body.solve(state.q, state.q_dot);
+    }
+    const Axes& axes = body.axes();
+    const double beta2 = square(settings.baumgarte_beta);
+    Eigen::Vector4d demand = -constraint_drift(axes, state.q, state.q_dot);
+    demand -= 2 * settings.baumgarte_alpha * (constraint_matrix(axes, state.q) * state.q_dot);
+    demand.tail<3>() -= beta2 * position_residuals(axes, state.q);
+    return body.solve(state.q, demand);
+}
+
+}  // namespace rolling_ellipse

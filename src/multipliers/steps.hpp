@@ -1,0 +1,52 @@
+// The multiplier model by numerical integration: coordinates and velocities at any time.
+#pragma once
+
+#include <variant>
+
+#include "integrator/steps.hpp"
+#include "multipliers/equations.hpp"
+#include "scene/settings.hpp"
+
+namespace rolling_ellipse {
+
+// A start whose angles are measured from a base.
+struct CoordinateStart {
+    CoordinateState state;
+    DoubleDouble angle_base;
+    bool rests = false;  // for ever
+};
+
+struct SteppedMultipliers {
+    ConstrainedBody body;
+    Settings settings;
+    double specific_energy;   // of the start [J/kg]
+    DoubleDouble angle_base;  // angle at which half turns and rest are 0
+    // (q, q_dot); of the index-2 system, then lambda per mass and the multipliers of the positions.
+    std::variant<Steps<10>, Steps<17>> steps;
+
+    Method method() const { return settings.method; }
+};
+
+struct MultiplierIntegration {
+    SteppedMultipliers motion;
+    Ending ending;
+    StepCounts counts;
+};
+
+// The start of a body that rolls, and that from any coordinates and velocities.
+CoordinateStart coordinate_start(const Scene& scene, const State& start);
+CoordinateStart coordinate_start(const CoordinateState& state);
+
+MultiplierIntegration integrate_multipliers(const Scene& scene, const CoordinateStart& start,
+                                            const Settings& settings, double t_end,
+                                            const Checkpoint& checkpoint);
+
+// The state at n times between the first and the last knot.
+void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
+            CoordinateState* samples);
+
+// Accelerations and multipliers of a state, with Baumgarte's feedback where it is asked for.
+MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
+                                 const CoordinateState& state);
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,57 @@
+// Sums of two doubles: 106 bits for the few numbers that need them (periods, phases, multiples of
+// pi). Algorithms: T. J. Dekker, Numer. Math. 18 (1971) 224; J. R. Shewchuk, Discrete Comput. Geom.
+// 18 (1997) 305.
+#pragma once
+
+#include <cmath>
+
+#include "numerics/numbers.hpp"
+
+namespace rolling_ellipse {
+
+// high + low, |low| <= ulp(high)/2.
+struct DoubleDouble {
+    double high = 0.0;
+    double low = 0.0;
+
+    explicit operator double() const { return high + low; }
+};
+
+inline DoubleDouble quick_two_sum(double large, double small) {
+    const double sum = large + small;
+    return {sum, small - (sum - large)};
+}
+
+inline DoubleDouble two_sum(double x, double y) {
+    const double sum = x + y;
+    const double y_part = sum - x;
+    return {sum, (x - (sum - y_part)) + (y - y_part)};
+}
+
+inline DoubleDouble two_product(double x, double y) {
+    const double product = x * y;
+    return {product, std::fma(x, y, -product)};
+}
+
+inline DoubleDouble operator-(DoubleDouble x) { return {-x.high, -x.low}; }
+
+inline DoubleDouble operator+(DoubleDouble x, double y) {
+    const DoubleDouble sum = two_sum(x.high, y);
+    return quick_two_sum(sum.high, sum.low + x.low);
+}
+
+inline DoubleDouble operator+(DoubleDouble x, DoubleDouble y) {
+    const DoubleDouble sum = two_sum(x.high, y.high);
+    return quick_two_sum(sum.high, sum.low + (x.low + y.low));
+}
+
+inline DoubleDouble operator-(DoubleDouble x, DoubleDouble y) { return x + (-y); }
+
+inline DoubleDouble operator*(DoubleDouble x, double y) {
+    const DoubleDouble product = two_product(x.high, y);
+    return quick_two_sum(product.high, std::fma(x.low, y, product.low));
+}
+
+inline constexpr DoubleDouble half_pi_exact = {half_pi, 6.12323399573676603587e-17};
+
+}  // namespace rolling_ellipse

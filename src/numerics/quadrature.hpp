@@ -1,0 +1,54 @@
+// Gauss-Legendre quadrature with the number of nodes that the nearest singularities ask for.
+#pragma once
+
+#include <cmath>
+#include <initializer_list>
+#include <iterator>
+
+#include "numerics/double_double.hpp"
+#include "numerics/gauss_legendre.hpp"
+
+namespace rolling_ellipse {
+
+// The smallest tabled rule with at least n nodes; the largest one where n exceeds the table.
+inline const GaussRule& gauss_rule(int n) {
+    for (const GaussRule& rule : gauss_rules) {
+        if (rule.size >= n) return rule;
+    }
+    return gauss_rules[std::size(gauss_rules) - 1];
+}
+
+// Nodes for full double precision where the integrand is singular at the points place +- i height,
+// both mapped to the interval -1 .. 1: the error falls like rho^(-2n), rho the sum of the semi-axes
+// of the smallest ellipse with foci +-1 through a singularity (Trefethen, SIAM Rev. 50 (2008) 67,
+// theorem 4.5).
+inline int nodes_needed(double height, std::initializer_list<double> places) {
+    constexpr double log_accuracy = 38.0;  // -ln(3e-17)
+    double axis = infinity;
+    for (const double place : places) {
+        const double distances = std::sqrt(square(place - 1) + square(height)) +
+                                 std::sqrt(square(place + 1) + square(height));
+        axis = std::fmin(axis, distances / 2);
+    }
+    const double rho = axis + std::sqrt((axis - 1) * (axis + 1));
+    return 1 + static_cast<int>(std::ceil(log_accuracy / (2 * std::log(rho))));
+}
+
+// The integral of f from v0 to v1, as a double-double: the sum itself adds no rounding.
+template <class Function>
+DoubleDouble integrate(const GaussRule& rule, double v0, double v1, const Function& f) {
+    const double middle = 0.5 * (v0 + v1);
+    const double half = 0.5 * (v1 - v0);
+    DoubleDouble sum{};
+    const int half_size = (rule.size + 1) / 2;
+    for (int i = 0; i < half_size; ++i) {
+        const double offset = half * rule.nodes[i];
+        const double pair = offset == 0.0 && rule.nodes[i] == 0.0
+                                ? f(middle)
+                                : f(middle - offset) + f(middle + offset);
+        sum = sum + two_product(rule.weights[i], pair);
+    }
+    return sum * half;
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,23 @@
+// What the motion of a rolling body comes to first, from signs of polynomials alone.
+#pragma once
+
+#include <cstdint>
+
+#include "scene/scene.hpp"
+
+namespace rolling_ellipse {
+
+enum class Outcome : std::int8_t {
+    rests,
+    rocks,          // it turns back before anything else happens
+    rolls_over,     // it passes the tip before anything else happens
+    slips,          // rolling would need more friction than there is
+    loses_contact,  // the ground would have to pull
+    jams,           // not out of rolling, see outcome/classify.cpp
+    edge,           // rounding cannot tell
+};
+
+// For a body that rolls (or rests) on level ground with the given angle and angular velocity.
+Outcome classify(const Body& body, double friction, double theta, double omega);
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,212 @@
+#include "outcome/thresholds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proof/forces.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// The body with lengths in units of its long semi-axis and accelerations in units of g.
+struct Shape {
+    double short_axis;
+    double gyration2;
+    double c2;
+};
+
+// A place on the ellipse, and what rolling needs there.
+struct Place {
+    double angle;      // phi
+    double over_flat;  // h - S
+    double h;
+    double dh;
+    double kh;           // k^2 + h^2
+    double d;            // D
+    double normal_part;  // N/m = (kh + omega^2 normal_part)/D, physics (23)
+};
+
+Place place_at(const Shape& shape, double sin2, double cos2) {
+    const double b = shape.short_axis;
+    const double h = std::sqrt(square(b) * cos2 + sin2);
+    const double dh = shape.c2 * std::sqrt(sin2 * cos2) / h;
+    const double ddh = shape.c2 * (b * cos2 - sin2) * (b * cos2 + sin2) / (h * h * h);
+    const double kh = shape.gyration2 + h * h;
+    return {std::atan2(std::sqrt(sin2), std::sqrt(cos2)),
+            shape.c2 * sin2 / (h + b),
+            h,
+            dh,
+            kh,
+            kh + dh * dh,
+            ddh * kh - h * dh * dh};
+}
+
+// Energy over the flat position, H - S, of a motion that has omega^2 at the place: physics (26).
+double energy_over_flat(const Place& at, double omega2) {
+    return 0.5 * at.d * omega2 + at.over_flat;
+}
+
+struct Onset {
+    double energy = infinity;  // H - S
+    std::optional<double> angle;
+};
+
+void take_if_lower(Onset& onset, double energy, double angle) {
+    if (energy < onset.energy) onset = {energy, angle};
+}
+
+// N of rolling vanishes at H = h - r/p, with r = normal_at_rest and p = normal_moving; the least
+// such H is a root of h' p^2 - r' p + r p': physics (46).
+Onset contact_loss(const Shape& shape) {
+    const EnergyRange range = separatrix_range(shape.short_axis, shape.gyration2, shape.c2);
+    const ForcePolynomials p = force_polynomials(range);
+    const Polynomial<4>& moving = p.normal_moving;
+    std::vector<double> places = roots_on_unit_interval(
+        bernstein(range.width * (moving * moving) - derivative(p.normal_at_rest) * moving +
+                  p.normal_at_rest * derivative(moving)));
+    places.push_back(1.0);
+    Onset onset;
+    for (const double x : places) {
+        const double over_flat = range.width * x;
+        const double under_tip = range.width * (1 - x);
+        const double h = shape.short_axis + over_flat;
+        const Place at = place_at(shape, over_flat * (h + shape.short_axis) / shape.c2,
+                                  under_tip * (1 + h) / shape.c2);
+        if (at.normal_part >= 0) continue;
+        take_if_lower(onset, energy_over_flat(at, -at.kh / at.normal_part), at.angle);
+    }
+    return onset;
+}
+
+// The least omega^2 at which rolling needs |F| >= mu N at a place, physics (47):
+//     |h'| |omega^2 (D - h rho) - h| = mu (kh + omega^2 normal_part),  rho h = S^2/h^2.
+double slip_omega2(const Shape& shape, const Place& at, double friction) {
+    if (at.h * at.dh >= friction * at.kh) return 0.0;
+    const double inertial = at.dh * (at.d - square(shape.short_axis / at.h));
+    double least = infinity;
+    for (const double side : {-1.0, 1.0}) {
+        const double slope = side * inertial - friction * at.normal_part;
+        const double omega2 = (friction * at.kh + side * at.h * at.dh) / slope;
+        if (omega2 >= 0) least = std::min(least, omega2);
+    }
+    return least;
+}
+
+// The lowest place at which a body at rest needs |F| = mu N: h |h'| = mu (k^2 + h^2), a quadratic
+// equation in y = h^2 - B, physics (48).
+Onset slip_at_rest(const Shape& shape, double friction) {
+    const double b = shape.short_axis;
+    const double mu2 = square(friction);
+    const double flat_inertia = shape.gyration2 + square(b);
+    const double half = shape.c2 - 2 * mu2 * flat_inertia;
+    const double discriminant = square(half) - 4 * (1 + mu2) * mu2 * square(flat_inertia);
+    if (half <= 0 || discriminant < 0) return {};
+    const double y = 2 * mu2 * square(flat_inertia) / (half + std::sqrt(discriminant));
+    const Place at = place_at(shape, y / shape.c2, (shape.c2 - y) / shape.c2);
+    return {at.over_flat, at.angle};
+}
+
+// The least energy of slipping over all places: that of a turning point, or the minimum found by
+// a scan that is even in ln tan phi, then golden section around the best.
+Onset slip(const Shape& shape, double friction) {
+    if (std::isinf(friction)) return contact_loss(shape);
+    constexpr int scan = 512;
+    constexpr int sections = 40;  // to 1e-8 of two scan intervals: the energy is flat there
+    constexpr double golden = 0.6180339887498949;
+    constexpr double first = -24.0;  // of ln tan phi: the forces change over angles of (b/a)^2
+    constexpr double last = 20.0;    // near the flat, and over 1/friction near the tip
+    const auto energy_at = [&](double log_tan) {
+        const double tan2 = std::exp(2 * log_tan);
+        const Place at = place_at(shape, tan2 / (1 + tan2), 1 / (1 + tan2));
+        return Onset{energy_over_flat(at, slip_omega2(shape, at, friction)), at.angle};
+    };
+    constexpr double step = (last - first) / scan;
+    double best = first;
+    for (int i = 1; i <= scan; ++i) {
+        const double here = first + step * i;
+        if (energy_at(here).energy < energy_at(best).energy) best = here;
+    }
+    double low = best - step;
+    double high = best + step;
+    for (int i = 0; i < sections; ++i) {
+        const double left = high - golden * (high - low);
+        const double right = low + golden * (high - low);
+        const bool falls = energy_at(left).energy > energy_at(right).energy;
+        (falls ? low : high) = falls ? left : right;
+    }
+    const Onset moving = energy_at(0.5 * (low + high));
+    const Onset at_rest = slip_at_rest(shape, friction);
+    return at_rest.energy < moving.energy ? at_rest : moving;
+}
+
+// mu = (K + Y/u)/sqrt(Y), Y = (1 - u)(u - B) = (h h')^2: stationary where
+// -K Y' u^2 + Y Y' u - 2 Y^2 = 0: physics (49).
+Onset painleve(const Shape& shape) {
+    const double b2 = square(shape.short_axis);
+    const double k2 = shape.gyration2;
+    const double w = shape.c2;  // u = B + w x
+    const Polynomial<1> u = polynomial(b2, w);
+    const Polynomial<2> y = polynomial(0.0, w) * polynomial(w, -w);
+    const Polynomial<1> dy = polynomial(w, -2 * w);
+    const Polynomial<4> stationary = (-k2) * (dy * u * u) + y * dy * u - 2.0 * (y * y);
+    Onset onset;
+    for (const double x : roots_on_unit_interval(bernstein(stationary))) {
+        const double y_here = w * x * w * (1 - x);
+        if (y_here <= 0) continue;
+        take_if_lower(onset, (k2 + y_here / (b2 + w * x)) / std::sqrt(y_here),
+                      std::atan2(std::sqrt(x), std::sqrt(1 - x)));
+    }
+    return onset;
+}
+
+}  // namespace
+
+double roll_over_speed(const Body& body) {
+    const FlatView at = flat_view({body.a, body.b}, 0.0);
+    const double flat_inertia = body.gyration2 + square(at.short_axis);
+    return std::sqrt(2 * body.gravity * (at.long_axis - at.short_axis) / flat_inertia);
+}
+
+Thresholds thresholds(const Body& body, double friction, const Checkpoint& checkpoint) {
+    const FlatView at = flat_view({body.a, body.b}, 0.0);
+    const double unit = at.long_axis;
+    const Shape shape{at.short_axis / unit, body.gyration2 / square(unit), at.c2 / square(unit)};
+    const double flat_inertia = body.gyration2 + square(at.short_axis);
+    const double tip_inertia = body.gyration2 + square(at.long_axis);
+
+    Thresholds result{};
+    // physics (44, 45)
+    result.roll_over_speed = roll_over_speed(body);
+    result.rocking_rate = std::sqrt(body.gravity * at.c2 / (at.short_axis * flat_inertia));
+    result.tip_rate = std::sqrt(body.gravity * at.c2 / (at.long_axis * tip_inertia));
+    result.contact_loss_speed = infinity;
+    result.slip_speed = infinity;
+    result.lift_off = {infinity, {}};
+    result.painleve_friction = infinity;
+    if (at.c2 == 0) return result;
+
+    const auto flat_speed = [&](const Onset& onset) {  // physics (44)
+        return std::sqrt(2 * body.gravity * unit * onset.energy / flat_inertia);
+    };
+    const auto theta_of = [&](std::optional<double> angle) {
+        if (angle && body.a < body.b) angle = half_pi - *angle;
+        return angle;
+    };
+    const Onset loss = contact_loss(shape);
+    result.contact_loss_speed = flat_speed(loss);
+    result.contact_loss_angle = theta_of(loss.angle);
+    const Onset slipping = slip(shape, friction);
+    result.slip_speed = flat_speed(slipping);
+    result.slip_angle = theta_of(slipping.angle);
+    const EnergyRange separatrix = separatrix_range(shape.short_axis, shape.gyration2, shape.c2);
+    result.friction_to_roll_over =
+        force_extremes(separatrix, force_polynomials(separatrix)).most_friction.needed();
+    const Onset jamming = painleve(shape);
+    result.painleve_friction = jamming.energy;
+    result.painleve_angle = theta_of(jamming.angle);
+    result.lift_off =
+        lift_off(body, friction, result.slip_speed, result.painleve_friction, checkpoint);
+    return result;
+}
+
+}  // namespace rolling_ellipse

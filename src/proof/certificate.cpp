@@ -1,0 +1,193 @@
+#include "proof/certificate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proof/forces.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+double theta_of(const Body& body, double angle_from_flat) {
+    return body.a >= body.b ? angle_from_flat : half_pi - angle_from_flat;
+}
+
+// The start in the frame in which the motion goes forwards.
+struct Start {
+    double angle;  // from the nearest flat position, signed: negative while the body sinks
+    double direction;
+    RollingForces forces;
+};
+
+Start start_on_range(const FlatView& at, const EnergyRange& range, const Body& body, double omega) {
+    // At a turning point the body falls back towards the flat position.
+    const double direction = omega != 0 ? std::copysign(1.0, omega) : -std::copysign(1.0, at.sin);
+    const double omega2 = omega * omega * at.long_axis / body.gravity;
+    return {direction * std::atan2(at.sin, at.cos), direction,
+            rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
+}
+
+// What is left of the law of the contact, physics (25).
+double slack(const RollingForces& forces, double friction) {
+    if (std::isinf(friction)) return forces.normal;
+    return friction * forces.normal - std::abs(forces.friction);
+}
+
+double slack_at(const EnergyRange& range, double friction, double angle) {
+    return slack(rolling_forces_at_angle(range, angle), friction);
+}
+
+// Does the law hold at the start? Within rounding of its end what counts is where the motion goes.
+bool holds_at_start(const EnergyRange& range, double friction, const Start& start) {
+    if (friction == 0) return false;
+    const double here = slack(start.forces, friction);
+    const double scale = std::isinf(friction)
+                             ? std::abs(start.forces.normal)
+                             : friction * std::abs(start.forces.normal) + start.forces.friction;
+    if (std::abs(here) > 64 * epsilon * scale) return here > 0;
+    constexpr double ahead = 1e-8;
+    const double angle = std::abs(start.angle);
+    const double top = rolling_forces(range, 1.0).angle;
+    const double next = start.angle >= 0 ? angle + ahead * (top - angle) : angle * (1 - ahead);
+    return slack_at(range, friction, next) > 0;
+}
+
+// A zero of the law, found in its squared form, refined in the plain one: near the tip both forces
+// may be small, and their squares know half their digits only. It lies between the angles given.
+double refined_zero(const EnergyRange& range, double friction, double angle, double from,
+                    double to) {
+    double low = angle;
+    double high = angle;
+    for (double reach = epsilon; reach < 1; reach *= 4) {
+        low = std::max(angle * (1 - reach), from);
+        high = std::min(angle * (1 + reach), to);
+        if ((slack_at(range, friction, low) > 0) != (slack_at(range, friction, high) > 0)) break;
+    }
+    const bool falls = slack_at(range, friction, low) > 0;
+    if (falls == (slack_at(range, friction, high) > 0)) return angle;
+    for (;;) {
+        const double middle = 0.5 * (low + high);
+        if (middle <= low || middle >= high) return middle;
+        ((slack_at(range, friction, middle) > 0) == falls ? low : high) = middle;
+    }
+}
+
+// Where the law may be broken, as angles from the flat position, ascending: its zeros, and those of
+// N, at which it is broken anyway.
+template <int N>
+std::vector<double> breaking_angles(const EnergyRange& range, const Bernstein<5>& contact,
+                                    const Bernstein<N>& law, double friction) {
+    const auto angle_at = [&](double x) { return rolling_forces(range, x).angle; };
+    const std::vector<double> roots = roots_on_unit_interval(law);
+    std::vector<double> angles;
+    for (const double x : roots_on_unit_interval(contact)) angles.push_back(angle_at(x));
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+        const double from = i == 0 ? 0.0 : 0.5 * (roots[i - 1] + roots[i]);
+        const double to = i + 1 == roots.size() ? 1.0 : 0.5 * (roots[i] + roots[i + 1]);
+        angles.push_back(
+            refined_zero(range, friction, angle_at(roots[i]), angle_at(from), angle_at(to)));
+    }
+    std::sort(angles.begin(), angles.end());
+    return angles;
+}
+
+// How far the body turns until the first of the angles (ascending, at least one) is met on one side
+// or the other of the flat position, and which way it then moves; nothing where it never gets
+// there: on the separatrix the tip is the end.
+struct Turn {
+    double angle;
+    double heading;
+};
+
+std::optional<Turn> first_meeting(const EnergyRange& range, const Start& start,
+                                  const std::vector<double>& angles) {
+    const double on = start.direction;
+    const auto above = std::upper_bound(angles.begin(), angles.end(), std::abs(start.angle));
+    const bool rising = start.angle >= 0;
+    if (!rising && above != angles.begin()) return Turn{on * (-above[-1] - start.angle), on};
+    if (rising && above != angles.end()) return Turn{on * (*above - start.angle), on};
+    if (!rising) return Turn{on * (angles.front() - start.angle), on};
+    if (!range.libration && range.energy_gap == 0) return std::nullopt;
+    // Over the top: the last angle, on the other side of the tip or back from the turning point.
+    if (range.libration) return Turn{on * (angles.back() - start.angle), -on};
+    return Turn{on * (pi - angles.back() - start.angle), on};
+}
+
+// The law holds where both polynomials are positive.
+template <int N>
+EndOfRolling end_under_law(const EnergyRange& range, const ForcePolynomials& polynomials,
+                           const Polynomial<N>& law_polynomial, double friction, double theta,
+                           const Start& start) {
+    const Bernstein<5> contact = bernstein(polynomials.normal);
+    const Bernstein<N> law = bernstein(law_polynomial);
+    const Sign contact_sign = sign_on_unit_interval(contact);
+    const Sign law_sign = sign_on_unit_interval(law);
+    if (contact_sign == Sign::positive && law_sign == Sign::positive) return {Validity::valid};
+
+    const bool broken = contact_sign == Sign::negative || law_sign == Sign::negative;
+    EndOfRolling end{broken ? Validity::invalid : Validity::edge, theta, start.direction};
+    if (!holds_at_start(range, friction, start)) return end;
+    std::vector<double> angles = breaking_angles(range, contact, law, friction);
+    if (angles.empty()) {  // on the edge: the least margin is where the law may be broken
+        const ForceExtremes extremes = force_extremes(range, polynomials);
+        angles.push_back(std::isinf(friction) ? extremes.least_normal.angle
+                                              : extremes.most_friction.angle);
+    }
+    const std::optional<Turn> turn = first_meeting(range, start, angles);
+    if (!turn) return {end.validity};
+    return {end.validity, theta + turn->angle, turn->heading};
+}
+
+EndOfRolling end_of_rolling(const EnergyRange& range, const ForcePolynomials& polynomials,
+                            double friction, double theta, const Start& start) {
+    return std::isinf(friction)
+               ? end_under_law(range, polynomials, polynomials.normal, friction, theta, start)
+               : end_under_law(range, polynomials, grip_polynomial(polynomials, friction), friction,
+                               theta, start);
+}
+
+// A circle, or a body that stays where it is, needs no friction.
+bool rolls_freely(const Body& body, const FlatView& at, double theta, double omega) {
+    return at.c2 == 0 || (omega == 0 && is_equilibrium(geometry({body.a, body.b}, theta)));
+}
+
+}  // namespace
+
+Polynomial<10> grip_polynomial(const ForcePolynomials& p, double friction) {
+    const Polynomial<10> held = p.normal * p.normal;
+    const Polynomial<10> needed = p.slope_square * p.friction * p.friction;
+    if (friction > 1) return held - (1 / friction / friction) * needed;
+    return friction * friction * held - needed;
+}
+
+EndOfRolling end_of_rolling(const Body& body, double friction, double theta, double omega) {
+    const FlatView at = flat_view({body.a, body.b}, theta);
+    if (rolls_freely(body, at, theta, omega)) return {Validity::valid};
+    const EnergyRange range = energy_range(at, body, omega);
+    return end_of_rolling(range, force_polynomials(range), friction, theta,
+                          start_on_range(at, range, body, omega));
+}
+
+double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
+    if (!end.angle) return infinity;
+    return *end.angle == flow.theta ? 0.0 : time_of_passing(flow, *end.angle, end.heading);
+}
+
+Certificate certify_rolling(const Body& body, double mass, double friction, double theta,
+                            double omega) {
+    const double weight = mass * body.gravity;
+    const FlatView at = flat_view({body.a, body.b}, theta);
+    if (rolls_freely(body, at, theta, omega)) {
+        const double angle = theta_of(body, std::atan2(std::abs(at.sin), at.cos));
+        return {{Validity::valid}, weight, angle, 0.0, angle};
+    }
+    const EnergyRange range = energy_range(at, body, omega);
+    const ForcePolynomials polynomials = force_polynomials(range);
+    const ForceExtremes extremes = force_extremes(range, polynomials);
+    return {
+        end_of_rolling(range, polynomials, friction, theta, start_on_range(at, range, body, omega)),
+        weight * extremes.least_normal.normal, theta_of(body, extremes.least_normal.angle),
+        extremes.most_friction.needed(), theta_of(body, extremes.most_friction.angle)};
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,142 @@
+#include "proof/forces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rolling_ellipse {
+namespace {
+
+// Numerator of dN/dx, N = h P/V^2: physics (36).
+Polynomial<7> normal_slope(const ForcePolynomials& p) {
+    const Polynomial<6> moment = p.height * p.normal;
+    return derivative(moment) * p.weight - 2.0 * (moment * derivative(p.weight));
+}
+
+// Numerator of d(F/N)^2/dx beside Q, (F/N)^2 = G Q^2/P^2: physics (36).
+Polynomial<11> needed_slope(const ForcePolynomials& p) {
+    const Polynomial<7> bracket =
+        derivative(p.friction) * p.normal - p.friction * derivative(p.normal);
+    return derivative(p.slope_square) * p.friction * p.normal + 2.0 * (p.slope_square * bracket);
+}
+
+// D = k^2 + h^2 + h'^2: physics (16).
+double inertia(const EnergyRange& range, double h2, double sin2, double cos2) {
+    return range.gyration2 + h2 + square(range.c2) * sin2 * cos2 / h2;
+}
+
+}  // namespace
+
+EnergyRange energy_range(const FlatView& at, const Body& body, double omega) {
+    const EnergyHeight height = energy_height(at, body.gyration2, body.gravity, omega);
+    const double unit = at.long_axis;
+    EnergyRange range{};
+    range.short_axis = at.short_axis / unit;
+    range.gyration2 = body.gyration2 / square(unit);
+    range.c2 = at.c2 / square(unit);
+    range.energy = height.total / unit;
+    range.libration = height.over_tip < 0;
+    if (range.libration) {
+        range.width = height.over_flat / unit;
+        range.tip_gap = -height.over_tip / unit;
+    } else {
+        range.width = (at.long_axis - at.short_axis) / unit;
+        range.energy_gap = height.over_tip / unit;
+    }
+    return range;
+}
+
+EnergyRange separatrix_range(double short_axis, double gyration2, double c2) {
+    return {short_axis, gyration2, c2, 1.0, c2 / (1 + short_axis), 0.0, 0.0, false};
+}
+
+ForcePolynomials force_polynomials(const EnergyRange& range) {
+    const double b = range.short_axis;
+    const double b2 = square(b);
+    const double k2 = range.gyration2;
+    const double c2 = range.c2;
+    const double w = range.width;
+    const double kb = k2 + b2;
+    const double s = kb + 1;
+    Polynomial<0> friction_flat;  // B (K - c2), which may cancel
+    friction_flat.coefficients[0] = tracked(b2) * (tracked(k2) - tracked(c2));
+
+    ForcePolynomials p;
+    p.height = polynomial(b, w);
+    const Polynomial<2> y = polynomial(0.0, 2 * b * w, w * w);
+    const Polynomial<1> energy = polynomial(range.energy_gap + w, -w);
+    p.weight = polynomial(b2 * kb) + s * y;  // physics (32)
+    p.normal_at_rest = p.height * p.weight * (polynomial(kb) + y);
+    p.normal_moving = 2.0 * (b2 * kb * (polynomial(c2) - 2.0 * y) - s * (y * y));
+    p.normal = p.normal_at_rest + energy * p.normal_moving;                     // physics (33)
+    p.friction = 2.0 * energy * (friction_flat + s * y) - p.height * p.weight;  // physics (34)
+    // physics (35): (h - S)(h + S)(1 - h)(1 + h), with h - S = w x and 1 - h = tip_gap + w (1 - x).
+    p.slope_square = y * polynomial(range.tip_gap + w, -w) * polynomial(1 + b, w);
+    return p;
+}
+
+// physics (25)
+double RollingForces::needed() const {
+    if (normal > 0) return friction / normal;
+    return friction == 0 && normal == 0 ? 0.0 : infinity;
+}
+
+RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2) {
+    const double b = range.short_axis;
+    const double h2 = square(b) * cos2 + sin2;
+    const double h = std::sqrt(h2);
+    const double dh2 = square(range.c2) * sin2 * cos2 / h2;
+    const double ddh = range.c2 * (b * cos2 - sin2) * (b * cos2 + sin2) / (h * h2);
+    const double kh = range.gyration2 + h2;
+    const double d = inertia(range, h2, sin2, cos2);
+    const double normal = (kh + omega2 * (ddh * kh - h * dh2)) / d;  // physics (23)
+    // physics (24): F = h theta'' + h' omega^2 with theta'' of physics (18), rho h = S^2/h^2
+    const double friction = std::sqrt(dh2) * std::abs(omega2 * (d - square(b) / h2) - h) / d;
+    return {std::atan2(std::sqrt(sin2), std::sqrt(cos2)), normal, friction};
+}
+
+RollingForces rolling_forces(const EnergyRange& range, double x) {
+    const double over_flat = range.width * x;
+    const double to_top = range.width * (1 - x);
+    const double h = range.short_axis + over_flat;
+    const double sin2 = over_flat * (h + range.short_axis) / range.c2;
+    const double cos2 = (range.tip_gap + to_top) * (1 + h) / range.c2;
+    const double energy = range.energy_gap + to_top;
+    return rolling_forces(range, sin2, cos2, 2 * energy / inertia(range, h * h, sin2, cos2));
+}
+
+RollingForces rolling_forces_at_angle(const EnergyRange& range, double angle) {
+    const double sin2 = square(std::sin(angle));
+    const double cos2 = square(std::cos(angle));
+    const double h2 = square(range.short_axis) * cos2 + sin2;
+    const double h = std::sqrt(h2);
+    const double to_top = range.libration ? range.width - range.c2 * sin2 / (h + range.short_axis)
+                                          : range.c2 * cos2 / (1 + h);
+    const double energy = range.energy_gap + std::max(to_top, 0.0);
+    return rolling_forces(range, sin2, cos2, 2 * energy / inertia(range, h2, sin2, cos2));
+}
+
+ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& polynomials) {
+    const RollingForces flat = rolling_forces(range, 0.0);
+    ForceExtremes extremes{flat, flat};
+    const auto take = [&](const RollingForces& forces) {
+        if (forces.normal < extremes.least_normal.normal) extremes.least_normal = forces;
+        if (forces.needed() > extremes.most_friction.needed()) extremes.most_friction = forces;
+    };
+    // The zeros of N first: of all places with infinite |F|/N they are the ones to name.
+    for (const double x : roots_on_unit_interval(bernstein(polynomials.normal))) {
+        RollingForces forces = rolling_forces(range, x);
+        forces.normal = 0.0;
+        take(forces);
+    }
+    const auto take_at_roots = [&](const auto& slope) {
+        for (const double x : roots_on_unit_interval(bernstein(slope))) {
+            take(rolling_forces(range, x));
+        }
+    };
+    take_at_roots(normal_slope(polynomials));
+    take_at_roots(needed_slope(polynomials));
+    take(rolling_forces(range, 1.0));
+    return extremes;
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,73 @@
+// The heights h that a rolling motion reaches, and the contact forces there as rational functions.
+//
+// Lengths in units of the long semi-axis, forces in units of m g. With B = S^2, c2 = 1 - B, K =
+// k^2, u = h^2, y = u - B, s = K + 1 + B and the energy over the height e = H - h, H = E/(m g):
+//     V = s u - B = B (K + B) + s y,           D = V/u,   omega^2 = 2 e/D    physics (32)
+//     P = h V (K + u) + 2 e (B (K + B) (c2 - 2y) - s y^2),   N = h P/V^2     physics (33)
+//     Q = -h V + 2 e (B (K - c2) + s y),                     F = h' u Q/V^2  physics (34)
+//     G = (h h')^2 = (1 - u) y                                               physics (35)
+// from N and F of rolling, physics (23, 24). Nothing cancels for nearly circular bodies (c2), nor,
+// for thin ones, near a turning point (e).
+#pragma once
+
+#include "numerics/polynomial.hpp"
+#include "rolling/flow.hpp"
+
+namespace rolling_ellipse {
+
+// h = short_axis + width x, 0 <= x <= 1.
+struct EnergyRange {
+    double short_axis;
+    double gyration2;
+    double c2;
+    double energy;      // H
+    double width;       // of the heights reached
+    double energy_gap;  // H minus the greatest height reached (0 in libration)
+    double tip_gap;     // 1 minus the greatest height reached (0 in rotation)
+    bool libration;
+};
+
+EnergyRange energy_range(const FlatView& at, const Body& body, double omega);
+
+// The range of a rotation with the energy of the separatrix, H = 1.
+EnergyRange separatrix_range(double short_axis, double gyration2, double c2);
+
+// Polynomials in x. P = normal_at_rest + e normal_moving.
+struct ForcePolynomials {
+    Polynomial<1> height;
+    Polynomial<2> weight;  // V
+    Polynomial<5> normal_at_rest;
+    Polynomial<4> normal_moving;
+    Polynomial<5> normal;        // P
+    Polynomial<3> friction;      // Q
+    Polynomial<4> slope_square;  // G
+};
+
+ForcePolynomials force_polynomials(const EnergyRange& range);
+
+// The contact forces at one place, straight from the equations of rolling.
+struct RollingForces {
+    double angle;     // from the flat position, 0 .. pi/2
+    double normal;    // N/(m g)
+    double friction;  // |F|/(m g)
+
+    double needed() const;  // |F|/N; infinite where N <= 0 without N = F = 0
+};
+
+RollingForces rolling_forces(const EnergyRange& range, double x);
+
+// The same by the angle from the flat position: near the tip it knows more than x.
+RollingForces rolling_forces_at_angle(const EnergyRange& range, double angle);
+
+// The same by sin^2 and cos^2 of the angle and omega^2 in units of g/L.
+RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2);
+
+struct ForceExtremes {
+    RollingForces least_normal;
+    RollingForces most_friction;  // largest |F|/N
+};
+
+// From the critical points of N and of |F|/N, the ends of the range, and the zeros of N.
+ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& polynomials);
+
+}  // namespace rolling_ellipse

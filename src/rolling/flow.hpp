@@ -1,0 +1,95 @@
+// Exact rolling on level ground: the state at any time. Nothing is stepped; the cost of one time
+// does not depend on how far it is from the start.
+#pragma once
+
+#include "geometry/ellipse.hpp"
+#include "rolling/phase_time.hpp"
+#include "scene/scene.hpp"
+
+namespace rolling_ellipse {
+
+// Angle and path since the flat position, each as quarter turns plus what is over the nearest one
+// (|angle| <= pi/4): differences keep their digits near the flat and near the tip.
+struct QuarterPosition {
+    double quarters;
+    double angle;
+    double path;
+};
+
+enum class MotionKind { rest, uniform, libration, rotation };
+
+struct RollingFlow {
+    MotionKind kind;
+    // The start.
+    double theta;
+    double omega;
+    double x;
+    double gravity;
+    FlatView start;
+    // The motion.
+    double direction;  // of rotation; +1 for libration
+    double amplitude;  // sin phi_max of a libration; 1 for rotation
+    PhaseTime phase;
+    // The start as the motion sees it.
+    bool start_on_way_back;  // of a libration: phase beyond +-pi/2
+    DoubleDouble start_time;
+    QuarterPosition start_position;
+    double quarter_path;
+};
+
+struct FlowSample {
+    double theta;
+    double omega;
+    double x;
+};
+
+RollingFlow rolling_flow(const Body& body, double theta, double omega, double x = 0.0);
+
+// For |t| up to longest_time.
+FlowSample sample(const RollingFlow& flow, double t);
+
+// 1e15 half turns: beyond, a double does not know the phase.
+double longest_time(const RollingFlow& flow);
+
+// Throws std::invalid_argument for a time that is not finite or longer, in either direction.
+void validate_time(double t, double longest);
+
+// A time since the start as one since the flat position, half turns (or swings) made in between.
+struct PhaseInstant {
+    DoubleDouble time;  // within half a half turn of it
+    double half_turns;
+};
+PhaseInstant phase_instant(const RollingFlow& flow, double t);
+
+// +1 or -1: which way the motion goes after so many half turns, for angles and for omega.
+double heading_after(const RollingFlow& flow, double half_turns);
+
+// On the way up, at a phase between that of the flat position and a quarter turn later.
+struct QuarterState {
+    double sin;  // of the angle from the flat position
+    double cos;
+    double omega;
+    QuarterPosition position;
+};
+QuarterState quarter_state(const RollingFlow& flow, const PhasePoint& phase);
+
+// The phase of such a state, from the sine and cosine of its angle and its angular velocity.
+PhasePoint phase_of(const RollingFlow& flow, double sin, double cos, double omega);
+
+// Time of a full swing or of a full turn; infinite for a body at rest and on the separatrix.
+double period(const RollingFlow& flow);
+
+// The first time t >= 0 at which the body passes the angle theta with velocity of the given sign.
+double time_of_passing(const RollingFlow& flow, double theta, double heading);
+
+// The height H = E/(m g) of the energy [m], and how far it is over the tip (H - L, negative in
+// libration) and over the flat position (H - S), by forms that do not cancel: physics (26).
+struct EnergyHeight {
+    double total;
+    double over_tip;
+    double over_flat;
+};
+
+EnergyHeight energy_height(const FlatView& at, double gyration2, double gravity, double omega);
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,91 @@
+#include "rolling/steps.hpp"
+
+#include <cmath>
+
+#include "geometry/half_turns.hpp"
+#include "integrator/gauss.hpp"
+#include "integrator/radau.hpp"
+#include "integrator/runge_kutta.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+constexpr int default_stages = 4;
+
+// Call action with the integrator of a motion.
+template <class Action>
+void with_integrator(const SteppedRolling& motion, Action action) {
+    const RollingEquation& f = motion.equation;
+    const int stages = motion.settings.stages.value_or(default_stages);
+    switch (motion.settings.method) {
+        case Method::rk4:
+            return action(ExplicitMethod<RungeKutta4, RollingEquation>(f));
+        case Method::dopri5:
+            return action(ExplicitMethod<DormandPrince5, RollingEquation>(f));
+        case Method::radau:
+            return action(Radau<RollingEquation>(f));
+        case Method::gauss:
+            if (stages == 2) return action(Gauss<2, RollingEquation>(f));
+            if (stages == 3) return action(Gauss<3, RollingEquation>(f));
+            return action(Gauss<4, RollingEquation>(f));
+        default:
+            return action(ExplicitMethod<DormandPrince853, RollingEquation>(f));
+    }
+}
+
+FlowSample flow_sample(const SteppedRolling& motion, const Knot<2>& knot, const Vector<2>& change) {
+    const DoubleDouble theta = DoubleDouble{knot.y[0], knot.carry[0]} + change[0];
+    const double path = centre_path(motion.axes, static_cast<double>(theta));
+    return {
+        static_cast<double>(motion.theta_base + half_turn * knot.periods + theta),
+        knot.y[1] + (knot.carry[1] + change[1]),
+        static_cast<double>(motion.x_base + std::fma(knot.periods, motion.half_turn_path, path))};
+}
+
+}  // namespace
+
+SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings) {
+    const Axes axes{scene.a, scene.b};
+    const double rest = within_a_turn(start.theta);
+    SteppedRolling motion{RollingEquation(scene.body(), scene.slope),
+                          axes,
+                          settings,
+                          two_sum(start.theta, -rest),
+                          two_sum(start.x, -centre_path(axes, rest)),
+                          centre_path(axes, pi),
+                          {settings.step.value_or(0.0), {}}};
+    motion.steps.knots.push_back({0.0, {rest, start.omega}, Vector<2>::Zero(), 0.0});
+    return motion;
+}
+
+RollingIntegration integrate_rolling(const Scene& scene, const State& start,
+                                     const Settings& settings, double t_end,
+                                     const Checkpoint& checkpoint) {
+    RollingIntegration result{rolling_from(scene, start, settings), Ending::reached, {}};
+    SteppedRolling& motion = result.motion;
+    if (start.mode == Mode::rest) return result;
+    const auto keep = [](Point<2>&) { return AfterStep::go_on; };
+    const auto reduce = [&](Point<2>& point) {
+        const double half_turns = take_half_turns_off(point.y[0], point.carry[0]);
+        point.origin[0] += half_turns * pi;
+        return half_turns;
+    };
+    with_integrator(motion, [&](auto integrator) {
+        result.ending = integrate(integrator, motion.steps, {settings.rtol, settings.atol},
+                                  settings.max_steps, t_end, keep, reduce, checkpoint);
+        result.counts = integrator.counts();
+    });
+    result.counts.steps = static_cast<long>(motion.steps.knots.size()) - 1;
+    return result;
+}
+
+void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples) {
+    with_integrator(motion, [&](auto integrator) {
+        look(integrator, motion.steps, times, n,
+             [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
+                 samples[i] = flow_sample(motion, knot, change);
+             });
+    });
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,189 @@
+#include "scene/impact.hpp"
+
+#include <cmath>
+
+#include "geometry/ellipse.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// The law approaches its limit for infinite friction like 1/friction: beyond this, within rounding.
+constexpr double practically_infinite = 1e20;
+
+// Velocity of the material contact point, physics (12): v along the ground, u away from it; and the
+// matrix that takes an impulse there to its change (Delassus), physics (39). W. J. Stronge, Impact
+// Mechanics (2000), ch. 3.
+struct Contact {
+    double v;
+    double u;
+    double gtt;
+    double gtn;
+    double gnn;
+    double determinant;  // gtt gnn - gtn^2 = (1/m) (1/m + (h^2 + h'^2)/I)
+};
+
+Contact contact(const Scene& scene, const Geometry& at, const State& state) {
+    const double inverse_mass = 1 / scene.mass;
+    const double inverse_inertia = 1 / scene.inertia;
+    return {state.x_dot - at.h * state.omega,
+            state.z_dot - at.dh * state.omega,
+            inverse_mass + at.h * at.h * inverse_inertia,
+            at.h * at.dh * inverse_inertia,
+            inverse_mass + at.dh * at.dh * inverse_inertia,
+            inverse_mass * (inverse_mass + (at.h * at.h + at.dh * at.dh) * inverse_inertia)};
+}
+
+struct Reaction {
+    double tangential = 0.0;
+    double normal = 0.0;
+    double rebound = 0.0;  // u afterwards
+    bool sticks = false;   // ends with v = 0
+};
+
+// mu = infinity: the limit of the law below, physics (42) (no product infinity * 0 is ever formed).
+Reaction unlimited_friction(const Contact& c, double restitution) {
+    const double u_without_slip = c.u - c.v * c.gtn / c.gtt;
+    const double rebound = -restitution * c.u;
+    if (u_without_slip <= 0) {
+        // v = 0 and u = -e times that without slip: the full 2 x 2 system.
+        const double normal = -(1 + restitution) * u_without_slip * c.gtt / c.determinant;
+        return {-(c.v + c.gtn * normal) / c.gtt, normal, -restitution * u_without_slip, true};
+    }
+    if (u_without_slip <= rebound) return {-c.v / c.gtt, 0.0, u_without_slip, true};
+    return {(rebound - c.u) / c.gtn, 0.0, rebound, false};  // friction alone stops the approach
+}
+
+// The impulse path of Coulomb friction, physics (41), its normal impulse p as time: u and v change
+// linearly while it slips, and while it sticks. Compression ends with u = 0, restitution when its
+// normal work is -e^2 times that of compression (Stronge's energetic coefficient), physics (56).
+class ImpulsePath {
+  public:
+    ImpulsePath(const Contact& c, double restitution)
+        : u_(c.u), restitution2_(restitution * restitution) {}
+
+    // Go on with du/dp and a tangential impulse per normal one, for at most p; false at the end.
+    bool go_on(double du, double tangential, double most) {
+        double left = most;
+        if (u_ < 0) {
+            const double p = std::fmin(du > 0 ? -u_ / du : infinity, left);
+            work_ -= restitution2_ * p * (u_ + 0.5 * du * p);
+            const bool compressed = p < left || u_ + du * p >= 0;
+            advance(p, compressed ? 0.0 : u_ + du * p, tangential);
+            left -= p;
+            if (!compressed) return true;
+        }
+        // The rest of the work, u p + du p^2/2: physics (56).
+        const double end = std::sqrt(u_ * u_ + 2 * du * work_);
+        const double p = work_ == 0 ? 0.0 : 2 * work_ / (u_ + end);
+        if (p < left) {
+            advance(p, end, tangential);
+            return false;
+        }
+        work_ -= left * (u_ + 0.5 * du * left);
+        advance(left, u_ + du * left, tangential);
+        return true;
+    }
+
+    Reaction result(bool sticks) const { return {tangential_, normal_, u_, sticks}; }
+
+  private:
+    void advance(double p, double u, double tangential) {
+        normal_ += p;
+        tangential_ += tangential * p;
+        u_ = u;
+    }
+
+    double u_;
+    double restitution2_;
+    double work_ = 0.0;  // that restitution still has to do
+    double normal_ = 0.0;
+    double tangential_ = 0.0;
+};
+
+Reaction coulomb_friction(const Contact& c, double friction, double restitution) {
+    ImpulsePath path(c, restitution);
+    if (c.v != 0) {
+        const double side = std::copysign(1.0, c.v);
+        const double v_gain = c.gtn - friction * side * c.gtt;
+        const double to_stick = side * v_gain < 0 ? -c.v / v_gain : infinity;
+        if (!path.go_on(c.gnn - friction * side * c.gtn, -friction * side, to_stick)) {
+            return path.result(false);
+        }
+    }
+    const bool sticks = std::abs(c.gtn) <= friction * c.gtt;
+    if (sticks) {
+        path.go_on(c.determinant / c.gtt, -c.gtn / c.gtt, infinity);
+    } else {  // slip starts (again), driven by the normal impulse
+        const double side = std::copysign(1.0, c.gtn);
+        path.go_on(c.gnn - friction * side * c.gtn, -friction * side, infinity);
+    }
+    return path.result(sticks);
+}
+
+// The gap rate is the rebound afterwards, and v = 0 where it sticks, exactly. The angular momentum
+// about the contact, which no reaction changes, gives the sticking angular velocity, physics (40):
+// k^2 omega + h x. + h' z. with x. = h omega, z. = h' omega + rebound.
+void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, State& state) {
+    if (reaction.sticks) {
+        const double k2 = scene.inertia / scene.mass;
+        state.omega =
+            (k2 * state.omega + at.h * state.x_dot + at.dh * (state.z_dot - reaction.rebound)) /
+            (k2 + at.h * at.h + at.dh * at.dh);
+        state.x_dot = at.h * state.omega;
+    } else {
+        state.omega -= (at.h * reaction.tangential + at.dh * reaction.normal) / scene.inertia;
+        state.x_dot += reaction.tangential / scene.mass;
+    }
+    state.z_dot = at.dh * state.omega + reaction.rebound;
+}
+
+Reaction reaction_to(const Scene& scene, const Contact& c, double restitution) {
+    return scene.friction > practically_infinite ? unlimited_friction(c, restitution)
+                                                 : coulomb_friction(c, scene.friction, restitution);
+}
+
+}  // namespace
+
+InitialState initial_state(const Scene& scene) {
+    InitialState result{state_before_impulse(scene), 0.0, 0.0, scene.omega};
+    State& state = result.state;
+    const Geometry at = geometry(Axes{scene.a, scene.b}, state.theta);
+    const bool touching = state.z == at.h;
+    if (scene.impulse) {
+        const Impulse& j = *scene.impulse;  // physics (38)
+        state.x_dot += j.jx / scene.mass;
+        state.z_dot += j.jz / scene.mass;
+        state.omega += (j.jx * j.dz - j.jz * j.dx) / scene.inertia;
+        result.free_omega = state.omega;
+    }
+    const bool kicked = scene.impulse && (scene.impulse->jx != 0 || scene.impulse->jz != 0);
+    const bool slip_removed = state.mode == Mode::sliding && std::isinf(scene.friction);
+    if (!touching || !(kicked || slip_removed)) return result;
+
+    const Contact c = contact(scene, at, state);
+    if (c.u > 0) {
+        state.mode = Mode::flight;
+        return result;
+    }
+    const Reaction reaction = reaction_to(scene, c, 0.0);
+    result.reaction_x = reaction.tangential;
+    result.reaction_z = reaction.normal;
+    apply(scene, at, reaction, state);
+    state.omega = noticeable(state.omega);
+    state.mode = reaction.sticks ? Mode::rolling : Mode::sliding;
+    if (state.mode == Mode::rolling && state.omega == 0 &&
+        is_equilibrium(at, std::tan(scene.slope))) {
+        state.mode = Mode::rest;
+    }
+    return result;
+}
+
+State after_collision(const Scene& scene, const State& before) {
+    const Geometry at = geometry(Axes{scene.a, scene.b}, before.theta);
+    State after = before;
+    const Contact c = contact(scene, at, before);
+    if (c.u < 0) apply(scene, at, reaction_to(scene, c, scene.restitution), after);
+    return after;
+}
+
+}  // namespace rolling_ellipse

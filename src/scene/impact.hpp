@@ -1,0 +1,24 @@
+// Collisions with the ground: Coulomb friction along the impulse path, energetic restitution (W. J.
+// Stronge, Impact Mechanics (2000), ch. 3 to 5). The applied impulse is a collision without
+// restitution of a body that the impulse has just moved.
+#pragma once
+
+#include "scene/scene.hpp"
+
+namespace rolling_ellipse {
+
+// The state just after the applied impulse (or the scene's own state, where there is none). Its
+// mode is what its velocities look like; what forces make of it, contact/continuation.hpp says.
+struct InitialState {
+    State state;
+    double reaction_x;  // impulse of the ground [N s]
+    double reaction_z;
+    double free_omega;  // without the ground's reaction: the report's eq 48
+};
+
+InitialState initial_state(const Scene& scene);
+
+// A body that touches the ground and moves into it, just after the collision; its mode is left.
+State after_collision(const Scene& scene, const State& before);
+
+}  // namespace rolling_ellipse

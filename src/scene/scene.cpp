@@ -1,0 +1,179 @@
+#include "scene/scene.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "geometry/ellipse.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// Within these no product of four lengths, an energy and gravity leaves the range of doubles.
+constexpr double smallest = 1e-30;
+constexpr double largest = 1e30;
+constexpr double largest_number = 1e50;  // of positions, velocities, impulses
+constexpr double inertia_limit = 1e30;   // of k^2 beside the long semi-axis squared, either way
+constexpr double energy_limit = 1e100;   // of a kinetic energy beside m g times that axis
+constexpr double aspect_limit = 1e3;
+constexpr double touching_ulps = 8;
+
+void require_finite(const std::string& name, const std::string& unit, double value) {
+    if (!(std::abs(value) <= largest_number)) {
+        refuse(name, "a finite number" + unit + " of at most 1e50", value);
+    }
+}
+
+void require_positive(const std::string& name, const std::string& kind, double value) {
+    if (!(value > 0 && std::isfinite(value))) {
+        refuse(name, "a positive finite " + kind, value);
+    }
+    if (value < smallest || value > largest) {
+        refuse(name, "a " + kind + " between 1e-30 and 1e30", value);
+    }
+}
+
+bool nearly_equal(double value, double target) {
+    const double ulp =
+        std::max(epsilon * std::abs(target), std::numeric_limits<double>::denorm_min());
+    return std::abs(value - target) <= touching_ulps * ulp;
+}
+
+}  // namespace
+
+std::string text(double value) {
+    if (std::isnan(value)) return "nan";
+    if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+    char buffer[40];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+    std::string digits(buffer, end);
+    if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
+    return digits;
+}
+
+void refuse(const std::string& name, const std::string& requirement, double value) {
+    throw std::invalid_argument(name + " must be " + requirement + ", got " + text(value));
+}
+
+void validate_axes(double a, double b) {
+    require_positive("a", "length [m]", a);
+    require_positive("b", "length [m]", b);
+    const double ratio = a / b;
+    if (!(ratio <= aspect_limit * (1 + epsilon) && ratio * aspect_limit >= 1 - epsilon)) {
+        refuse("a/b", "between 1e-3 and 1e3", ratio);
+    }
+}
+
+void validate(const Body& body) {
+    validate_axes(body.a, body.b);
+    require_positive("gravity", "acceleration [m/s^2]", body.gravity);
+    if (!(body.gyration2 > 0 && std::isfinite(body.gyration2))) {
+        refuse("gyration2", "a positive finite area [m^2]", body.gyration2);
+    }
+    const double ratio = body.gyration2 / square(std::max(body.a, body.b));
+    if (ratio > inertia_limit || ratio * inertia_limit < 1) {
+        refuse("gyration2", "between 1e-30 and 1e30 times max(a, b)^2", body.gyration2);
+    }
+}
+
+void validate_motion(const Body& body, double theta, double omega) {
+    require_finite("theta", " [rad]", theta);
+    require_finite("omega", " [rad/s]", omega);
+    const double axis = std::max(body.a, body.b);
+    const double energy = square(omega) * (body.gyration2 + square(axis)) / (body.gravity * axis);
+    if (energy > energy_limit) {
+        const double most = std::abs(omega) * std::sqrt(energy_limit / energy);
+        refuse("omega", "at most " + text(most) + " [rad/s] in size for this body", omega);
+    }
+}
+
+void validate_velocity(const Body& body, double x_dot, double z_dot) {
+    const double most = std::sqrt(energy_limit * body.gravity * std::max(body.a, body.b));
+    const auto require = [&](const std::string& name, double speed) {
+        if (std::abs(speed) <= most) return;
+        refuse(name, "at most " + text(most) + " [m/s] in size for this body", speed);
+    };
+    require("x_dot", x_dot);
+    require("z_dot", z_dot);
+}
+
+void validate_friction(double friction) {
+    if (!(friction >= 0)) refuse("friction", "a coefficient of at least 0 (inf allowed)", friction);
+}
+
+void validate(const Impulse& impulse) {
+    require_finite("jx", " [N s]", impulse.jx);
+    require_finite("jz", " [N s]", impulse.jz);
+    require_finite("dx", " [m]", impulse.dx);
+    require_finite("dz", " [m]", impulse.dz);
+}
+
+void validate(const Scene& scene) {
+    validate_axes(scene.a, scene.b);
+    require_positive("mass", "mass [kg]", scene.mass);
+    require_positive("gravity", "acceleration [m/s^2]", scene.gravity);
+    if (!(scene.inertia > 0 && std::isfinite(scene.inertia))) {
+        refuse("inertia", "a positive finite moment of inertia [kg m^2]", scene.inertia);
+    }
+    const double disc = scene.mass * square(std::max(scene.a, scene.b));
+    if (!(scene.inertia / disc <= inertia_limit && scene.inertia / disc * inertia_limit >= 1)) {
+        refuse("inertia", "between 1e-30 and 1e30 times mass max(a, b)^2", scene.inertia);
+    }
+    validate(scene.body());
+    if (!(std::abs(scene.slope) < half_pi)) {
+        refuse("slope", "an angle [rad] strictly between -pi/2 and pi/2", scene.slope);
+    }
+    validate_friction(scene.friction);
+    if (!(scene.restitution >= 0 && scene.restitution <= 1)) {
+        refuse("restitution", "between 0 and 1", scene.restitution);
+    }
+    validate_motion(scene.body(), scene.theta, scene.omega);
+    require_finite("x", " [m]", scene.x);
+    if (scene.z) require_finite("z", " [m]", *scene.z);
+    if (scene.x_dot) require_finite("x_dot", " [m/s]", *scene.x_dot);
+    if (scene.z_dot) require_finite("z_dot", " [m/s]", *scene.z_dot);
+    validate_velocity(scene.body(), scene.x_dot.value_or(0.0), scene.z_dot.value_or(0.0));
+    if (scene.impulse) validate(*scene.impulse);
+    state_before_impulse(scene);
+}
+
+State state_before_impulse(const Scene& scene) {
+    const Geometry at = geometry({scene.a, scene.b}, scene.theta);
+    State state{scene.theta, noticeable(scene.omega), scene.x, at.h, 0.0, 0.0, Mode::flight};
+    const double z = scene.z.value_or(at.h);
+    if (!nearly_equal(z, at.h)) {
+        if (z < at.h)
+            refuse("z",
+                   "at least h(theta) = " + text(at.h) +
+                       " [m], the height at which "
+                       "the ellipse touches the ground",
+                   z);
+        state.z = z;
+        state.x_dot = scene.x_dot.value_or(0.0);
+        state.z_dot = scene.z_dot.value_or(0.0);
+        return state;
+    }
+    const double rolling_x_dot = at.h * state.omega;  // physics (12)
+    const double rolling_z_dot = at.dh * state.omega;
+    state.x_dot = scene.x_dot.value_or(rolling_x_dot);
+    state.z_dot = scene.z_dot.value_or(rolling_z_dot);
+    if (nearly_equal(state.x_dot, rolling_x_dot)) state.x_dot = rolling_x_dot;
+    if (nearly_equal(state.z_dot, rolling_z_dot)) state.z_dot = rolling_z_dot;
+    if (state.z_dot < rolling_z_dot) {
+        refuse("z_dot",
+               "at least h'(theta)*omega = " + text(rolling_z_dot) +
+                   " [m/s] while touching the ground (less moves into it)",
+               state.z_dot);
+    }
+    if (state.z_dot == rolling_z_dot) {
+        const bool at_rest =
+            state.omega == 0 && state.x_dot == 0 && is_equilibrium(at, std::tan(scene.slope));
+        state.mode = at_rest                        ? Mode::rest
+                     : state.x_dot == rolling_x_dot ? Mode::rolling
+                                                    : Mode::sliding;
+    }
+    return state;
+}
+
+}  // namespace rolling_ellipse
