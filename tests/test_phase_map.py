@@ -327,6 +327,7 @@ def test_without_axes_it_opens_a_figure() -> None:
         ({"y": "friction", "energy": math.inf}, r"energy must be 0 or more, finite, got inf"),
         ({"y": "friction", "speed": -1}, r"speed must be 0 or more, finite, got -1.0"),
         ({"b": 0}, r"b must be positive and finite, got 0.0"),
+        ({"b": 1.4e166, "workers": 1}, r"b must be a length .*, got 1.4e\+166"),
         ({"gravity": math.inf}, r"gravity must be positive and finite, got inf"),
         ({"x_range": (0.9, 2)}, r"x_range must be two ascending .* not below 1 .*1000, got \(0.9"),
         ({"x_range": (2, 2)}, r"x_range must be two ascending finite numbers, .*, got \(2, 2\)"),

@@ -27,6 +27,7 @@ from rolling_ellipse import (
 )
 
 INF, NAN = math.inf, math.nan
+FLOW: dict[str, Any] = {"t": 1.0, "a": 2.0, "b": 1.0, "theta": 0.2, "omega": 1.0}
 
 
 def assert_refused(
@@ -79,6 +80,13 @@ def test_scene_refuses_none(name: str) -> None:
 @pytest.mark.parametrize("axes", [(1000.1, 1.0), (1.0, 1000.1), (1e-9, 1.0), (1.0, 1e-20)])
 def test_scene_refuses_needles(axes: tuple[float, float]) -> None:
     assert_refused(ValueError, "a/b", "got", Scene, a=axes[0], b=axes[1])
+
+
+@pytest.mark.parametrize("share", [0.9e-15, 1.1e30])
+def test_mass_is_neither_at_a_point_nor_far_outside(share: float) -> None:
+    """Below 1e-15 L^2, k^2 vanishes beside h^2: events were NaN, and energy grew."""
+    assert_refused(ValueError, "inertia", repr(4.0 * share), scene, inertia=4.0 * share)
+    assert_refused(ValueError, "gyration2", repr(4.0 * share), flow, **FLOW, gyration2=4.0 * share)
 
 
 @pytest.mark.parametrize("axes", [(1000.0, 1.0), (1.0, 1000.0), (1e-3, 1.0), (1e-9, 1e-9)])
@@ -341,8 +349,6 @@ def test_period_is_for_level_ground() -> None:
 
 
 # ------------------------------------------------------- flow, thresholds, constraints, kinematics
-
-FLOW: dict[str, Any] = {"t": 1.0, "a": 2.0, "b": 1.0, "theta": 0.2, "omega": 1.0}
 
 
 @pytest.mark.parametrize("name", ["a", "b", "gravity", "gyration2"])

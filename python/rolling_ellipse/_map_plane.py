@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from . import _core
 from ._check import FloatArray, choice, number, positive, uniform_disc
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")
@@ -51,9 +52,9 @@ class Plane:
 
     def roll_over_speed(self, aspect: Any) -> Any:
         """What rolling over takes, at the flat position [rad/s], physics (44)."""
-        a = np.asarray(aspect) * self.b
-        inertia = uniform_disc(a, np.asarray(self.b)) + self.b**2
-        return np.sqrt(2 * self.gravity * (a - self.b) / inertia)
+        aspect = np.asarray(aspect)
+        inertia = uniform_disc(aspect, 1.0) + 1.0
+        return np.sqrt(2 * self.gravity / self.b * (aspect - 1) / inertia)
 
     def scenes(self, x: FloatArray, y: FloatArray) -> dict[str, Any]:
         """Arguments of `classify` at points of the plane."""
@@ -99,6 +100,7 @@ def plane_of(
             f"got {axes[0]!r} and {axes[1]!r}"
         )
     b, gravity = positive("b", b), positive("gravity", gravity)
+    _core.validate_length("b", b)
     shown = {**_SHOWN, "speed": (0.0, _FASTEST * math.sqrt(gravity / b))}
     limits = [
         shown[axis] if given is None else _range(f"{argument}_range", axis, given)

@@ -87,6 +87,7 @@ void define_geometry(py::module_& module, const char* name, Function function) {
 }  // namespace
 
 void bind_geometry(py::module_& m) {
+    m.def("validate_length", validate_length, "name"_a, "value"_a);
     define_geometry(m, "support", [](const Axes& e, double t) { return geometry(e, t).h; });
     define_geometry(m, "support_slope", [](const Axes& e, double t) { return geometry(e, t).dh; });
     define_geometry(m, "support_curvature",

@@ -14,8 +14,10 @@ namespace {
 constexpr double smallest = 1e-30;
 constexpr double largest = 1e30;
 constexpr double largest_number = 1e50;  // of positions, velocities, impulses
-constexpr double inertia_limit = 1e30;   // of k^2 beside the long semi-axis squared, either way
-constexpr double energy_limit = 1e100;   // of a kinetic energy beside m g times that axis
+// Of k^2 beside the long semi-axis squared: below the least, k^2 is lost beside h^2 in D.
+constexpr double least_inertia = 1e-15;
+constexpr double most_inertia = 1e30;
+constexpr double energy_limit = 1e100;  // of a kinetic energy beside m g times that axis
 constexpr double aspect_limit = 1e3;
 constexpr double touching_ulps = 8;
 
@@ -56,9 +58,13 @@ void refuse(const std::string& name, const std::string& requirement, double valu
     throw std::invalid_argument(name + " must be " + requirement + ", got " + text(value));
 }
 
+void validate_length(const std::string& name, double value) {
+    require_positive(name, "length [m]", value);
+}
+
 void validate_axes(double a, double b) {
-    require_positive("a", "length [m]", a);
-    require_positive("b", "length [m]", b);
+    validate_length("a", a);
+    validate_length("b", b);
     const double ratio = a / b;
     if (!(ratio <= aspect_limit * (1 + epsilon) && ratio * aspect_limit >= 1 - epsilon)) {
         refuse("a/b", "between 1e-3 and 1e3", ratio);
@@ -72,8 +78,8 @@ void validate(const Body& body) {
         refuse("gyration2", "a positive finite area [m^2]", body.gyration2);
     }
     const double ratio = body.gyration2 / square(std::max(body.a, body.b));
-    if (ratio > inertia_limit || ratio * inertia_limit < 1) {
-        refuse("gyration2", "between 1e-30 and 1e30 times max(a, b)^2", body.gyration2);
+    if (!(ratio >= least_inertia && ratio <= most_inertia)) {
+        refuse("gyration2", "between 1e-15 and 1e30 times max(a, b)^2", body.gyration2);
     }
 }
 
@@ -117,8 +123,9 @@ void validate(const Scene& scene) {
         refuse("inertia", "a positive finite moment of inertia [kg m^2]", scene.inertia);
     }
     const double disc = scene.mass * square(std::max(scene.a, scene.b));
-    if (!(scene.inertia / disc <= inertia_limit && scene.inertia / disc * inertia_limit >= 1)) {
-        refuse("inertia", "between 1e-30 and 1e30 times mass max(a, b)^2", scene.inertia);
+    const double ratio = scene.inertia / disc;
+    if (!(ratio >= least_inertia && ratio <= most_inertia)) {
+        refuse("inertia", "between 1e-15 and 1e30 times mass max(a, b)^2", scene.inertia);
     }
     validate(scene.body());
     if (!(std::abs(scene.slope) < half_pi)) {

@@ -71,6 +71,7 @@ inline double noticeable(double omega) { return omega > -1e-100 && omega < 1e-10
 std::string text(double value);
 
 // Throw std::invalid_argument naming the argument, what was required and what came.
+void validate_length(const std::string& name, double value);
 void validate_axes(double a, double b);
 void validate(const Body& body);
 void validate_motion(const Body& body, double theta, double omega);

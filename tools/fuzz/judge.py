@@ -161,6 +161,8 @@ class Case:
             names = self._argument_names(line)
             if line.forgery:
                 names |= {"q", "q_dot"}  # what is made of arrays that somebody has put in
+            if "trajectories" in names:
+                names.add("trajectory")  # one of them
             if not any(map(str(error).__contains__, _TOGETHER)) and not _names_one(error, names):
                 yield self._finding(line, "unnamed", said)
         elif not isinstance(error, OSError | MemoryError | ImportError):
