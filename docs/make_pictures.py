@@ -4,7 +4,7 @@ from io import BytesIO
 from pathlib import Path
 
 import numpy as np
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -18,9 +18,9 @@ METHODS = {
 
 
 def main() -> None:
-    trajectory = re.simulate(re.scenes.report, 6.0)
-    re.animate(trajectory, HERE / "roll.gif")
-    overview = re.plot(trajectory, figure=Figure(figsize=(10, 8.5), layout="constrained"))
+    trajectory = rl.simulate(rl.scenes.report, 6.0)
+    rl.animate(trajectory, HERE / "roll.gif")
+    overview = rl.plot(trajectory, figure=Figure(figsize=(10, 8.5), layout="constrained"))
     save(overview.figure, "overview.png")
     save(methods(), "methods.png")
 
@@ -30,8 +30,8 @@ def methods() -> Figure:
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     t = np.linspace(0.0, 200.0, 501)
     ways = [{"model": "rolling", **how} for how in METHODS.values()]
-    motions = [re.simulate(re.scenes.rolling, t, **way) for way in ways]
-    re.plot_energy(motions, ax=figure.add_subplot(), labels=list(METHODS))
+    motions = [rl.simulate(rl.scenes.rolling, t, **way) for way in ways]
+    rl.plot_energy(motions, ax=figure.add_subplot(), labels=list(METHODS))
     return figure
 
 

@@ -1,17 +1,17 @@
 """Scenes to draw, and what a drawn ellipse is, from matplotlib's own transform of it."""
 
 import numpy as np
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
 
 ORDINARY_SCENES = {
-    "report": re.scenes.report,
-    "rocking": re.scenes.rocking,
-    "circle": re.scenes.circle,
-    "thin": re.scenes.thin,
-    "standing": re.Scene(0.7, 1.9, omega=1.0),
-    "backwards": re.Scene(2.0, 1.0, omega=-3.2),
+    "report": rl.scenes.report,
+    "rocking": rl.scenes.rocking,
+    "circle": rl.scenes.circle,
+    "thin": rl.scenes.thin,
+    "standing": rl.Scene(0.7, 1.9, omega=1.0),
+    "backwards": rl.Scene(2.0, 1.0, omega=-3.2),
 }
 
 

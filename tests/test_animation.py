@@ -4,7 +4,7 @@ import base64
 import dataclasses
 import io
 import math
-import re as regex
+import re
 import warnings
 from pathlib import Path
 
@@ -15,37 +15,36 @@ import pytest
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from pictures import ORDINARY_SCENES, outline, support
 from PIL import Image
-from rolling_ellipse import _movies as movies
-from rolling_ellipse import animation as animation_module
-from rolling_ellipse._strip import Strip
-from rolling_ellipse.animation import RollingAnimation
+from rolling_ellipse._pictures import animation as animation_module
+from rolling_ellipse._pictures.animation import RollingAnimation, movies
+from rolling_ellipse._pictures.animation.strip import Strip
 
 SCENES = {
     **ORDINARY_SCENES,
-    "kilometres": re.Scene(2.3e3, 1.1e3, omega=0.04, x=-500.0),
+    "kilometres": rl.Scene(2.3e3, 1.1e3, omega=0.04, x=-500.0),
 }
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 @pytest.fixture(params=SCENES.values(), ids=SCENES.keys())
-def trajectory(request: pytest.FixtureRequest) -> re.Trajectory:
-    return re.simulate(request.param, 4.0)
+def trajectory(request: pytest.FixtureRequest) -> rl.Trajectory:
+    return rl.simulate(request.param, 4.0)
 
 
 @pytest.fixture(scope="module")
-def report() -> re.Trajectory:
-    return re.simulate(re.scenes.report, 6.0)
+def report() -> rl.Trajectory:
+    return rl.simulate(rl.scenes.report, 6.0)
 
 
 @pytest.fixture
-def short(report: re.Trajectory) -> RollingAnimation:
+def short(report: rl.Trajectory) -> RollingAnimation:
     """Eleven frames, 0.4 s."""
-    return re.animate(report, t_end=0.4, width=160, dpi=50)
+    return rl.animate(report, t_end=0.4, width=160, dpi=50)
 
 
 def frames(animation: RollingAnimation) -> range:
@@ -76,9 +75,9 @@ def rolled(body: tuple[float, float], theta: float, other: float) -> float:
 
 
 def test_in_every_frame_the_body_touches_the_ground_at_the_contact(
-    trajectory: re.Trajectory,
+    trajectory: rl.Trajectory,
 ) -> None:
-    animation = re.animate(trajectory, width=160)
+    animation = rl.animate(trajectory, width=160)
     strip = only(animation)
     scene = trajectory.scene
     size = max(scene.a, scene.b)
@@ -95,8 +94,8 @@ def test_in_every_frame_the_body_touches_the_ground_at_the_contact(
         assert contact_z == 0
 
 
-def test_from_frame_to_frame_the_body_moves_as_far_as_it_rolls(trajectory: re.Trajectory) -> None:
-    animation = re.animate(trajectory, width=160)
+def test_from_frame_to_frame_the_body_moves_as_far_as_it_rolls(trajectory: rl.Trajectory) -> None:
+    animation = rl.animate(trajectory, width=160)
     body, scene = only(animation).body, trajectory.scene
     place, angle = body.get_center()[0], body.angle
     for i in frames(animation):
@@ -116,8 +115,8 @@ def test_the_checks_see_a_millimetre(short: RollingAnimation) -> None:
     assert half_turn == pytest.approx(9.6884482205476762 / 2, rel=1e-15)
 
 
-def test_frames_are_the_trajectory_in_true_time(report: re.Trajectory) -> None:
-    animation = re.animate(report, fps=20, speed=0.5, t_end=1.0, width=160)
+def test_frames_are_the_trajectory_in_true_time(report: rl.Trajectory) -> None:
+    animation = rl.animate(report, fps=20, speed=0.5, t_end=1.0, width=160)
     strip = only(animation)
     assert len(frames(animation)) == 41
     for i in frames(animation):
@@ -143,15 +142,15 @@ def test_frames_are_the_trajectory_in_true_time(report: re.Trajectory) -> None:
     ],
 )
 def test_the_clock_has_the_digits_that_tell_frames_apart(
-    report: re.Trajectory, fps: float, speed: float, second: str
+    report: rl.Trajectory, fps: float, speed: float, second: str
 ) -> None:
-    animation = re.animate(report, fps=fps, speed=speed, max_frames=2)
+    animation = rl.animate(report, fps=fps, speed=speed, max_frames=2)
     animation.draw(1)
     assert animation.clock.get_text() == second
 
 
-def test_axes_tip_and_traces_belong_to_the_body(report: re.Trajectory) -> None:
-    animation = re.animate(report, width=160)
+def test_axes_tip_and_traces_belong_to_the_body(report: rl.Trajectory) -> None:
+    animation = rl.animate(report, width=160)
     strip = only(animation)
     ends: list[np.ndarray] = []
     for i in frames(animation):
@@ -178,10 +177,10 @@ def test_frames_may_be_drawn_in_any_order(short: RollingAnimation) -> None:
     assert [strip.body.get_center(), strip.body.angle, strip.contact.get_xdata()[0]] == first
 
 
-def test_no_contact_is_drawn_in_flight(report: re.Trajectory) -> None:
+def test_no_contact_is_drawn_in_flight(report: rl.Trajectory) -> None:
     at = report.sol([0.0, 0.1, 0.2])
     flying = dataclasses.replace(at)
-    flying.__dict__["mode"] = np.array([re.Mode.ROLLING, re.Mode.FLIGHT, re.Mode.ROLLING], np.int8)
+    flying.__dict__["mode"] = np.array([rl.Mode.ROLLING, rl.Mode.FLIGHT, rl.Mode.ROLLING], np.int8)
     flying.__dict__["_solution"] = at.__dict__["_solution"]
     animation = RollingAnimation(
         [flying], flying.t, [""], fps=10, speed=1, width=160, dpi=50, figure=None
@@ -193,9 +192,9 @@ def test_no_contact_is_drawn_in_flight(report: re.Trajectory) -> None:
 
 def test_the_caption_says_when_rolling_is_no_longer_valid() -> None:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", re.ValidityWarning)
-        jump = re.simulate(re.scenes.jump, 1.0, model="rolling")
-    animation = re.animate(jump, width=160)
+        warnings.simplefilter("ignore", rl.ValidityWarning)
+        jump = rl.simulate(rl.scenes.jump, 1.0, model="rolling")
+    animation = rl.animate(jump, width=160)
     said = []
     for i in frames(animation):
         animation.draw(i)
@@ -218,7 +217,7 @@ def view_of(animation: RollingAnimation) -> tuple[tuple[float, float], tuple[flo
 def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
     t_end: float, follows: bool
 ) -> None:
-    animation = re.animate(re.simulate(re.scenes.report, 40.0), t_end=t_end, fps=5)
+    animation = rl.animate(rl.simulate(rl.scenes.report, 40.0), t_end=t_end, fps=5)
     views = set()
     for i in frames(animation):
         animation.draw(i)
@@ -232,8 +231,8 @@ def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
     assert len(views) == (len(frames(animation)) if follows else 1)
 
 
-def test_the_body_is_always_seen_whole(trajectory: re.Trajectory) -> None:
-    animation = re.animate(trajectory, width=160)
+def test_the_body_is_always_seen_whole(trajectory: rl.Trajectory) -> None:
+    animation = rl.animate(trajectory, width=160)
     for i in frames(animation):
         animation.draw(i)
         (left, right), (_, top) = view_of(animation)
@@ -243,7 +242,7 @@ def test_the_body_is_always_seen_whole(trajectory: re.Trajectory) -> None:
 
 
 def test_the_ground_is_ruled_where_the_body_is() -> None:
-    animation = re.animate(re.simulate(re.Scene(1.0, 1.0, omega=1e6), 9.0), width=160)
+    animation = rl.animate(rl.simulate(rl.Scene(1.0, 1.0, omega=1e6), 9.0), width=160)
     strip = only(animation)
     for i in (0, 100, 200):  # 4e6 m on
         animation.draw(i)
@@ -272,9 +271,9 @@ def gif_frames(data: bytes) -> tuple[list[np.ndarray], list[int]]:
 
 
 @pytest.mark.parametrize("fps", [10, 12.5, 20, 25, 100 / 3, 50])
-def test_gif_keeps_the_time(report: re.Trajectory, tmp_path: Path, fps: float) -> None:
+def test_gif_keeps_the_time(report: rl.Trajectory, tmp_path: Path, fps: float) -> None:
     path = tmp_path / "roll.gif"
-    animation = re.animate(report, path, t_end=0.4, fps=fps, width=160, dpi=50)
+    animation = rl.animate(report, path, t_end=0.4, fps=fps, width=160, dpi=50)
     pictures, durations = gif_frames(path.read_bytes())
     assert len(pictures) == len(frames(animation)) == 1 + math.floor(0.4 * fps + 1e-9)
     assert durations == [round(1000 / fps)] * len(pictures)
@@ -300,7 +299,7 @@ def test_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path) 
 
 def test_gif_of_ten_seconds_is_small(tmp_path: Path) -> None:
     path = tmp_path / "roll.gif"
-    re.animate(re.simulate(re.scenes.report, 60.0), path)
+    rl.animate(rl.simulate(rl.scenes.report, 60.0), path)
     with Image.open(path) as gif:
         assert gif.n_frames == 250
         assert gif.size[0] == 640
@@ -311,7 +310,7 @@ def test_html_is_a_player_with_every_frame(short: RollingAnimation, tmp_path: Pa
     path = tmp_path / "roll.html"
     short.save(path)
     text = path.read_text(encoding="utf-8")
-    embedded = regex.findall(r'frames\[(\d+)\] = "data:image/png;base64,', text)
+    embedded = re.findall(r'frames\[(\d+)\] = "data:image/png;base64,', text)
     assert embedded == [str(i) for i in frames(short)]
     assert list(tmp_path.iterdir()) == [path]  # nothing beside it
 
@@ -339,21 +338,21 @@ def test_mp4_keeps_the_time(short: RollingAnimation, tmp_path: Path) -> None:
 
 
 def test_mp4_without_ffmpeg_names_the_extra(
-    report: re.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(movies.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(movies.FFMpegWriter, "isAvailable", lambda: False)
     with pytest.raises(FileNotFoundError, match=r"rolling_ellipse\[video\]"):
-        re.animate(report, tmp_path / "roll.mp4")
+        rl.animate(report, tmp_path / "roll.mp4")
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("name", ["roll.avi", "roll", "gif", "roll.gif.png"])
 def test_another_suffix_is_refused_by_name(
-    report: re.Trajectory, tmp_path: Path, name: str
+    report: rl.Trajectory, tmp_path: Path, name: str
 ) -> None:
     with pytest.raises(ValueError, match=r"path must end in one of \.gif, \.mp4, \.html, got .*"):
-        re.animate(report, tmp_path / name)
+        rl.animate(report, tmp_path / name)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -364,10 +363,10 @@ def test_suffixes_may_be_written_large(short: RollingAnimation, tmp_path: Path) 
 
 @pytest.mark.parametrize("fps", [30, 24, 60, 100, 1e-3 + 25])
 def test_a_gif_that_could_not_keep_the_time_is_refused(
-    report: re.Trajectory, tmp_path: Path, fps: float
+    report: rl.Trajectory, tmp_path: Path, fps: float
 ) -> None:
     with pytest.raises(ValueError, match="fps must be 100 over a whole number of at least 2"):
-        re.animate(report, tmp_path / "roll.gif", fps=fps)
+        rl.animate(report, tmp_path / "roll.gif", fps=fps)
 
 
 def test_saving_shows_progress_when_asked(
@@ -397,23 +396,23 @@ def test_matplotlibs_own_writers_stay_open(short: RollingAnimation, tmp_path: Pa
 def test_a_notebook_shows_a_gif(short: RollingAnimation) -> None:
     assert repr(short) == "<RollingAnimation: 11 frames, 0.4 s>"
     html = short._repr_html_()
-    data = regex.fullmatch(r'<img alt="[^"]+" src="data:image/gif;base64,([^"]+)">', html)
+    data = re.fullmatch(r'<img alt="[^"]+" src="data:image/gif;base64,([^"]+)">', html)
     assert data is not None
     pictures, _ = gif_frames(base64.b64decode(data[1]))
     assert len(pictures) == 11
 
 
 def test_a_notebook_shows_a_player_where_a_gif_could_not_keep_the_time(
-    report: re.Trajectory,
+    report: rl.Trajectory,
 ) -> None:
-    html = re.animate(report, t_end=0.2, fps=30, width=160)._repr_html_()
+    html = rl.animate(report, t_end=0.2, fps=30, width=160)._repr_html_()
     assert html.count("data:image/png;base64,") == 7
     assert "setInterval" in html
 
 
-def test_a_notebook_is_not_flooded(report: re.Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_notebook_is_not_flooded(report: rl.Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(animation_module, "NOTEBOOK_FRAMES", 10)
-    html = re.animate(report, t_end=0.4)._repr_html_()
+    html = rl.animate(report, t_end=0.4)._repr_html_()
     assert "11 frames are too many" in html and len(html) < 300
 
 
@@ -430,8 +429,8 @@ def test_a_notebook_is_not_flooded(report: re.Trajectory, monkeypatch: pytest.Mo
     ],
 )
 def test_how_much_is_shown(options: dict[str, float], count: int, last: float) -> None:
-    trajectory = re.simulate(re.scenes.report, 40.0)
-    animation = re.animate(trajectory, width=160, **options)
+    trajectory = rl.simulate(rl.scenes.report, 40.0)
+    animation = rl.animate(trajectory, width=160, **options)
     assert animation.t.size == count
     assert animation.t[-1] == pytest.approx(last, abs=1e-14)
 
@@ -439,7 +438,7 @@ def test_how_much_is_shown(options: dict[str, float], count: int, last: float) -
 def test_the_last_frame_never_leaves_the_trajectory() -> None:
     for k in range(1, 60):
         end = k * 0.04  # may be an ulp below k / 25
-        assert re.animate(re.simulate(re.scenes.report, end)).t[-1] <= end
+        assert rl.animate(rl.simulate(rl.scenes.report, end)).t[-1] <= end
 
 
 @pytest.mark.parametrize(
@@ -456,23 +455,23 @@ def test_the_last_frame_never_leaves_the_trajectory() -> None:
     ],
 )
 def test_wrong_options_are_refused_by_name(
-    report: re.Trajectory, options: dict[str, float], message: str
+    report: rl.Trajectory, options: dict[str, float], message: str
 ) -> None:
     with pytest.raises(ValueError, match=message):
-        re.animate(report, **options)
+        rl.animate(report, **options)
 
 
-def test_size_and_resolution_are_what_was_asked_for(report: re.Trajectory, tmp_path: Path) -> None:
+def test_size_and_resolution_are_what_was_asked_for(report: rl.Trajectory, tmp_path: Path) -> None:
     with matplotlib.rc_context({"savefig.dpi": 37, "savefig.bbox": "tight"}):
-        re.animate(report, tmp_path / "roll.gif", t_end=0.1, width=322, dpi=80)
+        rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=322, dpi=80)
     with Image.open(tmp_path / "roll.gif") as gif:
         assert gif.size[0] == 322
         assert gif.size[1] % 2 == 0
 
 
-def test_it_draws_into_a_figure_it_is_given(report: re.Trajectory) -> None:
+def test_it_draws_into_a_figure_it_is_given(report: rl.Trajectory) -> None:
     figure = Figure(figsize=(5, 5))
-    animation = re.animate(report, t_end=0.2, figure=figure)
+    animation = rl.animate(report, t_end=0.2, figure=figure)
     assert animation.figure is figure
     assert tuple(figure.get_size_inches()) == (5, 5)
     (left, right), (bottom, top) = view_of(animation)
@@ -480,7 +479,7 @@ def test_it_draws_into_a_figure_it_is_given(report: re.Trajectory) -> None:
 
 
 def test_nothing_is_written_and_nothing_left_open(
-    report: re.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     animation = report.animate()

@@ -15,23 +15,23 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.animation import PillowWriter
 from matplotlib.figure import Figure
 from PIL import Image
-from rolling_ellipse import _movies as movies
 from rolling_ellipse import report
+from rolling_ellipse._pictures.animation import movies as movies
 
-MOTION = re.simulate(re.scenes.report, np.linspace(0.0, 1.0, 26))
-Q, Q_DOT = re.kinematics(0.3, 1.0, a=2.0, b=1.0)
+MOTION = rl.simulate(rl.scenes.report, np.linspace(0.0, 1.0, 26))
+Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
 BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 1.0, "gravity": 9.81}
-CURVES = [re.plot_paths, re.plot_phase, re.plot_forces, re.plot_energy, re.plot_constraints]
+CURVES = [rl.plot_paths, rl.plot_phase, rl.plot_forces, rl.plot_energy, rl.plot_constraints]
 SMALL: dict[str, Any] = {"t_end": 0.2, "width": 160, "dpi": 50}
 
 ANYTHING: list[Any] = [
     "a", "", b"a", 42, 1.5, -1, math.nan, math.inf, 10**400, 2j, [], [1, 2], {}, object(), len,
     np.array([]), np.array([1.0, 2.0]), np.array("x"), np.array([None, 1.0]), np.ma.masked, Figure,
-    re.scenes.report, plt,
+    rl.scenes.report, plt,
 ]  # fmt: skip
 
 
@@ -55,53 +55,53 @@ def refused(name: str, call: Callable[..., Any], value: Any) -> None:
 
 @pytest.mark.parametrize("value", [None, *ANYTHING], ids=lambda value: repr(value)[:20])
 def test_what_is_no_trajectory(value: Any) -> None:
-    refused("trajectory", re.plot, value)
-    refused("trajectory", re.plot_strobe, value)
-    for draw in (*CURVES, re.animate):
+    refused("trajectory", rl.plot, value)
+    refused("trajectory", rl.plot_strobe, value)
+    for draw in (*CURVES, rl.animate):
         refused("trajectories", draw, value)
 
 
 @pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
 def test_where_nothing_can_be_drawn(value: Any) -> None:
-    refused("figure", lambda figure: re.plot(MOTION, figure=figure), value)
-    refused("figure", lambda figure: re.animate(MOTION, figure=figure), value)
-    refused("ax", lambda ax: re.plot_strobe(MOTION, ax=ax), value)
-    refused("ax", lambda ax: re.plot_phase_map(resolution=2, ax=ax), value)
+    refused("figure", lambda figure: rl.plot(MOTION, figure=figure), value)
+    refused("figure", lambda figure: rl.animate(MOTION, figure=figure), value)
+    refused("ax", lambda ax: rl.plot_strobe(MOTION, ax=ax), value)
+    refused("ax", lambda ax: rl.plot_phase_map(resolution=2, ax=ax), value)
     for draw in CURVES:
         refused("ax", lambda ax, draw=draw: draw(MOTION, ax=ax), value)
 
 
 @pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
 def test_choices_and_switches(value: Any) -> None:
-    refused("kind", lambda kind: re.plot_energy(MOTION, kind=kind), value)
-    refused("fold", lambda fold: re.plot_phase(MOTION, fold=fold), value)
-    refused("labels", lambda labels: re.plot_forces(MOTION, labels=labels), value)
-    refused("progress", lambda progress: re.animate(MOTION, progress=progress), value)
-    refused("x", lambda x: re.plot_phase_map(x), value)
+    refused("kind", lambda kind: rl.plot_energy(MOTION, kind=kind), value)
+    refused("fold", lambda fold: rl.plot_phase(MOTION, fold=fold), value)
+    refused("labels", lambda labels: rl.plot_forces(MOTION, labels=labels), value)
+    refused("progress", lambda progress: rl.animate(MOTION, progress=progress), value)
+    refused("x", lambda x: rl.plot_phase_map(x), value)
     if repr(value) not in ("[1, 2]", "array([1., 2.])"):
-        refused("x_range", lambda x_range: re.plot_phase_map(resolution=2, x_range=x_range), value)
+        refused("x_range", lambda x_range: rl.plot_phase_map(resolution=2, x_range=x_range), value)
 
 
 @pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
 def test_numbers_of_pictures(value: Any) -> None:
-    refused("t_end", lambda t_end: re.plot(MOTION, t_end=t_end), value)
-    refused("t_end", lambda t_end: re.animate(MOTION, t_end=t_end), value)
+    refused("t_end", lambda t_end: rl.plot(MOTION, t_end=t_end), value)
+    refused("t_end", lambda t_end: rl.animate(MOTION, t_end=t_end), value)
     if repr(value) != "42":
-        refused("count", lambda count: re.plot(MOTION, count=count), value)
-        refused("max_frames", lambda max_frames: re.animate(MOTION, max_frames=max_frames), value)
+        refused("count", lambda count: rl.plot(MOTION, count=count), value)
+        refused("max_frames", lambda max_frames: rl.animate(MOTION, max_frames=max_frames), value)
     if repr(value) not in ("42", "1.5"):
         for name in ("fps", "speed", "width", "dpi"):
-            refused(name, lambda name=name, **given: re.animate(MOTION, **given), value)
+            refused(name, lambda name=name, **given: rl.animate(MOTION, **given), value)
 
 
 def test_a_given_figure_stays_as_it_is() -> None:
     figure = Figure()
     with pytest.raises(ValueError, match="count must be at least 1"):
-        re.plot(MOTION, figure=figure, count=0)
+        rl.plot(MOTION, figure=figure, count=0)
     assert figure.axes == []
 
 
-@pytest.mark.parametrize("draw", [re.plot, re.plot_strobe, *CURVES])
+@pytest.mark.parametrize("draw", [rl.plot, rl.plot_strobe, *CURVES])
 def test_a_drawing_that_fails_closes_its_figure(draw: Any, monkeypatch: Any) -> None:
     mine = plt.figure()
     monkeypatch.setattr(plt.Axes, "plot", lambda *args, **options: 1 / 0)
@@ -114,18 +114,18 @@ def test_a_drawing_that_fails_closes_its_figure(draw: Any, monkeypatch: Any) -> 
 def test_what_cannot_be_made() -> None:
     """Sizes and numbers that no machine has room for, and no eye could see."""
     with pytest.raises(ValueError, match="count must be at most 10000, got 1000000000000"):
-        re.plot_strobe(MOTION, count=10**12)
+        rl.plot_strobe(MOTION, count=10**12)
     frames = "t_end must be shown in at most 1000000 frames, got 1.0, which is .* frames at fps = "
     for options in ({"speed": 1e-12}, {"speed": 1e-6, "fps": 1000}):
         with pytest.raises(ValueError, match=frames):
-            re.animate(MOTION, t_end=1.0, **options)
+            rl.animate(MOTION, t_end=1.0, **options)
     wrong: dict[str, tuple[Any, ...]] = {
         "speed": (1e-320, 1e-13, 1e300), "fps": (1e-320, 1e-4, 1e4, 1e308),
         "width": (1, 1e-9, 10**9), "dpi": (1e-300, 1, 1e5), "max_frames": (10**9,),
     }  # fmt: skip
     for name, values in wrong.items():
         for value in values:
-            refused(name, lambda name=name, **given: re.animate(MOTION, **given), value)
+            refused(name, lambda name=name, **given: rl.animate(MOTION, **given), value)
 
 
 # ------------------------------------------------------------------------------------ films
@@ -134,27 +134,27 @@ def test_what_cannot_be_made() -> None:
 @pytest.mark.parametrize("value", [42, 1.5, b"roll.gif", object(), ["roll.gif"], np.array("x.gif")])
 def test_what_is_no_path(value: Any) -> None:
     with pytest.raises(TypeError, match=r"^path must be a path, a string or a PathLike, got "):
-        re.animate(MOTION, value)
+        rl.animate(MOTION, value)
     with pytest.raises(TypeError, match=r"^filename must be a path, .*, got "):
-        re.animate(MOTION, **SMALL).save(value)
+        rl.animate(MOTION, **SMALL).save(value)
 
 
 def test_paths_that_cannot_be_written(tmp_path: Path, monkeypatch: Any) -> None:
     (tmp_path / "folder.gif").mkdir()
-    monkeypatch.setattr(re.Trajectory, "sol", None)  # before any work
+    monkeypatch.setattr(rl.Trajectory, "sol", None)  # before any work
     for name in ("", "roll\0.gif"):
         with pytest.raises(ValueError, match=r"^path must name a file, got"):
-            re.animate(MOTION, name)
+            rl.animate(MOTION, name)
     with pytest.raises(IsADirectoryError, match=r"folder\.gif"):
-        re.animate(MOTION, tmp_path / "folder.gif")
+        rl.animate(MOTION, tmp_path / "folder.gif")
     with pytest.raises(FileNotFoundError, match=r"no such folder.*no/roll\.gif"):
-        re.animate(MOTION, tmp_path / "no" / "roll.gif")
+        rl.animate(MOTION, tmp_path / "no" / "roll.gif")
 
 
 @pytest.mark.parametrize("name", ["12:30.mp4", "-x.mp4", "%03d.mp4", "concat:a|b.gif", "ä.html"])
 def test_names_that_ffmpeg_would_understand(tmp_path: Path, name: str, monkeypatch: Any) -> None:
     monkeypatch.chdir(tmp_path)
-    re.animate(MOTION, name, **SMALL)
+    rl.animate(MOTION, name, **SMALL)
     assert [path.name for path in tmp_path.iterdir()] == [name]
     if name.endswith(".mp4"):
         assert (tmp_path / name).read_bytes()[4:8] == b"ftyp"
@@ -167,7 +167,7 @@ def test_an_old_film_stays_until_the_new_one_is_whole(
 ) -> None:
     path = tmp_path / f"roll{suffix}"
     path.write_bytes(b"old")
-    film = re.animate(MOTION, **SMALL)
+    film = rl.animate(MOTION, **SMALL)
     draw, drawn = film._func, []
 
     def stops(i: int, *args: Any) -> Any:
@@ -187,8 +187,8 @@ def test_a_killed_film_leaves_the_old_one(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"roll{suffix}"
     path.write_bytes(b"old")
     program = (
-        "import os, signal, sys, rolling_ellipse as re\n"
-        "film = re.animate(re.simulate(re.scenes.report, 1.0), width=160, dpi=50)\n"
+        "import os, signal, sys, rolling_ellipse as rl\n"
+        "film = rl.animate(rl.simulate(rl.scenes.report, 1.0), width=160, dpi=50)\n"
         "kill = lambda i, n: i > 5 and os.kill(os.getpid(), signal.SIGKILL)\n"
         "film.save(sys.argv[1], progress_callback=kill)\n"
     )
@@ -206,7 +206,7 @@ def test_an_ffmpeg_that_fails(tmp_path: Path, monkeypatch: Any) -> None:
     program.chmod(0o755)
     monkeypatch.setattr(movies, "ffmpeg", lambda: str(program))
     with pytest.raises(OSError, match=r"^ffmpeg could not write '.*roll\.mp4': disk is full$"):
-        re.animate(MOTION, path, **SMALL)
+        rl.animate(MOTION, path, **SMALL)
     assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 2
 
 
@@ -220,16 +220,16 @@ def test_an_extra_without_a_program(monkeypatch: Any) -> None:
     monkeypatch.setattr(imageio, "get_ffmpeg_exe", missing)
     monkeypatch.setattr(movies.FFMpegWriter, "isAvailable", lambda: False)
     with pytest.raises(FileNotFoundError, match=r"rolling_ellipse\[video\]"):
-        re.animate(MOTION, "roll.mp4")
+        rl.animate(MOTION, "roll.mp4")
 
 
 def test_a_gif_slower_than_its_clock_can_tell(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="fps must be 100 over a whole number"):
-        re.animate(MOTION, tmp_path / "roll.gif", fps=1e-3)
+        rl.animate(MOTION, tmp_path / "roll.gif", fps=1e-3)
 
 
 def test_writers_of_ones_own(tmp_path: Path) -> None:
-    film = re.animate(MOTION, **SMALL)
+    film = rl.animate(MOTION, **SMALL)
     film.save(tmp_path / "roll.gif", PillowWriter(fps=5))
     with Image.open(tmp_path / "roll.gif") as picture:
         assert picture.n_frames == film.t.size
@@ -266,7 +266,7 @@ def test_as_many_states_everywhere() -> None:
         lambda q, other: report.f1(q, other),
         lambda q, other: report.eq_38(q, other, **axes),
         lambda q, other: report.constraint_rates(q, other, **axes),
-        lambda q, other: re.constraints(q, other, **axes).gap,
+        lambda q, other: rl.constraints(q, other, **axes).gap,
         lambda q, other: report.consistent_rates(q, other[:, 0], **axes),
         lambda q, other: report.eqs_33_to_37(q, other, four[: len(other)], **BODY),
         lambda q, other: report.equations_of_motion(q, other, four[: len(other)], **BODY),
@@ -296,11 +296,11 @@ def test_a_step_that_cannot_change_the_time(method: str) -> None:
     assert motion.message == "" and motion.t[-1] == 1e-12
 
 
-@pytest.mark.parametrize("draw", [re.plot_strobe, re.plot_paths, re.plot, re.animate])
+@pytest.mark.parametrize("draw", [rl.plot_strobe, rl.plot_paths, rl.plot, rl.animate])
 def test_a_body_too_far_away_to_be_seen_is_refused(draw: Any) -> None:
     """At 7.8e23 m doubles are 1.3e8 m apart; at 1e12 m a tenth of a millimetre, enough to draw."""
     with pytest.raises(ValueError, match=r"^trajectory must stay where .*, got a centre 7\.8"):
-        draw(re.simulate(re.Scene(2.0, 1.0, theta=0.3, x=7.847959263208443e23), 1.0))
+        draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=7.847959263208443e23), 1.0))
     assert not plt.get_fignums()
-    draw(re.simulate(re.Scene(2.0, 1.0, theta=0.3, x=1e12), 1.0))
+    draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=1e12), 1.0))
     plt.close("all")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from rolling_ellipse import Scene, _core, flow, scenes, simulate, thresholds
 
-SCENE = scenes.rolling._core_scene
+SCENE = scenes.rolling.core
 TWO, THREE, FIVES = np.ones(2), np.ones(3), np.ones((2, 5))
 TIMES = simulate(scenes.rolling, 1.0)._solution
 SLIDES = simulate(scenes.slip, 1.0)._solution

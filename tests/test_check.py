@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from numpy.testing import assert_array_equal
 from rolling_ellipse import geometry, impacts, report
 
-SCENE = re.Scene(2.0, 1.0, omega=1.0)
-MOTION = re.simulate(SCENE, 1.0)
-Q, Q_DOT = re.kinematics(0.3, 1.0, a=2.0, b=1.0)
+SCENE = rl.Scene(2.0, 1.0, omega=1.0)
+MOTION = rl.simulate(SCENE, 1.0)
+Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
 FLOW: dict[str, Any] = {"t": 1.0, "a": 2.0, "b": 1.0, "theta": 0.2, "omega": 1.0}
 BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 1.0, "gravity": 9.81}
 AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
@@ -23,19 +23,19 @@ Door = Callable[[Any], Any]
 
 #: What takes one number, by the name of the argument.
 SCALAR_DOORS: list[tuple[str, Door]] = [
-    ("a", lambda v: re.Scene(v, 1.0)),
-    ("z", lambda v: re.Scene(2.0, 1.0, z=v)),
-    ("inertia", lambda v: re.Scene(2.0, 1.0, inertia=v)),
-    ("jx", lambda v: re.Impulse(v)),
-    ("F", lambda v: re.Impulse.press(v, 1.0)),
-    ("a", lambda v: re.thresholds(v, 1.0)),
-    ("friction", lambda v: re.thresholds(2.0, 1.0, friction=v)),
-    ("rtol", lambda v: re.simulate(SCENE, 1.0, rtol=v)),
-    ("baumgarte", lambda v: re.simulate(SCENE, 1.0, baumgarte=(v, 1.0))),
-    ("b", lambda v: re.constraints(Q, Q_DOT, a=2.0, b=v)),
-    ("b", lambda v: re.kinematics(0.3, 1.0, a=2.0, b=v)),
+    ("a", lambda v: rl.Scene(v, 1.0)),
+    ("z", lambda v: rl.Scene(2.0, 1.0, z=v)),
+    ("inertia", lambda v: rl.Scene(2.0, 1.0, inertia=v)),
+    ("jx", lambda v: rl.Impulse(v)),
+    ("F", lambda v: rl.Impulse.press(v, 1.0)),
+    ("a", lambda v: rl.thresholds(v, 1.0)),
+    ("friction", lambda v: rl.thresholds(2.0, 1.0, friction=v)),
+    ("rtol", lambda v: rl.simulate(SCENE, 1.0, rtol=v)),
+    ("baumgarte", lambda v: rl.simulate(SCENE, 1.0, baumgarte=(v, 1.0))),
+    ("b", lambda v: rl.constraints(Q, Q_DOT, a=2.0, b=v)),
+    ("b", lambda v: rl.kinematics(0.3, 1.0, a=2.0, b=v)),
     ("t", lambda v: MOTION.scene_at(v)),
-    ("b", lambda v: re.plot_phase_map(resolution=2, b=v)),
+    ("b", lambda v: rl.plot_phase_map(resolution=2, b=v)),
     ("a", lambda v: impacts.fit([[0.0]] + [[-1.0]] * 3, [[0.0]] * 3, a=v, b=1.0)),
     ("gyration2", lambda v: impacts.fit([[0.0]] * 4, [[0.0]] * 3, a=2.0, b=1.0, gyration2=v)),
     ("atol", lambda v: report.simulate(Q, Q_DOT, 0.1, **AXES, equations="printed", atol=v)),
@@ -46,13 +46,13 @@ SCALAR_DOORS: list[tuple[str, Door]] = [
 
 #: What takes one number or many.
 ARRAY_DOORS: list[tuple[str, Door]] = [
-    *((name, lambda v, name=name: re.flow(**{**FLOW, name: v})) for name in FLOW),
-    ("gravity", lambda v: re.classify(**AXES, omega=1.0, gravity=v)),
-    ("t", lambda v: re.simulate(SCENE, v)),
+    *((name, lambda v, name=name: rl.flow(**{**FLOW, name: v})) for name in FLOW),
+    ("gravity", lambda v: rl.classify(**AXES, omega=1.0, gravity=v)),
+    ("t", lambda v: rl.simulate(SCENE, v)),
     ("t", lambda v: MOTION.sol(v)),
     ("theta", lambda v: geometry.support(v, **AXES)),
     ("b", lambda v: geometry.arc_length(0.3, a=2.0, b=v)),
-    ("omega", lambda v: re.kinematics(0.3, v, **AXES)),
+    ("omega", lambda v: rl.kinematics(0.3, v, **AXES)),
     ("restitution", lambda v: impacts.collide(0.3, **HIT, **AXES, restitution=v)),
     ("z_dot", lambda v: impacts.kinetic_speed(0.0, v, 0.0, gyration2=1.0)),
     ("theta", lambda v: report.eq_5(v, **AXES)),
@@ -137,7 +137,7 @@ def test_masked_columns_of_a_series() -> None:
     with pytest.raises(ValueError, match="before must have no masked entries"):
         impacts.fit(before, after, **AXES)
     with pytest.raises(ValueError, match="q must have no masked entries"):
-        re.constraints(np.ma.array(Q, mask=[0, 0, 1, 0, 0]), Q_DOT, **AXES)
+        rl.constraints(np.ma.array(Q, mask=[0, 0, 1, 0, 0]), Q_DOT, **AXES)
 
 
 def test_numbers_of_every_kind() -> None:
@@ -146,21 +146,21 @@ def test_numbers_of_every_kind() -> None:
         2, np.float32(2), np.float16(2), np.longdouble(2), np.int8(2), np.uint64(2), Decimal(2),
         Fraction(2), np.array(2.0), np.array(2), np.array(2, dtype=">f4"), np.ma.array(2.0),
     ):  # fmt: skip
-        assert re.Scene(two, 1.0) == re.Scene(2.0, 1.0)
-        assert type(re.Scene(two, 1.0).a) is float
-        assert re.flow(**{**FLOW, "a": two}) == re.flow(**FLOW)
-    assert re.Scene(True, 1.0).a == 1.0
+        assert rl.Scene(two, 1.0) == rl.Scene(2.0, 1.0)
+        assert type(rl.Scene(two, 1.0).a) is float
+        assert rl.flow(**{**FLOW, "a": two}) == rl.flow(**FLOW)
+    assert rl.Scene(True, 1.0).a == 1.0
     assert MOTION.scene_at(Fraction(1, 2)) == MOTION.scene_at(0.5)
     times = [0.25, 0.5]
-    expected = re.flow(times, **AXES, theta=0.2, omega=1.0)
+    expected = rl.flow(times, **AXES, theta=0.2, omega=1.0)
     for given in (
         [Decimal("0.25"), Fraction(1, 2)],
         np.array(times, dtype=np.longdouble),
         np.ma.array(times, mask=[False, False]),
         np.array(times, dtype=">f8"),
     ):
-        assert_array_equal(re.flow(given, **AXES, theta=0.2, omega=1.0), expected)
-    assert re.Scene(2.0, 1.0, x=2**70).x == 2.0**70
+        assert_array_equal(rl.flow(given, **AXES, theta=0.2, omega=1.0), expected)
+    assert rl.Scene(2.0, 1.0, x=2**70).x == 2.0**70
     assert_array_equal(geometry.support([2**70, 1], **AXES), geometry.support([2.0**70, 1], **AXES))
 
 
@@ -169,10 +169,10 @@ FINITE: list[tuple[str, Door]] = [
         ("theta", lambda v, name=name: getattr(geometry, name)(v, **AXES))
         for name in geometry.__all__
     ),
-    ("theta", lambda v: re.kinematics(v, 1.0, **AXES)),
-    ("omega", lambda v: re.kinematics(0.3, v, **AXES)),
-    ("q", lambda v: re.constraints([0, 1, v, 0, 1], Q_DOT, **AXES)),
-    ("q_dot", lambda v: re.constraints(Q, [v, 0, 0, 0, 0], **AXES)),
+    ("theta", lambda v: rl.kinematics(v, 1.0, **AXES)),
+    ("omega", lambda v: rl.kinematics(0.3, v, **AXES)),
+    ("q", lambda v: rl.constraints([0, 1, v, 0, 1], Q_DOT, **AXES)),
+    ("q_dot", lambda v: rl.constraints(Q, [v, 0, 0, 0, 0], **AXES)),
     ("theta", lambda v: report.eq_5(v, **AXES)),
     ("theta", lambda v: report.case_sign(v)),
     ("theta", lambda v: report.case_lead(v, **AXES)),

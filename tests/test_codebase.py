@@ -4,6 +4,7 @@ Everything is found beside this file, so that the suite runs from a source check
 package installed as users install it.
 """
 
+import ast
 import os
 import platform
 import re
@@ -30,6 +31,13 @@ CORE = [path for path in SOURCES if path.parent != BINDINGS]
 FOLDERS = (
     "numerics", "integrator", "geometry", "scene", "rolling", "proof", "multipliers", "contact",
     "outcome", "", "bindings",
+)  # fmt: skip
+# The same of the package: a module imports only those before it ("" is the package itself); what is
+# slow to load, pictures above all, may be imported where it is needed.
+MODULES = (
+    "_core", "_fields", "_check", "geometry", "_constraints", "_scene", "scenes", "_settings",
+    "_events", "_status", "_samples", "_trajectory", "_simulate", "_flow", "_certify", "_outcome",
+    "_export", "impacts", "report", "_pictures", "", "__main__",
 )  # fmt: skip
 COMPLEX_PRODUCTS = """
 void one(const double* x, const double* y, double* z) {
@@ -172,6 +180,39 @@ def test_each_folder_includes_only_those_before_it() -> None:
             assert folder_of(other) <= folder_of(name), f"{name} includes {other}"
             between += folder_of(other) < folder_of(name)
     assert between > 50  # fewer: the includes are no longer recognised
+
+
+def imported_modules(path: Path, package: Path) -> list[str]:
+    """Modules of MODULES that a file imports when it is loaded."""
+    here = list(path.relative_to(package).with_suffix("").parts)
+    found = []
+    for line in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(line, ast.ImportFrom) and line.level:
+            module = here[: -line.level] + (line.module.split(".") if line.module else [])
+            found += module[:1] or [name.name for name in line.names]
+    return [name if name in MODULES else "" for name in found]
+
+
+def test_each_module_imports_only_those_before_it() -> None:
+    package = ROOT / "python" / "rolling_ellipse"
+    between = 0
+    for path in package.rglob("*.py"):
+        name = path.relative_to(package).with_suffix("").parts[0]
+        mine = MODULES.index("" if name == "__init__" else name)
+        for other in imported_modules(path, package):
+            assert MODULES.index(other) <= mine, f"{path.name} imports {other or package.name}"
+            between += MODULES.index(other) < mine
+    assert between > 50  # fewer: the imports are no longer recognised
+
+
+def test_matplotlib_is_loaded_with_the_first_picture() -> None:
+    script = (
+        "import sys, rolling_ellipse; assert 'matplotlib' not in sys.modules;"
+        "assert {'plot', 'animate', '__version__'} <= set(dir(rolling_ellipse));"
+        "from rolling_ellipse import plot; assert 'matplotlib' in sys.modules;"
+        "assert rolling_ellipse.plot is plot"
+    )
+    run(sys.executable, "-c", script)
 
 
 def test_no_arithmetic_that_depends_on_the_mood_of_the_compiler() -> None:

@@ -16,12 +16,12 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 import numpy as np
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from PIL import Image
 from rolling_ellipse import __main__ as command_line
 from rolling_ellipse.__main__ import main
-from rolling_ellipse._movies import GifWriter
+from rolling_ellipse._pictures.animation.movies import GifWriter
 
 KEYS = {
     "status", "message", "reason", "valid_until", "smallest_normal_force",
@@ -85,14 +85,14 @@ def test_without_options_it_is_the_report_scene(tmp_path: Path) -> None:
     code, out, err = typed(tmp_path)
     assert (code, err) == (0, "")
     lines = out.splitlines()
-    assert lines[0] == re.certify(re.scenes.report).reason
+    assert lines[0] == rl.certify(rl.scenes.report).reason
     assert lines[1].split()[:2] == ["status", "COMPLETED:"]
     starts = ["swing or turn", "distance", "smallest N", "largest |F|/N", "residuals"]
     assert [line[: len(start)] for line, start in zip(lines[2:], starts, strict=True)] == starts
-    trajectory = re.simulate(re.scenes.report, 6.0)
-    assert f"{re.period(re.scenes.report):.12g} s" in lines[2]
+    trajectory = rl.simulate(rl.scenes.report, 6.0)
+    assert f"{rl.period(rl.scenes.report):.12g} s" in lines[2]
     assert f"{trajectory.x[-1]:.12g} m in 6 s, {trajectory.turns[-1]:.6g} turns" in lines[3]
-    assert f"{re.certify(re.scenes.report).smallest_normal_force:.6g} N" in lines[4]
+    assert f"{rl.certify(rl.scenes.report).smallest_normal_force:.6g} N" in lines[4]
     assert list(tmp_path.iterdir()) == []  # nothing is written unless asked
 
 
@@ -101,10 +101,10 @@ def test_json_on_stdout(tmp_path: Path) -> None:
     assert (code, err) == (0, "")
     found = strict_json(out)
     assert set(found) == KEYS
-    trajectory = re.simulate(re.scenes.report, 6.0)
+    trajectory = rl.simulate(rl.scenes.report, 6.0)
     assert found["status"] == "COMPLETED" and found["valid_until"] is None
     assert found["distance"] == trajectory.x[-1] and found["turns"] == trajectory.turns[-1]
-    assert found["period"] == re.period(re.scenes.report)
+    assert found["period"] == rl.period(rl.scenes.report)
     assert found["reason"] == trajectory.reason and found["message"] == trajectory.message
     residuals = trajectory.constraint_residuals()
     assert found["largest_position_residual"] == np.max(np.abs(residuals.position))
@@ -119,10 +119,10 @@ def test_options_make_another_scene_without_impulse(command: Any) -> None:
     code, out, _ = command(*text, "--restitution", "0.5", "--slope", "0", "--time", "2.5", "--json")
     assert code == 0
     found = strict_json(out)
-    scene = re.Scene(options.pop("a"), options.pop("b"), **options)
-    trajectory = re.simulate(scene, 2.5)
+    scene = rl.Scene(options.pop("a"), options.pop("b"), **options)
+    trajectory = rl.simulate(scene, 2.5)
     assert found["distance"] == trajectory.x[-1]
-    assert found["smallest_normal_force"] == re.certify(scene).smallest_normal_force
+    assert found["smallest_normal_force"] == rl.certify(scene).smallest_normal_force
 
 
 def test_one_option_is_enough(command: Any) -> None:
@@ -139,7 +139,7 @@ def test_time_is_the_end_time(command: Any) -> None:
     out = command("--time", "1.5").out
     assert " m in 1.5 s, " in out
     found = strict_json(command("--time", "1.5", "--json").out)
-    assert found["distance"] == re.simulate(re.scenes.report, 1.5).x[-1]
+    assert found["distance"] == rl.simulate(rl.scenes.report, 1.5).x[-1]
     assert command("--time", "0").code == 0
 
 
@@ -167,7 +167,7 @@ def test_a_slope_has_a_summary_too(command: Any) -> None:
 
 def test_extreme_motions_are_still_json(command: Any) -> None:
     """Nothing infinite slips through: no friction limit, rest, contact lost, the separatrix."""
-    speed = re.thresholds(2.0, 1.0).roll_over_speed
+    speed = rl.thresholds(2.0, 1.0).roll_over_speed
     for options in (
         ["--omega", "50"],
         ["--theta", str(math.pi / 2)],
@@ -290,8 +290,8 @@ def test_help(tmp_path: Path) -> None:
 def test_negative_numbers_as_they_are_written(command: Any, speed: str) -> None:
     code, out, err = command("--omega", speed, "--time", "1", "--json")
     assert (code, err) == (0, "")
-    scene = re.Scene(2.0, 1.0, omega=float(speed))
-    assert strict_json(out)["distance"] == re.simulate(scene, 1.0).x[-1]
+    scene = rl.Scene(2.0, 1.0, omega=float(speed))
+    assert strict_json(out)["distance"] == rl.simulate(scene, 1.0).x[-1]
 
 
 def test_numbers_that_are_refused_by_what_they_are(command: Any) -> None:
@@ -308,8 +308,8 @@ def test_a_motion_that_stops_early_has_a_summary_and_exit_code_1(tmp_path: Path)
     code, out, err = typed(tmp_path, *options, "--time", "100000")
     assert (code, err) == (1, "")
     assert "MAX_EVENTS: max_events = 10000 events ended at t = " in out
-    reached = re.simulate(
-        re.Scene(2.0, 1.0, omega=3.0, friction=0.2, restitution=1.0), 1e5, raise_on_failure=False
+    reached = rl.simulate(
+        rl.Scene(2.0, 1.0, omega=3.0, friction=0.2, restitution=1.0), 1e5, raise_on_failure=False
     )
     assert f"{reached.x[-1]:.12g} m in {reached.t[-1]:g} s, " in out
     code, out, err = typed(tmp_path, *options, "--time", "100000", "--json")

@@ -14,7 +14,8 @@ import mpmath as mp
 import numpy as np
 import oracles
 import pytest
-from rolling_ellipse import constraints, kinematics
+from rolling_ellipse import _constraints as kinematics
+from rolling_ellipse import constraints
 
 Shape = tuple[float, float]
 NAMES = ["x", "z", "theta", "psi", "r"]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 import scipy.integrate
 import scipy.optimize
 from contact_scenes import random_scenes, response, support
@@ -382,7 +382,7 @@ def test_unlimited_friction_never_jams() -> None:
 
 
 def test_elastic_bounces_without_friction_keep_their_energy() -> None:
-    scene = dataclasses.replace(re.scenes.bounce, omega=1.3)
+    scene = dataclasses.replace(rl.scenes.bounce, omega=1.3)
     motion = simulate(scene, 1000.0, max_events=1000, raise_on_failure=False)
     assert kinds(motion) == 1000 * [EventKind.IMPACT]
     sampled = motion.sol(np.linspace(0, motion.t_end, 20_001))
@@ -419,8 +419,8 @@ def test_what_no_motion_may_do() -> None:
 
 def test_the_first_arc_is_exact_rolling() -> None:
     times = np.linspace(0, 0.14, 300)
-    contact = simulate(re.scenes.jump, times)
-    rolling = simulate(re.scenes.jump, times, model="rolling")
+    contact = simulate(rl.scenes.jump, times)
+    rolling = simulate(rl.scenes.jump, times, model="rolling")
     assert contact.model == "contact" and rolling.model == "rolling"
     for name in (*STATE, "normal_force", "friction_force", "psi", "energy", "mode"):
         assert np.array_equal(getattr(contact, name), getattr(rolling, name)), name
@@ -428,23 +428,23 @@ def test_the_first_arc_is_exact_rolling() -> None:
 
 def test_auto_takes_the_contact_model_only_where_it_is_needed() -> None:
     for scene, model in (
-        (re.scenes.report, "rolling"),
-        (re.scenes.circle, "rolling"),
-        (re.scenes.jump, "contact"),
-        (re.scenes.slip, "contact"),
-        (re.scenes.drop, "contact"),
-        (re.scenes.slope, "contact"),
-        (dataclasses.replace(re.scenes.rolling, friction=0.1), "contact"),
+        (rl.scenes.report, "rolling"),
+        (rl.scenes.circle, "rolling"),
+        (rl.scenes.jump, "contact"),
+        (rl.scenes.slip, "contact"),
+        (rl.scenes.drop, "contact"),
+        (rl.scenes.slope, "contact"),
+        (dataclasses.replace(rl.scenes.rolling, friction=0.1), "contact"),
     ):
         for t in (0.001, 5.0):  # whatever the span
             assert simulate(scene, t).model == model
-    forced = simulate(re.scenes.report, 5.0, model="contact")
-    assert np.array_equal(forced.theta, simulate(re.scenes.report, 5.0).theta)
+    forced = simulate(rl.scenes.report, 5.0, model="contact")
+    assert np.array_equal(forced.theta, simulate(rl.scenes.report, 5.0).theta)
 
 
 @pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
 def test_samples_at_an_event_show_what_holds_after_it(name: str) -> None:
-    motion = simulate(getattr(re.scenes, name), 5.0)
+    motion = simulate(getattr(rl.scenes, name), 5.0)
     assert motion.events
     for event in motion.events:
         after = event.state_after
@@ -457,15 +457,15 @@ def test_samples_at_an_event_show_what_holds_after_it(name: str) -> None:
 
 def test_what_happens_at_the_last_time_has_happened() -> None:
     """Impacts of exact flights, whose times do not depend on the span."""
-    for event in simulate(re.scenes.bounce, 5.0).events:
-        motion = simulate(re.scenes.bounce, event.t)
+    for event in simulate(rl.scenes.bounce, 5.0).events:
+        motion = simulate(rl.scenes.bounce, event.t)
         assert motion.events[-1] == event and motion.status is Status.COMPLETED
         assert motion.t[-1] == event.t and motion.omega[-1] == event.state_after.omega
 
 
 @pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
 def test_a_scene_made_on_the_way_goes_on_alike(name: str) -> None:
-    motion = simulate(getattr(re.scenes, name), 5.0)
+    motion = simulate(getattr(rl.scenes, name), 5.0)
     ends = [0.0, *(event.t for event in motion.events), 5.0]
     for i, (begin, end) in enumerate(itertools.pairwise(ends)):
         half = (begin + end) / 2
@@ -478,9 +478,9 @@ def test_a_scene_made_on_the_way_goes_on_alike(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
 def test_a_saved_motion_comes_back_bit_for_bit(name: str, tmp_path: Path) -> None:
-    before = simulate(getattr(re.scenes, name), 3.0)
+    before = simulate(getattr(rl.scenes, name), 3.0)
     before.save(tmp_path / "motion.npz")
-    after = re.load(tmp_path / "motion.npz")
+    after = rl.load(tmp_path / "motion.npz")
     assert after.events == before.events
     times = np.random.default_rng(2).uniform(0, 3, 300)
     for one, other in ((before, after), (before.sol(times), after.sol(times))):
@@ -503,11 +503,11 @@ def test_a_start_that_cannot_roll_slides_at_once() -> None:
 
 
 def test_max_events() -> None:
-    scene = re.scenes.bounce
+    scene = rl.scenes.bounce
     whole = simulate(scene, 5.0)
     count = len(whole.events)
     assert simulate(scene, 5.0, max_events=count).status is Status.COMPLETED
-    with pytest.raises(re.IntegrationError, match=rf"max_events = {count - 1} ") as caught:
+    with pytest.raises(rl.IntegrationError, match=rf"max_events = {count - 1} ") as caught:
         simulate(scene, 5.0, max_events=count - 1)
     cut = caught.value.trajectory
     assert cut.status is Status.MAX_EVENTS and not cut.success
@@ -517,8 +517,8 @@ def test_max_events() -> None:
 
 
 def test_max_steps_stops_where_the_steps_ended() -> None:
-    whole = simulate(re.scenes.slip, 5.0)
-    cut = simulate(re.scenes.slip, 5.0, max_steps=5, raise_on_failure=False)
+    whole = simulate(rl.scenes.slip, 5.0)
+    cut = simulate(rl.scenes.slip, 5.0, max_steps=5, raise_on_failure=False)
     assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == 5
     assert 0 < cut.t_end < whole.events[0].t and cut.t[-1] <= cut.t_end
     assert np.allclose(cut.omega, whole.omega[: cut.t.size], rtol=1e-11, atol=1e-13)
@@ -526,9 +526,9 @@ def test_max_steps_stops_where_the_steps_ended() -> None:
 
 def test_max_steps_counts_all_arcs() -> None:
     """The slope scene takes several arcs of some dozens of steps each."""
-    whole = simulate(re.scenes.slope, 5.0).stats["steps"]
-    assert simulate(re.scenes.slope, 5.0, max_steps=whole).success
-    cut = simulate(re.scenes.slope, 5.0, max_steps=whole - 1, raise_on_failure=False)
+    whole = simulate(rl.scenes.slope, 5.0).stats["steps"]
+    assert simulate(rl.scenes.slope, 5.0, max_steps=whole).success
+    cut = simulate(rl.scenes.slope, 5.0, max_steps=whole - 1, raise_on_failure=False)
     assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == whole - 1
 
 
@@ -546,10 +546,10 @@ def test_bad_numbers_are_refused_by_name(name: str, value: float) -> None:
         if name in ("friction", "restitution"):
             Scene(2.0, 1.0, **{name: value})
         else:
-            simulate(re.scenes.drop, 1.0, **{name: value})
+            simulate(rl.scenes.drop, 1.0, **{name: value})
 
 
-@pytest.mark.parametrize("scene", [re.scenes.rolling, re.scenes.slip, re.scenes.drop])
+@pytest.mark.parametrize("scene", [rl.scenes.rolling, rl.scenes.slip, rl.scenes.drop])
 def test_no_more_turns_than_a_double_knows(scene: Scene) -> None:
     with pytest.raises(ValueError, match=r"^t must be at most 1e15 half turns .*, got 1e\+25$"):
         simulate(scene, 1e25, model="contact")
@@ -596,7 +596,7 @@ def test_the_start_says_what_the_body_does() -> None:
             Mode.REST,
             "no impulse; the body rests",
         ),
-        (re.scenes.report, Mode.ROLLING, "without it omega would be 5.76 rad/s; the body rolls"),
+        (rl.scenes.report, Mode.ROLLING, "without it omega would be 5.76 rad/s; the body rolls"),
     ],
 )
 def test_starts_that_look_like_rolling(scene: Scene, mode: Mode, reason: str) -> None:

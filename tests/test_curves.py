@@ -14,7 +14,7 @@ import pytest
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
@@ -23,20 +23,20 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from numpy.typing import NDArray
 from pictures import ORDINARY_SCENES
-from rolling_ellipse import _drawing as drawing
-from rolling_ellipse._labels import labels_of
-from rolling_ellipse._motions import styles_of
+from rolling_ellipse._pictures import ground as drawing
+from rolling_ellipse._pictures.labels import labels_of
+from rolling_ellipse._pictures.styles import styles_of
 
 Array = NDArray[np.float64]
 PICTURES = {
-    "phase": re.plot_phase,
-    "forces": re.plot_forces,
-    "energy": re.plot_energy,
-    "constraints": re.plot_constraints,
-    "paths": re.plot_paths,
+    "phase": rl.plot_phase,
+    "forces": rl.plot_forces,
+    "energy": rl.plot_energy,
+    "constraints": rl.plot_constraints,
+    "paths": rl.plot_paths,
 }
-TWO_PANELS = (re.plot_forces, re.plot_constraints)
-OVER_TIME = (re.plot_forces, re.plot_energy, re.plot_constraints)
+TWO_PANELS = (rl.plot_forces, rl.plot_constraints)
+OVER_TIME = (rl.plot_forces, rl.plot_energy, rl.plot_constraints)
 
 
 @pytest.fixture(params=PICTURES.values(), ids=PICTURES.keys())
@@ -45,17 +45,17 @@ def picture(request: pytest.FixtureRequest) -> Callable[..., Any]:
 
 
 @pytest.fixture(params=ORDINARY_SCENES.values(), ids=ORDINARY_SCENES.keys())
-def trajectory(request: pytest.FixtureRequest) -> re.Trajectory:
-    return re.simulate(request.param, 4.0, model="rolling")
+def trajectory(request: pytest.FixtureRequest) -> rl.Trajectory:
+    return rl.simulate(request.param, 4.0, model="rolling")
 
 
 @pytest.fixture
-def report() -> re.Trajectory:
-    return re.simulate(re.scenes.report, 6.0)
+def report() -> rl.Trajectory:
+    return rl.simulate(rl.scenes.report, 6.0)
 
 
 @pytest.fixture
-def several(report: re.Trajectory) -> list[re.Trajectory]:
+def several(report: rl.Trajectory) -> list[rl.Trajectory]:
     return [report, drifting(report, 1e-3), drifting(report, -2e-2)]
 
 
@@ -66,13 +66,13 @@ def nothing_left_open() -> Iterator[None]:
     assert plt.get_fignums() == []
 
 
-def drifting(motion: re.Trajectory, rate: float) -> re.Trajectory:
+def drifting(motion: rl.Trajectory, rate: float) -> rl.Trajectory:
     """A motion that grows faster than it should."""
     grown = 1 + rate * motion.t
     return dataclasses.replace(motion, theta=motion.theta * grown, omega=motion.omega * grown)
 
 
-def rough(motion: re.Trajectory, friction: float) -> re.Trajectory:
+def rough(motion: rl.Trajectory, friction: float) -> rl.Trajectory:
     return dataclasses.replace(motion, scene=dataclasses.replace(motion.scene, friction=friction))
 
 
@@ -97,7 +97,7 @@ def data(line: Line2D) -> tuple[Array, Array]:
 # ------------------------------------------------------------------------------- every picture
 
 
-def test_nothing_to_draw_is_refused(picture: Callable[..., Any], report: re.Trajectory) -> None:
+def test_nothing_to_draw_is_refused(picture: Callable[..., Any], report: rl.Trajectory) -> None:
     none = np.empty(0)
     empty = dataclasses.replace(report, t=none, theta=none, omega=none, x=none)
     for wrong in (empty, [report, empty]):
@@ -112,7 +112,7 @@ def test_nothing_to_draw_is_refused(picture: Callable[..., Any], report: re.Traj
 
 
 def test_every_motion_has_its_name(
-    picture: Callable[..., Any], several: list[re.Trajectory]
+    picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:
     ax = new_axes()
     picture(several, ax=ax, labels=["one", "two", "three"])
@@ -122,7 +122,7 @@ def test_every_motion_has_its_name(
 
 
 def test_without_labels_the_name_is_what_differs(
-    picture: Callable[..., Any], several: list[re.Trajectory]
+    picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:
     several[1] = dataclasses.replace(several[1], method="another")
     ax = new_axes()
@@ -130,7 +130,7 @@ def test_without_labels_the_name_is_what_differs(
     assert legend_of(ax)[:3] == labels_of(several, None)
 
 
-def test_names_say_what_differs(report: re.Trajectory) -> None:
+def test_names_say_what_differs(report: rl.Trajectory) -> None:
     faster = dataclasses.replace(report, scene=dataclasses.replace(report.scene, omega=3.2))
     other = dataclasses.replace(report, method="rk4")
     for motions, names in (
@@ -139,18 +139,18 @@ def test_names_say_what_differs(report: re.Trajectory) -> None:
         ([report, report, report], ["1", "2", "3"]),
     ):
         ax = new_axes()
-        re.plot_phase(motions, ax=ax)
+        rl.plot_phase(motions, ax=ax)
         assert legend_of(ax)[:-1] == names
 
 
-def test_one_motion_needs_no_name(picture: Callable[..., Any], report: re.Trajectory) -> None:
+def test_one_motion_needs_no_name(picture: Callable[..., Any], report: rl.Trajectory) -> None:
     ax = new_axes()
     picture(report, ax=ax, labels=["mine"])
     assert "mine" not in legend_of(ax)
 
 
 def test_many_motions_are_named_now_and_then(
-    picture: Callable[..., Any], report: re.Trajectory
+    picture: Callable[..., Any], report: rl.Trajectory
 ) -> None:
     ax = new_axes()
     picture([report] * 20, ax=ax, labels=[f"motion {i}" for i in range(20)])
@@ -158,7 +158,7 @@ def test_many_motions_are_named_now_and_then(
     assert len(named) == 8 and named[0] == "motion 0" and named[-1] == "motion 19"
 
 
-def test_a_picture_of_its_own(picture: Callable[..., Any], report: re.Trajectory) -> None:
+def test_a_picture_of_its_own(picture: Callable[..., Any], report: rl.Trajectory) -> None:
     shown = picture(report)
     ax = shown.ax if hasattr(shown, "ax") else shown.axes[0]
     assert plt.get_fignums() == [ax.figure.number]
@@ -168,30 +168,30 @@ def test_a_picture_of_its_own(picture: Callable[..., Any], report: re.Trajectory
 
 @pytest.mark.parametrize("span", [0.0, 1e-6, 1e4])
 def test_any_span_and_a_single_sample(picture: Callable[..., Any], span: float) -> None:
-    trajectory = re.simulate(re.scenes.rolling, span)
+    trajectory = rl.simulate(rl.scenes.rolling, span)
     ax = new_axes()
     picture([trajectory, trajectory], ax=ax)
     ax.figure.draw_without_rendering()
 
 
-@pytest.mark.parametrize("scene", [re.Scene(2.0, 1.0), re.Scene(1.0, 1.0)])
-def test_a_body_at_rest(picture: Callable[..., Any], scene: re.Scene) -> None:
+@pytest.mark.parametrize("scene", [rl.Scene(2.0, 1.0), rl.Scene(1.0, 1.0)])
+def test_a_body_at_rest(picture: Callable[..., Any], scene: rl.Scene) -> None:
     ax = new_axes()
-    picture(re.simulate(scene, 1.0), ax=ax)
+    picture(rl.simulate(scene, 1.0), ax=ax)
     ax.figure.draw_without_rendering()
 
 
 @pytest.fixture(params=["one", "several", "thin"])
 def crowd(
-    request: pytest.FixtureRequest, report: re.Trajectory, several: list[re.Trajectory]
-) -> list[re.Trajectory]:
-    thin = re.simulate(re.scenes.thin, np.linspace(0.0, 4.0, 4001))
+    request: pytest.FixtureRequest, report: rl.Trajectory, several: list[rl.Trajectory]
+) -> list[rl.Trajectory]:
+    thin = rl.simulate(rl.scenes.thin, np.linspace(0.0, 4.0, 4001))
     return {"one": [rough(report, 0.5)], "several": several, "thin": [thin]}[request.param]
 
 
 @pytest.mark.parametrize("panels", [1, 2])
 def test_nothing_overlaps_at_320_by_240(
-    picture: Callable[..., Any], crowd: list[re.Trajectory], panels: int
+    picture: Callable[..., Any], crowd: list[rl.Trajectory], panels: int
 ) -> None:
     if panels == 2 and picture not in TWO_PANELS:
         panels = 1
@@ -222,7 +222,7 @@ def tick_labels(ax: Axes) -> list[Text]:
     return labels
 
 
-def test_motions_differ_in_lightness_and_dashes(report: re.Trajectory) -> None:
+def test_motions_differ_in_lightness_and_dashes(report: rl.Trajectory) -> None:
     for count in range(2, 6):
         styles = styles_of([report] * count, None)
         for one, other in itertools.combinations(styles, 2):
@@ -243,7 +243,7 @@ def lightness(colour: str) -> float:
 
 
 @pytest.mark.parametrize("picture", OVER_TIME)
-def test_events_are_dotted_lines(picture: Callable[..., Any], report: re.Trajectory) -> None:
+def test_events_are_dotted_lines(picture: Callable[..., Any], report: rl.Trajectory) -> None:
     events = tuple(SimpleNamespace(t=t, kind="slip") for t in (1.5, 4.0))
     shown = picture(dataclasses.replace(report, kept_events=events), ax=new_axes())
     (mark,) = shown.marks
@@ -252,7 +252,7 @@ def test_events_are_dotted_lines(picture: Callable[..., Any], report: re.Traject
 
 @pytest.mark.parametrize("picture", OVER_TIME)
 def test_time_that_is_not_valid_has_grey_ground(
-    picture: Callable[..., Any], report: re.Trajectory
+    picture: Callable[..., Any], report: rl.Trajectory
 ) -> None:
     assert picture(report, ax=new_axes()).marks == ()
     half = dataclasses.replace(report, valid_until=2.5)
@@ -262,9 +262,9 @@ def test_time_that_is_not_valid_has_grey_ground(
     assert ground.get_x() == 2.5 and list(start.get_xdata()) == [2.5, 2.5]
 
 
-@pytest.mark.parametrize("picture", [re.plot_phase, re.plot_paths])
+@pytest.mark.parametrize("picture", [rl.plot_phase, rl.plot_paths])
 def test_paths_that_are_not_valid_have_grey_ground(
-    picture: Callable[..., Any], report: re.Trajectory
+    picture: Callable[..., Any], report: rl.Trajectory
 ) -> None:
     assert picture(report, ax=new_axes()).marks == ()
     half = dataclasses.replace(report, valid_until=2.5)
@@ -275,8 +275,8 @@ def test_paths_that_are_not_valid_have_grey_ground(
 # --------------------------------------------------------------------------------- plot_phase
 
 
-def test_phase_is_the_trajectory(trajectory: re.Trajectory) -> None:
-    shown = re.plot_phase(trajectory, ax=new_axes(), fold=False)
+def test_phase_is_the_trajectory(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_phase(trajectory, ax=new_axes(), fold=False)
     theta, omega = data(shown.motions[0])
     assert np.array_equal(theta, trajectory.theta) and np.array_equal(omega, trajectory.omega)
     assert data(shown.starts[0]) == (trajectory.theta[:1], trajectory.omega[:1])
@@ -284,7 +284,7 @@ def test_phase_is_the_trajectory(trajectory: re.Trajectory) -> None:
 
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.7, 1.9), (2.0, 0.02)])
 def test_separatrix_is_between_rocking_and_rolling_over(a: float, b: float) -> None:
-    shown = re.plot_phase(re.simulate(re.Scene(a, b, omega=1.0), 3.0), ax=new_axes())
+    shown = rl.plot_phase(rl.simulate(rl.Scene(a, b, omega=1.0), 3.0), ax=new_axes())
     theta, omega = data(shown.separatrices[0])
     flat = 0.0 if a > b else math.pi / 2
     # nearer to a tip, rounding of max(a, b) - h is no longer small against that difference
@@ -293,58 +293,58 @@ def test_separatrix_is_between_rocking_and_rolling_over(a: float, b: float) -> N
     theta, omega = theta[ours], omega[ours]
     # from a millionth beside it the way to the tip takes some ln(1e6)/lambda = 8 s at most
     for factor, over in ((1 + 1e-6, True), (1 - 1e-6, False)):
-        later, _, _ = re.flow(30.0, a=a, b=b, theta=theta, omega=factor * omega)
+        later, _, _ = rl.flow(30.0, a=a, b=b, theta=theta, omega=factor * omega)
         assert np.all((np.abs(later - flat) > math.pi / 2) == over)
 
 
-def test_separatrix_goes_through_the_tips(report: re.Trajectory) -> None:
-    shown = re.plot_phase(report, ax=new_axes())
+def test_separatrix_goes_through_the_tips(report: rl.Trajectory) -> None:
+    shown = rl.plot_phase(report, ax=new_axes())
     theta, omega = data(shown.separatrices[0])
     centres, saddles = shown.equilibria
     for tip in data(saddles)[0]:
         assert np.any((np.abs(theta - tip) < 1e-12) & (np.abs(omega) < 1e-7))
     flats = data(centres)[0]
     assert flats == pytest.approx(np.pi * np.arange(-1, 5), abs=1e-12)
-    assert omega.max() == pytest.approx(re.thresholds(2.0, 1.0).roll_over_speed, rel=1e-12)
+    assert omega.max() == pytest.approx(rl.thresholds(2.0, 1.0).roll_over_speed, rel=1e-12)
 
 
 def test_separatrix_keeps_the_spike_of_a_thin_body() -> None:
-    shown = re.plot_phase(re.simulate(re.Scene(1.0, 1e-3, theta=0.3), 1.0), ax=new_axes())
+    shown = rl.plot_phase(rl.simulate(rl.Scene(1.0, 1e-3, theta=0.3), 1.0), ax=new_axes())
     _, omega = data(shown.separatrices[0])
-    peak = re.thresholds(1.0, 1e-3).roll_over_speed
+    peak = rl.thresholds(1.0, 1e-3).roll_over_speed
     assert omega.max() == pytest.approx(peak, rel=1e-12)
     # |d omega| <= peak per point of the curve: a tenth is no visible corner
     assert np.max(np.abs(np.diff(omega))) < 0.1 * peak
 
 
-def test_no_separatrix_for_a_circle_or_on_a_slope(report: re.Trajectory) -> None:
-    circle = re.simulate(re.scenes.circle, 2.0)
+def test_no_separatrix_for_a_circle_or_on_a_slope(report: rl.Trajectory) -> None:
+    circle = rl.simulate(rl.scenes.circle, 2.0)
     downhill = dataclasses.replace(report, scene=dataclasses.replace(report.scene, slope=0.1))
     for motion in (circle, downhill):
-        shown = re.plot_phase(motion, ax=new_axes())
+        shown = rl.plot_phase(motion, ax=new_axes())
         assert shown.separatrices == () and shown.equilibria == ()
         assert legend_of(shown.ax) == []
 
 
-def test_one_separatrix_for_each_body(report: re.Trajectory) -> None:
-    same = re.simulate(re.scenes.rocking, 1.0)
-    other = re.simulate(re.Scene(1.5, 1.0, omega=1.0), 1.0)
-    assert len(re.plot_phase([report, same], ax=new_axes()).separatrices) == 1
-    assert len(re.plot_phase([report, same, other], ax=new_axes()).separatrices) == 2
+def test_one_separatrix_for_each_body(report: rl.Trajectory) -> None:
+    same = rl.simulate(rl.scenes.rocking, 1.0)
+    other = rl.simulate(rl.Scene(1.5, 1.0, omega=1.0), 1.0)
+    assert len(rl.plot_phase([report, same], ax=new_axes()).separatrices) == 1
+    assert len(rl.plot_phase([report, same, other], ax=new_axes()).separatrices) == 2
 
 
 def test_a_small_swing_fills_the_picture() -> None:
-    ax = re.plot_phase(re.simulate(re.Scene(2.0, 1.0, theta=0.01), 3.0), ax=new_axes()).ax
+    ax = rl.plot_phase(rl.simulate(rl.Scene(2.0, 1.0, theta=0.01), 3.0), ax=new_axes()).ax
     assert 0.01 < ax.get_xlim()[1] < 0.012
     assert legend_of(ax) == []  # the separatrix is far outside
 
 
-@pytest.mark.parametrize("scene", [re.scenes.rolling, ORDINARY_SCENES["standing"]])
+@pytest.mark.parametrize("scene", [rl.scenes.rolling, ORDINARY_SCENES["standing"]])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_long_rotation_is_folded_into_half_a_turn(scene: re.Scene, sign: float) -> None:
+def test_a_long_rotation_is_folded_into_half_a_turn(scene: rl.Scene, sign: float) -> None:
     start = dataclasses.replace(scene, theta=0.1, omega=sign * scene.omega)
-    motion = re.simulate(start, 40.0)
-    theta, omega = data(re.plot_phase(motion, ax=new_axes()).motions[0])
+    motion = rl.simulate(start, 40.0)
+    theta, omega = data(rl.plot_phase(motion, ax=new_axes()).motions[0])
     flat = 0.0 if scene.a > scene.b else math.pi / 2
     breaks = np.flatnonzero(np.isnan(theta))
     half_turns = np.floor((motion.theta - flat) / math.pi + 0.5)
@@ -361,13 +361,13 @@ def test_a_long_rotation_is_folded_into_half_a_turn(scene: re.Scene, sign: float
     assert turned == pytest.approx(np.round(turned), abs=1e-12)
 
 
-def test_folding_is_a_choice(report: re.Trajectory) -> None:
-    folded = data(re.plot_phase(report, ax=new_axes(), fold=True).motions[0])[0]
+def test_folding_is_a_choice(report: rl.Trajectory) -> None:
+    folded = data(rl.plot_phase(report, ax=new_axes(), fold=True).motions[0])[0]
     assert np.nanmax(np.abs(folded)) <= math.pi / 2 < report.theta.max()
 
 
-def test_ticks_of_the_phase_plane_are_quarter_turns(report: re.Trajectory) -> None:
-    ax = re.plot_phase(report, ax=new_axes(9.0, 4.0)).ax
+def test_ticks_of_the_phase_plane_are_quarter_turns(report: rl.Trajectory) -> None:
+    ax = rl.plot_phase(report, ax=new_axes(9.0, 4.0)).ax
     ax.figure.draw_without_rendering()
     texts = [label.get_text() for label in ax.get_xticklabels()]
     assert texts == ["−π/2", "0", "π/2", "π", "3π/2", "2π", "5π/2", "3π", "7π/2"]
@@ -376,9 +376,9 @@ def test_ticks_of_the_phase_plane_are_quarter_turns(report: re.Trajectory) -> No
 # -------------------------------------------------------------------------------- plot_forces
 
 
-def test_forces_are_the_trajectory(trajectory: re.Trajectory) -> None:
+def test_forces_are_the_trajectory(trajectory: rl.Trajectory) -> None:
     limited = rough(trajectory, 0.7)
-    shown = re.plot_forces([trajectory, limited], ax=two_axes())
+    shown = rl.plot_forces([trajectory, limited], ax=two_axes())
     for motion, normal, friction, needed in zip(
         (trajectory, limited), shown.normal, shown.friction, shown.needed, strict=True
     ):
@@ -397,41 +397,41 @@ def test_forces_are_the_trajectory(trajectory: re.Trajectory) -> None:
     shown.axes[0].figure.draw_without_rendering()
 
 
-def test_one_axes_for_the_forces_alone(report: re.Trajectory) -> None:
-    shown = re.plot_forces(report, ax=new_axes())
+def test_one_axes_for_the_forces_alone(report: rl.Trajectory) -> None:
+    shown = rl.plot_forces(report, ax=new_axes())
     assert len(shown.axes) == 1 and shown.needed == () and shown.available == ()
     assert legend_of(shown.axes[0]) == ["normal", "friction"]
 
 
 def test_needed_friction_is_shown_up_to_a_bound_where_n_vanishes() -> None:
-    with pytest.warns(re.ValidityWarning):
-        jump = re.simulate(re.scenes.jump, 2.0, model="rolling")
+    with pytest.warns(rl.ValidityWarning):
+        jump = rl.simulate(rl.scenes.jump, 2.0, model="rolling")
     assert np.isinf(jump.friction_needed).any()
-    upper, lower = re.plot_forces(jump, ax=two_axes()).axes
+    upper, lower = rl.plot_forces(jump, ax=two_axes()).axes
     assert lower.get_ylim() == pytest.approx((0.0, 3.45))
     assert upper.get_ylim()[0] < jump.normal_force.min() < 0
     assert legend_of(lower) == ["μ"]
 
 
-def test_needed_friction_fills_its_panel(report: re.Trajectory) -> None:
-    _, lower = re.plot_forces(report, ax=two_axes()).axes
+def test_needed_friction_fills_its_panel(report: rl.Trajectory) -> None:
+    _, lower = rl.plot_forces(report, ax=two_axes()).axes
     assert lower.get_ylim()[1] == pytest.approx(1.15 * report.friction_needed.max())
-    _, lower = re.plot_forces(rough(report, 0.9), ax=two_axes()).axes
+    _, lower = rl.plot_forces(rough(report, 0.9), ax=two_axes()).axes
     assert lower.get_ylim()[1] == pytest.approx(1.15 * 0.9)
 
 
-def test_spikes_leave_room_for_ordinary_forces(report: re.Trajectory) -> None:
-    thin = re.simulate(re.scenes.thin, np.linspace(0.0, 2.0, 8001))
+def test_spikes_leave_room_for_ordinary_forces(report: rl.Trajectory) -> None:
+    thin = rl.simulate(rl.scenes.thin, np.linspace(0.0, 2.0, 8001))
     weight = 9.81
     assert thin.normal_force.max() > 100 * weight
-    ax = re.plot_forces(thin, ax=new_axes()).axes[0]
+    ax = rl.plot_forces(thin, ax=new_axes()).axes[0]
     bottom, ordinary, top = ax.transData.transform([(0, 0), (0, weight), (0, 100 * weight)])[:, 1]
     assert ordinary - bottom > 0.3 * (top - bottom)
-    assert re.plot_forces(report, ax=new_axes()).axes[0].get_yscale() == "linear"
+    assert rl.plot_forces(report, ax=new_axes()).axes[0].get_yscale() == "linear"
 
 
 @pytest.mark.parametrize("picture", TWO_PANELS)
-def test_axes_are_one_or_two(picture: Callable[..., Any], report: re.Trajectory) -> None:
+def test_axes_are_one_or_two(picture: Callable[..., Any], report: rl.Trajectory) -> None:
     three = list(Figure().subplots(3))
     for wrong in (three, [], "here", [three[0], None]):
         with pytest.raises(ValueError, match="ax must be one matplotlib Axes or two, got"):
@@ -441,8 +441,8 @@ def test_axes_are_one_or_two(picture: Callable[..., Any], report: re.Trajectory)
 # -------------------------------------------------------------------------------- plot_energy
 
 
-def test_energies_are_the_trajectory(trajectory: re.Trajectory) -> None:
-    shown = re.plot_energy(trajectory, ax=new_axes())
+def test_energies_are_the_trajectory(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_energy(trajectory, ax=new_axes())
     assert shown.error == () and legend_of(shown.ax) == ["total", "kinetic", "potential"]
     for (line,), values in (
         (shown.total, trajectory.energy),
@@ -453,8 +453,8 @@ def test_energies_are_the_trajectory(trajectory: re.Trajectory) -> None:
         assert np.array_equal(data(line)[1], values)
 
 
-def test_several_motions_show_the_error_of_their_energies(several: list[re.Trajectory]) -> None:
-    shown = re.plot_energy(several, ax=new_axes())
+def test_several_motions_show_the_error_of_their_energies(several: list[rl.Trajectory]) -> None:
+    shown = rl.plot_energy(several, ax=new_axes())
     assert shown.total == shown.kinetic == shown.potential == ()
     assert shown.ax.get_yscale() == "log"
     for line, motion in zip(shown.error, several, strict=True):
@@ -466,25 +466,25 @@ def test_several_motions_show_the_error_of_their_energies(several: list[re.Traje
     assert shown.ax.get_ylim()[0] < 1e-16 and shown.ax.get_ylim()[1] > max(largest)
 
 
-def test_the_kind_of_energy_picture_is_a_choice(several: list[re.Trajectory]) -> None:
-    energies = re.plot_energy(several, ax=new_axes(), kind="energies")
+def test_the_kind_of_energy_picture_is_a_choice(several: list[rl.Trajectory]) -> None:
+    energies = rl.plot_energy(several, ax=new_axes(), kind="energies")
     assert len(energies.total) == len(energies.potential) == 3 and energies.error == ()
     assert legend_of(energies.ax)[3:] == ["total", "kinetic", "potential"]
-    assert len(re.plot_energy(several[0], ax=new_axes(), kind="error").error) == 1
+    assert len(rl.plot_energy(several[0], ax=new_axes(), kind="error").error) == 1
     with pytest.raises(ValueError, match="kind must be one of 'energies', 'error', got 'total'"):
-        re.plot_energy(several, ax=new_axes(), kind="total")
+        rl.plot_energy(several, ax=new_axes(), kind="total")
 
 
 def test_an_energy_without_any_error_is_said_to_be_0() -> None:
-    still = re.simulate(re.Scene(2.0, 1.0), 1.0)
-    ax = re.plot_energy([still, still], ax=new_axes(), labels=["one", "two"]).ax
+    still = rl.simulate(rl.Scene(2.0, 1.0), 1.0)
+    ax = rl.plot_energy([still, still], ax=new_axes(), labels=["one", "two"]).ax
     assert legend_of(ax) == ["one = 0", "two = 0"]
 
 
 # --------------------------------------------------------------------------- plot_constraints
 
 
-def missing(motion: re.Trajectory, **errors: float) -> re.Trajectory:
+def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
     """The motion with residuals of the given size: f1 ... f4, df2 ... df4, gap, slip."""
     found = motion.constraint_residuals()
     position, velocity = found.position.copy(), found.velocity.copy()
@@ -494,14 +494,14 @@ def missing(motion: re.Trajectory, **errors: float) -> re.Trajectory:
         columns |= {f"f{i}": position[:, i - 2], f"df{i}": velocity[:, i - 1]}
     for name, error in errors.items():
         columns[name][:] = error
-    residuals = re.ConstraintResiduals(position, velocity, gap, slip)
+    residuals = rl.ConstraintResiduals(position, velocity, gap, slip)
     other = dataclasses.replace(motion)
     object.__setattr__(other, "constraint_residuals", lambda: residuals)
     return other
 
 
-def test_constraints_have_a_line_each(trajectory: re.Trajectory) -> None:
-    shown = re.plot_constraints(trajectory, ax=two_axes())
+def test_constraints_have_a_line_each(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_constraints(trajectory, ax=two_axes())
     names = [[text.removesuffix(" = 0") for text in legend_of(ax)] for ax in shown.axes]
     assert names == [
         ["f2", "f3", "f4", "gap"],
@@ -513,10 +513,10 @@ def test_constraints_have_a_line_each(trajectory: re.Trajectory) -> None:
         assert np.all(data(line)[1] < 1e-13)
 
 
-def test_errors_of_constraints_have_no_unit(report: re.Trajectory) -> None:
+def test_errors_of_constraints_have_no_unit(report: rl.Trajectory) -> None:
     position = {"f2": -1e-3, "f3": 2e-5, "f4": -1e-7, "gap": -4e-3}
     velocity = {"f1": 3e-3, "df2": 1e-4, "df3": -1e-6, "df4": 1e-5, "slip": -7e-3}
-    shown = re.plot_constraints(missing(report, **position, **velocity), ax=two_axes())
+    shown = rl.plot_constraints(missing(report, **position, **velocity), ax=two_axes())
     rate = np.abs(report.omega).max()
     lengths = [2.0, 2.0, 1.0, 2.0], [2 * rate, 2 * rate, 2 * rate, rate, 2 * rate]
     for lines, errors, units in zip(shown.lines, (position, velocity), lengths, strict=True):
@@ -524,21 +524,21 @@ def test_errors_of_constraints_have_no_unit(report: re.Trajectory) -> None:
             assert data(line)[1] == pytest.approx(abs(error) / unit, rel=1e-12)
 
 
-def test_several_motions_show_the_worst_of_their_constraints(report: re.Trajectory) -> None:
+def test_several_motions_show_the_worst_of_their_constraints(report: rl.Trajectory) -> None:
     motions = [report, missing(report, f2=1e-6, f3=1e-3), missing(report, f1=1e-2, f4=1e-5)]
-    positions, velocities = re.plot_constraints(motions, ax=two_axes()).lines
+    positions, velocities = rl.plot_constraints(motions, ax=two_axes()).lines
     largest = [[data(line)[1].max() for line in panel] for panel in (positions, velocities)]
     speed = 2 * np.abs(report.omega).max()
     assert largest[0][1:] == pytest.approx([5e-4, 1e-5], rel=1e-12)
     assert largest[1][2] == pytest.approx(1e-2 / speed, rel=1e-12)
     assert max(largest[0][0], largest[1][0], largest[1][1]) < 1e-14
-    (all_of_it,) = re.plot_constraints(motions, ax=new_axes()).lines
+    (all_of_it,) = rl.plot_constraints(motions, ax=new_axes()).lines
     worst = [data(line)[1].max() for line in all_of_it]
     assert worst[1:] == pytest.approx([5e-4, 1e-2 / speed], rel=1e-12)
 
 
-def test_one_motion_in_one_axes_shows_the_worst_of_each_kind(report: re.Trajectory) -> None:
-    shown = re.plot_constraints(missing(report, f1=1e-2, f3=1e-3), ax=new_axes())
+def test_one_motion_in_one_axes_shows_the_worst_of_each_kind(report: rl.Trajectory) -> None:
+    shown = rl.plot_constraints(missing(report, f1=1e-2, f3=1e-3), ax=new_axes())
     assert legend_of(shown.axes[0]) == ["positions", "velocities"]
     position, velocity = (data(line)[1] for line in shown.lines[0])
     speed = 2 * np.abs(report.omega).max()
@@ -548,8 +548,8 @@ def test_one_motion_in_one_axes_shows_the_worst_of_each_kind(report: re.Trajecto
 # --------------------------------------------------------------------------------- plot_paths
 
 
-def test_paths_are_the_trajectory(trajectory: re.Trajectory) -> None:
-    shown = re.plot_paths(trajectory, ax=new_axes())
+def test_paths_are_the_trajectory(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_paths(trajectory, ax=new_axes())
     assert np.array_equal(shown.centres[0].get_xydata(), np.column_stack(data_of(trajectory)))
     assert np.array_equal(data(shown.contacts[0])[0], trajectory.contact_x)
     assert np.all(data(shown.contacts[0])[1] == 0)
@@ -559,13 +559,13 @@ def test_paths_are_the_trajectory(trajectory: re.Trajectory) -> None:
         assert tips[i] == pytest.approx(end, rel=1e-13, abs=1e-12)  # theta passed through degrees
 
 
-def data_of(motion: re.Trajectory) -> tuple[Array, Array]:
+def data_of(motion: rl.Trajectory) -> tuple[Array, Array]:
     return motion.x, motion.z
 
 
-def test_paths_of_several_motions_share_one_view(report: re.Trajectory) -> None:
-    small = re.simulate(re.Scene(0.5, 0.5, omega=-4.0, x=-3.0), 6.0)
-    shown = re.plot_paths([report, small], ax=new_axes(), labels=["large", "small"])
+def test_paths_of_several_motions_share_one_view(report: rl.Trajectory) -> None:
+    small = rl.simulate(rl.Scene(0.5, 0.5, omega=-4.0, x=-3.0), 6.0)
+    shown = rl.plot_paths([report, small], ax=new_axes(), labels=["large", "small"])
     assert legend_of(shown.ax) == ["large", "small", "centre", "end of axis a"]
     shown.ax.figure.draw_without_rendering()
     (left, right), (bottom, top) = shown.ax.get_xlim(), shown.ax.get_ylim()
@@ -580,21 +580,21 @@ def test_paths_of_several_motions_share_one_view(report: re.Trajectory) -> None:
 
 
 @pytest.mark.parametrize("span", [20, 1000])
-def test_a_long_way_is_shown_over_three_turns(report: re.Trajectory, span: int) -> None:
-    rolling = re.simulate(re.scenes.rolling, np.linspace(0.0, span, 20_001))
-    ax = re.plot_paths(rolling, ax=new_axes()).ax
+def test_a_long_way_is_shown_over_three_turns(report: rl.Trajectory, span: int) -> None:
+    rolling = rl.simulate(rl.scenes.rolling, np.linspace(0.0, span, 20_001))
+    ax = rl.plot_paths(rolling, ax=new_axes()).ax
     assert ax.get_title(loc="left") == f"the first 13.1 s of {span} s"
     assert ax.get_xlim()[1] < 4 * 9.69  # turns of the perimeter
-    assert re.plot_paths(report, ax=new_axes()).ax.get_title(loc="left") == ""
+    assert rl.plot_paths(report, ax=new_axes()).ax.get_title(loc="left") == ""
 
 
-def test_paths_on_a_slope_are_tilted(report: re.Trajectory) -> None:
+def test_paths_on_a_slope_are_tilted(report: rl.Trajectory) -> None:
     downhill = dataclasses.replace(report, scene=dataclasses.replace(report.scene, slope=0.1))
-    shown = re.plot_paths(downhill, ax=new_axes())
+    shown = rl.plot_paths(downhill, ax=new_axes())
     ax = shown.ax
     for line in (shown.centres[0], shown.tips[0], shown.contacts[0]):
         seen = ax.transData.inverted().transform(line.get_transform().transform((1.0, 0.0)))
         assert seen == pytest.approx([math.cos(0.1), -math.sin(0.1)], rel=1e-9)
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("horizontal [m]", "vertical [m]")
     with pytest.raises(ValueError, match=r"trajectories must be on one slope, got \[0.0, 0.1\]"):
-        re.plot_paths([report, downhill], ax=new_axes())
+        rl.plot_paths([report, downhill], ax=new_axes())

@@ -7,7 +7,7 @@ import json
 import math
 import os
 import pickle
-import re as regex
+import re
 import resource
 import signal
 import subprocess
@@ -19,16 +19,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from rolling_ellipse import Trajectory, simulate
 from test_pickles import require_same
 
 TIMES = np.linspace(0.0, 1.5, 12)
 SAVED = {
-    "rolling": lambda: simulate(re.scenes.report, TIMES),
-    "contact": lambda: simulate(re.scenes.bounce, 2 * TIMES, max_events=3, raise_on_failure=False),
-    "multipliers": lambda: re.report.simulate(
-        *re.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0, method="rk4", step=0.1
+    "rolling": lambda: simulate(rl.scenes.report, TIMES),
+    "contact": lambda: simulate(rl.scenes.bounce, 2 * TIMES, max_events=3, raise_on_failure=False),
+    "multipliers": lambda: rl.report.simulate(
+        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0, method="rk4", step=0.1
     ),
 }
 REFUSED = r"^path must name a file written by save, got '[^']*motion\.npz': "
@@ -67,7 +67,7 @@ def put_together(about: Any, arrays: dict[str, Any], save: Callable[..., None] =
 def refusal(content: bytes, path: Path, said: str = "") -> str:
     path.write_bytes(content)
     with pytest.raises(ValueError, match=REFUSED + said) as caught:
-        re.load(path)
+        rl.load(path)
     return str(caught.value)
 
 
@@ -117,9 +117,9 @@ def test_damage_is_refused_or_does_no_harm(
         damage(data, rng)
         path.write_bytes(data)
         try:
-            found = re.load(path)
+            found = rl.load(path)
         except ValueError as error:
-            assert regex.match(REFUSED, str(error)), (i, damage)
+            assert re.match(REFUSED, str(error)), (i, damage)
         else:  # a date, or the header of a member that the directory repeats
             harmless += 1
             require_same(found, dataclasses.replace(motions[name], kept_events=found.events))
@@ -133,8 +133,8 @@ def test_no_damage_is_no_damage(
     path = tmp_path / "motion.npz"
     path.write_bytes(put_together(*taken_apart(contents[name])))
     expected = dataclasses.replace(motions[name], kept_events=motions[name].events)
-    require_same(re.load(path), expected)
-    re.load(path).save(path)
+    require_same(rl.load(path), expected)
+    rl.load(path).save(path)
     assert taken_apart(path.read_bytes())[0] == taken_apart(contents[name])[0]
 
 
@@ -186,9 +186,9 @@ def test_wrong_values_are_refused(name: str, contents: dict[str, bytes], tmp_pat
             wrong = changed(about, road, lambda part, key, new=value: part.__setitem__(key, new))
             path.write_bytes(put_together(wrong, arrays))
             try:
-                found = re.load(path)
+                found = rl.load(path)
             except ValueError as error:
-                assert regex.match(REFUSED, str(error)), (road, label)
+                assert re.match(REFUSED, str(error)), (road, label)
                 continue
             taken.add(label)
             found.save(again)
@@ -372,11 +372,11 @@ def test_samples_in_any_order_and_of_another_machine(
     path = tmp_path / "motion.npz"
     for times in ([1.0, 0.0, 0.5, 0.5], []):
         motions["multipliers"].sol(times).save(path)
-        assert re.load(path).t.tolist() == times
+        assert rl.load(path).t.tolist() == times
     about, arrays = taken_apart(path.read_bytes())
     swapped = {name: values.astype(">f8") for name, values in arrays.items()}
     path.write_bytes(put_together(about, swapped))
-    assert re.load(path).theta.dtype == np.float64
+    assert rl.load(path).theta.dtype == np.float64
 
 
 # ------------------------------------------------------------------------- made to do harm
@@ -453,7 +453,7 @@ def test_what_cannot_be_read_is_for_the_operating_system_to_say(name: str, tmp_p
     (tmp_path / "folder").mkdir()
     (tmp_path / "text").write_text("text")
     with pytest.raises(OSError) as caught:
-        re.load(tmp_path / name)
+        rl.load(tmp_path / name)
     assert caught.value.filename == os.fspath(tmp_path / name)
 
 
@@ -481,7 +481,7 @@ def test_what_load_would_refuse_is_not_saved(
             dataclasses.replace(motion, **change).save(path)
         assert path.read_bytes() == before
     dataclasses.replace(motion, valid_until=1, stats={}).save(path)
-    assert re.load(path).valid_until == 1.0
+    assert rl.load(path).valid_until == 1.0
 
 
 @pytest.mark.parametrize("name", ["valid_until", "t_end", "span"])
@@ -539,7 +539,7 @@ def test_a_kill_while_saving_leaves_the_old_file(
         timeout=60,
     )
     assert done.returncode == -signal.SIGKILL
-    assert re.load(path).model == "rolling"
+    assert rl.load(path).model == "rolling"
 
 
 def test_a_full_disk_leaves_the_old_file(motions: dict[str, Trajectory], tmp_path: Path) -> None:
@@ -554,4 +554,4 @@ def test_a_full_disk_leaves_the_old_file(motions: dict[str, Trajectory], tmp_pat
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
         signal.signal(signal.SIGXFSZ, ignored)
-    assert re.load(path).model == "rolling" and list(tmp_path.iterdir()) == [path]
+    assert rl.load(path).model == "rolling" and list(tmp_path.iterdir()) == [path]

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from oracles import EPS
 from rolling_ellipse import IntegrationError, Mode, Scene, Status, Trajectory
 from scipy.integrate import solve_ivp
@@ -41,7 +41,7 @@ STANDING = Scene(0.7, 1.9, theta=1.2, omega=1.0)
 
 def roll(scene: Scene, t: Any, name: str, **how: Any) -> Trajectory:
     """The motion by a method of METHODS, however it ends."""
-    return re.simulate(scene, t, model="rolling", raise_on_failure=False, **METHODS[name], **how)
+    return rl.simulate(scene, t, model="rolling", raise_on_failure=False, **METHODS[name], **how)
 
 
 def stepped(scene: Scene, t: Any, name: str, step: float = 0.02) -> Trajectory:
@@ -50,7 +50,7 @@ def stepped(scene: Scene, t: Any, name: str, step: float = 0.02) -> Trajectory:
 
 def error(trajectory: Trajectory) -> np.ndarray:
     """Distance from the exact motion at each sample: of theta and of omega, in its own size."""
-    exact = re.simulate(trajectory.scene, trajectory.t, method="exact")
+    exact = rl.simulate(trajectory.scene, trajectory.t, method="exact")
     fastest = np.max(np.abs(exact.omega))
     off: np.ndarray = np.hypot(
         trajectory.theta - exact.theta, (trajectory.omega - exact.omega) / max(fastest, 1)
@@ -114,11 +114,11 @@ def test_measured_order_is_the_nominal_one(where: str, name: str) -> None:
 
 # for motions that swing, a half turn is half a swing
 ACCURATE = {
-    "report": re.scenes.report,
-    "rocking": re.scenes.rocking,
-    "rolling": re.scenes.rolling,
+    "report": rl.scenes.report,
+    "rocking": rl.scenes.rocking,
+    "rolling": rl.scenes.rolling,
     "standing": STANDING,
-    "thin": re.scenes.thin,
+    "thin": rl.scenes.thin,
 }
 
 
@@ -127,17 +127,17 @@ def test_ten_half_turns_at_a_strict_tolerance(scene: Scene) -> None:
     """Up to 1300 steps, each good to about 1e-13; where the motion turns round or over, errors grow
     a few times."""
     half_turns = 10
-    trajectory = roll(scene, half_turns * re.period(scene) / 2, "dop853", rtol=1e-12, atol=1e-14)
+    trajectory = roll(scene, half_turns * rl.period(scene) / 2, "dop853", rtol=1e-12, atol=1e-14)
     assert trajectory.success
     assert np.max(error(trajectory)) <= 1e-9
 
 
 # not beside the separatrix, where a motion amplifies errors by any factor
 TOLERANCE_SCENES = {
-    "rolling": re.scenes.rolling,
-    "rocking": re.scenes.rocking,
+    "rolling": rl.scenes.rolling,
+    "rocking": rl.scenes.rocking,
     "standing": STANDING,
-    "thin": re.scenes.thin,
+    "thin": rl.scenes.thin,
 }
 TOLERANCES = 10.0 ** -np.arange(4, 12.5, 0.5)
 
@@ -184,7 +184,7 @@ def test_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
         )
         assert trajectory.stats["steps"] == pytest.approx(peer.t.size - 1, rel=0.1, abs=2)
         assert trajectory.stats["evaluations"] == pytest.approx(peer.nfev, rel=0.1, abs=20)
-        exact = re.simulate(scene, [5.0], method="exact")
+        exact = rl.simulate(scene, [5.0], method="exact")
         ours = math.hypot(*(trajectory.theta - exact.theta), *(trajectory.omega - exact.omega))
         theirs = math.hypot(*(peer.y[:, -1] - [exact.theta[0], exact.omega[0]]))
         gains.append(theirs / ours)
@@ -205,7 +205,7 @@ def test_energy_on_a_slope(name: str, ratio: float, slope: float) -> None:
     scene = Scene(ratio, 1.0, slope=slope, theta=0.3, omega=1.0)
     t_end = 3 * math.sqrt(max(ratio, 1.0))
     motion = roll(scene, t_end, name, rtol=rtol, atol=1e-14)
-    lead = np.abs(re.geometry.support_slope(motion.theta, a=ratio, b=1.0))
+    lead = np.abs(rl.geometry.support_slope(motion.theta, a=ratio, b=1.0))
     inertia = scene.gyration2 + motion.r**2
     change = inertia * motion.omega**2 + scene.gravity * (lead + motion.z) * np.abs(motion.theta)
     allowed = 0.1 * motion.stats["steps"] * math.sqrt(2) * rtol * np.max(change)
@@ -224,10 +224,10 @@ def test_gauss_does_not_drift_in_energy(name: str) -> None:
     within what sampling misses, 10 %, and rounding, which walks at random: the root of the steps
     times an ulp. RK4 with the same steps loses energy all the time."""
     times = np.linspace(0, 600, 3001)
-    off = energy_error(stepped(re.scenes.rocking, times, name))
+    off = energy_error(stepped(rl.scenes.rocking, times, name))
     rounding = EPS * math.sqrt(30_000)
     assert np.max(off[1500:]) <= 1.1 * np.max(off[:300]) + rounding
-    drifting = energy_error(stepped(re.scenes.rocking, times, "rk4"))
+    drifting = energy_error(stepped(rl.scenes.rocking, times, "rk4"))
     assert np.max(drifting[1500:]) > 5 * np.max(drifting[:300])
 
 
@@ -237,10 +237,10 @@ def test_gauss_undoes_itself(name: str) -> None:
     of 240 steps, an ulp each at most. Radau, which damps, does not get back."""
 
     def back(name: str) -> float:
-        there = stepped(re.scenes.rocking, [6.0], name, 0.05)
+        there = stepped(rl.scenes.rocking, [6.0], name, 0.05)
         turned = Scene(2.0, 1.0, theta=there.theta[0], omega=-there.omega[0])
         again = stepped(turned, [6.0], name, 0.05)
-        return math.hypot(again.theta[0] - re.scenes.rocking.theta, again.omega[0])
+        return math.hypot(again.theta[0] - rl.scenes.rocking.theta, again.omega[0])
 
     assert back(name) <= 1e-13
     assert back("radau") > 1e-7
@@ -292,8 +292,8 @@ def test_far_from_zero_nothing_is_lost(name: str) -> None:
 @each_method
 def test_the_centre_goes_as_far_as_the_outline_says(name: str) -> None:
     """x is the integral of h over theta for every method, error or not: 8 ulp of the way."""
-    trajectory = stepped(replace(re.scenes.rolling, x=-3.0), 20.0, name)
-    path = re.geometry.centre_path(trajectory.theta, a=2.0, b=1.0)
+    trajectory = stepped(replace(rl.scenes.rolling, x=-3.0), 20.0, name)
+    path = rl.geometry.centre_path(trajectory.theta, a=2.0, b=1.0)
     off = trajectory.x - trajectory.x[0] - (path - path[0])
     assert np.max(np.abs(off)) <= 8 * EPS * np.max(np.abs(path))
 
@@ -352,7 +352,7 @@ def test_extreme_scales(name: str, where: str) -> None:
     then within 1e-9 of the size of the motion."""
     scene, time = EXTREME[where]
     trajectory = stepped(scene, np.linspace(0, time, 101), name, time / 1000)
-    exact = re.simulate(scene, trajectory.t, method="exact")
+    exact = rl.simulate(scene, trajectory.t, method="exact")
     fastest = np.max(np.abs(exact.omega))
     assert trajectory.t.size == 101
     assert np.max(np.abs(trajectory.theta - exact.theta)) <= 1e-9 * fastest * time
@@ -372,7 +372,7 @@ def test_a_motion_far_below_the_tolerance_takes_few_steps(name: str, theta: floa
 @pytest.mark.parametrize("span", [1e-300, 1e-200, 1e-20])
 @pytest.mark.parametrize("name", PAIRS)
 def test_a_short_span_takes_few_steps(name: str, span: float) -> None:
-    trajectory = roll(re.scenes.rolling, span, name, max_steps=200)
+    trajectory = roll(rl.scenes.rolling, span, name, max_steps=200)
     assert trajectory.status is Status.COMPLETED and trajectory.t[-1] == span
 
 
@@ -409,7 +409,7 @@ def test_what_rests_stays(name: str, scene: Scene) -> None:
 def test_the_last_step_ends_at_the_end(name: str, span: float, step: float, steps: int) -> None:
     """With a shorter one where needed, and none for the rounding of 0.7/0.1. The error is that of
     even steps, of up to (0.3/0.25)^8 = 4.3 times less."""
-    scene = replace(re.scenes.rocking, omega=1.0)
+    scene = replace(rl.scenes.rocking, omega=1.0)
     trajectory = stepped(scene, span, name, step)
     assert trajectory.stats["steps"] == steps
     assert trajectory.t[-1] == trajectory.t_end == span
@@ -419,7 +419,7 @@ def test_the_last_step_ends_at_the_end(name: str, span: float, step: float, step
 
 @each_method
 def test_time_zero(name: str) -> None:
-    trajectory = stepped(re.scenes.rolling, 0, name)
+    trajectory = stepped(rl.scenes.rolling, 0, name)
     assert trajectory.t.tolist() == [0.0] and trajectory.omega.tolist() == [3.2]
     assert trajectory.stats["steps"] == 0 and trajectory.status is Status.COMPLETED
 
@@ -428,8 +428,8 @@ def test_time_zero(name: str) -> None:
 def test_samples_do_not_depend_on_what_else_is_asked_for(name: str) -> None:
     """More than a thousand of them, each third, in another order, and beyond any chunk."""
     times = np.linspace(0, 5, 5001)
-    trajectory = stepped(re.scenes.rolling, times, name)
-    third = stepped(re.scenes.rolling, times[1001::3], name)
+    trajectory = stepped(rl.scenes.rolling, times, name)
+    third = stepped(rl.scenes.rolling, times[1001::3], name)
     assert same_bits(third, trajectory.sol(times[1001::3]))
     order = np.random.default_rng(3).permutation(times.size)
     mixed = trajectory.sol(times[order])
@@ -441,15 +441,15 @@ def test_samples_do_not_depend_on_what_else_is_asked_for(name: str) -> None:
 @pytest.mark.parametrize("name", PAIRS)
 def test_samples_of_controlled_steps_do_not_depend_on_what_else_is_asked_for(name: str) -> None:
     times = np.linspace(0, 5, 5001)
-    trajectory = roll(re.scenes.rolling, times, name)
-    assert same_bits(roll(re.scenes.rolling, times[2::3], name), trajectory.sol(times[2::3]))
+    trajectory = roll(rl.scenes.rolling, times, name)
+    assert same_bits(roll(rl.scenes.rolling, times[2::3], name), trajectory.sol(times[2::3]))
 
 
 @each_method
 def test_dense_output_meets_the_steps(name: str) -> None:
     """A motion that ends with a step has the same state there as one that goes on, up to the
     rounding of its shorter last step; on both sides of it there is no jump."""
-    scene, step = re.scenes.rolling, 0.02
+    scene, step = rl.scenes.rolling, 0.02
     whole = stepped(scene, 2.0, name, step)
     for n in (1, 7, 50, 99):
         end = stepped(scene, [n * step], name, step)
@@ -464,8 +464,8 @@ def test_dense_output_meets_the_steps(name: str) -> None:
 @each_method
 def test_a_million_samples(name: str) -> None:
     times = np.linspace(0, 5, 1_000_001)
-    trajectory = stepped(re.scenes.rolling, times, name)
-    few = stepped(re.scenes.rolling, times[::100_000], name)
+    trajectory = stepped(rl.scenes.rolling, times, name)
+    few = stepped(rl.scenes.rolling, times[::100_000], name)
     assert trajectory.theta.size == 1_000_001
     assert np.array_equal(trajectory.theta[::100_000], few.theta)
     assert np.all(np.diff(trajectory.theta) > 0)
@@ -477,10 +477,10 @@ def test_files_keep_the_motion(name: str, stops: bool, tmp_path: Path) -> None:
     """The same bits at other times after loading, also of a motion that stopped early."""
     times = np.linspace(0, 5, 301)
     limit = 100 if stops else 10_000
-    trajectory = roll(re.scenes.report, times, name, step=0.03, max_steps=limit)
+    trajectory = roll(rl.scenes.report, times, name, step=0.03, max_steps=limit)
     assert trajectory.status is (Status.MAX_STEPS if stops else Status.COMPLETED)
     trajectory.save(tmp_path / "motion.npz")
-    loaded = re.load(tmp_path / "motion.npz")
+    loaded = rl.load(tmp_path / "motion.npz")
     assert same_bits(loaded, trajectory)
     for fact in ("status", "message", "reason", "method", "settings", "stats", "t_end", "span"):
         assert getattr(loaded, fact) == getattr(trajectory, fact), fact
@@ -495,9 +495,9 @@ def test_files_keep_the_motion(name: str, stops: bool, tmp_path: Path) -> None:
 def test_max_steps(how: dict[str, float]) -> None:
     times = np.linspace(0, 50, 5001)
     with pytest.raises(IntegrationError, match="max_steps = 40") as caught:
-        re.simulate(re.scenes.rolling, times, model="rolling", method="dop853", max_steps=40, **how)
+        rl.simulate(rl.scenes.rolling, times, model="rolling", method="dop853", max_steps=40, **how)
     raised = caught.value.trajectory
-    returned = roll(re.scenes.rolling, times, "dop853", max_steps=40, **how)
+    returned = roll(rl.scenes.rolling, times, "dop853", max_steps=40, **how)
     assert same_bits(raised, returned)
     for trajectory in (raised, returned):
         assert trajectory.status is Status.MAX_STEPS and not trajectory.success
@@ -506,12 +506,12 @@ def test_max_steps(how: dict[str, float]) -> None:
         assert np.array_equal(trajectory.t, times[times <= trajectory.t_end])
         with pytest.raises(ValueError, match=r"^t must lie in"):
             trajectory.sol(np.nextafter(trajectory.t_end, 50))
-    enough = roll(re.scenes.rolling, returned.t_end, "dop853", max_steps=40, **how)
+    enough = roll(rl.scenes.rolling, returned.t_end, "dop853", max_steps=40, **how)
     assert enough.status is Status.COMPLETED
 
 
 def test_a_motion_that_stops_before_the_first_sample() -> None:
-    trajectory = roll(re.scenes.rolling, [5.0], "rk4", step=0.01, max_steps=10)
+    trajectory = roll(rl.scenes.rolling, [5.0], "rk4", step=0.01, max_steps=10)
     assert trajectory.t.size == 0 and trajectory.t_end == pytest.approx(0.1)
     assert trajectory.sol(0.05).t.size == 1
 
@@ -519,8 +519,8 @@ def test_a_motion_that_stops_before_the_first_sample() -> None:
 @pytest.mark.parametrize("name", PAIRS)
 def test_step_too_small(name: str) -> None:
     with pytest.raises(IntegrationError, match="no step of a size that changes t"):
-        re.simulate(re.scenes.rolling, 1.0, model="rolling", method=name, rtol=0.0, atol=1e-300)
-    trajectory = roll(re.scenes.rolling, 1.0, name, rtol=0.0, atol=1e-300)
+        rl.simulate(rl.scenes.rolling, 1.0, model="rolling", method=name, rtol=0.0, atol=1e-300)
+    trajectory = roll(rl.scenes.rolling, 1.0, name, rtol=0.0, atol=1e-300)
     assert trajectory.status is Status.STEP_TOO_SMALL
     assert trajectory.t.tolist() == [0.0] and trajectory.stats["steps"] == 0
 
@@ -552,7 +552,7 @@ def test_steps_much_too_large_give_no_nonsense_numbers(
 @pytest.mark.parametrize("name", IMPLICIT)
 def test_step_too_large(name: str) -> None:
     with pytest.raises(IntegrationError, match="a step of 10 s cannot be solved at t = 0 s"):
-        re.simulate(OVERSTEPPED["thin"], 100.0, model="rolling", step=10.0, **METHODS[name])
+        rl.simulate(OVERSTEPPED["thin"], 100.0, model="rolling", step=10.0, **METHODS[name])
     trajectory = stepped(OVERSTEPPED["thin"], 100.0, name, 10.0)
     assert trajectory.status is Status.STEP_TOO_LARGE
     assert trajectory.t.tolist() == [0.0] and trajectory.t_end == 0
@@ -562,7 +562,7 @@ def test_step_too_large(name: str) -> None:
 @pytest.mark.parametrize("tolerance", [1.0, 1e3, 1e300])
 @pytest.mark.parametrize("name", PAIRS)
 def test_tolerances_much_too_loose_give_no_nonsense_numbers(name: str, tolerance: float) -> None:
-    trajectory = roll(re.scenes.rolling, 20.0, name, rtol=tolerance, atol=tolerance)
+    trajectory = roll(rl.scenes.rolling, 20.0, name, rtol=tolerance, atol=tolerance)
     for field in ARRAYS:
         assert np.all(np.isfinite(getattr(trajectory, field))), field
 
@@ -604,7 +604,7 @@ BAD = [
 @pytest.mark.parametrize(("how", "said"), BAD, ids=[f"{how}" for how, _ in BAD])
 def test_wrong_settings_are_refused_by_name(how: dict[str, Any], said: str) -> None:
     with pytest.raises(ValueError, match=f"^{said}"):
-        re.simulate(re.scenes.rolling, 2.0, model="rolling", **how)
+        rl.simulate(rl.scenes.rolling, 2.0, model="rolling", **how)
 
 
 @pytest.mark.parametrize(
@@ -618,14 +618,14 @@ def test_wrong_settings_are_refused_by_name(how: dict[str, Any], said: str) -> N
 )
 def test_what_is_no_number_is_refused_by_name(how: dict[str, Any], said: str) -> None:
     with pytest.raises(TypeError, match=f"^{said}"):
-        re.simulate(re.scenes.rolling, 2.0, model="rolling", **how)
+        rl.simulate(rl.scenes.rolling, 2.0, model="rolling", **how)
 
 
 def test_the_exact_method_needs_level_ground() -> None:
     with pytest.raises(ValueError, match=r"^slope must be 0 for method 'exact', got 0\.1"):
-        re.simulate(Scene(2.0, 1.0, slope=0.1), 1.0, model="rolling", method="exact")
+        rl.simulate(Scene(2.0, 1.0, slope=0.1), 1.0, model="rolling", method="exact")
 
 
 def test_auto_steps_where_there_is_no_exact_motion() -> None:
-    assert re.simulate(re.scenes.rolling, 1.0).method == "exact"
-    assert re.simulate(Scene(2.0, 1.0, slope=0.1), 1.0).method == "dop853"
+    assert rl.simulate(rl.scenes.rolling, 1.0).method == "exact"
+    assert rl.simulate(Scene(2.0, 1.0, slope=0.1), 1.0).method == "dop853"

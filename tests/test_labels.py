@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 import pytest
-import rolling_ellipse as re
-from rolling_ellipse._labels import SCENE_UNITS, labels_of, motions_of
+import rolling_ellipse as rl
+from rolling_ellipse._pictures.labels import SCENE_UNITS, labels_of, motions_of
 
-ROLLING = re.simulate(re.scenes.rolling, 1.0)
+ROLLING = rl.simulate(rl.scenes.rolling, 1.0)
 
 
-def motions(*scenes: re.Scene) -> list[re.Trajectory]:
+def motions(*scenes: rl.Scene) -> list[rl.Trajectory]:
     """Trajectories of scenes; none is integrated, labels only read what was asked for."""
     return [dataclasses.replace(ROLLING, scene=scene) for scene in scenes]
 
 
-def varied(**fields: Any) -> re.Scene:
-    return dataclasses.replace(re.scenes.rolling, **fields)
+def varied(**fields: Any) -> rl.Scene:
+    return dataclasses.replace(rl.scenes.rolling, **fields)
 
 
 @pytest.mark.parametrize(
@@ -33,17 +33,17 @@ def varied(**fields: Any) -> re.Scene:
             ["mass = 1 kg, x = 0 m", "mass = 2 kg, x = 0 m", "mass = 2 kg, x = 1 m"],
         ),
         (
-            [varied(), varied(impulse=re.Impulse.press(4.0, -0.5))],
+            [varied(), varied(impulse=rl.Impulse.press(4.0, -0.5))],
             ["no impulse", "impulse (0, −4) N s at (−0.5, 0) m"],
         ),
         (
-            [re.scenes.thin, re.scenes.circle],
+            [rl.scenes.thin, rl.scenes.circle],
             ["a = 2 m, b = 0.02 m, theta = 0.3 rad, …", "a = 1 m, b = 1 m, theta = 0 rad, …"],
         ),
     ],
 )
 def test_scenes_are_named_by_the_fields_that_differ(
-    scenes: list[re.Scene], names: list[str]
+    scenes: list[rl.Scene], names: list[str]
 ) -> None:
     assert labels_of(motions(*scenes), None) == names
 
@@ -126,6 +126,6 @@ def test_what_is_no_motion_is_refused_by_name(
 
 
 def test_every_number_of_a_scene_has_a_unit() -> None:
-    numbers = {field.name for field in dataclasses.fields(re.Scene)} - {"impulse"}
+    numbers = {field.name for field in dataclasses.fields(rl.Scene)} - {"impulse"}
     assert set(SCENE_UNITS) == numbers
     assert math.isinf(varied().friction)  # so that "friction = ∞" above is what it says

@@ -14,10 +14,10 @@ import mpmath as mp
 import numpy as np
 import oracles
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from oracles import EPS
 from rolling_ellipse import Scene, Status, Trajectory, _core, simulate
-from rolling_ellipse.settings import Settings
+from rolling_ellipse._settings import Settings
 from test_constraints import along, positions
 
 Shape = tuple[float, float]
@@ -65,7 +65,7 @@ def states(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
     """States that obey nothing; rolling ones at quarter turns and far away; the latter, too, a
     little off the constraints."""
     angles = [k * QUARTER for k in (-3, -1, 0, 1, 2, 6)] + [0.3, 1e5, -1e5, 25000 * QUARTER]
-    rolling = re.kinematics(np.array(angles), -1.7, a=shape[0], b=shape[1])
+    rolling = rl.kinematics(np.array(angles), -1.7, a=shape[0], b=shape[1])
     free = random_states(shape, 16)
     shift = 1e-3 * np.random.default_rng(4).normal(size=(2, len(angles), 5))
     parts = [free, rolling, (rolling[0] + shift[0], rolling[1] + shift[1])]
@@ -207,7 +207,7 @@ def misses(
     terms += np.einsum("jnik,nj,nk->ni", np.abs(slopes), np.abs(rate), np.abs(rate))
     if how.stabilization == "baumgarte":
         alpha, beta = how.baumgarte
-        held = re.constraints(q, q_dot, a=scene.a, b=scene.b)
+        held = rl.constraints(q, q_dot, a=scene.a, b=scene.b)
         demand += 2 * alpha * held.velocity
         demand[:, 1:] += beta**2 * held.position
         terms += 2 * alpha * np.einsum("nik,nk->ni", np.abs(rows), np.abs(rate))
@@ -227,7 +227,7 @@ def test_back_substitution(shape: Shape, stabilization: str) -> None:
     scene = Scene(*shape, mass=3.0, gravity=3.7, slope=-0.2)
     how = settings(stabilization=stabilization, baumgarte=(3.0, 5.0))
     q, q_dot = states(shape)
-    solved = _core.multiplier_detail(scene._core_scene, how.core, q, q_dot)
+    solved = _core.multiplier_detail(scene.core, how.core, q, q_dot)
     missed = misses(scene, how, q, q_dot, *solved)
     print(", ".join(f"{name} {np.max(miss):.2g}" for name, miss in missed.items()))
     assert max(np.max(miss) for miss in missed.values()) <= 1e-13
@@ -238,7 +238,7 @@ def test_back_substitution_sees_a_millionth(column: int) -> None:
     """In any acceleration or multiplier, somewhere."""
     scene, how = Scene(2.0, 1.0), settings()
     q, q_dot = states((2.0, 1.0))
-    q_ddot, multipliers = _core.multiplier_detail(scene._core_scene, how.core, q, q_dot)
+    q_ddot, multipliers = _core.multiplier_detail(scene.core, how.core, q, q_dot)
     solved = np.concatenate([q_ddot, multipliers], axis=1)
     solved[:, column] *= 1 + 1e-6
     missed = misses(scene, how, q, q_dot, solved[:, :5], solved[:, 5:])
@@ -252,9 +252,9 @@ def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(7)
     theta, omega = generator.uniform(-10, 10, 50), generator.normal(0, 3, 50)
     q, q_dot, exact, normal, friction, exact_multipliers = _core.rolling_detail(
-        scene._core_scene, theta, omega, np.zeros(50)
+        scene.core, theta, omega, np.zeros(50)
     )
-    found, multipliers = _core.multiplier_detail(scene._core_scene, settings().core, q, q_dot)
+    found, multipliers = _core.multiplier_detail(scene.core, settings().core, q, q_dot)
     r, rates2 = q[:, 4], q_dot[:, 2] ** 2 + q_dot[:, 3] ** 2
     way = scene.gravity + r * (np.abs(exact[:, 2]) + np.abs(exact[:, 3]) + rates2)
     angular = np.abs(exact[:, 2:4])
@@ -294,13 +294,13 @@ def test_projection_meets_the_constraints_at_the_nearest_state(shape: Shape) -> 
     size, least = max(shape), min(shape)
     shift = 1e-4 * least / size
     for theta in (0.0, 0.4, QUARTER, -2.2, 40.3):
-        rolling, rate = re.kinematics(theta, 1.3, a=shape[0], b=shape[1])
+        rolling, rate = rl.kinematics(theta, 1.3, a=shape[0], b=shape[1])
         q, q_dot = (
             values + shift * generator.uniform(-1, 1, 5) * [size, size, 1, 1, size]
             for values in (rolling, rate)
         )
-        found, found_rate = _core.project(scene._core_scene, q[None].copy(), q_dot[None].copy())
-        held = re.constraints(found, found_rate, a=shape[0], b=shape[1])
+        found, found_rate = _core.project(scene.core, q[None].copy(), q_dot[None].copy())
+        held = rl.constraints(found, found_rate, a=shape[0], b=shape[1])
         grain = 16 * EPS * max(1.0, abs(theta)) * (size / least) ** 2
         assert np.max(np.abs(held.position)) <= grain * size
         assert np.max(np.abs(held.velocity)) <= 8 * grain * size * np.max(np.abs(q_dot))
@@ -311,7 +311,7 @@ def test_projection_meets_the_constraints_at_the_nearest_state(shape: Shape) -> 
         along_position = (found - q)[1:] @ (inertia * direction)[1:] / weight
         assert abs(along_velocity) <= 16 * EPS * np.max(np.abs(q_dot)) * size / least
         assert abs(along_position) <= 50 * (shift * size / least) ** 2
-        again = _core.project(scene._core_scene, found[None].copy(), found_rate[None].copy())
+        again = _core.project(scene.core, found[None].copy(), found_rate[None].copy())
         assert np.max(np.abs(again[0] - found)) <= grain * size
         assert np.max(np.abs(again[1] - found_rate)) <= 8 * grain * size * np.max(np.abs(q_dot))
 
@@ -321,11 +321,11 @@ def test_projection_meets_the_constraints_at_the_nearest_state(shape: Shape) -> 
 GENERIC = Scene(2.0, 1.0, theta=0.2, omega=3.2)
 SCENES = {
     "rotation": GENERIC,
-    "rocking": re.scenes.rocking,
-    "circle": re.scenes.circle,
+    "rocking": rl.scenes.rocking,
+    "circle": rl.scenes.circle,
     "circle + 1e-8": Scene(1.0 + 1e-8, 1.0, theta=0.3, omega=1.5),
     "standing": Scene(0.7, 1.9, mass=3.0, gravity=3.7, inertia=2.0, theta=1.2, omega=1.0, x=-5.0),
-    "thin": re.scenes.thin,
+    "thin": rl.scenes.thin,
     "backwards": Scene(2.0, 1.0, mass=0.2, omega=-3.3),
     "from the tip": Scene(2.0, 1.0, theta=QUARTER, omega=0.5),
     "quarter turns on": Scene(2.0, 1.0, theta=-3 * QUARTER, omega=-0.5),
@@ -410,7 +410,7 @@ def test_order(method: str, stabilization: str) -> None:
     own."""
     order, counts = ORDERS[method]
     scene = Scene(1.2, 1.0, theta=0.2, omega=4.0)
-    span = 3.37 * re.period(scene) / 2
+    span = 3.37 * rl.period(scene) / 2
     errors = []
     for count in counts:
         times = np.append(np.arange(count) * (span / count), span)
@@ -462,7 +462,7 @@ def test_files_keep_every_bit(motion: Trajectory, tmp_path: Path) -> None:
     """Of the samples, of what follows from them, and of `sol` at other times."""
     path = tmp_path / "motion.npz"
     motion.save(path)
-    loaded = re.load(path)
+    loaded = rl.load(path)
     assert loaded.settings == motion.settings and loaded.scene == motion.scene
     between = np.array([0.0, 0.013, 1.7, 3.999, 4.0])
     for first, second in ((loaded, motion), (loaded.sol(between), motion.sol(between))):
@@ -482,7 +482,7 @@ def test_samples_do_not_depend_on_each_other(motion: Trajectory) -> None:
 
 def test_a_start_in_coordinates() -> None:
     """Without stabilization the motion starts there, off the constraints or not."""
-    q, q_dot = re.kinematics(0.4, 2.0, a=2.0, b=1.0)
+    q, q_dot = rl.kinematics(0.4, 2.0, a=2.0, b=1.0)
     q, q_dot = q + 1e-3 * np.arange(5), q_dot - 1e-3
     times = np.array([0.0, 0.5])
     found = Trajectory.computed(Scene(2.0, 1.0), settings(), times, start=(q, q_dot))
@@ -491,7 +491,7 @@ def test_a_start_in_coordinates() -> None:
 
 
 def test_max_steps_leaves_what_there_is() -> None:
-    with pytest.raises(re.IntegrationError, match="max_steps = 10 ") as caught:
+    with pytest.raises(rl.IntegrationError, match="max_steps = 10 ") as caught:
         simulate(GENERIC, 4.0, model="multipliers", max_steps=10)
     cut = caught.value.trajectory
     assert cut.status is Status.MAX_STEPS and 0 < cut.t_end < 4
@@ -548,4 +548,4 @@ def test_gains_that_are_no_numbers() -> None:
 @pytest.mark.parametrize("name", ["drop", "slip"])
 def test_what_does_not_roll_is_refused(name: str) -> None:
     with pytest.raises(ValueError, match=r"^model 'multipliers' must start rolling, but"):
-        simulate(getattr(re.scenes, name), 1.0, model="multipliers")
+        simulate(getattr(rl.scenes, name), 1.0, model="multipliers")

@@ -12,13 +12,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from rolling_ellipse.plotting import PhaseMap, plot_phase_map
+from rolling_ellipse._pictures.phase_map import PhaseMap, plot_phase_map
 
 Array = NDArray[np.float64]
 PAIRS = [
@@ -77,7 +77,7 @@ def constant(values: Array) -> float:
     return float(values[0])
 
 
-def energy_of(found: re.Thresholds, speed: float) -> float:
+def energy_of(found: rl.Thresholds, speed: float) -> float:
     return (speed / found.roll_over_speed) ** 2
 
 
@@ -99,7 +99,7 @@ def test_cells_are_what_classify_says_at_their_middles(x: str, y: str, swapped: 
         roll_over = math.sqrt(2 * 3.7 * (a - 0.7) / ((a**2 + 0.49) / 4 + 0.49))
         omega = values.get("speed", math.sqrt(values["energy"]) * roll_over)
         axes = {"a": 0.7, "b": a, "theta": math.pi / 2} if swapped else {"a": a, "b": 0.7}
-        expected = re.classify(omega=omega, friction=values["friction"], gravity=3.7, **axes)
+        expected = rl.classify(omega=omega, friction=values["friction"], gravity=3.7, **axes)
         assert codes[i, j] == expected, (values, omega)
 
 
@@ -116,7 +116,7 @@ def test_cells_are_what_classify_says_at_their_middles(x: str, y: str, swapped: 
 def test_the_legend_names_what_occurs(options: dict[str, Any], expected: list[str]) -> None:
     shown = phase_map(**options)
     assert legend_of(shown.ax) == expected
-    present = [re.Outcome(code) for code in np.unique(codes_of(shown))]
+    present = [rl.Outcome(code) for code in np.unique(codes_of(shown))]
     assert [outcome.name.lower().replace("_", " ") for outcome in present] == expected
     for outcome, entry in zip(present, shown.ax.get_legend().get_patches(), strict=True):
         assert to_hex(shown.cells.to_rgba(int(outcome))) == to_hex(entry.get_facecolor())
@@ -124,7 +124,7 @@ def test_the_legend_names_what_occurs(options: dict[str, Any], expected: list[st
 
 def test_regions_are_told_apart_in_grey() -> None:
     cells = phase_map().cells
-    regions = [o for o in re.Outcome if o not in (re.Outcome.RESTS, re.Outcome.EDGE)]
+    regions = [o for o in rl.Outcome if o not in (rl.Outcome.RESTS, rl.Outcome.EDGE)]
     colours = [to_rgb(cells.to_rgba(int(outcome))) for outcome in regions]
     greys = sorted(0.299 * r + 0.587 * g + 0.114 * b for r, g, b in colours)
     reached = [grey for grey in greys if grey > 0.3]  # without JAMS, which never happens
@@ -168,7 +168,7 @@ def test_painleve() -> None:
     aspects, frictions = at(phase_map("aspect", "friction", x_range=(2, 8)), "Painlevé")
     assert frictions[0] == pytest.approx(1.352698667647026, rel=1e-14)
     for aspect, friction in zip(aspects[::12], frictions[::12], strict=True):
-        assert friction == re.thresholds(aspect, 1.0).painleve_friction
+        assert friction == rl.thresholds(aspect, 1.0).painleve_friction
 
 
 def test_curves_over_the_aspect() -> None:
@@ -176,7 +176,7 @@ def test_curves_over_the_aspect() -> None:
     assert constant(at(shown, "separatrix")[1]) == 1
     contact, flight = at(shown, "contact loss"), at(shown, "lift-off")
     for i in range(3, contact[0].size, 9):
-        found = re.thresholds(3 * contact[0][i], 3.0, gravity=1.6, friction=0.5)  # any scale
+        found = rl.thresholds(3 * contact[0][i], 3.0, gravity=1.6, friction=0.5)  # any scale
         loss, lift_off = found.contact_loss_speed, found.lift_off_speed
         assert contact[1][i] == pytest.approx(energy_of(found, loss), rel=1e-9)
         assert flight[1][i] == pytest.approx(energy_of(found, lift_off), rel=1e-9)
@@ -191,7 +191,7 @@ def test_speeds_over_the_friction() -> None:
     ):
         frictions, speeds = at(shown, key)
         for i in range(1, frictions.size, 12):
-            found = re.thresholds(6.0, 2.0, gravity=3.0, friction=frictions[i])
+            found = rl.thresholds(6.0, 2.0, gravity=3.0, friction=frictions[i])
             assert speeds[i] == getattr(found, name)
     assert shown.ax.get_xlabel().endswith("(at a/b = 3, b = 2 m)")
 
@@ -210,7 +210,7 @@ def test_colours_change_at_the_lines() -> None:
     lost = energies[:, None] > limit
     over = np.broadcast_to(energies[:, None] > 1, codes.shape)
     expected = np.where(
-        lost, re.Outcome.LOSES_CONTACT, np.where(over, re.Outcome.ROLLS_OVER, re.Outcome.ROCKS)
+        lost, rl.Outcome.LOSES_CONTACT, np.where(over, rl.Outcome.ROLLS_OVER, rl.Outcome.ROCKS)
     )
     assert np.mean(near) < 0.05 and np.array_equal(codes[~near], expected[~near])
 
@@ -288,8 +288,8 @@ def test_any_resolution(resolution: int) -> None:
     shown = phase_map("friction", "energy", resolution=resolution)
     assert codes_of(shown).shape == (resolution, resolution)
     if resolution == 1:
-        middle = re.thresholds(2.0, 1.0).roll_over_speed * math.sqrt(2)
-        assert codes_of(shown)[0, 0] == re.classify(a=2.0, b=1.0, omega=middle, friction=1.0)
+        middle = rl.thresholds(2.0, 1.0).roll_over_speed * math.sqrt(2)
+        assert codes_of(shown)[0, 0] == rl.classify(a=2.0, b=1.0, omega=middle, friction=1.0)
 
 
 def test_the_same_for_any_number_of_workers() -> None:
@@ -298,7 +298,7 @@ def test_the_same_for_any_number_of_workers() -> None:
 
 
 def test_without_axes_it_opens_a_figure() -> None:
-    shown = re.plot_phase_map(resolution=4)
+    shown = rl.plot_phase_map(resolution=4)
     assert shown.ax.figure is plt.gcf()
     assert shown.ax.get_xlabel() == "a/b   (at μ = ∞)"
     plt.close(shown.ax.figure)

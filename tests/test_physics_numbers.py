@@ -9,7 +9,7 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from oracles import EPS, geometry
 from rolling_ellipse import Impulse, Mode, Scene, Validity, certify, flow, period, thresholds
 
@@ -25,10 +25,10 @@ def test_perimeter() -> None:
     turn = 2 * math.pi
     exact = 4 * A * float(mp.ellipe(mp.mpf(3) / 4))
     assert exact == 9.6884482205476762
-    assert re.geometry.arc_length(turn, a=A, b=B) == pytest.approx(exact, rel=4 * EPS)
+    assert rl.geometry.arc_length(turn, a=A, b=B) == pytest.approx(exact, rel=4 * EPS)
     # the centre is where it was over the contact, so it has come as far
-    times = np.array([0.0, period(re.scenes.rolling)])
-    trajectory = re.simulate(re.scenes.rolling, times)
+    times = np.array([0.0, period(rl.scenes.rolling)])
+    trajectory = rl.simulate(rl.scenes.rolling, times)
     assert trajectory.x[1] == pytest.approx(exact, rel=16 * EPS)
     assert trajectory.contact_x[1] - trajectory.contact_x[0] == pytest.approx(exact, rel=16 * EPS)
     assert trajectory.turns[1] == pytest.approx(1.0, rel=4 * EPS)
@@ -38,7 +38,7 @@ def test_way_of_the_centre_in_space() -> None:
     """Project Euler 525: the centre of a 4:2 ellipse moves C = 21.38816906 m in one turn, the
     integral of |d(x, h)/d theta| = r; from the rates of a motion."""
     turning = Scene(4.0, 2.0, omega=3.0)
-    trajectory = re.simulate(turning, np.linspace(0, period(turning), 2001))
+    trajectory = rl.simulate(turning, np.linspace(0, period(turning), 2001))
     speed = np.hypot(trajectory.x_dot, trajectory.z_dot)
     # a smooth periodic function: the trapezoidal rule is exact to rounding
     way = float(np.sum((speed[1:] + speed[:-1]) / 2 * np.diff(trajectory.t)))
@@ -77,7 +77,7 @@ def test_rolling_loses_contact() -> None:
     assert below.validity is Validity.VALID and above.validity is Validity.INVALID
     assert math.degrees(above.ends_at) == pytest.approx(62.36, abs=0.01)
     just_below = Scene(A, B, omega=speed * (1 - 1e-9))
-    trajectory = re.simulate(just_below, np.linspace(0, 0.6, 100_001))
+    trajectory = rl.simulate(just_below, np.linspace(0, 0.6, 100_001))
     least = np.argmin(trajectory.normal_force)
     # 2e-9 of the energy is missing, some 10 times that of the weight is left; N is flat there, a
     # sample within 1e-5 rad of the place sees 1e-9 more
@@ -170,7 +170,7 @@ def test_falling_from_the_tip() -> None:
 def test_the_report_scene() -> None:
     """48 N s at 1.5 m on 10 kg: 3.2 rad/s. The report's eq 48 divides by k^2 instead of k^2 + b^2
     and gives 5.76, 1 + b^2/k^2 = 1.8 times as much."""
-    start = re.scenes.report.initial_state
+    start = rl.scenes.report.initial_state
     assert start.omega == pytest.approx(48 * 1.5 / (10 * (GYRATION2 + B**2)), rel=2 * EPS)
     assert start.omega == pytest.approx(3.2, rel=2 * EPS)
     assert start.free_omega == pytest.approx(5.76, rel=2 * EPS)
@@ -178,13 +178,13 @@ def test_the_report_scene() -> None:
     assert start.mode is Mode.ROLLING
     assert TWO_TO_ONE.roll_over_speed < start.omega < TWO_TO_ONE.contact_loss_speed
     assert start.free_omega > TWO_TO_ONE.contact_loss_speed  # more than rolling can keep
-    assert certify(re.scenes.report).validity is Validity.VALID
-    assert re.simulate(re.scenes.report, 6.0).turns[-1] > 1  # it rolls over
+    assert certify(rl.scenes.report).validity is Validity.VALID
+    assert rl.simulate(rl.scenes.report, 6.0).turns[-1] > 1  # it rolls over
 
 
 def test_reactions_of_the_report_scene() -> None:
     """Sticking: L_x = m h omega - J_x, L_z = m h' omega - J_z."""
-    start = re.scenes.report.initial_state
+    start = rl.scenes.report.initial_state
     assert start.reaction_x == pytest.approx(10 * 1.0 * 3.2, rel=4 * EPS)
     assert start.reaction_z == pytest.approx(48, rel=4 * EPS)
 
@@ -208,7 +208,7 @@ def test_it_sticks_from_two_thirds_on() -> None:
     for force in (1e-3, 48.0, 1e5):
         for change, mode in ((1e-9, Mode.ROLLING), (-1e-9, Mode.SLIDING)):
             blow = replace(
-                re.scenes.report, friction=2 / 3 + change, impulse=Impulse.press(force, 1.5)
+                rl.scenes.report, friction=2 / 3 + change, impulse=Impulse.press(force, 1.5)
             )
             assert blow.initial_state.mode is mode
 
@@ -221,6 +221,6 @@ def test_little_friction_reverses_the_slip() -> None:
 
 
 def test_without_friction_eq_48_is_exact() -> None:
-    scene = replace(re.scenes.report, friction=0.0)
+    scene = replace(rl.scenes.report, friction=0.0)
     assert scene.initial_state.omega == pytest.approx(5.76, rel=2 * EPS)
     assert scene.initial_state.x_dot == 0

@@ -15,75 +15,75 @@ from typing import Any
 
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from rolling_ellipse import Trajectory, _core, simulate
 from rolling_ellipse._samples import ContactSamples
-from rolling_ellipse.settings import Settings
+from rolling_ellipse._settings import Settings
 
 TIMES = np.linspace(0.0, 1.5, 40)
 MOTIONS = {
-    "rolling": lambda: simulate(re.scenes.report, TIMES),
-    "gauss": lambda: simulate(re.scenes.rocking, TIMES, method="gauss", step=0.01),
-    "multipliers": lambda: simulate(re.scenes.report, TIMES, model="multipliers"),
-    "contact": lambda: simulate(re.scenes.bounce, TIMES),
-    "from coordinates": lambda: re.report.simulate(
-        *re.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0
+    "rolling": lambda: simulate(rl.scenes.report, TIMES),
+    "gauss": lambda: simulate(rl.scenes.rocking, TIMES, method="gauss", step=0.01),
+    "multipliers": lambda: simulate(rl.scenes.report, TIMES, model="multipliers"),
+    "contact": lambda: simulate(rl.scenes.bounce, TIMES),
+    "from coordinates": lambda: rl.report.simulate(
+        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0
     ),
-    "stopped": lambda: simulate(re.scenes.bounce, TIMES, max_events=1, raise_on_failure=False),
+    "stopped": lambda: simulate(rl.scenes.bounce, TIMES, max_events=1, raise_on_failure=False),
 }
 
 
-def printed() -> re.report.PrintedMotion:
-    found = re.report.simulate(
-        *re.kinematics(0.3, 2.0, a=2.0, b=1.0),
+def printed() -> rl.report.PrintedMotion:
+    found = rl.report.simulate(
+        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0),
         TIMES / 4,
         a=2.0,
         b=1.0,
         equations="printed",
         consistent="project",
     )
-    assert isinstance(found, re.report.PrintedMotion)
+    assert isinstance(found, rl.report.PrintedMotion)
     return found
 
 
-def integration_error() -> re.IntegrationError:
-    with pytest.raises(re.IntegrationError) as caught:
-        simulate(re.scenes.bounce, TIMES, max_events=1)
+def integration_error() -> rl.IntegrationError:
+    with pytest.raises(rl.IntegrationError) as caught:
+        simulate(rl.scenes.bounce, TIMES, max_events=1)
     return caught.value
 
 
-def fitted() -> re.impacts.FittedImpacts:
+def fitted() -> rl.impacts.FittedImpacts:
     before = [[0.3, 0.5], [1.0, 0.0], [-2.0, -1.0], [0.0, 0.5]]
-    after = re.impacts.collide(*before, a=2.0, b=1.0, restitution=0.5, friction=0.1)
-    return re.impacts.fit(before, after, a=2.0, b=1.0)
+    after = rl.impacts.collide(*before, a=2.0, b=1.0, restitution=0.5, friction=0.1)
+    return rl.impacts.fit(before, after, a=2.0, b=1.0)
 
 
 OBJECTS: dict[str, Callable[[], Any]] = {
     **MOTIONS,
-    "scene": lambda: re.scenes.report,
-    "scene of its own": lambda: re.Scene(0.7, 1.9, z=3.0, x_dot=1.0, friction=0.3, slope=0.1),
-    "impulse": lambda: re.Impulse(1.0, -2.0, dx=0.1),
-    "initial state": lambda: re.scenes.jump.initial_state,
+    "scene": lambda: rl.scenes.report,
+    "scene of its own": lambda: rl.Scene(0.7, 1.9, z=3.0, x_dot=1.0, friction=0.3, slope=0.1),
+    "impulse": lambda: rl.Impulse(1.0, -2.0, dx=0.1),
+    "initial state": lambda: rl.scenes.jump.initial_state,
     "event": lambda: MOTIONS["contact"]().events[0],
-    "certificate": lambda: re.certify(re.scenes.report),
-    "thresholds": lambda: re.thresholds(2.0, 1.0),
+    "certificate": lambda: rl.certify(rl.scenes.report),
+    "thresholds": lambda: rl.thresholds(2.0, 1.0),
     "settings": lambda: MOTIONS["gauss"]().settings,
     "contact samples": lambda: MOTIONS["contact"]().contact,
     "residuals": lambda: MOTIONS["rolling"]().constraint_residuals(),
     "integration error": integration_error,
-    "validity warning": lambda: re.ValidityWarning("not from 1 s on"),
-    "start warning": lambda: re.report.InconsistentStartWarning("f2 = 1"),
+    "validity warning": lambda: rl.ValidityWarning("not from 1 s on"),
+    "start warning": lambda: rl.report.InconsistentStartWarning("f2 = 1"),
     "printed motion": printed,
     "start": lambda: printed().start,
-    "errata": re.report.errata,
-    "comparison": lambda: re.report.errata()[0].evaluate(),
+    "errata": rl.report.errata,
+    "comparison": lambda: rl.report.errata()[0].evaluate(),
     "fitted impacts": fitted,
-    "mode": lambda: re.Mode.SLIDING,
-    "kind": lambda: re.EventKind.JAM,
-    "outcome": lambda: re.Outcome.EDGE,
-    "status": lambda: re.Status.JAMMED,
-    "validity": lambda: re.Validity.EDGE,
+    "mode": lambda: rl.Mode.SLIDING,
+    "kind": lambda: rl.EventKind.JAM,
+    "outcome": lambda: rl.Outcome.EDGE,
+    "status": lambda: rl.Status.JAMMED,
+    "validity": lambda: rl.Validity.EDGE,
 }
 ROADS: dict[str, Callable[[Any], Any]] = {
     **{f"protocol {p}": lambda thing, p=p: pickle.loads(pickle.dumps(thing, p)) for p in range(6)},
@@ -142,7 +142,7 @@ def parts(thing: Any) -> set[type]:
 
 def test_every_public_class_is_here() -> None:
     here = set().union(*(parts(make()) for make in OBJECTS.values()))
-    assert not public_classes(re, re.report, re.impacts) - here
+    assert not public_classes(rl, rl.report, rl.impacts) - here
     assert {Settings, ContactSamples} <= here
 
 
@@ -189,15 +189,15 @@ def test_pickles_hold_no_more_than_needed() -> None:
 
 POOLS = """
 import multiprocessing, pickle, sys
-import rolling_ellipse as re
+import rolling_ellipse as rl
 
 if __name__ == "__main__":
     jobs, path = pickle.loads(sys.stdin.buffer.read())
     with multiprocessing.get_context(sys.argv[1]).Pool(2) as pool:
-        found = pool.starmap(re.simulate, jobs)
+        found = pool.starmap(rl.simulate, jobs)
         try:
-            pool.apply(re.simulate, jobs[-1], {"max_events": 1})
-        except re.IntegrationError as error:
+            pool.apply(rl.simulate, jobs[-1], {"max_events": 1})
+        except rl.IntegrationError as error:
             found.append(error.trajectory)
     with open(path, "wb") as file:
         pickle.dump(found, file)
@@ -208,7 +208,7 @@ if __name__ == "__main__":
 def test_pools_return_motions(how: str, tmp_path: Path) -> None:
     program, path = tmp_path / "pools.py", tmp_path / "found"
     program.write_text(POOLS)
-    jobs = [(re.scenes.report, TIMES), (re.scenes.rocking, 1.0), (re.scenes.bounce, TIMES)]
+    jobs = [(rl.scenes.report, TIMES), (rl.scenes.rocking, 1.0), (rl.scenes.bounce, TIMES)]
     subprocess.run(
         [sys.executable, program, how],
         input=pickle.dumps((jobs, os.fspath(path))),
@@ -226,8 +226,8 @@ def test_pools_return_motions(how: str, tmp_path: Path) -> None:
 # ------------------------------------------------------------------------- pictures, the core
 
 PICTURES = (
-    re.plot, re.plot_strobe, re.plot_phase, re.plot_energy, re.plot_constraints, re.plot_forces,
-    re.plot_paths,
+    rl.plot, rl.plot_strobe, rl.plot_phase, rl.plot_energy, rl.plot_constraints, rl.plot_forces,
+    rl.plot_paths,
 )  # fmt: skip
 
 
@@ -235,9 +235,9 @@ PICTURES = (
 def test_pictures_are_pickled_as_figures_are(draw: Callable[..., Any]) -> None:
     figure = Figure()
     motion = MOTIONS["contact"]()
-    if draw is re.plot:
+    if draw is rl.plot:
         picture = draw(motion, figure=figure)
-    elif draw is re.plot_constraints:
+    elif draw is rl.plot_constraints:
         picture = draw(motion, ax=figure.subplots(2))
     else:
         picture = draw(motion, ax=figure.add_subplot())
@@ -258,8 +258,8 @@ def require_same_lines(one: Any, other: Any) -> None:
 def core_objects() -> dict[str, Any]:
     motion = MOTIONS["contact"]()
     return {
-        "Scene": motion.scene._core_scene,
-        "Impulse": re.Impulse(1.0)._to_core(),
+        "Scene": motion.scene.core,
+        "Impulse": rl.Impulse(1.0).core,
         "Settings": motion.settings.core,
         "Solution": motion._solution,
     }

@@ -12,27 +12,27 @@ import pytest
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from matplotlib.figure import Figure
 from pictures import ORDINARY_SCENES, outline, support
-from rolling_ellipse import _drawing as drawing
+from rolling_ellipse._pictures import ground as drawing
 
 SCENES = {
     **ORDINARY_SCENES,
-    "millimetres": re.Scene(3.1e-3, 1.7e-3, omega=90.0, x=5.0),
+    "millimetres": rl.Scene(3.1e-3, 1.7e-3, omega=90.0, x=5.0),
 }
 
 
 @pytest.fixture(params=SCENES.values(), ids=SCENES.keys())
-def trajectory(request: pytest.FixtureRequest) -> re.Trajectory:
-    return re.simulate(request.param, 4.0, model="rolling")
+def trajectory(request: pytest.FixtureRequest) -> rl.Trajectory:
+    return rl.simulate(request.param, 4.0, model="rolling")
 
 
 @pytest.fixture
-def report() -> re.Trajectory:
-    return re.simulate(re.scenes.report, 6.0)
+def report() -> rl.Trajectory:
+    return rl.simulate(rl.scenes.report, 6.0)
 
 
 @pytest.fixture(autouse=True)
@@ -58,8 +58,8 @@ def curves(ax: Axes) -> list[matplotlib.lines.Line2D]:
 # ------------------------------------------------------------------------------- plot_strobe
 
 
-def test_strobe_bodies_stand_on_the_ground_at_even_times(trajectory: re.Trajectory) -> None:
-    shown = re.plot_strobe(trajectory, ax=new_axes(), count=9, t_end=3.0)
+def test_strobe_bodies_stand_on_the_ground_at_even_times(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_strobe(trajectory, ax=new_axes(), count=9, t_end=3.0)
     at = trajectory.sol(np.linspace(0.0, 3.0, 9))
     size = max(trajectory.scene.a, trajectory.scene.b)
     assert len(shown.bodies) == len(shown.hands) == 9
@@ -75,8 +75,8 @@ def test_strobe_bodies_stand_on_the_ground_at_even_times(trajectory: re.Trajecto
         assert abs(lowest_x - contact_x[i]) <= 1e-13 * (size + rho + abs(at.x[i]))
 
 
-def test_strobe_hand_ends_on_the_outline_at_the_end_of_axis_a(trajectory: re.Trajectory) -> None:
-    shown = re.plot_strobe(trajectory, ax=new_axes())
+def test_strobe_hand_ends_on_the_outline_at_the_end_of_axis_a(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_strobe(trajectory, ax=new_axes())
     for body, hand in zip(shown.bodies, shown.hands, strict=True):
         end = hand.get_xydata()[1]
         # the unit circle's (1, 0), sent through the patch's own transform
@@ -85,16 +85,16 @@ def test_strobe_hand_ends_on_the_outline_at_the_end_of_axis_a(trajectory: re.Tra
         assert np.allclose(end, expected, rtol=1e-13, atol=1e-12 * trajectory.scene.a)
 
 
-def test_strobe_paths_are_the_trajectory(report: re.Trajectory) -> None:
-    shown = re.plot_strobe(report, ax=new_axes())
+def test_strobe_paths_are_the_trajectory(report: rl.Trajectory) -> None:
+    shown = rl.plot_strobe(report, ax=new_axes())
     path = report.sol(np.linspace(0.0, 6.0, len(shown.centre_path.get_xdata())))
     assert np.array_equal(shown.centre_path.get_xydata(), np.column_stack([path.x, path.z]))
     assert np.array_equal(shown.contact_path.get_xdata(), path.contact_x)
     assert np.all(shown.contact_path.get_ydata() == 0)
 
 
-def test_the_check_of_the_ground_sees_a_millimetre(report: re.Trajectory) -> None:
-    body = re.plot_strobe(report, ax=new_axes()).bodies[4]
+def test_the_check_of_the_ground_sees_a_millimetre(report: rl.Trajectory) -> None:
+    body = rl.plot_strobe(report, ax=new_axes()).bodies[4]
     x, z = body.get_center()
     body.set_center((x, z + 1e-3))
     assert support(body)[1] == pytest.approx(1e-3, abs=1e-12)
@@ -103,14 +103,14 @@ def test_the_check_of_the_ground_sees_a_millimetre(report: re.Trajectory) -> Non
     assert abs(support(body)[0] - report.sol(report.t[333:334]).contact_x[0]) > 1e-3
 
 
-def test_strobe_shows_all_of_a_short_roll_and_says_so(report: re.Trajectory) -> None:
-    ax = re.plot_strobe(report, ax=new_axes()).ax
+def test_strobe_shows_all_of_a_short_roll_and_says_so(report: rl.Trajectory) -> None:
+    ax = rl.plot_strobe(report, ax=new_axes()).ax
     assert ax.get_title(loc="left") == "13 positions over 6 s"
 
 
 def test_strobe_stops_a_long_roll_after_three_turns() -> None:
-    trajectory = re.simulate(re.scenes.rolling, np.linspace(0.0, 1000.0, 100_001))
-    shown = re.plot_strobe(trajectory, ax=new_axes())
+    trajectory = rl.simulate(rl.scenes.rolling, np.linspace(0.0, 1000.0, 100_001))
+    shown = rl.plot_strobe(trajectory, ax=new_axes())
     turned = math.radians(shown.bodies[0].angle - shown.bodies[-1].angle) / (2 * math.pi)
     # 0.01 s between samples, at most 3.2 rad/s, interpolated: the second order is 1e-4 turns
     assert turned == pytest.approx(3.0, abs=1e-3)
@@ -118,22 +118,22 @@ def test_strobe_stops_a_long_roll_after_three_turns() -> None:
 
 
 def test_strobe_stops_rocking_after_one_swing() -> None:
-    trajectory = re.simulate(re.scenes.rocking, 50.0)
-    shown = re.plot_strobe(trajectory, ax=new_axes())
+    trajectory = rl.simulate(rl.scenes.rocking, 50.0)
+    shown = rl.plot_strobe(trajectory, ax=new_axes())
     first, last = shown.bodies[0], shown.bodies[-1]
     # released at rest: back after a period; the angle is stationary there (0.05 s squared)
     assert last.angle == pytest.approx(first.angle, abs=0.05)
     assert shown.bodies[6].angle == pytest.approx(-first.angle, abs=0.05)
 
 
-def test_strobe_dots_what_the_model_is_not_valid_for(report: re.Trajectory) -> None:
+def test_strobe_dots_what_the_model_is_not_valid_for(report: rl.Trajectory) -> None:
     half = dataclasses.replace(report, valid_until=3.0)
-    styles = [body.get_linestyle() for body in re.plot_strobe(half, ax=new_axes()).bodies]
+    styles = [body.get_linestyle() for body in rl.plot_strobe(half, ax=new_axes()).bodies]
     assert styles == ["-"] * 6 + [":"] * 7
 
 
-def test_strobe_view_holds_every_body_with_equal_scales(trajectory: re.Trajectory) -> None:
-    shown = re.plot_strobe(trajectory, ax=new_axes())
+def test_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_strobe(trajectory, ax=new_axes())
     shown.ax.figure.draw_without_rendering()
     (left, right), (bottom, top) = shown.ax.get_xlim(), shown.ax.get_ylim()
     for body in shown.bodies:
@@ -153,14 +153,14 @@ def test_early_bodies_are_lighter_than_late_ones() -> None:
 
 @pytest.mark.parametrize("scale", [0.0, 1e-3, 1e4])
 def test_strobe_of_any_span_and_of_a_single_sample(scale: float) -> None:
-    trajectory = re.simulate(re.scenes.report, scale)
-    shown = re.plot_strobe(trajectory, ax=new_axes())
+    trajectory = rl.simulate(rl.scenes.report, scale)
+    shown = rl.plot_strobe(trajectory, ax=new_axes())
     shown.ax.figure.draw_without_rendering()
     assert len(shown.bodies) == 13
 
 
-def test_strobe_makes_its_own_figure_without_an_ax(report: re.Trajectory) -> None:
-    shown = re.plot_strobe(report)
+def test_strobe_makes_its_own_figure_without_an_ax(report: rl.Trajectory) -> None:
+    shown = rl.plot_strobe(report)
     assert plt.get_fignums() == [shown.ax.figure.number]
     plt.close(shown.ax.figure)
 
@@ -175,30 +175,30 @@ def test_strobe_makes_its_own_figure_without_an_ax(report: re.Trajectory) -> Non
     ],
 )
 def test_strobe_refuses_by_name(
-    report: re.Trajectory, options: dict[str, float], message: str
+    report: rl.Trajectory, options: dict[str, float], message: str
 ) -> None:
     with pytest.raises(ValueError, match=message):
-        re.plot_strobe(report, ax=new_axes(), **options)
+        rl.plot_strobe(report, ax=new_axes(), **options)
 
 
-def test_no_samples_no_picture(report: re.Trajectory) -> None:
+def test_no_samples_no_picture(report: rl.Trajectory) -> None:
     none = np.empty(0)
     empty = dataclasses.replace(report, t=none, theta=none, omega=none, x=none)
-    for draw in (re.plot, re.plot_strobe, re.animate):
+    for draw in (rl.plot, rl.plot_strobe, rl.animate):
         with pytest.raises(ValueError, match="trajectory must have samples"):
             draw(empty)
 
 
 def test_a_slope_is_drawn_as_a_slope() -> None:
-    downhill = drawing.tilted(re.scenes.slope).transform((1.0, 0.0))
+    downhill = drawing.tilted(rl.scenes.slope).transform((1.0, 0.0))
     assert downhill == pytest.approx([math.cos(0.1), -math.sin(0.1)], rel=1e-15)
 
 
 # -------------------------------------------------------------------------------------- plot
 
 
-def test_overview_curves_are_the_trajectory(trajectory: re.Trajectory) -> None:
-    shown = re.plot(trajectory, figure=Figure(layout="constrained"))
+def test_overview_curves_are_the_trajectory(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot(trajectory, figure=Figure(layout="constrained"))
     for line, values in [
         (shown.theta, trajectory.theta),
         (shown.omega, trajectory.omega),
@@ -214,10 +214,10 @@ def test_overview_curves_are_the_trajectory(trajectory: re.Trajectory) -> None:
     shown.figure.draw_without_rendering()
 
 
-def test_overview_errors_are_those_of_the_single_pictures(trajectory: re.Trajectory) -> None:
-    shown = re.plot(trajectory, figure=Figure(layout="constrained"))
-    ((position, velocity),) = re.plot_constraints(trajectory, ax=Figure().add_subplot()).lines
-    (energy,) = re.plot_energy(trajectory, ax=Figure().add_subplot(), kind="error").error
+def test_overview_errors_are_those_of_the_single_pictures(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot(trajectory, figure=Figure(layout="constrained"))
+    ((position, velocity),) = rl.plot_constraints(trajectory, ax=Figure().add_subplot()).lines
+    (energy,) = rl.plot_energy(trajectory, ax=Figure().add_subplot(), kind="error").error
     for line, single in [
         (shown.position_error, position),
         (shown.velocity_error, velocity),
@@ -226,26 +226,26 @@ def test_overview_errors_are_those_of_the_single_pictures(trajectory: re.Traject
         assert np.array_equal(line.get_xydata(), single.get_xydata())
 
 
-def test_overview_energy_error_is_relative_to_the_energy_there_is(report: re.Trajectory) -> None:
-    error = re.plot(report, figure=Figure()).energy_error.get_ydata()
+def test_overview_energy_error_is_relative_to_the_energy_there_is(report: rl.Trajectory) -> None:
+    error = rl.plot(report, figure=Figure()).energy_error.get_ydata()
     # both energies are >= 0 on level ground from z = 0, so that their sum is the energy
     expected = np.abs(report.energy / report.energy[0] - 1)
     assert error == pytest.approx(expected, abs=1e-15)
     assert error[0] == 0
 
 
-def test_overview_shows_an_energy_error_of_1e_3(report: re.Trajectory) -> None:
+def test_overview_shows_an_energy_error_of_1e_3(report: rl.Trajectory) -> None:
     drifting = dataclasses.replace(report, omega=report.omega * np.linspace(1.0, 1.001, 1001))
-    error = re.plot(drifting, figure=Figure()).energy_error.get_ydata()
+    error = rl.plot(drifting, figure=Figure()).energy_error.get_ydata()
     kinetic = report.kinetic_energy[-1] / report.energy[0]
     # the scale, the largest energy, drifts along: up to 2e-3 of the error
     assert error[-1] == pytest.approx(kinetic * (1.001**2 - 1), rel=2e-3)
-    ax = re.plot(drifting, figure=Figure()).energy_error.axes
+    ax = rl.plot(drifting, figure=Figure()).energy_error.axes
     assert ax.get_ylim()[0] < error[-1] < ax.get_ylim()[1]
 
 
-def test_overview_labels_every_axis_with_its_unit(report: re.Trajectory) -> None:
-    figure = re.plot(report, figure=Figure(layout="constrained")).figure
+def test_overview_labels_every_axis_with_its_unit(report: rl.Trajectory) -> None:
+    figure = rl.plot(report, figure=Figure(layout="constrained")).figure
     labels = [ax.get_ylabel() for ax in figure.axes]
     assert len(set(labels)) == len(figure.axes) == 7
     lowest = [ax.get_xlabel() for ax in figure.axes if ax.get_xlabel()]
@@ -254,9 +254,9 @@ def test_overview_labels_every_axis_with_its_unit(report: re.Trajectory) -> None
     assert all(label.rstrip("]").split("[")[1] for label in labels + lowest)
 
 
-def test_curves_of_one_panel_differ_in_more_than_hue(report: re.Trajectory) -> None:
+def test_curves_of_one_panel_differ_in_more_than_hue(report: rl.Trajectory) -> None:
     slippery = dataclasses.replace(report, scene=dataclasses.replace(report.scene, friction=0.9))
-    figure = re.plot(slippery, figure=Figure(layout="constrained")).figure
+    figure = rl.plot(slippery, figure=Figure(layout="constrained")).figure
     panels = [curves(ax) for ax in figure.axes]
     assert [len(panel) for panel in panels] == [2, 0, 0, 0, 2, 3, 3]
     for panel in panels:
@@ -266,28 +266,28 @@ def test_curves_of_one_panel_differ_in_more_than_hue(report: re.Trajectory) -> N
             assert len(styles) == 2 or abs(values[0] - values[1]) > 0.3
 
 
-def test_overview_draws_the_limit_of_friction(report: re.Trajectory) -> None:
-    assert re.plot(report, figure=Figure()).friction_limit is None
+def test_overview_draws_the_limit_of_friction(report: rl.Trajectory) -> None:
+    assert rl.plot(report, figure=Figure()).friction_limit is None
     rough = dataclasses.replace(report, scene=dataclasses.replace(report.scene, friction=0.9))
-    band = re.plot(rough, figure=Figure()).friction_limit
+    band = rl.plot(rough, figure=Figure()).friction_limit
     corners = band.get_paths()[0].vertices
     assert corners[:, 1].max() == 0.9 * report.normal_force.max()
     assert corners[:, 1].min() == -0.9 * report.normal_force.max()
 
 
-def test_overview_marks_where_the_model_is_not_valid(report: re.Trajectory) -> None:
-    whole = re.plot(report, figure=Figure())
+def test_overview_marks_where_the_model_is_not_valid(report: rl.Trajectory) -> None:
+    whole = rl.plot(report, figure=Figure())
     assert whole.marks == () and "not valid" not in whole.figure.get_suptitle()
-    half = re.plot(dataclasses.replace(report, valid_until=2.5), figure=Figure())
+    half = rl.plot(dataclasses.replace(report, valid_until=2.5), figure=Figure())
     assert "not valid from 2.5 s" in half.figure.get_suptitle()
     assert len(half.marks) == 6
     for mark in half.marks:
         assert (mark.get_x(), mark.get_x() + mark.get_width()) == (2.5, 6.0)
 
 
-def test_overview_uses_the_figure_it_is_given_or_makes_one(report: re.Trajectory) -> None:
+def test_overview_uses_the_figure_it_is_given_or_makes_one(report: rl.Trajectory) -> None:
     figure = Figure(layout="constrained")
-    assert re.plot(report, figure=figure).figure is figure
+    assert rl.plot(report, figure=figure).figure is figure
     shown = report.plot()
     assert plt.get_fignums() == [shown.figure.number]
     plt.close(shown.figure)
@@ -295,5 +295,5 @@ def test_overview_uses_the_figure_it_is_given_or_makes_one(report: re.Trajectory
 
 @pytest.mark.parametrize("span", [0.0, 1e-6, 1e5])
 def test_overview_of_any_span(span: float) -> None:
-    trajectory = re.simulate(re.scenes.rolling, span)
-    re.plot(trajectory, figure=Figure(layout="constrained")).figure.draw_without_rendering()
+    trajectory = rl.simulate(rl.scenes.rolling, span)
+    rl.plot(trajectory, figure=Figure(layout="constrained")).figure.draw_without_rendering()

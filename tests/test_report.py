@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from numpy.typing import NDArray
 from rolling_ellipse import report
-from rolling_ellipse._explicit import Steps, integrate
+from rolling_ellipse.report._runge_kutta import Steps, integrate
 
 Array = NDArray[np.float64]
 EPS = 2.0**-52
@@ -82,7 +82,7 @@ def test_f1_is_the_velocity_of_the_geometric_contact() -> None:
 
 def test_f1_frozen_means_no_advance() -> None:
     """With f1 = 0 the body spins over the spot: x + h' stays while theta makes its way."""
-    q, _ = re.kinematics(0.2, 2.0, **SHAPE)
+    q, _ = rl.kinematics(0.2, 2.0, **SHAPE)
     rates = report.consistent_rates(q, 2.0, printed=("f1",), **SHAPE)
     motion = report.simulate(q, rates, 0.5, equations="printed", printed=("f1",), **SHAPE)
     contact = report.contact_x(motion.q, **SHAPE)
@@ -135,7 +135,7 @@ def test_eq_38_is_no_derivative_of_eq_10() -> None:
     assert found.printed == close(z_dot - at.r_dot * sine - turning + at.omega * at.h)
     assert found.right == zero(at.h * at.omega)
     # nor is its f1 the f1 of eq 10: rho omega there
-    q, q_dot = re.kinematics(ANGLE, at.omega, **SHAPE)
+    q, q_dot = rl.kinematics(ANGLE, at.omega, **SHAPE)
     printed = report.eq_38(q, q_dot, **SHAPE)
     x_dot, radius_dot = at.h * at.omega, at.r_dot * math.cos(at.psi - ANGLE)
     assert printed[0] == close(x_dot - radius_dot - (at.psi_dot - at.omega) * at.slope)
@@ -159,7 +159,7 @@ def test_lambda3_divides_by_zero() -> None:
     assert found.printed > 1e6 * found.right
     flat, circle = Exact(0.0), {**BODY, "a": 1.0}
     for body, theta in ((BODY, 0.0), (circle, 0.3)):
-        q, q_dot = re.kinematics(theta, flat.omega, a=body["a"], b=1.0)
+        q, q_dot = rl.kinematics(theta, flat.omega, a=body["a"], b=1.0)
         q_ddot = np.zeros(5)
         with np.errstate(invalid="raise"):  # the division is its own business
             assert not math.isfinite(report.eq_39(q, q_ddot, **body)[2])
@@ -171,7 +171,7 @@ def test_lambda4_is_off_by_b_squared() -> None:
     found = numbers("eq 39, λ4")
     assert found.printed == close(found.right / 0.8**2)
     # what follows from eq 35 with df4's sign and lambda1, lambda2 of eq 39
-    q, _ = re.kinematics(0.6, 1.3, a=2.0, b=0.7)
+    q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
     q_ddot = np.array([0.3, -0.8, 1.1, 0.0, 0.0])
     one, two, _, _ = report.eq_39(q, q_ddot, **UNEVEN)
     fourth = report.lambda4_numerator(q, q_ddot, **UNEVEN) / (4 * 2.0**2)
@@ -183,7 +183,7 @@ def test_f_lost_terms() -> None:
     """What eq 40 has too much or too little, against all the terms in eq 42."""
     found = numbers("eqs 40, 42")
     assert abs(found.gap) > abs(found.right)
-    q, _ = re.kinematics(0.6, 1.0, a=2.0, b=0.7)
+    q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
     q_ddot = np.array([0.3, -0.8, 1.1, 0.2, 0.1])
     (_, _, theta, psi, r), (x, z, spin, _, _) = q, q_ddot
     a, b, m = 2.0, 0.7, 3.0
@@ -201,7 +201,7 @@ def test_f_lost_terms() -> None:
 
 def test_printed_equations_of_motion_are_off_by_the_misprints() -> None:
     """x, z and r agree; theta and psi are off by df2, f1 and the signs of lambda3 and lambda4."""
-    q, _ = re.kinematics(0.6, 1.3, a=2.0, b=0.7)
+    q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
     q_ddot, forces = np.array([0.3, -0.8, 1.1, 0.2, 0.1]), np.array([1.0, -2.0, 0.5, 0.7])
     printed = report.eqs_33_to_37(q, q_ddot, forces, **UNEVEN)
     right = report.equations_of_motion(q, q_ddot, forces, **UNEVEN)
@@ -229,7 +229,7 @@ def test_appendix_b_has_another_radius() -> None:
     assert found.right == close(math.hypot(at.h, at.slope))
     assert found.gap < -0.5
     assert float(report.appendix_b_radius(0.0, **SHAPE)) == close(0.5)  # b/a, not b
-    q, _ = re.kinematics(ANGLE, 1.0, **SHAPE)
+    q, _ = rl.kinematics(ANGLE, 1.0, **SHAPE)
     printed, right = report.appendix_b_r_x(q, **SHAPE), report.contact_x(q, **SHAPE)
     assert right - q[0] == close(at.slope)
     assert printed - q[0] == pytest.approx(at.slope * found.printed / found.right, rel=1e-13)
@@ -238,7 +238,7 @@ def test_appendix_b_has_another_radius() -> None:
 def test_eq_48_is_right_on_ice_only() -> None:
     found = numbers("eqs 45–48")
     assert found.printed == close(5.76) and found.right == close(3.2)
-    on_ice = re.Scene(2.0, 1.0, mass=10.0, friction=0.0, impulse=re.Impulse.press(48.0, 1.5))
+    on_ice = rl.Scene(2.0, 1.0, mass=10.0, friction=0.0, impulse=rl.Impulse.press(48.0, 1.5))
     assert on_ice.initial_state.omega == close(found.printed)
 
 
@@ -250,7 +250,7 @@ def test_back_substitution_sees_nothing() -> None:
 
 def test_a_broken_solution_is_seen_by_back_substitution() -> None:
     """The test itself works: it reports what the solution is changed by."""
-    q, q_dot = re.kinematics(0.2, 2.0, **SHAPE)
+    q, q_dot = rl.kinematics(0.2, 2.0, **SHAPE)
     motion = report.simulate(q, q_dot, [0.1], equations="printed", printed=(), **SHAPE)
     assert np.max(np.abs(motion.back_substitution())) < 1e-7
     motion.multipliers[0, 1] += 1e-3
@@ -262,14 +262,14 @@ def test_psi_is_discontinuous_by_its_branch() -> None:
     assert found.right == close(at.psi) and found.gap == close(-math.pi)
     theta = np.linspace(-10, 10, 4001)
     # d psi/d theta is at most a^2/b^2
-    assert np.max(np.abs(np.diff(re.geometry.contact_angle(theta, **SHAPE)))) < 4.01 * 0.005
+    assert np.max(np.abs(np.diff(rl.geometry.contact_angle(theta, **SHAPE)))) < 4.01 * 0.005
     assert np.max(np.abs(np.diff(report.eq_5(theta, **SHAPE)))) > 3.1
 
 
 def test_figure_13_rolls_over_too_early() -> None:
     found = numbers("Figure 13")
     assert found.printed == 1 and found.right == close(math.sqrt(2 * 9.81 / 2.25))
-    slow, fast = (re.simulate(re.Scene(2.0, 1.0, omega=w), 5.0) for w in (1.0, 3.0))
+    slow, fast = (rl.simulate(rl.Scene(2.0, 1.0, omega=w), 5.0) for w in (1.0, 3.0))
     assert np.max(np.abs(slow.theta)) < 0.3 and fast.theta[-1] > math.pi
     # fastest when flat (theta = 0, pi), slowest when tall
     flat, tall = np.argmax(fast.omega), np.argmin(fast.omega)
@@ -292,12 +292,12 @@ def test_every_row_is_in_the_table() -> None:
 # ------------------------------------------------------------------- equations, one by one
 
 
-def trajectory() -> re.Trajectory:
-    scene = re.Scene(2.0, 0.7, mass=3.0, theta=0.2, omega=3.9)
-    return re.simulate(scene, np.linspace(0.05, 3.0, 60))
+def trajectory() -> rl.Trajectory:
+    scene = rl.Scene(2.0, 0.7, mass=3.0, theta=0.2, omega=3.9)
+    return rl.simulate(scene, np.linspace(0.05, 3.0, 60))
 
 
-def accelerations(motion: re.Trajectory) -> Array:
+def accelerations(motion: rl.Trajectory) -> Array:
     columns = motion.x_ddot, motion.z_ddot, motion.omega_dot, motion.psi_ddot, motion.r_ddot
     return np.stack(columns, axis=1)
 
@@ -333,7 +333,7 @@ def test_right_rows_are_the_gradients_of_f1_to_f4() -> None:
     """At any state, also off the constraints: row times rates = scale times `constraints`."""
     generator = np.random.default_rng(5)
     q, q_dot = generator.uniform(-2, 2, (2, 200, 5))
-    velocity = re.constraints(q, q_dot, a=2.0, b=0.7).velocity
+    velocity = rl.constraints(q, q_dot, a=2.0, b=0.7).velocity
     matrix = report.constraint_matrix(q, a=2.0, b=0.7, printed=())
     rates = np.einsum("nij,nj->ni", matrix, q_dot)
     scales = np.stack([np.ones(200), np.ones(200), matrix[:, 2, 4], matrix[:, 3, 3]], axis=1)
@@ -357,7 +357,7 @@ def test_printed_f1_to_f4_on_an_exact_motion() -> None:
 
 
 def test_misprints_change_what_they_name() -> None:
-    q, _ = re.kinematics(0.6, 1.0, a=2.0, b=0.7)
+    q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
     right = report.constraint_matrix(q, a=2.0, b=0.7, printed=())
     entries = {"f1": {(0, 3), (0, 4)}, "df2": {(1, 2), (1, 3)}, "df3": {(2, 3), (2, 4)},
                "a44": {(3, 2)}, "tan": {(3, 2), (3, 3)}}  # fmt: skip
@@ -386,7 +386,7 @@ def f_of_eq_42(q: Array, q_ddot: Array, a: float, b: float, mass: float, gravity
 
 
 def test_eq_42_has_all_the_terms_that_eq_40_lost() -> None:
-    q, _ = re.kinematics(0.6, 1.0, a=2.0, b=0.7)
+    q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
     q_ddot = np.array([0.3, -0.8, 1.1, 0.2, 0.1])
     complete = float(report.complete_f(q, q_ddot, **UNEVEN))
     assert f_of_eq_42(q, q_ddot, **UNEVEN) == pytest.approx(complete, rel=1e-12)
@@ -414,7 +414,7 @@ def test_dimensions(function: Any, power: int, agrees: bool) -> None:
 
     F is kg m^6/s^2, F1 = 2 (...)^(3/2) F is m^3 more.
     """
-    q, _ = re.kinematics(0.6, 1.0, a=2.0, b=0.7)
+    q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
     q_ddot, lengths = np.array([0.3, -0.8, 1.1, 0.2, 0.1]), np.array([1e3, 1e3, 1, 1, 1e3])
     small = {"a": 2e3, "b": 0.7e3, "mass": 3e3, "gravity": 9.81e3}
     ratio = function(q * lengths, q_ddot * lengths, **small) / function(q, q_ddot, **UNEVEN)
@@ -434,7 +434,7 @@ GAPS = [  # the rows as printed, and the gap 0.25 s after theta = 0.2, theta_dot
 
 
 def start(theta: float, omega: float, printed: tuple[str, ...] = ()) -> tuple[Array, Array]:
-    q, _ = re.kinematics(theta, omega, **SHAPE)
+    q, _ = rl.kinematics(theta, omega, **SHAPE)
     return q, report.consistent_rates(q, omega, printed=printed, **SHAPE)
 
 
@@ -447,7 +447,7 @@ def run(q: Array, q_dot: Array, t: Any, **options: Any) -> report.PrintedMotion:
 def test_the_given_times_are_left_alone() -> None:
     """And what becomes of them later is nothing to the motion."""
     times = np.linspace(0.0, 0.1, 5)
-    q, q_dot = re.kinematics(0.3, 2.0, a=2.0, b=1.0)
+    q, q_dot = rl.kinematics(0.3, 2.0, a=2.0, b=1.0)
     motion = report.simulate(q, q_dot, times, a=2.0, b=1.0, equations="printed", printed=())
     assert times.flags.writeable and not np.shares_memory(motion.t, times)
     assert motion.t.tolist() == times.tolist()
@@ -482,7 +482,7 @@ def test_right_rows_give_the_exact_motion() -> None:
     q, q_dot = start(0.2, 2.0)
     times = np.linspace(0, 3, 31)
     motion = run(q, q_dot, times, printed=(), rtol=1e-11, atol=1e-11)
-    exact = re.simulate(re.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), times)
+    exact = rl.simulate(rl.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), times)
     # 1e-11 a step, some 500 of them, growing with the square of time for index 1
     assert np.max(np.abs(motion.q - exact.q)) < 1e-8
     assert np.max(np.abs(motion.q_dot - exact.q_dot)) < 1e-8
@@ -542,7 +542,7 @@ def test_samples_do_not_steer() -> None:
     few = run(q, q_dot, [0.5, 1.0], printed=())
     many = run(q, q_dot, np.linspace(0, 1, 101), printed=())
     assert np.array_equal(few.q, many.q[[50, 100]])
-    exact = re.simulate(re.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), many.t)
+    exact = rl.simulate(rl.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), many.t)
     # rtol is 1e-8; an order less between the steps
     assert np.max(np.abs(many.q - exact.q)) < 1e-6
     assert run(q, q_dot, 0.1, printed=()).t.size == 1001
@@ -574,7 +574,7 @@ def test_exact_starts_are_consistent_and_others_are_not(
 ) -> None:
     a, b = shape
     for theta in (0.0, 0.2, -2.3, 333.3, 1e4):
-        q, q_dot = re.kinematics(theta, 1.7, a=a, b=b)
+        q, q_dot = rl.kinematics(theta, 1.7, a=a, b=b)
         if printed:
             q_dot = report.consistent_rates(q, 1.7, a=a, b=b, printed=printed)
         options = {"a": a, "b": b, "equations": "printed", "printed": printed, "max_steps": 1}
@@ -618,20 +618,20 @@ def test_projection_takes_the_nearest_state() -> None:
     there, rates = motion.q[0], motion.q_dot[0]
     assert np.array_equal(motion.start.q_change, there - q)
     assert np.array_equal(motion.start.q_dot_change, rates - q_dot)
-    residuals = re.constraints(there, rates, **SHAPE)
+    residuals = rl.constraints(there, rates, **SHAPE)
     assert np.max(np.abs(residuals.position)) < 1e-15
     assert np.max(np.abs(residuals.velocity)) < 1e-14
     assert there[0] == 0.3
 
     def distance2(theta: Array) -> Array:
-        height = re.geometry.support(theta, **SHAPE)
+        height = rl.geometry.support(theta, **SHAPE)
         return (1.5 - height) ** 2 + 1.25 * (theta - 0.4) ** 2
 
     everywhere = np.linspace(-3, 3, 6001)
     assert distance2(there[2]) <= np.min(distance2(everywhere))
     # stationary: to second order in 1e-4, 1e-8 of a curvature of about 1
     assert distance2(there[2] + 1e-4) == pytest.approx(distance2(there[2] - 1e-4), abs=1e-10)
-    h, slope = re.geometry.support(there[2], **SHAPE), re.geometry.support_slope(there[2], **SHAPE)
+    h, slope = rl.geometry.support(there[2], **SHAPE), rl.geometry.support_slope(there[2], **SHAPE)
     omega = (h * 1.0 + slope * 0.5 + 1.25 * 2.0) / (1.25 + h**2 + slope**2)
     assert rates[2] == pytest.approx(omega, rel=1e-14)
     assert rates[:3] == pytest.approx([h * omega, slope * omega, omega], rel=1e-14)
@@ -649,7 +649,7 @@ def test_motion_says_what_it_is() -> None:
 
 # ------------------------------------------------------------------ the corrected equations
 
-Q, Q_DOT = re.kinematics(0.2, 2.0, **SHAPE)
+Q, Q_DOT = rl.kinematics(0.2, 2.0, **SHAPE)
 OWN_Q, OWN_RATES = np.array([0.0, 1, 0, 0, 1]), np.array([0, 1, 1, 1.5, 0])  # of the report's run
 OWN_VIOLATIONS = "f1 = -1 m/s; rate of f2 = 1 m/s; rate of f4 = -2.5 rad/s"
 FIXED = {"rk4": 0.01, "radau": 0.01}  # steps [s]
@@ -660,17 +660,17 @@ WAYS = [
 ]  # fmt: skip
 
 
-def corrected(q: Array, q_dot: Array, t: Any, **options: Any) -> re.Trajectory:
+def corrected(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
     motion = report.simulate(q, q_dot, t, **{**SHAPE, **options})
-    assert isinstance(motion, re.Trajectory)
+    assert isinstance(motion, rl.Trajectory)
     return motion
 
 
-def as_given(q: Array, q_dot: Array, t: Any, **options: Any) -> re.Trajectory:
+def as_given(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
     """Whatever is said of the start and of the ground it leaves."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", report.InconsistentStartWarning)
-        warnings.simplefilter("ignore", re.ValidityWarning)
+        warnings.simplefilter("ignore", rl.ValidityWarning)
         return corrected(q, q_dot, t, consistent="as_given", **options)
 
 
@@ -706,17 +706,17 @@ def test_corrected_projects_to_the_nearest_state() -> None:
         return found
 
     angles = 0.4 + np.linspace(-np.pi, np.pi, 20_001)
-    places, _ = re.kinematics(angles, 0.0, **SHAPE)
+    places, _ = rl.kinematics(angles, 0.0, **SHAPE)
     places[:, 0] = 0.3  # x is free: it stays
     costs = distance2(places - q)
     assert distance2(there - q) <= costs.min() and there[0] == 0.3
     assert there[2] == pytest.approx(angles[costs.argmin()], abs=angles[1] - angles[0])
     speeds = np.linspace(-5, 5, 20_001)
-    _, flows = re.kinematics(there[2], speeds, **SHAPE)
+    _, flows = rl.kinematics(there[2], speeds, **SHAPE)
     costs = distance2(flows - q_dot)
     assert distance2(rates - q_dot) <= costs.min()
     assert rates[2] == pytest.approx(speeds[costs.argmin()], abs=speeds[1] - speeds[0])
-    residuals = re.constraints(there, rates, **SHAPE)
+    residuals = rl.constraints(there, rates, **SHAPE)
     assert np.max(np.abs(residuals.position)) < 1e-15
     assert np.max(np.abs(residuals.velocity)) < 1e-14
     again = corrected(there, rates, [0.0], consistent="project")
@@ -732,7 +732,7 @@ def test_corrected_runs_the_reports_own_start_as_given_and_says_so() -> None:
     assert (
         said[report.InconsistentStartWarning] == f"the start violates constraints: {OWN_VIOLATIONS}"
     )
-    assert said.keys() == {report.InconsistentStartWarning, re.ValidityWarning}
+    assert said.keys() == {report.InconsistentStartWarning, rl.ValidityWarning}
     assert {warning.filename for warning in caught} == {__file__}
     assert np.array_equal(motion.q[0], OWN_Q) and np.array_equal(motion.q_dot[0], OWN_RATES)
     # index 1 keeps the rates of f1 ... f4: 1e-8 a step, some 100 of them, in rates of some 10
@@ -775,14 +775,14 @@ def test_corrected_follows_the_exact_motion(method: str, stabilization: str) -> 
     """The same bits as the model "multipliers" from the scene, and what the equations mean."""
     times = np.linspace(0, 3, 31)
     step = FIXED.get(method)
-    scene = re.Scene(2.0, 1.0, mass=10.0, theta=0.2, omega=2.0, x=float(Q[0]))
+    scene = rl.Scene(2.0, 1.0, mass=10.0, theta=0.2, omega=2.0, x=float(Q[0]))
     how = {"stabilization": stabilization, "step": step, "rtol": 1e-11, "atol": 1e-11}
     motion = corrected(Q, Q_DOT, times, mass=10.0, method=method, **how)
-    same = re.simulate(scene, times, model="multipliers", method=method, **how)
+    same = rl.simulate(scene, times, model="multipliers", method=method, **how)
     assert motion.model == "multipliers" and motion.method == method
     for name in ("q", "q_dot", "multipliers"):
         assert np.array_equal(getattr(motion, name), getattr(same, name))
-    exact = re.simulate(scene, times, model="rolling")
+    exact = rl.simulate(scene, times, model="rolling")
     # pairs: 1e-11 a step, some 500 of them, in states up to 10. Fixed steps: for 3 s the next term
     # of the Taylor series of a motion that turns by up to 5 rad/s, with its third harmonic
     order = 4 if method == "rk4" else 5
@@ -815,7 +815,7 @@ def test_corrected_is_saved_with_its_start(start: tuple[Array, Array], tmp_path:
     """A scene cannot hold it: theta and omega say nothing of a z_dot that is too large."""
     motion = as_given(*start, np.linspace(0, 2, 21), stabilization="none")
     motion.save(tmp_path / "motion.npz")
-    back = re.Trajectory.load(tmp_path / "motion.npz")
+    back = rl.Trajectory.load(tmp_path / "motion.npz")
     assert np.array_equal(back.start, motion.start) and np.array_equal(back.start, start)
     between = np.linspace(0.03, 1.97, 50)
     for one, other in ((motion, back), (motion.sol(between), back.sol(between))):
@@ -828,11 +828,11 @@ def test_corrected_is_saved_with_its_start(start: tuple[Array, Array], tmp_path:
 def test_corrected_raises_where_it_stops() -> None:
     times = np.linspace(0, 1, 11)
     with pytest.raises(
-        re.IntegrationError, match=r"^max_steps = 3 steps ended at t = 0\.1"
+        rl.IntegrationError, match=r"^max_steps = 3 steps ended at t = 0\.1"
     ) as caught:
         corrected(Q, Q_DOT, times, max_steps=3)
     there = caught.value.trajectory
-    assert there.status is re.Status.MAX_STEPS and there.stats["steps"] == 3
+    assert there.status is rl.Status.MAX_STEPS and there.stats["steps"] == 3
     assert there.t.tolist() == [0.0, 0.1] and 0.1 <= there.t_end < 0.2
     whole = corrected(Q, Q_DOT, times)
     assert np.array_equal(there.q, whole.q[:2])
@@ -926,6 +926,6 @@ def test_bad_input_of_the_equations() -> None:
     ],
 )
 def test_what_is_of_no_use_is_refused(equations: str, name: str, value: object) -> None:
-    q, q_dot = re.kinematics(0.2, 2.0, a=2.0, b=1.0)
+    q, q_dot = rl.kinematics(0.2, 2.0, a=2.0, b=1.0)
     with pytest.raises(ValueError, match=f"^{name} must be None for the {equations} equations"):
-        re.report.simulate(q, q_dot, 1.0, a=2.0, b=1.0, equations=equations, **{name: value})
+        rl.report.simulate(q, q_dot, 1.0, a=2.0, b=1.0, equations=equations, **{name: value})

@@ -13,7 +13,7 @@ import mpmath as mp
 import numpy as np
 import oracles
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from oracles import DIGITS, EPS
 from rolling_ellipse import Scene, Trajectory, _core
 
@@ -67,7 +67,7 @@ def test_acceleration_and_its_derivatives(shape: tuple[float, float], slope: flo
     for theta in ANGLES:
         for omega in (speed * unit for speed in SPEEDS):
             exact, sizes = lagrange(scene, theta, omega)
-            acceleration, jacobian = _core.rolling_equation(scene._core_scene, [theta], [omega])
+            acceleration, jacobian = _core.rolling_equation(scene.core, [theta], [omega])
             found = Motion(acceleration[0], *jacobian[0])
             off = Motion(*map(oracles.ulps, found, exact, sizes))
             assert max(off) <= 8, (theta, omega, off)
@@ -81,7 +81,7 @@ def test_a_wrong_equation_is_seen() -> None:
         {"slope": scene.slope + 1e-12},
         {"inertia": scene.gyration2 * (1 + 1e-12)},
     ):
-        found, _ = _core.rolling_equation(replace(scene, **change)._core_scene, [0.4], [1.5])
+        found, _ = _core.rolling_equation(replace(scene, **change).core, [0.4], [1.5])
         exact, sizes = lagrange(scene, 0.4, 1.5)
         assert oracles.ulps(found[0], exact.acceleration, sizes.acceleration) > 500
 
@@ -97,9 +97,9 @@ def test_derivatives_are_those_of_the_acceleration(shape: tuple[float, float]) -
     d = 1e-5 * fine
 
     def acceleration(turn: Any, speed: Any) -> Any:
-        return _core.rolling_equation(scene._core_scene, turn, speed)[0]
+        return _core.rolling_equation(scene.core, turn, speed)[0]
 
-    _, jacobian = _core.rolling_equation(scene._core_scene, theta, omega)
+    _, jacobian = _core.rolling_equation(scene.core, theta, omega)
     by_theta = (acceleration(theta + d, omega) - acceleration(theta - d, omega)) / (2 * d)
     step = d * np.abs(omega)
     by_omega = (acceleration(theta, omega + step) - acceleration(theta, omega - step)) / (2 * step)
@@ -132,10 +132,10 @@ def test_forces_on_a_slope_are_what_newton_asks_for(scene: Scene) -> None:
     theta differenced along a motion. A difference misses by c d^4, so that over 2 d differs from
     it by 15 times that; and by its rounding, 6 ulp of the positions over d^2."""
     d = 2e-3
-    motion = re.simulate(scene, 2.0, model="rolling", method="gauss", step=5e-3)
+    motion = rl.simulate(scene, 2.0, model="rolling", method="gauss", step=5e-3)
     times = np.linspace(4 * d, 2.0 - 4 * d, 101)
     at = motion.sol(times)
-    lead = re.geometry.support_slope(at.theta, a=scene.a, b=scene.b)
+    lead = rl.geometry.support_slope(at.theta, a=scene.a, b=scene.b)
     pull, press = (
         scene.mass * scene.gravity * part for part in (math.sin(scene.slope), math.cos(scene.slope))
     )
@@ -159,7 +159,7 @@ def test_forces_on_a_slope_are_what_newton_asks_for(scene: Scene) -> None:
 
 def test_on_level_ground_the_slope_makes_no_difference() -> None:
     """A slope of 1e-300 takes the terms of the slope into account, and they are 0."""
-    level, tilted = (Scene(2.0, 1.0, slope=slope)._core_scene for slope in (0.0, 1e-300))
+    level, tilted = (Scene(2.0, 1.0, slope=slope).core for slope in (0.0, 1e-300))
     theta, omega = np.linspace(-3, 3, 50), np.linspace(-2, 4, 50)
     for flat, steep in zip(
         _core.rolling_equation(level, theta, omega),
@@ -174,7 +174,7 @@ def test_a_tilted_circle_rolls_down_evenly() -> None:
     disc (k^2 = R^2/2)."""
     scene = Scene(1.5, 1.5, slope=0.3)
     theta, omega = np.linspace(-9, 9, 40), np.linspace(-3, 3, 40)
-    acceleration, jacobian = _core.rolling_equation(scene._core_scene, theta, omega)
+    acceleration, jacobian = _core.rolling_equation(scene.core, theta, omega)
     expected = 2 / 3 * scene.gravity * math.sin(0.3) / 1.5
     assert np.all(np.abs(acceleration - expected) <= 8 * EPS * expected)
     assert np.all(jacobian == 0)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import mpmath
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from numpy.typing import NDArray
 
 TABLE = Path(__file__).parent / "reference" / "slope_reference.csv"
@@ -88,9 +88,9 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
     shortly after a start at rest, where the inputs hardly matter to x.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", re.ValidityWarning)  # on the way N may become negative
-        found = re.simulate(
-            re.Scene(**motion.parameters), motion.times, model="rolling", **settings
+        warnings.simplefilter("ignore", rl.ValidityWarning)  # on the way N may become negative
+        found = rl.simulate(
+            rl.Scene(**motion.parameters), motion.times, model="rolling", **settings
         )
     columns = found.theta, found.omega, found.x, found.normal_force, found.friction_force
     values = np.stack(columns, axis=1).tolist()

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from oracles import EPS
 from rolling_ellipse import Scene, Status, Trajectory, simulate
 from rolling_ellipse.geometry import centre_path
@@ -26,7 +26,7 @@ multipliers = partial(simulate, model="multipliers", max_steps=10_000_000)
 
 def half_turn(scene: Scene) -> float:
     """Time from theta to theta + pi, or of half a swing [s]."""
-    return re.period(scene) / 2
+    return rl.period(scene) / 2
 
 
 def worst_residual(trajectory: Trajectory) -> float:
@@ -53,7 +53,7 @@ def test_the_drift_is_that_of_the_equations() -> None:
     """The same 300 steps of the classical method, in Python: the drift is a property of equations
     and method, not of this code. 1e-11: some 300 x 4 roundings, grown by e^4 with the motion."""
     scene, step = Scene(2.0, 1.0, omega=3.2), 0.02
-    q, q_dot = re.kinematics(0.0, 3.2, a=2.0, b=1.0)
+    q, q_dot = rl.kinematics(0.0, 3.2, a=2.0, b=1.0)
     y = np.concatenate([q, q_dot])
 
     def slope(y: np.ndarray) -> np.ndarray:
@@ -65,7 +65,7 @@ def test_the_drift_is_that_of_the_equations() -> None:
         k3 = slope(y + step / 2 * k2)
         y = y + step / 6 * (k1 + 2 * k2 + 2 * k3 + slope(y + step * k3))
     found = multipliers(scene, [300 * step], method="rk4", stabilization="none", step=step)
-    own = re.constraints(y[:5], y[5:], a=2.0, b=1.0)
+    own = rl.constraints(y[:5], y[5:], a=2.0, b=1.0)
     print(f"gap after 6 s: {float(own.gap):.6e} m")
     assert np.max(np.abs(found.q[0] - y[:5])) <= 1e-11
     assert np.max(np.abs(found.q_dot[0] - y[5:])) <= 1e-11
@@ -225,7 +225,7 @@ def test_feedback_on_a_circle_is_the_stability_function() -> None:
     the limit."""
     step, steps = 0.01, 10
     scene = Scene(1.0, 1.0, omega=2.0)
-    q, q_dot = re.kinematics(0.0, 2.0, a=1.0, b=1.0)
+    q, q_dot = rl.kinematics(0.0, 2.0, a=1.0, b=1.0)
     off = 1e-6 * np.eye(5)
     for alpha, beta in ((20.0, 20.0), (100.0, 30.0), (150.0, 50.0), (30.0, 200.0)):
         how = settings(method="rk4", step=step, stabilization="baumgarte", baumgarte=(alpha, beta))

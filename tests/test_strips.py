@@ -10,37 +10,37 @@ import pytest
 
 matplotlib.use("Agg")
 
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from pictures import outline
 from PIL import Image
-from rolling_ellipse.animation import RollingAnimation
+from rolling_ellipse._pictures.animation import RollingAnimation
 
 
-def moved(seconds: float, *scenes: re.Scene) -> list[re.Trajectory]:
+def moved(seconds: float, *scenes: rl.Scene) -> list[rl.Trajectory]:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", re.ValidityWarning)
-        return [re.simulate(scene, seconds, model="rolling") for scene in scenes]
+        warnings.simplefilter("ignore", rl.ValidityWarning)
+        return [rl.simulate(scene, seconds, model="rolling") for scene in scenes]
 
 
-SLOW, FAST = re.scenes.rolling, re.Scene(2.0, 1.0, omega=4.0)
-REPORT_AND_ROCKING = moved(6.0, re.scenes.report, re.scenes.rocking)
-STILL = [*REPORT_AND_ROCKING, *moved(6.0, re.scenes.circle)]
+SLOW, FAST = rl.scenes.rolling, rl.Scene(2.0, 1.0, omega=4.0)
+REPORT_AND_ROCKING = moved(6.0, rl.scenes.report, rl.scenes.rocking)
+STILL = [*REPORT_AND_ROCKING, *moved(6.0, rl.scenes.circle)]
 FOLLOWED = moved(14.0, SLOW, FAST)  # 51 m long, 20 m apart
-PARTED = moved(20.0, SLOW, FAST, re.Scene(1.0, 1.0, omega=-2.0))  # 113 m apart
-SIZES = moved(6.0, re.scenes.thin, re.Scene(0.2, 0.1, omega=15.0, x=3.0), re.Scene(0.7, 1.9))
+PARTED = moved(20.0, SLOW, FAST, rl.Scene(1.0, 1.0, omega=-2.0))  # 113 m apart
+SIZES = moved(6.0, rl.scenes.thin, rl.Scene(0.2, 0.1, omega=15.0, x=3.0), rl.Scene(0.7, 1.9))
 COMPARISONS = {"still": STILL, "followed": FOLLOWED, "parted": PARTED, "sizes": SIZES}
 
 
 @pytest.fixture(params=COMPARISONS.values(), ids=COMPARISONS.keys())
-def motions(request: pytest.FixtureRequest) -> list[re.Trajectory]:
-    found: list[re.Trajectory] = request.param
+def motions(request: pytest.FixtureRequest) -> list[rl.Trajectory]:
+    found: list[rl.Trajectory] = request.param
     return found
 
 
-def compared(motions: list[re.Trajectory], width: int = 640) -> RollingAnimation:
+def compared(motions: list[rl.Trajectory], width: int = 640) -> RollingAnimation:
     """All of the motions in four frames a second."""
-    return re.animate(motions, t_end=float(motions[0].t[-1]), fps=4, width=width)
+    return rl.animate(motions, t_end=float(motions[0].t[-1]), fps=4, width=width)
 
 
 def frames(animation: RollingAnimation) -> range:
@@ -48,7 +48,7 @@ def frames(animation: RollingAnimation) -> range:
 
 
 def test_every_strip_shows_its_motion_at_the_time_of_the_clock(
-    motions: list[re.Trajectory],
+    motions: list[rl.Trajectory],
 ) -> None:
     animation = compared(motions)
     assert len(animation.strips) == len(motions)
@@ -62,7 +62,7 @@ def test_every_strip_shows_its_motion_at_the_time_of_the_clock(
             assert (strip.body.width, strip.body.height) == (2 * motion.scene.a, 2 * motion.scene.b)
 
 
-def test_every_body_is_seen_whole_on_its_ground(motions: list[re.Trajectory]) -> None:
+def test_every_body_is_seen_whole_on_its_ground(motions: list[rl.Trajectory]) -> None:
     animation = compared(motions)
     for i in frames(animation):
         animation.draw(i)
@@ -75,7 +75,7 @@ def test_every_body_is_seen_whole_on_its_ground(motions: list[re.Trajectory]) ->
             assert ticks[0] < left and right < ticks[-1]
 
 
-def test_the_strips_have_one_scale_and_fill_the_picture(motions: list[re.Trajectory]) -> None:
+def test_the_strips_have_one_scale_and_fill_the_picture(motions: list[rl.Trajectory]) -> None:
     animation = compared(motions)
     boxes = [strip.ax.get_position() for strip in animation.strips]
     edges = [1.0, *(box.y0 for box in boxes)]
@@ -96,7 +96,7 @@ def test_the_strips_have_one_scale_and_fill_the_picture(motions: list[re.Traject
     ids=["still", "followed", "parted"],
 )
 def test_the_strips_show_the_same_ground_unless_the_motions_part(
-    motions: list[re.Trajectory], same_ground: bool, views: int
+    motions: list[rl.Trajectory], same_ground: bool, views: int
 ) -> None:
     animation = compared(motions)
     seen = set()
@@ -109,7 +109,7 @@ def test_the_strips_show_the_same_ground_unless_the_motions_part(
 
 
 def test_parted_motions_say_where_they_are() -> None:
-    animation = re.animate(PARTED, labels=["slow", "fast", "back"], t_end=20.0, fps=4)
+    animation = rl.animate(PARTED, labels=["slow", "fast", "back"], t_end=20.0, fps=4)
     animation.draw(80)
     captions = [strip.caption.get_text() for strip in animation.strips]
     assert captions == [
@@ -119,16 +119,16 @@ def test_parted_motions_say_where_they_are() -> None:
 
 
 def test_captions_name_the_motions() -> None:
-    animation = re.animate(FOLLOWED, t_end=1.0)
+    animation = rl.animate(FOLLOWED, t_end=1.0)
     captions = [strip.caption.get_text() for strip in animation.strips]
     assert captions == ["omega = 3.2 rad/s", "omega = 4 rad/s"]
-    mine = re.animate(FOLLOWED, t_end=1.0, labels=["one", "other"])
+    mine = rl.animate(FOLLOWED, t_end=1.0, labels=["one", "other"])
     assert [strip.caption.get_text() for strip in mine.strips] == ["one", "other"]
 
 
 def test_a_motion_that_ends_earlier_stays_where_it_ended() -> None:
-    short, long = re.simulate(SLOW, 1.0), re.simulate(SLOW, 3.0)
-    animation = re.animate([short, long], labels=["short", "long"], fps=4)
+    short, long = rl.simulate(SLOW, 1.0), rl.simulate(SLOW, 3.0)
+    animation = rl.animate([short, long], labels=["short", "long"], fps=4)
     assert animation.t[-1] == 3.0
     first, second = animation.strips
     for i in frames(animation):
@@ -140,7 +140,7 @@ def test_a_motion_that_ends_earlier_stays_where_it_ended() -> None:
 
 
 def test_a_strip_says_when_its_rolling_is_no_longer_valid() -> None:
-    animation = re.animate(moved(1.0, re.scenes.jump, SLOW), labels=["jump", "slow"])
+    animation = rl.animate(moved(1.0, rl.scenes.jump, SLOW), labels=["jump", "slow"])
     animation.draw(25)
     captions = [strip.caption.get_text() for strip in animation.strips]
     assert captions == ["jump   rolling is no longer valid", "slow"]
@@ -148,7 +148,7 @@ def test_a_strip_says_when_its_rolling_is_no_longer_valid() -> None:
 
 @pytest.mark.parametrize("width", [320, 640])
 def test_texts_are_clear_of_one_another_and_of_the_bodies(
-    motions: list[re.Trajectory], width: int
+    motions: list[rl.Trajectory], width: int
 ) -> None:
     animation = compared(motions, width)
     for i in frames(animation)[::9]:
@@ -165,7 +165,7 @@ def test_texts_are_clear_of_one_another_and_of_the_bodies(
 
 def test_it_draws_into_a_figure_it_is_given() -> None:
     for size in ((5, 5), (10, 1), (2, 8)):
-        animation = re.animate(STILL, t_end=1.0, fps=4, figure=Figure(figsize=size))
+        animation = rl.animate(STILL, t_end=1.0, fps=4, figure=Figure(figsize=size))
         assert tuple(animation.figure.get_size_inches()) == size
         for strip in animation.strips:
             (left, right), (bottom, top) = strip.ax.get_xlim(), strip.ax.get_ylim()
@@ -178,7 +178,7 @@ def test_it_draws_into_a_figure_it_is_given() -> None:
 
 def test_a_file_of_several_motions(tmp_path: Path) -> None:
     path = tmp_path / "race.gif"
-    re.animate(REPORT_AND_ROCKING, path, t_end=0.2, width=160, dpi=50)
+    rl.animate(REPORT_AND_ROCKING, path, t_end=0.2, width=160, dpi=50)
     with Image.open(path) as gif:
         assert gif.n_frames == 6
         assert gif.size[0] == 160 and gif.size[1] % 2 == 0
@@ -186,15 +186,15 @@ def test_a_file_of_several_motions(tmp_path: Path) -> None:
 
 def test_wrong_input_is_refused_by_name() -> None:
     with pytest.raises(ValueError, match="labels must be 2, one for each trajectory, got 1"):
-        re.animate(FOLLOWED, labels=["one"])
+        rl.animate(FOLLOWED, labels=["one"])
     with pytest.raises(ValueError, match=r"trajectories must be .*, got none"):
-        re.animate([])
+        rl.animate([])
     with pytest.raises(TypeError, match=r"trajectories must be .*, got Scene\("):
-        re.animate([SLOW])  # type: ignore[list-item]
+        rl.animate([SLOW])  # type: ignore[list-item]
     with pytest.raises(ValueError, match=r"t_end must be within \[0, 20\] s, got 21"):
-        re.animate([*FOLLOWED, *PARTED], t_end=21)
+        rl.animate([*FOLLOWED, *PARTED], t_end=21)
 
 
 def test_the_user_s_layout_is_left_alone() -> None:
     with matplotlib.rc_context({"figure.constrained_layout.use": True}):
-        re.animate(re.simulate(re.scenes.rocking, 0.1))  # any warning is an error
+        rl.animate(rl.simulate(rl.scenes.rocking, 0.1))  # any warning is an error

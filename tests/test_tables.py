@@ -10,31 +10,31 @@ from typing import Any
 import numpy as np
 import pandas
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 import xarray
-from rolling_ellipse._labels import SCENE_UNITS
-from rolling_ellipse._tables import MODE, MULTIPLIERS, QUANTITIES, TIME
+from rolling_ellipse._export.tables import MODE, MULTIPLIERS, QUANTITIES, TIME
+from rolling_ellipse._pictures.labels import SCENE_UNITS
 
-BLOWN = re.Scene(
-    2.0, 1.0, mass=3.0, inertia=2.0, friction=5.0, impulse=re.Impulse(1.0, -4.0, dx=0.5)
+BLOWN = rl.Scene(
+    2.0, 1.0, mass=3.0, inertia=2.0, friction=5.0, impulse=rl.Impulse(1.0, -4.0, dx=0.5)
 )
-SCENES = {"report": re.scenes.report, "rocking": re.scenes.rocking, "blown": BLOWN}
+SCENES = {"report": rl.scenes.report, "rocking": rl.scenes.rocking, "blown": BLOWN}
 
 
 @pytest.fixture(scope="module", params=SCENES.values(), ids=SCENES)
-def motion(request: pytest.FixtureRequest) -> re.Trajectory:
-    return re.simulate(request.param, np.linspace(0.5, 2.0, 31))
+def motion(request: pytest.FixtureRequest) -> rl.Trajectory:
+    return rl.simulate(request.param, np.linspace(0.5, 2.0, 31))
 
 
-def scene_in(facts: Mapping[str, Any]) -> re.Scene:
+def scene_in(facts: Mapping[str, Any]) -> rl.Scene:
     """The scene that the attributes of a table tell of."""
-    names = {field.name for field in dataclasses.fields(re.Scene)}
+    names = {field.name for field in dataclasses.fields(rl.Scene)}
     blow = {k.removeprefix("impulse_"): v for k, v in facts.items() if k.startswith("impulse_")}
     given = {name: facts[name] for name in names & set(facts)}
-    return re.Scene(**given, impulse=re.Impulse(**blow) if blow else None)
+    return rl.Scene(**given, impulse=rl.Impulse(**blow) if blow else None)
 
 
-def test_the_dataframe_holds_the_arrays(motion: re.Trajectory) -> None:
+def test_the_dataframe_holds_the_arrays(motion: rl.Trajectory) -> None:
     frame = motion.to_dataframe()
     assert frame.index.name == "t" and np.array_equal(frame.index, motion.t)
     for each in QUANTITIES:
@@ -45,7 +45,7 @@ def test_the_dataframe_holds_the_arrays(motion: re.Trajectory) -> None:
     assert set(frame.attrs["units"]) == {"t", *frame.columns}
 
 
-def test_the_dataset_holds_the_arrays(motion: re.Trajectory) -> None:
+def test_the_dataset_holds_the_arrays(motion: rl.Trajectory) -> None:
     found = motion.to_xarray()
     assert np.array_equal(found["t"], motion.t)
     for each in (*QUANTITIES, MODE):
@@ -59,7 +59,7 @@ def test_the_dataset_holds_the_arrays(motion: re.Trajectory) -> None:
     assert found["t"].attrs == {"units": "s", "long_name": "time"}
 
 
-def test_no_array_of_a_trajectory_is_left_out(motion: re.Trajectory) -> None:
+def test_no_array_of_a_trajectory_is_left_out(motion: rl.Trajectory) -> None:
     public = [name for name in dir(motion) if not name.startswith("_")]
     arrays = {name for name in public if isinstance(getattr(motion, name), np.ndarray)}
     listed = {each.name for each in (TIME, *QUANTITIES, MODE)}
@@ -82,7 +82,7 @@ def scale(unit: str) -> float:
 
 def test_the_units_are_those_of_the_numbers() -> None:
     """In a world scaled in length, time and mass each quantity grows as its unit does."""
-    small = re.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
+    small = rl.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
     large = dataclasses.replace(
         small,
         a=small.a * LENGTH,
@@ -93,8 +93,8 @@ def test_the_units_are_those_of_the_numbers() -> None:
         omega=small.omega / DURATION,
     )
     times = np.linspace(0.0, 2.0, 21)
-    one = re.simulate(small, times).to_dataframe()
-    other = re.simulate(large, times * DURATION).to_dataframe()
+    one = rl.simulate(small, times).to_dataframe()
+    other = rl.simulate(large, times * DURATION).to_dataframe()
     units = one.attrs["units"]
     assert np.array_equal(other.index, one.index * scale(units["t"]))
     for name in one.columns.drop("mode"):
@@ -112,7 +112,7 @@ def test_scenes_and_tables_agree_on_units() -> None:
     assert all(units[name] == SCENE_UNITS[name] for name in shared)
 
 
-def test_the_attributes_tell_the_whole_scene(motion: re.Trajectory) -> None:
+def test_the_attributes_tell_the_whole_scene(motion: rl.Trajectory) -> None:
     for facts in (motion.to_dataframe().attrs, motion.to_xarray().attrs):
         assert scene_in(facts) == motion.scene
         assert (facts["model"], facts["method"], facts["status"]) == (
@@ -126,32 +126,32 @@ def test_the_attributes_tell_the_whole_scene(motion: re.Trajectory) -> None:
 
 def test_a_lost_validity_is_told() -> None:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", re.ValidityWarning)
-        jump = re.simulate(re.scenes.jump, 1.0, model="rolling")
+        warnings.simplefilter("ignore", rl.ValidityWarning)
+        jump = rl.simulate(rl.scenes.jump, 1.0, model="rolling")
     facts = jump.to_xarray().attrs
     assert facts["status"] == "VALIDITY_LOST"
     assert facts["valid_until"] == jump.valid_until < 1.0
 
 
-def test_netcdf_and_back(motion: re.Trajectory, tmp_path: Path) -> None:
+def test_netcdf_and_back(motion: rl.Trajectory, tmp_path: Path) -> None:
     written = motion.to_xarray()
     written.to_netcdf(tmp_path / "motion.nc")
     read = xarray.load_dataset(tmp_path / "motion.nc")
     assert read.identical(written)
-    again = re.simulate(scene_in(read.attrs), read["t"].to_numpy())
+    again = rl.simulate(scene_in(read.attrs), read["t"].to_numpy())
     assert np.array_equal(again.theta, motion.theta)
 
 
-def test_a_dataframe_and_back(motion: re.Trajectory) -> None:
+def test_a_dataframe_and_back(motion: rl.Trajectory) -> None:
     frame = motion.to_dataframe()
-    again = re.simulate(scene_in(frame.attrs), frame.index.to_numpy()).to_dataframe()
+    again = rl.simulate(scene_in(frame.attrs), frame.index.to_numpy()).to_dataframe()
     pandas.testing.assert_frame_equal(again, frame, check_exact=True)
     assert again.attrs == frame.attrs
 
 
 def test_modes_have_their_names() -> None:
-    motion = dataclasses.replace(re.simulate(re.scenes.rocking, [0.0, 1.0, 2.0, 3.0]))
-    codes = [re.Mode.FLIGHT, re.Mode.SLIDING, re.Mode.REST, re.Mode.ROLLING]
+    motion = dataclasses.replace(rl.simulate(rl.scenes.rocking, [0.0, 1.0, 2.0, 3.0]))
+    codes = [rl.Mode.FLIGHT, rl.Mode.SLIDING, rl.Mode.REST, rl.Mode.ROLLING]
     motion.__dict__["mode"] = np.array(codes, np.int8)
     column = motion.to_dataframe()["mode"]
     assert list(column) == ["FLIGHT", "SLIDING", "REST", "ROLLING"]
@@ -163,7 +163,7 @@ def test_modes_have_their_names() -> None:
     assert [names[code] for code in variable.to_numpy()] == list(column)
 
 
-def test_tables_may_be_changed_and_the_trajectory_stays(motion: re.Trajectory) -> None:
+def test_tables_may_be_changed_and_the_trajectory_stays(motion: rl.Trajectory) -> None:
     frame, found = motion.to_dataframe(), motion.to_xarray()
     before = motion.x[0]
     frame.loc[frame.index[0], "x"] = 99.0
@@ -175,8 +175,8 @@ def test_tables_may_be_changed_and_the_trajectory_stays(motion: re.Trajectory) -
 
 
 def test_a_trajectory_without_samples_makes_empty_tables() -> None:
-    jams = re.Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
-    motion = re.simulate(jams, [0.5, 1.0])
+    jams = rl.Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
+    motion = rl.simulate(jams, [0.5, 1.0])
     frame, found = motion.to_dataframe(), motion.to_xarray()
     assert len(frame) == found.sizes["t"] == 0
     assert list(frame.columns) == [each.name for each in (*QUANTITIES, *MULTIPLIERS, MODE)]
@@ -189,7 +189,7 @@ def test_a_trajectory_without_samples_makes_empty_tables() -> None:
 def test_a_missing_package_names_the_extra(
     package: str, method: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    motion = re.simulate(re.scenes.rocking, 1.0)
+    motion = rl.simulate(rl.scenes.rocking, 1.0)
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ImportError, match=rf"{method} needs {package}: .*rolling_ellipse\[data\]"):
         getattr(motion, method)()

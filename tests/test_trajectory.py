@@ -14,17 +14,17 @@ import mpmath as mp
 import numpy as np
 import oracles
 import pytest
-import rolling_ellipse as re
+import rolling_ellipse as rl
 from oracles import EPS
 from rolling_ellipse import Impulse, Mode, Scene, Status, Trajectory, ValidityWarning, simulate
 from test_flow import carried
 
 SCENES = {
-    "report": re.scenes.report,
-    "rocking": re.scenes.rocking,
-    "circle": re.scenes.circle,
+    "report": rl.scenes.report,
+    "rocking": rl.scenes.rocking,
+    "circle": rl.scenes.circle,
     "circle + 1e-8": Scene(1.0 + 1e-8, 1.0, theta=0.3, omega=1.5),
-    "thin": re.scenes.thin,
+    "thin": rl.scenes.thin,
     "standing": Scene(0.7, 1.9, mass=3.0, gravity=3.7, inertia=2.0, theta=1.2, omega=1.0, x=-5.0),
     "backwards": Scene(2.0, 1.0, mass=0.2, omega=-3.3, friction=2.0),
 }
@@ -45,7 +45,7 @@ def motion(request: pytest.FixtureRequest) -> Trajectory:
 
 @pytest.fixture(scope="module")
 def report() -> Trajectory:
-    return simulate(re.scenes.report, 6.0)
+    return simulate(rl.scenes.report, 6.0)
 
 
 class Outline(NamedTuple):
@@ -90,29 +90,29 @@ def test_close_sees_ten_ulp() -> None:
 
 
 def test_a_number_is_an_end_time() -> None:
-    trajectory = simulate(re.scenes.rocking, 3)
+    trajectory = simulate(rl.scenes.rocking, 3)
     assert np.array_equal(trajectory.t, np.linspace(0, 3, 1001))
     assert trajectory.t_end == 3
 
 
 def test_zero_is_one_sample() -> None:
-    trajectory = simulate(re.scenes.report, 0)
+    trajectory = simulate(rl.scenes.report, 0)
     assert trajectory.t.tolist() == [0.0]
-    start = re.scenes.report.initial_state
+    start = rl.scenes.report.initial_state
     for name in ("theta", "omega", "x", "z", "x_dot", "z_dot"):
         assert getattr(trajectory, name)[0] == getattr(start, name)
 
 
 @pytest.mark.parametrize("times", [[0.5, 1.0, 7.0], (0.0, 2.0), np.array([3, 4]), [2.0]])
 def test_an_array_is_taken_as_it_is(times: Any) -> None:
-    trajectory = simulate(re.scenes.rocking, times)
+    trajectory = simulate(rl.scenes.rocking, times)
     assert np.array_equal(trajectory.t, np.asarray(times, float))
     assert not np.shares_memory(trajectory.t, np.asarray(times))
 
 
 def test_the_given_times_are_left_alone() -> None:
     times = np.linspace(0, 1, 5)
-    trajectory = simulate(re.scenes.rocking, times)
+    trajectory = simulate(rl.scenes.rocking, times)
     assert times.flags.writeable
     times[1] = 0.9
     assert trajectory.t[1] == 0.25
@@ -133,18 +133,18 @@ def test_the_given_times_are_left_alone() -> None:
 )
 def test_wrong_times_are_refused(times: Any, said: str) -> None:
     with pytest.raises(ValueError, match=f"^t must.*{said}"):
-        simulate(re.scenes.rocking, times)
+        simulate(rl.scenes.rocking, times)
 
 
 def test_wrong_names_and_scenes_are_refused() -> None:
     with pytest.raises(ValueError, match=r"^model must be one of .*'rolling'.*'falling'"):
-        simulate(re.scenes.rocking, 1.0, model="falling")
+        simulate(rl.scenes.rocking, 1.0, model="falling")
     with pytest.raises(ValueError, match=r"^method must be one of .*'exact'.*'euler'"):
-        simulate(re.scenes.rocking, 1.0, method="euler")
+        simulate(rl.scenes.rocking, 1.0, method="euler")
     with pytest.raises(TypeError, match=r"^scene must be a Scene"):
         simulate("report", 1.0)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"^t must be"):
-        simulate(re.scenes.rocking, "1")
+        simulate(rl.scenes.rocking, "1")
 
 
 # ------------------------------------------------------------------------- how it ends
@@ -158,7 +158,7 @@ def test_rolling_that_is_valid(scene: Scene) -> None:
         assert trajectory.status is Status.COMPLETED and trajectory.success
         assert trajectory.message == Status.COMPLETED.value
         assert trajectory.valid_until == math.inf and trajectory.events == ()
-        assert trajectory.reason == re.certify(scene).reason
+        assert trajectory.reason == rl.certify(scene).reason
         assert trajectory.reason.startswith("rolling: proved valid")
         assert trajectory.scene is scene
         assert np.all(trajectory.mode == Mode.ROLLING) and trajectory.mode.dtype == np.int8
@@ -166,7 +166,7 @@ def test_rolling_that_is_valid(scene: Scene) -> None:
 
 
 ENDING = {
-    "jump": re.scenes.jump,
+    "jump": rl.scenes.jump,
     "contact": Scene(2.0, 1.0, mass=3.0, omega=5.2),
     "little friction": Scene(2.0, 1.0, omega=3.2, friction=0.2),
     "rocking": Scene(2.0, 1.0, theta=0.1, omega=1.5, friction=0.2),
@@ -198,13 +198,13 @@ def test_rolling_that_ends(scene: Scene) -> None:
     before = spare(end * (1 - np.geomspace(1e-6, 1, 3000)))
     assert np.all(before > 0)
     assert spare(end * (1 + 1e-6))[0] < 0
-    ends_at = re.certify(scene).ends_at
+    ends_at = rl.certify(scene).ends_at
     assert trajectory.sol(end).theta[0] == pytest.approx(ends_at, rel=1e-13)
-    assert "ends at theta" in trajectory.reason and trajectory.reason == re.certify(scene).reason
+    assert "ends at theta" in trajectory.reason and trajectory.reason == rl.certify(scene).reason
     followed = simulate(scene, 10.0)
     assert followed.model == "contact" and followed.valid_until == math.inf
     assert followed.reason == f"contact ({trajectory.reason})"
-    assert followed.events[0].kind is re.EventKind.SLIP and followed.events[0].t == end
+    assert followed.events[0].kind is rl.EventKind.SLIP and followed.events[0].t == end
 
 
 @pytest.mark.parametrize("scene", ENDING.values(), ids=ENDING)
@@ -242,7 +242,7 @@ def test_rest(theta: float) -> None:
 
 @pytest.mark.parametrize("name", ["drop", "bounce", "slip"])
 def test_what_does_not_roll_is_followed_all_the_same(name: str) -> None:
-    scene = getattr(re.scenes, name)
+    scene = getattr(rl.scenes, name)
     trajectory = simulate(scene, 2.0)
     assert (trajectory.model, trajectory.status) == ("contact", Status.COMPLETED)
     assert trajectory.t.size == 1001 and trajectory.events
@@ -309,9 +309,9 @@ def test_the_contact_rolls_off_the_outline(motion: Trajectory) -> None:
     """The way of the contact is the arc length between the angles; 16 ulp, and an ulp of theta
     times the radius of curvature, which is large where a thin body lies flat."""
     a, b = motion.scene.a, motion.scene.b
-    arc = re.geometry.arc_length(motion.theta, a=a, b=b)
+    arc = rl.geometry.arc_length(motion.theta, a=a, b=b)
     way = motion.contact_x - motion.contact_x[0]
-    radius = re.geometry.curvature_radius(motion.theta, a=a, b=b)
+    radius = rl.geometry.curvature_radius(motion.theta, a=a, b=b)
     size = np.abs(motion.contact_x) + abs(motion.contact_x[0]) + np.abs(arc) + max(a, b)
     grain = 2 * np.spacing(np.maximum(np.abs(motion.theta), abs(motion.scene.theta)))
     assert np.all(np.abs(way - (arc - arc[0])) <= 16 * EPS * size + grain * radius)
@@ -520,7 +520,7 @@ def test_scene_at_goes_on(name: str) -> None:
 
 def test_scene_at_takes_another_impulse() -> None:
     """physics: m D (omega+ - omega-) = Jx (h + dz) + Jz (h' - dx)."""
-    whole = simulate(re.scenes.report, 6.0)
+    whole = simulate(rl.scenes.report, 6.0)
     later = whole.scene_at(2.0)
     again = dataclasses.replace(later, impulse=Impulse(2.0, -30.0, dx=0.3, dz=-0.1))
     at = whole.sol(2.0)
@@ -556,7 +556,7 @@ WRONG_PARTS = {
 
 
 def five_samples() -> Trajectory:
-    return simulate(re.scenes.bounce, np.linspace(0.0, 0.4, 5))
+    return simulate(rl.scenes.bounce, np.linspace(0.0, 0.4, 5))
 
 
 @pytest.mark.parametrize(("name", "value", "said"), WRONG_PARTS.values(), ids=WRONG_PARTS)
@@ -614,7 +614,7 @@ def test_the_arrays_of_others_are_left_alone() -> None:
 
 @pytest.mark.parametrize("model", ["rolling", "multipliers", "contact"])
 def test_nothing_can_be_written_to(model: str) -> None:
-    motion = simulate(re.scenes.report, np.linspace(0.0, 1.0, 5), model=model)
+    motion = simulate(rl.scenes.report, np.linspace(0.0, 1.0, 5), model=model)
     start = (motion.q[0], motion.q_dot[0])
     for one in (motion, motion.sol([0.5]), dataclasses.replace(motion, start=start)):
         pairs = *(one.coordinates or ()), *(one.start or ()), *(one.contact or ())
@@ -626,7 +626,7 @@ def test_nothing_can_be_written_to(model: str) -> None:
 
 # ---------------------------------------------------------------------------------- files
 
-SAVED = {**SCENES, "jump": re.scenes.jump, "drop": re.scenes.drop, "rest": Scene(2.0, 1.0)}
+SAVED = {**SCENES, "jump": rl.scenes.jump, "drop": rl.scenes.drop, "rest": Scene(2.0, 1.0)}
 
 
 @pytest.mark.parametrize("scene", SAVED.values(), ids=SAVED)
@@ -634,7 +634,7 @@ def test_save_and_load(scene: Scene, tmp_path: Path) -> None:
     before = simulate(scene, np.linspace(0.1, 7.0, 77))
     path = tmp_path / "motion.npz"
     before.save(path)
-    for after in (Trajectory.load(path), re.load(str(path))):
+    for after in (Trajectory.load(path), rl.load(str(path))):
         for name in (*VECTORS, *MATRICES, "mode"):
             one, other = getattr(before, name), getattr(after, name)
             assert one.dtype == other.dtype and np.array_equal(one, other), name
@@ -687,13 +687,13 @@ def test_a_wrong_file_is_refused_by_name(report: Trajectory, tmp_path: Path, kin
     else:
         path.write_bytes(b"")
     with pytest.raises(ValueError, match=r"^path .*wrong\.npz") as caught:
-        re.load(path)
+        rl.load(path)
     assert "pickle" not in str(caught.value)
 
 
 def test_a_missing_file_is_not_found(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
-        re.load(tmp_path / "nothing.npz")
+        rl.load(tmp_path / "nothing.npz")
 
 
 def test_repr(report: Trajectory) -> None:
@@ -706,12 +706,12 @@ def test_repr(report: Trajectory) -> None:
 # ------------------------------------------------------------------------------ residuals
 
 LONG_RUNS = {
-    "report": (re.scenes.report, 60.0),
-    "rocking": (re.scenes.rocking, 60.0),
-    "thin": (re.scenes.thin, 60.0),
-    "circle": (re.scenes.circle, 60.0),
+    "report": (rl.scenes.report, 60.0),
+    "rocking": (rl.scenes.rocking, 60.0),
+    "thin": (rl.scenes.thin, 60.0),
+    "circle": (rl.scenes.circle, 60.0),
     "standing": (SCENES["standing"], 60.0),
-    "a million radians": (re.scenes.rolling, 7e5),
+    "a million radians": (rl.scenes.rolling, 7e5),
 }
 
 
@@ -761,7 +761,7 @@ def test_residuals_see_a_millimetre(report: Trajectory, column: str) -> None:
     """A change of 1e-3 in a stored array is reported as some 1e-3, by f2 ... f4."""
     q = report.q.copy()
     q[:, ["x", "z", "theta", "psi", "r"].index(column)] += 1e-3
-    residuals = re.constraints(q, report.q_dot, a=2.0, b=1.0)
+    residuals = rl.constraints(q, report.q_dot, a=2.0, b=1.0)
     assert 5e-4 < np.max(np.abs(residuals.position)) < 1e-2
     if column in ("z", "theta"):
         assert 5e-4 < np.max(np.abs(residuals.gap)) < 1e-2
@@ -771,7 +771,7 @@ def test_residuals_see_a_millimetre(report: Trajectory, column: str) -> None:
 def test_velocity_residuals_see_a_millimetre_a_second(report: Trajectory, column: str) -> None:
     q_dot = report.q_dot.copy()
     q_dot[:, ["x", "z", "theta", "psi", "r"].index(column)] += 1e-3
-    residuals = re.constraints(report.q, q_dot, a=2.0, b=1.0)
+    residuals = rl.constraints(report.q, q_dot, a=2.0, b=1.0)
     assert 5e-4 < np.max(np.abs(residuals.velocity)) < 2e-2
     if column in ("x", "theta"):
         assert 5e-4 < np.max(np.abs(residuals.slip)) < 1e-2

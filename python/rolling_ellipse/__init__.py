@@ -1,35 +1,41 @@
 """An ellipse on the ground, set rolling by an impulse: solved exactly, proved valid, drawn.
 
->>> import rolling_ellipse as re
->>> trajectory = re.simulate(re.scenes.report, 6.0)
+>>> import rolling_ellipse
+>>> trajectory = rolling_ellipse.simulate(rolling_ellipse.scenes.report, 6.0)
 >>> trajectory.plot(); trajectory.animate("roll.gif")
 """
 
-from importlib.metadata import version as _version
+from importlib import import_module as _import_module
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
 
-from . import geometry, impacts, report, scenes
+from . import geometry, scenes
+from ._certify import Certificate, certify
+from ._constraints import ConstraintResiduals, constraints, kinematics
 from ._core import EventKind, Mode, Outcome, Validity
+from ._events import Event
+from ._flow import flow, period
+from ._outcome import Thresholds, classify, thresholds
+from ._scene import Impulse, InitialState, Scene
 from ._simulate import simulate
-from .animation import animate
-from .events import Event
-from .kinematics import ConstraintResiduals, constraints, kinematics
-from .motion import flow, period
-from .outcome import classify
-from .plotting import (
-    plot,
-    plot_constraints,
-    plot_energy,
-    plot_forces,
-    plot_paths,
-    plot_phase,
-    plot_phase_map,
-    plot_strobe,
-)
-from .scene import Impulse, InitialState, Scene
-from .trajectory import IntegrationError, Status, Trajectory, ValidityWarning, load
-from .validity import Certificate, Thresholds, certify, thresholds
+from ._status import IntegrationError, Status, ValidityWarning
+from ._trajectory import Trajectory, load
 
-__version__ = _version("rolling-ellipse")
+if _TYPE_CHECKING:
+    from . import impacts, report
+    from ._pictures import (
+        animate,
+        plot,
+        plot_constraints,
+        plot_energy,
+        plot_forces,
+        plot_paths,
+        plot_phase,
+        plot_phase_map,
+        plot_strobe,
+    )
+
+    __version__: str
 
 __all__ = [
     "Certificate", "ConstraintResiduals", "Event", "EventKind", "Impulse", "InitialState",
@@ -39,3 +45,23 @@ __all__ = [
     "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_phase_map", "plot_strobe",
     "report", "scenes", "simulate", "thresholds",
 ]  # fmt: skip
+
+
+def __getattr__(name: str) -> _Any:
+    """Load what is slow to load when it is first asked for, above all matplotlib."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        value: _Any = version("rolling-ellipse")
+    elif name in ("impacts", "report"):
+        value = _import_module(f".{name}", __name__)
+    elif name in __all__:
+        value = getattr(_import_module("._pictures", __name__), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(globals().keys() | set(__all__))

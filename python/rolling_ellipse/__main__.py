@@ -18,9 +18,9 @@ import numpy as np
 from matplotlib import rcParams
 
 from . import Mode, Scene, Status, Trajectory, certify, period, scenes, simulate
-from ._atomic import replacing
-from ._movies import movie_writer
-from .animation import animate
+from ._export.atomic import replacing
+from ._pictures.animation import animate
+from ._pictures.animation.movies import movie_writer
 
 _SCENE_OPTIONS = {
     "a": "semi-axis parallel to the ground at theta = 0 [m]",

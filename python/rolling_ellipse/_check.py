@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import os
+import sys
 from contextlib import suppress
 from operator import index
 from typing import Any
@@ -19,7 +20,6 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 _DOUBLE = np.dtype(np.float64)
-_MAY_BE_MASKED = (list, tuple, np.ma.MaskedArray)
 _LONGEST = 300  # characters of a value in a message
 
 
@@ -58,7 +58,7 @@ def whole(name: str, value: Any) -> int:
     """Return ``value`` as an int, or raise TypeError naming the argument."""
     if type(value) is int:  # nearly always
         return value
-    if not isinstance(value, (bool, np.bool_)) and not np.ma.is_masked(value):
+    if not isinstance(value, (bool, np.bool_)) and not _is_masked(value):
         with suppress(TypeError):
             return index(value)
     raise TypeError(f"{name} must be a whole number, got {shown(value)}")
@@ -101,7 +101,7 @@ def _doubles(name: str, value: Any) -> FloatArray | None:
     """``value`` as a float64 array, or None if it is nothing of the kind."""
     if type(value) is np.ndarray and value.dtype is _DOUBLE:
         return value
-    if isinstance(value, _MAY_BE_MASKED) and _is_masked(value):
+    if _is_masked(value):
         raise ValueError(f"{name} must have no masked entries, got {shown(value)}")
     try:
         found = np.asarray(value)
@@ -135,9 +135,13 @@ def _double(name: str, value: Any) -> float:
 
 
 def _is_masked(value: Any) -> bool:
+    masked = sys.modules.get("numpy.ma")  # which is slow to load: without it, nothing is masked
+    if masked is None:
+        return False
     if isinstance(value, (list, tuple)):
-        return any(_is_masked(entry) for entry in value if isinstance(entry, _MAY_BE_MASKED))
-    return isinstance(value, np.ma.MaskedArray) and bool(np.ma.is_masked(value))
+        may_be = (list, tuple, masked.MaskedArray)
+        return any(_is_masked(entry) for entry in value if isinstance(entry, may_be))
+    return isinstance(value, masked.MaskedArray) and bool(masked.is_masked(value))
 
 
 def shown(value: Any) -> str:

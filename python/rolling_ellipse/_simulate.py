@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ._check import FloatArray, array, flag, shown
-from .scene import Scene, require_scene
-from .settings import Settings
-from .trajectory import IntegrationError, Status, Trajectory, ValidityWarning
+from ._scene import Scene, require_scene
+from ._settings import Settings
+from ._status import IntegrationError, Status, ValidityWarning
+from ._trajectory import Trajectory
 
 _DEFAULT_SAMPLES = 1001
 

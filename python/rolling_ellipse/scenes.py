@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from . import _core
-from .scene import Impulse, Scene
+from ._scene import Impulse, Scene
 
 _lying = Scene(2.0, 1.0, theta=0.5)
 
@@ -17,7 +17,7 @@ rocking = Scene(2.0, 1.0, theta=0.5)
 rolling = Scene(2.0, 1.0, omega=3.2)
 
 #: A millionth faster than what carries it just over its tip.
-separatrix = Scene(2.0, 1.0, omega=_core.roll_over_speed(_lying._core_scene) * (1 + 1e-6))
+separatrix = Scene(2.0, 1.0, omega=_core.roll_over_speed(_lying.core) * (1 + 1e-6))
 
 #: A circle: uniform rolling.
 circle = Scene(1.0, 1.0, omega=2.0)

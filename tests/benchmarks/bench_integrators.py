@@ -93,7 +93,7 @@ def array_case(scene: Scene) -> Case:
     theta, omega = np.random.default_rng(0).uniform(-1, 1, (2, STATES))
 
     def run() -> Run:
-        rolling_equation(scene._core_scene, theta, omega)
+        rolling_equation(scene.core, theta, omega)
         return Run(STATES, 0, 0.0)
 
     return run

@@ -1,0 +1,61 @@
+"""The certificate: proof that rolling is valid for a whole motion, or where it ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from . import _core
+from ._core import Validity
+from ._scene import Scene, require_scene
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Proof that rolling without slip is valid for the whole motion, or where it ends.
+
+    Attributes
+    ----------
+    validity : Validity
+        VALID, INVALID, EDGE (rounding cannot tell) or NO_PROOF (a slope; a start that does not
+        roll).
+    smallest_normal_force : float or None
+        Least normal force [N] over the whole motion, both directions of time.
+    smallest_normal_force_angle : float or None
+        Where: theta in [0, pi/2]; by symmetry at every +-theta + k pi that the motion reaches.
+    largest_friction_needed : float or None
+        Largest |F/N| over the whole motion (infinite where N <= 0).
+    largest_friction_needed_angle : float or None
+        Where, as above.
+    ends_at : float or None
+        The angle theta (unwrapped) at which rolling ends, forwards in time; None when VALID.
+    reason : str
+        One sentence with the numbers.
+    """
+
+    validity: Validity
+    smallest_normal_force: float | None
+    smallest_normal_force_angle: float | None
+    largest_friction_needed: float | None
+    largest_friction_needed_angle: float | None
+    ends_at: float | None
+    reason: str
+
+
+def certify(scene: Scene) -> Certificate:
+    """Prove, without integrating, whether rolling is valid for the motion that starts from a scene.
+
+    On level ground N and F of rolling are rational functions of the height h of the centre. The
+    signs of a quintic (N > 0) and of a polynomial of degree 10 (|F| <= friction N) on the heights
+    that the motion reaches are decided by Bernstein coefficients with subdivision; every
+    coefficient carries the margin by which rounding may have moved it. The extremes are taken at
+    critical points, not at samples.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Certificate
+    """
+    return Certificate(*_core.certify(require_scene(scene).core))

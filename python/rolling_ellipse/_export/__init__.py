@@ -1,0 +1,1 @@
+"""What leaves the package for others to read: files and tables."""

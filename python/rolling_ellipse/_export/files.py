@@ -1,0 +1,235 @@
+"""Trajectories as .npz files: arrays and, as JSON, everything else."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+from collections.abc import Collection, Iterable
+from dataclasses import asdict, fields
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from .._check import choice, file_name
+from .._core import EventKind
+from .._events import Event, as_numbers, from_numbers
+from .._samples import ContactSamples
+from .._scene import Impulse, Scene
+from .._settings import METHODS, MODELS, Settings
+from .atomic import replacing
+from .npz import arrays as npz_arrays
+
+if TYPE_CHECKING:
+    from .._trajectory import Trajectory
+
+    _Made = TypeVar("_Made", bound=Trajectory)
+
+_SCHEMA = 4
+_VECTORS = ("t", "theta", "omega", "x")
+_PAIRS = ("coordinates", "start")
+_FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
+_STATS = ("segments", "steps", "rejected_steps", "evaluations")
+
+
+def write(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
+    """Write a trajectory so that `read` gives it back, bit for bit.
+
+    Raises
+    ------
+    ValueError
+        If `read` would refuse it, as somebody has put into it what `simulate` never does.
+    OSError
+        If it cannot be written; a file that was there is then still there.
+    """
+    name = file_name("path", path)
+    text, arrays = json.dumps(_about(trajectory)), _arrays(trajectory)
+    _restored(type(trajectory), text, arrays)
+    with replacing(name) as new, open(new, "wb") as file:
+        np.savez(file, about=np.array(text), **arrays)
+
+
+def read(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
+    """Return the trajectory that a file holds.
+
+    Raises
+    ------
+    ValueError
+        If it is not what `write` writes: all of it is checked.
+    OSError
+        If it cannot be read.
+    """
+    name = file_name("path", path)
+    with open(name, "rb") as file:
+        content = file.read()
+    try:
+        arrays = npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
+        if "about" not in arrays:
+            raise ValueError("it must hold the array 'about'")
+        return _restored(kind, str(arrays.pop("about")), arrays)
+    except MemoryError:
+        raise
+    except Exception as error:  # damaged bytes raise about every kind there is, on their way here
+        wrong = str(error) or type(error).__name__
+        raise ValueError(f"path must name a file written by save, got {name!r}: {wrong}") from error
+
+
+def _about(trajectory: Trajectory) -> dict[str, Any]:
+    """Return all but the arrays as JSON knows it."""
+    return {
+        "schema": _SCHEMA,
+        "scene": asdict(trajectory.scene),
+        "settings": asdict(trajectory.settings),
+        "status": trajectory.status.name,
+        "events": [as_numbers(found) for found in trajectory.events],
+        **{name: getattr(trajectory, name) for name in _FACTS},
+    }
+
+
+def _arrays(trajectory: Trajectory) -> dict[str, Any]:
+    found = {name: getattr(trajectory, name) for name in _VECTORS}
+    for name in _PAIRS:
+        if (pair := getattr(trajectory, name)) is not None:
+            found[name] = np.stack(pair)
+    return found if trajectory.contact is None else found | trajectory.contact._asdict()
+
+
+def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
+    """Return the trajectory of a text and arrays, if they are just what is written of it.
+
+    So nothing is converted, filled in or left out, whatever the classes would be content with.
+    """
+    from .._status import Status
+
+    about = json.loads(text, parse_constant=_constant, object_pairs_hook=_once)
+    _require_names("about", about, ("schema", "scene", "settings", "status", "events", *_FACTS))
+    if about["schema"] != _SCHEMA:
+        raise ValueError(f"schema must be {_SCHEMA}, got {about['schema']!r}")
+    _require_names(f"model {about['model']!r}", arrays, _array_names(about["model"], arrays))
+    for name, values in arrays.items():
+        _require_values(name, values)
+    scene, settings = _scene(about["scene"]), about["settings"]
+    _require_names("settings", settings, _fields(Settings))
+    contact = [arrays[name] for name in ContactSamples._fields if name in arrays]
+    pairs: dict[str, Any] = {name: tuple(arrays[name]) for name in _PAIRS if name in arrays}
+    trajectory = kind(
+        **{name: arrays[name] for name in _VECTORS},
+        **pairs,
+        **{name: about[name] for name in _FACTS},
+        contact=ContactSamples._make(contact) if contact else None,
+        scene=scene,
+        settings=Settings(**settings),
+        status=Status[choice("status", about["status"], tuple(Status.__members__))],
+        kept_events=tuple(_event(scene.mass, numbers) for numbers in about["events"]),
+    )
+    _require_consistent(trajectory)
+    again = _about(trajectory)
+    for name, value in about.items():
+        if json.dumps(value, sort_keys=True) != json.dumps(again[name], sort_keys=True):
+            raise ValueError(f"{name} must be what save writes, {again[name]!r}, got {value!r}")
+    return trajectory
+
+
+def _constant(text: str) -> float:
+    """Take an infinite number; JSON's reader asks for no others but NaN."""
+    if text == "NaN":
+        raise ValueError("about must hold numbers, got NaN")
+    return float(text)
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        raise ValueError(f"about must have each name once, got {[name for name, _ in pairs]}")
+    return found
+
+
+def _fields(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind))
+
+
+def _require_names(what: str, found: Any, names: Iterable[str]) -> None:
+    required = set(names)
+    if not isinstance(found, dict):
+        raise ValueError(f"{what} must hold names and values, got {found!r}")
+    for name in sorted(required ^ set(found)):
+        raise ValueError(f"{what} must {'have' if name in required else 'not have'} {name!r}")
+
+
+def _array_names(model: Any, there: Collection[str]) -> set[str]:
+    """Return the names of the arrays of a model; only "multipliers" may have a start."""
+    names = set(_VECTORS)
+    if model == "contact":
+        names |= set(ContactSamples._fields)
+    if model == "multipliers":
+        names |= {"coordinates"} | ({"start"} & set(there))
+    return names
+
+
+def _require_values(name: str, values: npt.NDArray[Any]) -> None:
+    dtype = np.dtype(np.int8 if name == "mode" else np.float64)
+    if values.dtype != dtype:
+        raise ValueError(f"{name} must be of type {dtype}, got {values.dtype}")
+    if not np.all(np.isfinite(values)):
+        raise ValueError(f"{name} must be finite, got {float(values[~np.isfinite(values)][0])!r}")
+
+
+def _scene(found: Any) -> Scene:
+    _require_names("scene", found, _fields(Scene))
+    impulse = found["impulse"]
+    if impulse is not None:
+        _require_names("impulse", impulse, _fields(Impulse))
+        impulse = Impulse(**impulse)
+    return Scene(**{**found, "impulse": impulse})
+
+
+def _event(mass: float, numbers: Any) -> Event:
+    t, kind, before, after = numbers
+    choice("kind", kind, tuple(EventKind.__members__))
+    for value in (t, *before[:-1], *after[:-1]):
+        if not (isinstance(value, float) and math.isfinite(value)):
+            raise ValueError(f"events must hold finite numbers, got {value!r}")
+    return from_numbers(mass, numbers)
+
+
+def _require_consistent(trajectory: Trajectory) -> None:
+    """Raise ValueError unless the parts fit one another, and `sol` has all that it needs."""
+    from .._trajectory import solve
+
+    asked, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
+    _require_choice("model", trajectory.model, asked.model, MODELS)
+    _require_choice("method", trajectory.method, asked.method, METHODS)
+    for name in ("message", "reason"):
+        if not isinstance(value := getattr(trajectory, name), str):
+            raise ValueError(f"{name} must be a sentence, got {value!r}")
+    _require_within("span", [span], 0.0, sys.float_info.max)
+    _require_within("t_end", [t_end], 0.0, span)
+    _require_within("valid_until", [trajectory.valid_until], 0.0, math.inf)
+    _require_within("t", t, 0.0, t_end)
+    times = [found.t for found in trajectory.events]
+    _require_within("times of events", times, 0.0, t_end)
+    if times != sorted(times):
+        raise ValueError(f"times of events must not fall, got {times}")
+    stats = trajectory.stats
+    if not (isinstance(stats, dict) and set(stats) <= set(_STATS)):
+        raise ValueError(f"stats must have no names but {_STATS}, got {stats!r}")
+    for name, count in stats.items():
+        if type(count) is not int or not 0 <= count < 2**63:
+            raise ValueError(f"{name} must be a count, got {count!r}")
+    solve(trajectory.scene, asked, 0.0, trajectory.start)  # the core checks what was asked for
+
+
+def _require_choice(name: str, value: Any, asked: str, valid: tuple[str, ...]) -> None:
+    """What was asked for, or any of the valid names but "auto" itself."""
+    choice(name, value, tuple(known for known in valid if known != "auto"))
+    if asked not in ("auto", value):
+        raise ValueError(f"{name} must be that of the settings, {asked!r}, got {value!r}")
+
+
+def _require_within(name: str, values: Iterable[float], least: float, most: float) -> None:
+    found = np.asarray(values)
+    outside = found[~((found >= least) & (found <= most))]
+    if outside.size:
+        raise ValueError(f"{name} must lie in [{least!r}, {most!r}], got {float(outside[0])!r}")

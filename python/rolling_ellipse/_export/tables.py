@@ -1,0 +1,138 @@
+"""Trajectories as tables of pandas and xarray, and the units of all that is in them."""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from .._core import Mode
+from .._scene import Scene
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import Dataset
+
+    from .._trajectory import Trajectory
+
+
+class Quantity(NamedTuple):
+    """An array of a trajectory: the attribute's name, its unit, and what it is."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+TIME = Quantity("t", "s", "time")
+QUANTITIES = (
+    Quantity("x", "m", "position of the centre along the ground"),
+    Quantity("z", "m", "height of the centre over the ground"),
+    Quantity("theta", "rad", "angle of the body, clockwise positive"),
+    Quantity("psi", "rad", "angle in the body from its axis b to the contact"),
+    Quantity("r", "m", "distance from the centre to the contact"),
+    Quantity("x_dot", "m/s", "velocity of the centre along the ground"),
+    Quantity("z_dot", "m/s", "velocity of the centre away from the ground"),
+    Quantity("omega", "rad/s", "angular velocity, clockwise positive"),
+    Quantity("psi_dot", "rad/s", "rate of psi"),
+    Quantity("r_dot", "m/s", "rate of r"),
+    Quantity("x_ddot", "m/s^2", "acceleration of the centre along the ground"),
+    Quantity("z_ddot", "m/s^2", "acceleration of the centre away from the ground"),
+    Quantity("omega_dot", "rad/s^2", "angular acceleration, clockwise positive"),
+    Quantity("psi_ddot", "rad/s^2", "second rate of psi"),
+    Quantity("r_ddot", "m/s^2", "second rate of r"),
+    Quantity("contact_x", "m", "place of the contact along the ground"),
+    Quantity("turns", "1", "turns made since the start of the scene"),
+    Quantity("normal_force", "N", "contact force on the body away from the ground"),
+    Quantity("friction_force", "N", "contact force on the body along the ground"),
+    Quantity("friction_needed", "1", "friction force over normal force"),
+    Quantity("energy", "J", "kinetic and potential energy"),
+    Quantity("kinetic_energy", "J", "kinetic energy"),
+    Quantity("potential_energy", "J", "potential energy"),
+)
+MULTIPLIERS = (
+    Quantity("lambda1", "N", "multiplier of the constraint f1: the friction force"),
+    Quantity("lambda2", "N", "multiplier of the constraint f2: the normal force"),
+    Quantity("lambda3", "N", "multiplier of the constraint f3"),
+    Quantity("lambda4", "N m", "multiplier of the constraint f4"),
+)
+MODE = Quantity("mode", "1", "what the body does")
+
+
+def dataframe(trajectory: Trajectory) -> DataFrame:
+    """Return the trajectory as a pandas DataFrame (see `Trajectory.to_dataframe`)."""
+    pandas = _required("pandas", "to_dataframe")
+    columns: dict[str, Any] = {each.name: getattr(trajectory, each.name) for each in QUANTITIES}
+    columns |= dict(zip(_names(MULTIPLIERS), trajectory.multipliers.T, strict=True))
+    columns["mode"] = pandas.Categorical.from_codes(trajectory.mode, [mode.name for mode in Mode])
+    frame: DataFrame = pandas.DataFrame(columns, index=pandas.Index(trajectory.t.copy(), name="t"))
+    everything = (TIME, *QUANTITIES, *MULTIPLIERS, MODE)
+    frame.attrs = {**_facts(trajectory), "units": {each.name: each.unit for each in everything}}
+    return frame
+
+
+def dataset(trajectory: Trajectory) -> Dataset:
+    """Return the trajectory as an xarray Dataset (see `Trajectory.to_xarray`)."""
+    xarray = _required("xarray", "to_xarray")
+    variables: dict[str, Any] = {
+        each.name: ("t", getattr(trajectory, each.name).copy(), _attributes(each))
+        for each in QUANTITIES
+    }
+    variables["multipliers"] = (
+        ("t", "constraint"),
+        trajectory.multipliers.copy(),
+        {
+            "units": ", ".join(each.unit for each in MULTIPLIERS),
+            "long_name": "; ".join(each.meaning for each in MULTIPLIERS),
+        },
+    )
+    flags = {  # as the CF conventions write codes
+        "flag_values": np.array(list(Mode), dtype=np.int8),
+        "flag_meanings": " ".join(mode.name for mode in Mode),
+    }
+    variables["mode"] = ("t", trajectory.mode.copy(), _attributes(MODE) | flags)
+    coordinates = {
+        "t": ("t", trajectory.t.copy(), _attributes(TIME)),
+        "constraint": ["f1", "f2", "f3", "f4"],
+    }
+    found: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
+    return found
+
+
+def _required(package: str, method: str) -> Any:
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(
+            f"{method} needs {package}: pip install 'rolling_ellipse[data]'"
+        ) from error
+
+
+def _names(quantities: tuple[Quantity, ...]) -> list[str]:
+    return [each.name for each in quantities]
+
+
+def _attributes(quantity: Quantity) -> dict[str, Any]:
+    return {"units": quantity.unit, "long_name": quantity.meaning}
+
+
+def _facts(trajectory: Trajectory) -> dict[str, float | str]:
+    """Scene and solution as numbers and strings, which every file format can hold.
+
+    A field of the scene that is None has no entry: Scene has the same default.
+    """
+    scene = trajectory.scene
+    facts: dict[str, float | str] = {
+        field.name: value
+        for field in fields(Scene)
+        if field.name != "impulse" and (value := getattr(scene, field.name)) is not None
+    }
+    if scene.impulse is not None:
+        for field in fields(scene.impulse):
+            facts[f"impulse_{field.name}"] = getattr(scene.impulse, field.name)
+    for name in ("model", "method", "message", "reason", "valid_until"):
+        facts[name] = getattr(trajectory, name)
+    facts["status"] = trajectory.status.name
+    return facts

@@ -1,0 +1,118 @@
+"""Where a camera looks that has to show one motion, or several in strips over one another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..ground import SHOWN_TURNS, tilted, view
+
+if TYPE_CHECKING:
+    from ..._check import FloatArray
+    from ..._trajectory import Trajectory
+
+BEHIND, AHEAD = 5.0, 4.0  # sizes of the body on either side of a motion that is followed
+
+
+@dataclass(frozen=True)
+class Cameras:
+    """Views of the strips, at one scale.
+
+    Attributes
+    ----------
+    views : tuple of ndarray, shape (n, 4)
+        For each strip left, right, bottom, top [m] of each frame, as the eye sees them.
+    heights : tuple of float
+        Part of the picture's height that each strip takes.
+    shape : float
+        Height of the picture over its width.
+    together : bool
+        Whether all strips show the same stretch of ground.
+    """
+
+    views: tuple[FloatArray, ...]
+    heights: tuple[float, ...]
+    shape: float
+    together: bool
+
+
+def cameras(
+    motions: Sequence[Trajectory], shape: float | None, head: float, foot: float
+) -> Cameras:
+    """Return the views of motions sampled at the same frames.
+
+    `shape` is the height of the picture over its width, None to choose it; `head` and `foot` are
+    what each strip leaves free at its top and bottom, over the picture's width.
+
+    The camera stands still where all of them fit into about three turns. Else it follows the
+    middle between the foremost and the hindmost; where these part by more than fits, every strip
+    follows its own body.
+    """
+    size = max(_size(motion) for motion in motions)
+    widest = 2 * np.pi * size * SHOWN_TURNS + 4 * size
+    seen = [view(motion) for motion in motions]
+    left, right = min(each[0] for each in seen), max(each[1] for each in seen)
+    depths = [(bottom, top) for _, _, bottom, top in seen]
+    targets = [np.zeros((motion.t.size, 2)) for motion in motions]
+    together = True
+    if right - left > widest:
+        targets = [_feet(motion) for motion in motions]
+        places = np.array([target[:, 0] for target in targets])
+        parted = float(np.max(np.ptp(places, axis=0)))
+        together = parted + (BEHIND + AHEAD) * size <= widest
+        if together:
+            middle = (places.min(axis=0) + places.max(axis=0)) / 2
+            targets = [np.column_stack([middle, target[:, 1]]) for target in targets]
+        room = parted / 2 if together else 0.0
+        left, right = -BEHIND * size - room, AHEAD * size + room
+        depths = [_depth(motion) for motion in motions]
+    return _framed((left, right), depths, targets, shape, head, foot, together)
+
+
+def _framed(
+    ends: tuple[float, float],
+    depths: list[tuple[float, float]],
+    targets: list[FloatArray],
+    shape: float | None,
+    head: float,
+    foot: float,
+    together: bool,
+) -> Cameras:
+    """Views of one scale that fill the picture; what is seen lies relative to the targets."""
+    length, strips = ends[1] - ends[0], len(depths)
+    needed, texts = sum(top - bottom for bottom, top in depths), strips * (head + foot)
+    flattest, tallest = (0.25, 0.55) if strips == 1 else (0.16 * strips, max(1.0, 0.2 * strips))
+    shape = shape or min(max(needed / length + texts, flattest), tallest)
+    wide = max(length, needed / max(shape - texts, shape / 4))
+    foot = min(foot, shape / (2 * strips))  # the bodies come first where there is little room
+    air, sky = (wide - length) / 2, wide * (shape / strips - foot) - needed / strips
+    depths = [(bottom - foot * wide, top + sky) for bottom, top in depths]
+    left, right = ends[0] - air, ends[1] + air
+    return Cameras(
+        tuple(
+            np.array([left, right, bottom, top]) + target[:, [0, 0, 1, 1]]
+            for (bottom, top), target in zip(depths, targets, strict=True)
+        ),
+        tuple((top - bottom) / (wide * shape) for bottom, top in depths),
+        shape,
+        together,
+    )
+
+
+def _size(motion: Trajectory) -> float:
+    return max(motion.scene.a, motion.scene.b)
+
+
+def _feet(motion: Trajectory) -> FloatArray:
+    """The places on the ground below the centre, as the eye sees them, (n, 2) [m]."""
+    below = np.column_stack([motion.x, np.zeros_like(motion.x)])
+    return np.asarray(tilted(motion.scene).transform(below))
+
+
+def _depth(motion: Trajectory) -> tuple[float, float]:
+    """Bottom and top [m], from the ground below the centre, that show the body in every frame."""
+    size = _size(motion)
+    return -0.35 * size, float(np.max(motion.z + np.minimum(motion.z, size))) + 0.3 * size

@@ -1,0 +1,135 @@
+"""Writers of the files an animation can be saved to."""
+
+from __future__ import annotations
+
+import errno
+import importlib
+import importlib.util
+import math
+import os
+import sys
+from contextlib import contextmanager, suppress
+from os import PathLike, fspath
+from pathlib import Path
+from subprocess import CalledProcessError
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
+from PIL import Image
+
+from ..._check import file_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+SUFFIXES = (".gif", ".mp4", ".html")
+
+
+class GifWriter(PillowWriter):
+    """Exact delays, and one palette for all frames: much smaller than matplotlib's GIF."""
+
+    def finish(self) -> None:
+        frames = [frame.convert("RGB") for frame in self._frames]  # type: ignore[attr-defined]
+        if not frames:  # interrupted before the first: matplotlib finishes all the same
+            return
+        # the last frame has every colour, and this way to choose them spares those of thin lines
+        palette = frames[-1].quantize(64, Image.Quantize.MAXCOVERAGE)
+        first, *rest = (
+            frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames
+        )
+        delay = gif_delay(self.fps)
+        assert delay is not None
+        first.save(self.outfile, save_all=True, append_images=rest, duration=10 * delay, loop=0)
+
+
+def gif_delay(fps: float) -> int | None:
+    """Hundredths of a second between the frames of a GIF; None if that is no whole number.
+
+    Viewers slow a delay of 1/100 s down, so 2 is the least; the file has room for two bytes.
+    """
+    delay = round(100 / fps)
+    return delay if 2 <= delay < 2**16 and math.isclose(delay * fps, 100, rel_tol=1e-12) else None
+
+
+def movie_writer(
+    path: str | PathLike[str], fps: float, argument: str = "path"
+) -> tuple[AbstractMovieWriter, Any]:
+    """What writes the file, and the matplotlib settings to do so under.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is unknown, or a GIF cannot keep the time.
+    TypeError
+        If the path is none.
+    OSError
+        If there is no such folder, or the path is one.
+    FileNotFoundError
+        If an .mp4 is asked for and there is no ffmpeg.
+    """
+    target = Path(file_name(argument, path))
+    suffix = target.suffix.lower()
+    if target.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(target))
+    if suffix in SUFFIXES and not target.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "no such folder to write to", str(target))
+    if suffix == ".gif":
+        if gif_delay(fps) is None:
+            delay = min(max(2, round(100 / fps)), 2**16 - 1)
+            raise ValueError(
+                "fps must be 100 over a whole number of at least 2 for a .gif, whose delays are "
+                f"counted in 1/100 s; got {fps!r}, near it is 100 / {delay} = {100 / delay:.4g}"
+            )
+        return GifWriter(fps=fps), {}  # type: ignore[arg-type]
+    if suffix == ".mp4":
+        return FFMpegWriter(fps=fps), {"animation.ffmpeg_path": ffmpeg()}  # type: ignore[arg-type]
+    if suffix == ".html":
+        html = {"embed_frames": True, "embed_limit": math.inf, "default_mode": "loop"}
+        return HTMLWriter(fps=fps, **html), {}  # type: ignore[arg-type]
+    raise ValueError(f"{argument} must end in one of {', '.join(SUFFIXES)}, got {str(target)!r}")
+
+
+@contextmanager
+def told(path: str) -> Iterator[None]:
+    """Make of ffmpeg's failure a sentence with the name of the file."""
+    try:
+        yield
+    except CalledProcessError as error:
+        stopped = error.__context__  # matplotlib finishes after an exception too, such as Ctrl-C
+        if stopped is not None and not isinstance(stopped, OSError):
+            raise stopped from None
+        why = (error.stderr or "").strip().splitlines() or [f"exit code {error.returncode}"]
+        raise OSError(f"ffmpeg could not write {path!r}: {why[-1]}") from error
+
+
+def ffmpeg() -> str:
+    """Path of an ffmpeg program: imageio_ffmpeg's, else the system's."""
+    if importlib.util.find_spec("imageio_ffmpeg") is not None:
+        with suppress(RuntimeError):  # it has none for this machine
+            return str(importlib.import_module("imageio_ffmpeg").get_ffmpeg_exe())
+    if FFMpegWriter.isAvailable():
+        return FFMpegWriter.bin_path()
+    raise FileNotFoundError(
+        "an .mp4 needs ffmpeg: pip install 'rolling_ellipse[video]', or write a .gif"
+    )
+
+
+def progress_bar(path: str | PathLike[str]) -> Callable[[int, int], None]:
+    """To be called with (frame, frames): a tqdm bar, or a plain count without tqdm."""
+    name = fspath(path)
+    if importlib.util.find_spec("tqdm") is None:
+
+        def count(i: int, n: int) -> None:
+            end = "\n" if i + 1 == n else ""
+            print(f"\r{name}: frame {i + 1} of {n}", end=end, file=sys.stderr, flush=True)
+
+        return count
+    bar = importlib.import_module("tqdm.auto").tqdm(desc=name, unit=" frames")
+
+    def advance(i: int, n: int) -> None:
+        bar.total = n
+        bar.update()
+        if i + 1 == n:
+            bar.close()
+
+    return advance

@@ -1,0 +1,160 @@
+"""One motion in Axes of its own: the strip of an animation that shows it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.markers import MarkerStyle
+
+from ..._core import Mode
+from ...geometry import support
+from .. import ground as drawing
+from ..ground import BLUE, FILL, GREY, INK, ORANGE, PLUM, SKID
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+    from ..._check import FloatArray
+    from ..._trajectory import Trajectory
+
+
+class Strip:
+    """The body of one motion on its ground, where a frame has it.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where to draw, without axes of its own to see.
+    motion : Trajectory
+        Its sample i is what frame i shows.
+    times : ndarray, shape (n,)
+        The clock at each frame [s]; a motion that ends earlier stays at its last sample.
+    views : ndarray, shape (n, 4)
+        Left, right, bottom and top of each frame [m], as the eye sees them.
+    label : str
+        Name of the motion.
+    show_place : bool
+        Whether the caption says where the body is.
+
+    Attributes
+    ----------
+    motion, ax
+        As given.
+    body, axis_a, axis_b, tip, contact, slip, shadow, centre_trace, tip_trace, skid_trace
+        The moving artists, their data in ground axes (x along the ground, z normal to it) [m].
+        `tip` is the end of axis a that lies on the right at theta = 0. `contact` is where the body
+        touches; while it slides, `slip` is there too and points the way that it slides. In flight
+        neither is seen, but the `shadow` below the body.
+    ruler
+        The ticks of the ground and their figures.
+    caption
+        Name of the motion, and what has to be said of this frame.
+    """
+
+    def __init__(
+        self,
+        ax: Axes,
+        motion: Trajectory,
+        times: FloatArray,
+        views: FloatArray,
+        label: str,
+        show_place: bool,
+    ) -> None:
+        self.ax, self.motion = ax, motion
+        self._times, self._views = times, views
+        self._label, self._show_place = label, show_place
+        self._tip, self._contact = drawing.tip(motion), drawing.contact_points(motion)
+        self._skids, self._slip = drawing.skids(motion), motion.constraint_residuals().slip
+        self._build()
+
+    def _build(self) -> None:
+        ax, motion = self.ax, self.motion
+        ax.set_axis_off()
+        ax.autoscale(False)
+        on_slope = drawing.tilted(motion.scene) + ax.transData
+        span = float(self._views[0, 1] - self._views[0, 0])
+        drawing.draw_ground(ax, motion, span)
+        self.ruler = drawing.Ruler(ax, motion.scene, span)
+
+        def line(zorder: int, **style: Any) -> Line2D:
+            return ax.plot([], [], transform=on_slope, zorder=zorder, **style)[0]
+
+        self.body = drawing.body_patch(
+            motion, 0, facecolor=(*FILL, 0.25), edgecolor=INK, lw=1.8, zorder=4
+        )
+        self.body.set_transform(on_slope)
+        ax.add_patch(self.body)
+        self.shadow = line(2, color=GREY, lw=5, solid_capstyle="round")
+        self.skid_trace = line(2, **SKID)
+        self.tip_trace = line(3, color=BLUE, lw=1, alpha=0.6)
+        self.centre_trace = line(5, color=ORANGE, lw=1.8)
+        self.axis_a = line(5, color=INK, lw=1.2)
+        self.axis_b = line(5, color=INK, lw=1.2, ls=(0, (4, 3)))
+        self.tip = line(6, color=BLUE, marker="o", ms=6)
+        self.contact = line(7, ls="none", marker="o", ms=6, mfc="white", mec=INK, mew=1.5)
+        self.slip = line(8, ls="none", ms=11, mfc=PLUM, mec="white", mew=0.8)
+        self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=INK)
+
+    def draw(self, i: int) -> list[Artist]:
+        """Put every artist where frame i has it, and return the moving ones."""
+        motion, scene = self.motion, self.motion.scene
+        x, z, theta = float(motion.x[i]), float(motion.z[i]), float(motion.theta[i])
+        cosine, sine = math.cos(theta), math.sin(theta)
+        self.body.set_center((x, z))
+        self.body.set_angle(-math.degrees(theta))
+        along, across = scene.a * np.array([-1, 1]), scene.b * np.array([-1, 1])
+        self.axis_a.set_data(x + along * cosine, z - along * sine)
+        self.axis_b.set_data(x + across * sine, z + across * cosine)
+        here, past = slice(i, i + 1), slice(None, i + 1)
+        self.tip.set_data(self._tip[0][here], self._tip[1][here])
+        self.contact.set_data(self._contact[0][here], self._contact[1][here])
+        self.slip.set_data(self._skids[0][here], self._skids[1][here])
+        self.slip.set_marker(self._arrow(float(self._slip[i])))
+        self.shadow.set_data(*self._shadow(i))
+        self.skid_trace.set_data(self._skids[0][past], self._skids[1][past])
+        self.tip_trace.set_data(self._tip[0][past], self._tip[1][past])
+        self.centre_trace.set_data(motion.x[past], motion.z[past])
+        self.caption.set_text(self._caption(i))
+        left, right, bottom, top = self._views[i]
+        self.ruler.move((left + right) / 2 / math.cos(scene.slope))
+        self.ax.set(xlim=(left, right), ylim=(bottom, top))
+        return [self.body, self.axis_a, self.axis_b, self.tip, self.contact, self.slip,
+                self.shadow, self.tip_trace, self.centre_trace, self.skid_trace,
+                self.caption]  # fmt: skip
+
+    def _arrow(self, slip: float) -> MarkerStyle:
+        """A triangle along the ground, the way of the slip."""
+        along = drawing.tilted(self.motion.scene)
+        return MarkerStyle(">" if slip > 0 else "<", transform=along)
+
+    def _shadow(self, i: int) -> tuple[list[float], list[float]]:
+        """The ground below the body in flight, nothing else."""
+        if self.motion.mode[i] != Mode.FLIGHT:
+            return [], []
+        scene, x = self.motion.scene, float(self.motion.x[i])
+        half = float(support(self.motion.theta[i] + math.pi / 2, a=scene.a, b=scene.b))
+        return [x - half, x + half], [0.0, 0.0]
+
+    def widest_caption(self) -> float:
+        """Width of the longest caption of all frames [pixels]."""
+        captions = (self._caption(i) for i in range(self._times.size))
+        self.caption.set_text(max(captions, key=len))
+        return float(self.caption.get_window_extent().width)
+
+    def _caption(self, i: int) -> str:
+        motion, parts = self.motion, [self._label] if self._label else []
+        if self._show_place:
+            size = max(motion.scene.a, motion.scene.b)
+            digits = max(0, 1 - math.floor(math.log10(size)))
+            parts.append(f"x = {motion.x[i]:.{digits}f} m".replace("-", "−"))
+        if motion.mode[i] in (Mode.SLIDING, Mode.FLIGHT):
+            parts.append("slides" if motion.mode[i] == Mode.SLIDING else "flies")
+        if motion.t[i] >= motion.valid_until:
+            parts.append("rolling is no longer valid")
+        if motion.t[i] < self._times[i]:
+            parts.append(f"ended at {motion.t[i]:g} s")
+        return "   ".join(parts)

@@ -1,0 +1,68 @@
+"""Where pictures are drawn: in what is given, or in a new pyplot figure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
+
+from .._check import shown
+
+_Given = ParamSpec("_Given")
+_Drawn = TypeVar("_Drawn")
+
+
+def leaving_no_figure(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
+    """Make a plot function close the pyplot figure that it has opened if it fails."""
+
+    @wraps(draw)
+    def drawn(*args: _Given.args, **options: _Given.kwargs) -> _Drawn:
+        before = plt.get_fignums()
+        try:
+            return draw(*args, **options)
+        except BaseException:
+            for number in set(plt.get_fignums()).difference(before):
+                plt.close(number)
+            raise
+
+    return drawn
+
+
+def axes_of(ax: Axes | None, size: tuple[float, float]) -> Axes:
+    """Return the Axes given, or those of a new pyplot figure of a size [inch]."""
+    if ax is None:
+        return plt.figure(figsize=size, layout="constrained").add_subplot()
+    return require_axes(ax)
+
+
+def require_axes(ax: Any) -> Axes:
+    """Return the Axes, or raise TypeError."""
+    if not isinstance(ax, Axes):
+        raise TypeError(f"ax must be a matplotlib Axes or None, got {shown(ax)}")
+    return ax
+
+
+def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
+    """Return the one or two Axes given, or two of a new pyplot figure over one time axis."""
+    if ax is None:
+        figure = plt.figure(figsize=(7, 5), layout="constrained")
+        upper, lower = figure.subplots(2, sharex=True)
+        return [upper, lower]
+    panels = [ax] if isinstance(ax, Axes) else list(np.ravel(np.asarray(ax, dtype=object)))
+    if len(panels) not in (1, 2) or not all(isinstance(panel, Axes) for panel in panels):
+        raise ValueError(f"ax must be one matplotlib Axes or two, got {shown(ax)}")
+    return panels
+
+
+def figure_of(figure: Any, size: tuple[float, float]) -> Figure:
+    """Return the figure given, or a new pyplot figure of a size [inch]."""
+    if figure is None:
+        return plt.figure(figsize=size, layout="constrained")
+    if not isinstance(figure, FigureBase):  # a SubFigure will do
+        raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
+    return figure  # type: ignore[return-value]

@@ -1,0 +1,112 @@
+"""Constraints over time: by how much a motion misses them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .axes import leaving_no_figure, panels_of
+from .labels import motions_of
+from .modes import mode_handles
+from .panels import (
+    draw_dots,
+    dress_errors,
+    dress_panels,
+    position_errors,
+    velocity_errors,
+    worst,
+)
+from .styles import (
+    name_curves,
+    some_of,
+    styles_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+    from .._check import FloatArray
+    from .._trajectory import Trajectory
+    from .styles import Style
+
+
+@dataclass(frozen=True, repr=False)
+class Constraints:
+    """Artists of `plot_constraints`: lines[i] are those in axes[i], each labelled."""
+
+    axes: tuple[Axes, ...]
+    lines: tuple[tuple[Line2D, ...], ...]
+    marks: tuple[Artist, ...]
+
+
+@leaving_no_figure
+def plot_constraints(
+    trajectories: Trajectory | Sequence[Trajectory],
+    *,
+    ax: Axes | Sequence[Axes] | None = None,
+    labels: Sequence[str] | None = None,
+) -> Constraints:
+    """Draw by how much motions miss their constraints, without units, on a logarithmic scale.
+
+    Lengths are divided by the longer semi-axis, and rates by the largest |omega| of the motion as
+    well, so that rounding shows as 1e-16 whatever the size of the body. The upper panel shows f2,
+    f3, f4 and the gap, the lower one f1, the rates of the others and the slip (see
+    `ConstraintResiduals`); of several motions each panel shows the worst. An exact zero has no
+    place on the scale, nor has what the ground does not hold: the slip while sliding, the gap in
+    flight. Modes, events and lost validity are marked as in `plot_forces`.
+
+    Parameters
+    ----------
+    trajectories : Trajectory or sequence of Trajectory
+    ax : matplotlib Axes or two of them, optional
+        Where to draw the panels; in a single one both are drawn, of each the worst. Without it,
+        in a new pyplot figure.
+    labels : sequence of str, optional
+        Names of the motions; without it, what they differ in.
+
+    Returns
+    -------
+    Constraints
+        The artists.
+
+    Raises
+    ------
+    ValueError
+        If there is no trajectory, one has no samples, or the numbers of labels or Axes are wrong.
+    TypeError
+        If something is no trajectory.
+    """
+    motions = motions_of(trajectories)
+    styles = styles_of(motions, labels)
+    panels = panels_of(ax)
+    alone = len(motions) == 1
+    lines: list[list[Line2D]] = [[] for _ in panels]
+    for motion, look in zip(motions, [None] if alone else styles, strict=True):
+        shown = _errors_of(motion, len(panels), look)
+        for panel, drawn, errors in zip(panels, lines, shown, strict=True):
+            for rank, (name, values) in enumerate(errors.items()):
+                drawn.append(draw_dots(panel, motion, values, name, rank, look))
+    names = ("positions", "velocities") if len(panels) == 2 else ("constraint error",)
+    for panel, drawn, name in zip(panels, lines, names, strict=True):
+        dress_errors(panel, drawn, name)
+        if alone or panel is panels[0]:
+            modes = mode_handles(motions) if panel is panels[0] else []
+            name_curves(panel, [*some_of(drawn), *modes])
+    marks = dress_panels(panels, motions, None if alone else styles)
+    return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
+
+
+def _errors_of(motion: Trajectory, panels: int, style: Style | None) -> list[dict[str, FloatArray]]:
+    """For each panel the errors to draw by name: all of one motion, the worst of one of several."""
+    position, velocity = position_errors(motion), velocity_errors(motion)
+    if style is None and panels == 2:
+        return [position, velocity]
+    if style is None:
+        return [{"positions": worst(position), "velocities": worst(velocity)}]
+    if panels == 2:
+        return [{style.label: worst(position)}, {style.label: worst(velocity)}]
+    return [{style.label: worst(position | velocity)}]

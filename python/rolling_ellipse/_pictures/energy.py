@@ -1,0 +1,119 @@
+"""Energy over time: what a motion keeps, and what friction and impacts take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .._check import choice
+from .axes import axes_of, leaving_no_figure
+from .labels import motions_of
+from .modes import mode_handles
+from .panels import (
+    DASHES,
+    draw_dots,
+    draw_energies,
+    dress_errors,
+    dress_over_time,
+    energy_error,
+)
+from .styles import (
+    motion_handles,
+    name_curves,
+    quantity_handles,
+    some_of,
+    styles_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+    from .._trajectory import Trajectory
+
+KINDS = ("energies", "error")
+
+
+@dataclass(frozen=True, repr=False)
+class Energy:
+    """Artists of `plot_energy`; item i of each tuple belongs to motion i.
+
+    Either `error` is empty, or `total`, `kinetic` and `potential` are.
+    """
+
+    ax: Axes
+    total: tuple[Line2D, ...]
+    kinetic: tuple[Line2D, ...]
+    potential: tuple[Line2D, ...]
+    error: tuple[Line2D, ...]
+    marks: tuple[Artist, ...]
+
+
+@leaving_no_figure
+def plot_energy(
+    trajectories: Trajectory | Sequence[Trajectory],
+    *,
+    ax: Axes | None = None,
+    labels: Sequence[str] | None = None,
+    kind: str | None = None,
+) -> Energy:
+    """Draw the energies of a motion [J], or by how much the energy of several motions is off.
+
+    The error is |E - E0| over the largest |kinetic| + |potential| energy of its motion, on a
+    logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. Modes,
+    events and lost validity are marked as in `plot_forces`.
+
+    Parameters
+    ----------
+    trajectories : Trajectory or sequence of Trajectory
+    ax : matplotlib Axes, optional
+        Where to draw; without it, in a new pyplot figure.
+    labels : sequence of str, optional
+        Names of the motions; without it, what they differ in.
+    kind : {"energies", "error"}, optional
+        What to draw: without it the energies of one motion, the errors of several.
+
+    Returns
+    -------
+    Energy
+        The artists.
+
+    Raises
+    ------
+    ValueError
+        If there is no trajectory, one has no samples, the number of labels is wrong or the kind is
+        unknown.
+    TypeError
+        If something is no trajectory.
+    """
+    motions = motions_of(trajectories)
+    styles = styles_of(motions, labels)
+    alone = len(motions) == 1
+    default = "energies" if alone else "error"
+    kind = choice("kind", default if kind is None else kind, KINDS)
+    ax = axes_of(ax, (7, 3.4))
+    looks = [None] if alone else styles
+    energies: list[tuple[Line2D, Line2D, Line2D]] = []
+    errors: list[Line2D] = []
+    for motion, look in zip(motions, looks, strict=True):
+        if kind == "energies":
+            energies.append(draw_energies(ax, motion, look))
+        else:
+            label = "energy error" if look is None else look.label
+            errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, look))
+    if kind == "error":
+        changes = any(motion.events for motion in motions)  # friction and impacts are no errors
+        dress_errors(ax, errors, f"relative energy {'change' if changes else 'error'}")
+        name_curves(ax, [*some_of(errors), *mode_handles(motions)])
+    else:
+        quantities = list(zip(("total", "kinetic", "potential"), DASHES, strict=True))
+        handles: list[Artist] = ax.get_legend_handles_labels()[0]
+        if not alone:
+            handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
+        name_curves(ax, [*handles, *mode_handles(motions)])
+    marks = dress_over_time(ax, motions, None if alone else styles)
+    total, kinetic, potential = zip(*energies, strict=True) if energies else ((), (), ())
+    return Energy(ax, total, kinetic, potential, tuple(errors), marks)

@@ -1,0 +1,159 @@
+"""The body and its ground as matplotlib artists, for still and moving pictures alike.
+
+Artists live in ground axes (x along the ground, z normal to it); `tilted` turns them to what the
+eye sees. Colours differ in lightness as well as in hue: they read in grey and for colour-blind
+eyes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap, to_rgb
+from matplotlib.patches import Ellipse, Polygon
+from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import Affine2D
+
+from .._core import Mode
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+
+    from .._check import FloatArray
+    from .._scene import Scene
+    from .._trajectory import Trajectory
+
+INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
+SKY, PLUM = "#8fc3e0", "#7a2e4d"
+FILL = to_rgb(BLUE)
+TIMES = LinearSegmentedColormap.from_list("times", ["#bcd9ea", BLUE, INK])  # early to late
+SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
+SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be a thin stripe
+
+
+def tilted(scene: Scene) -> Affine2D:
+    """Ground axes as the eye sees them: x down the slope, gravity down the page."""
+    return Affine2D().rotate(-scene.slope)
+
+
+def body_patch(trajectory: Trajectory, i: int, **style: Any) -> Ellipse:
+    """The body at sample i (theta is clockwise, matplotlib's angle is not)."""
+    centre = (float(trajectory.x[i]), float(trajectory.z[i]))
+    angle = -math.degrees(trajectory.theta[i])
+    return Ellipse(centre, 2 * trajectory.scene.a, 2 * trajectory.scene.b, angle=angle, **style)
+
+
+def tip(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """The end of axis a that lies on the right at theta = 0: x and z, (n,) [m]."""
+    a, theta = trajectory.scene.a, trajectory.theta
+    return trajectory.x + a * np.cos(theta), trajectory.z - a * np.sin(theta)
+
+
+def contact_points(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """Where body and ground touch: x and z, (n,) [m]; NaN in flight."""
+    touching = trajectory.mode != Mode.FLIGHT
+    return np.where(touching, trajectory.contact_x, np.nan), np.where(touching, 0.0, np.nan)
+
+
+def skids(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """Where the contact slides: x and z, (n,) [m]; NaN elsewhere."""
+    sliding = trajectory.mode == Mode.SLIDING
+    return np.where(sliding, trajectory.contact_x, np.nan), np.where(sliding, 0.0, np.nan)
+
+
+def view(path: Trajectory) -> tuple[float, float, float, float]:
+    """Left, right, bottom, top [m] of what the eye sees of a motion, with a little air."""
+    return view_of(path.scene, path.x, path.z)
+
+
+def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
+    """The same for the centres x, z [m] of a body.
+
+    Raises
+    ------
+    ValueError
+        If they are so far away that a double does not know a thousandth of the body there.
+    """
+    size = max(scene.a, scene.b)
+    farthest = max(float(np.max(np.abs(x))), float(np.max(np.abs(z))))
+    if not size > 1e3 * np.spacing(farthest):
+        raise ValueError(
+            "trajectory must stay where a double still knows a thousandth of its body of "
+            f"{size:.6g} m, got a centre {farthest:.6g} m away"
+        )
+    top_z = z + np.minimum(z, size)  # on the ground G is midway up
+    corners = [
+        tilted(scene).transform(np.column_stack([x + dx, height]))
+        for dx in (-size, size)
+        for height in (np.zeros_like(z), top_z)
+    ]
+    seen = np.concatenate(corners)
+    (left, bottom), (right, top) = seen.min(axis=0), seen.max(axis=0)
+    return left - 0.2 * size, right + 0.2 * size, bottom - 0.35 * size, top + 0.25 * size
+
+
+def draw_ground(ax: Axes, path: Trajectory, span: float = 0.0) -> Polygon:
+    """Fill the earth below z = 0, past any view of the path, or past `span` [m] around it."""
+    return fill_earth(ax, path.scene, float(path.x.min()) - span, float(path.x.max()) + span)
+
+
+def fill_earth(ax: Axes, scene: Scene, left: float, right: float) -> Polygon:
+    """Fill the earth below z = 0 between two places [m], and well past both."""
+    reach = right - left + 100 * max(scene.a, scene.b)
+    left, right = left - reach, right + reach
+    earth = Polygon(
+        [(left, -reach), (left, 0.0), (right, 0.0), (right, -reach)],
+        facecolor=EARTH, edgecolor=GREY, lw=1, zorder=1, transform=tilted(scene) + ax.transData,
+    )  # fmt: skip
+    ax.add_artist(earth)  # add_patch would make room for all of it
+    return earth
+
+
+class Ruler:
+    """Rules the ground: a tick every step, longer every fifth, with its distance.
+
+    It makes the rolling visible. Only the part within `span` [m] of a place on the ground is
+    drawn, so that it costs the same however far the body rolls.
+    """
+
+    def __init__(self, ax: Axes, scene: Scene, span: float) -> None:
+        on_slope = tilted(scene) + ax.transData
+        steps = MaxNLocator(24, steps=[1, 2, 5, 10]).tick_values(0, span)
+        self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
+        self._fifths = math.ceil(span / (5 * self.step))
+        self.ticks = LineCollection([], colors=GREY, lw=1, transform=on_slope, zorder=2)
+        ax.add_artist(self.ticks)
+        self.labels = [
+            ax.text(
+                0, 0, "", color=GREY, fontsize="small", ha="center", va="top", zorder=2,
+                rotation=-math.degrees(scene.slope), clip_on=True, transform=on_slope,
+            )
+            for _ in range(2 * self._fifths + 1)
+        ]  # fmt: skip
+
+    def move(self, x: float) -> None:
+        """Rule the ground around x [m]."""
+        middle = 5 * round(x / (5 * self.step))
+        marks = middle + np.arange(-5 * self._fifths, 5 * self._fifths + 1)
+        lengths = self._depth * np.where(marks % 5 == 0, 2, 1)
+        places = marks * self.step
+        top = np.column_stack([places, np.zeros_like(places)])
+        bottom = np.column_stack([places, -lengths])
+        self.ticks.set_segments(list(np.stack([top, bottom], axis=1)))
+        for label, place in zip(self.labels, places[::5], strict=True):
+            label.set_position((place, -2.2 * self._depth))
+            label.set_text(f"{place:.10g} m".replace("-", "−"))
+
+
+def legend_above(ax: Axes, handles: Sequence[Any] | None = None, columns: int = 3) -> None:
+    """A legend above the axes on the right, where it covers nothing."""
+    given = {} if handles is None else {"handles": handles}
+    ax.legend(
+        loc="lower right", bbox_to_anchor=(1, 1), ncols=columns, frameon=False, fontsize="small",
+        borderaxespad=0.1, handlelength=1.8, columnspacing=1.2, markerscale=2, **given,
+    )  # fmt: skip

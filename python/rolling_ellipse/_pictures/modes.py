@@ -1,0 +1,149 @@
+"""What a body does, under its curves over time: modes as greys, events as dotted lines with names.
+
+Greys differ in hatches too, so that they are told apart in print.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.font_manager import FontProperties
+from matplotlib.patches import Patch
+
+from .._core import EventKind, Mode
+from .ground import INK
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+    from .._events import Event
+    from .._trajectory import Trajectory
+
+EVENT_NAMES = {
+    EventKind.SLIP: "slip",
+    EventKind.STICK: "stick",
+    EventKind.REVERSE: "reverse",
+    EventKind.LIFT_OFF: "lift-off",
+    EventKind.IMPACT: "impact",
+    EventKind.REST: "rest",
+    EventKind.JAM: "jam",
+}
+_SHADES: dict[Mode, dict[str, Any]] = {
+    Mode.SLIDING: {"facecolor": "0.95", "edgecolor": "0.72", "hatch": "////"},
+    Mode.FLIGHT: {"facecolor": "0.9", "edgecolor": "0.9"},
+    Mode.REST: {"facecolor": "0.98", "edgecolor": "0.72", "hatch": "..."},
+}
+_ROW = 0.05  # height of one of several motions, over that of the axes
+_NAME_SIZE = "x-small"
+_MOST_NAMES_HEIGHT = 0.35  # of the axes; in less room events have no names
+
+
+def events_shown(motion: Trajectory) -> list[Event]:
+    """The events among the samples."""
+    return [event for event in motion.events if motion.t[0] <= event.t <= motion.t[-1]]
+
+
+def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
+    """Start and length [s] of all there is of each mode but rolling, among the samples.
+
+    Without a contact there is nothing to tell apart: other models know one mode.
+    """
+    spans: dict[Mode, list[tuple[float, float]]] = {mode: [] for mode in _SHADES}
+    if motion.model != "contact":
+        return spans
+    events = motion.events
+    first = events[0].state_before.mode if events else Mode(motion.mode[0])
+    modes = [first, *(event.state_after.mode for event in events)]
+    times = [0.0, *(event.t for event in events), motion.t_end]
+    begin, end = float(motion.t[0]), float(motion.t[-1])
+    for mode, start, stop in zip(modes, times[:-1], times[1:], strict=True):
+        start, stop = max(start, begin), min(stop, end)
+        if mode in spans and start < stop:
+            spans[mode].append((start, stop - start))
+    return spans
+
+
+def shade_modes(
+    ax: Axes, motion: Trajectory, row: int | None = None, colour: str = INK
+) -> list[Artist]:
+    """Shade the time that a motion slides, flies or rests: all of the ground, or a row at the top.
+
+    Rows are for several motions, and edged in their colours.
+    """
+    bottom, height = (0.0, 1.0) if row is None else (1 - (row + 1) * _ROW, 0.8 * _ROW)
+    shades: list[Artist] = []
+    for mode, spans in mode_spans(motion).items():
+        if spans:
+            look = _SHADES[mode] if row is None else _SHADES[mode] | {"edgecolor": colour}
+            shades.append(
+                ax.broken_barh(
+                    spans, (bottom, height), transform=ax.get_xaxis_transform(),
+                    lw=0 if row is None else 0.8, zorder=0, **look,
+                )
+            )  # fmt: skip
+    return shades
+
+
+def mode_handles(motions: Sequence[Trajectory]) -> list[Patch]:
+    """Entries of a legend for the modes that are shaded."""
+    found = [mode_spans(motion) for motion in motions]
+    return [
+        Patch(label=mode.name.lower(), lw=0, **look)
+        for mode, look in _SHADES.items()
+        if any(spans[mode] for spans in found)
+    ]
+
+
+def mark_events(ax: Axes, motion: Trajectory, colour: str) -> list[Artist]:
+    """Dotted lines where modes change or the body hits the ground."""
+    moments, upright = [event.t for event in events_shown(motion)], ax.get_xaxis_transform()
+    if not moments:
+        return []
+    return [ax.vlines(moments, 0, 1, transform=upright, color=colour, lw=1, ls=":")]
+
+
+def name_events(ax: Axes, motion: Trajectory) -> list[Artist]:
+    """Write what the events are along their lines, above the curves; nothing where they crowd."""
+    events = events_shown(motion) if motion.model == "contact" else []
+    names = [EVENT_NAMES[event.kind] for event in events]
+    if not names:
+        return []
+    points = FontProperties(size=_NAME_SIZE).get_size_in_points()
+    window, scale = ax.get_window_extent(), 72 / ax.figure.dpi
+    low, high = ax.get_xlim()
+    places = [(event.t - low) / (high - low) * window.width * scale for event in events]
+    shifts = _shifts(places, 1.3 * points, window.width * scale)
+    height = (0.62 * points * max(map(len, names)) + 6) / (window.height * scale)
+    if max(map(abs, shifts)) > 2 * points or height > _MOST_NAMES_HEIGHT:
+        return []
+    _raise_top(ax, height)
+    return [
+        ax.annotate(
+            name, (event.t, 1), (shift, -2), xycoords=ax.get_xaxis_transform(),
+            textcoords="offset points", rotation=90, ha="center", va="top", color=INK,
+            fontsize=_NAME_SIZE, bbox={"fc": "white", "ec": "none", "alpha": 0.75, "pad": 0.5},
+        )
+        for name, event, shift in zip(names, events, shifts, strict=True)
+    ]  # fmt: skip
+
+
+def _shifts(places: list[float], width: float, room: float) -> list[float]:
+    """How far to move texts of one width, centred at ascending places, to be clear of others."""
+    moved: list[float] = []
+    for place in places:
+        moved.append(max(place, moved[-1] + width if moved else width / 2))
+    bound = room - width / 2
+    for i in reversed(range(len(moved))):
+        moved[i] = min(moved[i], bound)
+        bound = moved[i] - width
+    return [new - old for new, old in zip(moved, places, strict=True)]
+
+
+def _raise_top(ax: Axes, share: float) -> None:
+    """Leave the uppermost share of the axes free of curves, whatever their scale."""
+    scale = ax.yaxis.get_transform()
+    bottom, top = scale.transform(ax.get_ylim())
+    ax.set_ylim(top=float(scale.inverted().transform(bottom + (top - bottom) / (1 - share))))

@@ -1,0 +1,150 @@
+"""Still pictures of a trajectory: the body at even times, and one figure that shows everything.
+
+Nothing is computed here that the trajectory does not know.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .axes import figure_of, leaving_no_figure
+from .ground import INK
+from .modes import mode_handles
+from .panels import (
+    draw_dots,
+    draw_energies,
+    draw_forces,
+    dress_errors,
+    dress_forces,
+    dress_over_time,
+    energy_error,
+    position_errors,
+    velocity_errors,
+    worst,
+)
+from .strobe import Strobe, check_strobe, plot_strobe
+from .styles import name_curves
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.collections import PolyCollection
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+    from .._check import FloatArray
+    from .._trajectory import Trajectory
+
+
+@dataclass(frozen=True, repr=False)
+class Overview:
+    """Artists of `plot`: curves over `trajectory.t`, and `marks` of what happens when."""
+
+    figure: Figure
+    strobe: Strobe
+    theta: Line2D
+    omega: Line2D
+    height: Line2D
+    normal_force: Line2D
+    friction_force: Line2D
+    friction_limit: PolyCollection | None
+    energy: Line2D
+    kinetic_energy: Line2D
+    potential_energy: Line2D
+    position_error: Line2D
+    velocity_error: Line2D
+    energy_error: Line2D
+    marks: tuple[Artist, ...]
+
+
+@leaving_no_figure
+def plot(
+    trajectory: Trajectory,
+    *,
+    figure: Figure | None = None,
+    count: int = 13,
+    t_end: float | None = None,
+) -> Overview:
+    """Draw one figure of a motion: positions, angle, speed, height, forces, energies and errors.
+
+    Under the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
+    Where the model is not valid, all ground is grey.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    figure : matplotlib Figure, optional
+        Where to draw; without it, in a new pyplot figure.
+    count, t_end
+        For the positions, as in `plot_strobe`; the curves show all samples.
+
+    Returns
+    -------
+    Overview
+        The artists.
+    """
+    check_strobe(trajectory, count, t_end)  # before anything is drawn
+    figure = figure_of(figure, (10, 8.5))
+    grid = figure.add_gridspec(4, 2, height_ratios=[1.35, 1, 1, 1])
+    strobe = plot_strobe(trajectory, ax=figure.add_subplot(grid[0, :]), count=count, t_end=t_end)
+    panels = [figure.add_subplot(grid[i, j]) for j in (0, 1) for i in (1, 2, 3)]
+    theta = _draw_state(panels[0], trajectory.t, trajectory.theta, "θ [rad]")
+    omega = _draw_state(panels[1], trajectory.t, trajectory.omega, "ω [rad/s]")
+    height = _draw_state(panels[2], trajectory.t, trajectory.z, "z of centre [m]")
+    forces = draw_forces(panels[3], trajectory)
+    dress_forces(panels[3], [trajectory])
+    energies = draw_energies(panels[4], trajectory)
+    errors = _draw_errors(panels[5], trajectory)
+    marks = _dress_panels(panels, trajectory)
+    figure.suptitle(_headline(trajectory), fontsize="medium")
+    return Overview(figure, strobe, theta, omega, height, *forces, *energies, *errors, marks)
+
+
+def _headline(trajectory: Trajectory) -> str:
+    scene = trajectory.scene
+    text = f"a = {scene.a:g} m, b = {scene.b:g} m, mass {scene.mass:g} kg"
+    text += f"  (model {trajectory.model}, method {trajectory.method})"
+    if trajectory.valid_until < trajectory.t[-1]:
+        text += f", not valid from {trajectory.valid_until:.3g} s on (grey)"
+    return text
+
+
+def _draw_state(ax: Axes, t: FloatArray, values: FloatArray, label: str) -> Line2D:
+    ax.set_ylabel(label)
+    return ax.plot(t, values, color=INK)[0]
+
+
+def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line2D]:
+    errors = {
+        "positions": worst(position_errors(trajectory)),
+        "velocities": worst(velocity_errors(trajectory)),
+        "energy change" if trajectory.events else "energy": energy_error(trajectory),
+    }
+    position, velocity, energy = (
+        draw_dots(ax, trajectory, values, name, rank, None)
+        for rank, (name, values) in enumerate(errors.items())
+    )
+    dress_errors(ax, (position, velocity, energy), "relative error")
+    return position, velocity, energy
+
+
+def _dress_panels(panels: Sequence[Axes], trajectory: Trajectory) -> tuple[Artist, ...]:
+    """Give two columns of three panels one time axis, and legends where there are several lines."""
+    marks: list[Artist] = []
+    for panel in panels:
+        marks += dress_over_time(panel, [trajectory], named=False)
+        if panel is not panels[0]:
+            panel.sharex(panels[0])
+        if panel not in (panels[2], panels[5]):
+            panel.set_xlabel("")
+            panel.tick_params(labelbottom=False)
+    modes = mode_handles([trajectory])
+    name_curves(panels[3], [*panels[3].get_legend_handles_labels()[0], *modes])
+    for panel in panels[4:]:
+        name_curves(panel)
+    panels[0].figure.align_ylabels(panels[:3])
+    panels[0].figure.align_ylabels(panels[3:])
+    return tuple(marks)

@@ -1,0 +1,213 @@
+"""Curves over time: forces, energies, errors, each drawn into Axes that are given.
+
+A `style` says which of several motions a curve belongs to; without one the motion is alone, and
+colours tell the quantities apart.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.ticker import SymmetricalLogLocator
+
+from .._core import Mode
+from .ground import BLUE, GREY, INK, ORANGE, PLUM
+from .modes import mark_events, name_events, shade_modes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.collections import PolyCollection
+    from matplotlib.lines import Line2D
+
+    from .._check import FloatArray
+    from .._trajectory import Trajectory
+    from .styles import Style
+
+DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
+_COLOURS = (INK, ORANGE, BLUE)
+_DOTS = ((".", INK), ("x", ORANGE), ("+", BLUE), ("1", PLUM), ("2", GREY))
+_ROUNDING = 1e-13  # errors below it are shown as what they are: small
+_SPIKE = 20.0  # times the weight: what is higher leaves nothing to see of ordinary forces
+
+
+def draw_curve(
+    ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style | None
+) -> Line2D:
+    """Draw the quantity of the given rank (0, 1, 2) of a motion over its times."""
+    if style is None:
+        (line,) = ax.plot(motion.t, values, color=_COLOURS[rank], ls=DASHES[rank], label=label)
+        return line
+    (line,) = ax.plot(
+        motion.t, values, color=style.colour, ls=DASHES[rank], label=f"{style.label}, {label}",
+        **sparse_markers(motion, style),
+    )  # fmt: skip
+    return line
+
+
+def sparse_markers(motion: Trajectory, style: Style) -> dict[str, Any]:
+    """Options of a line: a few markers that tell whose it is."""
+    every = max(motion.t.size // 12, 1)
+    return {"marker": style.marker, "ms": 6, "mew": 0.8, "markevery": every}
+
+
+def draw_dots(
+    ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style | None
+) -> Line2D:
+    """Draw an error as dots, because rounding jumps; exact zeros have no place on a log scale."""
+    marker, colour = _DOTS[rank] if style is None else (style.marker, style.colour)
+    label = label if np.nan_to_num(values).any() else f"{label} = 0"
+    (line,) = ax.plot(
+        motion.t, values, ls="none", marker=marker, ms=3, mew=0.7, color=colour, label=label
+    )
+    return line
+
+
+def draw_forces(
+    ax: Axes, motion: Trajectory, style: Style | None = None
+) -> tuple[Line2D, Line2D, PolyCollection | None]:
+    """Draw N and F over the band +-friction N that F must stay in (none if it has no limit)."""
+    limit = None
+    if math.isfinite(motion.scene.friction):
+        bound = motion.scene.friction * motion.normal_force
+        colour, alpha = ("0.75", 1.0) if style is None else (style.colour, 0.15)
+        limit = ax.fill_between(
+            motion.t, -bound, bound, color=colour, alpha=alpha, lw=0, label="friction ≤ μN"
+        )
+    normal = draw_curve(ax, motion, motion.normal_force, "normal", 0, style)
+    friction = draw_curve(ax, motion, motion.friction_force, "friction", 1, style)
+    return normal, friction, limit
+
+
+def dress_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
+    """Scale the force axis: linear, or beyond the weight logarithmic, where spikes tower."""
+    ax.axhline(0, color=GREY, lw=0.8, zorder=1.5)
+    ax.set_ylabel("force [N]")
+    weight = max(m.scene.mass * m.scene.gravity * math.cos(m.scene.slope) for m in motions)
+    largest = max(float(np.max(np.abs(m.normal_force))) for m in motions)
+    if largest == 0:  # nothing touches the ground: no force, and no scale of its own
+        ax.set_ylim(-weight, weight)
+    if largest > _SPIKE * weight:
+        decade = 10.0 ** round(math.log10(weight))  # so that no tick falls into the linear part
+        ax.set_yscale("symlog", linthresh=decade, linscale=1.5)
+        ticks = SymmetricalLogLocator(base=10, linthresh=decade)
+        ticks.set_params(numticks=ax.yaxis.get_tick_space())
+        ax.yaxis.set_major_locator(ticks)
+
+
+def draw_energies(
+    ax: Axes, motion: Trajectory, style: Style | None = None
+) -> tuple[Line2D, Line2D, Line2D]:
+    """Draw the energy and its two parts."""
+    ax.set_ylabel("energy [J]")
+    return (
+        draw_curve(ax, motion, motion.energy, "total", 0, style),
+        draw_curve(ax, motion, motion.kinetic_energy, "kinetic", 1, style),
+        draw_curve(ax, motion, motion.potential_energy, "potential", 2, style),
+    )
+
+
+def energy_error(motion: Trajectory) -> FloatArray:
+    """|E - E(first sample)| over the largest |kinetic| + |potential| energy of the motion."""
+    scale = np.max(np.abs(motion.kinetic_energy) + np.abs(motion.potential_energy))
+    error: FloatArray = np.abs(motion.energy - motion.energy[0]) / scale
+    return error
+
+
+def position_errors(motion: Trajectory) -> dict[str, FloatArray]:
+    """|f2|, |f3| and the gap in units of the longer semi-axis, |f4| in radians; each (n,).
+
+    In flight there is no ground to miss: f2 and the gap are NaN.
+    """
+    found, length = motion.constraint_residuals(), _length(motion)
+    f2, f3, f4 = np.abs(found.position).T
+    free = np.where(motion.mode == Mode.FLIGHT, np.nan, 1 / length)
+    return {"f2": f2 * free, "f3": f3 / length, "f4": f4, "gap": np.abs(found.gap) * free}
+
+
+def velocity_errors(motion: Trajectory) -> dict[str, FloatArray]:
+    """|f1|, the slip and the rates of f2, f3, f4, as `position_errors` over 1/max|omega|; (n,).
+
+    A motion without rotation is measured by its free-fall speed, sqrt(gravity length). In flight
+    the ground asks nothing of f1, f2 and the slip, nor of f1 and the slip while sliding: NaN.
+    """
+    found, length = motion.constraint_residuals(), _length(motion)
+    rate = float(np.max(np.abs(motion.omega))) or math.sqrt(motion.scene.gravity / length)
+    f1, f2, f3, f4 = np.abs(found.velocity).T / rate
+    free = np.where(motion.mode == Mode.FLIGHT, np.nan, 1 / length)
+    loose = np.where(motion.mode == Mode.SLIDING, np.nan, free)
+    slip = np.abs(found.slip) / rate * loose
+    return {
+        "f1": f1 * loose,
+        "df2/dt": f2 * free,
+        "df3/dt": f3 / length,
+        "df4/dt": f4,
+        "slip": slip,
+    }
+
+
+def worst(errors: Mapping[str, FloatArray]) -> FloatArray:
+    """The largest of several errors at each time, (n,), of those that are errors there."""
+    largest: FloatArray = np.fmax.reduce(list(errors.values()))
+    return largest
+
+
+def _length(motion: Trajectory) -> float:
+    return max(motion.scene.a, motion.scene.b)
+
+
+def dress_errors(ax: Axes, lines: Sequence[Line2D], label: str) -> None:
+    """Scale the axis of errors: logarithmic, from below rounding to above the largest."""
+    largest = max(float(np.max(np.nan_to_num(np.asarray(line.get_ydata())))) for line in lines)
+    ax.set_ylim(1e-17, 10 * max(largest, _ROUNDING))  # first: nothing but zeros has no log scale
+    ax.set_yscale("log", nonpositive="mask")
+    ax.set_ylabel(label)
+
+
+def dress_over_time(
+    ax: Axes,
+    motions: Sequence[Trajectory],
+    styles: Sequence[Style] | None = None,
+    *,
+    named: bool = True,
+) -> tuple[Artist, ...]:
+    """Label the time axis; shade modes, mark events and where a model is not valid.
+
+    Events of a single motion have names where there is room, unless they are not to be `named`.
+    """
+    ax.set_xlabel("t [s]")
+    ax.margins(x=0.01)
+    ax.grid(color="0.92", lw=0.8)
+    ax.set_axisbelow(True)
+    ax.spines[["top", "right"]].set_visible(False)
+    marks: list[Artist] = []
+    for row, motion in enumerate(motions):
+        colour = GREY if styles is None else styles[row].colour
+        marks += shade_modes(ax, motion, None if styles is None else row, colour)
+        marks += mark_events(ax, motion, colour)
+        start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
+        if start < end:  # several grounds add up: the darker, the more of the motions it is
+            alpha = 0.15 / len(motions)
+            marks.append(ax.axvspan(start, end, color=GREY, alpha=alpha, lw=0, zorder=0))
+            if styles is not None:
+                marks.append(ax.axvline(start, color=colour, lw=1.2))
+    if styles is None and named:
+        marks += name_events(ax, motions[0])
+    return tuple(marks)
+
+
+def dress_panels(
+    panels: Sequence[Axes], motions: Sequence[Trajectory], styles: Sequence[Style] | None
+) -> tuple[Artist, ...]:
+    """Dress one panel, or two of which the upper one leaves a shared time axis to the lower."""
+    marks: list[Artist] = []
+    for panel in panels:
+        marks += dress_over_time(panel, motions, styles, named=panel is panels[0])
+    if len(panels) == 2 and panels[0].get_shared_x_axes().joined(*panels):
+        panels[0].set_xlabel("")
+        panels[0].figure.align_ylabels(panels)
+    return tuple(marks)

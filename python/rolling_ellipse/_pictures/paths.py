@@ -1,0 +1,201 @@
+"""The paths of the centre, of the contact point and of an end of axis a over the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from .._core import EventKind
+from . import ground as drawing
+from .axes import axes_of, leaving_no_figure
+from .ground import BLUE, INK, ORANGE
+from .labels import motions_of
+from .modes import EVENT_NAMES, events_shown
+from .panels import sparse_markers
+from .strobe import dress_ground_axes, figure_size, turned_until
+from .styles import (
+    draw_invalid_ground,
+    motion_handles,
+    name_curves,
+    quantity_handles,
+    styles_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.patches import Polygon
+
+    from .._trajectory import Trajectory
+    from .styles import Style
+
+_CENTRE, _TIP = "-", "--"
+_EVENTS = {
+    EventKind.SLIP: ">",
+    EventKind.STICK: "o",
+    EventKind.REVERSE: "<",
+    EventKind.LIFT_OFF: "^",
+    EventKind.IMPACT: "v",
+    EventKind.REST: "s",
+    EventKind.JAM: "X",
+}
+
+
+@dataclass(frozen=True, repr=False)
+class Paths:
+    """Artists of `plot_paths`; item i of each tuple but `marks` belongs to motion i.
+
+    All data are in ground axes: x along the ground, z normal to it [m]. A line of `events` has
+    all places of one kind of event.
+    """
+
+    ax: Axes
+    centres: tuple[Line2D, ...]
+    tips: tuple[Line2D, ...]
+    contacts: tuple[Line2D, ...]
+    events: tuple[tuple[Line2D, ...], ...]
+    ground: Polygon
+    marks: tuple[Line2D, ...]
+
+
+@leaving_no_figure
+def plot_paths(
+    trajectories: Trajectory | Sequence[Trajectory],
+    *,
+    ax: Axes | None = None,
+    labels: Sequence[str] | None = None,
+) -> Paths:
+    """Draw the paths of the centre, of the contact and of the end of axis a over the ground.
+
+    That end is the one on the right at theta = 0. On a slope the picture is tilted, so that down
+    is down. The path of the contact ends where the body leaves the ground and goes on where it hits
+    it; markers on it are events. A long way is shown over its first three turns (the title then
+    says so); the lines hold all of it. Where the model is not valid, the path of the centre has
+    grey ground.
+
+    Parameters
+    ----------
+    trajectories : Trajectory or sequence of Trajectory
+        On the same slope.
+    ax : matplotlib Axes, optional
+        Where to draw; without it, in a new pyplot figure.
+    labels : sequence of str, optional
+        Names of the motions; without it, what they differ in.
+
+    Returns
+    -------
+    Paths
+        The artists.
+
+    Raises
+    ------
+    ValueError
+        If there is no trajectory, one has no samples, their slopes differ or the number of labels
+        is wrong.
+    TypeError
+        If something is no trajectory.
+    """
+    motions = motions_of(trajectories)
+    styles = styles_of(motions, labels)
+    slopes = sorted({motion.scene.slope for motion in motions})
+    if len(slopes) > 1:
+        raise ValueError(f"trajectories must be on one slope, got {slopes!r}")
+    end = max(turned_until(motion) for motion in motions)
+    view = _view(motions, end)
+    ax = axes_of(ax, figure_size(view))
+    places = np.concatenate([motion.x for motion in motions])
+    ground = drawing.fill_earth(ax, motions[0].scene, places.min(), places.max())
+    drawn = [
+        _draw_paths(ax, motion, None if len(motions) == 1 else style, rank / len(motions))
+        for rank, (motion, style) in enumerate(zip(motions, styles, strict=True))
+    ]
+    dress_ground_axes(ax, motions[0].scene, view)
+    _title(ax, end, max(float(motion.t[-1]) for motion in motions))
+    quantities = [("centre", _CENTRE), ("end of axis a", _TIP)]
+    handles: list[Artist] = ax.get_legend_handles_labels()[0]
+    if len(motions) > 1:
+        handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
+    colours = [INK] if len(motions) == 1 else [style.colour for style in styles]
+    events = [_draw_events(ax, m, colour) for m, colour in zip(motions, colours, strict=True)]
+    name_curves(ax, [*handles, *_event_handles(motions)])
+    centres, tips, contacts = zip(*drawn, strict=True)
+    marks = tuple(_draw_invalid(ax, m) for m in motions if m.valid_until < m.t[-1])
+    return Paths(ax, centres, tips, contacts, tuple(events), ground, marks)
+
+
+def _view(motions: Sequence[Trajectory], end: float) -> tuple[float, float, float, float]:
+    """What all motions need until `end` [s]: left, right, bottom, top [m]."""
+    views = [
+        drawing.view_of(motion.scene, motion.x[motion.t <= end], motion.z[motion.t <= end])
+        for motion in motions
+        if motion.t[0] <= end
+    ]
+    left, right, bottom, top = zip(*views, strict=True)
+    return min(left), max(right), min(bottom), max(top)
+
+
+def _draw_paths(
+    ax: Axes, motion: Trajectory, style: Style | None, share: float
+) -> tuple[Line2D, Line2D, Line2D]:
+    """Draw the three paths of a motion; `share` of the motions are drawn before it."""
+    on_slope = drawing.tilted(motion.scene) + ax.transData
+    colours = (ORANGE, BLUE, INK) if style is None else (style.colour,) * 3
+    name = "" if style is None else f"{style.label}, "
+    marks: dict[str, Any] = {} if style is None else sparse_markers(motion, style)
+    (centre,) = ax.plot(
+        motion.x, motion.z, color=colours[0], ls=_CENTRE, lw=1.8, label=f"{name}centre",
+        transform=on_slope, zorder=5, **marks,
+    )  # fmt: skip
+    (tip,) = ax.plot(
+        *drawing.tip(motion), color=colours[1], ls=_TIP, lw=1.2, label=f"{name}end of axis a",
+        transform=on_slope, zorder=4,
+    )  # fmt: skip
+    (contact,) = ax.plot(  # each narrower than those below it, so that all are seen
+        *drawing.contact_points(motion), color=colours[2], lw=2.4 + 4 * share,
+        solid_capstyle="butt", label=f"{name}contact", transform=on_slope, zorder=3 - share,
+    )  # fmt: skip
+    return centre, tip, contact
+
+
+def _draw_events(ax: Axes, motion: Trajectory, colour: str) -> tuple[Line2D, ...]:
+    """Mark where the body touches the ground at its events, a line for each kind."""
+    on_slope = drawing.tilted(motion.scene) + ax.transData
+    events = events_shown(motion)
+    places = motion.sol([event.t for event in events]).contact_x if events else np.empty(0)
+    kinds = np.array([event.kind.value for event in events])
+    lines: list[Line2D] = []
+    for kind in dict.fromkeys(event.kind for event in events):
+        x = places[kinds == kind.value]
+        lines += ax.plot(
+            x, np.zeros_like(x), ls="none", marker=_EVENTS[kind], ms=6, mfc="white", mec=colour,
+            mew=1.2, label=f"_{EVENT_NAMES[kind]}", transform=on_slope, zorder=6,
+        )  # fmt: skip
+    return tuple(lines)
+
+
+def _event_handles(motions: Sequence[Trajectory]) -> list[Line2D]:
+    kinds = dict.fromkeys(event.kind for motion in motions for event in events_shown(motion))
+    return [
+        Line2D(
+            [], [], ls="none", marker=_EVENTS[kind], ms=3, mfc="white", mec=INK, mew=1.0,
+            label=EVENT_NAMES[kind],
+        )
+        for kind in kinds
+    ]  # fmt: skip
+
+
+def _draw_invalid(ax: Axes, motion: Trajectory) -> Line2D:
+    late = np.where(motion.t >= motion.valid_until, motion.z, np.nan)
+    return draw_invalid_ground(
+        ax, motion.x, late, transform=drawing.tilted(motion.scene) + ax.transData
+    )
+
+
+def _title(ax: Axes, end: float, last: float) -> None:
+    if end < last:
+        ax.set_title(f"the first {end:.3g} s of {last:.4g} s", loc="left", fontsize="medium")

@@ -1,0 +1,236 @@
+"""The phase plane: angular velocity over angle, and the curve between rocking and rolling over."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from .._check import flag
+from .axes import axes_of, leaving_no_figure
+from .ground import GREY
+from .labels import motions_of
+from .separatrix import QUARTER, flat_angle, flat_angles, separatrix, separatrix_speed
+from .styles import (
+    draw_invalid_ground,
+    motion_handles,
+    name_curves,
+    styles_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+    from .._check import FloatArray
+    from .._scene import Scene
+    from .._trajectory import Trajectory
+    from .styles import Style
+
+_FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
+_SMALL = 0.1  # of the separatrix's speed: a slower motion would be a dot in a whole eye
+
+
+@dataclass(frozen=True, repr=False)
+class Phase:
+    """Artists of `plot_phase`; item i of `motions` and `starts` belongs to motion i.
+
+    `separatrices` has a line for each different body on level ground that is no circle, and
+    `equilibria` the centres and the saddles of the first of them. Where theta is folded, a line has
+    its samples and at each fold two points with a break (NaN) between.
+    """
+
+    ax: Axes
+    motions: tuple[Line2D, ...]
+    starts: tuple[Line2D, ...]
+    separatrices: tuple[Line2D, ...]
+    equilibria: tuple[Line2D, ...]
+    marks: tuple[Line2D, ...]
+
+
+@leaving_no_figure
+def plot_phase(
+    trajectories: Trajectory | Sequence[Trajectory],
+    *,
+    ax: Axes | None = None,
+    labels: Sequence[str] | None = None,
+    fold: bool | None = None,
+) -> Phase:
+    """Draw omega over theta for one motion or several; a dot marks where each starts.
+
+    On level ground a dotted line shows the separatrix of rolling: inside its eyes the body rocks,
+    outside it turns over and over. Circles mark the flat positions, where the body can rest, and
+    crosses the tips, where it can balance. Where the model is not valid, the line has grey ground.
+
+    Parameters
+    ----------
+    trajectories : Trajectory or sequence of Trajectory
+    ax : matplotlib Axes, optional
+        Where to draw; without it, in a new pyplot figure.
+    labels : sequence of str, optional
+        Names of the motions; without it, what they differ in.
+    fold : bool, optional
+        Whether to show theta within one half turn around the flat position, after which an
+        ellipse is the same again; without it, where a motion goes through more than two turns.
+
+    Returns
+    -------
+    Phase
+        The artists.
+
+    Raises
+    ------
+    ValueError
+        If there is no trajectory, one has no samples or the number of labels is wrong.
+    TypeError
+        If something is no trajectory.
+    """
+    motions = motions_of(trajectories)
+    styles = styles_of(motions, labels)
+    if fold is None:
+        fold = any(np.ptp(motion.theta) > _FEW_TURNS * 2 * math.pi for motion in motions)
+    fold = flag("fold", fold)
+    ax = axes_of(ax, (6.4, 4.2))
+    flat = flat_angle(motions[0].scene)
+    lines: list[Line2D] = []
+    starts: list[Line2D] = []
+    marks: list[Line2D] = []
+    for motion, style in zip(motions, styles, strict=True):
+        theta, omega = _path(motion.theta, motion.omega, flat, fold)
+        lines += ax.plot(theta, omega, color=style.colour, ls=style.dash, label=style.label)
+        starts += ax.plot(theta[:1], omega[:1], color=style.colour, ls="none", marker="o", ms=5)
+        if motion.valid_until < motion.t[-1]:
+            late = np.where(motion.t >= motion.valid_until, motion.omega, np.nan)
+            marks.append(draw_invalid_ground(ax, *_path(motion.theta, late, flat, fold)))
+    bodies = _bodies(motions, styles)
+    if bodies:
+        _choose_view(ax, motions, bodies[0][0], fold)
+    separatrices, equilibria = _draw_portrait(ax, bodies)
+    _dress_phase(ax)
+    handles = [] if len(motions) == 1 else motion_handles(styles, solid=False)
+    name_curves(ax, [*handles, *(line for line in separatrices[:1] if _is_in_view(ax, line))])
+    return Phase(ax, tuple(lines), tuple(starts), separatrices, equilibria, tuple(marks))
+
+
+def _path(
+    theta: FloatArray, omega: FloatArray, flat: float, fold: bool
+) -> tuple[FloatArray, FloatArray]:
+    """The line to draw; folded, theta is within (-pi/2, pi/2] of flat, with breaks between."""
+    if not fold:
+        return theta, omega
+    cell = np.ceil((theta - flat) / math.pi - 0.5)
+    before = np.flatnonzero(np.diff(cell))
+    after = before + 1
+    up = np.sign(cell[after] - cell[before])
+    leaving, returning = flat + up * QUARTER, flat - up * QUARTER
+    steepness = (omega[after] - omega[before]) / (theta[after] - theta[before])
+    speeds = [
+        omega[i] + steepness * (edge + math.pi * cell[i] - theta[i])
+        for i, edge in ((before, leaving), (after, returning))
+    ]
+    gap = np.full(before.size, np.nan)
+    places = np.repeat(after, 3)
+    folds = np.column_stack([leaving, gap, returning]).ravel()
+    speeds_there = np.column_stack([speeds[0], gap, speeds[1]]).ravel()
+    return (
+        np.insert(theta - math.pi * cell, places, folds),
+        np.insert(omega, places, speeds_there),
+    )
+
+
+def _bodies(motions: Sequence[Trajectory], styles: Sequence[Style]) -> list[tuple[Scene, str]]:
+    """The different bodies that have a separatrix, and the colour of each."""
+    bodies: dict[tuple[float, ...], tuple[Scene, str]] = {}
+    for motion, style in zip(motions, styles, strict=True):
+        scene = motion.scene
+        if scene.slope == 0 and scene.a != scene.b:
+            key = (scene.a, scene.b, scene.gravity, scene.gyration2)
+            bodies.setdefault(key, (scene, style.colour))
+    found = list(bodies.values())
+    return [(found[0][0], GREY)] if len(found) == 1 else found
+
+
+def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: bool) -> None:
+    """Show whole eyes of the separatrix; a small motion fills the view and leaves them outside."""
+    fastest = max(float(np.max(np.abs(motion.omega))) for motion in motions)
+    flat = flat_angle(body)
+    if fold:
+        eyes = np.array([flat])
+    elif fastest == 0 or fastest > _SMALL * separatrix_speed(np.array([flat]), body)[0]:
+        left = min(float(np.min(motion.theta)) for motion in motions)
+        right = max(float(np.max(motion.theta)) for motion in motions)
+        eyes = flat_angles(left, right, body)
+    else:
+        ax.set_xlim(ax.get_xlim())
+        ax.set_ylim(ax.get_ylim())
+        return
+    air = 0.02 * math.pi * eyes.size
+    ax.set_xlim(eyes[0] - QUARTER - air, eyes[-1] + QUARTER + air)
+
+
+def _draw_portrait(
+    ax: Axes, bodies: Sequence[tuple[Scene, str]]
+) -> tuple[tuple[Line2D, ...], tuple[Line2D, ...]]:
+    """Draw the separatrix of each body over the theta shown, and the equilibria of the first."""
+    if not bodies:
+        return (), ()
+    view = ax.get_xlim()
+    separatrices: list[Line2D] = []
+    for scene, colour in bodies:
+        theta, speed = separatrix(scene, flat_angles(*view, scene))
+        separatrices += ax.plot(
+            np.append(theta, theta[::-1]), np.append(speed, -speed[::-1]),
+            color=colour, lw=1.1, ls=":", label="separatrix", zorder=1.9,
+        )  # fmt: skip
+    flats = flat_angles(*view, bodies[0][0])
+    rest: dict[str, Any] = {"color": GREY, "ls": "none", "mfc": "white", "ms": 5, "zorder": 1.9}
+    centres = ax.plot(flats, np.zeros_like(flats), marker="o", **rest)
+    saddles = ax.plot(flats + QUARTER, np.zeros_like(flats), marker="x", **rest)
+    ax.set_xlim(view)
+    return tuple(separatrices), (*centres, *saddles)
+
+
+def _is_in_view(ax: Axes, line: Line2D) -> bool:
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    x, y = np.asarray(line.get_xydata()).T
+    return bool(np.any((left < x) & (x < right) & (bottom < y) & (y < top)))
+
+
+def _dress_phase(ax: Axes) -> None:
+    ax.axhline(0, color=GREY, lw=0.8, zorder=1.5)
+    ax.set_xlabel("θ [rad]")
+    ax.set_ylabel("ω [rad/s]")
+    ax.grid(color="0.92", lw=0.8)
+    ax.set_axisbelow(True)
+    ax.spines[["top", "right"]].set_visible(False)
+    left, right = ax.get_xlim()
+    if QUARTER < right - left < _FEW_TURNS * 3 * math.pi:
+        ax.xaxis.set_major_locator(_QuarterTurns())
+        ax.xaxis.set_major_formatter(_quarters)
+
+
+class _QuarterTurns(MaxNLocator):
+    """Ticks at quarter turns, or at 2, 4, ... of them, as many as there is room for."""
+
+    def tick_values(self, vmin: float, vmax: float) -> list[float]:
+        room = self.axis.get_tick_space()  # type: ignore[union-attr]
+        step = QUARTER
+        while (vmax - vmin) / step > max(room, 1):
+            step *= 2
+        first, last = math.ceil(vmin / step), math.floor(vmax / step)
+        return [step * i for i in range(first, last + 1)]
+
+
+def _quarters(angle: float, _position: float | None = None) -> str:
+    """A multiple of a quarter turn as one writes it: 0, π/2, π, −3π/2."""
+    quarters = round(angle / QUARTER)
+    if quarters == 0:
+        return "0"
+    count, below = (quarters // 2, "") if quarters % 2 == 0 else (quarters, "/2")
+    factor = "" if abs(count) == 1 else str(abs(count))
+    return f"{'−' if count < 0 else ''}{factor}π{below}"

@@ -1,0 +1,191 @@
+"""The phase map: what rolling comes to first, over two of shape, energy and friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.colors import ListedColormap
+from matplotlib.patches import Patch
+from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
+
+from ..._core import Outcome
+from ..._outcome import classify
+from ..axes import axes_of, leaving_no_figure, require_axes
+from ..ground import BLUE, GREY, INK, ORANGE, PLUM, SKY
+from ..styles import name_curves
+from .marks import draw_marks, marks_of
+from .plane import plane_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
+    from matplotlib.lines import Line2D
+    from matplotlib.text import Text
+
+    from ..._check import FloatArray
+    from .plane import Plane
+
+COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
+    Outcome.RESTS: "#ffffff",
+    Outcome.ROCKS: SKY,
+    Outcome.ROLLS_OVER: BLUE,
+    Outcome.SLIPS: ORANGE,
+    Outcome.LOSES_CONTACT: "#f6e3bd",
+    Outcome.JAMS: PLUM,
+    Outcome.EDGE: GREY,
+}
+_AXIS_NAMES = {
+    "aspect": "a/b",
+    "energy": "energy / that to roll over",
+    "speed": "ω lying flat [rad/s]",
+    "friction": "μ",
+}
+_FEW_FOLD = 5.0  # a logarithmic axis over less than this has even ticks
+_FINEST = 10_000  # cells along an axis
+
+
+@dataclass(frozen=True, repr=False)
+class PhaseMap:
+    """Artists of `plot_phase_map`.
+
+    The array of `cells` has the `Outcome` codes, a row for each y. `marks` has the lines in view
+    by name, `names` what is written along them, where there is room: "separatrix", "contact loss",
+    "lift-off", "Painlevé", "tip" (a/b = root 3), "last to roll over" (a/b = 9.753).
+    """
+
+    ax: Axes
+    cells: QuadMesh
+    marks: dict[str, Line2D]
+    names: dict[str, Text]
+
+
+@leaving_no_figure
+def plot_phase_map(
+    x: str = "aspect",
+    y: str = "energy",
+    *,
+    aspect: float | None = None,
+    energy: float | None = None,
+    speed: float | None = None,
+    friction: float | None = None,
+    x_range: tuple[float, float] | None = None,
+    y_range: tuple[float, float] | None = None,
+    b: float = 1.0,
+    gravity: float = 9.81,
+    resolution: int = 400,
+    workers: int = -1,
+    ax: Axes | None = None,
+) -> PhaseMap:
+    """Colour what `classify` says of uniform discs passing the flat position, over two quantities.
+
+    ============  ========================================================  ====================
+    quantity      meaning                                                   shown by default
+    ============  ========================================================  ====================
+    ``aspect``    a/b, the long semi-axis over the short one                1 to 20, logarithmic
+    ``energy``    kinetic, in units of what rolling over takes,             0 to 4
+                  (omega/roll-over speed)^2
+    ``speed``     omega [rad/s]                                             0 to 2 sqrt(gravity/b)
+    ``friction``  coefficient of friction                                   0 to 2
+    ============  ========================================================  ====================
+
+    Lines are what `thresholds` says, as far as they are in view: "just rolls over" (dashed), the
+    end of N > 0 in rolling (solid), where the body really leaves the ground (dashes and dots,
+    plum), and Painlevé's friction (dashes and dots). Dotted are the a/b up to which N is lost at
+    the tip first, and the a/b beyond which no friction lets a disc roll over.
+
+    Parameters
+    ----------
+    x, y : str
+        Quantities along the axes: two of aspect, energy or speed, and friction.
+    aspect, energy, speed, friction : float, optional
+        The quantity that is not along an axis, as above; without it, aspect 2 (above 1, up to
+        1000), energy 1.5, friction infinite. Of energy and speed one.
+    x_range, y_range : (float, float), optional
+        Ends of the axes; without them, as above.
+    b : float
+        Short semi-axis [m]; only the scale of speeds.
+    gravity : float
+        Acceleration of gravity [m/s^2]; likewise.
+    resolution : int
+        Number of cells along each axis; what is shown is the outcome at their middles.
+    workers : int
+        Number of threads, -1 for all.
+    ax : matplotlib Axes, optional
+        Where to draw; without it, in a new pyplot figure. Limits set before stay.
+
+    Returns
+    -------
+    PhaseMap
+        The artists.
+
+    Raises
+    ------
+    ValueError
+        If an argument is none of the names or out of its range, x and y do not go together, or a
+        quantity is given that is along an axis or follows from another.
+    TypeError
+        If something is no number.
+    """
+    if ax is not None:
+        require_axes(ax)  # before the work
+    fixed = {"aspect": aspect, "energy": energy, "speed": speed, "friction": friction}
+    plane = plane_of((x, y), (x_range, y_range), fixed, b, gravity)
+    edges = [_edges(plane, axis, _count(resolution)) for axis in plane.axes]
+    middles = [_middles(axis, places) for axis, places in zip(plane.axes, edges, strict=True)]
+    columns, rows = np.meshgrid(*middles)
+    codes = classify(**plane.scenes(columns, rows), workers=workers)
+    ax = axes_of(ax, (6.4, 4.4))
+    colours = ListedColormap([COLOURS[outcome] for outcome in Outcome])
+    free = ax.get_autoscalex_on(), ax.get_autoscaley_on()
+    _dress_map(ax, plane)
+    cells = ax.pcolormesh(
+        *edges, codes, cmap=colours, vmin=-0.5, vmax=len(Outcome) - 0.5, rasterized=True, zorder=0.5
+    )
+    if free[0]:
+        ax.set_xlim(*plane.ranges[0])
+    if free[1]:
+        ax.set_ylim(*plane.ranges[1])
+    found = [Outcome(int(code)) for code in np.unique(np.asarray(codes))]
+    name_curves(ax, [_handle(outcome) for outcome in found])
+    return PhaseMap(ax, cells, *draw_marks(ax, marks_of(plane)))
+
+
+def _count(resolution: Any) -> int:
+    whole = isinstance(resolution, (int, np.integer)) and not isinstance(resolution, bool)
+    if not whole or not 1 <= resolution <= _FINEST:
+        raise ValueError(f"resolution must be an int from 1 to {_FINEST}, got {resolution!r}")
+    return int(resolution)
+
+
+def _edges(plane: Plane, axis: str, count: int) -> FloatArray:
+    return plane.spaced(axis, count + 1)
+
+
+def _middles(axis: str, edges: FloatArray) -> FloatArray:
+    """Of cells, as one sees them: of the logarithms for the aspect."""
+    middles: FloatArray = (
+        np.sqrt(edges[:-1] * edges[1:]) if axis == "aspect" else (edges[:-1] + edges[1:]) / 2
+    )
+    return middles
+
+
+def _handle(outcome: Outcome) -> Patch:
+    name = outcome.name.lower().replace("_", " ")
+    return Patch(facecolor=COLOURS[outcome], edgecolor=INK, lw=0.4, label=name)
+
+
+def _dress_map(ax: Axes, plane: Plane) -> None:
+    for name, side, axis, limits in zip(
+        plane.axes, "xy", (ax.xaxis, ax.yaxis), plane.ranges, strict=True
+    ):
+        if name == "aspect":
+            getattr(ax, f"set_{side}scale")("log")
+            few = limits[1] < _FEW_FOLD * limits[0]
+            axis.set_major_locator(AutoLocator() if few else LogLocator(subs=(1, 2, 5)))
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_locator(NullLocator())
+        label = _AXIS_NAMES[name]
+        axis.set_label_text(f"{label}   (at {plane.told()})" if side == "x" else label)
+    ax.spines[["top", "right"]].set_visible(False)

@@ -1,0 +1,58 @@
+"""The separatrix of rolling on level ground: the curve between rocking and rolling over.
+
+In the plane of theta and omega it encloses eyes, one for each half turn, around the flat positions.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..geometry import support, support_slope
+
+if TYPE_CHECKING:
+    from .._check import FloatArray
+    from .._scene import Scene
+
+QUARTER = math.pi / 2
+_POINTS = 801, 100_000  # in one half turn and in all
+
+
+def separatrix_speed(theta: FloatArray, scene: Scene) -> FloatArray:
+    """Speed |omega| with which a body rolling on level ground just reaches its tip [rad/s].
+
+    At theta [rad], from the energy: D omega^2/2 + g h = g max(a, b), D = k^2 + h^2 + h'^2.
+    """
+    height = support(theta, a=scene.a, b=scene.b)
+    lead = support_slope(theta, a=scene.a, b=scene.b)
+    rise = np.maximum(max(scene.a, scene.b) - height, 0.0)  # rounding may go below 0
+    inertia = scene.gyration2 + height**2 + lead**2
+    speed: FloatArray = np.sqrt(2 * scene.gravity * rise / inertia)
+    return speed
+
+
+def flat_angle(scene: Scene) -> float:
+    """Where the body lies flat, up to half turns [rad]."""
+    return 0.0 if scene.a >= scene.b else QUARTER
+
+
+def flat_angles(left: float, right: float, scene: Scene) -> FloatArray:
+    """The flat positions whose half turns cover an interval of theta [rad]."""
+    flat = flat_angle(scene)
+    first = math.floor((left - flat) / math.pi + 0.5)
+    last = max(math.ceil((right - flat) / math.pi - 0.5), first)
+    return flat + math.pi * np.arange(first, last + 1, dtype=np.float64)
+
+
+def separatrix(scene: Scene, flats: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Theta and speed, graded around each flat position, where a thin body's curve is a spike."""
+    count = int(np.clip(_POINTS[1] // flats.size, 3, _POINTS[0]))
+    width = min(scene.a, scene.b) / max(scene.a, scene.b)
+    reach = math.asinh(100 / width)  # to 0.01 rad from the tip, where it is straight
+    within = np.arctan(width * np.sinh(np.linspace(-reach, reach, count)))
+    within[[0, -1]] = -QUARTER, QUARTER
+    speed = separatrix_speed(flat_angle(scene) + within, scene)
+    theta: FloatArray = np.add.outer(flats, within).ravel()
+    return theta, np.tile(speed, flats.size)

@@ -1,0 +1,223 @@
+"""What is physically there: the body, the ground, the start and the blow."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass, fields, replace
+from functools import cached_property
+from typing import Any
+
+from . import _core
+from ._check import number, optional_number
+from ._core import Mode
+from ._fields import FieldsOnly
+
+_NUMBERS = (
+    "a", "b", "mass", "gravity", "slope", "friction", "restitution", "theta", "omega", "x",
+)  # fmt: skip
+_OPTIONAL = ("inertia", "z", "x_dot", "z_dot")
+
+
+@dataclass(frozen=True)
+class Impulse:
+    """An impulse applied to a point of the body.
+
+    Parameters
+    ----------
+    jx, jz : float
+        Components along the ground and away from it [N s].
+    dx, dz : float
+        Where it acts, seen from the centre in ground axes [m].
+    """
+
+    jx: float = 0.0
+    jz: float = 0.0
+    _: KW_ONLY
+    dx: float = 0.0
+    dz: float = 0.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            object.__setattr__(self, field.name, number(field.name, getattr(self, field.name)))
+        _ = self.core  # the core validates
+
+    @property
+    def core(self) -> _core.Impulse:
+        """The same for the core."""
+        return _core.Impulse(self.jx, self.jz, self.dx, self.dz)
+
+    @classmethod
+    def press(cls, F: float, d: float) -> Impulse:
+        """Return the downward blow of the report's Figure 9: F [N s] at distance d [m] from G."""
+        for name, value in (("F", F), ("d", d)):
+            if not math.isfinite(number(name, value)):
+                raise ValueError(f"{name} must be finite, got {value!r}")
+        return cls(0.0, -float(F), dx=float(d))
+
+
+@dataclass(frozen=True)
+class InitialState:
+    """The state just after the applied impulse.
+
+    Attributes
+    ----------
+    theta, omega, x, z, x_dot, z_dot : float
+        Angle [rad], angular velocity [rad/s], centre [m] and its velocity [m/s].
+    mode : Mode
+        What the body does from now on, as the contact with its friction allows it: ROLLING,
+        SLIDING, FLIGHT or REST.
+    reaction_x, reaction_z : float
+        Impulse of the ground on the body during the blow [N s].
+    free_omega : float
+        Angular velocity without the ground's reaction, the report's eq 48 [rad/s].
+    reason : str
+        One sentence on what the blow did, what the body then does, and why.
+    """
+
+    theta: float
+    omega: float
+    x: float
+    z: float
+    x_dot: float
+    z_dot: float
+    mode: Mode
+    reaction_x: float
+    reaction_z: float
+    free_omega: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Scene(FieldsOnly):
+    """An ellipse, its ground, its state at t = 0 and, if any, the impulse it then receives.
+
+    SI units, radians; theta is clockwise positive, so that rolling forwards increases x. At
+    theta = 0 the axis ``a`` is parallel to the ground.
+
+    Parameters
+    ----------
+    a, b : float
+        Semi-axes [m], in any order; 1e-3 <= a/b <= 1e3.
+    mass, gravity : float
+        Mass [kg], acceleration of gravity [m/s^2].
+    inertia : float, optional
+        Moment of inertia about the centre [kg m^2]; default: a uniform disc, m (a^2 + b^2)/4.
+    slope : float
+        Angle of the ground [rad], downwards in x; |slope| < pi/2.
+    friction : float
+        Coefficient of friction, infinity allowed.
+    restitution : float
+        Energetic (Stronge's) coefficient of restitution, between 0 and 1.
+    theta, omega : float
+        Angle [rad] and angular velocity [rad/s]; less than 1e-100 rad/s in size counts as rest.
+    x : float
+        Position of the centre along the ground [m].
+    z : float, optional
+        Height of the centre [m]; None, or a value within 8 ulp of touching: on the ground.
+    x_dot, z_dot : float, optional
+        Velocity of the centre [m/s]. On the ground the default is that of rolling, and values
+        within 8 ulp of it count as rolling; in the air the default is 0.
+    impulse : Impulse, optional
+        Blow received at t = 0.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, the body starts below the ground or moves into it.
+    TypeError
+        If something is no number at all.
+    """
+
+    a: float
+    b: float
+    _: KW_ONLY
+    mass: float = 1.0
+    gravity: float = 9.81
+    inertia: float | None = None
+    slope: float = 0.0
+    friction: float = math.inf
+    restitution: float = 0.0
+    theta: float = 0.0
+    omega: float = 0.0
+    x: float = 0.0
+    z: float | None = None
+    x_dot: float | None = None
+    z_dot: float | None = None
+    impulse: Impulse | None = None
+
+    def __post_init__(self) -> None:
+        for name in _NUMBERS:
+            object.__setattr__(self, name, number(name, getattr(self, name)))
+        for name in _OPTIONAL:
+            object.__setattr__(self, name, optional_number(name, getattr(self, name)))
+        if self.impulse is not None and not isinstance(self.impulse, Impulse):
+            raise TypeError(f"impulse must be an Impulse or None, got {self.impulse!r}")
+        _ = self.core  # the core validates
+
+    @cached_property
+    def core(self) -> _core.Scene:
+        """The same for the core."""
+        values: dict[str, Any] = {name: getattr(self, name) for name in _NUMBERS + _OPTIONAL}
+        impulse = None if self.impulse is None else self.impulse.core
+        return _core.Scene(**values, impulse=impulse)
+
+    @property
+    def gyration2(self) -> float:
+        """Square of the radius of gyration, k^2 = I/m [m^2]."""
+        return self.core.gyration2
+
+    @cached_property
+    def initial_state(self) -> InitialState:
+        """State just after the impulse: the collision law without restitution (InitialState)."""
+        found = _core.initial_state(self.core)
+        state, (moves, paradox) = InitialState(*found[:10], reason=""), found[10:]
+        did = _what_the_blow_did(self, state, moves)
+        return replace(state, reason=f"{did}; {_what_follows(self, state.mode, moves, paradox)}")
+
+
+def require_scene(scene: object) -> Scene:
+    """Return the scene, or raise TypeError."""
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a Scene, got {scene!r}")
+    return scene
+
+
+def _what_the_blow_did(scene: Scene, state: InitialState, moves: Mode) -> str:
+    if scene.impulse is None:
+        return "no impulse"
+    if moves is Mode.FLIGHT:
+        return "the blow lifts the body off the ground"
+    if moves is Mode.SLIDING:
+        return (
+            f"the blow makes the contact slip: friction {scene.friction:g} gives an impulse of "
+            f"{state.reaction_x:.6g} N s against {state.reaction_z:.6g} N s of pressure"
+        )
+    return (
+        f"the contact sticks: the ground gives {state.reaction_x:.6g} N s along and "
+        f"{state.reaction_z:.6g} N s away from it; without it omega would be "
+        f"{state.free_omega:.6g} rad/s"
+    )
+
+
+_DOES = {
+    Mode.ROLLING: "rolls",
+    Mode.SLIDING: "slides",
+    Mode.FLIGHT: "flies",
+    Mode.REST: "rests",
+}
+
+
+def _what_follows(scene: Scene, mode: Mode, moves: Mode, paradox: _core.Painleve) -> str:
+    """Say what the body does; `moves` is what its velocities alone look like."""
+    if paradox is _core.Painleve.NO_MOTION:
+        return "the contact slides and jams: no motion of a rigid body goes on (Painleve)"
+    if paradox is _core.Painleve.TWO_MOTIONS:
+        return (
+            "the contact slides and two motions go on (Painleve), in flight and pressed against "
+            "the ground: rigid mechanics does not choose"
+        )
+    if mode is moves or mode is Mode.REST:
+        return f"the body {_DOES[mode]}"
+    if mode is Mode.SLIDING:
+        return f"friction {scene.friction:g} cannot hold the contact: the body slides"
+    return "the ground would have to pull: the body flies"

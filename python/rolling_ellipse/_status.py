@@ -1,0 +1,48 @@
+"""How a simulation ended, and what is raised or warned of when it did not end well."""
+
+from __future__ import annotations
+
+import enum
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ._trajectory import Trajectory
+
+
+class Status(enum.Enum):
+    """How a simulation ended; the value is the sentence."""
+
+    COMPLETED = "the motion was followed to the end"
+    JAMMED = (
+        "the sliding body jams (Painleve): no motion of a rigid body goes on, or more than one "
+        "does; less friction, or another shape"
+    )
+    VALIDITY_LOST = (
+        "rolling without slip stops being true at valid_until: use samples before it, "
+        "more friction or a slower start"
+    )
+    MAX_EVENTS = "the motion stopped after max_events events: allow more of them"
+    MAX_STEPS = (
+        "the integration stopped after max_steps steps: allow more of them, loosen rtol and atol "
+        "or take larger steps"
+    )
+    STEP_TOO_SMALL = (
+        "the integration stopped where no step that changes t meets rtol and atol: loosen them"
+    )
+    STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
+
+
+class ValidityWarning(UserWarning):
+    """Part of the motion is not what a body on the ground would do."""
+
+
+class IntegrationError(RuntimeError):
+    """An integration stopped before its last time; `trajectory` holds what there is."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        super().__init__(trajectory.message)
+        self.trajectory = trajectory
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Be made again of the trajectory: exceptions are made of their message by default."""
+        return type(self), (self.trajectory,), self.__dict__

@@ -1,0 +1,460 @@
+"""A sampled motion, and everything that follows from it, computed when asked for."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._check import FloatArray, array, number
+from ._constraints import COORDINATES, ConstraintResiduals, constraints
+from ._events import Event, event
+from ._fields import FieldsOnly
+from ._samples import ContactSamples, contact_samples, coordinate_pair, frozen, sampled, vector
+from ._scene import Scene
+from ._settings import Settings
+from ._status import Status
+from .geometry import support_slope
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import Dataset
+
+    from ._pictures.animation import RollingAnimation
+    from ._pictures.overview import Overview
+
+_Values = TypeVar("_Values", bound=npt.NDArray[Any])
+
+
+# Fields of which each model needs its own.
+_UNUSED = {"coordinates": None, "start": None, "contact": None, "kept_events": None}
+
+
+def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Values]:
+    """A read-only array, computed when first asked for."""
+
+    def values(self: Trajectory) -> _Values:
+        return frozen(function(self))
+
+    return cached_property(values)
+
+
+def _column(which: int, column: int) -> cached_property[FloatArray]:
+    """An array of its own for one column of q, q_dot or q_ddot (0, 1, 2)."""
+    return _derived(lambda self: np.ascontiguousarray(self._detail[which][:, column]))
+
+
+def _touching(which: int) -> cached_property[FloatArray]:
+    """z, x_dot, z_dot, normal or friction force."""
+    return _derived(lambda self: self._touch[which])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory(FieldsOnly):
+    """A motion sampled at n times. Arrays are float64 and read-only, time is the first axis.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n,)
+        Times [s].
+    theta, omega : ndarray, shape (n,)
+        Angle, clockwise positive [rad]; angular velocity [rad/s].
+    x, z, psi, r : ndarray, shape (n,)
+        Centre [m]; angle and distance from the centre to the contact [rad, m].
+    x_dot, z_dot, psi_dot, r_dot, x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot : ndarray, shape (n,)
+        Their rates.
+    q, q_dot : ndarray, shape (n, 5)
+        x, z, theta, psi, r and their rates.
+    contact_x : ndarray, shape (n,)
+        Where the body touches the ground [m].
+    turns : ndarray, shape (n,)
+        Turns made since the start of the scene.
+    normal_force, friction_force : ndarray, shape (n,)
+        Contact force on the body away from and along the ground [N].
+    friction_needed : ndarray, shape (n,)
+        |F|/N (infinite where N <= 0 without F = 0).
+    multipliers : ndarray, shape (n, 4)
+        Lagrange multipliers of the four constraints; the first two are F and N.
+    energy, kinetic_energy, potential_energy : ndarray, shape (n,)
+        From the state itself [J].
+    mode : ndarray of int8, shape (n,)
+        Codes of `Mode`.
+    scene, model, method, status, message, reason : Scene, str, str, Status, str, str
+        What was asked for, how it ended, and the sentence that says why the model is valid.
+    valid_until : float
+        Time from which on the model is not true [s]; infinite if it always is.
+    t_end : float
+        Last time that was reached [s]; `sol` goes up to it.
+    span : float
+        Last time that was asked for [s].
+    settings : Settings
+        The arguments of `simulate` that it was computed with.
+    coordinates, start : tuple of ndarray, or None
+        Where the state is not a function of theta and omega: q and q_dot at the samples, (n, 5)
+        each; and those that it started from, (5,) each, where they are not the scene's.
+    contact : ContactSamples or None
+        Of the model "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the samples.
+    events : tuple of Event
+        Changes of mode and impacts of the model "contact", in the order of time.
+    kept_events : tuple of Event, or None
+        Those that a file brought along.
+    stats : dict
+        Figures of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
+        the right-hand side, without those for the dense output).
+    """
+
+    t: FloatArray
+    theta: FloatArray
+    omega: FloatArray
+    x: FloatArray
+    _: KW_ONLY
+    scene: Scene
+    model: str
+    method: str
+    status: Status
+    message: str
+    reason: str
+    valid_until: float
+    t_end: float
+    span: float
+    settings: Settings
+    coordinates: tuple[FloatArray, FloatArray] | None = None
+    start: tuple[FloatArray, FloatArray] | None = None
+    contact: ContactSamples | None = None
+    kept_events: tuple[Event, ...] | None = None
+    stats: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        t = vector("t", self.t)
+        checked: dict[str, Any] = {"t": t}
+        for name in ("theta", "omega", "x"):
+            checked[name] = vector(name, getattr(self, name), t.size)
+        if self.coordinates is not None:
+            shape = t.size, COORDINATES
+            checked["coordinates"] = coordinate_pair("coordinates", self.coordinates, shape)
+        if self.start is not None:
+            checked["start"] = coordinate_pair("start", self.start, (COORDINATES,))
+        if self.contact is not None:
+            checked["contact"] = contact_samples(self.contact, t.size)
+        for name in ("valid_until", "t_end", "span"):
+            checked[name] = number(name, getattr(self, name))
+        self.__dict__.update(checked)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Make the arrays read-only again: those of pickles and deep copies are not."""
+        self.__dict__.update(state)
+        pairs = *(self.coordinates or ()), *(self.start or ())
+        for values in (self.t, self.theta, self.omega, self.x, *pairs):
+            frozen(values)
+
+    @classmethod
+    def computed(
+        cls,
+        scene: Scene,
+        settings: Settings,
+        times: FloatArray,
+        start: tuple[FloatArray, FloatArray] | None = None,
+    ) -> Trajectory:
+        """Solve a scene up to the last of the times, and sample it at all that are reached.
+
+        With a start (q, q_dot) in coordinates that is the start, and the scene only the body and
+        its ground.
+        """
+        span = float(times[-1])
+        solution = solve(scene, settings, span, start)
+        stats = solution.stats
+        ends = solution.followed_until if stats["segments"] else -math.inf
+        times = times[times <= ends]
+        status = Status[solution.status.name]
+        known = dict(
+            scene=scene,
+            model=solution.model.name.lower(),
+            method=solution.method.name.lower(),
+            status=status,
+            message=solution.message or status.value,
+            reason=solution.reason,
+            valid_until=solution.valid_until,
+            t_end=solution.followed_until,
+            span=span,
+            settings=settings,
+            start=start and coordinate_pair("start", start, (COORDINATES,)),
+            stats=stats,
+        )
+        return cls._sampled(solution, times, known)
+
+    @classmethod
+    def _sampled(
+        cls, solution: _core.Solution, times: FloatArray, known: dict[str, Any]
+    ) -> Trajectory:
+        """Make one of the core's own arrays, which need no check, and keep the solution."""
+        made = object.__new__(cls)
+        found = sampled(solution, times)
+        made.__dict__.update(_UNUSED | known | found, _solution=solution)
+        return made
+
+    @cached_property
+    def _solution(self) -> _core.Solution:
+        return solve(self.scene, self.settings, self.span, self.start)
+
+    # -- what follows from the samples ----------------------------------------------------------
+
+    @cached_property
+    def _detail(self) -> tuple[FloatArray, ...]:
+        """q, q_dot, q_ddot, normal and friction force, multipliers."""
+        scene = self.scene.core
+        if self.contact is not None:
+            *columns, normal, friction, _ = self.contact
+            state = [self.theta, self.omega, self.x, *columns, normal, friction]
+            q, q_dot, q_ddot, multipliers = _core.contact_detail(scene, state)
+            found = q, q_dot, q_ddot, normal, friction, multipliers
+        elif self.coordinates is None:
+            found = _core.rolling_detail(scene, self.theta, self.omega, self.x)
+        else:
+            q, q_dot = self.coordinates
+            q_ddot, multipliers = _core.multiplier_detail(scene, self.settings.core, q, q_dot)
+            friction, normal = np.ascontiguousarray(multipliers.T[:2])
+            found = q, q_dot, q_ddot, normal, friction, multipliers
+        for values in found:
+            frozen(values)
+        return found
+
+    @property
+    def q(self) -> FloatArray:
+        return self._detail[0]
+
+    @property
+    def q_dot(self) -> FloatArray:
+        return self._detail[1]
+
+    psi, r = _column(0, 3), _column(0, 4)
+    psi_dot, r_dot = _column(1, 3), _column(1, 4)
+    x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot = (_column(2, i) for i in range(5))
+
+    @cached_property
+    def _touch(self) -> tuple[FloatArray, ...]:
+        """z, x_dot, z_dot, normal and friction force, without all that `_detail` computes."""
+        if self.contact is not None:
+            return self.contact[:5]
+        if self.coordinates is None:
+            return _core.rolling_contact(self.scene.core, self.theta, self.omega)
+        q, q_dot, _, normal, friction, _ = self._detail
+        return q[:, 1].copy(), q_dot[:, 0].copy(), q_dot[:, 1].copy(), normal, friction
+
+    z, x_dot, z_dot, normal_force, friction_force = (_touching(i) for i in range(5))
+
+    @property
+    def multipliers(self) -> FloatArray:
+        return self._detail[5]
+
+    @_derived
+    def friction_needed(self) -> FloatArray:
+        normal, friction = self.normal_force, np.abs(self.friction_force)
+        needed = np.where(friction == 0, 0.0, np.inf)
+        return np.divide(friction, normal, out=needed, where=normal > 0)
+
+    @_derived
+    def contact_x(self) -> FloatArray:
+        lead: FloatArray = support_slope(self.theta, a=self.scene.a, b=self.scene.b)
+        return self.x + lead
+
+    @_derived
+    def turns(self) -> FloatArray:
+        return (self.theta - self.scene.theta) / (2 * math.pi)
+
+    @_derived
+    def kinetic_energy(self) -> FloatArray:
+        mass, inertia = self.scene.mass, self.scene.mass * self.scene.gyration2
+        return 0.5 * mass * (self.x_dot**2 + self.z_dot**2) + 0.5 * inertia * self.omega**2
+
+    @_derived
+    def potential_energy(self) -> FloatArray:
+        weight, slope = self.scene.mass * self.scene.gravity, self.scene.slope
+        return weight * (self.z * math.cos(slope) - self.x * math.sin(slope))
+
+    @_derived
+    def energy(self) -> FloatArray:
+        return self.kinetic_energy + self.potential_energy
+
+    @_derived
+    def mode(self) -> npt.NDArray[np.int8]:
+        if self.contact is not None:
+            return self.contact.mode
+        rests = self.scene.initial_state.mode is _core.Mode.REST
+        mode = _core.Mode.REST if rests else _core.Mode.ROLLING
+        return np.full(self.t.shape, mode, dtype=np.int8)
+
+    @cached_property
+    def events(self) -> tuple[Event, ...]:
+        if self.kept_events is not None:
+            return self.kept_events
+        return tuple(event(self.scene.mass, *found) for found in self._solution.events)
+
+    @property
+    def success(self) -> bool:
+        return self.status in (Status.COMPLETED, Status.JAMMED)
+
+    def constraint_residuals(self) -> ConstraintResiduals:
+        """Return by how much each sample misses the constraints (see `constraints`)."""
+        return constraints(self.q, self.q_dot, a=self.scene.a, b=self.scene.b)
+
+    # -- the same motion at other times ----------------------------------------------------------
+
+    def sol(self, t: Any) -> Trajectory:
+        """Return the same motion at other times in [0, t_end], in any order.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (n,)
+            Times [s]; ``t_end`` is the last time of the simulation.
+
+        Raises
+        ------
+        ValueError
+            If a time is outside.
+        """
+        times = np.atleast_1d(array("t", t))
+        if times.ndim != 1:
+            raise ValueError(f"t must be a time or a 1-D array of times, got shape {times.shape}")
+        outside = times[~((times >= 0) & (times <= self.t_end))]
+        if outside.size:
+            raise ValueError(f"t must lie in [0, {self.t_end!r}], got {float(outside[0])!r}")
+        return self._sampled(self._solution, times, self.__getstate__())
+
+    def scene_at(self, t: float) -> Scene:
+        """Return a Scene that goes on from time t [s]; give it an impulse with `replace`."""
+        at = self.sol(number("t", t))
+        return replace(
+            self.scene,
+            theta=float(at.theta[0]),
+            omega=float(at.omega[0]),
+            x=float(at.x[0]),
+            impulse=None,
+            **_placement(at),
+        )
+
+    # -- pictures --------------------------------------------------------------------------------
+
+    def plot(self, **options: Any) -> Overview:
+        """Draw the overview figure; see `rolling_ellipse.plot`."""
+        from ._pictures.overview import plot
+
+        return plot(self, **options)
+
+    def animate(
+        self, path: str | os.PathLike[str] | None = None, **options: Any
+    ) -> RollingAnimation:
+        """Animate the motion; see `rolling_ellipse.animate`."""
+        from ._pictures.animation import animate
+
+        return animate(self, path, **options)
+
+    # -- tables ----------------------------------------------------------------------------------
+
+    def to_dataframe(self) -> DataFrame:
+        """Return a pandas DataFrame indexed by t, its columns named as the attributes.
+
+        The multipliers are ``lambda1`` to ``lambda4``, ``mode`` holds names of `Mode`. ``attrs``
+        has the units by column (``"units"``), the numbers of the scene, model, method and status.
+
+        Raises
+        ------
+        ImportError
+            Without pandas: it comes with ``rolling_ellipse[data]``.
+        """
+        from ._export.tables import dataframe
+
+        return dataframe(self)
+
+    def to_xarray(self) -> Dataset:
+        """Return an xarray Dataset over t, its variables named as the attributes.
+
+        ``multipliers`` have a second dimension, ``constraint``; ``mode`` holds codes of `Mode`.
+        Every variable has ``units`` and ``long_name``; ``attrs`` has the numbers of the scene,
+        model, method and status, all of which a netCDF file can hold.
+
+        Raises
+        ------
+        ImportError
+            Without xarray: it comes with ``rolling_ellipse[data]``.
+        """
+        from ._export.tables import dataset
+
+        return dataset(self)
+
+    # -- files -----------------------------------------------------------------------------------
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
+
+        The file is there when it is whole: whatever goes wrong, an old one of that name stays.
+
+        Raises
+        ------
+        ValueError
+            If something was put into it that `simulate` never does, and `load` would refuse.
+        OSError
+            If the file cannot be written.
+        """
+        from ._export.files import write
+
+        write(self, path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Trajectory:
+        """Read a trajectory written by `save`.
+
+        Raises
+        ------
+        ValueError
+            If the file is damaged, holds something else, or has another schema version; it names
+            the file and what is wrong.
+        OSError
+            If there is no such file, or it cannot be read.
+        """
+        from ._export.files import read
+
+        return read(cls, path)
+
+    def __repr__(self) -> str:
+        if self.t.size == 0:
+            return f"<Trajectory {self.model}/{self.method}: no samples, {self.status.name}>"
+        return (
+            f"<Trajectory {self.model}/{self.method}: {self.t.size} samples, "
+            f"t = {self.t[0]:g} ... {self.t[-1]:g} s, {self.turns[-1]:.3g} turns, "
+            f"{self.status.name}>"
+        )
+
+
+def _placement(at: Trajectory) -> dict[str, Any]:
+    """Return z, x_dot and z_dot of the first sample as a Scene takes them: None where rolling."""
+    if at.mode[0] in (_core.Mode.ROLLING, _core.Mode.REST):
+        return {"z": None, "x_dot": None, "z_dot": None}
+    x_dot = float(at.x_dot[0])
+    if at.mode[0] == _core.Mode.SLIDING:
+        return {"z": None, "x_dot": x_dot, "z_dot": None}
+    return {"z": float(at.z[0]), "x_dot": x_dot, "z_dot": float(at.z_dot[0])}
+
+
+def solve(
+    scene: Scene,
+    settings: Settings,
+    t_end: float,
+    start: tuple[FloatArray, FloatArray] | None,
+) -> _core.Solution:
+    """Return the core's solution: the motion at any time in [0, t_end]."""
+    if start is None:
+        return _core.simulate(scene.core, settings.core, t_end)
+    q, q_dot = (np.atleast_2d(values) for values in start)
+    return _core.simulate_coordinates(scene.core, q, q_dot, settings.core, t_end)
+
+
+def load(path: str | os.PathLike[str]) -> Trajectory:
+    """Read a trajectory written by `Trajectory.save`."""
+    return Trajectory.load(path)

@@ -1,0 +1,122 @@
+"""The velocities just after a collision, by three laws of restitution; how far apart two are."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._check import FloatArray, broadcast, choice, require, uniform_disc
+from . import _restitution
+
+LAWS = ("stronge", "poisson", "newton")
+
+
+def collide(
+    theta: Any,
+    x_dot: Any,
+    z_dot: Any,
+    omega: Any,
+    *,
+    a: Any,
+    b: Any,
+    friction: Any,
+    restitution: Any,
+    gyration2: Any = None,
+    law: str = "stronge",
+) -> tuple[Any, Any, Any]:
+    """Return the velocities just after the collision of a body that touches the ground.
+
+    Coulomb friction acts all along the collision: the slip may stop, stick or reverse in it. The
+    laws differ in where restitution ends. Simulations use "stronge", which runs in the C++ core;
+    the others are there to compare it with. All arguments broadcast by NumPy's rules.
+
+    Parameters
+    ----------
+    theta, x_dot, z_dot, omega : float or array_like
+        Angle [rad] and velocities [m/s, m/s, rad/s] just before. A contact that does not move into
+        the ground is left as it is.
+    a, b : float or array_like
+        Semi-axes [m].
+    friction, restitution : float or array_like
+        Coefficients: at least 0 (inf allowed), and between 0 and 1.
+    gyration2 : float or array_like, optional
+        k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
+    law : str
+        What the coefficient e of restitution means. "stronge": the normal force gives back e^2 of
+        the work that it took. "poisson": e times the impulse that it needed to stop the approach.
+        "newton": the contact leaves e times as fast as it came, which can create energy.
+
+    Returns
+    -------
+    x_dot, z_dot, omega : float or ndarray
+        Velocities just after [m/s, m/s, rad/s]; floats if all arguments are scalars.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, the law has no such name, or shapes do not broadcast.
+
+    References
+    ----------
+    W. J. Stronge, Impact Mechanics, Cambridge University Press, 2000, ch. 3 to 5.
+    """
+    choice("law", law, LAWS)
+    arguments = {
+        "theta": theta,
+        "x_dot": x_dot,
+        "z_dot": z_dot,
+        "omega": omega,
+        "a": a,
+        "b": b,
+        "gyration2": 1.0 if gyration2 is None else gyration2,
+        "friction": friction,
+        "restitution": restitution,
+    }
+    shape, columns = broadcast(**arguments)
+    if gyration2 is None:
+        columns[6] = uniform_disc(columns[4], columns[5])
+    # run for every law: it refuses by name what is out of range
+    after = _core.collide_arrays(math.prod(shape), columns)
+    if law != "stronge":
+        after = _restitution.collide(law, columns)
+    return _shaped(after[0], shape), _shaped(after[1], shape), _shaped(after[2], shape)
+
+
+def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
+    """Return sqrt(2 T/m) = sqrt(x_dot^2 + z_dot^2 + k^2 omega^2) [m/s], T the kinetic energy.
+
+    Of a difference of velocities it is how far apart two motions are, translation and rotation
+    weighed as the body weighs them.
+
+    Parameters
+    ----------
+    x_dot, z_dot, omega : float or array_like
+        Velocities [m/s, m/s, rad/s].
+    gyration2 : float or array_like
+        k^2 = I/m [m^2]; of a uniform disc (a^2 + b^2)/4.
+
+    Returns
+    -------
+    float or ndarray
+
+    Raises
+    ------
+    ValueError
+        If a velocity is not finite, gyration2 not positive, or shapes do not broadcast.
+    """
+    arguments = {"x_dot": x_dot, "z_dot": z_dot, "omega": omega, "gyration2": gyration2}
+    shape, (x_dot, z_dot, omega, k2) = broadcast(**arguments)
+    for name, values in zip(arguments, (x_dot, z_dot, omega), strict=False):
+        require(name, "finite", values, np.isfinite(values))
+    require("gyration2", "a positive finite area [m^2]", k2, (k2 > 0) & np.isfinite(k2))
+    with np.errstate(over="ignore"):  # infinite, where it is beyond the doubles
+        return _shaped(np.hypot(np.hypot(x_dot, z_dot), np.sqrt(k2) * omega), shape)
+
+
+def _shaped(values: FloatArray, shape: tuple[int, ...]) -> Any:
+    if shape == ():
+        return float(values.item())
+    return np.array(np.broadcast_to(values, math.prod(shape))).reshape(shape)  # one to write to

@@ -1,0 +1,152 @@
+"""The coefficients of restitution and friction that fit measured impacts best."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .. import geometry
+from .._check import FloatArray, choice, finite, number, require, uniform_disc
+from ._collide import collide, kinetic_speed
+
+_MEASURES: dict[str, Callable[[FloatArray], float]] = {
+    "median": lambda errors: float(np.median(errors)),
+    "rms": lambda errors: float(np.sqrt(np.mean(errors**2))),
+}
+_INTERVALS = 40  # of the first grid, over the whole range of either coefficient
+_REACH, _FINER, _REFINEMENTS = 2, 4, 4  # old steps to either side, in steps 1/4 as long, 4 times
+
+
+@dataclass(frozen=True)
+class FittedImpacts:
+    """One coefficient of restitution and one of friction for all impacts of a series.
+
+    Attributes
+    ----------
+    law : str
+        The law of restitution.
+    restitution, friction : float
+        The coefficients that fit best; friction may be infinite.
+    errors : ndarray, shape (n,)
+        Of each impact, the kinetic speed of predicted minus measured velocities after it [m/s].
+    median_error, rms_error : float
+        Median and root mean square of `errors` [m/s].
+    """
+
+    law: str
+    restitution: float
+    friction: float
+    errors: FloatArray
+
+    @property
+    def median_error(self) -> float:
+        return _MEASURES["median"](self.errors)
+
+    @property
+    def rms_error(self) -> float:
+        return _MEASURES["rms"](self.errors)
+
+
+def fit(
+    before: Sequence[Any],
+    after: Sequence[Any],
+    *,
+    a: float,
+    b: float,
+    gyration2: float | None = None,
+    law: str = "stronge",
+    minimise: str = "median",
+) -> FittedImpacts:
+    """Find the one pair of coefficients that predicts a series of measured impacts best.
+
+    The error of an impact is the kinetic speed of predicted minus measured velocities after it.
+    Its median, or root mean square, is looked up on a grid over restitution (0 to 1) and the angle
+    of friction (0 to a right angle, which is infinite friction), then on finer ones about the best
+    point, down to 1e-4: the same answer every time. What the impacts leave open (if all of them
+    stick, friction is only bounded from below) stays arbitrary.
+
+    Parameters
+    ----------
+    before : sequence of 4 array_like, each of shape (n,)
+        theta, x_dot, z_dot, omega just before [rad, m/s, m/s, rad/s]. Every contact must move into
+        the ground.
+    after : sequence of 3 array_like, each of shape (n,)
+        x_dot, z_dot, omega measured just after [m/s, m/s, rad/s].
+    a, b : float
+        Semi-axes [m].
+    gyration2 : float, optional
+        k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
+    law : str
+        "stronge", "poisson" or "newton", see `collide`.
+    minimise : str
+        "median", which a few wild measurements do not move, or "rms".
+
+    Returns
+    -------
+    FittedImpacts
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, there is no impact or one does not move into the ground.
+    """
+    measure = _MEASURES[choice("minimise", minimise, tuple(_MEASURES))]
+    start, end = _series("before", before, 4), _series("after", after, 3)
+    if start.shape[1] != end.shape[1]:
+        raise ValueError(
+            f"after must have as many impacts as before, {start.shape[1]}, got {end.shape[1]}"
+        )
+    a, b = number("a", a), number("b", b)
+    k2 = uniform_disc(a, b) if gyration2 is None else number("gyration2", gyration2)
+    _require_approach(start, a, b)
+
+    def errors(restitution: float, angle: float) -> FloatArray:
+        coefficients = {"restitution": restitution, "friction": _friction(angle)}
+        found = collide(*start, a=a, b=b, gyration2=k2, law=law, **coefficients)
+        difference = np.stack(found) - end
+        return np.asarray(kinetic_speed(*difference, gyration2=k2))
+
+    restitution, angle = _least(lambda e, angle: measure(errors(e, angle)))
+    return FittedImpacts(law, restitution, _friction(angle), errors(restitution, angle))
+
+
+def _friction(angle: float) -> float:
+    return math.inf if angle == math.pi / 2 else math.tan(angle)
+
+
+def _least(objective: Callable[[float, float], float]) -> tuple[float, float]:
+    """Return the best restitution and angle of friction of grids within grids."""
+    ranges = ((0.0, 1.0), (0.0, math.pi / 2))
+    axes = [np.linspace(low, high, _INTERVALS + 1) for low, high in ranges]
+    steps = [(high - low) / _INTERVALS for low, high in ranges]
+    best = min(itertools.product(*axes), key=lambda point: objective(*point))
+    offsets = np.arange(-_REACH * _FINER, _REACH * _FINER + 1)
+    for _ in range(_REFINEMENTS):
+        steps = [step / _FINER for step in steps]
+        axes = [
+            np.unique(np.clip(middle + step * offsets, low, high))
+            for middle, step, (low, high) in zip(best, steps, ranges, strict=True)
+        ]
+        best = min(itertools.product(*axes), key=lambda point: objective(*point))
+    return float(best[0]), float(best[1])
+
+
+def _series(name: str, columns: Sequence[Any], count: int) -> FloatArray:
+    """Return columns of equal length as the rows of one array of finite numbers."""
+    rows = finite(name, columns)
+    if rows.ndim != 2 or len(rows) != count or rows.shape[1] == 0:
+        raise ValueError(
+            f"{name} must be {count} columns of one number for each impact, got shape {rows.shape}"
+        )
+    return rows
+
+
+def _require_approach(before: FloatArray, a: float, b: float) -> None:
+    theta, _, z_dot, omega = before
+    gap_rate = z_dot - geometry.support_slope(theta, a=a, b=b) * omega  # physics (12)
+    require("before", "moving into the ground (a negative gap rate [m/s])", gap_rate, gap_rate < 0)

@@ -1,0 +1,218 @@
+"""The report's equations exactly as printed, and beside each the right one under a name.
+
+Arrays are q = (x, z, theta, psi, r) along the last axis, its rates and accelerations likewise; a
+printed equation is named after its number. A printed residual less the right one is the misprint.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .._check import FloatArray, choice, finite, number
+from .._constraints import _coordinates, require_together
+from .._scene import Impulse, Scene
+from ..geometry import support_slope
+from ._rows import rows
+
+CASES = ("as_it_is", "1", "2")
+
+
+def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
+    """theta, psi, r, sin and cos of psi - theta; the others must have as many states, or one."""
+    found = _coordinates("q", q)
+    require_together(q=found, **others)
+    theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
+    return theta, psi, r, np.sin(psi - theta), np.cos(psi - theta)
+
+
+def polar(psi: FloatArray, body: Scene) -> FloatArray:
+    found: FloatArray = (body.b * np.sin(psi)) ** 2 + (body.a * np.cos(psi)) ** 2
+    return found
+
+
+# ---------------------------------------------------------------------------- sections 2.1 and 2.2
+
+
+def eq_5(theta: Any, *, a: float, b: float) -> FloatArray:
+    """Return psi by the arctan of eq 5 [rad]; `geometry.contact_angle` is continuous."""
+    body = Scene(a, b)
+    found: FloatArray = np.arctan(body.a**2 / body.b**2 * np.tan(finite("theta", theta)))
+    return found
+
+
+def case_sign(theta: Any) -> FloatArray:
+    """Return the sign of r sin(psi - theta) by the report's cases: -1 in the second quadrant."""
+    turned = np.mod(finite("theta", theta), 2 * np.pi)
+    return np.where((turned >= np.pi / 2) & (turned <= np.pi), -1.0, 1.0)
+
+
+def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
+    """Return x_C - x_G by eqs 5 to 7 and the two cases [m]; right: `geometry.support_slope`."""
+    psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
+    body = Scene(a, b)
+    r = body.a * body.b / np.sqrt(polar(psi, body))
+    found: FloatArray = case_sign(angle) * r * np.sin(psi - angle)
+    return found
+
+
+def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
+    """Return f1 of eq 10 [m/s], the velocity of the geometric contact point along the ground.
+
+    ``case`` "1" takes the lower signs, "2" the upper ones, "as_it_is" that of theta's quadrant.
+    Right is x_dot - r cos(psi - theta) theta_dot, the first velocity residual of `constraints`.
+    """
+    theta, _, r, sine, cosine = state(q, q_dot=q_dot)
+    rates = _coordinates("q_dot", q_dot)
+    choice("case", case, CASES)
+    sign = {"1": -1.0, "2": 1.0}.get(case, case_sign(theta))
+    turning = rates[..., 3] - rates[..., 2]
+    found: FloatArray = rates[..., 0] + sign * (r * cosine * turning + rates[..., 4] * sine)
+    return found
+
+
+def f2(q: Any) -> FloatArray:
+    """Return f2 of eq 10 [m]; it is right with the continuous psi."""
+    _, _, r, _, cosine = state(q)
+    return _coordinates("q", q)[..., 1] - r * cosine
+
+
+def f3(q: Any, *, a: float, b: float) -> FloatArray:
+    """Return f3 of eq 10 [m]; it is right."""
+    _, psi, r, _, _ = state(q)
+    body = Scene(a, b)
+    found: FloatArray = r - body.a * body.b / np.sqrt(polar(psi, body))
+    return found
+
+
+def f4(q: Any, *, a: float, b: float) -> FloatArray:
+    """Return f4 of eq 10 [rad], its arctan as printed: off by multiples of pi."""
+    theta, psi, _, _, _ = state(q)
+    return psi - eq_5(theta, a=a, b=b)
+
+
+# ---------------------------------------------------------------------------------- section 3.2
+
+
+def eqs_33_to_37(
+    q: Any, q_ddot: Any, multipliers: Any, *, a: float, b: float, mass: float, gravity: float
+) -> FloatArray:
+    """Return the residuals of eqs 33, 34, 35, 37, 36 (x, z, theta, psi, r), (..., 5)."""
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot, multipliers=multipliers)
+    inertia, ddot = body.mass * (body.a**2 + body.b**2) / 4, _coordinates("q_ddot", q_ddot)
+    one, two, three, four = _multipliers(multipliers)
+    squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
+    tangent = np.tan(theta)
+    lever = one * r * cosine - two * r * sine
+    return np.stack(
+        np.broadcast_arrays(
+            body.mass * ddot[..., 0] - one,
+            body.mass * ddot[..., 1] - two + body.mass * body.gravity,
+            inertia * ddot[..., 2] + lever - four * body.a**2 * (1 + tangent**2),
+            lever + three * squeeze + four * (body.a**4 * tangent**2 / body.b**2 + body.b**2),
+            one * sine - two * cosine + 2 * three * polar(psi, body) ** 1.5,
+        ),
+        axis=-1,
+    )
+
+
+def equations_of_motion(
+    q: Any, q_ddot: Any, multipliers: Any, *, a: float, b: float, mass: float, gravity: float
+) -> FloatArray:
+    """Return what eqs 33, 34, 35, 37, 36 must be, with the corrected rows, (..., 5)."""
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
+    ddot = _coordinates("q_ddot", q_ddot)
+    pull = np.einsum(
+        "...ij,...i->...j", rows(_coordinates("q", q), body.a, body.b, ("tan",)),
+        np.stack(_multipliers(multipliers), axis=-1),
+    )  # fmt: skip
+    mass_of = np.array([1, 1, body.gyration2, 0, 0]) * body.mass
+    weight = np.array([0, body.mass * body.gravity, 0, 0, 0])
+    forces = np.array([-1, -1, -1, 1, 1])  # eqs 36 and 37 have them on the other side
+    found: FloatArray = mass_of * ddot + weight + forces * pull
+    return found
+
+
+def _multipliers(values: Any) -> tuple[FloatArray, ...]:
+    found = finite("multipliers", values)
+    if found.ndim == 0 or found.shape[-1] != 4:
+        raise ValueError(f"multipliers must have 4 entries last, got shape {found.shape}")
+    return tuple(found[..., i] for i in range(4))
+
+
+def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
+    """Return the rates of f1 (f1 itself), f2, f3 and f4 as eq 38 prints them, (..., 4)."""
+    body = Scene(a, b)
+    theta, psi, r, sine, cosine = state(q, q_dot=q_dot)
+    x, z, spin, turn, stretch = np.moveaxis(_coordinates("q_dot", q_dot), -1, 0)
+    squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
+    tangent = np.tan(theta)
+    return np.stack(
+        np.broadcast_arrays(
+            x - stretch * cosine - (turn - spin) * r * sine,
+            z - stretch * sine - turn * r * sine + spin * r * cosine,
+            2 * stretch * polar(psi, body) ** 1.5 - turn * squeeze,
+            turn * (body.a**4 * tangent**2 / body.b**2 + body.b**2)
+            - spin * body.a**2 * (tangent**2 + 1),
+        ),
+        axis=-1,
+    )
+
+
+def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
+    """Return what eq 38 must be, in its scaling, (..., 4)."""
+    body = Scene(a, b)
+    require_together(q=q, q_dot=q_dot)
+    matrix = rows(_coordinates("q", q), body.a, body.b, ("tan",))
+    found: FloatArray = np.einsum("...ij,...j->...i", matrix, _coordinates("q_dot", q_dot))
+    return found
+
+
+# ----------------------------------------------------------------------- section 3.4, appendix B
+
+
+def eq_48(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
+    """Return theta_dot just after the blow by eq 48 [rad/s]; right: `struck_speed`."""
+    body = Scene(a, b, mass=mass)
+    _require_blow(impulse, d)
+    return 4 * impulse * d / (body.mass * (body.a**2 + body.b**2))
+
+
+def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
+    """Return theta_dot after a blow on the body at rest, lying flat, that sticks [rad/s]."""
+    _require_blow(impulse, d)
+    return Scene(a, b, mass=mass, impulse=Impulse.press(impulse, d)).initial_state.omega
+
+
+def _require_blow(impulse: Any, d: Any) -> None:
+    for name, value in (("impulse", impulse), ("d", d)):
+        if not math.isfinite(number(name, value)):
+            raise ValueError(f"{name} must be finite, got {value}")
+
+
+def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
+    """Return what appendix B's r_x has for r [m]; right: `geometry.contact_distance`."""
+    body = Scene(a, b)
+    t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p, where eq 6 has psi
+    across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)
+    found: FloatArray = body.a * body.b / np.hypot(across, along)
+    return found
+
+
+def appendix_b_r_x(q: Any, *, a: float, b: float) -> FloatArray:
+    """Return r_x of appendix B [m]; right: `contact_x`."""
+    theta, _, _, _, _ = state(q)
+    angle = eq_5(theta, a=a, b=b) - theta
+    radius = appendix_b_radius(theta, a=a, b=b)
+    found: FloatArray = _coordinates("q", q)[..., 0] + radius * np.sin(angle)
+    return found
+
+
+def contact_x(q: Any, *, a: float, b: float) -> FloatArray:
+    """Return x_C = x + h' [m]."""
+    found: FloatArray = _coordinates("q", q)[..., 0] + support_slope(state(q)[0], a=a, b=b)
+    return found

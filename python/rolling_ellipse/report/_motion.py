@@ -1,0 +1,147 @@
+"""The report's equations integrated with any of their rows as printed (index 1, no stabilisation).
+
+M q_ddot = Q + A^T lambda,   A q_ddot = -A_dot q_dot          (report eqs 27 to 31 and 32)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._check import FloatArray
+from .._constraints import COORDINATES, ConstraintResiduals, constraints
+from .._scene import Scene
+from ._rows import rows, rows_and_rate
+from ._runge_kutta import Steps, integrate
+from ._start import Start
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PrintedMotion:
+    """A motion by the report's equations, sampled at n times; time is the first axis.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n,)
+        The times that were reached [s].
+    q, q_dot, q_ddot : ndarray, shape (n, 5)
+        x, z, theta, psi, r [m, rad], their rates and accelerations.
+    multipliers : ndarray, shape (n, 4)
+        Of the rows in use, in the report's scaling.
+    gap : ndarray, shape (n,)
+        Height of the lowest point of the body over the ground [m].
+    energy : ndarray, shape (n,)
+        Kinetic and potential energy [J].
+    body : Scene
+        Semi-axes, mass and gravity.
+    printed : tuple of str
+        The rows that are as printed.
+    start : Start
+        The state that it began with, and how that came about.
+    message : str
+        Why it stopped before the last time that was asked for; empty if it did not.
+    """
+
+    t: FloatArray
+    q: FloatArray
+    q_dot: FloatArray
+    q_ddot: FloatArray
+    multipliers: FloatArray
+    body: Scene
+    printed: tuple[str, ...]
+    start: Start
+    message: str
+
+    @property
+    def gap(self) -> FloatArray:
+        return self.constraint_residuals().gap
+
+    @property
+    def energy(self) -> FloatArray:
+        body = self.body
+        x, z, omega = (self.q_dot[:, i] for i in range(3))
+        kinetic = body.mass * (x**2 + z**2 + body.gyration2 * omega**2) / 2
+        found: FloatArray = kinetic + body.mass * body.gravity * self.q[:, 1]
+        return found
+
+    def constraint_residuals(self) -> ConstraintResiduals:
+        """Return by how much each sample misses the right constraints (see `constraints`)."""
+        return constraints(self.q, self.q_dot, a=self.body.a, b=self.body.b)
+
+    def back_substitution(self) -> FloatArray:
+        """Return what the solution leaves of the equations that it solved, (n, 9).
+
+        The five equations of motion [N, N m] and the four constraints on the rates: the report's
+        own test (Figure 11). Small values say that the equations were solved, not that they are
+        right.
+        """
+        body, matrix = self.body, rows(self.q, self.body.a, self.body.b, self.printed)
+        pull = np.einsum("nij,ni->nj", matrix, self.multipliers)
+        motion = _masses(body) * self.q_ddot - _weight(body) - pull
+        return np.concatenate([motion, np.einsum("nij,nj->ni", matrix, self.q_dot)], axis=1)
+
+    def __repr__(self) -> str:
+        rows_ = ", ".join(self.printed) or "none"
+        if self.t.size == 0:
+            return f"<PrintedMotion: no samples, as printed: {rows_}, {self.message}>"
+        return (
+            f"<PrintedMotion: {self.t.size} samples, t = {self.t[0]:g} ... {self.t[-1]:g} s, "
+            f"as printed: {rows_}, largest |gap| {np.max(np.abs(self.gap)):.3g} m>"
+        )
+
+
+def _masses(body: Scene) -> FloatArray:
+    return np.array([1, 1, body.gyration2, 0, 0]) * body.mass
+
+
+def _weight(body: Scene) -> FloatArray:
+    return np.array([0, -body.mass * body.gravity, 0, 0, 0])
+
+
+def accelerations(
+    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN where the system is singular."""
+    matrix, rate = rows_and_rate(q, q_dot, body.a, body.b, printed)
+    system = np.zeros((*q.shape[:-1], 9, 9))
+    system[..., :5, :5] = np.diag(_masses(body))
+    system[..., :5, 5:] = -np.swapaxes(matrix, -1, -2)
+    system[..., 5:, :5] = matrix
+    right = np.zeros((*q.shape[:-1], 9))
+    right[..., :5] = _weight(body)
+    right[..., 5:] = -np.einsum("...ij,...j->...i", rate, q_dot)
+    try:
+        solution = np.linalg.solve(system, right[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        if q.ndim > 1:  # one of them is singular: the others have a solution
+            found = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
+            return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
+        solution = np.full_like(right, np.nan)
+    return solution[..., :COORDINATES], solution[..., COORDINATES:]
+
+
+def follow(
+    start: Start, t: FloatArray, body: Scene, printed: tuple[str, ...], steps: Steps
+) -> PrintedMotion:
+    """Integrate from a start at time 0 and sample at increasing times."""
+
+    def slope(y: FloatArray) -> FloatArray:
+        q, q_dot = y[:COORDINATES], y[COORDINATES:]
+        return np.concatenate([q_dot, accelerations(q, q_dot, body, printed)[0]])
+
+    with np.errstate(
+        over="ignore", invalid="ignore", divide="ignore"
+    ):  # it stops there, and says so
+        samples, message = integrate(slope, np.concatenate([start.q, start.q_dot]), t, steps)
+        samples = samples.reshape(-1, 2 * COORDINATES)
+        q, q_dot = samples[:, :COORDINATES], samples[:, COORDINATES:]
+        q_ddot, multipliers = accelerations(q, q_dot, body, printed)
+    lost = ~np.isfinite(np.concatenate([q_ddot, multipliers], axis=1)).all(axis=1)
+    if lost.any():
+        end = int(np.argmax(lost))
+        message = f"the equations have no finite solution at {t[end]:.6g} s"
+        samples, q, q_dot = samples[:end], q[:end], q_dot[:end]
+        q_ddot, multipliers = q_ddot[:end], multipliers[:end]
+    reached = t[: len(samples)].copy()  # the caller's own times may change
+    return PrintedMotion(reached, q, q_dot, q_ddot, multipliers, body, printed, start, message)

@@ -1,0 +1,145 @@
+"""Section 3.3 of the report as printed: multipliers out of accelerations, and the right ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .._check import FloatArray, flag
+from .._constraints import _coordinates, require_together
+from .._scene import Scene
+from ._equations import polar, state
+from ._rows import rows
+
+
+def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
+    """Return lambda1 ... lambda4 as eq 39 prints them (lambda3 with F of eq 40), (..., 4)."""
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    _, psi, _, _, _ = state(q, q_ddot=q_ddot)
+    ddot = _coordinates("q_ddot", q_ddot)
+    squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        third = eq_40(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity) / squeeze
+    fourth = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
+    return np.stack(
+        np.broadcast_arrays(
+            body.mass * ddot[..., 0],
+            body.mass * (ddot[..., 1] - body.gravity),
+            third,
+            fourth / (4 * body.a**2 * body.b**2),
+        ),
+        axis=-1,
+    )
+
+
+def lambda4_numerator(
+    q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
+) -> FloatArray:
+    """Return the numerator of lambda4 in eq 39; over 4 a^2 it follows from eqs 32 and 35."""
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
+    x, z, spin, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
+    turning = (body.a**2 + body.b**2) * spin
+    levers = 4 * r * x * cosine - 4 * r * z * sine + 4 * r * body.gravity * sine
+    found: FloatArray = -body.mass * np.cos(theta) ** 2 * (turning + levers)
+    return found
+
+
+def multipliers(
+    q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
+) -> FloatArray:
+    """Return what eq 39 must be: the multipliers of the corrected rows, (..., 4).
+
+    lambda3 comes from the equation of r, which has no sin(2 psi) to divide by; lambda4 vanishes
+    on the ground, where r cos(psi - theta) is largest against psi.
+    """
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    require_together(q=q, q_ddot=q_ddot)
+    ddot = _coordinates("q_ddot", q_ddot)
+    matrix = rows(_coordinates("q", q), body.a, body.b, ("tan",))
+    friction, normal = body.mass * ddot[..., 0], body.mass * (ddot[..., 1] + body.gravity)
+    third = -normal * matrix[..., 1, 4] / matrix[..., 2, 4]
+    fourth = -(normal * matrix[..., 1, 3] + third * matrix[..., 2, 3]) / matrix[..., 3, 3]
+    return np.stack(np.broadcast_arrays(friction, normal, third, fourth), axis=-1)
+
+
+def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
+    """Return F of eq 40, term by term as printed; right: `complete_f`."""
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot)
+    x, z, spin, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
+    a, b, m, g = body.a, body.b, body.mass, body.gravity
+    c2, t2 = np.cos(theta) ** 2, np.tan(theta) ** 2
+    found: FloatArray = (
+        b**6 * spin * c2 + a**6 * spin * c2 + a**4 * b**2 * t2 + a**2 * b**4 * spin * c2
+        - 4 * a**2 * b**2 * r * cosine * x
+        + a**4 * b**2 * spin * c2 * t2 + 4 * a**2 * b**2 * z * r * sine
+        - 4 * a**2 * b**2 * g * m * r * sine
+        + 4 * b**4 * x * m * r * cosine + 4 * a**4 * x * m * r * cosine * c2 * t2
+        - 4 * a**4 * z * m * r * np.sin(psi) * c2
+        - 4 * b**4 * z * m * r * sine * c2 + 4 * b**4 * g * m * r * sine * c2
+        + 4 * a**4 * x * m * r * cosine * c2 * t2 - 4 * a**4 * z * m * r * sine * c2 * t2
+        + 4 * a**4 * g * m * r * sine * c2 * t2
+    )  # fmt: skip
+    return found
+
+
+def complete_f(
+    q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
+) -> FloatArray:
+    """Return F with every term: what eqs 33, 35, 37 and lambda2 of eq 39 give for it.
+
+    It keeps the signs of those equations, so that the difference from `eq_40` is what was lost.
+    """
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
+    x, z, _, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
+    lever = body.mass * r * (x * cosine - (z - body.gravity) * sine)
+    numerator = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
+    turned = body.a**4 * np.tan(theta) ** 2 + body.b**4
+    found: FloatArray = -4 * (body.a * body.b) ** 2 * lever - turned * numerator
+    return found
+
+
+def eq_41(
+    q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float, complete: bool = False
+) -> FloatArray:
+    """Return the residual of eq 41, with F1 of `eq_42` or, if complete, 2 (...)^(3/2) F [N].
+
+    Complete, it is eq 36 times -1 with the multipliers put in.
+    """
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    complete = flag("complete", complete)
+    _, psi, _, _, _ = state(q)
+    arguments: dict[str, float] = dict(a=a, b=b, mass=mass, gravity=gravity)
+    if complete:
+        f1_ = 2 * polar(psi, body) ** 1.5 * complete_f(q, q_ddot, **arguments)
+    else:
+        f1_ = eq_42(q, q_ddot, **arguments)
+    squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found: FloatArray = _head(q, q_ddot, body) - f1_ / squeeze
+    return found
+
+
+def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
+    """Return F1 of eq 42: the head of eq 41 once more, less a factor times the terms of F.
+
+    The printed bracket before b^6 is missing and the one at the end has no partner; it is read as
+    around all terms of F, of which eq 42 keeps every one (`complete_f`). The factor lost its power
+    3/2 and the square of sin psi.
+    """
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    _, psi, _, _, _ = state(q)
+    factor = 2 * body.a**2 * np.cos(psi) ** 2 + 2 * body.b**2 * np.sin(psi)
+    terms = complete_f(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
+    found: FloatArray = _head(q, q_ddot, body) - factor * terms
+    return found
+
+
+def _head(q: Any, q_ddot: Any, body: Scene) -> FloatArray:
+    _, _, _, sine, cosine = state(q, q_ddot=q_ddot)
+    x, z, _, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
+    found: FloatArray = body.mass * (cosine * (z - body.gravity) - x * sine)
+    return found

@@ -1,0 +1,148 @@
+"""The report's constraint matrix, each row as printed or as it must be."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .._check import FloatArray, finite, shown
+from .._constraints import COORDINATES, _coordinates, require_together
+from .._scene import Scene
+
+#: What can be as printed: the rows of f1, f2 and f3 (eq 32), the sign of a44 (appendix C), and
+#: tan(theta) in row 4, which otherwise is multiplied by cos^2(theta) and stays finite.
+MISPRINTS = ("f1", "df2", "df3", "a44", "tan")
+EQ_32 = ("f1", "df2", "df3", "tan")
+MATRIX = ("f1", "df2", "tan")
+CODE = ("f1", "df2", "a44", "tan")
+
+_TINY = 1e-30  # a complex step this small has neither truncation nor rounding error
+
+
+def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> npt.NDArray[Any]:
+    """Return the matrix, (..., 4, 5), for real or complex q."""
+    theta, psi, r = q[..., 2], q[..., 3], q[..., 4]
+    sine, cosine = np.sin(psi - theta), np.cos(psi - theta)
+    matrix = np.zeros((*q.shape[:-1], 4, COORDINATES), dtype=q.dtype)
+    x_, z_, theta_, psi_, r_ = (matrix[..., i] for i in range(COORDINATES))
+
+    x_[..., 0] = 1
+    theta_[..., 0] = -r * cosine
+    if "f1" in printed:  # the rate of x + r sin(psi - theta); without slip x_dot = h theta_dot
+        psi_[..., 0] = r * cosine
+        r_[..., 0] = sine
+
+    sign = -1 if "df2" in printed else 1
+    z_[..., 1] = 1
+    theta_[..., 1] = -sign * r * sine
+    psi_[..., 1] = sign * r * sine
+    r_[..., 1] = -cosine
+
+    polar = (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
+    squeeze = a * b * (a - b) * (a + b)
+    if "df3" in printed:
+        psi_[..., 2] = -squeeze * np.sin(psi) ** 2
+        r_[..., 2] = 2 * polar
+    else:
+        psi_[..., 2] = -squeeze * np.sin(2 * psi)
+        r_[..., 2] = 2 * polar**1.5
+
+    scale = 1 if "tan" in printed else np.cos(theta) ** 2
+    tangent2 = np.tan(theta) ** 2 if "tan" in printed else np.sin(theta) ** 2
+    theta_[..., 3] = (1 if "a44" in printed else -1) * a * a * (tangent2 + scale)
+    psi_[..., 3] = a**4 * tangent2 / b**2 + b * b * scale
+    return matrix
+
+
+def rows_and_rate(
+    q: FloatArray, q_dot: FloatArray, a: float, b: float, printed: tuple[str, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the matrix and its time derivative along q_dot, by the chain rule.
+
+    The rate is the imaginary part that a complex step along q_dot leaves: exact to rounding
+    (W. Squire, G. Trapp, SIAM Rev. 40 (1998) 110).
+    """
+    stepped = rows(q + 1j * _TINY * q_dot, a, b, printed)
+    return stepped.real, stepped.imag / _TINY
+
+
+def direction(q: FloatArray, a: float, b: float, printed: tuple[str, ...]) -> FloatArray:
+    """Return the rates that the rows allow at theta_dot = 1, (..., 5)."""
+    matrix = rows(q, a, b, printed)
+    found: FloatArray = np.zeros(q.shape)
+    found[..., 2] = 1
+    for row, solved_for in ((3, 3), (2, 4), (1, 1), (0, 0)):
+        rest = np.sum(matrix[..., row, :] * found, axis=-1)
+        found[..., solved_for] = -rest / matrix[..., row, solved_for]
+    return found
+
+
+def misprints(printed: Any) -> tuple[str, ...]:
+    """Return the names of rows to take as printed, or raise ValueError."""
+    names = tuple(printed) if isinstance(printed, (tuple, list)) else (printed,)
+    for name in names:
+        if not isinstance(name, str) or name not in MISPRINTS:
+            valid = ", ".join(map(repr, MISPRINTS))
+            raise ValueError(f"printed must hold names out of {valid}, got {shown(name)}")
+    return names
+
+
+def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> FloatArray:
+    """Return the coefficients of the constraints on the rates.
+
+    The report's columns are (x, r, psi, theta, z); here they are in the order of q.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 5)
+        Coordinates x, z, theta, psi, r [m, rad].
+    a, b : float
+        Semi-axes [m].
+    printed : sequence of {"f1", "df2", "df3", "a44", "tan"}
+        What to take as printed; () gives the matrix as it must be, with row 4 times
+        cos^2(theta). Three printings have names: `EQ_32`, `MATRIX` (below it) and `CODE`
+        (appendix C).
+
+    Returns
+    -------
+    ndarray, shape (..., 4, 5)
+        Rows of f1 ... f4, in the report's scaling.
+
+    Raises
+    ------
+    ValueError
+        If a name, a shape or a semi-axis is wrong.
+    """
+    body = Scene(a, b)
+    return rows(_coordinates("q", q), body.a, body.b, misprints(printed))
+
+
+def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = CODE) -> FloatArray:
+    """Return the rates with theta_dot = omega that the rows, as printed or not, allow.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 5)
+        Coordinates x, z, theta, psi, r [m, rad].
+    omega : array_like, shape (...)
+        theta_dot [rad/s].
+    a, b, printed
+        As for `constraint_matrix`.
+
+    Returns
+    -------
+    ndarray, shape (..., 5)
+
+    Raises
+    ------
+    ValueError
+        If a name, a shape or a semi-axis is wrong.
+    """
+    body = Scene(a, b)
+    speed = finite("omega", omega)[..., None]
+    require_together(q=q, omega=speed)
+    allowed = direction(_coordinates("q", q), body.a, body.b, misprints(printed))
+    rates: FloatArray = allowed * speed
+    return rates

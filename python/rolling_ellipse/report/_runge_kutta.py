@@ -1,0 +1,137 @@
+"""Explicit Runge-Kutta steps in NumPy, for equations that only Python knows.
+
+The coefficients and the dense output are the core's. HNW: E. Hairer, S. P. Norsett, G. Wanner,
+Solving Ordinary Differential Equations I, 2nd ed., Springer 1993.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._check import FloatArray
+
+_TABLEAUS = _core.tableaus()
+_SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0
+
+
+@dataclass(frozen=True)
+class Steps:
+    """How steps are chosen: of fixed size, or by the local error atol + rtol |y|."""
+
+    method: str
+    rtol: float
+    atol: float
+    step: float | None
+    max_steps: int
+
+
+def integrate(
+    slope: Callable[[FloatArray], FloatArray], y: FloatArray, t: FloatArray, steps: Steps
+) -> tuple[FloatArray, str]:
+    """Follow y' = slope(y) from time 0 and sample it at increasing times.
+
+    Returns
+    -------
+    samples : ndarray, shape (reached, y.size)
+        At the times that were reached.
+    message : str
+        Why it stopped before the last time, or nothing.
+    """
+    tableau = _TABLEAUS[steps.method]
+    samples = [y for _ in t[t == 0]]
+    now, end = 0.0, float(t[-1])
+    first = slope(y)
+    h = steps.step or _first_step(y, first, steps, end)
+    for _ in range(steps.max_steps):
+        if len(samples) == t.size:
+            break
+        h = min(h, end - now)
+        if not h >= smallest_step(now):
+            return np.array(samples), f"no step that changes t meets rtol and atol at {now:.6g} s"
+        slopes, after = _stages(slope, y, first, h, tableau)
+        grow = 1.0 if steps.step else _growth(y, after, slopes, h, tableau, steps)
+        if grow < _SAFETY:
+            h *= grow
+            continue
+        if not np.all(np.isfinite(after)):
+            return np.array(samples), f"the equations have no finite solution at {now:.6g} s"
+        last = end if h == end - now else now + h
+        while len(samples) < t.size and t[len(samples)] <= last:
+            samples.append(_dense(y, after, slopes, h, (t[len(samples)] - now) / h, tableau))
+        now, y, first = last, after, slopes[tableau["stages"]]
+        h = steps.step or h * grow
+    if len(samples) < t.size:
+        return np.array(samples), f"max_steps reached at {now:.6g} s"
+    return np.array(samples), ""
+
+
+def smallest_step(t: float) -> float:
+    """A step [s] that changes the time t, and its stages too: ten ulp."""
+    return 10 * math.ulp(t)
+
+
+def _stages(
+    slope: Callable[[FloatArray], FloatArray],
+    y: FloatArray,
+    first: FloatArray,
+    h: float,
+    tableau: dict[str, Any],
+) -> tuple[FloatArray, FloatArray]:
+    """Slopes of the stages and of the new point, (stages + 1, n), and the new point."""
+    count = tableau["stages"]
+    slopes = np.zeros((count + 1, y.size))
+    slopes[0], after = first, y
+    for i in range(1, count + 1):
+        after = y + h * (tableau["a"][i, :i] @ slopes[:i])
+        slopes[i] = slope(after)
+    return slopes, after
+
+
+def _growth(
+    y: FloatArray,
+    after: FloatArray,
+    slopes: FloatArray,
+    h: float,
+    tableau: dict[str, Any],
+    steps: Steps,
+) -> float:
+    """Factor for the next step, below the safety factor if this one is refused (HNW II.4)."""
+    scale = steps.atol + steps.rtol * np.maximum(np.abs(y), np.abs(after))
+    error = h * (tableau["error"][0, : len(slopes)] @ slopes) / scale
+    size = math.sqrt(float(np.mean(error**2)))
+    if not math.isfinite(size):
+        return _MOST_SHRINKING
+    factor = _SAFETY * size ** (-1 / tableau["order"]) if size > 0 else _MOST_GROWTH
+    return min(max(factor, _MOST_SHRINKING), _MOST_GROWTH)
+
+
+def _dense(
+    y: FloatArray,
+    after: FloatArray,
+    slopes: FloatArray,
+    h: float,
+    s: float,
+    tableau: dict[str, Any],
+) -> FloatArray:
+    """The point at the part s of a step: Hermite's cubic, and for a pair one order more."""
+    change = after - y
+    terms = [change, h * slopes[0] - change, 2 * change - h * (slopes[0] + slopes[-1])]
+    if tableau["dense_terms"]:
+        terms.append(h * (tableau["dense"][0, : len(slopes)] @ slopes))
+    value = np.zeros_like(y)
+    for i in range(len(terms) - 1, -1, -1):
+        value = terms[i] + ((1 - s) if i % 2 == 0 else s) * value
+    return y + s * value
+
+
+def _first_step(y: FloatArray, first: FloatArray, steps: Steps, end: float) -> float:
+    """A hundredth of the time in which y changes by its size (HNW II.4)."""
+    scale = steps.atol + steps.rtol * np.abs(y)
+    size, speed = float(np.linalg.norm(y / scale)), float(np.linalg.norm(first / scale))
+    return min(0.01 * size / speed, end) if size > 0 and speed > 0 else 1e-6 * end

@@ -1,0 +1,176 @@
+"""The simulation of section 4 of the report, by the right equations or by the printed ones."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from typing import Any
+
+from .._check import FloatArray, choice, finite, optional_number, positive, shown, whole_within
+from .._constraints import COORDINATES
+from .._scene import Scene
+from .._settings import Settings
+from .._simulate import report_status, sample_times
+from .._trajectory import Trajectory
+from ._motion import PrintedMotion, follow
+from ._rows import (
+    CODE,
+    misprints,
+)
+from ._runge_kutta import Steps, smallest_step
+from ._start import InconsistentStartWarning, Start, project, violations
+
+
+def simulate(
+    q: Any,
+    q_dot: Any,
+    t: Any,
+    *,
+    a: float,
+    b: float,
+    mass: float = 1.0,
+    gravity: float = 9.81,
+    equations: str = "corrected",
+    consistent: str = "refuse",
+    printed: Any = None,
+    method: str | None = None,
+    stabilization: str | None = None,
+    baumgarte: tuple[float, float] | None = None,
+    rtol: float = 1e-8,
+    atol: float = 1e-10,
+    step: float | None = None,
+    max_steps: int = 100_000,
+) -> Trajectory | PrintedMotion:
+    """Simulate from the report's coordinates, as its section 4 does; the body is a uniform disc.
+
+    Three things lift the report's ellipse off the ground: wrong equations (``printed``), a start
+    that violates the constraints (``consistent="as_given"``), and the drift of accelerations
+    integrated without looking back (large steps). Each can be had by itself.
+
+    Parameters
+    ----------
+    q, q_dot : array_like, shape (5,)
+        x, z, theta, psi, r [m, rad] and their rates at t = 0.
+    t : float or array_like, shape (n,)
+        End time (then 1001 even samples), or strictly increasing sample times >= 0 [s].
+    a, b : float
+        Semi-axes [m].
+    mass, gravity : float
+        Mass [kg], acceleration of gravity [m/s^2].
+    equations : {"corrected", "printed"}
+        The corrected ones are the model "multipliers"; the printed ones are integrated in index-1
+        form, without stabilisation.
+    consistent : {"refuse", "project", "as_given"}
+        What to do with a start that violates f2, f3, f4 or the rates: with "printed" equations
+        the rows in use must allow the rates. "project" takes the nearest consistent state in the
+        metric of the kinetic energy (theta and z move, x stays, psi and r follow); "as_given"
+        runs it after an InconsistentStartWarning.
+    printed : sequence of str, optional
+        Of the printed equations only: what is as printed, see `constraint_matrix`; default is
+        the report's code, `CODE`. () has all rows right.
+    method : str, optional
+        "dopri5" (default) or "rk4" for the printed equations; for the corrected ones what
+        `rolling_ellipse.simulate` has for its model "multipliers", default "dop853" ("radau" with
+        the stabilization "ggl").
+    stabilization, baumgarte : str, optional; (float, float)
+        Of the corrected equations only, as in `rolling_ellipse.simulate`.
+    rtol, atol, step, max_steps
+        As in `rolling_ellipse.simulate`: error control, or with `step` fixed steps.
+
+    Returns
+    -------
+    Trajectory or PrintedMotion
+        ``start`` of the latter says what a projection changed.
+
+    Raises
+    ------
+    ValueError
+        If the start is inconsistent and to be refused (naming each violated constraint and its
+        size), or an argument is out of range or of no use.
+    IntegrationError
+        If the integration of the corrected equations stops before the last time.
+    """
+    choice("equations", equations, ("corrected", "printed"))
+    choice("consistent", consistent, ("refuse", "project", "as_given"))
+    body = Scene(a, b, mass=mass, gravity=gravity)
+    times = sample_times(t)
+    state = _vector("q", q), _vector("q_dot", q_dot)
+    if equations == "corrected":
+        _require_none("printed", printed, equations)
+        default = "radau" if isinstance(stabilization, str) and stabilization == "ggl" else "dop853"
+        settings = Settings(
+            model="multipliers",
+            method=default if method is None else method,
+            rtol=rtol,
+            atol=atol,
+            step=step,
+            stages=None,
+            stabilization="projection" if stabilization is None else stabilization,
+            baumgarte=(10.0, 10.0) if baumgarte is None else baumgarte,
+            max_steps=max_steps,
+            max_events=1,
+            rest_speed=None,
+        )
+        start = _checked_start(*state, body, (), consistent)
+        return _corrected(start, times, body, settings)
+    _require_none("stabilization", stabilization, equations)
+    _require_none("baumgarte", baumgarte, equations)
+    steps = _steps("dopri5" if method is None else method, rtol, atol, step, max_steps)
+    if steps.step is not None and steps.step < (least := smallest_step(float(times[-1]))):
+        raise ValueError(
+            f"step must be at least {least:.3g} s, or times up to {float(times[-1])!r} s would not "
+            f"change by it, got {steps.step!r}"
+        )
+    names = misprints(CODE if printed is None else printed)
+    return follow(_checked_start(*state, body, names, consistent), times, body, names, steps)
+
+
+def _corrected(start: Start, t: FloatArray, body: Scene, settings: Settings) -> Trajectory:
+    """Return the motion of the model "multipliers" from a start."""
+    x, _, theta, _, _ = start.q.tolist()
+    scene = replace(body, theta=theta, omega=float(start.q_dot[2]), x=x)
+    trajectory = Trajectory.computed(scene, settings, t, (start.q, start.q_dot))
+    report_status(trajectory, raise_on_failure=True, stacklevel=4)
+    return trajectory
+
+
+def _checked_start(
+    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...], consistent: str
+) -> Start:
+    violated = violations(q, q_dot, body, printed)
+    begun = q, q_dot
+    if violated and consistent == "project":
+        begun = project(q, q_dot, body, printed)
+    elif violated:
+        got = "; ".join(violated)
+        if consistent == "refuse":
+            raise ValueError(f"q and q_dot must meet the constraints at t = 0, got {got}")
+        warnings.warn(
+            f"the start violates constraints: {got}", InconsistentStartWarning, stacklevel=3
+        )
+    return Start(*begun, begun[0] - q, begun[1] - q_dot, violated)
+
+
+def _require_none(name: str, value: Any, equations: str) -> None:
+    if value is not None:
+        raise ValueError(f"{name} must be None for the {equations} equations, got {shown(value)}")
+
+
+def _vector(name: str, value: Any) -> FloatArray:
+    found = finite(name, value)
+    if found.shape != (COORDINATES,):
+        raise ValueError(
+            f"{name} must have 5 entries (x, z, theta, psi, r), got shape {found.shape}"
+        )
+    return found
+
+
+def _steps(method: str, rtol: float, atol: float, step: float | None, max_steps: int) -> Steps:
+    choice("method", method, ("dopri5", "rk4"))
+    size = optional_number("step", step)
+    if size is None and method == "rk4":
+        raise ValueError("step must be a positive time for the method 'rk4', got None")
+    if size is not None:
+        positive("step", size)
+    most = whole_within("max_steps", max_steps, 2**31 - 1)
+    return Steps(method, positive("rtol", rtol), positive("atol", atol), size, most)

@@ -1,0 +1,132 @@
+"""Is a start consistent with the constraints, and which consistent one is the nearest?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._check import FloatArray
+from .._constraints import constraints, kinematics
+from .._scene import Scene
+from ..geometry import support, support_curvature, support_slope
+from ._rows import direction, rows
+
+_EPS = float(np.finfo(float).eps)
+_ULPS = 16.0  # what `kinematics` may be off by in each coordinate
+_NAMES = (
+    ("f2", "m"), ("f3", "m"), ("f4", "rad"),
+    ("f1", "m/s"), ("rate of f2", "m/s"), ("rate of f3", "m/s"), ("rate of f4", "rad/s"),
+)  # fmt: skip
+
+
+class InconsistentStartWarning(UserWarning):
+    """A simulation runs from a state that violates its constraints."""
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """The state that a simulation began with.
+
+    Attributes
+    ----------
+    q, q_dot : ndarray, shape (5,)
+        x, z, theta, psi, r [m, rad] and their rates.
+    q_change, q_dot_change : ndarray, shape (5,)
+        What was added to the given state to get there; 0 unless it was projected.
+    violations : tuple of str
+        Constraints that the given state violates, each with its size.
+    """
+
+    q: FloatArray
+    q_dot: FloatArray
+    q_change: FloatArray
+    q_dot_change: FloatArray
+    violations: tuple[str, ...]
+
+
+def violations(
+    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Name the violated constraints: f2, f3, f4, and the rates by the rows that are in use.
+
+    Allowed is what 16 ulp of each coordinate do to a residual, and 16 ulp of its terms: what
+    `kinematics` and the evaluation leave of an exact state.
+    """
+    state = np.concatenate([q, q_dot])
+    off = _ULPS * np.spacing(np.abs(state))
+    off[3] += _ULPS / 2 * _EPS * abs(q[3] - q[2])  # of psi, what its lead over theta is off by
+    moved = state + np.concatenate([np.zeros((1, 10)), np.diag(off), np.diag(-off)])
+    residuals = _residuals(moved[:, :5], moved[:, 5:], body, printed)
+    sizes = np.abs(residuals[0])
+    allowed = np.sum(np.abs(residuals[1:] - residuals[0]), axis=0)
+    allowed += _ULPS * _EPS * _terms(q, q_dot, body, printed)
+    changed = {"f1": "f1", "rate of f2": "df2", "rate of f3": "df3", "rate of f4": "a44"}
+    return tuple(
+        f"{name}{' as printed' if changed.get(name) in printed else ''} = {value:.6g} {unit}"
+        for (name, unit), value, size, limit in zip(
+            _NAMES, residuals[0], sizes, allowed, strict=True
+        )
+        if not size <= limit
+    )
+
+
+def _scaled_rows(q: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
+    """Rows as gradients of f1 ... f4: the report's rows 3 and 4 are multiples of them."""
+    matrix = rows(q, body.a, body.b, printed)
+    matrix[..., 2, :] /= matrix[..., 2, 4, None].copy()
+    matrix[..., 3, :] /= matrix[..., 3, 3, None].copy()
+    return matrix
+
+
+def _residuals(
+    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
+) -> FloatArray:
+    """f2, f3, f4, f1 and the rates of f2, f3, f4, (..., 7)."""
+    position = constraints(q, q_dot, a=body.a, b=body.b).position
+    velocity = np.einsum("...ij,...j->...i", _scaled_rows(q, body, printed), q_dot)
+    return np.concatenate([position, velocity], axis=-1)
+
+
+def _terms(q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
+    """How large the terms of the seven residuals are."""
+    _, z, theta, psi, r = np.abs(q)
+    velocity = np.abs(_scaled_rows(q, body, printed)) @ np.abs(q_dot)
+    return np.concatenate([[z + r, 2 * r, theta + psi], velocity])
+
+
+def project(
+    q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the nearest consistent state in the metric of the kinetic energy.
+
+    psi and r carry no mass and follow; x is free. Least m dz^2 + I dtheta^2 on z = h(theta), then
+    the rates nearest to the given ones along the one direction that the rows allow.
+    """
+    theta = _nearest_angle(float(q[1]), float(q[2]), body)
+    there, _ = kinematics(theta, 0.0, a=body.a, b=body.b)
+    there[0] = q[0]
+    allowed = direction(there, body.a, body.b, printed)
+    masses = np.array([1, 1, body.gyration2, 0, 0])
+    omega = (masses * allowed) @ q_dot / ((masses * allowed) @ allowed)
+    return there, omega * allowed
+
+
+def _nearest_angle(z: float, theta: float, body: Scene) -> float:
+    """Where (z - h)^2 + k^2 (angle - theta)^2 is least: the best of a grid, then Newton.
+
+    h has the period pi, so the nearest place on it is within a quarter turn.
+    """
+    shape, k2 = {"a": body.a, "b": body.b}, body.gyration2
+    grid = theta + np.linspace(-np.pi / 2, np.pi / 2, 2001)
+    costs = (z - support(grid, **shape)) ** 2 + k2 * (grid - theta) ** 2
+    angle, spacing = float(grid[np.argmin(costs)]), float(grid[1] - grid[0])
+    for _ in range(50):
+        above, slope = z - support(angle, **shape), support_slope(angle, **shape)
+        force = k2 * (angle - theta) - above * slope
+        stiffness = k2 + slope**2 - above * support_curvature(angle, **shape)
+        step = float(np.clip(-force / abs(stiffness), -spacing, spacing))
+        angle += step
+        if abs(step) <= _EPS * max(abs(angle), 1.0):
+            break
+    return angle
