@@ -22,7 +22,7 @@ std::string why_not_rolling(const Scene& scene, const State& start) {
     if (start.mode == Mode::flight) return "the body is in the air";
     if (start.mode == Mode::sliding) {
         return "the body slides with " +
-               brief(start.x_dot - geometry({scene.a, scene.b}, start.theta).h * start.omega) +
+               brief(start.x_dot - geometry(scene.axes(), start.theta).h * start.omega) +
                " m/s at the contact";
     }
     return {};

@@ -4,6 +4,7 @@
 
 #include "proof/watch.hpp"
 #include "reason.hpp"
+#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {

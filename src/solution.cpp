@@ -62,7 +62,7 @@ void contact_forces(const Solution& solution, const Scene& scene, const Settings
     RollingSampler{solution, n}(times, n, states.data());
     const RollingDynamics dynamics(scene);
     for (std::size_t i = 0; i < n; ++i) {
-        forces[i] = dynamics.force(geometry({scene.a, scene.b}, states[i].theta), states[i].omega);
+        forces[i] = dynamics.force(geometry(scene.axes(), states[i].theta), states[i].omega);
     }
 }
 

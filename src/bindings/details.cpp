@@ -22,7 +22,7 @@ py::tuple contact_arrays(const Scene& scene, const std::array<Array, 8>& columns
         for (py::ssize_t i = begin; i < end; ++i) {
             const auto of = [&](std::size_t column) { return columns[column].data()[i]; };
             const State state{of(0), of(1), of(2), of(3), of(4), of(5), Mode::flight};
-            const CoordinateState at = coordinate_state({scene.a, scene.b}, state);
+            const CoordinateState at = coordinate_state(scene.axes(), state);
             const MultiplierSolution found = accelerations(scene, at, ContactForce{of(6), of(7)});
             store(q, i, at.q.data());
             store(q_dot, i, at.q_dot.data());
@@ -101,7 +101,7 @@ py::tuple rolling_contact_arrays(const Scene& scene, const Array& theta, const A
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
             const double speed = omega.data()[i];
-            const Geometry at = geometry({scene.a, scene.b}, theta.data()[i]);
+            const Geometry at = geometry(scene.axes(), theta.data()[i]);
             const ContactForce force = dynamics.force(at, speed);
             const double row[] = {at.h, at.h * speed, at.dh * speed, force.normal, force.friction};
             for (std::size_t column = 0; column < columns.size(); ++column) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "bindings/bindings.hpp"
+#include "scene/refuse.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {

@@ -18,7 +18,7 @@ void sample_rolling(const Scene& scene, const Sampler& sampler, const double* ti
     std::vector<FlowSample> states(n);
     sampler(times, n, states.data());
     for (const auto& [theta, omega, x] : states) {
-        const Geometry at = geometry({scene.a, scene.b}, theta);
+        const Geometry at = geometry(scene.axes(), theta);
         *samples++ = {in_contact(at, theta, omega, x, 0.0, Mode::rolling),
                       dynamics.force(at, omega)};
     }

@@ -8,7 +8,9 @@
 #include "contact/continuation.hpp"
 #include "integrator/runge_kutta.hpp"
 #include "proof/certificate.hpp"
+#include "proof/law.hpp"
 #include "scene/impact.hpp"
+#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -34,7 +36,7 @@ class ContactRun {
                const Checkpoint& checkpoint)
         : units_(natural_units(scene)),
           scene_(body_in_units(scene, units_)),
-          axes_{scene_.a, scene_.b},
+          axes_(scene_.axes()),
           settings_(settings),
           t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
           checkpoint_(checkpoint),
@@ -101,9 +103,7 @@ class ContactRun {
     void roll_by_steps() {
         const RollingDynamics dynamics(scene_);
         const auto margins = [&](const Vector<2>& y) -> std::array<double, 1> {
-            const ContactForce force = dynamics.force(geometry(axes_, y[0]), y[1]);
-            if (std::isinf(scene_.friction)) return {force.normal};
-            return {scene_.friction * force.normal - std::abs(force.friction)};
+            return {law_margin(dynamics.force(geometry(axes_, y[0]), y[1]), scene_.friction)};
         };
         SteppedRolling motion = rolling_from(scene_, state_, dop853());
         ExplicitMethod<DormandPrince853, RollingEquation> integrator(motion.equation);
@@ -158,8 +158,7 @@ class ContactRun {
     }
 
     void fly() {
-        const Flight flight{axes_, scene_.gravity * std::cos(scene_.slope),
-                            scene_.gravity * std::sin(scene_.slope), state_};
+        const Flight flight{axes_, scene_.ground_gravity(), state_};
         const double lasts = touch_down(flight);
         add_arc(std::min(t_ + lasts, t_end_), flight);
         if (t_ + lasts > t_end_) return finish();
@@ -173,7 +172,7 @@ class ContactRun {
         const Geometry at = geometry(axes_, before.theta);
         state_ = after_collision(scene_, before);
         const double rebound = std::max(state_.z_dot - at.dh * state_.omega, 0.0);
-        const double c = SlidingEquation(scene_, 0.0).contact(at, state_.omega).c;
+        const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
         const double ratio = rebound / (at.dh * before.omega - before.z_dot);
         if (rebound > 0 && (rebound > rest_speed_ || c <= 0 || !(ratio < most_settling))) {
             return go_on_with({Mode::flight}, EventKind::impact, before);
@@ -191,14 +190,15 @@ class ContactRun {
     void settle(double rebound, double c) {
         constexpr double nothing = 1e-12;
         const Geometry at = geometry(axes_, state_.theta);
-        const double pull = scene_.gravity * std::sin(scene_.slope);
+        const GroundGravity gravity = scene_.ground_gravity();
         State moving = state_;
         double lasts = 0.0;
         double turned = 0.0;
         double speed = rebound;
         while (speed > nothing * rebound) {
             const double hop = 2 * speed / c;
-            const double gained = (pull - at.dh * square(moving.omega)) * hop;  // slip in flight
+            const double gained =
+                (gravity.along - at.dh * square(moving.omega)) * hop;  // slip in flight
             lasts += hop;
             turned += moving.omega * hop;
             moving.x += (moving.x_dot + 0.5 * gained) * hop;
@@ -210,8 +210,9 @@ class ContactRun {
             speed = std::max(next, 0.0);
         }
         const double theta = state_.theta + turned;
-        const State settled = in_contact(geometry(axes_, theta), theta, noticeable(moving.omega),
-                                         moving.x, noticeable_slip(moving, at), Mode::flight);
+        const State settled =
+            in_contact(geometry(axes_, theta), theta, zero_if_negligible(moving.omega), moving.x,
+                       slip_beyond_rounding(moving, at), Mode::flight);
         add_arc(std::min(t_ + lasts, t_end_), Settling{axes_, lasts, state_, settled});
         if (t_ + lasts > t_end_) return finish();
         t_ += lasts;

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "contact/arcs.hpp"
+#include "contact/sliding.hpp"
+#include "proof/law.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -51,7 +52,7 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
 }  // namespace
 
 Continuation continuation(const Scene& scene, const State& state, bool may_roll) {
-    const Geometry at = geometry({scene.a, scene.b}, state.theta);
+    const Geometry at = geometry(scene.axes(), state.theta);
     const double slip = slip_velocity(state, at);
     if (scene.friction == 0) {
         const bool stays = slip == 0 && scene.slope == 0 && rests(scene, state, at);
@@ -60,9 +61,9 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     if (slip != 0) return sliding(scene, at, state.omega, side_of(slip));
     if (rests(scene, state, at)) return {Mode::rest};
     const ContactForce force = rolling_force(scene, state.theta, state.omega);
-    const bool grips =
-        std::isinf(scene.friction) || std::abs(force.friction) <= scene.friction * force.normal;
-    if (may_roll && force.normal > 0 && grips) return {Mode::rolling};
+    if (may_roll && force.normal > 0 && law_margin(force, scene.friction) >= 0) {
+        return {Mode::rolling};
+    }
     return starting_to_slide(scene, at, state, force);
 }
 

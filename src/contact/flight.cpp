@@ -4,19 +4,16 @@
 #include <cmath>
 
 #include "geometry/half_turns.hpp"
+#include "numerics/bisect.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
 // The root of f between two points at which it has different signs, to the last bit.
 template <class Function>
-double bisected(const Function& f, double low, double high) {
+double root_between(const Function& f, double low, double high) {
     const bool rises = f(high) > 0;
-    for (;;) {
-        const double middle = low + 0.5 * (high - low);
-        if (!(low < middle && middle < high)) return high;
-        ((f(middle) > 0) == rises ? high : low) = middle;
-    }
+    return bisect(low, high, [&](double t) { return (f(t) > 0) == rises; }).high;
 }
 
 // Height of the body over the ground.
@@ -29,7 +26,7 @@ class Gap {
 
     double height(double t) const {
         const State& s = flight_.start;
-        return s.z + t * (s.z_dot - 0.5 * flight_.weight * t);
+        return s.z + t * (s.z_dot - 0.5 * flight_.gravity.into * t);
     }
 
     // As what it was at the start and what it has gained: hops far lower than the body is high keep
@@ -40,20 +37,20 @@ class Gap {
         const double turned = s.omega * t;
         const double rise =
             (a - b) * (a + b) * std::sin(2 * theta0_ + turned) * std::sin(turned) / (at(t).h + h0_);
-        return (s.z - h0_) + (t * (s.z_dot - 0.5 * flight_.weight * t) - rise);
+        return (s.z - h0_) + (t * (s.z_dot - 0.5 * flight_.gravity.into * t) - rise);
     }
 
     double rate(double t) const {
         const State& s = flight_.start;
-        return s.z_dot - flight_.weight * t - at(t).dh * s.omega;
+        return s.z_dot - flight_.gravity.into * t - at(t).dh * s.omega;
     }
 
     // When the centre comes down to a height.
     double falls_to(double height) const {
         const double drop = flight_.start.z - height;
         const double v = flight_.start.z_dot;
-        const double root = std::sqrt(std::max(v * v + 2 * flight_.weight * drop, 0.0));
-        if (v > 0) return (v + root) / flight_.weight;
+        const double root = std::sqrt(std::max(v * v + 2 * flight_.gravity.into * drop, 0.0));
+        if (v > 0) return (v + root) / flight_.gravity.into;
         return drop > 0 ? 2 * drop / (root - v) : 0.0;
     }
 
@@ -78,7 +75,7 @@ class Curvature {
         const double omega = std::abs(flight.start.omega);
         const FlatView view = flat_view(flight.axes, flight.start.theta);
         const double root =
-            positive_root(flight.weight / square(omega), view.short_axis * view.long_axis);
+            positive_root(flight.gravity.into / square(omega), view.short_axis * view.long_axis);
         if (omega == 0 || !(root < view.long_axis)) return;
         switching_ = true;
         const double turned = flight.start.omega > 0 ? view.sin : -view.sin;
@@ -147,10 +144,10 @@ State state_at(const Flight& flight, double t) {
     const State& s = flight.start;
     return {s.theta + s.omega * t,
             s.omega,
-            s.x + t * (s.x_dot + 0.5 * flight.pull * t),
-            s.z + t * (s.z_dot - 0.5 * flight.weight * t),
-            s.x_dot + flight.pull * t,
-            s.z_dot - flight.weight * t,
+            s.x + t * (s.x_dot + 0.5 * flight.gravity.along * t),
+            s.z + t * (s.z_dot - 0.5 * flight.gravity.into * t),
+            s.x_dot + flight.gravity.along * t,
+            s.z_dot - flight.gravity.into * t,
             Mode::flight};
 }
 
@@ -159,7 +156,8 @@ double touch_down(const Flight& flight) {
     const Curvature curvature(flight);
     const double tall = std::max(flight.axes.a, flight.axes.b);
     // By then it touches, however h is rounded.
-    const double sure = gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - 8 * epsilon));
+    const double sure =
+        gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - equal_ulps * epsilon));
     const auto value = [&](double t) { return gap.value(t); };
     const auto rate = [&](double t) { return gap.rate(t); };
 
@@ -177,15 +175,16 @@ double touch_down(const Flight& flight) {
         const double after = gap.rate(end);
         if (now.convex) {
             if (before < 0) {
-                const double lowest = after > 0 ? bisected(rate, now.begin, end) : end;
-                if (gap.value(lowest) <= 0) return bisected(value, now.begin, lowest);
+                const double lowest = after > 0 ? root_between(rate, now.begin, end) : end;
+                if (gap.value(lowest) <= 0) return root_between(value, now.begin, lowest);
                 // Where the tip passes below a centre no higher than that, it touches, though the
                 // gap may be rounded to more than nothing where the body spins fast for its fall.
                 const double tip = curvature.tip_time(now);
                 if (now.begin < tip && tip <= end && gap.height(tip) <= tall) return lowest;
             }
         } else if (after < 0 && gap.value(end) <= 0) {
-            return bisected(value, before > 0 ? bisected(rate, now.begin, end) : now.begin, end);
+            return root_between(value, before > 0 ? root_between(rate, now.begin, end) : now.begin,
+                                end);
         }
         const Curvature::Interval next = curvature.after(now);
         const bool too_fast = !(now.end < next.end);  // half a turn between two doubles

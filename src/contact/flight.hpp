@@ -8,8 +8,7 @@ namespace rolling_ellipse {
 
 struct Flight {
     Axes axes;
-    double weight;  // g cos(alpha), away from the ground [m/s^2]
-    double pull;    // g sin(alpha), along it
+    GroundGravity gravity;
     State start;
 };
 

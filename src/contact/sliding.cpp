@@ -5,26 +5,12 @@
 
 namespace rolling_ellipse {
 
-double slip_velocity(const State& state, const Geometry& at) {
-    return state.x_dot - at.h * state.omega;
-}
-
-double noticeable_slip(const State& state, const Geometry& at) {
-    const double slip = slip_velocity(state, at);
-    return std::abs(slip) <= 8 * epsilon * std::abs(state.x_dot) ? 0.0 : slip;
-}
-
-State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode) {
-    return {theta, omega, x, at.h, slip + at.h * omega, at.dh * omega, mode};
-}
-
 SlidingEquation::SlidingEquation(const Scene& scene, double side)
-    : axes_{scene.a, scene.b},
+    : axes_(scene.axes()),
       side_(side),
       mass_(scene.mass),
       gyration2_(scene.body().gyration2),
-      weight_(scene.gravity * std::cos(scene.slope)),
-      pull_(scene.gravity * std::sin(scene.slope)),
+      gravity_(scene.ground_gravity()),
       normal_share_(std::isinf(scene.friction) ? 0.0 : 1.0),
       friction_share_(std::isinf(scene.friction) ? -side : -scene.friction * side) {}
 
@@ -45,7 +31,7 @@ SlidingEquation::LastMoment SlidingEquation::last_moment(const Vector<5>& y) con
     const double spin = -(at.h * friction_share_ + at.dh * normal_share_) / gyration2_;
     const double slip_by_turning = friction_share_ / spin - at.h;
     const double without_slip = y[1] - y[3] / slip_by_turning;
-    const double without_c = std::copysign(std::sqrt(-weight_ / at.ddh), y[1]);
+    const double without_c = std::copysign(std::sqrt(-gravity_.into / at.ddh), y[1]);
     const double impulse_to_stop = (without_slip - y[1]) / spin;
     const double impulse_to_jam =
         at.ddh < 0 && (without_c - y[1]) / spin >= 0 ? (without_c - y[1]) / spin : infinity;

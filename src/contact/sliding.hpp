@@ -9,15 +9,6 @@
 
 namespace rolling_ellipse {
 
-// Velocity along the ground of the material point at the contact.
-double slip_velocity(const State& state, const Geometry& at);
-
-// The same; within 8 ulp of none it is none, as in a scene.
-double noticeable_slip(const State& state, const Geometry& at);
-
-// The state of a body that keeps to the ground.
-State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode);
-
 enum SlideEnd { slip_vanishes, pressure_vanishes, jams };
 
 // y = (theta, omega, x, slip velocity), physics (51); side is the sign of the slip. With infinite
@@ -63,8 +54,7 @@ class SlidingEquation {
     double side_;
     double mass_;
     double gyration2_;
-    double weight_;          // g cos(alpha)
-    double pull_;            // g sin(alpha)
+    GroundGravity gravity_;
     double normal_share_;    // of the contact force: 1, and 0 with infinite friction
     double friction_share_;  // -mu s; -s with infinite friction
 };
@@ -72,7 +62,7 @@ class SlidingEquation {
 // The force along its direction cancels the acceleration -c of the gap: per mass N = c/B with B =
 // Gnn - mu s Gtn, physics (50); with infinite friction F = c/Gtn and N = 0, physics (52).
 inline SlidingEquation::Contact SlidingEquation::contact(const Geometry& at, double omega) const {
-    const double c = weight_ + at.ddh * omega * omega;
+    const double c = free_acceleration(at, gravity_.into, omega);
     const double gnn = 1 + at.dh * at.dh / gyration2_;
     const double gtn = at.h * at.dh / gyration2_;
     const double b = normal_share_ * gnn + friction_share_ * gtn;
@@ -86,7 +76,8 @@ inline Vector<5> SlidingEquation::slowed(const Vector<5>& y) const {
     const double normal = normal_share_ * c;  // B times the forces, physics (51, 54)
     const double friction = friction_share_ * c;
     const double omega_dot = -(at.h * friction + at.dh * normal) / gyration2_;
-    const double slip_dot = friction - at.h * omega_dot + b * (pull_ - at.dh * omega * omega);
+    const double slip_dot =
+        friction - at.h * omega_dot + b * (gravity_.along - at.dh * omega * omega);
     return {b * omega, omega_dot, b * (y[3] + at.h * omega), slip_dot, b};
 }
 

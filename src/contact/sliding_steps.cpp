@@ -64,7 +64,7 @@ Slowed slide_slowly(SteppedSliding& motion, const Tolerance& tolerance, long max
 }  // namespace
 
 SteppedSliding sliding_from(const Scene& scene, const State& start, double side) {
-    const Axes axes{scene.a, scene.b};
+    const Axes axes = scene.axes();
     const double slip = slip_velocity(start, geometry(axes, start.theta));
     const double turn = resolved(start.theta);
     const double quarters = std::nearbyint(turn / half_pi);

@@ -6,8 +6,6 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr double equilibrium_ulps = 8;
-
 // Carlson's symmetric integrals R_F(x, y, z) and R_D(x, y, z).
 struct CarlsonPair {
     double rf;
@@ -136,7 +134,7 @@ FlatView flat_view(const Axes& axes, double theta) {
 }
 
 bool is_equilibrium(const Geometry& at, double incline) {
-    return std::abs(at.dh - incline * at.h) <= equilibrium_ulps * epsilon * at.h;
+    return std::abs(at.dh - incline * at.h) <= equal_ulps * epsilon * at.h;
 }
 
 // physics (5)

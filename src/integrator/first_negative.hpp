@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "numerics/bisect.hpp"
 #include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
@@ -55,11 +56,7 @@ class FirstNegative {
     // The first negative double between a time that is in order and one that is not.
     template <class Margins>
     static double crossing(int i, double good, double bad, const Margins& margins) {
-        for (;;) {
-            const double middle = good + 0.5 * (bad - good);
-            if (!(good < middle && middle < bad)) return bad;
-            (margins(middle)[i] < 0 ? bad : good) = middle;
-        }
+        return bisect(good, bad, [&](double t) { return margins(t)[i] < 0; }).high;
     }
 
     // The bottom of the parabola through three looks, and of one through closer ones around it.

@@ -34,25 +34,24 @@ CoordinateState coordinate_state(const Axes& axes, const State& state) {
 
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force) {
-    const Axes axes{scene.a, scene.b};
+    const Axes axes = scene.axes();
     const Geometry at = geometry(axes, state.q[coordinate::theta]);
     const double omega_dot = -(at.h * force.friction + at.dh * force.normal) / scene.inertia;
     const SecondRates rates = contact_point_second_rates(axes, at, state.q[coordinate::psi],
                                                          state.q_dot[coordinate::theta], omega_dot);
+    const GroundGravity gravity = scene.ground_gravity();
     MultiplierSolution result;
-    result.q_ddot << force.friction / scene.mass + scene.gravity * std::sin(scene.slope),
-        force.normal / scene.mass - scene.gravity * std::cos(scene.slope), omega_dot, rates.psi,
-        rates.r;
+    result.q_ddot << force.friction / scene.mass + gravity.along,
+        force.normal / scene.mass - gravity.into, omega_dot, rates.psi, rates.r;
     result.multipliers = contact_multipliers(state.q, force);
     return result;
 }
 
 ConstrainedBody::ConstrainedBody(const Scene& scene)
-    : axes_{scene.a, scene.b},
+    : axes_(scene.axes()),
       mass_(scene.mass),
       gyration2_(scene.body().gyration2),
-      weight_(scene.gravity * std::cos(scene.slope)),
-      pull_(scene.gravity * std::sin(scene.slope)),
+      gravity_(scene.ground_gravity()),
       length_(std::max(scene.a, scene.b)) {}
 
 // Angles are measured as lengths, so that pivots compare like with like; f4 is always the last row.
@@ -105,7 +104,7 @@ void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
 // Newton's method, until the excess stops to shrink.
 void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy) const {
     constexpr int most_iterations = 20;
-    const double rate2 = std::hypot(weight_, pull_) / length_;
+    const double rate2 = std::hypot(gravity_.into, gravity_.along) / length_;
     project(q, q_dot);
     double last = infinity;
     for (int i = 0; i < most_iterations; ++i) {

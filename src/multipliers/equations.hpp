@@ -45,7 +45,7 @@ class ConstrainedBody {
 
     // M/m, Q/m.
     Coordinates specific_mass() const { return {1.0, 1.0, gyration2_, 0.0, 0.0}; }
-    Coordinates specific_force() const { return {pull_, -weight_, 0.0, 0.0, 0.0}; }
+    Coordinates specific_force() const { return {gravity_.along, -gravity_.into, 0.0, 0.0, 0.0}; }
 
     // The nearest state, in the kinetic metric, that meets the constraints.
     void project(Coordinates& q, Coordinates& q_dot) const;
@@ -71,8 +71,7 @@ class ConstrainedBody {
     Axes axes_;
     double mass_;
     double gyration2_;
-    double weight_;  // g cos(alpha)
-    double pull_;    // g sin(alpha)
+    GroundGravity gravity_;
     double length_;  // unit in which angles weigh as much as ways
 };
 

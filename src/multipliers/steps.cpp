@@ -160,7 +160,7 @@ double reduce(Point<N>& point) {
 
 CoordinateStart coordinate_start(const Scene& scene, const State& start) {
     const double rest = within_a_turn(start.theta);
-    const KinematicState state = kinematics({scene.a, scene.b}, rest, start.omega);
+    const KinematicState state = kinematics(scene.axes(), rest, start.omega);
     CoordinateStart result{
         {state.q, state.q_dot}, two_sum(start.theta, -rest), start.mode == Mode::rest};
     result.state.q[coordinate::x] = start.x;

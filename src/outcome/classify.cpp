@@ -17,7 +17,8 @@ namespace {
 // h'' = rho - h.
 Sign pressed_by_gravity(const Body& body, const Geometry& at, double omega) {
     const double omega2 = square(omega);
-    return sign({body.gravity + at.ddh * omega2, body.gravity + (at.rho + at.h) * omega2});
+    return sign(
+        {free_acceleration(at, body.gravity, omega), body.gravity + (at.rho + at.h) * omega2});
 }
 
 // Where the body passes the tip or turns back, as far as rounding can tell.
@@ -38,9 +39,9 @@ Sign sign_from(const Polynomial<N>& law, double x) {
 }  // namespace
 
 Outcome classify(const Body& body, double friction, double theta, double omega) {
-    omega = noticeable(omega);
-    const FlatView at = flat_view({body.a, body.b}, theta);
-    const Geometry here = geometry({body.a, body.b}, theta);
+    omega = zero_if_negligible(omega);
+    const FlatView at = flat_view(body.axes(), theta);
+    const Geometry here = geometry(body.axes(), theta);
     if (omega == 0 && is_equilibrium(here)) return Outcome::rests;
     if (at.c2 == 0) return Outcome::rolls_over;
 

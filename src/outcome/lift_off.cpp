@@ -8,6 +8,7 @@
 #include "contact/sliding_steps.hpp"
 #include "contact/units.hpp"
 #include "integrator/runge_kutta.hpp"
+#include "numerics/bisect.hpp"
 #include "proof/certificate.hpp"
 
 namespace rolling_ellipse {
@@ -29,8 +30,8 @@ Scene level_scene(const Body& body, double friction) {
 // to the tip h'' falls, so that c h'^2 = g h'^2 + h'' h'^2 omega^2 falls as well, but to g h'^2
 // where omega vanishes.
 bool reaches_the_tip(const Scene& scene, const State& start) {
-    const FlatView at = flat_view({scene.a, scene.b}, start.theta);
-    const double h = geometry({scene.a, scene.b}, start.theta).h;
+    const FlatView at = flat_view(scene.axes(), start.theta);
+    const double h = geometry(scene.axes(), start.theta).h;
     const double to_tip = at.c2 * square(at.cos) / (at.long_axis + h);
     return square(start.z_dot) >= 2 * scene.gravity * to_tip;
 }
@@ -52,7 +53,7 @@ class Follower {
   public:
     Follower(const Scene& scene, const Checkpoint& checkpoint)
         : scene_(scene),
-          axes_{scene.a, scene.b},
+          axes_(scene.axes()),
           flat_(scene.a >= scene.b ? 0.0 : half_pi),
           tip_(flat_ + half_pi),
           checkpoint_(checkpoint) {}
@@ -151,11 +152,7 @@ double too_slow(const Body& body, const FlatView& at) {
 // The first double above `low` with another fate than there, up to `high`, which has one.
 double change_between(Follower& body, double low, double high) {
     const Fate before = body.fate(low);
-    for (;;) {
-        const double middle = 0.5 * (low + high);
-        if (!(low < middle && middle < high)) return high;
-        (body.fate(middle) == before ? low : high) = middle;
-    }
+    return bisect(low, high, [&](double speed) { return body.fate(speed) != before; }).high;
 }
 
 // Without jams a body that leaves does so at any higher speed: coarse steps find the threshold.
@@ -199,7 +196,7 @@ LiftOff scanned(Follower& body, double low) {
 
 LiftOff lift_off(const Body& body, double friction, double slip_speed, double painleve_friction,
                  const Checkpoint& checkpoint) {
-    const FlatView at = flat_view({body.a, body.b}, 0.0);
+    const FlatView at = flat_view(body.axes(), 0.0);
     if (at.c2 == 0) return {infinity, {}};
     const Scene level = level_scene(body, friction);
     const Units units = natural_units(level);

@@ -162,13 +162,13 @@ Onset painleve(const Shape& shape) {
 }  // namespace
 
 double roll_over_speed(const Body& body) {
-    const FlatView at = flat_view({body.a, body.b}, 0.0);
+    const FlatView at = flat_view(body.axes(), 0.0);
     const double flat_inertia = body.gyration2 + square(at.short_axis);
     return std::sqrt(2 * body.gravity * (at.long_axis - at.short_axis) / flat_inertia);
 }
 
 Thresholds thresholds(const Body& body, double friction, const Checkpoint& checkpoint) {
-    const FlatView at = flat_view({body.a, body.b}, 0.0);
+    const FlatView at = flat_view(body.axes(), 0.0);
     const double unit = at.long_axis;
     const Shape shape{at.short_axis / unit, body.gyration2 / square(unit), at.c2 / square(unit)};
     const double flat_inertia = body.gyration2 + square(at.short_axis);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proof/forces.hpp"
+#include "numerics/bisect.hpp"
+#include "proof/law.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -27,20 +28,18 @@ Start start_on_range(const FlatView& at, const EnergyRange& range, const Body& b
             rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
 }
 
-// What is left of the law of the contact, physics (25).
-double slack(const RollingForces& forces, double friction) {
-    if (std::isinf(friction)) return forces.normal;
-    return friction * forces.normal - std::abs(forces.friction);
+double margin(const RollingForces& forces, double friction) {
+    return law_margin({forces.normal, forces.friction}, friction);
 }
 
-double slack_at(const EnergyRange& range, double friction, double angle) {
-    return slack(rolling_forces_at_angle(range, angle), friction);
+double margin_at(const EnergyRange& range, double friction, double angle) {
+    return margin(rolling_forces_at_angle(range, angle), friction);
 }
 
 // Does the law hold at the start? Within rounding of its end what counts is where the motion goes.
 bool holds_at_start(const EnergyRange& range, double friction, const Start& start) {
     if (friction == 0) return false;
-    const double here = slack(start.forces, friction);
+    const double here = margin(start.forces, friction);
     const double scale = std::isinf(friction)
                              ? std::abs(start.forces.normal)
                              : friction * std::abs(start.forces.normal) + start.forces.friction;
@@ -49,7 +48,7 @@ bool holds_at_start(const EnergyRange& range, double friction, const Start& star
     const double angle = std::abs(start.angle);
     const double top = rolling_forces(range, 1.0).angle;
     const double next = start.angle >= 0 ? angle + ahead * (top - angle) : angle * (1 - ahead);
-    return slack_at(range, friction, next) > 0;
+    return margin_at(range, friction, next) > 0;
 }
 
 // A zero of the law, found in its squared form, refined in the plain one: near the tip both forces
@@ -61,15 +60,13 @@ double refined_zero(const EnergyRange& range, double friction, double angle, dou
     for (double reach = epsilon; reach < 1; reach *= 4) {
         low = std::max(angle * (1 - reach), from);
         high = std::min(angle * (1 + reach), to);
-        if ((slack_at(range, friction, low) > 0) != (slack_at(range, friction, high) > 0)) break;
+        if ((margin_at(range, friction, low) > 0) != (margin_at(range, friction, high) > 0)) break;
     }
-    const bool falls = slack_at(range, friction, low) > 0;
-    if (falls == (slack_at(range, friction, high) > 0)) return angle;
-    for (;;) {
-        const double middle = 0.5 * (low + high);
-        if (middle <= low || middle >= high) return middle;
-        ((slack_at(range, friction, middle) > 0) == falls ? low : high) = middle;
-    }
+    const bool falls = margin_at(range, friction, low) > 0;
+    if (falls == (margin_at(range, friction, high) > 0)) return angle;
+    const auto is_high = [&](double at) { return (margin_at(range, friction, at) > 0) != falls; };
+    const Bracket zero = bisect(low, high, is_high);
+    return 0.5 * (zero.low + zero.high);
 }
 
 // Where the law may be broken, as angles from the flat position, ascending: its zeros, and those of
@@ -148,7 +145,7 @@ EndOfRolling end_of_rolling(const EnergyRange& range, const ForcePolynomials& po
 
 // A circle, or a body that stays where it is, needs no friction.
 bool rolls_freely(const Body& body, const FlatView& at, double theta, double omega) {
-    return at.c2 == 0 || (omega == 0 && is_equilibrium(geometry({body.a, body.b}, theta)));
+    return at.c2 == 0 || (omega == 0 && is_equilibrium(geometry(body.axes(), theta)));
 }
 
 }  // namespace
@@ -161,7 +158,7 @@ Polynomial<10> grip_polynomial(const ForcePolynomials& p, double friction) {
 }
 
 EndOfRolling end_of_rolling(const Body& body, double friction, double theta, double omega) {
-    const FlatView at = flat_view({body.a, body.b}, theta);
+    const FlatView at = flat_view(body.axes(), theta);
     if (rolls_freely(body, at, theta, omega)) return {Validity::valid};
     const EnergyRange range = energy_range(at, body, omega);
     return end_of_rolling(range, force_polynomials(range), friction, theta,
@@ -176,7 +173,7 @@ double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
 Certificate certify_rolling(const Body& body, double mass, double friction, double theta,
                             double omega) {
     const double weight = mass * body.gravity;
-    const FlatView at = flat_view({body.a, body.b}, theta);
+    const FlatView at = flat_view(body.axes(), theta);
     if (rolls_freely(body, at, theta, omega)) {
         const double angle = theta_of(body, std::atan2(std::abs(at.sin), at.cos));
         return {{Validity::valid}, weight, angle, 0.0, angle};

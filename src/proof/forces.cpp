@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proof/law.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
@@ -74,11 +76,7 @@ ForcePolynomials force_polynomials(const EnergyRange& range) {
     return p;
 }
 
-// physics (25)
-double RollingForces::needed() const {
-    if (normal > 0) return friction / normal;
-    return friction == 0 && normal == 0 ? 0.0 : infinity;
-}
+double RollingForces::needed() const { return friction_needed({normal, friction}); }
 
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2) {
     const double b = range.short_axis;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "integrator/first_negative.hpp"
+#include "proof/law.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -26,24 +27,14 @@ class Watcher {
     const ContactWatch& result() const { return watch_; }
 
   private:
-    // What is left until rolling ends: of N, and of the friction where there is a limit to it:
-    // physics (25).
-    double margin(const ContactForce& force) const {
-        if (std::isinf(friction_)) return force.normal;
-        return friction_ * force.normal - std::abs(force.friction);
-    }
-
     double margin_at(double t) const {
         ContactForce force{};
         forces_at_(&t, 1, &force);
-        return margin(force);
+        return law_margin(force, friction_);
     }
 
     void note_extremes(double t, const ContactForce& force) {
-        const double friction = std::abs(force.friction);
-        const double needed = friction == 0      ? 0.0
-                              : force.normal > 0 ? friction / force.normal
-                                                 : infinity;
+        const double needed = friction_needed(force);
         if (force.normal < watch_.smallest_normal_force) {
             watch_.smallest_normal_force = force.normal;
             watch_.smallest_normal_force_time = t;

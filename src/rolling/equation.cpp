@@ -5,13 +5,12 @@
 
 namespace rolling_ellipse {
 RollingEquation::RollingEquation(const Body& body, double slope)
-    : axes_{body.a, body.b},
+    : axes_(body.axes()),
       a2_(body.a * body.a),
       b2_(body.b * body.b),
       c2_((body.a - body.b) * (body.a + body.b)),
       gyration2_(body.gyration2),
-      weight_(body.gravity * std::cos(slope)),
-      pull_(body.gravity * std::sin(slope)),
+      gravity_(ground_gravity(body.gravity, slope)),
       long_axis_(std::max(body.a, body.b)) {}
 
 // physics (19), with D' = 2 h' rho and rho' = -3 rho h'/h.
@@ -19,9 +18,10 @@ Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {
     const Geometry at = geometry(axes_, y[0]);
     const double omega = y[1];
     const double inertia = gyration2_ + at.h * at.h + at.dh * at.dh;
-    const double load = weight_ + at.rho * omega * omega;
+    const double load = gravity_.into + at.rho * omega * omega;
     const double rho_slope = -3 * at.rho * at.dh / at.h;
-    const double by_theta = at.dh * pull_ - at.ddh * load - at.dh * rho_slope * omega * omega -
+    const double by_theta = at.dh * gravity_.along - at.ddh * load -
+                            at.dh * rho_slope * omega * omega -
                             2 * at.dh * at.rho * acceleration(at.sin, at.cos, omega);
     const double by_omega = -2 * at.dh * at.rho * omega;
     Matrix<2> jacobian;
@@ -30,10 +30,7 @@ Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {
 }
 
 RollingDynamics::RollingDynamics(const Scene& scene)
-    : equation_(scene.body(), scene.slope),
-      mass_(scene.mass),
-      weight_(scene.gravity * std::cos(scene.slope)),
-      pull_(scene.gravity * std::sin(scene.slope)) {}
+    : equation_(scene.body(), scene.slope), mass_(scene.mass), gravity_(scene.ground_gravity()) {}
 
 RollingDynamics::Accelerations RollingDynamics::accelerations(const Geometry& at,
                                                               double omega) const {
@@ -43,11 +40,11 @@ RollingDynamics::Accelerations RollingDynamics::accelerations(const Geometry& at
 }
 
 ContactForce RollingDynamics::force(const Accelerations& of_centre) const {
-    return {mass_ * (weight_ + of_centre.z), mass_ * (of_centre.x - pull_)};
+    return {mass_ * (gravity_.into + of_centre.z), mass_ * (of_centre.x - gravity_.along)};
 }
 
 ContactForce rolling_force(const Scene& scene, double theta, double omega) {
-    return RollingDynamics(scene).force(geometry({scene.a, scene.b}, theta), omega);
+    return RollingDynamics(scene).force(geometry(scene.axes(), theta), omega);
 }
 
 // The multipliers of the gradients of f1 ... f4: lambda1 = F, lambda2 = N, and from the rows of psi
@@ -68,7 +65,7 @@ SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, dou
 }
 
 RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
-    const Axes axes{scene.a, scene.b};
+    const Axes axes = scene.axes();
     const Geometry at = geometry(axes, theta);
     const RollingDynamics dynamics(scene);
     const RollingDynamics::Accelerations acceleration = dynamics.accelerations(at, omega);

@@ -23,7 +23,9 @@ class RollingEquation {
     Vector<2> operator()(double t, const Vector<2>& y) const;
     Matrix<2> jacobian(double t, const Vector<2>& y) const;
     Vector<2> mass() const { return Vector<2>::Ones(); }
-    Vector<2> typical() const { return {1.0, std::sqrt(std::hypot(weight_, pull_) / long_axis_)}; }
+    Vector<2> typical() const {
+        return {1.0, std::sqrt(std::hypot(gravity_.into, gravity_.along) / long_axis_)};
+    }
 
   private:
     Axes axes_;
@@ -31,8 +33,7 @@ class RollingEquation {
     double b2_;
     double c2_;  // a^2 - b^2
     double gyration2_;
-    double weight_;  // g cos(alpha)
-    double pull_;    // g sin(alpha)
+    GroundGravity gravity_;
     double long_axis_;
 };
 
@@ -41,7 +42,7 @@ class RollingEquation {
 inline double RollingEquation::acceleration(double s, double c, double omega) const {
     const double u = a2_ * s * s + b2_ * c * c;
     const double p = c2_ * s * c;
-    const double drive = u * std::sqrt(u) * (u * pull_ - p * weight_);
+    const double drive = u * std::sqrt(u) * (u * gravity_.along - p * gravity_.into);
     const double turning = p * a2_ * b2_ * omega * omega;
     return (drive - turning) / (u * (u * (gyration2_ + u) + p * p));
 }
@@ -49,17 +50,6 @@ inline double RollingEquation::acceleration(double s, double c, double omega) co
 inline Vector<2> RollingEquation::operator()(double, const Vector<2>& y) const {
     return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
 }
-
-struct ContactForce {
-    double normal;    // [N]
-    double friction;  // [N], on the body, along x
-};
-
-// A state of a body on or over the ground, and the force of the ground on it.
-struct ContactSample {
-    State state;
-    ContactForce force;
-};
 
 // Everything that rolling does at a place: physics (20), Newton's law for the centre.
 class RollingDynamics {
@@ -80,8 +70,7 @@ class RollingDynamics {
   private:
     RollingEquation equation_;
     double mass_;
-    double weight_;  // g cos(alpha)
-    double pull_;    // g sin(alpha)
+    GroundGravity gravity_;
 };
 
 ContactForce rolling_force(const Scene& scene, double theta, double omega);

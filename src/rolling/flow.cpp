@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numerics/quadrature.hpp"
+#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -101,12 +102,12 @@ EnergyHeight energy_height(const FlatView& at, double gyration2, double gravity,
 RollingFlow rolling_flow(const Body& body, double theta, double omega, double x) {
     RollingFlow flow{};
     flow.theta = theta;
-    flow.omega = omega = noticeable(omega);
+    flow.omega = omega = zero_if_negligible(omega);
     flow.x = x;
     flow.gravity = body.gravity;
-    flow.start = flat_view({body.a, body.b}, theta);
+    flow.start = flat_view(body.axes(), theta);
     const FlatView& at = flow.start;
-    if (omega == 0 && is_equilibrium(geometry({body.a, body.b}, theta))) {
+    if (omega == 0 && is_equilibrium(geometry(body.axes(), theta))) {
         flow.kind = MotionKind::rest;
         return flow;
     }

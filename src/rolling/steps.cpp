@@ -45,7 +45,7 @@ FlowSample flow_sample(const SteppedRolling& motion, const Knot<2>& knot, const 
 }  // namespace
 
 SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings) {
-    const Axes axes{scene.a, scene.b};
+    const Axes axes = scene.axes();
     const double rest = within_a_turn(start.theta);
     SteppedRolling motion{RollingEquation(scene.body(), scene.slope),
                           axes,

@@ -147,7 +147,7 @@ Reaction reaction_to(const Scene& scene, const Contact& c, double restitution) {
 InitialState initial_state(const Scene& scene) {
     InitialState result{state_before_impulse(scene), 0.0, 0.0, scene.omega};
     State& state = result.state;
-    const Geometry at = geometry(Axes{scene.a, scene.b}, state.theta);
+    const Geometry at = geometry(scene.axes(), state.theta);
     const bool touching = state.z == at.h;
     if (scene.impulse) {
         const Impulse& j = *scene.impulse;  // physics (38)
@@ -169,7 +169,7 @@ InitialState initial_state(const Scene& scene) {
     result.reaction_x = reaction.tangential;
     result.reaction_z = reaction.normal;
     apply(scene, at, reaction, state);
-    state.omega = noticeable(state.omega);
+    state.omega = zero_if_negligible(state.omega);
     state.mode = reaction.sticks ? Mode::rolling : Mode::sliding;
     if (state.mode == Mode::rolling && state.omega == 0 &&
         is_equilibrium(at, std::tan(scene.slope))) {
@@ -179,7 +179,7 @@ InitialState initial_state(const Scene& scene) {
 }
 
 State after_collision(const Scene& scene, const State& before) {
-    const Geometry at = geometry(Axes{scene.a, scene.b}, before.theta);
+    const Geometry at = geometry(scene.axes(), before.theta);
     State after = before;
     const Contact c = contact(scene, at, before);
     if (c.u < 0) apply(scene, at, reaction_to(scene, c, scene.restitution), after);

@@ -1,62 +1,21 @@
 #include "scene/scene.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <stdexcept>
 
 #include "geometry/ellipse.hpp"
+#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-// Within these no product of four lengths, an energy and gravity leaves the range of doubles.
-constexpr double smallest = 1e-30;
-constexpr double largest = 1e30;
-constexpr double largest_number = 1e50;  // of positions, velocities, impulses
 // Of k^2 beside the long semi-axis squared: below the least, k^2 is lost beside h^2 in D.
 constexpr double least_inertia = 1e-15;
 constexpr double most_inertia = 1e30;
 constexpr double energy_limit = 1e100;  // of a kinetic energy beside m g times that axis
 constexpr double aspect_limit = 1e3;
-constexpr double touching_ulps = 8;
-
-void require_finite(const std::string& name, const std::string& unit, double value) {
-    if (!(std::abs(value) <= largest_number)) {
-        refuse(name, "a finite number" + unit + " of at most 1e50", value);
-    }
-}
-
-void require_positive(const std::string& name, const std::string& kind, double value) {
-    if (!(value > 0 && std::isfinite(value))) {
-        refuse(name, "a positive finite " + kind, value);
-    }
-    if (value < smallest || value > largest) {
-        refuse(name, "a " + kind + " between 1e-30 and 1e30", value);
-    }
-}
-
-bool nearly_equal(double value, double target) {
-    const double ulp =
-        std::max(epsilon * std::abs(target), std::numeric_limits<double>::denorm_min());
-    return std::abs(value - target) <= touching_ulps * ulp;
-}
 
 }  // namespace
-
-std::string text(double value) {
-    if (std::isnan(value)) return "nan";
-    if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-    char buffer[40];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-    std::string digits(buffer, end);
-    if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
-    return digits;
-}
-
-void refuse(const std::string& name, const std::string& requirement, double value) {
-    throw std::invalid_argument(name + " must be " + requirement + ", got " + text(value));
-}
 
 void validate_length(const std::string& name, double value) {
     require_positive(name, "length [m]", value);
@@ -146,8 +105,9 @@ void validate(const Scene& scene) {
 }
 
 State state_before_impulse(const Scene& scene) {
-    const Geometry at = geometry({scene.a, scene.b}, scene.theta);
-    State state{scene.theta, noticeable(scene.omega), scene.x, at.h, 0.0, 0.0, Mode::flight};
+    const Geometry at = geometry(scene.axes(), scene.theta);
+    State state{scene.theta, zero_if_negligible(scene.omega), scene.x, at.h, 0.0, 0.0,
+                Mode::flight};
     const double z = scene.z.value_or(at.h);
     if (!nearly_equal(z, at.h)) {
         if (z < at.h)

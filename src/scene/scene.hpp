@@ -1,11 +1,12 @@
 // What is physically there, as plain numbers, and the rules these numbers must obey.
 #pragma once
 
-#include <cstdint>
+#include <cmath>
 #include <optional>
 #include <string>
 
-#include "numerics/numbers.hpp"
+#include "geometry/ellipse.hpp"
+#include "scene/state.hpp"
 
 namespace rolling_ellipse {
 
@@ -15,6 +16,8 @@ struct Body {
     double b;
     double gyration2;
     double gravity;
+
+    Axes axes() const { return {a, b}; }
 };
 
 // Applied impulse [N s] at the body point (dx, dz) [m] from the centre, in ground axes.
@@ -25,17 +28,15 @@ struct Impulse {
     double dz = 0.0;
 };
 
-enum class Mode : std::int8_t { rolling, sliding, flight, rest };
-
-struct State {
-    double theta;
-    double omega;
-    double x;
-    double z;
-    double x_dot;
-    double z_dot;
-    Mode mode;
+// Gravity as the ground has it: into it, g cos(slope), and along it, g sin(slope) [m/s^2].
+struct GroundGravity {
+    double into;
+    double along;
 };
+
+inline GroundGravity ground_gravity(double gravity, double slope) {
+    return {gravity * std::cos(slope), gravity * std::sin(slope)};
+}
 
 struct Scene {
     double a;
@@ -55,20 +56,13 @@ struct Scene {
     std::optional<double> z_dot;
     std::optional<Impulse> impulse;
 
+    Axes axes() const { return {a, b}; }
     Body body() const { return {a, b, inertia / mass, gravity}; }
+    GroundGravity ground_gravity() const { return rolling_ellipse::ground_gravity(gravity, slope); }
 };
 
 // physics (16)
 inline double uniform_disc_gyration2(double a, double b) { return (a * a + b * b) / 4; }
-
-// Slower than 1e-100 rad/s is at rest: its energy is no longer a normal double.
-inline double noticeable(double omega) { return omega > -1e-100 && omega < 1e-100 ? 0.0 : omega; }
-
-// "name must be requirement, got value" as the exception that Python shows as ValueError.
-[[noreturn]] void refuse(const std::string& name, const std::string& requirement, double value);
-
-// A double as Python prints it.
-std::string text(double value);
 
 // Throw std::invalid_argument naming the argument, what was required and what came.
 void validate_length(const std::string& name, double value);

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <stdexcept>
 
+#include "scene/refuse.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {

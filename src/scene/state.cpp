@@ -1,0 +1,28 @@
+#include "scene/state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rolling_ellipse {
+
+bool nearly_equal(double value, double target) {
+    const double ulp =
+        std::max(epsilon * std::abs(target), std::numeric_limits<double>::denorm_min());
+    return std::abs(value - target) <= equal_ulps * ulp;
+}
+
+double slip_velocity(const State& state, const Geometry& at) {
+    return state.x_dot - at.h * state.omega;
+}
+
+double slip_beyond_rounding(const State& state, const Geometry& at) {
+    const double slip = slip_velocity(state, at);
+    return std::abs(slip) <= equal_ulps * epsilon * std::abs(state.x_dot) ? 0.0 : slip;
+}
+
+State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode) {
+    return {theta, omega, x, at.h, slip + at.h * omega, at.dh * omega, mode};
+}
+
+}  // namespace rolling_ellipse

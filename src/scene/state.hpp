@@ -1,0 +1,55 @@
+// The state of a body on or over the ground, and the force of the ground on it.
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/ellipse.hpp"
+
+namespace rolling_ellipse {
+
+enum class Mode : std::int8_t { rolling, sliding, flight, rest };
+
+struct State {
+    double theta;
+    double omega;
+    double x;
+    double z;
+    double x_dot;
+    double z_dot;
+    Mode mode;
+};
+
+struct ContactForce {
+    double normal;    // [N]
+    double friction;  // [N], on the body, along x
+};
+
+struct ContactSample {
+    State state;
+    ContactForce force;
+};
+
+// An angular velocity below 1e-100 rad/s counts as rest: its energy is no longer a normal double.
+inline double zero_if_negligible(double omega) {
+    return omega > -1e-100 && omega < 1e-100 ? 0.0 : omega;
+}
+
+// Whether two numbers are equal but for the rounding of a few operations.
+bool nearly_equal(double value, double target);
+
+// Velocity along the ground of the material point at the contact.
+double slip_velocity(const State& state, const Geometry& at);
+
+// The slip velocity, and zero where it is rounding beside the velocity of the centre.
+double slip_beyond_rounding(const State& state, const Geometry& at);
+
+// The state of a body that keeps to the ground.
+State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode);
+
+// The acceleration c into the ground that the lowest point has without a contact force: gravity
+// into the ground and h'' omega^2, physics (43, 53).
+inline double free_acceleration(const Geometry& at, double gravity_into_ground, double omega) {
+    return gravity_into_ground + at.ddh * omega * omega;
+}
+
+}  // namespace rolling_ellipse
