@@ -22,7 +22,7 @@ std::string why_not_rolling(const Scene& scene, const State& start) {
     if (start.mode == Mode::flight) return "the body is in the air";
     if (start.mode == Mode::sliding) {
         return "the body slides with " +
-               brief(start.x_dot - geometry(scene.axes(), start.theta).h * start.omega) +
+               brief(slip_velocity(start, geometry(scene.axes(), start.theta))) +
                " m/s at the contact";
     }
     return {};
@@ -33,16 +33,11 @@ std::string why_no_proof(const Scene& scene, const State& start) {
     return why_not_rolling(scene, start);
 }
 
-std::string rolling_ends(double t) {
-    return "rolling is true until t = " + brief(t) +
-           " s only; what follows obeys the rolling equation, not the ground";
-}
-
-std::string why_stopped(Ending ending, const Settings& settings, double t, double t_end) {
+std::string why_ended(Ending ending, const Settings& settings, double t, double t_end) {
     const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
     switch (ending) {
-        case Ending::reached:
-        case Ending::stopped:
+        case Ending::completed:
+        case Ending::event:
             return {};
         case Ending::max_steps:
             return "max_steps = " + std::to_string(settings.max_steps) + " steps ended" + place +
@@ -53,30 +48,20 @@ std::string why_stopped(Ending ending, const Settings& settings, double t, doubl
         case Ending::step_too_large:
             return "a step of " + brief(*settings.step) + " s cannot be solved" + place +
                    ": take smaller ones";
-    }
-    return {};
-}
-
-std::string why_stopped(ContactEnding ending, const Settings& settings, double t, double t_end) {
-    const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
-    switch (ending) {
-        case ContactEnding::reached:
-            return {};
-        case ContactEnding::jammed:
+        case Ending::max_events:
+            return "max_events = " + std::to_string(settings.max_events) + " events ended" + place +
+                   ": allow more of them";
+        case Ending::jammed:
             return "the sliding body jams" + place +
                    ": friction would have to push it into the ground (Painleve), and no motion of "
                    "a rigid body goes on";
-        case ContactEnding::undetermined:
+        case Ending::undetermined:
             return "two motions of the sliding body go on" + place +
                    ": it flies off, or its contact is pressed by the friction that it needs for "
                    "that (Painleve), and rigid mechanics does not choose";
-        case ContactEnding::max_events:
-            return "max_events = " + std::to_string(settings.max_events) + " events ended" + place +
-                   ": allow more of them";
-        case ContactEnding::max_steps:
-            return why_stopped(Ending::max_steps, settings, t, t_end);
-        case ContactEnding::step_too_small:
-            return why_stopped(Ending::step_too_small, settings, t, t_end);
+        case Ending::validity_lost:
+            return "rolling is true until t = " + brief(t) +
+                   " s only; what follows obeys the rolling equation, not the ground";
     }
     return {};
 }
@@ -104,8 +89,7 @@ std::string reason(const Scene& scene, const State& start, const Certificate& c)
                                  "), the friction coefficient " + brief(scene.friction);
     if (c.end.validity != Validity::valid && !c.end.angle) {
         return "rolling: holds from the start on, towards the tip it never reaches; before the "
-               "start "
-               "the same motion would break it; on the whole motion " +
+               "start the same motion would break it; on the whole motion " +
                extremes;
     }
     switch (c.end.validity) {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "contact/contact.hpp"
+#include "integrator/system.hpp"
 #include "proof/certificate.hpp"
 #include "proof/watch.hpp"
 
@@ -12,7 +12,7 @@ namespace rolling_ellipse {
 // A number with six digits.
 std::string brief(double value);
 
-// Why a start does not roll, and why nothing is proved of its motion; empty where it does and is.
+// Why a start does not roll, and why nothing is proved of its motion.
 std::string why_not_rolling(const Scene& scene, const State& start);
 std::string why_no_proof(const Scene& scene, const State& start);
 
@@ -20,10 +20,7 @@ std::string why_no_proof(const Scene& scene, const State& start);
 std::string reason(const Scene& scene, const State& start, const Certificate& certificate);
 std::string reason(const Scene& scene, const ContactWatch& watch);
 
-// Why an integration stopped at t, before its end, and what helps; empty where it did not.
-std::string why_stopped(Ending ending, const Settings& settings, double t, double t_end);
-std::string why_stopped(ContactEnding ending, const Settings& settings, double t, double t_end);
-
-std::string rolling_ends(double t);
+// Why a motion ended at t, before its last time, and what helps; empty where it did not.
+std::string why_ended(Ending ending, const Settings& settings, double t, double t_end);
 
 }  // namespace rolling_ellipse

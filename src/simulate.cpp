@@ -29,114 +29,97 @@ Settings chosen(Settings settings, const Scene& scene, Validity validity) {
 std::string in_coordinates(const std::string& reason) { return "multipliers, " + reason; }
 std::string in_contact(const std::string& reason) { return "contact (" + reason + ")"; }
 
-Status status(Ending ending) {
-    switch (ending) {
-        case Ending::reached:
-        case Ending::stopped:
-            return Status::completed;
-        case Ending::max_steps:
-            return Status::max_steps;
-        case Ending::step_too_small:
-            return Status::step_too_small;
-        case Ending::step_too_large:
-            return Status::step_too_large;
-    }
-    return Status::completed;
-}
-
 void end_validity(double t, double t_end, Solution& solution) {
     solution.valid_until = t;
-    if (solution.status == Status::completed && t < t_end) {
-        solution.status = Status::validity_lost;
-        solution.message = rolling_ends(t);
+    if (solution.ending == Ending::completed && t < t_end) {
+        solution.ending = Ending::validity_lost;
+        solution.message = why_ended(Ending::validity_lost, {}, t, t_end);
     }
 }
 
 // On level ground the certificate knows for how long rolling is true.
-void judge_by_proof(const Scene& scene, const CertifiedScene& certified, double t_end,
-                    Solution& solution) {
-    const State& start = certified.start.state;
+void judge_by_proof(const CertifiedScene& certified, double t_end, Solution& solution) {
     const EndOfRolling& end = certified.certificate.end;
     solution.reason = certified.reason;
     if (!end.angle) return;
-    const RollingFlow flow = rolling_flow(scene.body(), start.theta, start.omega, start.x);
-    end_validity(time_of_end(flow, end), t_end, solution);
+    const auto* flow = std::get_if<RollingFlow>(&solution.motion.segments.front().law);
+    const double ends = time_of_end(flow ? *flow : rolling_flow(*certified.rolling), end);
+    end_validity(ends, t_end, solution);
 }
 
 // On a slope, and where the constraints may be broken, the motion has to be watched.
-void judge_by_watch(const Scene& scene, const Settings& settings, double t_end,
-                    const Checkpoint& checkpoint, Solution& solution) {
+void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoint,
+                    Solution& solution) {
+    const std::vector<double> knots = knot_times(solution.motion);
+    const Sampler sampler(solution.motion, solution.followed_until, knots.size());
+    std::vector<ContactSample> samples;
     const auto forces = [&](const double* times, std::size_t n, ContactForce* found) {
-        contact_forces(solution, scene, settings, times, n, found);
+        samples.resize(n);
+        sampler(times, n, samples.data());
+        for (std::size_t i = 0; i < n; ++i) found[i] = samples[i].force;
     };
-    const ContactWatch watch =
-        watch_contact(scene.friction, knot_times(solution), forces, checkpoint);
+    const ContactWatch watch = watch_contact(scene.friction, knots, forces, checkpoint);
     solution.reason = reason(scene, watch);
     end_validity(watch.holds_until, t_end, solution);
 }
 
-Solution exact_rolling(const Scene& scene, const State& start, double t_end) {
-    const RollingFlow flow = rolling_flow(scene.body(), start.theta, start.omega, start.x);
+Solution exact_rolling(const Scene& scene, const CertifiedScene& certified, double t_end) {
+    const RollingFlow flow = rolling_flow(*certified.rolling, certified.start.state.x);
     validate_time(t_end, longest_time(flow));
-    Solution solution{flow};
+    Solution solution{single(scene, flow)};
     solution.followed_until = t_end;
     return solution;
 }
 
-template <class Integration>
-Solution stepped(Integration integration, const Settings& settings, double t_end) {
-    Solution solution{std::move(integration.motion), settings.model, settings.method};
-    solution.counts = integration.counts;
-    solution.status = status(integration.ending);
-    solution.followed_until =
-        integration.ending == Ending::reached ? t_end : knot_times(solution).back();
-    solution.message = why_stopped(integration.ending, settings, solution.followed_until, t_end);
-    return solution;
+template <class Law>
+Integration<Motion> as_motion(const Scene& scene, Integration<Law> found) {
+    return {single(scene, std::move(found.motion)), found.ending, found.followed_until,
+            found.counts};
 }
 
-Status status(ContactEnding ending) {
-    switch (ending) {
-        case ContactEnding::reached:
-            return Status::completed;
-        case ContactEnding::jammed:
-        case ContactEnding::undetermined:
-            return Status::jammed;
-        case ContactEnding::max_events:
-            return Status::max_events;
-        case ContactEnding::max_steps:
-            return Status::max_steps;
-        case ContactEnding::step_too_small:
-            return Status::step_too_small;
-    }
-    return Status::completed;
-}
-
-Solution contact(const Scene& scene, const CertifiedScene& certified, const Settings& settings,
-                 double t_end, const Checkpoint& checkpoint) {
-    ContactIntegration found =
-        integrate_contact(scene, certified.start.state, settings, t_end, checkpoint);
+Solution integrated(Integration<Motion> found, const Settings& settings, double t_end) {
     Solution solution{std::move(found.motion), settings.model, settings.method};
     solution.counts = found.counts;
-    solution.status = status(found.ending);
-    solution.followed_until = found.ending == ContactEnding::reached ? t_end : found.reached_until;
-    solution.message = why_stopped(found.ending, settings, solution.followed_until, t_end);
-    solution.reason = in_contact(certified.reason);
+    solution.ending = found.ending;
+    solution.followed_until = found.followed_until;
+    solution.message = why_ended(found.ending, settings, found.followed_until, t_end);
     return solution;
+}
+
+Solution solved(const Scene& scene, const CertifiedScene& certified, const Settings& settings,
+                double t_end, const Checkpoint& checkpoint) {
+    const State& start = certified.start.state;
+    if (settings.model == Model::contact) {
+        return integrated(
+            integrate_contact(scene, start, certified.certificate.end, settings, t_end, checkpoint),
+            settings, t_end);
+    }
+    if (!rolls(start)) {
+        throw std::invalid_argument("model '" + name(settings.model) +
+                                    "' must start rolling, but " + why_not_rolling(scene, start));
+    }
+    if (settings.method == Method::exact) return exact_rolling(scene, certified, t_end);
+    if (settings.model == Model::multipliers) {
+        const CoordinateStart from = coordinate_start(scene, start);
+        return integrated(
+            as_motion(scene, integrate_multipliers(scene, from, settings, t_end, checkpoint)),
+            settings, t_end);
+    }
+    return integrated(
+        as_motion(scene, integrate_rolling(scene, start, settings, t_end, checkpoint)), settings,
+        t_end);
 }
 
 }  // namespace
 
 CertifiedScene certify(const Scene& scene) {
-    CertifiedScene result;
-    result.start = initial_state(scene);
+    CertifiedScene result{initial_state(scene), {}, {{Validity::no_proof}, {}, {}, {}, {}}, {}};
     const State& start = result.start.state;
     validate_motion(scene.body(), start.theta, start.omega);
     validate_velocity(scene.body(), start.x_dot, start.z_dot);
-    if (why_no_proof(scene, start).empty()) {
-        result.certificate =
-            certify_rolling(scene.body(), scene.mass, scene.friction, start.theta, start.omega);
-    } else {
-        result.certificate = {{Validity::no_proof}, {}, {}, {}, {}};
+    if (rolls(start) && scene.slope == 0) {
+        result.rolling = rolling_start(scene.body(), start.theta, start.omega);
+        result.certificate = certify_rolling(*result.rolling, scene.mass, scene.friction);
     }
     result.reason = reason(scene, start, result.certificate);
     return result;
@@ -147,28 +130,15 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
     validate(asked, t_end);
     const CertifiedScene certified = certify(scene);
     const Settings settings = chosen(asked, scene, certified.certificate.end.validity);
-    const State& start = certified.start.state;
+    Solution solution = solved(scene, certified, settings, t_end, checkpoint);
     if (settings.model == Model::contact) {
-        return contact(scene, certified, settings, t_end, checkpoint);
+        solution.reason = in_contact(certified.reason);
+        return solution;
     }
-    if (const std::string obstacle = why_not_rolling(scene, start); !obstacle.empty()) {
-        throw std::invalid_argument("model '" + name(settings.model) +
-                                    "' must start rolling, but " + obstacle);
-    }
-    Solution solution = [&] {
-        if (settings.method == Method::exact) return exact_rolling(scene, start, t_end);
-        if (settings.model == Model::multipliers) {
-            return stepped(integrate_multipliers(scene, coordinate_start(scene, start), settings,
-                                                 t_end, checkpoint),
-                           settings, t_end);
-        }
-        return stepped(integrate_rolling(scene, start, settings, t_end, checkpoint), settings,
-                       t_end);
-    }();
-    if (scene.slope == 0) {
-        judge_by_proof(scene, certified, t_end, solution);
+    if (certified.rolling) {
+        judge_by_proof(certified, t_end, solution);
     } else {
-        judge_by_watch(scene, settings, t_end, checkpoint, solution);
+        judge_by_watch(scene, t_end, checkpoint, solution);
     }
     if (settings.model == Model::multipliers) solution.reason = in_coordinates(solution.reason);
     return solution;
@@ -178,22 +148,22 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
                   double t_end, const Checkpoint& checkpoint) {
     validate(asked, t_end);
     const Settings settings = chosen(asked, scene, Validity::no_proof);
-    Solution solution =
-        stepped(integrate_multipliers(scene, coordinate_start(start), settings, t_end, checkpoint),
-                settings, t_end);
-    judge_by_watch(scene, settings, t_end, checkpoint, solution);
+    const CoordinateStart from = coordinate_start(start);
+    Solution solution = integrated(
+        as_motion(scene, integrate_multipliers(scene, from, settings, t_end, checkpoint)), settings,
+        t_end);
+    judge_by_watch(scene, t_end, checkpoint, solution);
     solution.reason = in_coordinates(solution.reason);
     return solution;
 }
 
 double period(const Scene& scene) {
     const CertifiedScene certified = certify(scene);
-    const State& start = certified.start.state;
-    const std::string obstacle = why_no_proof(scene, start);
-    if (!obstacle.empty()) {
-        throw std::invalid_argument("scene must start rolling on level ground, but " + obstacle);
+    if (!certified.rolling) {
+        throw std::invalid_argument("scene must start rolling on level ground, but " +
+                                    why_no_proof(scene, certified.start.state));
     }
-    return period(rolling_flow(scene.body(), start.theta, start.omega, start.x));
+    return period(rolling_flow(*certified.rolling));
 }
 
 }  // namespace rolling_ellipse

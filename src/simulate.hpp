@@ -1,6 +1,7 @@
 // The table of contents: scene -> initial state -> certificate -> model -> solution.
 #pragma once
 
+#include "contact/contact.hpp"
 #include "proof/certificate.hpp"
 #include "scene/impact.hpp"
 #include "solution.hpp"
@@ -10,6 +11,8 @@ namespace rolling_ellipse {
 // The certificate of the motion that starts from the scene; its reason in one sentence.
 struct CertifiedScene {
     InitialState start;
+    std::optional<RollingStart>
+        rolling;  // of a body that rolls on level ground: others have no proof
     Certificate certificate;
     std::string reason;
 };

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from . import _core
 from ._core import Validity
@@ -58,4 +58,5 @@ def certify(scene: Scene) -> Certificate:
     -------
     Certificate
     """
-    return Certificate(*_core.certify(require_scene(scene).core))
+    found = _core.certify(require_scene(scene).core)
+    return Certificate(**{field.name: getattr(found, field.name) for field in fields(Certificate)})

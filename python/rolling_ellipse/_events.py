@@ -1,13 +1,15 @@
-"""What joins the arcs of a contact motion: slip, stick, lift-off, impact and the rest."""
+"""What joins the segments of a contact motion: slip, stick, lift-off, impact and the rest."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 from ._core import EventKind, Mode
 from ._scene import InitialState
 
+_STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot", "mode")
 _SENTENCES = {
     EventKind.SLIP: "friction cannot hold the contact any more",
     EventKind.STICK: "the slip has come to an end; the body rolls",
@@ -39,32 +41,41 @@ class Event:
     state_after: InitialState
 
 
-def event(mass: float, t: float, kind: EventKind, before: Any, after: Any) -> Event:
-    """Make an event of what the core says of it."""
-    hit = kind is EventKind.IMPACT
-    push_x, push_z = (mass * (after[i] - before[i]) if hit else 0.0 for i in (4, 5))
+def event(mass: float, found: Any) -> Event:
+    """Make an event of what the core, or a file, says: t, kind, and the states before and after."""
+    before, after = found.before, found.after
+    hit = found.kind is EventKind.IMPACT
     return Event(
-        t,
-        kind,
-        state_before=_state(before, 0.0, 0.0, before[1], "just before"),
-        state_after=_state(after, push_x, push_z, before[1], _SENTENCES[kind]),
+        found.t,
+        found.kind,
+        state_before=_state(before, before.omega, "just before"),
+        state_after=_state(
+            after,
+            before.omega,
+            _SENTENCES[found.kind],
+            reaction_x=mass * (after.x_dot - before.x_dot) if hit else 0.0,
+            reaction_z=mass * (after.z_dot - before.z_dot) if hit else 0.0,
+        ),
     )
 
 
 def _state(
-    numbers: Any, reaction_x: float, reaction_z: float, free_omega: float, reason: str
+    state: Any, free_omega: float, reason: str, reaction_x: float = 0.0, reaction_z: float = 0.0
 ) -> InitialState:
-    theta, omega, x, z, x_dot, z_dot, mode = numbers
     return InitialState(
-        theta, omega, x, z, x_dot, z_dot, mode, reaction_x, reaction_z, free_omega, reason
+        **{name: getattr(state, name) for name in _STATE},
+        reaction_x=reaction_x,
+        reaction_z=reaction_z,
+        free_omega=free_omega,
+        reason=reason,
     )
 
 
 def as_numbers(found: Event) -> list[Any]:
     """Return an event as JSON knows it; `from_numbers` makes it again."""
     before, after = (
-        [s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot, int(s.mode)]
-        for s in (found.state_before, found.state_after)
+        [*(getattr(state, name) for name in _STATE[:-1]), int(state.mode)]
+        for state in (found.state_before, found.state_after)
     )
     return [found.t, found.kind.name, before, after]
 
@@ -72,5 +83,8 @@ def as_numbers(found: Event) -> list[Any]:
 def from_numbers(mass: float, numbers: list[Any]) -> Event:
     """Make an event of what `as_numbers` returned."""
     t, kind, *states = numbers
-    before, after = ((*state[:-1], Mode(state[-1])) for state in states)
-    return event(mass, t, EventKind[kind], before, after)
+    before, after = (
+        SimpleNamespace(**dict(zip(_STATE, (*state[:-1], Mode(state[-1])), strict=True)))
+        for state in states
+    )
+    return event(mass, SimpleNamespace(t=t, kind=EventKind[kind], before=before, after=after))

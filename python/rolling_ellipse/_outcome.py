@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -168,6 +168,7 @@ def thresholds(
     """
     a, b = number("a", a), number("b", b)
     k2 = optional_number("gyration2", gyration2)
-    return Thresholds(
-        *_core.thresholds(a, b, number("gravity", gravity), k2, number("friction", friction))
-    )
+    found = _core.thresholds(a, b, number("gravity", gravity), k2, number("friction", friction))
+    values = {field.name: getattr(found, field.name) for field in fields(Thresholds)}
+    values["jam_speeds"] = tuple((speeds.lower, speeds.upper) for speeds in found.jam_speeds)
+    return Thresholds(**values)

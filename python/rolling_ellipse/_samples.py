@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._check import FloatArray, array
+
+if TYPE_CHECKING:
+    from ._trajectory import Trajectory
 
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
@@ -42,15 +46,78 @@ def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     """Return the arrays that a Trajectory holds, at so many times."""
     found: dict[str, Any] = {"t": frozen(np.array(times))}
     if solution.model is _core.Model.CONTACT:
-        theta, omega, x, *contact = solution.sample_contact(times)
-        found["contact"] = _frozen_contact(*contact)
+        columns = solution.sample_contact(times)
+        theta, omega, x = (columns.pop(name) for name in ("theta", "omega", "x"))
+        found["contact"] = ContactSamples(**{k: frozen(column) for k, column in columns.items()})
     elif solution.model is _core.Model.MULTIPLIERS:
         q, q_dot = solution.sample_coordinates(times)
         theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
         found["coordinates"] = frozen(q), frozen(q_dot)
     else:
-        theta, omega, x = solution.sample(times)
+        theta, omega, x = solution.sample_rolling(times)
     return found | {"theta": frozen(theta), "omega": frozen(omega), "x": frozen(x)}
+
+
+class _Rolling:
+    """Samples of which all follows from theta and omega, but for x."""
+
+    @staticmethod
+    def details(of: Trajectory) -> dict[str, FloatArray]:
+        return _core.rolling_detail(of.scene.core, of.theta, of.omega, of.x)
+
+    @staticmethod
+    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
+        return _core.rolling_contact(of.scene.core, of.theta, of.omega)
+
+
+class _Coordinates:
+    """Samples that hold q and q_dot themselves."""
+
+    @staticmethod
+    def details(of: Trajectory) -> dict[str, FloatArray]:
+        assert of.coordinates is not None
+        q, q_dot = of.coordinates
+        q_ddot, multipliers = _core.multiplier_detail(of.scene.core, of.settings.core, q, q_dot)
+        friction, normal = np.ascontiguousarray(multipliers.T[:2])
+        return {
+            "q": q, "q_dot": q_dot, "q_ddot": q_ddot, "multipliers": multipliers,
+            "normal_force": normal, "friction_force": friction,
+        }  # fmt: skip
+
+    @staticmethod
+    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
+        known = of._details
+        (_, z, *_), (x_dot, z_dot, *_) = known["q"].T, known["q_dot"].T
+        return known | {"z": z.copy(), "x_dot": x_dot.copy(), "z_dot": z_dot.copy()}
+
+
+class _Contact:
+    """Samples that hold the motion of the centre and the contact force beside theta and omega."""
+
+    @staticmethod
+    def details(of: Trajectory) -> dict[str, FloatArray]:
+        assert of.contact is not None
+        held = of.contact._asdict()
+        del held["mode"]
+        found = _core.contact_detail(of.scene.core, of.theta, of.omega, of.x, **held)
+        forces = of.contact.normal_force, of.contact.friction_force
+        return found | dict(zip(("normal_force", "friction_force"), forces, strict=True))
+
+    @staticmethod
+    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
+        assert of.contact is not None
+        return of.contact._asdict()
+
+
+def kind_of(trajectory: Trajectory) -> type[_Rolling | _Coordinates | _Contact]:
+    """Return how a trajectory's samples tell what they do not hold.
+
+    `details` gives q, q_dot, q_ddot, multipliers, normal and friction force; `touch` gives z,
+    x_dot, z_dot and the forces alone, where that is cheaper.
+    """
+    if trajectory.contact is not None:
+        return _Contact
+    return _Rolling if trajectory.coordinates is None else _Coordinates
 
 
 def _untouchable(values: _Values) -> _Values:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import KW_ONLY, dataclass, fields, replace
+from dataclasses import KW_ONLY, dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -169,10 +169,23 @@ class Scene(FieldsOnly):
     @cached_property
     def initial_state(self) -> InitialState:
         """State just after the impulse: the collision law without restitution (InitialState)."""
-        found = _core.initial_state(self.core)
-        state, (moves, paradox) = InitialState(*found[:10], reason=""), found[10:]
-        did = _what_the_blow_did(self, state, moves)
-        return replace(state, reason=f"{did}; {_what_follows(self, state.mode, moves, paradox)}")
+        start = _core.initial_state(self.core)
+        follows = _core.first_continuation(self.core, start.state)
+        reason = f"{_what_the_blow_did(self, start)}; {_what_follows(self, start, follows)}"
+        state = start.state
+        return InitialState(
+            theta=state.theta,
+            omega=state.omega,
+            x=state.x,
+            z=state.z,
+            x_dot=state.x_dot,
+            z_dot=state.z_dot,
+            mode=follows.mode,
+            reaction_x=start.reaction_x,
+            reaction_z=start.reaction_z,
+            free_omega=start.free_omega,
+            reason=reason,
+        )
 
 
 def require_scene(scene: object) -> Scene:
@@ -182,20 +195,20 @@ def require_scene(scene: object) -> Scene:
     return scene
 
 
-def _what_the_blow_did(scene: Scene, state: InitialState, moves: Mode) -> str:
+def _what_the_blow_did(scene: Scene, start: _core.InitialState) -> str:
     if scene.impulse is None:
         return "no impulse"
-    if moves is Mode.FLIGHT:
+    if start.state.mode is Mode.FLIGHT:
         return "the blow lifts the body off the ground"
-    if moves is Mode.SLIDING:
+    if start.state.mode is Mode.SLIDING:
         return (
             f"the blow makes the contact slip: friction {scene.friction:g} gives an impulse of "
-            f"{state.reaction_x:.6g} N s against {state.reaction_z:.6g} N s of pressure"
+            f"{start.reaction_x:.6g} N s against {start.reaction_z:.6g} N s of pressure"
         )
     return (
-        f"the contact sticks: the ground gives {state.reaction_x:.6g} N s along and "
-        f"{state.reaction_z:.6g} N s away from it; without it omega would be "
-        f"{state.free_omega:.6g} rad/s"
+        f"the contact sticks: the ground gives {start.reaction_x:.6g} N s along and "
+        f"{start.reaction_z:.6g} N s away from it; without it omega would be "
+        f"{start.free_omega:.6g} rad/s"
     )
 
 
@@ -207,8 +220,9 @@ _DOES = {
 }
 
 
-def _what_follows(scene: Scene, mode: Mode, moves: Mode, paradox: _core.Painleve) -> str:
-    """Say what the body does; `moves` is what its velocities alone look like."""
+def _what_follows(scene: Scene, start: _core.InitialState, follows: _core.Continuation) -> str:
+    """Say what the body does, and why where its velocities alone look like something else."""
+    mode, paradox = follows.mode, follows.paradox
     if paradox is _core.Painleve.NO_MOTION:
         return "the contact slides and jams: no motion of a rigid body goes on (Painleve)"
     if paradox is _core.Painleve.TWO_MOTIONS:
@@ -216,7 +230,7 @@ def _what_follows(scene: Scene, mode: Mode, moves: Mode, paradox: _core.Painleve
             "the contact slides and two motions go on (Painleve), in flight and pressed against "
             "the ground: rigid mechanics does not choose"
         )
-    if mode is moves or mode is Mode.REST:
+    if mode is start.state.mode or mode is Mode.REST:
         return f"the body {_DOES[mode]}"
     if mode is Mode.SLIDING:
         return f"friction {scene.friction:g} cannot hold the contact: the body slides"

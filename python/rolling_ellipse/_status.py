@@ -5,6 +5,8 @@ from __future__ import annotations
 import enum
 from typing import TYPE_CHECKING, Any
 
+from . import _core
+
 if TYPE_CHECKING:
     from ._trajectory import Trajectory
 
@@ -30,6 +32,11 @@ class Status(enum.Enum):
         "the integration stopped where no step that changes t meets rtol and atol: loosen them"
     )
     STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
+
+
+def status_of(ending: _core.Ending) -> Status:
+    """Return how a motion ended: what goes on in no way or in two is jammed, either way."""
+    return Status.JAMMED if ending is _core.Ending.UNDETERMINED else Status[ending.name]
 
 
 class ValidityWarning(UserWarning):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -17,10 +17,18 @@ from ._check import FloatArray, array, number
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
 from ._events import Event, event
 from ._fields import FieldsOnly
-from ._samples import ContactSamples, contact_samples, coordinate_pair, frozen, sampled, vector
+from ._samples import (
+    ContactSamples,
+    contact_samples,
+    coordinate_pair,
+    frozen,
+    kind_of,
+    sampled,
+    vector,
+)
 from ._scene import Scene
 from ._settings import Settings
-from ._status import Status
+from ._status import Status, status_of
 from .geometry import support_slope
 
 if TYPE_CHECKING:
@@ -46,14 +54,13 @@ def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Valu
     return cached_property(values)
 
 
-def _column(which: int, column: int) -> cached_property[FloatArray]:
-    """An array of its own for one column of q, q_dot or q_ddot (0, 1, 2)."""
-    return _derived(lambda self: np.ascontiguousarray(self._detail[which][:, column]))
+def _column(name: str, column: int) -> cached_property[FloatArray]:
+    """An array of its own for one column of q, q_dot or q_ddot."""
+    return _derived(lambda self: np.ascontiguousarray(self._details[name][:, column]))
 
 
-def _touching(which: int) -> cached_property[FloatArray]:
-    """z, x_dot, z_dot, normal or friction force."""
-    return _derived(lambda self: self._touch[which])
+def _touching(name: str) -> cached_property[FloatArray]:
+    return _derived(lambda self: self._touch[name])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -172,7 +179,7 @@ class Trajectory(FieldsOnly):
         stats = solution.stats
         ends = solution.followed_until if stats["segments"] else -math.inf
         times = times[times <= ends]
-        status = Status[solution.status.name]
+        status = status_of(solution.ending)
         known = dict(
             scene=scene,
             model=solution.model.name.lower(),
@@ -206,52 +213,36 @@ class Trajectory(FieldsOnly):
     # -- what follows from the samples ----------------------------------------------------------
 
     @cached_property
-    def _detail(self) -> tuple[FloatArray, ...]:
-        """q, q_dot, q_ddot, normal and friction force, multipliers."""
-        scene = self.scene.core
-        if self.contact is not None:
-            *columns, normal, friction, _ = self.contact
-            state = [self.theta, self.omega, self.x, *columns, normal, friction]
-            q, q_dot, q_ddot, multipliers = _core.contact_detail(scene, state)
-            found = q, q_dot, q_ddot, normal, friction, multipliers
-        elif self.coordinates is None:
-            found = _core.rolling_detail(scene, self.theta, self.omega, self.x)
-        else:
-            q, q_dot = self.coordinates
-            q_ddot, multipliers = _core.multiplier_detail(scene, self.settings.core, q, q_dot)
-            friction, normal = np.ascontiguousarray(multipliers.T[:2])
-            found = q, q_dot, q_ddot, normal, friction, multipliers
-        for values in found:
+    def _details(self) -> dict[str, FloatArray]:
+        """The coordinates with their rates and accelerations, the forces and the multipliers."""
+        found = kind_of(self).details(self)
+        for values in found.values():
             frozen(values)
         return found
 
     @property
     def q(self) -> FloatArray:
-        return self._detail[0]
+        return self._details["q"]
 
     @property
     def q_dot(self) -> FloatArray:
-        return self._detail[1]
+        return self._details["q_dot"]
 
-    psi, r = _column(0, 3), _column(0, 4)
-    psi_dot, r_dot = _column(1, 3), _column(1, 4)
-    x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot = (_column(2, i) for i in range(5))
+    psi, r = _column("q", 3), _column("q", 4)
+    psi_dot, r_dot = _column("q_dot", 3), _column("q_dot", 4)
+    x_ddot, z_ddot, omega_dot, psi_ddot, r_ddot = (_column("q_ddot", i) for i in range(5))
 
     @cached_property
-    def _touch(self) -> tuple[FloatArray, ...]:
-        """z, x_dot, z_dot, normal and friction force, without all that `_detail` computes."""
-        if self.contact is not None:
-            return self.contact[:5]
-        if self.coordinates is None:
-            return _core.rolling_contact(self.scene.core, self.theta, self.omega)
-        q, q_dot, _, normal, friction, _ = self._detail
-        return q[:, 1].copy(), q_dot[:, 0].copy(), q_dot[:, 1].copy(), normal, friction
+    def _touch(self) -> Mapping[str, FloatArray]:
+        """z, x_dot, z_dot, normal and friction force, without all that `_details` computes."""
+        return kind_of(self).touch(self)
 
-    z, x_dot, z_dot, normal_force, friction_force = (_touching(i) for i in range(5))
+    z, x_dot, z_dot = _touching("z"), _touching("x_dot"), _touching("z_dot")
+    normal_force, friction_force = _touching("normal_force"), _touching("friction_force")
 
     @property
     def multipliers(self) -> FloatArray:
-        return self._detail[5]
+        return self._details["multipliers"]
 
     @_derived
     def friction_needed(self) -> FloatArray:
@@ -294,7 +285,7 @@ class Trajectory(FieldsOnly):
     def events(self) -> tuple[Event, ...]:
         if self.kept_events is not None:
             return self.kept_events
-        return tuple(event(self.scene.mass, *found) for found in self._solution.events)
+        return tuple(event(self.scene.mass, found) for found in self._solution.events)
 
     @property
     def success(self) -> bool:

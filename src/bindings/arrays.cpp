@@ -90,29 +90,17 @@ void require_matrix(const std::string& name, const Array& array, py::ssize_t row
     refuse_shape(name, "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")", array);
 }
 
+py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns) {
+    if (array.ndim() != 2 || array.shape(1) != columns) {
+        refuse_shape(name, "(n, " + std::to_string(columns) + ")", array);
+    }
+    return array.shape(0);
+}
+
 Argument argument(const std::string& name, const Array& array, py::ssize_t n) {
     if (array.size() == 1) return {array.data(), 0};
     require_length(name, array, n);
     return {array.data(), 1};
-}
-
-py::ssize_t require_coordinates(const Array& q, const Array& q_dot) {
-    if (q.ndim() != 2) refuse_shape("q", "(n, 5)", q);
-    const py::ssize_t n = q.shape(0);
-    require_matrix("q", q, n, 5);
-    require_matrix("q_dot", q_dot, n, 5);
-    return n;
-}
-
-CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row) {
-    return {Eigen::Map<const Coordinates>(q.data(row, 0)),
-            Eigen::Map<const Coordinates>(q_dot.data(row, 0))};
-}
-
-CoordinateState single_state(const Array& q, const Array& q_dot) {
-    require_matrix("q", q, 1, 5);
-    require_matrix("q_dot", q_dot, 1, 5);
-    return state_at(q, q_dot, 0);
 }
 
 }  // namespace rolling_ellipse::bindings

@@ -10,9 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "multipliers/equations.hpp"
-#include "rolling/flow_table.hpp"
-
 namespace rolling_ellipse::bindings {
 
 namespace py = pybind11;
@@ -48,7 +45,10 @@ void require_length(const std::string& name, const Array& array, py::ssize_t n);
 void require_matrix(const std::string& name, const Array& array, py::ssize_t rows,
                     py::ssize_t columns);
 
-// One argument: an array of n numbers, or one number for all.
+// Of any number of rows, which is returned.
+py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns);
+
+// An argument that is an array of n numbers, or one number for all.
 struct Argument {
     const double* data;
     py::ssize_t stride;
@@ -65,26 +65,6 @@ std::array<Argument, Count> arguments_of(const std::array<const char*, Count>& n
     std::array<Argument, Count> found{};
     for (std::size_t i = 0; i < Count; ++i) found[i] = argument(names[i], arrays[i], n);
     return found;
-}
-
-// q and q_dot, (n, 5) each; returns n.
-py::ssize_t require_coordinates(const Array& q, const Array& q_dot);
-
-// A row of q and q_dot, (n, 5); and the only one.
-CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row);
-CoordinateState single_state(const Array& q, const Array& q_dot);
-
-// theta, omega, x at the times begin .. end.
-template <class Sampler>
-void store_samples(const Sampler& sampler, const double* times, py::ssize_t begin, py::ssize_t end,
-                   double* const columns[3]) {
-    std::array<FlowSample, chunk> samples;
-    sampler(times + begin, end - begin, samples.data());
-    for (py::ssize_t i = begin; i < end; ++i) {
-        columns[0][i] = samples[i - begin].theta;
-        columns[1][i] = samples[i - begin].omega;
-        columns[2][i] = samples[i - begin].x;
-    }
 }
 
 }  // namespace rolling_ellipse::bindings

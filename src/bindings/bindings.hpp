@@ -27,7 +27,8 @@ void bind_geometry(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_certificate(py::module_& m);
 void bind_flow(py::module_& m);
-void bind_motion(py::module_& m);
+void bind_settings(py::module_& m);
+void bind_solution(py::module_& m);
 void bind_details(py::module_& m);
 void bind_tableaus(py::module_& m);
 

@@ -15,15 +15,20 @@ py::array_t<std::int8_t> classify_array(py::ssize_t n, const std::array<Array, 7
         {"a", "b", "omega", "theta", "friction", "gravity", "gyration2"}, arguments, n);
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
-            const Body body{of[0][i], of[1][i], of[6][i], of[5][i]};
-            const double omega = of[2][i], theta = of[3][i], friction = of[4][i];
+            const auto& [a, b, omega, theta, friction, gravity, gyration2] = of;
+            const Body body{a[i], b[i], gyration2[i], gravity[i]};
             validate(body);
-            validate_motion(body, theta, omega);
-            validate_friction(friction);
-            outcomes[i] = static_cast<std::int8_t>(classify(body, friction, theta, omega));
+            validate_motion(body, theta[i], omega[i]);
+            validate_friction(friction[i]);
+            outcomes[i] = static_cast<std::int8_t>(classify(body, friction[i], theta[i], omega[i]));
         }
     });
     return out;
+}
+
+template <auto Member>
+auto of_certificate() {
+    return [](const CertifiedScene& scene) { return scene.certificate.*Member; };
 }
 
 }  // namespace
@@ -45,33 +50,50 @@ void bind_certificate(py::module_& m) {
         .value("EDGE", Outcome::edge)
         .finalize();
     m.def("classify_array", classify_array, "n"_a, "arguments"_a, "workers"_a);
-    m.def("certify", [](const Scene& scene) {
-        const CertifiedScene certified = certify(scene);
-        const Certificate& c = certified.certificate;
-        return py::make_tuple(c.end.validity, c.smallest_normal_force,
-                              c.smallest_normal_force_angle, c.largest_friction_needed,
-                              c.largest_friction_needed_angle, c.end.angle, certified.reason);
-    });
-    m.def("roll_over_speed", [](const Scene& scene) { return roll_over_speed(scene.body()); });
+    bind_class<CertifiedScene>(m, "Certificate")
+        .def_property_readonly("validity",
+                               [](const CertifiedScene& c) { return c.certificate.end.validity; })
+        .def_property_readonly("ends_at",
+                               [](const CertifiedScene& c) { return c.certificate.end.angle; })
+        .def_readonly("reason", &CertifiedScene::reason)
+        .def_property_readonly("smallest_normal_force",
+                               of_certificate<&Certificate::smallest_normal_force>())
+        .def_property_readonly("smallest_normal_force_angle",
+                               of_certificate<&Certificate::smallest_normal_force_angle>())
+        .def_property_readonly("largest_friction_needed",
+                               of_certificate<&Certificate::largest_friction_needed>())
+        .def_property_readonly("largest_friction_needed_angle",
+                               of_certificate<&Certificate::largest_friction_needed_angle>());
+    m.def("certify", [](const Scene& scene) { return certify(scene); }, "scene"_a);
+    m.def(
+        "roll_over_speed", [](const Scene& scene) { return roll_over_speed(scene.body()); },
+        "scene"_a);
+    bind_class<SpeedRange>(m, "SpeedRange")
+        .def_readonly("lower", &SpeedRange::lower)
+        .def_readonly("upper", &SpeedRange::upper);
+    bind_class<Thresholds>(m, "Thresholds")
+        .def_readonly("roll_over_speed", &Thresholds::roll_over_speed)
+        .def_readonly("contact_loss_speed", &Thresholds::contact_loss_speed)
+        .def_readonly("contact_loss_angle", &Thresholds::contact_loss_angle)
+        .def_readonly("slip_speed", &Thresholds::slip_speed)
+        .def_readonly("slip_angle", &Thresholds::slip_angle)
+        .def_property_readonly("lift_off_speed",
+                               [](const Thresholds& t) { return t.lift_off.speed; })
+        .def_property_readonly("jam_speeds",
+                               [](const Thresholds& t) { return t.lift_off.jam_speeds; })
+        .def_readonly("friction_to_roll_over", &Thresholds::friction_to_roll_over)
+        .def_readonly("painleve_friction", &Thresholds::painleve_friction)
+        .def_readonly("painleve_angle", &Thresholds::painleve_angle)
+        .def_readonly("rocking_rate", &Thresholds::rocking_rate)
+        .def_readonly("tip_rate", &Thresholds::tip_rate);
     m.def(
         "thresholds",
         [](double a, double b, double gravity, std::optional<double> gyration2, double friction) {
-            const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
-            validate(body);
+            const Body of = body(a, b, gyration2, gravity);
+            validate(of);
             validate_friction(friction);
-            const Thresholds t = [&] {
-                const py::gil_scoped_release release;
-                return thresholds(body, friction, SignalWatch());
-            }();
-            py::tuple jam_speeds(t.lift_off.jam_speeds.size());
-            for (std::size_t i = 0; i < jam_speeds.size(); ++i) {
-                const auto [from, to] = t.lift_off.jam_speeds[i];
-                jam_speeds[i] = py::make_tuple(from, to);
-            }
-            return py::make_tuple(t.roll_over_speed, t.contact_loss_speed, t.contact_loss_angle,
-                                  t.slip_speed, t.slip_angle, t.lift_off.speed, jam_speeds,
-                                  t.friction_to_roll_over, t.painleve_friction, t.painleve_angle,
-                                  t.rocking_rate, t.tip_rate);
+            const py::gil_scoped_release release;
+            return thresholds(of, friction, SignalWatch());
         },
         "a"_a, "b"_a, "gravity"_a, "gyration2"_a, "friction"_a);
 }

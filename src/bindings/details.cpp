@@ -1,36 +1,47 @@
 #include <algorithm>
+#include <utility>
 
 #include "bindings/bindings.hpp"
+#include "bindings/samples.hpp"
 #include "rolling/equation.hpp"
 #include "solution.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {
 
-// q, q_dot, q_ddot and multipliers of the contact model, from theta, omega, x, z, x_dot, z_dot,
-// normal and friction force.
-py::tuple contact_arrays(const Scene& scene, const std::array<Array, 8>& columns) {
-    const py::ssize_t n = columns[0].size();
-    const std::array<const char*, 8> names{
-        "theta", "omega", "x", "z", "x_dot", "z_dot", "normal_force", "friction_force"};
-    for (std::size_t i = 0; i < names.size(); ++i) require_length(names[i], columns[i], n);
+// q, q_dot, q_ddot and multipliers of the contact model, from its samples.
+py::dict contact_arrays(const Scene& scene, const Array& theta, const Array& omega, const Array& x,
+                        const Array& z, const Array& x_dot, const Array& z_dot,
+                        const Array& normal_force, const Array& friction_force) {
+    const py::ssize_t n = theta.size();
+    const std::pair<const char*, const Array&> columns[] = {{"theta", theta},
+                                                            {"omega", omega},
+                                                            {"x", x},
+                                                            {"z", z},
+                                                            {"x_dot", x_dot},
+                                                            {"z_dot", z_dot},
+                                                            {"normal_force", normal_force},
+                                                            {"friction_force", friction_force}};
+    for (const auto& [name, column] : columns) require_length(name, column, n);
     Array q = matrix(n, 5);
     Array q_dot = matrix(n, 5);
     Array q_ddot = matrix(n, 5);
     Array multipliers = matrix(n, 4);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
-            const auto of = [&](std::size_t column) { return columns[column].data()[i]; };
-            const State state{of(0), of(1), of(2), of(3), of(4), of(5), Mode::flight};
+            const State state{theta.data()[i], omega.data()[i], x.data()[i], z.data()[i],
+                              x_dot.data()[i], z_dot.data()[i], Mode::flight};
+            const ContactForce force{normal_force.data()[i], friction_force.data()[i]};
             const CoordinateState at = coordinate_state(scene.axes(), state);
-            const MultiplierSolution found = accelerations(scene, at, ContactForce{of(6), of(7)});
+            const MultiplierSolution found = accelerations(scene, at, force);
             store(q, i, at.q.data());
             store(q_dot, i, at.q_dot.data());
             store(q_ddot, i, found.q_ddot.data());
             store(multipliers, i, found.multipliers.data());
         }
     });
-    return py::make_tuple(q, q_dot, q_ddot, multipliers);
+    return py::dict("q"_a = q, "q_dot"_a = q_dot, "q_ddot"_a = q_ddot,
+                    "multipliers"_a = multipliers);
 }
 
 // q_ddot and multipliers of the multiplier model.
@@ -59,8 +70,8 @@ py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
 }
 
 // q (its x replaced by the one given), q_dot, q_ddot, normal and friction force, multipliers.
-py::tuple rolling_arrays(const Scene& scene, const Array& theta, const Array& omega,
-                         const Array& x) {
+py::dict rolling_arrays(const Scene& scene, const Array& theta, const Array& omega,
+                        const Array& x) {
     const py::ssize_t n = theta.size();
     require_length("theta", theta, n);
     require_length("omega", omega, n);
@@ -85,11 +96,12 @@ py::tuple rolling_arrays(const Scene& scene, const Array& theta, const Array& om
             frictions[i] = detail.force.friction;
         }
     });
-    return py::make_tuple(q, q_dot, q_ddot, normal, friction, multipliers);
+    return py::dict("q"_a = q, "q_dot"_a = q_dot, "q_ddot"_a = q_ddot, "normal_force"_a = normal,
+                    "friction_force"_a = friction, "multipliers"_a = multipliers);
 }
 
 // z, x_dot, z_dot, normal and friction force of rolling.
-py::tuple rolling_contact_arrays(const Scene& scene, const Array& theta, const Array& omega) {
+py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Array& omega) {
     const py::ssize_t n = theta.size();
     require_length("theta", theta, n);
     require_length("omega", omega, n);
@@ -101,15 +113,18 @@ py::tuple rolling_contact_arrays(const Scene& scene, const Array& theta, const A
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
             const double speed = omega.data()[i];
-            const Geometry at = geometry(scene.axes(), theta.data()[i]);
+            const double angle = theta.data()[i];
+            const Geometry at = geometry(scene.axes(), angle);
             const ContactForce force = dynamics.force(at, speed);
-            const double row[] = {at.h, at.h * speed, at.dh * speed, force.normal, force.friction};
+            const State state = in_contact(at, angle, speed, 0.0, 0.0, Mode::rolling);
+            const double row[] = {state.z, state.x_dot, state.z_dot, force.normal, force.friction};
             for (std::size_t column = 0; column < columns.size(); ++column) {
                 columns[column][i] = row[column];
             }
         }
     });
-    return py::make_tuple(out[0], out[1], out[2], out[3], out[4]);
+    return py::dict("z"_a = out[0], "x_dot"_a = out[1], "z_dot"_a = out[2],
+                    "normal_force"_a = out[3], "friction_force"_a = out[4]);
 }
 
 // theta'' of rolling at each angle and angular velocity, and its derivatives by both.
@@ -136,7 +151,8 @@ py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const 
 
 void bind_details(py::module_& m) {
     m.def("multiplier_detail", multiplier_arrays, "scene"_a, "settings"_a, "q"_a, "q_dot"_a);
-    m.def("contact_detail", contact_arrays, "scene"_a, "columns"_a);
+    m.def("contact_detail", contact_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a, "z"_a,
+          "x_dot"_a, "z_dot"_a, "normal_force"_a, "friction_force"_a);
     m.def("project", projected, "scene"_a, "q"_a, "q_dot"_a);
     m.def("rolling_contact", rolling_contact_arrays, "scene"_a, "theta"_a, "omega"_a);
     m.def("rolling_detail", rolling_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a);

@@ -3,6 +3,8 @@
 #include <limits>
 
 #include "bindings/bindings.hpp"
+#include "bindings/samples.hpp"
+#include "rolling/flow_table.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -11,25 +13,23 @@ namespace {
 RollingFlow validated_flow(const Body& body, double theta, double omega) {
     validate(body);
     validate_motion(body, theta, omega);
-    return rolling_flow(body, theta, omega);
+    return rolling_flow(rolling_start(body, theta, omega));
 }
 
 py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
                       std::optional<double> gyration2) {
-    const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
-    const RollingFlow flow = validated_flow(body, theta, omega);
+    const RollingFlow flow = validated_flow(body(a, b, gyration2, gravity), theta, omega);
     validate_time(t, longest_time(flow));
     const FlowSample now = sample(flow, t);
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
-// The same at many times.
+// theta, omega, x of one motion at many times.
 py::tuple flow_times(const Array& t, double a, double b, double theta, double omega, double gravity,
                      std::optional<double> gyration2, int workers) {
     const py::ssize_t n = t.size();
     require_length("t", t, n);
-    const Body body{a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
-    const RollingFlow flow = validated_flow(body, theta, omega);
+    const RollingFlow flow = validated_flow(body(a, b, gyration2, gravity), theta, omega);
     const FlowSampler sampler(flow, infinity, n);
     const double longest = longest_time(flow);
     const double most = std::min(longest, std::numeric_limits<double>::max());
@@ -40,7 +40,9 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
         for (py::ssize_t i = begin; i < end; ++i) {
             if (!(std::abs(times[i]) <= most)) validate_time(times[i], longest);
         }
-        store_samples(sampler, times, begin, end, columns);
+        std::array<FlowSample, chunk> samples;
+        sampler(times + begin, end - begin, samples.data());
+        store_samples(samples.data(), begin, end, columns);
     });
     return py::make_tuple(out[0], out[1], out[2]);
 }

@@ -1,4 +1,5 @@
 #include "bindings/bindings.hpp"
+#include "bindings/samples.hpp"
 #include "geometry/constraints.hpp"
 #include "geometry/ellipse.hpp"
 
@@ -55,7 +56,7 @@ py::tuple kinematics_arrays(py::ssize_t n, const Array& theta, const Array& omeg
     Array q_dot = matrix(n, 5);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
-            const KinematicState state = kinematics({a, b}, thetas[i], omegas[i]);
+            const CoordinateState state = kinematics({a, b}, thetas[i], omegas[i]);
             store(q, i, state.q.data());
             store(q_dot, i, state.q_dot.data());
         }

@@ -7,7 +7,8 @@ PYBIND11_MODULE(_core, m) {
     bind_scene(m);
     bind_certificate(m);
     bind_flow(m);
-    bind_motion(m);
+    bind_settings(m);
+    bind_solution(m);
     bind_details(m);
     bind_tableaus(m);
 }

@@ -15,11 +15,19 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
         arguments, n);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
-            // Neither mass nor gravity nor height matters; a scene may move down only in the air.
-            const double mass = 1.0, gravity = 1.0, slope = 0.0, x = 0.0, z = of[4][i] + of[5][i];
-            const Scene scene{of[4][i], of[5][i], mass,     gravity,  of[6][i],
-                              slope,    of[7][i], of[8][i], of[0][i], of[3][i],
-                              x,        z,        of[1][i], of[2][i], std::nullopt};
+            const auto& [theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution] = of;
+            Scene scene{};
+            scene.a = a[i];
+            scene.b = b[i];
+            scene.mass = scene.gravity = 1.0;  // which do not matter
+            scene.inertia = gyration2[i];
+            scene.friction = friction[i];
+            scene.restitution = restitution[i];
+            scene.theta = theta[i];
+            scene.omega = omega[i];
+            scene.z = above_ground(scene.axes());  // where it may move down
+            scene.x_dot = x_dot[i];
+            scene.z_dot = z_dot[i];
             validate(scene.body());  // by its own names: k^2 is no inertia
             validate(scene);
             const State after = after_collision(scene, state_before_impulse(scene));
@@ -58,21 +66,22 @@ void bind_scene(py::module_& m) {
                          double restitution, double theta, double omega, double x,
                          std::optional<double> z, std::optional<double> x_dot,
                          std::optional<double> z_dot, std::optional<Impulse> impulse) {
-                 const Scene scene{a,
-                                   b,
-                                   mass,
-                                   gravity,
-                                   inertia.value_or(mass * uniform_disc_gyration2(a, b)),
-                                   slope,
-                                   friction,
-                                   restitution,
-                                   theta,
-                                   omega,
-                                   x,
-                                   z,
-                                   x_dot,
-                                   z_dot,
-                                   impulse};
+                 Scene scene{};
+                 scene.a = a;
+                 scene.b = b;
+                 scene.mass = mass;
+                 scene.gravity = gravity;
+                 scene.inertia = inertia.value_or(mass * uniform_disc_gyration2(a, b));
+                 scene.slope = slope;
+                 scene.friction = friction;
+                 scene.restitution = restitution;
+                 scene.theta = theta;
+                 scene.omega = omega;
+                 scene.x = x;
+                 scene.z = z;
+                 scene.x_dot = x_dot;
+                 scene.z_dot = z_dot;
+                 scene.impulse = impulse;
                  validate(scene);
                  return scene;
              }),
@@ -80,14 +89,24 @@ void bind_scene(py::module_& m) {
              "friction"_a, "restitution"_a, "theta"_a, "omega"_a, "x"_a, "z"_a, "x_dot"_a,
              "z_dot"_a, "impulse"_a)
         .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
-    m.def("initial_state", [](const Scene& scene) {
-        const InitialState initial = initial_state(scene);
-        const State& s = initial.state;
-        const Continuation next = first_continuation(scene, s);
-        return py::make_tuple(s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot, next.mode,
-                              initial.reaction_x, initial.reaction_z, initial.free_omega, s.mode,
-                              next.paradox);
-    });
+    bind_class<State>(m, "State")
+        .def_readonly("theta", &State::theta)
+        .def_readonly("omega", &State::omega)
+        .def_readonly("x", &State::x)
+        .def_readonly("z", &State::z)
+        .def_readonly("x_dot", &State::x_dot)
+        .def_readonly("z_dot", &State::z_dot)
+        .def_readonly("mode", &State::mode);
+    bind_class<InitialState>(m, "InitialState")
+        .def_readonly("state", &InitialState::state)
+        .def_readonly("reaction_x", &InitialState::reaction_x)
+        .def_readonly("reaction_z", &InitialState::reaction_z)
+        .def_readonly("free_omega", &InitialState::free_omega);
+    bind_class<Continuation>(m, "Continuation")
+        .def_readonly("mode", &Continuation::mode)
+        .def_readonly("paradox", &Continuation::paradox);
+    m.def("initial_state", initial_state, "scene"_a);
+    m.def("first_continuation", first_continuation, "scene"_a, "start"_a);
     m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a);
 }
 

@@ -32,8 +32,8 @@ EventKind kind_of(Mode next, EventKind sliding) {
 
 class ContactRun {
   public:
-    ContactRun(const Scene& scene, const State& start, const Settings& settings, double t_end,
-               const Checkpoint& checkpoint)
+    ContactRun(const Scene& scene, const State& start, const EndOfRolling& end_of_rolling,
+               const Settings& settings, double t_end, const Checkpoint& checkpoint)
         : units_(natural_units(scene)),
           scene_(body_in_units(scene, units_)),
           axes_(scene_.axes()),
@@ -41,10 +41,11 @@ class ContactRun {
           t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
           checkpoint_(checkpoint),
           state_(in_units(start, units_)),
+          first_end_(end_of_rolling),
           rest_speed_(rest_speed()),
           motion_{units_, scene_, {}, {}} {}
 
-    ContactIntegration run() {
+    Integration<Motion> run() {
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
         while (!ending_) {
@@ -74,27 +75,27 @@ class ContactRun {
     }
 
     void rest() {
-        add_arc(t_end_, Resting{state_});
+        add_segment(Resting{state_});
         finish();
     }
 
     bool is_stuck() const { return next_.paradox != Painleve::determined; }
 
     void stop_stuck() {
-        add_arc(t_, Jam{state_});
-        ending_ = next_.paradox == Painleve::no_motion ? ContactEnding::jammed
-                                                       : ContactEnding::undetermined;
+        add_segment(Jam{state_});
+        ending_ = next_.paradox == Painleve::no_motion ? Ending::jammed : Ending::undetermined;
     }
 
     void roll_exactly() {
-        const RollingFlow flow = rolling_flow(scene_.body(), state_.theta, state_.omega, state_.x);
+        const RollingStart start = rolling_start(scene_.body(), state_.theta, state_.omega);
+        const RollingFlow flow = rolling_flow(start, state_.x);
         const EndOfRolling end =
-            end_of_rolling(scene_.body(), scene_.friction, state_.theta, state_.omega);
+            motion_.segments.empty() ? first_end_ : end_of_rolling(start, scene_.friction);
         const double lasts = end.validity == Validity::invalid ? time_of_end(flow, end) : infinity;
         if (lasts == infinity) {
             validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
         }
-        if (lasts > 0) add_arc(std::min(t_ + lasts, t_end_), ExactRolling{axes_, flow});
+        if (lasts > 0) add_segment(flow);
         if (t_ + lasts > t_end_) return finish();
         const FlowSample last = sample(flow, lasts);
         stop_rolling(lasts, last.theta, last.omega, last.x);
@@ -109,10 +110,10 @@ class ContactRun {
         ExplicitMethod<DormandPrince853, RollingEquation> integrator(motion.equation);
         const Until until = integrate_until(integrator, motion.steps, tolerance(), steps_left(),
                                             t_end_ - t_, margins, checkpoint_);
-        count(until, motion.steps);
+        take_over(until, motion.steps);
         const double lasts = until.time;
         const double t0 = t_;
-        if (lasts > 0) add_arc(std::min(t0 + lasts, t_end_), motion);
+        if (lasts > 0) add_segment(motion);
         if (ending_ || t0 + lasts > t_end_) return finish();
         FlowSample last{};
         sample(motion, &lasts, 1, &last);
@@ -132,9 +133,9 @@ class ContactRun {
         SteppedSliding motion = sliding_from(scene_, state_, next_.side);
         const Until until =
             integrate_sliding(motion, tolerance(), steps_left(), t_end_ - t_, checkpoint_);
-        count(until, motion.steps);
+        take_over(until, motion.steps);
         const double t0 = t_;
-        add_arc(std::min(t0 + until.time, t_end_), motion);
+        add_segment(motion);
         if (ending_ || t0 + until.time > t_end_) return finish();
         ContactSample last{};
         sample(motion, &until.time, 1, &last);
@@ -160,7 +161,7 @@ class ContactRun {
     void fly() {
         const Flight flight{axes_, scene_.ground_gravity(), state_};
         const double lasts = touch_down(flight);
-        add_arc(std::min(t_ + lasts, t_end_), flight);
+        add_segment(flight);
         if (t_ + lasts > t_end_) return finish();
         State before = state_at(flight, lasts);
         before.z = geometry(axes_, before.theta).h;
@@ -174,13 +175,15 @@ class ContactRun {
         const double rebound = std::max(state_.z_dot - at.dh * state_.omega, 0.0);
         const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
         const double ratio = rebound / (at.dh * before.omega - before.z_dot);
-        if (rebound > 0 && (rebound > rest_speed_ || c <= 0 || !(ratio < most_settling))) {
+        if (rebound > 0 &&
+            (rebound > rest_speed_ || c <= 0 || !(ratio < largest_ratio_that_settles))) {
             return go_on_with({Mode::flight}, EventKind::impact, before);
         }
         if (rebound > 0) {
             state_.mode = Mode::flight;
             note(EventKind::impact, before);
-            return ending_ ? void() : settle(rebound, c);
+            if (!ending_) settle(rebound, c);
+            return;
         }
         go_on_with(continuation(scene_, state_), EventKind::impact, before);
     }
@@ -188,14 +191,14 @@ class ContactRun {
     // Infinitely many bounces that shrink by a ratio take a finite time, physics (57); so small
     // ones do it in place, under the c of their beginning.
     void settle(double rebound, double c) {
-        constexpr double nothing = 1e-12;
+        constexpr double negligible_share = 1e-12;  // of the rebound: what is left adds no digit
         const Geometry at = geometry(axes_, state_.theta);
         const GroundGravity gravity = scene_.ground_gravity();
         State moving = state_;
         double lasts = 0.0;
         double turned = 0.0;
         double speed = rebound;
-        while (speed > nothing * rebound) {
+        while (speed > negligible_share * rebound) {
             const double hop = 2 * speed / c;
             const double gained =
                 (gravity.along - at.dh * square(moving.omega)) * hop;  // slip in flight
@@ -206,14 +209,14 @@ class ContactRun {
             moving.z_dot = at.dh * moving.omega - speed;
             moving = after_collision(scene_, moving);
             const double next = moving.z_dot - at.dh * moving.omega;
-            if (!(next < most_settling * speed)) break;
+            if (!(next < largest_ratio_that_settles * speed)) break;
             speed = std::max(next, 0.0);
         }
         const double theta = state_.theta + turned;
         const State settled =
             in_contact(geometry(axes_, theta), theta, zero_if_negligible(moving.omega), moving.x,
                        slip_beyond_rounding(moving, at), Mode::flight);
-        add_arc(std::min(t_ + lasts, t_end_), Settling{axes_, lasts, state_, settled});
+        add_segment(Settling{lasts, state_, settled});
         if (t_ + lasts > t_end_) return finish();
         t_ += lasts;
         state_ = settled;
@@ -231,21 +234,21 @@ class ContactRun {
 
     void note(EventKind kind, const State& before) {
         if (static_cast<long>(motion_.events.size()) == settings_.max_events) {
-            ending_ = ContactEnding::max_events;
+            ending_ = Ending::max_events;
         } else {
             motion_.events.push_back(
                 {t_ * units_.time, kind, in_si(before, units_), in_si(state_, units_)});
         }
     }
 
-    template <class Motion>
-    void add_arc(double until, Motion motion) {
-        motion_.arcs.push_back({next_.mode, t_, until, std::move(motion)});
+    template <class Law>
+    void add_segment(Law law) {
+        motion_.segments.push_back({t_, std::move(law)});
     }
 
     void finish() {
         t_ = t_end_;
-        if (!ending_) ending_ = ContactEnding::reached;
+        if (!ending_) ending_ = Ending::completed;
     }
 
     Settings dop853() const {
@@ -279,16 +282,18 @@ class ContactRun {
     long steps_left() const { return settings_.max_steps - counts_.steps; }
 
     template <int N>
-    void count(const Until& until, const Steps<N>& steps) {
+    void take_over(const Until& until, const Steps<N>& steps) {
         counts_ += until.counts;
-        if (until.ending == Ending::max_steps) ending_ = ContactEnding::max_steps;
-        if (until.ending == Ending::step_too_small) ending_ = ContactEnding::step_too_small;
+        if (until.ending == Ending::max_steps || until.ending == Ending::step_too_small) {
+            ending_ = until.ending;
+        }
         if (ending_) t_end_ = t_ + steps.knots.back().t;  // all there is
     }
 
-    static constexpr double most_settling = 0.9999;  // the ratio of bounces that come to an end
+    // The ratio of a rebound to the last up to which bounces are summed: 1e5 of them at most.
+    static constexpr double largest_ratio_that_settles = 0.9999;
 
-    // Times, states and arcs are in units, which the settings are not.
+    // Times, states and segments are in units, which the settings are not.
     const Units units_;
     const Scene scene_;
     const Axes axes_;
@@ -296,20 +301,24 @@ class ContactRun {
     double t_end_;
     const Checkpoint& checkpoint_;
     State state_;
+    const EndOfRolling first_end_;
     const double rest_speed_;
     Continuation next_{Mode::flight};
     double t_ = 0.0;
-    ContactMotion motion_;
+    Motion motion_;
     StepCounts counts_;
-    std::optional<ContactEnding> ending_;
+    std::optional<Ending> ending_;
 };
 
 }  // namespace
 
-ContactIntegration integrate_contact(const Scene& scene, const State& start,
-                                     const Settings& settings, double t_end,
-                                     const Checkpoint& checkpoint) {
-    return ContactRun(scene, start, settings, t_end, checkpoint).run();
+Integration<Motion> integrate_contact(const Scene& scene, const State& start,
+                                      const EndOfRolling& end_of_rolling, const Settings& settings,
+                                      double t_end, const Checkpoint& checkpoint) {
+    Integration<Motion> found =
+        ContactRun(scene, start, end_of_rolling, settings, t_end, checkpoint).run();
+    if (found.ending == Ending::completed) found.followed_until = t_end;
+    return found;
 }
 
 }  // namespace rolling_ellipse

@@ -23,7 +23,7 @@ Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
 }
 
-// The same of a body that slides already. Only there can a slide with N = c/B > 0, c < 0, be a
+// What follows for a body that slides already. Only there can a slide with N = c/B > 0, c < 0, be a
 // second motion beside flight: without slip, rolling's own N and F rule out that the slip then
 // starts to the side that this slide is for. A body may be put there, but no motion leads there: a
 // slide ends before, where c or B vanishes, and an impact goes on while B < 0 until the slip stops.

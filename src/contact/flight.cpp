@@ -29,8 +29,9 @@ class Gap {
         return s.z + t * (s.z_dot - 0.5 * flight_.gravity.into * t);
     }
 
-    // As what it was at the start and what it has gained: hops far lower than the body is high keep
-    // their digits. h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + omega t) sin(omega t): physics (55).
+    // The gap as what it was at the start and what it has gained: hops far lower than the body is
+    // high keep their digits. h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + omega t) sin(omega t):
+    // physics (55).
     double value(double t) const {
         const State& s = flight_.start;
         const auto [a, b] = flight_.axes;

@@ -29,7 +29,7 @@ class SlidingEquation {
     // With infinite friction B is small near the tip, and nothing grows there.
     bool may_jam() const { return normal_share_ != 0; }
 
-    // The same motion, (y, t), by a clock tau that slows down near B = 0, dt = B dtau, where N =
+    // The rates of (y, t) by a clock tau that slows down near B = 0, dt = B dtau, where N =
     // c/B grows without bound: physics (54).
     Vector<5> slowed(const Vector<5>& y) const;
 

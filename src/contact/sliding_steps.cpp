@@ -19,6 +19,9 @@ struct SlowedSliding {
     Vector<5> operator()(double, const Vector<5>& y) const { return equation.slowed(y); }
 };
 
+// The margins of a slowed slide that follow those of SlideEnd.
+enum SlowEnd { response_recovers = jams + 1, time_is_over };
+
 struct Slowed {
     Until until;
     bool passed;  // B is no longer small: it slides on
@@ -48,11 +51,11 @@ Slowed slide_slowly(SteppedSliding& motion, const Tolerance& tolerance, long max
         append(steps.knots[i].y + steps.knots[i].carry);
     }
     until.time = motion.steps.knots.back().t;
-    if (until.ending != Ending::stopped || until.which < jams) return {until, false};
-    if (until.which > jams) {
-        until.ending = Ending::reached;
+    if (until.ending != Ending::event || until.which < jams) return {until, false};
+    if (until.which == response_recovers || until.which == time_is_over) {
+        until.ending = Ending::completed;
         until.time = infinity;
-        return {until, until.which == jams + 1};
+        return {until, until.which == response_recovers};
     }
     const auto [end, y] = motion.equation.last_moment(steps.knots.back().y);
     append(y);
@@ -93,7 +96,7 @@ Until integrate_sliding(SteppedSliding& motion, const Tolerance& tolerance, long
         Until until = integrate_until(integrator, motion.steps, tolerance, max_steps - counts.steps,
                                       t_end, margins, checkpoint);
         counts += until.counts;
-        if (f.may_jam() && until.ending == Ending::stopped && until.which == jams) {
+        if (f.may_jam() && until.ending == Ending::event && until.which == jams) {
             const auto [slow, passed] =
                 slide_slowly(motion, tolerance, max_steps - counts.steps, t_end, checkpoint);
             counts += slow.counts;

@@ -10,10 +10,11 @@
 
 namespace rolling_ellipse {
 
-// Of arcs that have to be integrated; what lies between their steps is right to about 1e-13.
+// The tolerance of segments that have to be integrated; what lies between their steps is right to
+// about 1e-13.
 inline constexpr Tolerance finest = {1e-15, 1e-17};
 
-// Of B, physics (50): below it the slower clock is the better one, physics (54).
+// The response B, physics (50), below which the slower clock is the better one, physics (54).
 inline constexpr double small_response = 1e-2;
 
 // The angle is integrated from the nearest quarter turn, where a thin body is the most sensitive to

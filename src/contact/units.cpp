@@ -45,4 +45,13 @@ ContactSample in_si(const ContactSample& sample, const Units& units) {
             {sample.force.normal * force, sample.force.friction * force}};
 }
 
+FlowSample in_si(const FlowSample& sample, const Units& units) {
+    return {sample.theta, sample.omega / units.time, sample.x * units.length};
+}
+
+CoordinateState in_si(const CoordinateState& state, const Units& units) {
+    const Coordinates lengths{units.length, units.length, 1.0, 1.0, units.length};
+    return {state.q.cwiseProduct(lengths), state.q_dot.cwiseProduct(lengths) / units.time};
+}
+
 }  // namespace rolling_ellipse

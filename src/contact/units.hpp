@@ -3,7 +3,8 @@
 // doubles.
 #pragma once
 
-#include "rolling/equation.hpp"
+#include "geometry/constraints.hpp"
+#include "rolling/flow.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {
@@ -14,6 +15,7 @@ struct Units {
     double mass = 1.0;    // [kg]
 
     double speed() const { return length / time; }
+    bool are_si() const { return length == 1 && time == 1 && mass == 1; }
 };
 
 // Next to the long semi-axis L, sqrt(L/g) and the mass.
@@ -27,5 +29,7 @@ State in_units(const State& state, const Units& units);
 // Back to SI units.
 State in_si(const State& state, const Units& units);
 ContactSample in_si(const ContactSample& sample, const Units& units);
+FlowSample in_si(const FlowSample& sample, const Units& units);
+CoordinateState in_si(const CoordinateState& state, const Units& units);
 
 }  // namespace rolling_ellipse

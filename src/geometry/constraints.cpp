@@ -74,17 +74,17 @@ ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Co
     result.velocity = constraint_matrix(axes, q) * q_dot;
     const LowestPoint lowest = lowest_point(axes, q[coordinate::theta], q[coordinate::z]);
     result.gap = lowest.height;
-    // v + omega x d for the clockwise omega, x. + omega d_z: physics (12).
+    // v + omega x d for the clockwise omega, x_dot + omega d_z: physics (12).
     result.slip = q_dot[coordinate::x] - q_dot[coordinate::theta] * lowest.depth;
     return result;
 }
 
-KinematicState kinematics(const Axes& axes, double theta, double omega) {
+CoordinateState kinematics(const Axes& axes, double theta, double omega) {
     const Geometry at = geometry(axes, theta);
     const double psi = contact_angle(axes, theta);
     const double psi_dot = contact_angle_rate(axes, at) * omega;
     // r from psi as it is rounded: then f3 is zero to rounding, and f2 is flat in psi.
-    KinematicState state;
+    CoordinateState state;
     state.q << centre_path(axes, theta), at.h, theta, psi, polar_radius(axes, psi);
     // physics (12)
     state.q_dot << at.h * omega, at.dh * omega, omega, psi_dot,

@@ -1,6 +1,6 @@
 // The four constraints of the report's coordinates q = (x, z, theta, psi, r), at any state,
 // physics (13):
-//     f1 = x. - r cos(psi - theta) theta.
+//     f1 = x_dot - r cos(psi - theta) theta_dot
 //     f2 = z - r cos(psi - theta)
 //     f3 = r - a b/sqrt(b^2 sin^2 psi + a^2 cos^2 psi)
 //     f4 = psi - theta - atan2((a^2 - b^2) sin theta cos theta, b^2 cos^2 theta + a^2 sin^2 theta)
@@ -17,15 +17,20 @@ namespace rolling_ellipse {
 using Coordinates = Eigen::Matrix<double, 5, 1>;
 using ConstraintMatrix = Eigen::Matrix<double, 4, 5>;
 
+struct CoordinateState {
+    Coordinates q;
+    Coordinates q_dot;
+};
+
 namespace coordinate {
 enum : int { x, z, theta, psi, r };
 }
 
-// Rows: the coefficients of q. in f1 and in the rates of f2, f3, f4: physics (14).
+// Rows: the coefficients of q_dot in f1 and in the rates of f2, f3, f4: physics (14).
 ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q);
 
-// What the second derivatives of the constraints have beside matrix q.., physics (15): the matrix'
-// rate times q.
+// What the second derivatives of the constraints have beside matrix * q_ddot, physics (15): the
+// rate of the matrix times q_dot.
 Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const Coordinates& q_dot);
 
 // f2 [m], f3 [m], f4 [rad].
@@ -40,12 +45,7 @@ struct ConstraintResiduals {
 
 ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Coordinates& q_dot);
 
-// The state that meets all constraints at an angle and angular velocity; x = integral of h.
-struct KinematicState {
-    Coordinates q;
-    Coordinates q_dot;
-};
-
-KinematicState kinematics(const Axes& axes, double theta, double omega);
+// The state that meets all constraints at an angle and angular velocity; x is the integral of h.
+CoordinateState kinematics(const Axes& axes, double theta, double omega);
 
 }  // namespace rolling_ellipse

@@ -93,7 +93,7 @@ QuarterPath quarter_path(const Axes& axes, double s, double c) {
     return {contact - geometry(axes, s, c).dh, contact};
 }
 
-// The same for any angle.
+// centre_path for an angle of any size: whole quarter turns and what is over.
 QuarterPath unwrapped_path(const Axes& axes, double theta) {
     if (axes.a == axes.b) return {axes.a * theta, axes.a * theta};
     const double s = std::sin(theta);

@@ -43,7 +43,7 @@ inline Geometry geometry(const Axes& axes, double theta) {
     return geometry(axes, std::sin(theta), std::cos(theta));
 }
 
-// The same position seen from the flat one, long axis first: phi is theta for a >= b, otherwise
+// A position as seen from the flat one, long axis first: phi is theta for a >= b, otherwise
 // theta - pi/2, and folded by half turns (under which the ellipse is the same) to cos phi >= 0.
 struct FlatView {
     double long_axis;
@@ -77,7 +77,7 @@ double polar_radius(const Axes& axes, double psi);
 double polar_radius_slope(const Axes& axes, double psi);
 double polar_radius_second(const Axes& axes, double psi);
 
-// The integral of h from 0 to theta, physics (9): way of the centre in rolling; unwrapped.
+// The integral of h from 0 to theta, physics (9): the path of the centre in rolling; unwrapped.
 double centre_path(const Axes& axes, double theta);
 
 // centre_path + h' = arc length along the ellipse from the contact at 0 to that at theta.

@@ -114,7 +114,7 @@ Until integrate_until(Integrator& integrator, Steps<N>& steps, const Tolerance& 
         [&](const Point<N>& point) { return rule(point); }, [](Point<N>&) { return 0.0; },
         checkpoint);
     double time = rule.time();
-    if (ending == Ending::stopped) {
+    if (ending == Ending::event) {
         time = end_at_event(integrator, steps, time, rule.which(), rule.slope(), margins);
     }
     StepCounts counts = integrator.counts();

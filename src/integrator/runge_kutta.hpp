@@ -84,7 +84,7 @@ class ExplicitMethod {
         return dense_output_of_last_step(from, h);
     }
 
-    // The same of the step just taken, while `integrate` lets its point be seen.
+    // The dense output of the step just taken, while `integrate` lets its point be seen.
     Dense dense_output_of_last_step(const Point<N>& from, double h) {
         evaluate<Tableau::stages + 1, Tableau::all_stages>(from, h);
         const Vector<N> change = increment(h);
@@ -96,7 +96,7 @@ class ExplicitMethod {
         dense.terms[2] = 2 * change - h * (slope_before + slope_after);
         add_dense_terms(h, dense, std::make_index_sequence<Tableau::dense_terms>{});
         for (Vector<N>& term : dense.terms) {
-            // Where a stage overflows a step has no more than its ends.
+            // Where a stage overflows, nothing is known between the ends of the step.
             if (!in_range<N>(term)) term.setZero();
         }
         return dense;
@@ -110,7 +110,7 @@ class ExplicitMethod {
         constexpr double safety = 0.9;
         constexpr double most_shrinking = 0.2;
         constexpr double most_growth = 10.0;
-        if (!(point.t < t_end)) return Ending::reached;
+        if (!(point.t < t_end)) return Ending::completed;
         evaluate<0, 1>(point, 0.0);
         double h = starting_step(point, t_end, tolerance);
         for (long n = 0; n < max_steps; ++n) {
@@ -133,13 +133,13 @@ class ExplicitMethod {
                     h *= std::min(growth_limit, factor);
                     break;
                 }
-                h *= std::max(most_shrinking, factor);  // an error that is no number shrinks most
+                h *= std::max(most_shrinking, factor);  // the most where the error is not a number
                 growth_limit = 1.0;
                 ++counts_.rejected;
             }
             const AfterStep next = visit(point);
-            if (next == AfterStep::stop) return Ending::stopped;
-            if (!(point.t < t_end)) return Ending::reached;
+            if (next == AfterStep::stop) return Ending::event;
+            if (!(point.t < t_end)) return Ending::completed;
             if (next == AfterStep::changed) {
                 evaluate<0, 1>(point, 0.0);
             } else {
@@ -181,7 +181,8 @@ class ExplicitMethod {
         ((dense.terms[3 + I] = h * weighted_sum<DenseRow<Tableau, I>>(k_)), ...);
     }
 
-    // The root mean square of v relative to the tolerance; nothing is nothing for any tolerance.
+    // The root mean square of v relative to the tolerance; a component without error counts as 0
+    // even where the tolerance is 0.
     static double norm(const Vector<N>& v, const Vector<N>& scale) {
         double sum = 0.0;
         for (int i = 0; i < N; ++i) {

@@ -49,7 +49,7 @@ struct Tolerance {
     double absolute;
 };
 
-// Is no component beyond anything that a state may be?
+// Whether no component is larger than a state may be.
 template <int N>
 bool in_range(const Vector<N>& y) {
     constexpr double most = 1e50;
@@ -72,12 +72,27 @@ struct StepCounts {
 // What is to happen after a step: nothing, f to be evaluated anew, or an end.
 enum class AfterStep { go_on, changed, stop };
 
+// How a motion ended. An integrator comes to the last time, to an event, or to a step that it may
+// not or cannot take; the rest is said of whole motions.
 enum class Ending {
-    reached,
-    stopped,
+    completed,
+    event,
     max_steps,
     step_too_small,  // the tolerance cannot be met
-    step_too_large,  // of a fixed step: stages without a solution, or a state out of range
+    step_too_large,  // a fixed step: stages without a solution, or a state out of range
+    max_events,
+    jammed,        // a slide goes on in no way
+    undetermined,  // a slide goes on in two ways
+    validity_lost
+};
+
+// A motion that was integrated, and the time up to which it is known.
+template <class Motion>
+struct Integration {
+    Motion motion;
+    Ending ending = Ending::completed;
+    double followed_until = 0.0;
+    StepCounts counts = {};
 };
 
 // Steps of one size up to t_end, the last one shorter. `method.advance(point, h)` takes all of the
@@ -86,7 +101,7 @@ enum class Ending {
 template <class Method, int N, class Visit>
 Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, double t_end,
                                 long max_steps, Visit visit) {
-    constexpr double no_step = 1e-10;  // a rest so much smaller than a step is rounding
+    constexpr double no_step = 1e-10;  // of a step: a last one so short is rounding of the times
     const double start = point.t;
     for (long n = 0; point.t < t_end; ++n) {
         if (n == max_steps) return Ending::max_steps;
@@ -96,9 +111,9 @@ Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, dou
             return Ending::step_too_large;
         }
         point.t = last ? t_end : start + (n + 1) * step;
-        if (visit(point) == AfterStep::stop) return Ending::stopped;
+        if (visit(point) == AfterStep::stop) return Ending::event;
     }
-    return Ending::reached;
+    return Ending::completed;
 }
 
 }  // namespace rolling_ellipse

@@ -7,7 +7,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The direction in q in which theta grows by 1 and A q. = 0.
+// The direction in q in which theta grows by 1 and A q_dot = 0.
 Coordinates rolling_direction(const ConstraintMatrix& a) {
     using namespace coordinate;
     Coordinates direction;
@@ -23,7 +23,7 @@ Coordinates rolling_direction(const ConstraintMatrix& a) {
 
 CoordinateState coordinate_state(const Axes& axes, const State& state) {
     using namespace coordinate;
-    const KinematicState kinematic = kinematics(axes, state.theta, state.omega);
+    const CoordinateState kinematic = kinematics(axes, state.theta, state.omega);
     CoordinateState result{kinematic.q, kinematic.q_dot};
     result.q[x] = state.x;
     result.q[z] = state.z;
@@ -101,7 +101,7 @@ void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
 // Along the rolling direction the energy changes by D (omega domega - pull dtheta), pull the part
 // of the force in it over D, for a velocity that is projected with its kinetic energy; the
 // correction is the least in domega^2 + (g/L) dtheta^2, which is regular at turning points, too.
-// Newton's method, until the excess stops to shrink.
+// Newton's method, until the excess stops shrinking.
 void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy) const {
     constexpr int most_iterations = 20;
     const double rate2 = std::hypot(gravity_.into, gravity_.along) / length_;
@@ -123,7 +123,7 @@ void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy)
     }
 }
 
-// Newton's method; where rounding is reached the residuals stop to shrink.
+// Newton's method; where rounding is reached the residuals stop shrinking.
 void ConstrainedBody::project_position(Coordinates& q) const {
     constexpr int most_iterations = 20;
     const Eigen::Vector3d row_unit{1.0, 1.0, length_};

@@ -1,7 +1,7 @@
 // The report's system: coordinates q = (x, z, theta, psi, r), the constraints f1 ... f4 and their
 // Lagrange multipliers, from its Lagrangian (eqs 11-15), physics (21):
-//     M q.. = Q + A^T lambda,   A q. = 0,   M = diag(m, m, I, 0, 0),   Q = (m g sin, -m g cos, 0,
-//     0, 0)
+//     M q_ddot = Q + A^T lambda,   A q_dot = 0,
+//     M = diag(m, m, I, 0, 0),     Q = (m g sin, -m g cos, 0, 0, 0)
 // with the slope in Q. M is singular in psi and r (eqs 19, 20); with A it is not.
 #pragma once
 
@@ -14,11 +14,6 @@ namespace rolling_ellipse {
 struct MultiplierSolution {
     Coordinates q_ddot;
     Eigen::Vector4d multipliers;  // [N, N, N, N m]; the first two are F and N
-};
-
-struct CoordinateState {
-    Coordinates q;
-    Coordinates q_dot;
 };
 
 // The coordinates of a body in any mode: psi and r belong to its lowest point.
@@ -34,10 +29,10 @@ class ConstrainedBody {
 
     const Axes& axes() const { return axes_; }
 
-    // Accelerations and multipliers for A q.. = demand, from one factorisation.
+    // Accelerations and multipliers for A q_ddot = demand, from one factorisation.
     MultiplierSolution solve(const Coordinates& q, const Eigen::Vector4d& demand) const;
 
-    // As the constraints demand it.
+    // Accelerations and multipliers that keep the constraints.
     MultiplierSolution solve(const Coordinates& q, const Coordinates& q_dot) const;
 
     // Energy per mass [J/kg].
@@ -50,7 +45,8 @@ class ConstrainedBody {
     // The nearest state, in the kinetic metric, that meets the constraints.
     void project(Coordinates& q, Coordinates& q_dot) const;
 
-    // The same, and with the given energy per mass.
+    // The nearest state, in the kinetic metric, that meets the constraints and has the given energy
+    // per mass.
     void project(Coordinates& q, Coordinates& q_dot, double energy) const;
 
   private:
@@ -72,7 +68,7 @@ class ConstrainedBody {
     double mass_;
     double gyration2_;
     GroundGravity gravity_;
-    double length_;  // unit in which angles weigh as much as ways
+    double length_;  // unit of length, in which angles and displacements weigh the same
 };
 
 }  // namespace rolling_ellipse

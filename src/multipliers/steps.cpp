@@ -26,7 +26,7 @@ struct IndexOne {
 
 // C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12-13 (1985) 77, per mass, for
 // y = (q, v, lambda, mu), G being the rows of A that belong to positions:
-//     q. = v + G^T mu,   M v. = Q + A^T lambda,   0 = A v,   0 = (f2, f3, f4)
+//     q_dot = v + G^T mu,   M v_dot = Q + A^T lambda,   0 = A v,   0 = (f2, f3, f4)
 struct IndexTwo {
     static constexpr int size = 17;
     const SteppedMultipliers& motion;
@@ -160,9 +160,8 @@ double reduce(Point<N>& point) {
 
 CoordinateStart coordinate_start(const Scene& scene, const State& start) {
     const double rest = within_a_turn(start.theta);
-    const KinematicState state = kinematics(scene.axes(), rest, start.omega);
-    CoordinateStart result{
-        {state.q, state.q_dot}, two_sum(start.theta, -rest), start.mode == Mode::rest};
+    const CoordinateState state = kinematics(scene.axes(), rest, start.omega);
+    CoordinateStart result{state, two_sum(start.theta, -rest), start.mode == Mode::rest};
     result.state.q[coordinate::x] = start.x;
     return result;
 }
@@ -177,10 +176,12 @@ CoordinateStart coordinate_start(const CoordinateState& state) {
     return result;
 }
 
-MultiplierIntegration integrate_multipliers(const Scene& scene, const CoordinateStart& start,
-                                            const Settings& settings, double t_end,
-                                            const Checkpoint& checkpoint) {
-    MultiplierIntegration result{motion_from(scene, start, settings), Ending::reached, {}};
+Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
+                                                      const CoordinateStart& start,
+                                                      const Settings& settings, double t_end,
+                                                      const Checkpoint& checkpoint) {
+    Integration<SteppedMultipliers> result{motion_from(scene, start, settings)};
+    result.followed_until = t_end;
     if (start.rests) return result;
     SteppedMultipliers& motion = result.motion;
     with_integrator(motion, [&](auto integrator, auto& steps) {
@@ -190,6 +191,7 @@ MultiplierIntegration integrate_multipliers(const Scene& scene, const Coordinate
             [](auto& point) { return reduce(point); }, checkpoint);
         result.counts = integrator.counts();
         result.counts.steps = static_cast<long>(steps.knots.size()) - 1;
+        if (result.ending != Ending::completed) result.followed_until = steps.knots.back().t;
     });
     return result;
 }
@@ -211,8 +213,8 @@ void sample(const SteppedMultipliers& motion, const double* times, std::size_t n
     });
 }
 
-// J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1: f.. + 2 alpha f. + beta^2 f = 0 for
-// the position constraints, f1. + 2 alpha f1 = 0 for the velocity.
+// J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1: f'' + 2 alpha f' + beta^2 f = 0 for
+// the position constraints, f1' + 2 alpha f1 = 0 for the velocity.
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
                                  const CoordinateState& state) {
     if (settings.stabilization != Stabilization::baumgarte) {

@@ -23,23 +23,16 @@ struct SteppedMultipliers {
     DoubleDouble angle_base;  // angle at which half turns and rest are 0
     // (q, q_dot); of the index-2 system, then lambda per mass and the multipliers of the positions.
     std::variant<Steps<10>, Steps<17>> steps;
-
-    Method method() const { return settings.method; }
-};
-
-struct MultiplierIntegration {
-    SteppedMultipliers motion;
-    Ending ending;
-    StepCounts counts;
 };
 
 // The start of a body that rolls, and that from any coordinates and velocities.
 CoordinateStart coordinate_start(const Scene& scene, const State& start);
 CoordinateStart coordinate_start(const CoordinateState& state);
 
-MultiplierIntegration integrate_multipliers(const Scene& scene, const CoordinateStart& start,
-                                            const Settings& settings, double t_end,
-                                            const Checkpoint& checkpoint);
+Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
+                                                      const CoordinateStart& start,
+                                                      const Settings& settings, double t_end,
+                                                      const Checkpoint& checkpoint);
 
 // The state at n times between the first and the last knot.
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,

@@ -22,14 +22,16 @@ Sign pressed_by_gravity(const Body& body, const Geometry& at, double omega) {
 }
 
 // Where the body passes the tip or turns back, as far as rounding can tell.
-Outcome at_the_top(const FlatView& at, const EnergyHeight& height) {
+Outcome at_the_top(const RollingStart& from) {
+    const FlatView& at = from.view;
+    const EnergyHeight& height = from.height;
     const double to_tip = at.c2 * square(at.cos) / (at.long_axis + at.short_axis);
     const Sign over = sign({height.over_tip, std::abs(height.over_tip) + to_tip});
     if (over == Sign::undecided) return Outcome::edge;
     return over == Sign::positive ? Outcome::rolls_over : Outcome::rocks;
 }
 
-// Of the law of rolling from a place x of its range up to the top.
+// The sign of a law of rolling from a place x of its range up to the top.
 template <int N>
 Sign sign_from(const Polynomial<N>& law, double x) {
     const Bernstein<N> whole = bernstein(law);
@@ -39,21 +41,21 @@ Sign sign_from(const Polynomial<N>& law, double x) {
 }  // namespace
 
 Outcome classify(const Body& body, double friction, double theta, double omega) {
-    omega = zero_if_negligible(omega);
-    const FlatView at = flat_view(body.axes(), theta);
-    const Geometry here = geometry(body.axes(), theta);
-    if (omega == 0 && is_equilibrium(here)) return Outcome::rests;
+    const RollingStart from = rolling_start(body, theta, omega);
+    const FlatView& at = from.view;
+    if (from.rests) return Outcome::rests;
     if (at.c2 == 0) return Outcome::rolls_over;
 
-    const Sign pressed = pressed_by_gravity(body, here, omega);
+    const Geometry here = geometry(body.axes(), theta);
+    const Sign pressed = pressed_by_gravity(body, here, from.omega);
     if (pressed == Sign::negative) return Outcome::loses_contact;
     if (pressed == Sign::undecided) return Outcome::edge;
 
     // On its way up it meets the heights above the start only; on its way down, and from the very
     // tip, all of them, flat position and all, before it is at the top.
-    const EnergyRange range = energy_range(at, body, omega);
+    const EnergyRange range = energy_range(from);
     const ForcePolynomials forces = force_polynomials(range);
-    const bool rises = at.sin * omega > 0 && at.cos > 0;
+    const bool rises = at.sin * from.omega > 0 && at.cos > 0;
     const double over_flat = at.c2 * square(at.sin) / (here.h + at.short_axis) / at.long_axis;
     const double start = rises ? std::min(over_flat / range.width, 1.0) : 0.0;
     const bool grips_always = std::isinf(friction);
@@ -63,7 +65,7 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
         return grips_always ? Outcome::loses_contact : Outcome::slips;
     }
     if (contact == Sign::undecided || grip == Sign::undecided) return Outcome::edge;
-    return at_the_top(at, energy_height(at, body.gyration2, body.gravity, omega));
+    return at_the_top(from);
 }
 
 }  // namespace rolling_ellipse

@@ -39,9 +39,9 @@ bool reaches_the_tip(const Scene& scene, const State& start) {
 // What becomes of a body that rolls over the flat position, before it passes the tip.
 enum class Fate { stays, leaves, jams, unknown };
 
-// The state in which an arc ends, and what goes on from there; nothing if the body gets over the
+// The state in which a segment ends, and what goes on from there; nothing if the body gets over the
 // tip or turns back.
-struct EndOfArc {
+struct EndOfSegment {
     State state;
     Continuation next;
 };
@@ -65,15 +65,15 @@ class Follower {
     Fate fate(double omega) {
         // Where N and c vanish together, right at the tip, there are only slides of no length
         // before.
-        constexpr int most_arcs = 64;
+        constexpr int most_segments = 64;
         checkpoint_();
         State state = in_contact(geometry(axes_, flat_), flat_, omega, 0.0, 0.0, Mode::rolling);
         Continuation next = continuation(scene_, state);
         for (int i = 0; state.theta < tip_; ++i) {
             if (gave_up()) return Fate::unknown;
-            if (next.mode == Mode::flight || i == most_arcs) return Fate::leaves;
+            if (next.mode == Mode::flight || i == most_segments) return Fate::leaves;
             if (next.paradox != Painleve::determined) return Fate::jams;
-            const std::optional<EndOfArc> end =
+            const std::optional<EndOfSegment> end =
                 next.mode == Mode::rolling ? end_of_rolling(state) : end_of_slide(state, next.side);
             if (!end) return gave_up() ? Fate::unknown : Fate::stays;
             state = end->state;
@@ -83,39 +83,44 @@ class Follower {
     }
 
   private:
-    static constexpr double over_the_tip = 0.5;      // [rad], where c no longer falls
-    static constexpr long evaluations_an_arc = 100;  // what the rest of the work on an arc costs
+    static constexpr double over_the_tip = 0.5;  // [rad], where c no longer falls
+    static constexpr long evaluations_a_segment =
+        100;  // what the rest of the work on a segment costs
 
-    std::optional<EndOfArc> end_of_rolling(const State& from) {
-        evaluations_left_ -= evaluations_an_arc;
-        const EndOfRolling end =
-            rolling_ellipse::end_of_rolling(scene_.body(), scene_.friction, from.theta, from.omega);
+    std::optional<EndOfSegment> end_of_rolling(const State& from) {
+        evaluations_left_ -= evaluations_a_segment;
+        const RollingStart start = rolling_start(scene_.body(), from.theta, from.omega);
+        const EndOfRolling end = rolling_ellipse::end_of_rolling(start, scene_.friction);
         if (end.validity != Validity::invalid) return std::nullopt;
-        const RollingFlow flow = rolling_flow(scene_.body(), from.theta, from.omega);
+        const RollingFlow flow = rolling_flow(start);
         const FlowSample last = sample(flow, time_of_end(flow, end));
         const State state = in_contact(geometry(axes_, last.theta), last.theta, last.omega, last.x,
                                        0.0, Mode::rolling);
-        return EndOfArc{state, continuation(scene_, state, false)};
+        return EndOfSegment{state, continuation(scene_, state, false)};
     }
 
-    std::optional<EndOfArc> end_of_slide(const State& from, double side) {
+    std::optional<EndOfSegment> end_of_slide(const State& from, double side) {
         if (std::isinf(scene_.friction) && !reaches_the_tip(scene_, from)) return std::nullopt;
         SteppedSliding motion = sliding_from(scene_, from, side);
         const Until until = followed(motion);
-        evaluations_left_ -= until.counts.evaluations + evaluations_an_arc;
-        if (until.ending != Ending::stopped || until.which > jams) return std::nullopt;
+        evaluations_left_ -= until.counts.evaluations + evaluations_a_segment;
+        if (until.ending != Ending::event) return std::nullopt;
+        if (until.which == passes_the_tip || until.which == turns_back) return std::nullopt;
         ContactSample last{};
         sample(motion, &until.time, 1, &last);
         State state = last.state;
         if (state.theta > tip_ + over_the_tip || state.omega < 0) return std::nullopt;
-        if (until.which == pressure_vanishes) return EndOfArc{state, {Mode::flight}};
+        if (until.which == pressure_vanishes) return EndOfSegment{state, {Mode::flight}};
         if (until.which == jams) {
-            return EndOfArc{state, {Mode::sliding, side, Painleve::no_motion}};
+            return EndOfSegment{state, {Mode::sliding, side, Painleve::no_motion}};
         }
         state = in_contact(geometry(axes_, state.theta), state.theta, state.omega, state.x, 0.0,
                            Mode::sliding);
-        return EndOfArc{state, continuation(scene_, state)};
+        return EndOfSegment{state, continuation(scene_, state)};
     }
+
+    // The margins of a slide to the tip that follow those of SlideEnd.
+    enum EndAtTheTip { passes_the_tip = jams + 1, turns_back };
 
     // Up to the end of the slide, over the tip or until it turns back.
     Until followed(SteppedSliding& motion) {
@@ -129,7 +134,7 @@ class Follower {
         ExplicitMethod<DormandPrince853, SlidingEquation> integrator(f);
         const Until until = integrate_until(integrator, motion.steps, finest, most_steps, infinity,
                                             margins, checkpoint_);
-        if (until.ending != Ending::stopped || until.which != jams || !f.may_jam()) return until;
+        if (until.ending != Ending::event || until.which != jams || !f.may_jam()) return until;
         Until slow = integrate_sliding(motion, finest, most_steps, infinity, checkpoint_);
         slow.counts += until.counts;
         return slow;
@@ -182,7 +187,7 @@ LiftOff scanned(Follower& body, double low) {
         const Fate now = body.fate(speed);
         if (now != fate) {
             const double change = i == 0 ? low : change_between(body, before, speed);
-            if (fate == Fate::jams) found.jam_speeds.back().to = change;
+            if (fate == Fate::jams) found.jam_speeds.back().upper = change;
             if (now == Fate::jams) found.jam_speeds.push_back({change, infinity});
             if (now == Fate::leaves) found.speed = std::min(*found.speed, change);
         }
@@ -208,8 +213,8 @@ LiftOff lift_off(const Body& body, double friction, double slip_speed, double pa
     if (follower.gave_up()) return {std::nullopt, {}};
     *found.speed /= units.time;
     for (SpeedRange& jams : found.jam_speeds) {
-        jams.from /= units.time;
-        jams.to /= units.time;
+        jams.lower /= units.time;
+        jams.upper /= units.time;
     }
     return found;
 }

@@ -9,10 +9,10 @@
 
 namespace rolling_ellipse {
 
-// Of |omega| when passing the flat position [rad/s]; `to` may be infinite.
+// Speeds |omega| when passing the flat position [rad/s]; the upper one may be infinite.
 struct SpeedRange {
-    double from;
-    double to;
+    double lower;
+    double upper;
 };
 
 struct LiftOff {

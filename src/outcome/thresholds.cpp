@@ -8,13 +8,6 @@
 namespace rolling_ellipse {
 namespace {
 
-// The body with lengths in units of its long semi-axis and accelerations in units of g.
-struct Shape {
-    double short_axis;
-    double gyration2;
-    double c2;
-};
-
 // A place on the ellipse, and what rolling needs there.
 struct Place {
     double angle;      // phi
@@ -46,19 +39,21 @@ double energy_over_flat(const Place& at, double omega2) {
     return 0.5 * at.d * omega2 + at.over_flat;
 }
 
+// The least value of a quantity from which on something happens, and where it first does.
 struct Onset {
-    double energy = infinity;  // H - S
+    double value = infinity;
     std::optional<double> angle;
 };
 
-void take_if_lower(Onset& onset, double energy, double angle) {
-    if (energy < onset.energy) onset = {energy, angle};
+void take_if_lower(Onset& onset, double value, double angle) {
+    if (value < onset.value) onset = {value, angle};
 }
 
-// N of rolling vanishes at H = h - r/p, with r = normal_at_rest and p = normal_moving; the least
-// such H is a root of h' p^2 - r' p + r p': physics (46).
+// The energy H - S from which on N of rolling vanishes somewhere: at H = h - r/p, with r =
+// normal_at_rest and p = normal_moving; the least such H is a root of h' p^2 - r' p + r p': physics
+// (46).
 Onset contact_loss(const Shape& shape) {
-    const EnergyRange range = separatrix_range(shape.short_axis, shape.gyration2, shape.c2);
+    const EnergyRange range = separatrix_range(shape);
     const ForcePolynomials p = force_polynomials(range);
     const Polynomial<4>& moving = p.normal_moving;
     std::vector<double> places = roots_on_unit_interval(
@@ -124,19 +119,19 @@ Onset slip(const Shape& shape, double friction) {
     double best = first;
     for (int i = 1; i <= scan; ++i) {
         const double here = first + step * i;
-        if (energy_at(here).energy < energy_at(best).energy) best = here;
+        if (energy_at(here).value < energy_at(best).value) best = here;
     }
     double low = best - step;
     double high = best + step;
     for (int i = 0; i < sections; ++i) {
         const double left = high - golden * (high - low);
         const double right = low + golden * (high - low);
-        const bool falls = energy_at(left).energy > energy_at(right).energy;
+        const bool falls = energy_at(left).value > energy_at(right).value;
         (falls ? low : high) = falls ? left : right;
     }
     const Onset moving = energy_at(0.5 * (low + high));
     const Onset at_rest = slip_at_rest(shape, friction);
-    return at_rest.energy < moving.energy ? at_rest : moving;
+    return at_rest.value < moving.value ? at_rest : moving;
 }
 
 // mu = (K + Y/u)/sqrt(Y), Y = (1 - u)(u - B) = (h h')^2: stationary where
@@ -170,7 +165,7 @@ double roll_over_speed(const Body& body) {
 Thresholds thresholds(const Body& body, double friction, const Checkpoint& checkpoint) {
     const FlatView at = flat_view(body.axes(), 0.0);
     const double unit = at.long_axis;
-    const Shape shape{at.short_axis / unit, body.gyration2 / square(unit), at.c2 / square(unit)};
+    const Shape shape = rolling_ellipse::shape(body, at);
     const double flat_inertia = body.gyration2 + square(at.short_axis);
     const double tip_inertia = body.gyration2 + square(at.long_axis);
 
@@ -186,7 +181,7 @@ Thresholds thresholds(const Body& body, double friction, const Checkpoint& check
     if (at.c2 == 0) return result;
 
     const auto flat_speed = [&](const Onset& onset) {  // physics (44)
-        return std::sqrt(2 * body.gravity * unit * onset.energy / flat_inertia);
+        return std::sqrt(2 * body.gravity * unit * onset.value / flat_inertia);
     };
     const auto theta_of = [&](std::optional<double> angle) {
         if (angle && body.a < body.b) angle = half_pi - *angle;
@@ -198,11 +193,11 @@ Thresholds thresholds(const Body& body, double friction, const Checkpoint& check
     const Onset slipping = slip(shape, friction);
     result.slip_speed = flat_speed(slipping);
     result.slip_angle = theta_of(slipping.angle);
-    const EnergyRange separatrix = separatrix_range(shape.short_axis, shape.gyration2, shape.c2);
+    const EnergyRange separatrix = separatrix_range(shape);
     result.friction_to_roll_over =
         force_extremes(separatrix, force_polynomials(separatrix)).most_friction.needed();
     const Onset jamming = painleve(shape);
-    result.painleve_friction = jamming.energy;
+    result.painleve_friction = jamming.value;
     result.painleve_angle = theta_of(jamming.angle);
     result.lift_off =
         lift_off(body, friction, result.slip_speed, result.painleve_friction, checkpoint);

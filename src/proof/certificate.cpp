@@ -20,10 +20,12 @@ struct Start {
     RollingForces forces;
 };
 
-Start start_on_range(const FlatView& at, const EnergyRange& range, const Body& body, double omega) {
+Start start_on_range(const RollingStart& from, const EnergyRange& range) {
+    const FlatView& at = from.view;
+    const double omega = from.omega;
     // At a turning point the body falls back towards the flat position.
     const double direction = omega != 0 ? std::copysign(1.0, omega) : -std::copysign(1.0, at.sin);
-    const double omega2 = omega * omega * at.long_axis / body.gravity;
+    const double omega2 = omega * omega * at.long_axis / from.body.gravity;
     return {direction * std::atan2(at.sin, at.cos), direction,
             rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
 }
@@ -144,9 +146,7 @@ EndOfRolling end_of_rolling(const EnergyRange& range, const ForcePolynomials& po
 }
 
 // A circle, or a body that stays where it is, needs no friction.
-bool rolls_freely(const Body& body, const FlatView& at, double theta, double omega) {
-    return at.c2 == 0 || (omega == 0 && is_equilibrium(geometry(body.axes(), theta)));
-}
+bool rolls_freely(const RollingStart& from) { return from.view.c2 == 0 || from.rests; }
 
 }  // namespace
 
@@ -157,12 +157,11 @@ Polynomial<10> grip_polynomial(const ForcePolynomials& p, double friction) {
     return friction * friction * held - needed;
 }
 
-EndOfRolling end_of_rolling(const Body& body, double friction, double theta, double omega) {
-    const FlatView at = flat_view(body.axes(), theta);
-    if (rolls_freely(body, at, theta, omega)) return {Validity::valid};
-    const EnergyRange range = energy_range(at, body, omega);
-    return end_of_rolling(range, force_polynomials(range), friction, theta,
-                          start_on_range(at, range, body, omega));
+EndOfRolling end_of_rolling(const RollingStart& from, double friction) {
+    if (rolls_freely(from)) return {Validity::valid};
+    const EnergyRange range = energy_range(from);
+    return end_of_rolling(range, force_polynomials(range), friction, from.theta,
+                          start_on_range(from, range));
 }
 
 double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
@@ -170,21 +169,19 @@ double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
     return *end.angle == flow.theta ? 0.0 : time_of_passing(flow, *end.angle, end.heading);
 }
 
-Certificate certify_rolling(const Body& body, double mass, double friction, double theta,
-                            double omega) {
+Certificate certify_rolling(const RollingStart& from, double mass, double friction) {
+    const Body& body = from.body;
     const double weight = mass * body.gravity;
-    const FlatView at = flat_view(body.axes(), theta);
-    if (rolls_freely(body, at, theta, omega)) {
-        const double angle = theta_of(body, std::atan2(std::abs(at.sin), at.cos));
+    if (rolls_freely(from)) {
+        const double angle = theta_of(body, std::atan2(std::abs(from.view.sin), from.view.cos));
         return {{Validity::valid}, weight, angle, 0.0, angle};
     }
-    const EnergyRange range = energy_range(at, body, omega);
+    const EnergyRange range = energy_range(from);
     const ForcePolynomials polynomials = force_polynomials(range);
     const ForceExtremes extremes = force_extremes(range, polynomials);
-    return {
-        end_of_rolling(range, polynomials, friction, theta, start_on_range(at, range, body, omega)),
-        weight * extremes.least_normal.normal, theta_of(body, extremes.least_normal.angle),
-        extremes.most_friction.needed(), theta_of(body, extremes.most_friction.angle)};
+    return {end_of_rolling(range, polynomials, friction, from.theta, start_on_range(from, range)),
+            weight * extremes.least_normal.normal, theta_of(body, extremes.least_normal.angle),
+            extremes.most_friction.needed(), theta_of(body, extremes.most_friction.angle)};
 }
 
 }  // namespace rolling_ellipse

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "proof/forces.hpp"
+#include "rolling/flow.hpp"
 
 namespace rolling_ellipse {
 
@@ -27,10 +28,8 @@ struct Certificate {
     std::optional<double> largest_friction_needed_angle;
 };
 
-// For a body that rolls (or rests) on level ground with the given angle and angular velocity.
-Certificate certify_rolling(const Body& body, double mass, double friction, double theta,
-                            double omega);
-EndOfRolling end_of_rolling(const Body& body, double friction, double theta, double omega);
+Certificate certify_rolling(const RollingStart& from, double mass, double friction);
+EndOfRolling end_of_rolling(const RollingStart& from, double friction);
 
 // The time from the start of the motion to that end; infinite without one.
 double time_of_end(const RollingFlow& flow, const EndOfRolling& end);

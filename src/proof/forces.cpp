@@ -28,13 +28,12 @@ double inertia(const EnergyRange& range, double h2, double sin2, double cos2) {
 
 }  // namespace
 
-EnergyRange energy_range(const FlatView& at, const Body& body, double omega) {
-    const EnergyHeight height = energy_height(at, body.gyration2, body.gravity, omega);
+EnergyRange energy_range(const RollingStart& start) {
+    const EnergyHeight& height = start.height;
+    const FlatView& at = start.view;
     const double unit = at.long_axis;
     EnergyRange range{};
-    range.short_axis = at.short_axis / unit;
-    range.gyration2 = body.gyration2 / square(unit);
-    range.c2 = at.c2 / square(unit);
+    static_cast<Shape&>(range) = shape(start.body, at);
     range.energy = height.total / unit;
     range.libration = height.over_tip < 0;
     if (range.libration) {
@@ -47,8 +46,8 @@ EnergyRange energy_range(const FlatView& at, const Body& body, double omega) {
     return range;
 }
 
-EnergyRange separatrix_range(double short_axis, double gyration2, double c2) {
-    return {short_axis, gyration2, c2, 1.0, c2 / (1 + short_axis), 0.0, 0.0, false};
+EnergyRange separatrix_range(const Shape& shape) {
+    return {shape, 1.0, shape.c2 / (1 + shape.short_axis), 0.0, 0.0, false};
 }
 
 ForcePolynomials force_polynomials(const EnergyRange& range) {

@@ -11,15 +11,12 @@
 #pragma once
 
 #include "numerics/polynomial.hpp"
-#include "rolling/flow.hpp"
+#include "rolling/start.hpp"
 
 namespace rolling_ellipse {
 
-// h = short_axis + width x, 0 <= x <= 1.
-struct EnergyRange {
-    double short_axis;
-    double gyration2;
-    double c2;
+// The heights h = short_axis + width x, 0 <= x <= 1, that a body of a shape reaches.
+struct EnergyRange : Shape {
     double energy;      // H
     double width;       // of the heights reached
     double energy_gap;  // H minus the greatest height reached (0 in libration)
@@ -27,10 +24,10 @@ struct EnergyRange {
     bool libration;
 };
 
-EnergyRange energy_range(const FlatView& at, const Body& body, double omega);
+EnergyRange energy_range(const RollingStart& start);
 
 // The range of a rotation with the energy of the separatrix, H = 1.
-EnergyRange separatrix_range(double short_axis, double gyration2, double c2);
+EnergyRange separatrix_range(const Shape& shape);
 
 // Polynomials in x. P = normal_at_rest + e normal_moving.
 struct ForcePolynomials {
@@ -56,10 +53,10 @@ struct RollingForces {
 
 RollingForces rolling_forces(const EnergyRange& range, double x);
 
-// The same by the angle from the flat position: near the tip it knows more than x.
+// The forces at an angle from the flat position, which near the tip has more digits than x.
 RollingForces rolling_forces_at_angle(const EnergyRange& range, double angle);
 
-// The same by sin^2 and cos^2 of the angle and omega^2 in units of g/L.
+// The forces where sin^2 and cos^2 of the angle and omega^2, in units of g/L, are known.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2);
 
 struct ForceExtremes {

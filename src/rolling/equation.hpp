@@ -75,7 +75,8 @@ class RollingDynamics {
 
 ContactForce rolling_force(const Scene& scene, double theta, double omega);
 
-// psi.. and r.. of the contact point, and the multipliers that a contact force makes.
+// The second derivatives of psi and r of the contact point, and the multipliers that a contact
+// force makes.
 struct SecondRates {
     double psi;
     double r;
@@ -85,7 +86,7 @@ SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, dou
 Eigen::Vector4d contact_multipliers(const Coordinates& q, const ContactForce& force);
 
 struct RollingDetail {
-    KinematicState state;  // its x is the integral of h from 0
+    CoordinateState state;  // its x is the integral of h from 0
     Coordinates q_ddot;
     ContactForce force;
     Eigen::Vector4d multipliers;

@@ -24,7 +24,7 @@ struct MotionPoint {
     double sin_phi;
     double cos_phi;
     double omega;
-    double quarters;  // whole turns made, in quarters, beside what sin_phi and cos_phi say
+    double quarters;  // quarter turns of the whole turns made, to be added to sin_phi and cos_phi
 };
 
 // Angle and angular velocity at a phase, on the way up: physics (30), the energy integral at the
@@ -47,9 +47,9 @@ MotionPoint point_after(const RollingFlow& flow, double t) {
     return point;
 }
 
-// The way of the centre, the integral of h omega over time, for a move over which the difference of
-// two paths would cancel: full relative accuracy. Such a move is short beside its distance from the
-// flat position and the tip, so that eight Gauss nodes are more than enough.
+// The path of the centre, the integral of h omega over time, for a move over which the difference
+// of two paths would cancel: full relative accuracy. Such a move is short beside its distance from
+// the flat position and the tip, so that eight Gauss nodes are more than enough.
 double short_path(const RollingFlow& flow, double t) {
     const auto velocity = [&](double at) {
         const MotionPoint point = point_after(flow, at);
@@ -61,8 +61,10 @@ double short_path(const RollingFlow& flow, double t) {
 }
 
 // The constants of the energy integral, physics (28, 29); see rolling/phase_time.hpp.
-PhaseRate phase_rate(const Body& body, const FlatView& at, const EnergyHeight& height,
-                     MotionKind kind) {
+PhaseRate phase_rate(const RollingStart& from, MotionKind kind) {
+    const Body& body = from.body;
+    const FlatView& at = from.view;
+    const EnergyHeight& height = from.height;
     const double s2 = square(at.short_axis);
     const double l2 = square(at.long_axis);
     const double flat2 = height.over_flat * (height.total + at.short_axis);         // H^2 - S^2
@@ -89,25 +91,15 @@ PhasePoint start_phase(const RollingFlow& flow) {
 
 }  // namespace
 
-// physics (26)
-EnergyHeight energy_height(const FlatView& at, double gyration2, double gravity, double omega) {
-    const double h2 = square(at.short_axis) + at.c2 * square(at.sin);
-    const double h = std::sqrt(h2);
-    const double dh = at.c2 * at.sin * at.cos / h;
-    const double kinetic = (gyration2 + h2 + square(dh)) * square(omega) / (2 * gravity);
-    return {kinetic + h, kinetic - at.c2 * square(at.cos) / (at.long_axis + h),
-            kinetic + at.c2 * square(at.sin) / (at.short_axis + h)};
-}
-
-RollingFlow rolling_flow(const Body& body, double theta, double omega, double x) {
+RollingFlow rolling_flow(const RollingStart& from, double x) {
     RollingFlow flow{};
-    flow.theta = theta;
-    flow.omega = omega = zero_if_negligible(omega);
+    flow.theta = from.theta;
+    flow.omega = from.omega;
     flow.x = x;
-    flow.gravity = body.gravity;
-    flow.start = flat_view(body.axes(), theta);
+    flow.gravity = from.body.gravity;
+    flow.start = from.view;
     const FlatView& at = flow.start;
-    if (omega == 0 && is_equilibrium(geometry(body.axes(), theta))) {
+    if (from.rests) {
         flow.kind = MotionKind::rest;
         return flow;
     }
@@ -115,11 +107,10 @@ RollingFlow rolling_flow(const Body& body, double theta, double omega, double x)
         flow.kind = MotionKind::uniform;
         return flow;
     }
-    const EnergyHeight height = energy_height(at, body.gyration2, body.gravity, omega);
-    const bool rotates = height.over_tip >= 0 && omega != 0;
+    const bool rotates = from.height.over_tip >= 0 && from.omega != 0;
     flow.kind = rotates ? MotionKind::rotation : MotionKind::libration;
-    flow.direction = rotates ? std::copysign(1.0, omega) : 1.0;
-    flow.phase = phase_time(phase_rate(body, at, height, flow.kind));
+    flow.direction = rotates ? std::copysign(1.0, from.omega) : 1.0;
+    flow.phase = phase_time(phase_rate(from, flow.kind));
 
     const PhasePoint start = start_phase(flow);
     flow.amplitude = std::hypot(start.sin, start.cos);

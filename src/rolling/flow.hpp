@@ -2,9 +2,8 @@
 // does not depend on how far it is from the start.
 #pragma once
 
-#include "geometry/ellipse.hpp"
 #include "rolling/phase_time.hpp"
-#include "scene/scene.hpp"
+#include "rolling/start.hpp"
 
 namespace rolling_ellipse {
 
@@ -43,7 +42,7 @@ struct FlowSample {
     double x;
 };
 
-RollingFlow rolling_flow(const Body& body, double theta, double omega, double x = 0.0);
+RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);
 
 // For |t| up to longest_time.
 FlowSample sample(const RollingFlow& flow, double t);
@@ -81,15 +80,5 @@ double period(const RollingFlow& flow);
 
 // The first time t >= 0 at which the body passes the angle theta with velocity of the given sign.
 double time_of_passing(const RollingFlow& flow, double theta, double heading);
-
-// The height H = E/(m g) of the energy [m], and how far it is over the tip (H - L, negative in
-// libration) and over the flat position (H - S), by forms that do not cancel: physics (26).
-struct EnergyHeight {
-    double total;
-    double over_tip;
-    double over_flat;
-};
-
-EnergyHeight energy_height(const FlatView& at, double gyration2, double gravity, double omega);
 
 }  // namespace rolling_ellipse

@@ -34,8 +34,9 @@ double self_product(const Series& p, int k, int from = 0) {
     return 2 * pairs + (k % 2 == 0 && k / 2 >= from ? p[k / 2] * p[k / 2] : 0.0);
 }
 
-// The body with lengths in units of its long semi-axis and time in a unit of its own.
-struct ScaledBody {
+// The constants of the series, with lengths in units of the long semi-axis and time in a unit of
+// its own.
+struct SeriesConstants {
     double short_axis2;
     double c2;
     double gravity;
@@ -51,7 +52,7 @@ struct MotionSeries {
 
 // Physics (18) with D h^2 = d0 + d1 s^2, u = h^2 and s, c the sine and cosine of the angle:
 //     omega' u (d0 + d1 s^2) = -c2 s c (g u h + S^2 omega^2)
-MotionSeries motion_series(const ScaledBody& body, double sin, double cos, double omega) {
+MotionSeries motion_series(const SeriesConstants& body, double sin, double cos, double omega) {
     Series s{sin}, c{cos}, w{omega}, s2{}, u{}, h{}, inertia{}, mass{}, sc{}, w2{}, uh{}, load{};
     Series turning{};
     MotionSeries motion{};
@@ -222,7 +223,7 @@ class TableMaker {
     FlowTable table_;
     double length_;
     double unit_;
-    ScaledBody body_;
+    SeriesConstants body_;
 };
 
 // Times for which a piece holds, and what it says of them: theta = theta + angle(t - t0) and so on.

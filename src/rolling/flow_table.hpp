@@ -37,7 +37,8 @@ struct FlowTable {
     std::vector<FlowPiece> pieces;
 };
 
-// Of a rotation or a libration, for times from 0 to `span`; with an infinite span for any.
+// The table of a rotation or a libration, for times from 0 to `span`; with an infinite span for
+// any.
 FlowTable flow_table(const RollingFlow& flow, double span);
 
 // Quickest for times in order; outside of the table's span it is as slow as without.

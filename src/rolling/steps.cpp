@@ -58,10 +58,11 @@ SteppedRolling rolling_from(const Scene& scene, const State& start, const Settin
     return motion;
 }
 
-RollingIntegration integrate_rolling(const Scene& scene, const State& start,
-                                     const Settings& settings, double t_end,
-                                     const Checkpoint& checkpoint) {
-    RollingIntegration result{rolling_from(scene, start, settings), Ending::reached, {}};
+Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& start,
+                                              const Settings& settings, double t_end,
+                                              const Checkpoint& checkpoint) {
+    Integration<SteppedRolling> result{rolling_from(scene, start, settings)};
+    result.followed_until = t_end;
     SteppedRolling& motion = result.motion;
     if (start.mode == Mode::rest) return result;
     const auto keep = [](Point<2>&) { return AfterStep::go_on; };
@@ -76,6 +77,7 @@ RollingIntegration integrate_rolling(const Scene& scene, const State& start,
         result.counts = integrator.counts();
     });
     result.counts.steps = static_cast<long>(motion.steps.knots.size()) - 1;
+    if (result.ending != Ending::completed) result.followed_until = motion.steps.knots.back().t;
     return result;
 }
 

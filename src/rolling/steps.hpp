@@ -18,22 +18,14 @@ struct SteppedRolling {
     DoubleDouble x_base;      // x there
     double half_turn_path;
     Steps<2> steps;
-
-    Method method() const { return settings.method; }
-};
-
-struct RollingIntegration {
-    SteppedRolling motion;
-    Ending ending;
-    StepCounts counts;
 };
 
 // The motion that is to be integrated: its first knot.
 SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings);
 
-RollingIntegration integrate_rolling(const Scene& scene, const State& start,
-                                     const Settings& settings, double t_end,
-                                     const Checkpoint& checkpoint);
+Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& start,
+                                              const Settings& settings, double t_end,
+                                              const Checkpoint& checkpoint);
 
 // The state at n times between the first and the last knot.
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples);

@@ -122,7 +122,7 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution)
 
 // The gap rate is the rebound afterwards, and v = 0 where it sticks, exactly. The angular momentum
 // about the contact, which no reaction changes, gives the sticking angular velocity, physics (40):
-// k^2 omega + h x. + h' z. with x. = h omega, z. = h' omega + rebound.
+// k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega + rebound.
 void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, State& state) {
     if (reaction.sticks) {
         const double k2 = scene.inertia / scene.mass;

@@ -9,7 +9,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// Of k^2 beside the long semi-axis squared: below the least, k^2 is lost beside h^2 in D.
+// Limits of k^2 beside the long semi-axis squared: below the least, k^2 is lost beside h^2 in D.
 constexpr double least_inertia = 1e-15;
 constexpr double most_inertia = 1e30;
 constexpr double energy_limit = 1e100;  // of a kinetic energy beside m g times that axis

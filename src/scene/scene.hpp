@@ -61,8 +61,12 @@ struct Scene {
     GroundGravity ground_gravity() const { return rolling_ellipse::ground_gravity(gravity, slope); }
 };
 
-// physics (16)
+// k^2 of a uniform disc, physics (16): the default wherever a body is given.
 inline double uniform_disc_gyration2(double a, double b) { return (a * a + b * b) / 4; }
+
+inline Body body(double a, double b, std::optional<double> gyration2, double gravity) {
+    return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
+}
 
 // Throw std::invalid_argument naming the argument, what was required and what came.
 void validate_length(const std::string& name, double value);
@@ -73,6 +77,9 @@ void validate_velocity(const Body& body, double x_dot, double z_dot);
 void validate_friction(double friction);
 void validate(const Impulse& impulse);
 void validate(const Scene& scene);
+
+// A height at which the ellipse does not touch the ground, whatever its angle.
+inline double above_ground(const Axes& axes) { return axes.a + axes.b; }
 
 // The state before any impulse: absent values filled in; values within 8 ulp of touching or of
 // rolling set exactly. Throws where the body is under the ground or moves into it.

@@ -11,9 +11,9 @@ enum class Model { automatic, rolling, multipliers, contact };
 
 enum class Method { automatic, exact, dop853, dopri5, rk4, gauss, radau };
 
-// Of the constraints of the multiplier model: as an index-1 system, with Baumgarte's feedback,
-// projected after each step, also onto the energy, or as the index-2 system of Gear, Gupta and
-// Leimkuhler.
+// How the constraints of the multiplier model are kept: as an index-1 system, with Baumgarte's
+// feedback, projected after each step, also onto the energy, or as the index-2 system of Gear,
+// Gupta and Leimkuhler.
 enum class Stabilization { none, baumgarte, projection, projection_energy, ggl };
 
 struct Settings {

@@ -19,6 +19,11 @@ struct State {
     Mode mode;
 };
 
+// Whether the contact has no slip.
+inline bool rolls(const State& state) {
+    return state.mode == Mode::rolling || state.mode == Mode::rest;
+}
+
 struct ContactForce {
     double normal;    // [N]
     double friction;  // [N], on the body, along x

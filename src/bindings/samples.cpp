@@ -1,0 +1,31 @@
+#include "bindings/samples.hpp"
+
+namespace rolling_ellipse::bindings {
+
+py::ssize_t require_coordinates(const Array& q, const Array& q_dot) {
+    const py::ssize_t n = require_matrix("q", q, 5);
+    require_matrix("q_dot", q_dot, n, 5);
+    return n;
+}
+
+CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row) {
+    return {Eigen::Map<const Coordinates>(q.data(row, 0)),
+            Eigen::Map<const Coordinates>(q_dot.data(row, 0))};
+}
+
+CoordinateState single_state(const Array& q, const Array& q_dot) {
+    require_matrix("q", q, 1, 5);
+    require_matrix("q_dot", q_dot, 1, 5);
+    return state_at(q, q_dot, 0);
+}
+
+void store_samples(const FlowSample* samples, py::ssize_t begin, py::ssize_t end,
+                   double* const columns[3]) {
+    for (py::ssize_t i = begin; i < end; ++i) {
+        columns[0][i] = samples[i - begin].theta;
+        columns[1][i] = samples[i - begin].omega;
+        columns[2][i] = samples[i - begin].x;
+    }
+}
+
+}  // namespace rolling_ellipse::bindings

@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <utility>
+
+#include "bindings/bindings.hpp"
+#include "bindings/samples.hpp"
+#include "scene/refuse.hpp"
+#include "simulate.hpp"
+
+namespace rolling_ellipse::bindings {
+namespace {
+
+// A solution says nothing of other times than those that it went through, and nothing at all where
+// it ended before it began.
+void validate_times(const Solution& solution, const double* times, py::ssize_t begin,
+                    py::ssize_t end) {
+    if (begin < end && solution.motion.segments.empty()) {
+        throw std::invalid_argument("t must be empty, for the motion ended before it began: " +
+                                    solution.message);
+    }
+    for (py::ssize_t i = begin; i < end; ++i) {
+        if (times[i] >= 0 && times[i] <= solution.followed_until) continue;
+        refuse("t", "within [0, " + text(solution.followed_until) + "] [s]", times[i]);
+    }
+}
+
+// Shows take(samples, begin, end) the samples of all times, in parts.
+template <class Sample, class Take>
+void look(const Solution& solution, const Array& t, Take take) {
+    const py::ssize_t n = t.size();
+    const double* const times = t.data();
+    const Sampler sampler(solution.motion, solution.followed_until, n);
+    std::vector<Sample> samples(std::min<std::size_t>(n, chunk));
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        validate_times(solution, times, begin, end);
+        sampler(times + begin, end - begin, samples.data());
+        take(samples.data(), begin, end);
+    });
+}
+
+// theta, omega, x at each time.
+py::tuple sample_rolling(const Solution& solution, const Array& t) {
+    require_length("t", t, t.size());
+    std::vector<Array> out = empty_arrays(3, t.size());
+    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
+    look<FlowSample>(solution, t,
+                     [&](const FlowSample* samples, py::ssize_t begin, py::ssize_t end) {
+                         store_samples(samples, begin, end, columns);
+                     });
+    return py::make_tuple(out[0], out[1], out[2]);
+}
+
+// q and q_dot, (n, 5), at each time.
+py::tuple sample_coordinates(const Solution& solution, const Array& t) {
+    require_length("t", t, t.size());
+    Array q = matrix(t.size(), 5);
+    Array q_dot = matrix(t.size(), 5);
+    look<CoordinateState>(solution, t,
+                          [&](const CoordinateState* samples, py::ssize_t begin, py::ssize_t end) {
+                              for (py::ssize_t i = begin; i < end; ++i) {
+                                  store(q, i, samples[i - begin].q.data());
+                                  store(q_dot, i, samples[i - begin].q_dot.data());
+                              }
+                          });
+    return py::make_tuple(q, q_dot);
+}
+
+constexpr std::pair<const char*, double State::*> state_columns[] = {
+    {"theta", &State::theta}, {"omega", &State::omega}, {"x", &State::x},
+    {"z", &State::z},         {"x_dot", &State::x_dot}, {"z_dot", &State::z_dot}};
+constexpr std::pair<const char*, double ContactForce::*> force_columns[] = {
+    {"normal_force", &ContactForce::normal}, {"friction_force", &ContactForce::friction}};
+
+// State and force at each time, an array by name for each of their numbers.
+py::dict sample_contact(const Solution& solution, const Array& t) {
+    require_length("t", t, t.size());
+    py::dict found;
+    std::vector<double*> columns;
+    const auto add = [&](const char* name) {
+        Array column(t.size());
+        columns.push_back(column.mutable_data());
+        found[name] = std::move(column);
+    };
+    for (const auto& [name, number] : state_columns) add(name);
+    for (const auto& [name, number] : force_columns) add(name);
+    py::array_t<std::int8_t> mode(t.size());
+    std::int8_t* const modes = mode.mutable_data();
+    look<ContactSample>(solution, t,
+                        [&](const ContactSample* samples, py::ssize_t begin, py::ssize_t end) {
+                            auto column = columns.begin();
+                            for (const auto& [name, number] : state_columns) {
+                                double* const values = *column++;
+                                for (py::ssize_t i = begin; i < end; ++i) {
+                                    values[i] = samples[i - begin].state.*number;
+                                }
+                            }
+                            for (const auto& [name, number] : force_columns) {
+                                double* const values = *column++;
+                                for (py::ssize_t i = begin; i < end; ++i) {
+                                    values[i] = samples[i - begin].force.*number;
+                                }
+                            }
+                            for (py::ssize_t i = begin; i < end; ++i) {
+                                modes[i] = static_cast<std::int8_t>(samples[i - begin].state.mode);
+                            }
+                        });
+    found["mode"] = std::move(mode);
+    return found;
+}
+
+Solution simulate_interruptible(const Scene& scene, const Settings& settings, double t_end) {
+    const py::gil_scoped_release release;
+    return simulate(scene, settings, t_end, SignalWatch());
+}
+
+Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q_dot,
+                              const Settings& settings, double t_end) {
+    const CoordinateState start = single_state(q, q_dot);
+    const py::gil_scoped_release release;
+    return simulate(scene, start, settings, t_end, SignalWatch());
+}
+
+py::dict stats(const Solution& solution) {
+    const auto& [steps, rejected, evaluations] = solution.counts;
+    return py::dict("segments"_a = solution.motion.segments.size(), "steps"_a = steps,
+                    "rejected_steps"_a = rejected, "evaluations"_a = evaluations);
+}
+
+}  // namespace
+
+void bind_solution(py::module_& m) {
+    py::native_enum<EventKind>(m, "EventKind", "enum.Enum", "What changes at an event.")
+        .value("SLIP", EventKind::slip)
+        .value("STICK", EventKind::stick)
+        .value("REVERSE", EventKind::reverse)
+        .value("LIFT_OFF", EventKind::lift_off)
+        .value("IMPACT", EventKind::impact)
+        .value("REST", EventKind::rest)
+        .value("JAM", EventKind::jam)
+        .finalize();
+    py::native_enum<Ending>(m, "Ending", "enum.Enum", "How a motion ended.")
+        .value("COMPLETED", Ending::completed)
+        .value("JAMMED", Ending::jammed)
+        .value("UNDETERMINED", Ending::undetermined)
+        .value("VALIDITY_LOST", Ending::validity_lost)
+        .value("MAX_EVENTS", Ending::max_events)
+        .value("MAX_STEPS", Ending::max_steps)
+        .value("STEP_TOO_SMALL", Ending::step_too_small)
+        .value("STEP_TOO_LARGE", Ending::step_too_large)
+        .finalize();
+    bind_class<Event>(m, "Event")
+        .def_readonly("t", &Event::t)
+        .def_readonly("kind", &Event::kind)
+        .def_readonly("before", &Event::before)
+        .def_readonly("after", &Event::after);
+    bind_class<Solution>(m, "Solution")
+        .def_readonly("ending", &Solution::ending)
+        .def_readonly("followed_until", &Solution::followed_until)
+        .def_readonly("valid_until", &Solution::valid_until)
+        .def_readonly("reason", &Solution::reason)
+        .def_readonly("message", &Solution::message)
+        .def_readonly("model", &Solution::model)
+        .def_readonly("method", &Solution::method)
+        .def_property_readonly("stats", stats)
+        .def_property_readonly("events", [](const Solution& s) { return s.motion.events; })
+        .def("sample_rolling", sample_rolling, "t"_a)
+        .def("sample_coordinates", sample_coordinates, "t"_a)
+        .def("sample_contact", sample_contact, "t"_a);
+    m.def("simulate", simulate_interruptible, "scene"_a, "settings"_a, "t_end"_a);
+    m.def("simulate_coordinates", simulate_coordinates, "scene"_a, "q"_a, "q_dot"_a, "settings"_a,
+          "t_end"_a);
+}
+
+}  // namespace rolling_ellipse::bindings

@@ -1,0 +1,191 @@
+#include "contact/segments.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace rolling_ellipse {
+namespace {
+
+// Each law at times since its begin. FlowSamples and CoordinateStates are known to some at first
+// hand; otherwise they follow from state and force.
+
+void look_at(const Scene&, const RollingFlow& flow, const double* times, std::size_t n,
+             FlowSample* samples) {
+    FlowSampler{flow, times[n - 1], n}(times, n, samples);
+}
+
+void look_at(const Scene&, const SteppedRolling& motion, const double* times, std::size_t n,
+             FlowSample* samples) {
+    sample(motion, times, n, samples);
+}
+
+void look_at(const Scene&, const SteppedMultipliers& motion, const double* times, std::size_t n,
+             CoordinateState* samples) {
+    sample(motion, times, n, samples);
+}
+
+template <class Rolling>
+void look_at_rolling(const Scene& scene, const Rolling& rolling, const double* times, std::size_t n,
+                     ContactSample* samples) {
+    const RollingDynamics dynamics(scene);
+    std::vector<FlowSample> states(n);
+    look_at(scene, rolling, times, n, states.data());
+    for (const auto& [theta, omega, x] : states) {
+        const Geometry at = geometry(scene.axes(), theta);
+        *samples++ = {in_contact(at, theta, omega, x, 0.0, Mode::rolling),
+                      dynamics.force(at, omega)};
+    }
+}
+
+void look_at(const Scene& scene, const RollingFlow& flow, const double* times, std::size_t n,
+             ContactSample* samples) {
+    look_at_rolling(scene, flow, times, n, samples);
+}
+
+void look_at(const Scene& scene, const SteppedRolling& motion, const double* times, std::size_t n,
+             ContactSample* samples) {
+    look_at_rolling(scene, motion, times, n, samples);
+}
+
+void look_at(const Scene&, const SteppedMultipliers& motion, const double* times, std::size_t n,
+             ContactSample* samples) {
+    std::vector<CoordinateState> states(n);
+    sample(motion, times, n, states.data());
+    for (const CoordinateState& state : states) {
+        using namespace coordinate;
+        const auto& [q, q_dot] = state;
+        const auto lambda = accelerations(motion.body, motion.settings, state).multipliers;
+        *samples++ = {{q[theta], q_dot[theta], q[x], q[z], q_dot[x], q_dot[z], Mode::rolling},
+                      {lambda[1], lambda[0]}};
+    }
+}
+
+void look_at(const Scene&, const SteppedSliding& motion, const double* times, std::size_t n,
+             ContactSample* samples) {
+    sample(motion, times, n, samples);
+}
+
+void look_at(const Scene&, const Flight& flight, const double* times, std::size_t n,
+             ContactSample* samples) {
+    for (std::size_t i = 0; i < n; ++i) samples[i] = {state_at(flight, times[i]), {0.0, 0.0}};
+}
+
+void look_at(const Scene& scene, const Settling& settling, const double* times, std::size_t n,
+             ContactSample* samples) {
+    const auto& [lasts, start, end] = settling;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double share = times[i] / lasts;
+        const auto between = [share](double from, double to) { return from + share * (to - from); };
+        const double theta = between(start.theta, end.theta);
+        const State state{theta,
+                          between(start.omega, end.omega),
+                          between(start.x, end.x),
+                          geometry(scene.axes(), theta).h,
+                          between(start.x_dot, end.x_dot),
+                          between(start.z_dot, end.z_dot),
+                          Mode::flight};
+        samples[i] = {state, {0.0, 0.0}};
+    }
+}
+
+void look_at(const Scene&, const Jam& jam, const double*, std::size_t n, ContactSample* samples) {
+    std::fill_n(samples, n, ContactSample{jam.state, {0.0, 0.0}});
+}
+
+void look_at(const Scene& scene, const Resting& resting, const double*, std::size_t n,
+             ContactSample* samples) {
+    const ContactForce force = rolling_force(scene, resting.state.theta, resting.state.omega);
+    std::fill_n(samples, n, ContactSample{resting.state, force});
+}
+
+void take(const Scene&, const ContactSample& from, FlowSample& to) {
+    to = {from.state.theta, from.state.omega, from.state.x};
+}
+
+void take(const Scene& scene, const ContactSample& from, CoordinateState& to) {
+    to = coordinate_state(scene.axes(), from.state);
+}
+
+template <class Law, class Sample>
+constexpr bool known_at_first_hand =
+    std::is_same_v<Sample, ContactSample> ||
+    (std::is_same_v<Sample, CoordinateState> && std::is_same_v<Law, SteppedMultipliers>) ||
+    (std::is_same_v<Sample, FlowSample> &&
+     (std::is_same_v<Law, RollingFlow> || std::is_same_v<Law, SteppedRolling>));
+
+template <class Sample>
+void look_at(const Scene& scene, const Segment& segment, const std::vector<double>& times,
+             Sample* samples) {
+    const std::size_t n = times.size();
+    std::visit(
+        [&](const auto& law) {
+            if constexpr (known_at_first_hand<std::decay_t<decltype(law)>, Sample>) {
+                look_at(scene, law, times.data(), n, samples);
+            } else {
+                std::vector<ContactSample> found(n);
+                look_at(scene, law, times.data(), n, found.data());
+                for (std::size_t i = 0; i < n; ++i) take(scene, found[i], samples[i]);
+            }
+        },
+        segment.law);
+}
+
+}  // namespace
+
+Motion single(const Scene& scene, decltype(Segment::law) law) {
+    Motion motion{Units{}, scene, {}, {}};
+    motion.segments.push_back({0.0, std::move(law)});
+    return motion;
+}
+
+Sampler::Sampler(const Motion& motion, double last, std::size_t expected) : motion_(motion) {
+    if (motion.segments.size() != 1 || !motion.units.are_si()) return;
+    if (const auto* flow = std::get_if<RollingFlow>(&motion.segments.front().law)) {
+        flow_.emplace(*flow, last, expected);
+    }
+}
+
+template <class Sample>
+void Sampler::operator()(const double* times, std::size_t n, Sample* samples) const {
+    if constexpr (std::is_same_v<Sample, FlowSample>) {
+        if (flow_) return (*flow_)(times, n, samples);
+    }
+    const auto& [units, scene, segments, events] = motion_;
+    std::vector<double> since;
+    for (std::size_t i = 0; i < n;) {
+        // The last segment that has begun at the time i, and all that follow in it.
+        const auto time = [&, unit = units.time](std::size_t j) { return times[j] / unit; };
+        const auto later =
+            std::upper_bound(segments.begin(), segments.end(), time(i),
+                             [](double t, const Segment& segment) { return t < segment.begin; });
+        const Segment& segment = *(later - 1);
+        const double end = later == segments.end() ? infinity : later->begin;
+        since.clear();
+        for (std::size_t j = i; j < n && time(j) >= segment.begin && time(j) < end; ++j) {
+            since.push_back(time(j) - segment.begin);
+        }
+        look_at(scene, segment, since, samples + i);
+        const std::size_t last = i + since.size();
+        if (units.are_si()) i = last;
+        for (; i < last; ++i) samples[i] = in_si(samples[i], units);
+    }
+}
+
+template void Sampler::operator()(const double*, std::size_t, FlowSample*) const;
+template void Sampler::operator()(const double*, std::size_t, ContactSample*) const;
+template void Sampler::operator()(const double*, std::size_t, CoordinateState*) const;
+
+std::vector<double> knot_times(const Motion& motion) {
+    std::vector<double> times;
+    const auto collect = [&times](const auto& steps) {
+        for (const auto& knot : steps.knots) times.push_back(knot.t);
+    };
+    const auto& law = motion.segments.front().law;
+    if (const auto* rolling = std::get_if<SteppedRolling>(&law)) collect(rolling->steps);
+    if (const auto* multipliers = std::get_if<SteppedMultipliers>(&law)) {
+        std::visit(collect, multipliers->steps);
+    }
+    return times;
+}
+
+}  // namespace rolling_ellipse

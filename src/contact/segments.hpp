@@ -1,0 +1,81 @@
+// A motion as a list of segments, each with its law, and the events that join them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "contact/flight.hpp"
+#include "contact/sliding_steps.hpp"
+#include "contact/units.hpp"
+#include "multipliers/steps.hpp"
+#include "rolling/flow_table.hpp"
+#include "rolling/steps.hpp"
+
+namespace rolling_ellipse {
+
+enum class EventKind : std::int8_t { slip, stick, reverse, lift_off, impact, rest, jam };
+
+struct Event {
+    double t;
+    EventKind kind;
+    State before;
+    State after;
+};
+
+// Bounces that are too small to tell apart, with what they do on average.
+struct Settling {
+    double lasts;
+    State start;
+    State end;
+};
+
+// The instant from which no motion goes on: no force of the ground is right.
+struct Jam {
+    State state;
+};
+
+struct Resting {
+    State state;
+};
+
+// What a body does from a time on, up to the next segment.
+struct Segment {
+    double begin;
+    std::variant<RollingFlow, SteppedRolling, SteppedMultipliers, SteppedSliding, Flight, Settling,
+                 Resting, Jam>
+        law;
+};
+
+struct Motion {
+    Units units;  // of scene and segments; events are in SI units
+    Scene scene;  // body and ground
+    std::vector<Segment> segments;
+    std::vector<Event> events;
+};
+
+// A motion in SI units by one law.
+Motion single(const Scene& scene, decltype(Segment::law) law);
+
+// Looks at a motion at so many times in all, in parts: what many looks are worth is prepared once.
+// A sample is a FlowSample (theta, omega, x), a ContactSample (state and force) or a
+// CoordinateState, in SI units; every segment knows all three. At an event it is what holds after
+// it. A motion without segments has no samples.
+class Sampler {
+  public:
+    Sampler(const Motion& motion, double last, std::size_t expected);
+
+    template <class Sample>
+    void operator()(const double* times, std::size_t n, Sample* samples) const;
+
+  private:
+    const Motion& motion_;
+    std::optional<FlowSampler> flow_;  // of a motion that is nothing but exact rolling
+};
+
+// The times between which each step was taken, of a motion by one law that is integrated.
+std::vector<double> knot_times(const Motion& motion);
+
+}  // namespace rolling_ellipse

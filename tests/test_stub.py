@@ -1,0 +1,62 @@
+"""The stub of the core says what the extension is: names, arguments, members, codes."""
+
+import ast
+import enum
+import inspect
+import re
+from pathlib import Path
+
+import rolling_ellipse
+from rolling_ellipse import _core
+
+STUB = ast.parse((Path(rolling_ellipse.__file__).parent / "_core.pyi").read_text(encoding="utf-8"))
+FUNCTIONS = {each.name: each for each in STUB.body if isinstance(each, ast.FunctionDef)}
+CLASSES = {each.name: each for each in STUB.body if isinstance(each, ast.ClassDef)}
+
+
+def declared(function: ast.FunctionDef) -> list[str]:
+    arguments = function.args
+    return [each.arg for each in (*arguments.args, *arguments.kwonlyargs) if each.arg != "self"]
+
+
+def bound(function: object) -> list[str]:
+    """Names of the arguments, from the signature that pybind11 writes on top of the docstring."""
+    signature = (inspect.getdoc(function) or "").splitlines()[0]
+    inside = signature[signature.index("(") + 1 : signature.rindex(")")]
+    return [name for name in re.findall(r"(?:^|, )(\w+): ", inside) if name != "self"]
+
+
+def public(of: object) -> set[str]:
+    return {name for name in dir(of) if not name.startswith("_")}
+
+
+def test_the_names_are_those_of_the_extension() -> None:
+    assert public(_core) == FUNCTIONS.keys() | CLASSES.keys()
+    assert len(FUNCTIONS) > 20 and len(CLASSES) > 10
+
+
+def test_functions_take_the_arguments_of_the_extension() -> None:
+    for name, function in FUNCTIONS.items():
+        assert bound(getattr(_core, name)) == declared(function), name
+
+
+def test_classes_have_the_members_of_the_extension() -> None:
+    for name, declaration in CLASSES.items():
+        kind = getattr(_core, name)
+        if issubclass(kind, enum.Enum):
+            values = {
+                line.targets[0].id: line.value.value
+                for line in declaration.body
+                if isinstance(line, ast.Assign)
+                and isinstance(line.targets[0], ast.Name)
+                and isinstance(line.value, ast.Constant)
+            }
+            assert values == {member.name: member.value for member in kind}, name
+            continue
+        methods = {
+            each.name: each for each in declaration.body if isinstance(each, ast.FunctionDef)
+        }
+        assert public(kind) == methods.keys() - {"__init__"}, name
+        for method, function in methods.items():
+            if not function.decorator_list:
+                assert bound(getattr(kind, method)) == declared(function), f"{name}.{method}"
