@@ -23,8 +23,8 @@ from bench_flow import processor
 from rolling_ellipse import Scene, flow, period, simulate
 from rolling_ellipse._core import rolling_equation
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from reference import make_rolling_reference as reference
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
+import make_rolling_reference as reference
 
 SCENES = {
     "R: rotation": Scene(2.0, 1.0, inertia=1.25, theta=0.2, omega=3.2),

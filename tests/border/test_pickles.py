@@ -1,0 +1,252 @@
+"""Whatever the package hands out goes through pickles, copies and pools of processes unchanged."""
+
+import copy
+import dataclasses
+import inspect
+import math
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from matplotlib.figure import Figure
+from oracles.paths import TESTS
+from oracles.pickles import ROADS, core_objects, require_same
+from rolling_ellipse import Trajectory, _core, simulate
+from rolling_ellipse._samples import ContactSamples
+from rolling_ellipse._settings import Settings
+
+TIMES = np.linspace(0.0, 1.5, 40)
+MOTIONS = {
+    "rolling": lambda: simulate(rl.scenes.report, TIMES),
+    "gauss": lambda: simulate(rl.scenes.rocking, TIMES, method="gauss", step=0.01),
+    "multipliers": lambda: simulate(rl.scenes.report, TIMES, model="multipliers"),
+    "contact": lambda: simulate(rl.scenes.bounce, TIMES),
+    "from coordinates": lambda: rl.report.simulate(
+        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0
+    ),
+    "stopped": lambda: simulate(rl.scenes.bounce, TIMES, max_events=1, raise_on_failure=False),
+}
+
+
+def printed() -> rl.report.PrintedMotion:
+    found = rl.report.simulate(
+        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0),
+        TIMES / 4,
+        a=2.0,
+        b=1.0,
+        equations="printed",
+        consistent="project",
+    )
+    assert isinstance(found, rl.report.PrintedMotion)
+    return found
+
+
+def integration_error() -> rl.IntegrationError:
+    with pytest.raises(rl.IntegrationError) as caught:
+        simulate(rl.scenes.bounce, TIMES, max_events=1)
+    return caught.value
+
+
+def fitted() -> rl.impacts.FittedImpacts:
+    before = [[0.3, 0.5], [1.0, 0.0], [-2.0, -1.0], [0.0, 0.5]]
+    after = rl.impacts.collide(*before, a=2.0, b=1.0, restitution=0.5, friction=0.1)
+    return rl.impacts.fit(before, after, a=2.0, b=1.0)
+
+
+OBJECTS: dict[str, Callable[[], Any]] = {
+    **MOTIONS,
+    "scene": lambda: rl.scenes.report,
+    "scene of its own": lambda: rl.Scene(0.7, 1.9, z=3.0, x_dot=1.0, friction=0.3, slope=0.1),
+    "impulse": lambda: rl.Impulse(1.0, -2.0, dx=0.1),
+    "initial state": lambda: rl.scenes.jump.initial_state,
+    "event": lambda: MOTIONS["contact"]().events[0],
+    "certificate": lambda: rl.certify(rl.scenes.report),
+    "thresholds": lambda: rl.thresholds(2.0, 1.0),
+    "settings": lambda: MOTIONS["gauss"]().settings,
+    "contact samples": lambda: MOTIONS["contact"]().contact,
+    "residuals": lambda: MOTIONS["rolling"]().constraint_residuals(),
+    "integration error": integration_error,
+    "validity warning": lambda: rl.ValidityWarning("not from 1 s on"),
+    "start warning": lambda: rl.report.InconsistentStartWarning("f2 = 1"),
+    "printed motion": printed,
+    "start": lambda: printed().start,
+    "errata": rl.report.errata,
+    "comparison": lambda: rl.report.errata()[0].evaluate(),
+    "fitted impacts": fitted,
+    "mode": lambda: rl.Mode.SLIDING,
+    "kind": lambda: rl.EventKind.JAM,
+    "outcome": lambda: rl.Outcome.EDGE,
+    "status": lambda: rl.Status.JAMMED,
+    "validity": lambda: rl.Validity.EDGE,
+}
+each_road = pytest.mark.parametrize("road", ROADS.values(), ids=ROADS)
+
+
+def test_the_comparison_sees_a_bit_and_a_flag() -> None:
+    for change in (np.array([1.0, 2.0]), np.array([1.0, math.nextafter(2, 3)])):
+        change.flags.writeable = change[1] == 2.0
+        fixed = np.array([1.0, 2.0])
+        fixed.flags.writeable = False
+        with pytest.raises(AssertionError):
+            require_same([fixed], [change])
+
+
+def public_classes(*modules: ModuleType) -> set[type]:
+    found = {getattr(module, name) for module in modules for name in module.__all__}
+    return {thing for thing in found if inspect.isclass(thing)}
+
+
+def parts(thing: Any) -> set[type]:
+    inner = set().union(*(parts(part) for part in thing)) if isinstance(thing, tuple) else set()
+    return {type(thing)} | inner
+
+
+def test_every_public_class_is_here() -> None:
+    here = set().union(*(parts(make()) for make in OBJECTS.values()))
+    assert not public_classes(rl, rl.report, rl.impacts) - here
+    assert {Settings, ContactSamples} <= here
+
+
+@each_road
+@pytest.mark.parametrize("make", OBJECTS.values(), ids=OBJECTS)
+def test_it_comes_back_as_it_went(make: Callable[[], Any], road: Callable[[Any], Any]) -> None:
+    require_same(make(), road(make()))
+
+
+@each_road
+@pytest.mark.parametrize("make", MOTIONS.values(), ids=MOTIONS)
+def test_a_motion_goes_on(make: Callable[[], Trajectory], road: Callable[[Any], Any]) -> None:
+    """All that follows from it, the same at other times, and nothing that can be written to."""
+    before = make()
+    energy, others = before.energy, np.linspace(0.0, before.t_end, 17)[::-1]
+    after = road(before)
+    for name in ("q", "q_dot", "multipliers", "r_ddot", "normal_force", "mode", "events"):
+        require_same(getattr(before, name), getattr(after, name), name)
+    assert np.array_equal(after.energy, energy) and repr(after) == repr(before)
+    require_same(before.sol(others), after.sol(others))
+    require_same(before.scene_at(0.1), after.scene_at(0.1))
+    for values in (after.t, after.q, after.q_dot, *(after.coordinates or ()), *(after.start or ())):
+        assert not values.flags.writeable
+
+
+@each_road
+def test_an_error_still_has_its_motion(road: Callable[[Any], Any]) -> None:
+    error = integration_error()
+    error.add_note("while a million were simulated")
+    found = road(error)
+    assert found.__notes__ == error.__notes__ and str(found) == str(error)
+    require_same(found.trajectory.sol([0.0, 0.01]), error.trajectory.sol([0.0, 0.01]))
+
+
+def test_pickles_hold_no_more_than_needed() -> None:
+    motion = MOTIONS["contact"]()
+    size = len(pickle.dumps(motion))
+    for name in ("q", "energy", "r_ddot", "contact_x", "events"):
+        getattr(motion, name)
+    assert len(pickle.dumps(motion)) == size < 9 * 8 * TIMES.size + 4000
+    assert copy.copy(motion).q is motion.q  # but what is shared is not computed again
+    assert copy.copy(motion)._solution is motion._solution
+
+
+POOLS = """
+import multiprocessing, pickle, sys
+import rolling_ellipse as rl
+
+if __name__ == "__main__":
+    jobs, path = pickle.loads(sys.stdin.buffer.read())
+    with multiprocessing.get_context(sys.argv[1]).Pool(2) as pool:
+        found = pool.starmap(rl.simulate, jobs)
+        try:
+            pool.apply(rl.simulate, jobs[-1], {"max_events": 1})
+        except rl.IntegrationError as error:
+            found.append(error.trajectory)
+    with open(path, "wb") as file:
+        pickle.dump(found, file)
+"""
+
+
+@pytest.mark.parametrize("how", ["fork", "spawn", "forkserver"])
+def test_pools_return_motions(how: str, tmp_path: Path) -> None:
+    program, path = tmp_path / "pools.py", tmp_path / "found"
+    program.write_text(POOLS)
+    jobs = [(rl.scenes.report, TIMES), (rl.scenes.rocking, 1.0), (rl.scenes.bounce, TIMES)]
+    subprocess.run(
+        [sys.executable, program, how],
+        input=pickle.dumps((jobs, os.fspath(path))),
+        timeout=120,
+        check=True,
+    )
+    expected = [*(simulate(*job) for job in jobs), MOTIONS["stopped"]()]
+    found = pickle.loads(path.read_bytes())
+    require_same([motion.sol(0.01) for motion in expected], [motion.sol(0.01) for motion in found])
+    for one, other in zip(expected, found, strict=True):
+        changed = {"settings": other.settings, "message": other.message}
+        require_same(dataclasses.replace(one, **changed), other)
+
+
+# ------------------------------------------------------------------------- pictures, the core
+
+PICTURES = (
+    rl.plot, rl.plot_strobe, rl.plot_phase, rl.plot_energy, rl.plot_constraints, rl.plot_forces,
+    rl.plot_paths,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("draw", PICTURES, ids=lambda draw: draw.__name__)
+def test_pictures_are_pickled_as_figures_are(draw: Callable[..., Any]) -> None:
+    figure = Figure()
+    motion = MOTIONS["contact"]()
+    if draw is rl.plot:
+        picture = draw(motion, figure=figure)
+    elif draw is rl.plot_constraints:
+        picture = draw(motion, ax=figure.subplots(2))
+    else:
+        picture = draw(motion, ax=figure.add_subplot())
+    for road in (ROADS["protocol 0"], ROADS["protocol 5"], copy.copy):
+        again = road(picture)
+        assert type(again) is type(picture)
+        require_same_lines(picture, again)
+
+
+def require_same_lines(one: Any, other: Any) -> None:
+    found = [thing for thing in vars(one).values() if hasattr(thing, "get_xydata")]
+    again = [thing for thing in vars(other).values() if hasattr(thing, "get_xydata")]
+    assert len(found) == len(again)
+    for line, same in zip(found, again, strict=True):
+        assert np.array_equal(line.get_xydata(), same.get_xydata(), equal_nan=True)
+
+
+def test_all_classes_of_the_core_are_known() -> None:
+    bound = {name for name, kind in vars(_core).items() if type(kind).__name__ == "pybind11_type"}
+    assert bound == set(core_objects())
+
+
+CORE = """
+import copy, pickle, sys
+sys.path.insert(0, sys.argv[1])
+from oracles.pickles import ROADS, core_objects
+
+for thing in core_objects().values():
+    for road in ROADS.values():
+        try:
+            road(thing)
+        except TypeError as error:
+            print(error)
+"""
+
+
+def test_the_core_refuses() -> None:
+    """In a process of its own, which what is not refused may end."""
+    command = [sys.executable, "-c", CORE, os.fspath(TESTS)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    refusals = [f"_core.{name} cannot be pickled or copied" for name in core_objects()]
+    assert done.stdout.splitlines() == [text for text in refusals for _ in ROADS]

@@ -1,0 +1,701 @@
+"""The contact model: what joins its arcs, closed forms, and what no motion of it may ever do."""
+
+import dataclasses
+import itertools
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+import scipy.integrate
+import scipy.optimize
+from oracles.contact import random_scenes, response
+from oracles.geometry import support
+from oracles.numbers import EPS
+from rolling_ellipse import EventKind, Impulse, Mode, Scene, Status, Trajectory, simulate
+
+GRAVITY = 9.81
+JAMMING = Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
+STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
+
+
+def kinds(motion: Trajectory) -> list[EventKind]:
+    return [event.kind for event in motion.events]
+
+
+# ----------------------------------------------------------------------------- closed forms
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.1, 0.5])
+@pytest.mark.parametrize("inertia", [None, 2.0])
+def test_a_sliding_disc(slope: float, inertia: float | None) -> None:
+    """x.. = g (sin - mu cos), omega. = mu g cos a/k^2 until omega a = x.; then it rolls."""
+    a, mu, speed, mass = 0.7, 0.1, 3.0, 2.0
+    scene = Scene(
+        a, a, mass=mass, inertia=inertia, slope=slope, friction=mu, x_dot=speed, omega=0.0
+    )
+    down, load = GRAVITY * math.sin(slope), GRAVITY * math.cos(slope)
+    spin = mu * load * a / scene.gyration2
+    grips = speed / (a * spin - down + mu * load)
+    motion = simulate(scene, np.linspace(0, 1.0, 301))
+    rolls = abs(math.tan(slope)) <= mu * (1 + a * a / scene.gyration2)
+    sliding = motion.mode == Mode.SLIDING
+    t = motion.t[sliding]
+    assert np.all(sliding == ((motion.t < grips) | (not rolls and grips < 0)))
+    x_dot, x = speed + (down - mu * load) * t, (speed + (down - mu * load) * t / 2) * t
+    assert np.allclose(motion.x_dot[sliding], x_dot, rtol=1e-12, atol=1e-12)
+    assert np.allclose(motion.x[sliding], x, rtol=1e-12, atol=1e-12)
+    assert np.allclose(motion.omega[sliding], spin * t, rtol=1e-12, atol=1e-12)
+    assert np.allclose(motion.normal_force[sliding], mass * load, rtol=1e-12)
+    assert np.allclose(motion.friction_force[sliding], -mu * mass * load, rtol=1e-12)
+    if 0 < grips < 1:
+        assert kinds(motion) == [EventKind.STICK]
+        assert motion.events[0].t == pytest.approx(grips, rel=1e-12)
+        rolling = motion.omega[-1] - spin * grips
+        gained = down * a / (scene.gyration2 + a * a) * (1 - grips)
+        assert rolling == pytest.approx(gained, rel=1e-11, abs=1e-12)
+
+
+@pytest.mark.parametrize("mu", [0.1, 0.6])
+def test_a_disc_on_a_slope_rolls_iff_friction_is_enough(mu: float) -> None:
+    """tan(alpha) <= mu (1 + a^2/k^2)."""
+    limit = math.atan(mu * (1 + 1 / 0.5))
+    rolls = simulate(Scene(1.0, 1.0, slope=limit * (1 - 1e-12), friction=mu), 1.0)
+    assert np.all(rolls.mode == Mode.ROLLING) and rolls.events == ()
+    down, load = (GRAVITY * part(limit * (1 + 1e-12)) for part in (math.sin, math.cos))
+    slides = simulate(Scene(1.0, 1.0, slope=limit * (1 + 1e-12), friction=mu), 1.0)
+    assert np.all(slides.mode == Mode.SLIDING)
+    assert np.allclose(slides.x_dot, (down - mu * load) * slides.t, rtol=1e-12)
+    assert np.allclose(slides.omega, mu * load / 0.5 * slides.t, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.5, 0.5), (0.7, 1.9)])
+@pytest.mark.parametrize("e", [0.5, 0.9])
+@pytest.mark.parametrize("friction", [0.0, 0.3, math.inf])
+def test_dropped_without_spin_it_comes_to_rest(
+    a: float, b: float, e: float, friction: float
+) -> None:
+    """v/g + 2 v e/g + 2 v e^2/g + ... = v/g (1 + e)/(1 - e), however many bounces are counted."""
+    v = 1.7
+    scene = Scene(a, b, z=b + v * v / (2 * GRAVITY), friction=friction, restitution=e)
+    meant = v / GRAVITY * (1 + e) / (1 - e)
+    for rest_speed in (None, 1e-3):
+        motion = simulate(scene, 2 * meant, rest_speed=rest_speed)
+        assert motion.events[-1].kind is EventKind.REST
+        assert motion.events[-1].t == pytest.approx(meant, rel=1e-11)
+        assert motion.mode[-1] == Mode.REST and motion.z[-1] == b
+        assert motion.normal_force[-1] == pytest.approx(GRAVITY, rel=8 * EPS)
+    count = math.ceil(math.log(1e-6 * math.sqrt(GRAVITY * min(a, b)) / v) / math.log(e))
+    assert abs(kinds(simulate(scene, 2 * meant)).count(EventKind.IMPACT) - count) <= 1
+
+
+@pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.7, 1.9)])
+@pytest.mark.parametrize("side", [1, -1])
+def test_held_on_a_slope(a: float, b: float, side: int) -> None:
+    """Where the contact is under the centre, tan(alpha) = h'/h, and mu >= tan(alpha)."""
+    theta = side * 0.3
+    at = support(theta, a, b)
+    slope = math.atan2(at.slope, at.h)
+    scene = Scene(a, b, theta=theta, slope=slope, friction=abs(math.tan(slope)) * (1 + 1e-9))
+    motion = simulate(scene, 5.0)
+    assert np.all(motion.mode == Mode.REST) and motion.events == ()
+    assert np.all(motion.omega == 0) and np.all(motion.theta == theta)
+    assert np.allclose(motion.friction_force, -GRAVITY * math.sin(slope), rtol=1e-14)
+    slips = dataclasses.replace(scene, friction=abs(math.tan(slope)) * (1 - 1e-9))
+    assert np.all(simulate(slips, 0.1).mode == Mode.SLIDING)
+
+
+# ----------------------------------------------------------------------------- transitions
+
+LIFTS = {0.2: 4.56387, 0.5: 4.65376, 1.0: 4.72602, 1.3: 4.74999, math.inf: 4.85896}
+
+
+@pytest.mark.parametrize(("friction", "speed"), LIFTS.items())
+def test_where_the_body_leaves_the_ground_in_its_first_slide(friction: float, speed: float) -> None:
+    """From the flat; physics.md section 7, five decimals."""
+    for omega, leaves in ((speed - 1e-5, False), (speed + 1e-5, True)):
+        found = kinds(simulate(Scene(2.0, 1.0, omega=omega, friction=friction), 2.0))
+        assert found[0] is EventKind.SLIP
+        assert (found[1] is EventKind.LIFT_OFF) == leaves
+
+
+JAMS_ON_THE_WAY = [
+    Scene(0.114, 1.0, friction=1.825, slope=-1.211, theta=1.528, omega=1.868, x_dot=-3.155),
+    Scene(0.034, 1.0, friction=3.145, slope=-0.45, theta=1.462, omega=-2.939, x_dot=-10.645),
+    Scene(10.083, 1.0, friction=1.766, slope=1.028, theta=3.522, omega=0.795, x_dot=11.086),
+    Scene(0.0181, 1.0, friction=2.0, slope=-1.2, theta=-0.434, omega=0.0116),
+]
+
+
+def slowed_slide(scene: Scene, side: float) -> Any:
+    """B and c of an angle and speed; rates of theta, omega, slip, time and ln B in a clock of its
+    own, dt = B dtau, so that nothing cancels or grows near B = 0."""
+    k2, grip = scene.gyration2, scene.friction * side
+
+    def forces(theta: float, omega: float) -> tuple[Any, float, float]:
+        at = support(theta, scene.a, scene.b)
+        c = GRAVITY * math.cos(scene.slope) + at.curvature * omega**2
+        return at, 1 + at.slope * (at.slope - grip * at.h) / k2, c
+
+    def rates(_: float, y: Any) -> list[float]:
+        theta, omega, *_, log_b = y
+        at, _, c = forces(theta, omega)
+        b = math.exp(log_b)
+        turning = c * (grip * at.h - at.slope) / k2
+        along = b * GRAVITY * math.sin(scene.slope) - grip * c
+        growth = 2 * at.slope * at.curvature - grip * (at.slope**2 + at.h * at.curvature)
+        slip = along - at.h * turning - b * at.slope * omega**2
+        return [b * omega, turning, slip, b, omega * growth / k2]
+
+    return forces, rates
+
+
+def slide_in_its_own_clock(
+    scene: Scene, start: Any, t0: float, side: float, least_b: float = 0.0
+) -> Any:
+    """By SciPy: theta, omega, slip and t where the slip vanishes, or B is so small."""
+    forces, rates = slowed_slide(scene, side)
+    ends = [lambda _, y: side * y[2], lambda _, y: math.exp(y[4]) - least_b]
+    for end in ends:
+        end.terminal, end.direction = True, -1  # type: ignore[attr-defined]
+    b = forces(start.theta, start.omega)[1]
+    begin = [start.theta, start.omega, response(scene, start).slip, t0, math.log(b)]
+    how: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": ends}
+    return scipy.integrate.solve_ivp(rates, (0.0, 1e6), begin, **how).y[:4, -1]
+
+
+@pytest.mark.parametrize("scene", JAMS_ON_THE_WAY)
+def test_a_jam_on_the_way(scene: Scene) -> None:
+    """B = 0 and c = 0 at once (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653).
+
+    c dies out more slowly than B: where SciPy stops some is left of it, and with it of omega and
+    slip, in the fixed ratio in which the impulse of N changes them.
+    """
+    motion = simulate(scene, 5.0, model="contact")
+    assert motion.status is Status.JAMMED and motion.events[-1].kind is EventKind.JAM
+    jam = motion.events[-1]
+    starts = [(event.t, event.state_after) for event in motion.events[:-1]]
+    t0, start = starts[-1] if starts else (0.0, scene.initial_state)
+    slip = response(scene, jam.state_before).slip
+    side = math.copysign(1, slip)
+    theta, omega, slip_before, t = slide_in_its_own_clock(scene, start, t0, side, 1e-14)
+    assert jam.t == pytest.approx(t, abs=1e-11)
+    assert jam.state_before.theta == pytest.approx(theta, abs=1e-11)
+    at, b, c = slowed_slide(scene, side)[0](jam.state_before.theta, jam.state_before.omega)
+    assert abs(b) <= 1e-11 and abs(c) <= 1e-11 * GRAVITY
+    turning = (scene.friction * side * at.h - at.slope) / scene.gyration2
+    ratio = -scene.friction * side / turning - at.h
+    left = ratio * (jam.state_before.omega - omega)
+    assert slip - slip_before == pytest.approx(left, abs=1e-9)
+    assert motion.t[-1] <= jam.t and motion.t_end == jam.t
+
+
+NO_JAMS = [  # a, b, friction, slip 0.05 rad before B = 0
+    (5.0, 1.0, 2.6, 100.0), (1.0, 0.05, 6.0, 100.0), (1.0, 0.05, 5.0, 50.0),
+    (5.0, 1.0, 2.45, 60.0), (5.0, 1.0, 3.0, 1000.0),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("a", "b", "friction", "slip"), NO_JAMS)
+def test_a_slip_that_ends_just_before_a_jam(
+    a: float, b: float, friction: float, slip: float
+) -> None:
+    """So near B = 0 that the impulse of N takes no time; omega and what is left of the energy."""
+    body = Scene(a, b, friction=friction)
+    response_of = slowed_slide(body, 1.0)[0]
+    angles = np.linspace(0.0, math.pi / 2, 10001)
+    falls = next(i for i, angle in enumerate(angles) if response_of(angle, 0.0)[1] < 0)
+    bracket = angles[falls - 1], angles[falls]
+    theta = scipy.optimize.brentq(lambda angle: response_of(angle, 0.0)[1], *bracket) - 0.05
+    omega = 0.1
+    x_dot = slip + float(support(theta, a, b).h) * omega
+    scene = dataclasses.replace(body, theta=theta, omega=omega, x_dot=x_dot)
+    motion = simulate(scene, 1.0, max_events=2, raise_on_failure=False)
+    stops = motion.events[0]
+    theta, omega, _, t = slide_in_its_own_clock(scene, scene.initial_state, 0.0, 1.0)
+    assert stops.kind in (EventKind.REVERSE, EventKind.STICK)
+    assert stops.t == pytest.approx(t, abs=1e-11)
+    assert stops.state_before.theta == pytest.approx(theta, abs=1e-11)
+    assert stops.state_before.omega == pytest.approx(omega, rel=1e-10)
+
+
+def test_every_transition_does_what_its_name_says() -> None:
+    """Margins by Newton's law from the states of the events, to 1e-9 of the weight: the states are
+    good to some 1e-12, and the forces of these bodies change by up to a hundred weights a metre."""
+    met: dict[EventKind, int] = dict.fromkeys(EventKind.__members__.values(), 0)
+    for scene in random_scenes(400, 23):
+        motion = simulate(scene, 3.0, model="contact", max_events=100, raise_on_failure=False)
+        load = GRAVITY * math.cos(scene.slope)
+        for event in motion.events:
+            before, after = event.state_before, event.state_after
+            contact = response(scene, before)
+            c = load + support(before.theta, scene.a, scene.b).curvature * before.omega**2
+            size = abs(before.x_dot) + abs(before.omega) * contact.tangential + load
+            met[event.kind] += 1
+            if event.kind is not EventKind.IMPACT:
+                assert all(
+                    abs(getattr(before, name) - getattr(after, name)) <= 1e-12 * size
+                    for name in STATE
+                )
+            if event.kind is EventKind.LIFT_OFF and before.mode == Mode.SLIDING:
+                assert abs(c) <= 1e-9 * size**2 and after.mode == Mode.FLIGHT
+            elif event.kind in (EventKind.STICK, EventKind.REVERSE):
+                assert abs(contact.slip) <= 1e-12 * size
+                wanted = Mode.ROLLING if event.kind is EventKind.STICK else Mode.SLIDING
+                assert after.mode == wanted
+            elif event.kind is EventKind.SLIP and before.mode == Mode.ROLLING:
+                rolled = simulate(
+                    Scene(
+                        scene.a, scene.b, slope=scene.slope, theta=before.theta,
+                        omega=before.omega,
+                    ), [0.0], model="contact",
+                )  # fmt: skip
+                normal, friction = rolled.normal_force[0], rolled.friction_force[0]
+                if math.isinf(scene.friction):
+                    assert abs(normal) <= 1e-9 * size**2
+                else:
+                    assert abs(scene.friction * normal - abs(friction)) <= (
+                        1e-9 * size**2 * (1 + scene.friction)
+                    )
+    for kind in ("SLIP", "STICK", "REVERSE", "LIFT_OFF", "IMPACT"):
+        assert met[EventKind[kind]] >= 10, met
+
+
+@pytest.mark.parametrize("short", [1e-3, 1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize("slope", [0.0, 0.02])
+def test_short_slips_are_found(slope: float, short: float) -> None:
+    """The friction misses the largest |F|/N of rolling by a part `short`: a slip of a duration like
+    its square root, down to microseconds."""
+    rolling = Scene(2.0, 1.0, omega=3.2, slope=slope)
+    times = np.linspace(0, 0.9, 200_001)
+    needed = simulate(rolling, times, model="contact").friction_needed
+    top = int(needed.argmax())
+    assert 0 < top < times.size - 1
+    scene = dataclasses.replace(rolling, friction=float(needed[top] * (1 - short)))
+    motion = simulate(scene, 0.9)
+    assert kinds(motion)[:2] == [EventKind.SLIP, EventKind.STICK]
+    slip, stick = motion.events[:2]
+    assert slip.t < times[top] < stick.t + 1e-5
+    assert stick.t - slip.t < 2 * math.sqrt(short)
+
+
+def test_the_limit_of_much_friction() -> None:
+    """mu = 1e4, 1e6, 1e8 approach mu = infinity like 1/mu, in a slide that N = 0 has begun."""
+    times = np.linspace(0, 0.35, 351)
+    scene = Scene(2.0, 1.0, omega=5.0)
+    limit = simulate(scene, times)
+    assert EventKind.SLIP in kinds(limit)
+    sliding = limit.mode == Mode.SLIDING
+    assert sliding.sum() > 5 and np.all(limit.normal_force[sliding] == 0)
+    assert np.all(limit.friction_force[sliding] != 0)
+    off = [
+        np.max(np.abs(simulate(dataclasses.replace(scene, friction=mu), times).omega - limit.omega))
+        for mu in (1e4, 1e6, 1e8)
+    ]
+    assert 0 < off[0] < 1e-2
+    assert off[0] / off[1] == pytest.approx(100, rel=0.1)
+    assert off[1] / off[2] == pytest.approx(100, rel=0.1)
+
+
+# ----------------------------------------------------------------------------- jams
+
+
+def test_a_jam() -> None:
+    """Gnn < mu s Gnt with c > 0: whatever N >= 0, friction pushes it further into the ground."""
+    contact = response(JAMMING, JAMMING.initial_state)
+    assert contact.slip > 0 and contact.normal < 3.0 * contact.coupling
+    motion = simulate(JAMMING, 1.0)
+    assert motion.status is Status.JAMMED and motion.success and "Painleve" in motion.message
+    assert kinds(motion) == [EventKind.JAM] and motion.events[0].t == motion.t_end == 0
+    assert motion.t.tolist() == [0.0] and motion.mode.tolist() == [Mode.SLIDING]
+    assert motion.x_dot[0] == 5.0 and np.all(np.isfinite(motion.normal_force))
+    with pytest.raises(ValueError, match=r"t must lie in \[0, 0.0\]"):
+        motion.sol(0.1)
+    backwards = dataclasses.replace(JAMMING, x_dot=-5.0)
+    assert simulate(backwards, 1.0).status is Status.COMPLETED
+    below = dataclasses.replace(JAMMING, friction=1.35)  # Painleve's smallest: 1.3527
+    assert simulate(below, 1.0).status is Status.COMPLETED
+
+
+def test_only_slip_jams() -> None:
+    """Without slip the acceleration of the contact always has an answer."""
+    for scene in random_scenes(600, 31, friction=3.0, slope=0.0):
+        motion = simulate(scene, 4.0, model="contact", max_events=200, raise_on_failure=False)
+        if motion.status is Status.JAMMED:
+            last = motion.events[-1].state_after
+            contact = response(scene, last)
+            assert abs(contact.slip) > 1e-9
+            assert contact.normal < 3.0 * contact.coupling * math.copysign(1, contact.slip)
+
+
+INDETERMINATE = Scene(2.0, 1.0, theta=0.988, omega=6.0, friction=2.0, x_dot=11.5484)
+
+
+def test_two_motions_are_told_and_none_is_taken() -> None:
+    """Gnn < mu s Gnt with c < 0: the body flies off, or N = c/B > 0 keeps it sliding; both obey
+    Newton's and Coulomb's laws."""
+    start = INDETERMINATE.initial_state
+    contact = response(INDETERMINATE, start)
+    at = support(start.theta, 2.0, 1.0)
+    c = GRAVITY + at.curvature * start.omega**2
+    b = contact.normal - 2.0 * contact.coupling
+    assert contact.slip > 0 and c < 0 and b < 0
+    assert start.mode is Mode.SLIDING and "two motions go on (Painleve)" in start.reason
+    motion = simulate(INDETERMINATE, 1.0)
+    assert motion.status is Status.JAMMED and "two motions" in motion.message
+    assert kinds(motion) == [EventKind.JAM] and motion.t.tolist() == [0.0]
+    # with less friction, or slip to the other side, or a little air below it, it flies
+    for other in ({"friction": 1.3}, {"x_dot": 8.0}, {"z": start.z + 1e-6, "z_dot": start.z_dot}):
+        assert kinds(simulate(dataclasses.replace(INDETERMINATE, **other), 0.1)) == []
+
+
+def test_a_blow_may_lead_to_two_motions() -> None:
+    """Pushed along the ground through its centre, the body slides faster and turns as before."""
+    scene = dataclasses.replace(INDETERMINATE, x_dot=None)
+    start = scene.initial_state
+    push = Impulse(jx=INDETERMINATE.x_dot - start.x_dot)
+    struck = dataclasses.replace(scene, impulse=push)
+    assert struck.initial_state.mode is Mode.SLIDING
+    assert "two motions" in struck.initial_state.reason
+    assert "two motions" in simulate(struck, 1.0).message
+
+
+def test_no_motion_leads_to_two_motions() -> None:
+    """Slides end before they come there, and an impact ends without the slip that it takes."""
+    jams = 0
+    for scene in random_scenes(600, 43, friction=3.0, restitution=0.0):
+        motion = simulate(scene, 4.0, model="contact", max_events=200, raise_on_failure=False)
+        jams += motion.status is Status.JAMMED
+        assert "two motions" not in motion.message or motion.t_end == 0
+    print(jams)
+    assert jams > 20
+
+
+def test_unlimited_friction_never_jams() -> None:
+    for scene in random_scenes(300, 37, friction=math.inf):
+        motion = simulate(scene, 4.0, model="contact", max_events=200, raise_on_failure=False)
+        assert motion.status in (Status.COMPLETED, Status.MAX_EVENTS), scene
+
+
+# ----------------------------------------------------------------------------- what may never be
+
+
+def test_elastic_bounces_without_friction_keep_their_energy() -> None:
+    scene = dataclasses.replace(rl.scenes.bounce, omega=1.3)
+    motion = simulate(scene, 1000.0, max_events=1000, raise_on_failure=False)
+    assert kinds(motion) == 1000 * [EventKind.IMPACT]
+    sampled = motion.sol(np.linspace(0, motion.t_end, 20_001))
+    assert np.ptp(sampled.energy) <= 1e-12 * sampled.energy[0]
+    assert np.ptp(sampled.x_dot) == 0
+
+
+def test_what_no_motion_may_do() -> None:
+    """Sampled 1e5 times: it never enters the ground, N >= 0, friction within its cone and against
+    the slip, and energy only falls. Integrated arcs are good to 1e-13 a step at their ends and a
+    few 1e-11 between; bounces that are summed gain no more than the square of their duration."""
+    for i, scene in enumerate(random_scenes(100, 41)):
+        times = np.linspace(0, 4, 1001)
+        motion = simulate(scene, times, model="contact", max_events=300, raise_on_failure=False)
+        size, weight = max(scene.a, scene.b), scene.mass * scene.gravity
+        residuals = motion.constraint_residuals()
+        assert residuals.gap.min() >= -1e-12 * size, i
+        assert np.all(np.abs(residuals.gap[motion.mode != Mode.FLIGHT]) <= 4 * EPS * size)
+        assert np.all(motion.normal_force >= 0) and np.all(np.isfinite(motion.normal_force))
+        rolling, sliding = motion.mode == Mode.ROLLING, motion.mode == Mode.SLIDING
+        if math.isfinite(scene.friction):
+            spare = scene.friction * motion.normal_force - np.abs(motion.friction_force)
+            assert np.all(spare[rolling] >= -1e-9 * weight), i
+        assert np.all(np.abs(residuals.slip[rolling]) <= 8 * EPS * size * (1 + np.abs(
+            motion.omega[rolling])))  # fmt: skip
+        power = motion.friction_force[sliding] * residuals.slip[sliding]
+        assert np.all(power <= 1e-12 * weight * size), i
+        scale = np.abs(motion.energy).max() + weight * size
+        assert np.all(np.diff(motion.energy) <= 1e-9 * scale), i
+
+
+# ----------------------------------------------------------------------------- the same motion
+
+
+def test_the_first_arc_is_exact_rolling() -> None:
+    times = np.linspace(0, 0.14, 300)
+    contact = simulate(rl.scenes.jump, times)
+    rolling = simulate(rl.scenes.jump, times, model="rolling")
+    assert contact.model == "contact" and rolling.model == "rolling"
+    for name in (*STATE, "normal_force", "friction_force", "psi", "energy", "mode"):
+        assert np.array_equal(getattr(contact, name), getattr(rolling, name)), name
+
+
+def test_auto_takes_the_contact_model_only_where_it_is_needed() -> None:
+    for scene, model in (
+        (rl.scenes.report, "rolling"),
+        (rl.scenes.circle, "rolling"),
+        (rl.scenes.jump, "contact"),
+        (rl.scenes.slip, "contact"),
+        (rl.scenes.drop, "contact"),
+        (rl.scenes.slope, "contact"),
+        (dataclasses.replace(rl.scenes.rolling, friction=0.1), "contact"),
+    ):
+        for t in (0.001, 5.0):  # whatever the span
+            assert simulate(scene, t).model == model
+    forced = simulate(rl.scenes.report, 5.0, model="contact")
+    assert np.array_equal(forced.theta, simulate(rl.scenes.report, 5.0).theta)
+
+
+@pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
+def test_samples_at_an_event_show_what_holds_after_it(name: str) -> None:
+    motion = simulate(getattr(rl.scenes, name), 5.0)
+    assert motion.events
+    for event in motion.events:
+        after = event.state_after
+        at = motion.sol(event.t)
+        assert at.mode[0] == after.mode
+        for field in STATE:
+            size = abs(getattr(after, field)) + 1
+            assert abs(getattr(at, field)[0] - getattr(after, field)) <= 4 * EPS * size, field
+
+
+def test_what_happens_at_the_last_time_has_happened() -> None:
+    """Impacts of exact flights, whose times do not depend on the span."""
+    for event in simulate(rl.scenes.bounce, 5.0).events:
+        motion = simulate(rl.scenes.bounce, event.t)
+        assert motion.events[-1] == event and motion.status is Status.COMPLETED
+        assert motion.t[-1] == event.t and motion.omega[-1] == event.state_after.omega
+
+
+@pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
+def test_a_scene_made_on_the_way_goes_on_alike(name: str) -> None:
+    motion = simulate(getattr(rl.scenes, name), 5.0)
+    ends = [0.0, *(event.t for event in motion.events), 5.0]
+    for i, (begin, end) in enumerate(itertools.pairwise(ends)):
+        half = (begin + end) / 2
+        later = simulate(motion.scene_at(half), 5.0 - half)
+        assert kinds(later) == kinds(motion)[i:]
+        for one, other in zip(later.events, motion.events[i:], strict=True):
+            # bounces without friction magnify a rounding tenfold each
+            assert one.t + half == pytest.approx(other.t, rel=1e-13 * 10 ** len(motion.events[i:]))
+
+
+@pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
+def test_a_saved_motion_comes_back_bit_for_bit(name: str, tmp_path: Path) -> None:
+    before = simulate(getattr(rl.scenes, name), 3.0)
+    before.save(tmp_path / "motion.npz")
+    after = rl.load(tmp_path / "motion.npz")
+    assert after.events == before.events
+    times = np.random.default_rng(2).uniform(0, 3, 300)
+    for one, other in ((before, after), (before.sol(times), after.sol(times))):
+        for field in (*STATE, "normal_force", "friction_force", "mode", "multipliers"):
+            assert np.array_equal(getattr(one, field), getattr(other, field)), field
+
+
+def test_a_start_that_cannot_roll_slides_at_once() -> None:
+    """|F| > mu N at t = 0: to the side against the friction needed, the slip growing like t."""
+    scene = Scene(2.0, 1.0, theta=0.5, friction=0.1)
+    needed = simulate(dataclasses.replace(scene, friction=math.inf), [0.0]).friction_force[0]
+    motion = simulate(scene, [0.0, 1e-4, 2e-4])
+    assert np.all(motion.mode == Mode.SLIDING)
+    slip = motion.constraint_residuals().slip
+    assert slip[0] == 0 and slip[1] * needed < 0
+    assert slip[2] / slip[1] == pytest.approx(2, rel=1e-3)
+
+
+# ----------------------------------------------------------------------------- limits
+
+
+def test_max_events() -> None:
+    scene = rl.scenes.bounce
+    whole = simulate(scene, 5.0)
+    count = len(whole.events)
+    assert simulate(scene, 5.0, max_events=count).status is Status.COMPLETED
+    with pytest.raises(rl.IntegrationError, match=rf"max_events = {count - 1} ") as caught:
+        simulate(scene, 5.0, max_events=count - 1)
+    cut = caught.value.trajectory
+    assert cut.status is Status.MAX_EVENTS and not cut.success
+    assert cut.events == whole.events[:-1] and cut.t_end == whole.events[-1].t
+    assert np.array_equal(cut.t, whole.t[whole.t <= cut.t_end])
+    assert np.array_equal(cut.theta[:-1], whole.theta[: cut.t.size - 1])
+
+
+def test_max_steps_stops_where_the_steps_ended() -> None:
+    whole = simulate(rl.scenes.slip, 5.0)
+    cut = simulate(rl.scenes.slip, 5.0, max_steps=5, raise_on_failure=False)
+    assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == 5
+    assert 0 < cut.t_end < whole.events[0].t and cut.t[-1] <= cut.t_end
+    assert np.allclose(cut.omega, whole.omega[: cut.t.size], rtol=1e-11, atol=1e-13)
+
+
+def test_max_steps_counts_all_arcs() -> None:
+    """The slope scene takes several arcs of some dozens of steps each."""
+    whole = simulate(rl.scenes.slope, 5.0).stats["steps"]
+    assert simulate(rl.scenes.slope, 5.0, max_steps=whole).success
+    cut = simulate(rl.scenes.slope, 5.0, max_steps=whole - 1, raise_on_failure=False)
+    assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == whole - 1
+
+
+BAD: dict[str, Any] = {
+    "max_events": [0, -3],
+    "rest_speed": [0.0, -1e-3, math.nan, math.inf, 0.04],
+    "friction": [-0.1, math.nan],
+    "restitution": [-0.01, 1.01, math.nan],
+}
+
+
+@pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
+def test_bad_numbers_are_refused_by_name(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value}"):
+        if name in ("friction", "restitution"):
+            Scene(2.0, 1.0, **{name: value})
+        else:
+            simulate(rl.scenes.drop, 1.0, **{name: value})
+
+
+@pytest.mark.parametrize("scene", [rl.scenes.rolling, rl.scenes.slip, rl.scenes.drop])
+def test_no_more_turns_than_a_double_knows(scene: Scene) -> None:
+    with pytest.raises(ValueError, match=r"^t must be at most 1e15 half turns .*, got 1e\+25$"):
+        simulate(scene, 1e25, model="contact")
+
+
+def test_a_velocity_beyond_any_scene_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"^x_dot must be at most .* for this body, got 1e\+50$"):
+        Scene(1e-20, 1e-20, x_dot=1e50)
+    with pytest.raises(ValueError, match=r"^z_dot must be at most .* for this body, got 1e\+45$"):
+        Scene(1e-20, 1e-20, z=1.0, z_dot=1e45)
+
+
+def test_a_start_in_the_ground_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"^z must be at least h\(theta\) = 1.0 \[m\].*got 0.9"):
+        Scene(2.0, 1.0, z=0.9)
+    with pytest.raises(ValueError, match=r"^z_dot must be at least .*got -0.1"):
+        Scene(2.0, 1.0, z_dot=-0.1)
+
+
+# ----------------------------------------------------------------------------- the start
+
+
+def test_the_start_says_what_the_body_does() -> None:
+    """On every ground and in every state, the mode of `initial_state` is the contact model's."""
+    met = {mode: 0 for mode in Mode}
+    for scene in random_scenes(2000, 71):
+        motion = simulate(scene, [0.0], model="contact", raise_on_failure=False)
+        mode = scene.initial_state.mode
+        assert motion.mode.tolist() == [mode], scene
+        does = {"ROLLING": "rolls", "SLIDING": "slides", "FLIGHT": "flies", "REST": "rests"}
+        assert does[mode.name] in scene.initial_state.reason
+        met[mode] += 1
+    print(met)
+    assert min(met[mode] for mode in (Mode.ROLLING, Mode.SLIDING, Mode.FLIGHT)) > 50
+
+
+@pytest.mark.parametrize(
+    ("scene", "mode", "reason"),
+    [
+        (Scene(2.0, 1.0, slope=0.5, friction=0.05), Mode.SLIDING, "friction 0.05 cannot hold"),
+        (Scene(2.0, 1.0, theta=1.5, omega=30.0), Mode.FLIGHT, "the ground would have to pull"),
+        (
+            Scene(2.0, 1.0, slope=0.2, theta=0.06874278580117352, friction=0.5),
+            Mode.REST,
+            "no impulse; the body rests",
+        ),
+        (rl.scenes.report, Mode.ROLLING, "without it omega would be 5.76 rad/s; the body rolls"),
+    ],
+)
+def test_starts_that_look_like_rolling(scene: Scene, mode: Mode, reason: str) -> None:
+    assert scene.initial_state.mode is mode and reason in scene.initial_state.reason
+
+
+def test_a_body_in_equilibrium_on_a_slope_stays_in_every_model() -> None:
+    scene = Scene(2.0, 1.0, slope=0.2, theta=0.06874278580117352, friction=0.5)
+    for options in ({}, {"model": "rolling"}, {"model": "multipliers"}):
+        motion = simulate(scene, 1e4, **options)
+        assert np.all(motion.mode == Mode.REST) and np.all(motion.omega == 0)
+        assert np.ptp(motion.theta) == 0
+
+
+def test_leaving_the_ground_is_no_slip() -> None:
+    """On a slope rolling may go on with c <= 0; where its grip ends then, the body flies."""
+    scene = Scene(
+        1.12284991254411, 1.0, friction=8.997344246579441, restitution=1.0,
+        slope=-0.4867737488001045, theta=1.3467715037863446, inertia=0.5651979815250789,
+        omega=-0.7914415400745813,
+    )  # fmt: skip
+    motion = simulate(scene, 2.3)
+    assert kinds(motion)[0] is EventKind.LIFT_OFF
+    assert motion.events[0].t == pytest.approx(2.152772, abs=1e-6)
+    for other in random_scenes(600, 83):
+        found = simulate(other, 4.0, model="contact", max_events=50, raise_on_failure=False)
+        for event in found.events:
+            flies = event.state_after.mode is Mode.FLIGHT
+            if event.kind is EventKind.SLIP:
+                assert not flies
+            if event.kind is EventKind.LIFT_OFF:
+                assert flies
+
+
+# ----------------------------------------------------------------------------- units
+
+SCALED = [
+    Scene(2.0, 1.0, omega=4.77, friction=0.5),
+    Scene(2.0, 1.0, omega=7.0, friction=0.3),
+    Scene(0.7, 1.9, x_dot=2.0, omega=-1.0, friction=0.4, theta=0.3, slope=0.1, restitution=0.5),
+    Scene(2.0, 1.0, theta=0.5, z=2.5, omega=1.0, friction=0.7, restitution=0.6),
+    Scene(1.0, 1e-3, theta=0.4, omega=0.2, friction=0.3, x=1e3),
+    JAMMING,
+]
+UNITS = {  # powers of two of length, time and mass
+    "lengths by 4^n, times by 2^n": (24, 12, 0),
+    "lengths and gravity": (-17, 0, 0),
+    "mass": (0, 0, 45),
+    "small": (-60, -30, -70),
+    "everything": (41, -13, -9),
+}
+
+
+@pytest.mark.parametrize("powers", UNITS.values(), ids=UNITS.keys())
+@pytest.mark.parametrize("number", range(len(SCALED)))
+def test_other_units_give_the_same_bits(number: int, powers: tuple[int, int, int]) -> None:
+    length, time, mass = (2.0**power for power in powers)
+    scene, speed = SCALED[number], length / time
+    units: dict[str, float] = {
+        "a": length, "b": length, "mass": mass, "gravity": speed / time, "omega": 1 / time,
+        "x": length, "z": length, "x_dot": speed, "z_dot": speed,
+    }  # fmt: skip
+    values = {name: getattr(scene, name) for name in units}
+    other = dataclasses.replace(
+        scene, **{name: None if v is None else v * units[name] for name, v in values.items()}
+    )
+    times = np.linspace(0.0, 4.0, 301)
+    one = simulate(scene, times, model="contact")
+    many = simulate(other, times * time, model="contact")
+    assert kinds(one) == kinds(many) and one.stats == many.stats
+    assert [event.t * time for event in one.events] == [event.t for event in many.events]
+    for name in STATE:
+        assert np.array_equal(getattr(one, name) * units.get(name, 1.0), getattr(many, name)), name
+    force = mass * speed / time
+    assert np.array_equal(one.normal_force * force, many.normal_force)
+    assert np.array_equal(one.friction_force * force, many.friction_force)
+
+
+def test_a_slide_takes_as_many_steps_whatever_its_size() -> None:
+    """Not only for powers of two: the tolerance is of the body's own size."""
+    counts = []
+    for b in (1.0, 1e-9, 1e12, 3e-25):
+        scene = Scene(2 * b, b, omega=4.77 / math.sqrt(b), friction=0.5)
+        counts.append(simulate(scene, 2 * math.sqrt(b), model="contact").stats["steps"])
+    print(counts)
+    assert max(counts) <= 1.1 * min(counts)
+
+
+def test_a_body_that_spins_too_fast_for_its_fall_still_lands() -> None:
+    """Its fall in half a turn is less than the rounding of its height: it touches with its tip."""
+    scene = Scene(
+        8.684333525875083e23, 8.684333525875074e26, mass=1e-30, friction=1e20,
+        omega=7.284644624875188e19,
+    )  # fmt: skip
+    assert simulate(scene, 5e-324).success
+    for omega in (1e14, 1e15, 3e15, 1e17, 1e30):
+        scene = Scene(1.0, 2.0, omega=omega, friction=0.3)
+        motion = simulate(scene, 1.0, max_events=20, raise_on_failure=False)
+        # it stands on its tip and leaves the ground there, for half a turn
+        assert motion.events[0].kind is EventKind.IMPACT
+        assert motion.events[0].t == pytest.approx(math.pi / omega, rel=1e-9)

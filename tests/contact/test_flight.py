@@ -1,0 +1,192 @@
+"""The first touch-down of flights, against dense sampling in long double."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.geometry import support
+from oracles.numbers import EPS
+from rolling_ellipse import EventKind, Mode, Scene, simulate
+
+Long = Any  # arrays of np.longdouble
+GRAVITY = 9.81
+
+
+def first_impact(scene: Scene) -> float:
+    """Time of the first event, which is an impact, of a body that falls for 1000 s at most."""
+    motion = simulate(scene, 1000.0, model="contact", max_events=1, raise_on_failure=False)
+    assert motion.events[0].kind is EventKind.IMPACT
+    return motion.events[0].t
+
+
+class Gap:
+    """Height of a flying body over the ground, its rate and acceleration."""
+
+    def __init__(self, scene: Scene) -> None:
+        start = scene.initial_state
+        self.a, self.b, self.theta, self.omega, self.z, self.z_dot = map(
+            np.longdouble, (scene.a, scene.b, start.theta, start.omega, start.z, start.z_dot)
+        )
+        self.weight = np.longdouble(scene.gravity) * np.cos(np.longdouble(scene.slope))
+        if abs(self.z - support(self.theta, self.a, self.b).h) <= 8 * EPS * self.z:
+            at = support(self.theta, self.a, self.b)  # what touches does so exactly
+            self.z_dot += at.slope * self.omega - np.longdouble(
+                support(start.theta, scene.a, scene.b).slope * start.omega
+            )
+            self.z = at.h
+
+    def __call__(self, t: Long) -> Long:
+        at = support(self.theta + self.omega * t, self.a, self.b)
+        return self.z + t * (self.z_dot - self.weight * t / 2) - at.h
+
+    def rate(self, t: Long) -> Long:
+        at = support(self.theta + self.omega * t, self.a, self.b)
+        return self.z_dot - self.weight * t - at.slope * self.omega
+
+    def acceleration(self, t: Long) -> Long:
+        at = support(self.theta + self.omega * t, self.a, self.b)
+        return -self.weight - at.curvature * self.omega**2
+
+    def rounding(self, t: float) -> float:
+        """What double arithmetic may be off by at time t: of z, of the angle, of h."""
+        z = abs(self.z) + abs(self.z_dot) * t + self.weight * t * t / 2
+        turned = (abs(self.theta) + abs(self.omega) * t) * max(self.a, self.b)
+        return float(8 * EPS * (z + turned))
+
+    def lowest_before(self, t: float) -> float:
+        """Smallest value strictly inside (0, t): 500 looks per half turn, and Newton's method on
+        the rate at each dip, so that one between two looks does not hide."""
+        looks = 500 * (2 + int(abs(self.omega) * t / math.pi))
+        times = np.linspace(0, np.longdouble(t), looks + 1)[1:-1]
+        values = self(times)
+        dips = 1 + np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:]))
+        at, step = times[dips], times[0]
+        for _ in range(4):
+            move = -self.rate(at) / np.abs(self.acceleration(at))
+            at = np.clip(at + np.clip(move, -step, step), times[0], times[-1])
+        return float(min(values.min(), self(at).min() if at.size else np.inf))
+
+
+def random_flight(rng: np.random.Generator) -> Scene:
+    """Slow and fast spins, dropped, thrown, or leaving the ground with some speed."""
+    a, b = (10 ** rng.uniform(-0.7, 0.7, 2)).tolist()
+    theta, omega = float(rng.uniform(-4, 4)), float(rng.normal() * 10 ** rng.uniform(-2, 1.5))
+    at = support(theta, a, b)
+    start = {"z": float(at.h) + 10 ** rng.uniform(-6, 1), "z_dot": 3 * rng.normal()}
+    if rng.random() < 0.4:
+        start = {"z_dot": float(at.slope) * omega + 10 ** rng.uniform(-6, 1)}
+    slope = float(rng.choice([0.0, 0.0, 0.5, -1.2]))
+    return Scene(a, b, theta=theta, omega=omega, slope=slope, x_dot=1.0, **start)
+
+
+def check(scene: Scene) -> None:
+    """It touches there, and nowhere before."""
+    t, gap = first_impact(scene), Gap(scene)
+    assert abs(gap(np.longdouble(t))) <= gap.rounding(t) + EPS * t * abs(gap.rate(t))
+    assert gap.lowest_before(t * (1 - 1e-9)) >= -gap.rounding(t)
+
+
+def test_the_first_touch_of_random_flights() -> None:
+    rng = np.random.default_rng(17)
+    for _ in range(1000):
+        check(random_flight(rng))
+
+
+@pytest.mark.parametrize("miss", [1e-3, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("omega", [8.0, -40.0, 700.0])
+def test_a_graze_is_told_from_a_miss(omega: float, miss: float) -> None:
+    """The tip passes `miss` above the ground, and lands later; or below it, and has landed."""
+    landings = []
+    for offset in (miss, -miss):
+        gap = Gap(Scene(2.0, 1.0, theta=0.3, omega=omega, z=3.0, z_dot=1.0))
+        pass_tip = np.linspace(0, 6, 60001 + 300 * int(abs(omega)))[1:].astype(np.longdouble)
+        values = gap(pass_tip)
+        dips = np.flatnonzero((values[1:-1] < values[:-2]) & (values[1:-1] < values[2:]))
+        t = pass_tip[1 + int(dips[0])]
+        for _ in range(5):
+            t -= gap.rate(t) / gap.acceleration(t)
+        z = float(np.longdouble(3.0) - gap(t) + offset)
+        scene = Scene(2.0, 1.0, theta=0.3, omega=omega, z=z, z_dot=1.0)
+        check(scene)
+        landings.append((first_impact(scene), float(t)))
+    (missed, t_missed), (hit, t_hit) = landings
+    # below the ground for sqrt(2 miss/acceleration) on either side of the dip
+    assert missed > t_missed
+    half = math.sqrt(2 * miss / float(Gap(scene).acceleration(t_hit)))
+    assert t_hit - 1.5 * half - 1e-3 * half <= hit < t_hit
+
+
+@pytest.mark.parametrize("omega", [7.0, -7.0, 40.0, 300.0])
+@pytest.mark.parametrize("beyond", [0.0, 0.02, 0.1, 0.3])
+@pytest.mark.parametrize("slope", [0.0, 0.8])
+def test_leaving_by_acceleration_alone(omega: float, beyond: float, slope: float) -> None:
+    """Rolling at c = g cos(alpha) + h'' omega^2 < 0 around the tip: gap and rate start at zero."""
+    scene = Scene(2.0, 1.0, theta=math.pi / 2 + beyond, omega=omega, slope=slope, friction=0.3)
+    gap = Gap(scene)
+    assert gap.acceleration(np.longdouble(0)) > 0
+    motion = simulate(scene, 100.0, max_events=1, raise_on_failure=False)
+    assert motion.mode[0] == Mode.FLIGHT
+    t = first_impact(scene)
+    assert abs(gap(np.longdouble(t))) <= gap.rounding(t) + EPS * t * abs(gap.rate(t))
+    assert gap.lowest_before(t * (1 - 1e-9)) >= -EPS * 2.0
+    assert gap(np.longdouble(0.5 * t)) > 0
+
+
+def test_a_hop_far_lower_than_the_body_is_timed_to_the_last_bits() -> None:
+    """Leaving with u, lying flat without spin: 2 u/g, however small u is beside sqrt(g b)."""
+    for u in (1e-3, 1e-7, 1e-11):
+        t = first_impact(Scene(2.0, 1.0, z_dot=u, friction=0.0, restitution=0.5))
+        assert t == pytest.approx(2 * u / GRAVITY, rel=4 * EPS)
+
+
+@pytest.mark.parametrize("omega", [1e9, -1e14, 1e16, 1e30])
+def test_a_spin_too_fast_for_the_clock_comes_down_all_the_same(omega: float) -> None:
+    """Half a turn between two doubles: it lands at the height of the tip."""
+    t = first_impact(Scene(2.0, 1.0, z=100.0, omega=omega))
+    assert t == pytest.approx(math.sqrt(2 * 98.0 / GRAVITY), rel=1e-8)
+
+
+def test_samples_in_flight_are_the_parabola() -> None:
+    scene = Scene(
+        2.0, 1.0, theta=0.4, omega=2.0, z=5.0, x=-1.0, x_dot=0.7, z_dot=3.0, slope=0.3,
+        restitution=1.0,
+    )  # fmt: skip
+    landing = first_impact(scene)
+    motion = simulate(scene, np.linspace(0, 0.999 * landing, 100))
+    along, away = GRAVITY * math.sin(0.3), GRAVITY * math.cos(0.3)
+    t = motion.t
+    assert np.all(motion.mode == Mode.FLIGHT) and motion.events == ()
+    assert np.allclose(motion.x, -1 + 0.7 * t + along * t**2 / 2, rtol=0, atol=1e-14)
+    assert np.allclose(motion.z, 5 + 3 * t - away * t**2 / 2, rtol=0, atol=1e-14)
+    assert np.allclose(motion.x_dot, 0.7 + along * t, rtol=0, atol=1e-14)
+    assert np.allclose(motion.z_dot, 3 - away * t, rtol=0, atol=1e-14)
+    assert np.all(motion.omega == 2.0) and np.allclose(motion.theta, 0.4 + 2 * t, rtol=1e-15)
+    assert np.all(motion.normal_force == 0) and np.all(motion.friction_force == 0)
+    assert np.allclose(motion.x_ddot, along, rtol=1e-15)
+    assert np.allclose(motion.z_ddot, -away, rtol=1e-15)
+
+
+@pytest.mark.parametrize("omega", [1.0, 10.0])
+def test_small_hops_of_a_turning_circle(omega: float) -> None:
+    """Its h is rounded to one side or the other of its radius; the hops are far lower than that."""
+    scene = Scene(1.0, 1.0, z=1.5, omega=omega, x_dot=1.0, friction=0.0, restitution=0.6)
+    events = simulate(scene, 3.0).events
+    landing = math.sqrt(2 * 0.5 / 9.81)
+    # 28 impacts and the sum of the others, each time right to a few ulp
+    assert events[-1].t == pytest.approx(landing * (1 + 2 * 0.6 / 0.4), rel=1e-14)
+
+
+def test_an_angle_that_a_double_does_not_resolve_ends_no_loop() -> None:
+    """Beyond 1e15 a turn is less than the angle's last digit; the body lands all the same."""
+    nearly_round = Scene(
+        0.9999999999999993, 1.0000000000000002, theta=2.4258586478366313,
+        omega=3.5689176141628386e41, friction=1.0, z=1.000000003630839,
+    )  # fmt: skip
+    thin = Scene(
+        1000.0, 1.0, theta=20571.672332613358, omega=2.4876236233651422e48, friction=1.63,
+        inertia=250000.0, z=11032.85248895422,
+    )  # fmt: skip
+    for scene, end in ((nearly_round, 2.76), (thin, 58.0)):
+        motion = simulate(scene, end, model="contact", max_events=50, raise_on_failure=False)
+        assert motion.events and np.all(np.isfinite(motion.x))

@@ -1,0 +1,554 @@
+"""Files of trajectories: what is damaged is refused by name, and what was there stays."""
+
+import copy
+import dataclasses
+import io
+import json
+import math
+import os
+import pickle
+import re
+import resource
+import signal
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.files import half_a_file
+from oracles.paths import TESTS
+from oracles.pickles import require_same
+from rolling_ellipse import Trajectory, simulate
+
+TIMES = np.linspace(0.0, 1.5, 12)
+SAVED = {
+    "rolling": lambda: simulate(rl.scenes.report, TIMES),
+    "contact": lambda: simulate(rl.scenes.bounce, 2 * TIMES, max_events=3, raise_on_failure=False),
+    "multipliers": lambda: rl.report.simulate(
+        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0, method="rk4", step=0.1
+    ),
+}
+REFUSED = r"^path must name a file written by save, got '[^']*motion\.npz': "
+
+
+@pytest.fixture(scope="module")
+def motions() -> dict[str, Trajectory]:
+    return {name: make() for name, make in SAVED.items()}
+
+
+@pytest.fixture(scope="module")
+def contents(
+    motions: dict[str, Trajectory], tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, bytes]:
+    path = tmp_path_factory.mktemp("saved") / "motion.npz"
+    found = {}
+    for name, motion in motions.items():
+        motion.save(path)
+        found[name] = path.read_bytes()
+    return found
+
+
+def taken_apart(content: bytes) -> tuple[Any, dict[str, Any]]:
+    with np.load(io.BytesIO(content)) as data:
+        arrays = {name: data[name] for name in data.files}
+    return json.loads(str(arrays.pop("about"))), arrays
+
+
+def put_together(about: Any, arrays: dict[str, Any], save: Callable[..., None] = np.savez) -> bytes:
+    file = io.BytesIO()
+    text = about if isinstance(about, str) else json.dumps(about)
+    save(file, about=np.array(text), **arrays)
+    return file.getvalue()
+
+
+def refusal(content: bytes, path: Path, said: str = "") -> str:
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=REFUSED + said) as caught:
+        rl.load(path)
+    return str(caught.value)
+
+
+# ---------------------------------------------------------------------------- damaged bytes
+
+
+def cut(data: bytearray, rng: np.random.Generator) -> None:
+    del data[int(rng.integers(len(data))) :]
+
+
+def flip(data: bytearray, rng: np.random.Generator) -> None:
+    for _ in range(int(rng.integers(1, 4))):
+        data[int(rng.integers(len(data)))] ^= 1 << int(rng.integers(8))
+
+
+def flip_in_directory(data: bytearray, rng: np.random.Generator) -> None:
+    data[-int(rng.integers(1, 900))] = int(rng.integers(256))
+
+
+def lose(data: bytearray, rng: np.random.Generator) -> None:
+    start = int(rng.integers(len(data)))
+    del data[start : start + int(rng.integers(1, 300))]
+
+
+def wipe(data: bytearray, rng: np.random.Generator) -> None:
+    start = int(rng.integers(len(data)))
+    part = data[start : start + 512]
+    data[start : start + 512] = bytes(len(part))
+
+
+def shuffle(data: bytearray, rng: np.random.Generator) -> None:
+    start, end = sorted(int(i) for i in rng.integers(len(data), size=2))
+    data[start:end] = data[start:end][::-1]
+
+
+DAMAGES = (cut, flip, flip, flip_in_directory, flip_in_directory, lose, wipe, shuffle)
+
+
+def test_damage_is_refused_or_does_no_harm(
+    motions: dict[str, Trajectory], contents: dict[str, bytes], tmp_path: Path
+) -> None:
+    rng, path, harmless = np.random.default_rng(71), tmp_path / "motion.npz", 0
+    for i in range(2500):
+        name = list(SAVED)[i % len(SAVED)]
+        data = bytearray(contents[name])
+        damage = DAMAGES[int(rng.integers(len(DAMAGES)))]
+        damage(data, rng)
+        path.write_bytes(data)
+        try:
+            found = rl.load(path)
+        except ValueError as error:
+            assert re.match(REFUSED, str(error)), (i, damage)
+        else:  # a date, or the header of a member that the directory repeats
+            harmless += 1
+            require_same(found, dataclasses.replace(motions[name], kept_events=found.events))
+    assert 100 < harmless < 800
+
+
+@pytest.mark.parametrize("name", SAVED)
+def test_no_damage_is_no_damage(
+    name: str, motions: dict[str, Trajectory], contents: dict[str, bytes], tmp_path: Path
+) -> None:
+    path = tmp_path / "motion.npz"
+    path.write_bytes(put_together(*taken_apart(contents[name])))
+    expected = dataclasses.replace(motions[name], kept_events=motions[name].events)
+    require_same(rl.load(path), expected)
+    rl.load(path).save(path)
+    assert taken_apart(path.read_bytes())[0] == taken_apart(contents[name])[0]
+
+
+# ------------------------------------------------------------------------------- wrong text
+
+
+def places(part: Any, road: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """The road to every value, and to every part that holds values."""
+    yield road
+    if isinstance(part, (dict, list)):
+        for key in part if isinstance(part, dict) else range(len(part)):
+            yield from places(part[key], (*road, key))
+
+
+def changed(about: Any, road: tuple[Any, ...], change: Callable[[Any, Any], None]) -> Any:
+    about = copy.deepcopy(about)
+    part = about
+    for key in road[:-1]:
+        part = part[key]
+    change(part, road[-1])
+    return about
+
+
+def nested(depth: int) -> Any:
+    found: Any = []
+    for _ in range(depth):
+        found = [found]
+    return found
+
+
+WRONG_VALUES: dict[str, Any] = {
+    "null": None, "true": True, "false": False, "text": "wrong", "number as text": "1.0",
+    "empty": "", "list": [1.0], "none": [], "part": {"a": 1.0}, "nan": math.nan, "inf": math.inf,
+    "-inf": -math.inf, "negative": -1.0, "negative whole": -1, "huge": 1e300, "half": 0.5,
+    "enormous": 10**400, "whole": 7, "deep": nested(300),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SAVED)
+def test_wrong_values_are_refused(name: str, contents: dict[str, bytes], tmp_path: Path) -> None:
+    """Every value of the text turned into many others: what is read is what would be written."""
+    path, again = tmp_path / "motion.npz", tmp_path / "again.npz"
+    about, arrays = taken_apart(contents[name])
+    taken = set()
+    about["events"] = about["events"][:1]  # the others are no different
+    roads = [road for road in places(about) if road]
+    for road in roads:
+        for label, value in WRONG_VALUES.items():
+            wrong = changed(about, road, lambda part, key, new=value: part.__setitem__(key, new))
+            path.write_bytes(put_together(wrong, arrays))
+            try:
+                found = rl.load(path)
+            except ValueError as error:
+                assert re.match(REFUSED, str(error)), (road, label)
+                continue
+            taken.add(label)
+            found.save(again)
+            assert taken_apart(again.read_bytes())[0] == wrong, (road, label)
+    assert taken <= {
+        "null", "text", "number as text", "empty", "negative", "whole", "half", "inf", "-inf",
+        "huge", "none", "part",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SAVED)
+def test_no_name_is_missing_or_unknown(
+    name: str, contents: dict[str, bytes], tmp_path: Path
+) -> None:
+    path = tmp_path / "motion.npz"
+    about, arrays = taken_apart(contents[name])
+    for road in places(about):
+        part = about
+        for key in road:
+            part = part[key]
+        if not isinstance(part, dict):
+            continue
+        new = changed(about, (*road, "colour"), lambda part, key: part.__setitem__(key, 1))
+        refusal(put_together(new, arrays), path, ".*colour")
+        for key in part if road != ("stats",) else ():
+            new = changed(about, (*road, key), lambda part, key: part.__delitem__(key))
+            refusal(put_together(new, arrays), path, f".* must have '{key}'$")
+
+
+TEXTS = {
+    "schema": ({"schema": 5}, "schema must be 4, got 5$"),
+    "status": ({"status": "FINISHED"}, "status must be one of 'COMPLETED', .*'FINISHED'"),
+    "model": ({"model": "falling"}, "model 'falling' must not have 'friction_force'"),
+    "no arrays for it": ({"model": "multipliers"}, "model 'multipliers' must have 'coordinates'"),
+    "auto": ({"method": "auto"}, "method must be one of 'exact', .*, got 'auto'$"),
+    "method": ({"method": "euler"}, "method must be one of 'exact', .*, got 'euler'$"),
+    "span": ({"span": 0.01}, r"t_end must lie in \[0.0, 0.01\], got \d"),
+    "no time": ({"t_end": -1.0}, r"t_end must lie in \[0.0, 3.0\], got -1.0$"),
+    "validity": ({"valid_until": -1.0}, r"valid_until must lie in \[0.0, inf\], got -1.0$"),
+    "no sentence": ({"reason": 1}, "reason must be a sentence, got 1$"),
+    "count": ({"stats": {"steps": 1.5}}, "steps must be a count, got 1.5$"),
+    "figure": ({"stats": {"leaps": 1}}, "stats must have no names but .*leaps"),
+    "events": ({"events": 3}, ".*not iterable"),
+    "event": ({"events": [[0.1, "SLIP"]]}, ".*unpack"),
+    "kind": ({"events": [[0.1, "FALL", [0.0] * 7, [0.0] * 7]]}, "kind must be one of .*'FALL'$"),
+    "late": ({"events": [[9.0, "SLIP", [0.0] * 6 + [0], [0.0] * 6 + [0]]]}, r"times of .*got 9\.0"),
+    "no numbers": ({"events": [[0.1, "SLIP", ["a"] * 7, [0.0] * 7]]}, "events must .*, got 'a'$"),
+}
+
+
+@pytest.mark.parametrize(("change", "said"), TEXTS.values(), ids=TEXTS)
+def test_what_is_wrong_is_said(
+    change: dict[str, Any], said: str, contents: dict[str, bytes], tmp_path: Path
+) -> None:
+    about, arrays = taken_apart(contents["contact"])
+    refusal(put_together(about | change, arrays), tmp_path / "motion.npz", said)
+
+
+PARTS = {
+    "mass": ("scene", "mass", -1.0, "mass must be.*-1.0"),
+    "angle": ("scene", "theta", "flat", "theta must be a number, got 'flat'"),
+    "lifted": ("scene", "z", 0.1, "z must be at least .*0.1"),
+    "blow": ("scene", "impulse", {"jx": 1.0}, "impulse must have 'dx'"),
+    "whole": ("scene", "a", 2, r"scene must be what save writes, .*'a': 2\.0.*'a': 2\b"),
+    "tolerance": ("settings", "rtol", -1.0, "rtol must be a finite number of at least 0, got -1"),
+    "other model": ("settings", "model", "rolling", "model must be that of .*'rolling', got 'con"),
+    "other method": ("settings", "method", "rk4", "method must be that of .*'rk4', got 'dop853'"),
+    "no events": ("settings", "max_events", 0, "max_events must be at least 1, got 0"),
+    "gains": ("settings", "baumgarte", [1.0], r"baumgarte must be two numbers, got \[1.0\]"),
+}
+
+
+@pytest.mark.parametrize(("part", "name", "value", "said"), PARTS.values(), ids=PARTS)
+def test_wrong_scenes_and_settings_are_refused_with_the_name_of_the_file(
+    part: str, name: str, value: Any, said: str, contents: dict[str, bytes], tmp_path: Path
+) -> None:
+    about, arrays = taken_apart(contents["contact"])
+    about[part][name] = value
+    refusal(put_together(about, arrays), tmp_path / "motion.npz", said)
+
+
+def test_events_in_disorder_are_refused(contents: dict[str, bytes], tmp_path: Path) -> None:
+    about, arrays = taken_apart(contents["contact"])
+    assert len(about["events"]) == 3
+    about["events"].reverse()
+    refusal(put_together(about, arrays), tmp_path / "motion.npz", "times of events must not fall")
+
+
+RAW_TEXTS = {
+    "no JSON": "t = 1",
+    "a list": "[]",
+    "nothing": "",
+    "bottomless": "[" * 100_000,
+    "bottomless and closed": '{"schema":' * 50_000 + "4" + "}" * 50_000,
+    "long number": '{"schema": ' + "4" * 5000 + "}",
+    "half a character": '{"schema": "\ud800"}',
+}
+
+
+@pytest.mark.parametrize("text", RAW_TEXTS.values(), ids=RAW_TEXTS)
+def test_other_texts_are_refused(text: str, contents: dict[str, bytes], tmp_path: Path) -> None:
+    _, arrays = taken_apart(contents["rolling"])
+    refusal(put_together(text, arrays), tmp_path / "motion.npz")
+
+
+def test_names_come_once(contents: dict[str, bytes], tmp_path: Path) -> None:
+    about, arrays = taken_apart(contents["rolling"])
+    text = json.dumps(about).replace('{"schema": 4', '{"schema": 4, "schema": 4')
+    refusal(put_together(text, arrays), tmp_path / "motion.npz", "about must have each name once")
+
+
+# ----------------------------------------------------------------------------- wrong arrays
+
+RETYPED: dict[str, Callable[[Any], Any]] = {
+    "complex": lambda v: v + 1j,
+    "float32": lambda v: v.astype(np.float32),
+    "whole": lambda v: v.astype(np.int64),
+    "truth": lambda v: v.astype(bool),
+    "text": lambda v: v.astype(str),
+    "times": lambda v: v.astype("m8[s]"),
+    "fields": lambda v: np.zeros(v.shape, [("a", float), ("b", float)]),
+    "a column": lambda v: v[..., None],
+    "one more": lambda v: np.concatenate([v, v[-1:]]),
+    "one less": lambda v: v[:-1],
+    "a number": lambda v: v.ravel()[0],
+    "none": lambda v: v[:0],
+    "columns first": lambda v: np.asfortranarray(np.stack([v, v])),
+    "nan": lambda v: np.where(np.arange(v.size).reshape(v.shape) == 3, math.nan, v),
+    "inf": lambda v: np.where(np.arange(v.size).reshape(v.shape) == 3, -math.inf, v),
+}
+
+
+@pytest.mark.parametrize("change", RETYPED.values(), ids=RETYPED)
+@pytest.mark.parametrize("name", SAVED)
+def test_wrong_arrays_are_refused(
+    name: str, change: Callable[[Any], Any], contents: dict[str, bytes], tmp_path: Path
+) -> None:
+    about, arrays = taken_apart(contents[name])
+    for array in arrays:
+        wrong = arrays | {array: change(arrays[array])}
+        refusal(put_together(about, wrong), tmp_path / "motion.npz")
+
+
+WRONG_NUMBERS = {
+    "before": ("t", -1e-9, r"t must lie in \[0.0, 2\.\d+\], got -1e-09"),
+    "after": ("t", 9.0, r"t must lie in \[0.0, 2\.\d+\], got 9.0"),
+    "nan": ("z", math.nan, "z must be finite, got nan"),
+    "mode": ("mode", 4, "mode must hold codes of Mode, got 4.0"),
+    "no mode": ("mode", -1, "mode must hold codes of Mode, got -1.0"),
+}
+
+
+@pytest.mark.parametrize(("name", "value", "said"), WRONG_NUMBERS.values(), ids=WRONG_NUMBERS)
+def test_wrong_numbers_are_refused(
+    name: str, value: float, said: str, contents: dict[str, bytes], tmp_path: Path
+) -> None:
+    about, arrays = taken_apart(contents["contact"])
+    arrays[name][1] = value
+    refusal(put_together(about, arrays), tmp_path / "motion.npz", said)
+
+
+@pytest.mark.parametrize("name", SAVED)
+def test_the_arrays_of_the_model_and_no_others(
+    name: str, contents: dict[str, bytes], tmp_path: Path
+) -> None:
+    path = tmp_path / "motion.npz"
+    about, arrays = taken_apart(contents[name])
+    for array in set(arrays) - {"start"}:
+        rest = {key: values for key, values in arrays.items() if key != array}
+        refusal(put_together(about, rest), path, f"model '{name}' must have '{array}'")
+        refusal(put_together(about, rest | {"colour": arrays[array]}), path, ".*'colour.npy'")
+    for array in ("z", "mode", "coordinates"):
+        if array not in arrays:
+            more = arrays | {array: arrays["x"]}
+            refusal(put_together(about, more), path, f"model '{name}' must not have '{array}'")
+
+
+def test_samples_in_any_order_and_of_another_machine(
+    motions: dict[str, Trajectory], tmp_path: Path
+) -> None:
+    path = tmp_path / "motion.npz"
+    for times in ([1.0, 0.0, 0.5, 0.5], []):
+        motions["multipliers"].sol(times).save(path)
+        assert rl.load(path).t.tolist() == times
+    about, arrays = taken_apart(path.read_bytes())
+    swapped = {name: values.astype(">f8") for name, values in arrays.items()}
+    path.write_bytes(put_together(about, swapped))
+    assert rl.load(path).theta.dtype == np.float64
+
+
+# ------------------------------------------------------------------------- made to do harm
+
+
+class Harmful:
+    def __reduce__(self) -> tuple[Any, ...]:
+        return os.mkdir, ("harmed",)
+
+
+def test_nothing_is_unpickled(
+    contents: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    about, arrays = taken_apart(contents["rolling"])
+    wrong = np.full(12, None)
+    wrong[3] = Harmful()
+    for name in arrays:
+        refusal(put_together(about, arrays | {name: wrong}), tmp_path / "motion.npz")
+    assert not Path("harmed").exists()
+
+
+def test_nothing_is_unpacked(contents: dict[str, bytes], tmp_path: Path) -> None:
+    """A file of a megabyte could hold arrays of a gigabyte."""
+    about, arrays = taken_apart(contents["rolling"])
+    content = put_together(about, arrays, np.savez_compressed)
+    refusal(content, tmp_path / "motion.npz", ".* must not be compressed")
+
+
+def header(shape: str, dtype: str = "<f8") -> bytes:
+    text = f"{{'descr': {dtype!r}, 'fortran_order': False, 'shape': {shape}, }}".encode()
+    text += b" " * (-(len(text) + 11) % 64) + b"\n"
+    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text
+
+
+HEADERS = {
+    "terabytes": header("(1000000000000,)"),
+    "more than there is": header("(13,)"),
+    "below nothing": header("(-12, -1)"),
+    "too many dimensions": header("(" + "1, " * 70 + "12)"),
+    "no shape": header("'all'"),
+    "objects": header("(12,)", "|O"),
+    "of no size": header("(12,)", "|V0"),
+    "deep": header("(" * 500 + "12" + ",)" * 500),
+    "another version": header("(12,)").replace(b"\x01\x00", b"\x09\x00", 1),
+    "no header": b"",
+    "a pickle": pickle.dumps(Harmful()),
+}
+
+
+@pytest.mark.parametrize("head", HEADERS.values(), ids=HEADERS)
+def test_wrong_headers_are_refused(head: bytes, contents: dict[str, bytes], tmp_path: Path) -> None:
+    path, body = tmp_path / "motion.npz", np.arange(12.0).tobytes()
+    with (
+        zipfile.ZipFile(io.BytesIO(contents["rolling"])) as before,
+        zipfile.ZipFile(path, "w") as after,
+    ):
+        for name in before.namelist():
+            after.writestr(name, head + body if name == "x.npy" else before.read(name))
+    refusal(path.read_bytes(), path)
+
+
+def test_a_member_is_read_once(contents: dict[str, bytes], tmp_path: Path) -> None:
+    """A directory of a million members that are all the same bytes would take a week."""
+    path = tmp_path / "motion.npz"
+    path.write_bytes(contents["rolling"])
+    with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
+        archive.writestr("x.npy", archive.read("x.npy"))
+    refusal(path.read_bytes(), path, "it must hold known arrays, once each, got 'x.npy'")
+
+
+@pytest.mark.parametrize("name", ["folder", "folder/motion.npz", "text/motion.npz"])
+def test_what_cannot_be_read_is_for_the_operating_system_to_say(name: str, tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "text").write_text("text")
+    with pytest.raises(OSError) as caught:
+        rl.load(tmp_path / name)
+    assert caught.value.filename == os.fspath(tmp_path / name)
+
+
+# ------------------------------------------------------------------------------------ saving
+
+
+def test_what_load_would_refuse_is_not_saved(
+    motions: dict[str, Trajectory], tmp_path: Path
+) -> None:
+    motion, path = motions["contact"], tmp_path / "motion.npz"
+    motion.save(path)
+    before = path.read_bytes()
+    contact = motion.contact
+    assert contact is not None
+    for change, said in (
+        ({"x": np.full(motion.t.size, math.nan)}, "x must be finite, got nan"),
+        ({"contact": contact._replace(z=contact.z * math.inf)}, "z must be finite, got inf"),
+        ({"method": "another"}, "method must be one of"),
+        ({"model": "rolling"}, "model 'rolling' must not have"),
+        ({"contact": None}, "model 'contact' must have 'friction_force'"),
+        ({"t_end": 0.0}, r"t must lie in \[0\.0, 0\.0\]"),
+        ({"stats": {"beats": 2}}, "stats must have no names but"),
+    ):
+        with pytest.raises(ValueError, match=f"^{said}"):
+            dataclasses.replace(motion, **change).save(path)
+        assert path.read_bytes() == before
+    dataclasses.replace(motion, valid_until=1, stats={}).save(path)
+    assert rl.load(path).valid_until == 1.0
+
+
+@pytest.mark.parametrize("name", ["valid_until", "t_end", "span"])
+def test_times_are_numbers(name: str, motions: dict[str, Trajectory]) -> None:
+    with pytest.raises(TypeError, match=f"^{name} must be a number, got 'late'"):
+        dataclasses.replace(motions["contact"], **{name: "late"})
+
+
+def test_an_exception_while_saving_leaves_the_old_file(
+    motions: dict[str, Trajectory], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "motion.npz"
+    motions["rolling"].save(path)
+    before = path.read_bytes()
+
+    def interrupted(file: Any, **arrays: Any) -> None:
+        half_a_file(file)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(np, "savez", interrupted)
+    for target in (path, tmp_path / "new.npz"):
+        with pytest.raises(KeyboardInterrupt):
+            motions["contact"].save(target)
+    assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
+
+
+KILLED = """
+import os, pickle, signal, sys
+import numpy as np
+from oracles.files import half_a_file
+
+def killed(file, **arrays):
+    half_a_file(file)
+    os.kill(os.getpid(), signal.SIGKILL)
+
+np.savez = killed
+pickle.loads(sys.stdin.buffer.read()).save(sys.argv[1])
+"""
+
+
+def test_a_kill_while_saving_leaves_the_old_file(
+    motions: dict[str, Trajectory], tmp_path: Path
+) -> None:
+    path = tmp_path / "motion.npz"
+    motions["rolling"].save(path)
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED, path],
+        input=pickle.dumps(motions["contact"]),
+        env={**os.environ, "PYTHONPATH": os.fspath(TESTS)},
+        timeout=60,
+    )
+    assert done.returncode == -signal.SIGKILL
+    assert rl.load(path).model == "rolling"
+
+
+def test_a_full_disk_leaves_the_old_file(motions: dict[str, Trajectory], tmp_path: Path) -> None:
+    path = tmp_path / "motion.npz"
+    motions["rolling"].save(path)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (5000, before[1]))
+        with pytest.raises(OSError):
+            motions["contact"].save(path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        signal.signal(signal.SIGXFSZ, ignored)
+    assert rl.load(path).model == "rolling" and list(tmp_path.iterdir()) == [path]

@@ -1,0 +1,314 @@
+"""The report's constraints: zero where they should be, and the right size where they should not.
+
+q = (x, z, theta, psi, r). Everything is held against f1 ... f4 written down once more in mpmath,
+their rates by numerical differentiation along q_dot, and gap and slip by turning the outline.
+Bounds: what the rounding of each of the ten inputs does to a residual (its gradient, numerical
+too), and a few ulp of the terms it is the difference of.
+"""
+
+import math
+from collections.abc import Sequence
+from functools import partial
+
+import mpmath as mp
+import numpy as np
+import oracles.geometry
+import pytest
+from oracles.constraints import along, lead, no_slip, positions
+from oracles.numbers import DIGITS, EPS, ulps
+from rolling_ellipse import constraints, kinematics
+
+Shape = tuple[float, float]
+NAMES = ["x", "z", "theta", "psi", "r"]
+# the neutral shape, a hair beside it, generic, standing, thin
+THREE_AND_MORE = [(1.0, 1.0), (1.0 + 1e-8, 1.0), (2.0, 1.0), (0.7, 1.9), (2.0, 0.02), (0.03, 1.3)]
+STATES = 40
+
+
+@pytest.fixture(autouse=True)
+def digits() -> None:
+    mp.mp.dps = DIGITS
+
+
+# ---------------------------------------------------------- what their rounding is worth
+
+
+def position_terms(q: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
+    """How large the terms of f2, f3, f4 are."""
+    _, z, theta, psi, r = q
+    polar = a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2)
+    turned = abs(r * mp.sin(psi - theta) * (psi - theta))  # the rounding of psi - theta
+    return [abs(z) + abs(r) + turned, abs(r) + polar, abs(psi - theta) + abs(lead(theta, a, b))]
+
+
+def residuals(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
+    """f2, f3, f4, f1 and the rates of f2, f3, f4 at the ten coordinates y = (q, q_dot)."""
+    q, q_dot = y[:5], y[5:]
+    return [*positions(q, a, b), no_slip(q, q_dot), *along(positions, q, q_dot, a, b)]
+
+
+def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
+    """How large the terms of the seven residuals are: sums of what is added, without signs."""
+    q, q_dot = y[:5], [abs(rate) for rate in y[5:]]
+    x_dot, z_dot, omega, psi_dot, r_dot = q_dot
+    _, _, theta, psi, r = q
+    turned = abs(psi - theta)
+    sine, cosine = abs(mp.sin(psi - theta)), abs(mp.cos(psi - theta))
+    polar_rate = abs(along(positions, q, [0, 0, 0, 1, 0], a, b)[1])
+    lead_rate = 1 + along(positions, q, [0, 0, -1, 0, 0], a, b)[2]  # d psi / d theta + 1 at least
+    return [
+        *position_terms(q, a, b),
+        x_dot + abs(r) * (cosine + sine * turned) * omega,
+        z_dot
+        + r_dot * (cosine + sine * turned)
+        + abs(r) * (sine + cosine * turned) * (psi_dot + omega),
+        r_dot + polar_rate * psi_dot,
+        psi_dot + abs(lead_rate) * omega + omega,
+    ]
+
+
+def gradient_bound(y: Sequence[float], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
+    """What the errors that `test_kinematics_against_differentiation` allows each coordinate do to
+    each residual at most: 16 ulp, and of psi also 8 ulp of its lead over theta."""
+    exact = [mp.mpf(value) for value in y]
+    errors = [16 * mp.mpf(math.ulp(value)) for value in y]
+    errors[3] += 8 * EPS * abs(exact[3] - exact[2])
+    here, total = residuals(exact, a, b), [mp.mpf(0)] * 7
+    for j, error in enumerate(errors):
+        for moved in (exact[j] + error, exact[j] - error):
+            there = residuals([*exact[:j], moved, *exact[j + 1 :]], a, b)
+            total = [sum_ + abs(t - h) for sum_, t, h in zip(total, there, here, strict=True)]
+    return total
+
+
+def gradient_along(j: int, y: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
+    """d(residuals)/d(coordinate j)."""
+
+    def moved(value: mp.mpf, k: int) -> mp.mpf:
+        return residuals([*y[:j], value, *y[j + 1 :]], a, b)[k]
+
+    return [mp.diff(partial(moved, k=k), y[j]) for k in range(7)]
+
+
+def flatten(found: object) -> list[float]:
+    """position and velocity of one state, in the order of `residuals`."""
+    return [*map(float, found.position), *map(float, found.velocity)]  # type: ignore[attr-defined]
+
+
+def random_states(shape: Shape, count: int) -> np.ndarray:
+    """(q, q_dot) that obey nothing, of the size of the body."""
+    generator = np.random.default_rng(20)
+    size = max(shape)
+    spread = np.array([size, size, 3.0, 3.0, size, size, size, 1.0, 1.0, size])
+    return generator.normal(size=(count, 10)) * spread
+
+
+def outline_right(t: mp.mpf, a: mp.mpf, b: mp.mpf, theta: mp.mpf) -> mp.mpf:
+    return oracles.geometry.boundary_point(t, theta, a, b)[0]
+
+
+# ---------------------------------------------------------------------------- at random states
+
+
+@pytest.mark.parametrize("shape", THREE_AND_MORE)
+def test_residuals_of_inconsistent_states(shape: Shape) -> None:
+    """Against the definitions: an evaluation may lose 16 ulp of the terms (products of a few sines,
+    quotients and roots, each half an ulp to one)."""
+    a, b = map(mp.mpf, shape)
+    for y in random_states(shape, STATES):
+        found = flatten(constraints(y[:5], y[5:], a=shape[0], b=shape[1]))
+        exact = residuals([mp.mpf(value) for value in y], a, b)
+        terms = residual_terms([mp.mpf(value) for value in y], a, b)
+        for k in range(7):
+            assert ulps(found[k], exact[k], terms[k]) <= 16, (k, y)
+
+
+@pytest.mark.parametrize("shape", THREE_AND_MORE)
+def test_gap_and_slip_by_turning_the_outline(shape: Shape) -> None:
+    """Lowest point of the outline and the velocity of the material there, in the air and under the
+    ground alike; 8 ulp of the terms, and psi and r have no say in it."""
+    a, b = map(mp.mpf, shape)
+    for y in random_states(shape, 12):
+        z, theta, x_dot, omega = (mp.mpf(y[k]) for k in (1, 2, 5, 7))
+        t = oracles.geometry.lowest_point(y[2], *shape)
+        up = oracles.geometry.boundary_point(t, theta, a, b)[1]
+        material = omega * mp.diff(partial(outline_right, t, a, b), theta)
+        found = constraints(y[:5], y[5:], a=shape[0], b=shape[1])
+        assert ulps(float(found.gap), z + up, abs(z) + abs(up)) <= 8
+        assert ulps(float(found.slip), x_dot + material, abs(x_dot) + abs(material)) <= 8
+        other = y.copy()
+        other[[0, 3, 4, 8, 9]] += 1.0
+        moved = constraints(other[:5], other[5:], a=shape[0], b=shape[1])
+        assert float(moved.gap) == float(found.gap) and float(moved.slip) == float(found.slip)
+
+
+# ------------------------------------------------------------------------ on rolling states
+
+
+def rolling_coordinates(theta: float, a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
+    """q at an angle."""
+    h, slope = oracles.geometry.height(theta, a, b), oracles.geometry.support(theta, a, b).slope
+    path = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
+    return [path, h, mp.mpf(theta), theta + lead(theta, a, b), mp.hypot(h, slope)]
+
+
+def polar(psi: mp.mpf, a: mp.mpf, b: mp.mpf) -> mp.mpf:
+    """r of f3."""
+    return a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2)
+
+
+@pytest.mark.parametrize("shape", THREE_AND_MORE)
+def test_kinematics_against_differentiation(shape: Shape) -> None:
+    """Each of the ten by its definition and d/d theta: relative, but for psi, which is theta plus
+    its lead, and what comes from psi: r and its rate may follow the psi that is handed out."""
+    omega = -1.7
+    for theta in (0.0, 1e-5, 0.3, 1.2, math.pi / 2, -2.5, 40.3, 9999.5):
+        q, q_dot = kinematics(theta, omega, a=shape[0], b=shape[1])
+        with mp.workdps(2 * DIGITS):  # numerical derivatives keep half of the digits
+            a, b = map(mp.mpf, shape)
+            exact = rolling_coordinates(theta, a, b)
+            psi, r = exact[3], exact[4]
+            rates = [
+                exact[1],
+                oracles.geometry.support(theta, a, b).slope,
+                mp.mpf(1),
+                1 + mp.diff(partial(lead, a=a, b=b), theta),
+                mp.diff(
+                    lambda y, a=a, b=b: mp.hypot(
+                        oracles.geometry.height(y, a, b), oracles.geometry.support(y, a, b).slope
+                    ),
+                    theta,
+                ),
+            ]
+            r_slopes = mp.diffs(partial(polar, a=a, b=b), psi, 2)
+            _, r_slope, r_bend = (abs(value) for value in r_slopes)
+            grain = abs(psi) + 8 * abs(psi - theta)  # of psi, in units of 2^-52
+        allowed = [16 * exact[0], 4 * exact[1], 0, grain, 8 * r + r_slope * grain]
+        allowed_rates = [16 * abs(rate) for rate in rates]
+        allowed_rates[4] += abs(rates[3]) * r_bend * grain + mp.mpf(10) ** -40  # 0 of a circle
+        for k in range(5):
+            assert abs(float(q[k]) - exact[k]) <= EPS * abs(allowed[k]), (NAMES[k], theta)
+            off = abs(float(q_dot[k]) - rates[k] * omega)
+            assert off <= EPS * abs(omega) * allowed_rates[k], (NAMES[k], theta)
+
+
+@pytest.mark.parametrize("shape", THREE_AND_MORE)
+def test_zero_on_rolling_states(shape: Shape) -> None:
+    """What the ten roundings can do, and the evaluation's own 16 ulp of the terms."""
+    a, b = map(mp.mpf, shape)
+    angles = [0.0, 1e-6, 0.01, 0.4, 0.785, 1.3, 1.5, math.pi / 2, 2.0, 3.0, -0.6, -71.0, 1e4]
+    for theta in angles:
+        q, q_dot = kinematics(theta, 2.3, a=shape[0], b=shape[1])
+        y = [*map(float, q), *map(float, q_dot)]
+        found = constraints(q, q_dot, a=shape[0], b=shape[1])
+        allowed = gradient_bound(y, a, b)
+        terms = residual_terms([mp.mpf(value) for value in y], a, b)
+        for k, residual in enumerate(flatten(found)):
+            assert abs(residual) <= allowed[k] + 16 * EPS * terms[k], (k, theta)
+        size = max(shape)
+        assert abs(float(found.gap)) <= 8 * EPS * 2 * y[1]
+        assert abs(float(found.slip)) <= 16 * EPS * 2 * abs(y[5])
+        # and the bound means something: it is far below what a perturbation of 1e-3 shows
+        assert allowed[0] + 16 * EPS * terms[0] < 1e-9 * size
+
+
+# per coordinate of (q, q_dot): the residuals (as in `residuals`) it can be seen in
+SEEN_IN = {
+    "x": set(),
+    "z": {0},
+    "theta": {0, 2, 3, 4, 6},
+    "psi": {0, 1, 2, 3, 4, 5},
+    "r": {0, 1, 3, 4},
+    "x_dot": {3},
+    "z_dot": {4},
+    "omega": {3, 4, 6},
+    "psi_dot": {4, 5, 6},
+    "r_dot": {4, 5},
+}
+
+
+@pytest.mark.parametrize("coordinate", range(10), ids=list(SEEN_IN))
+@pytest.mark.parametrize("shape", [(2.0, 1.0), (0.7, 1.9)])
+def test_a_perturbation_shows(shape: Shape, coordinate: int) -> None:
+    """1e-3 in one coordinate of a rolling state: the residuals that contain it report the exact
+    change, which is 1e-3 times the numerical gradient to first order; the others stay zero."""
+    a, b = map(mp.mpf, shape)
+    name = list(SEEN_IN)[coordinate]
+    for theta in (0.5, 2.1, -4.0):
+        q, q_dot = kinematics(theta, 1.3, a=shape[0], b=shape[1])
+        y = np.concatenate([q, q_dot])
+        consistent = residuals([mp.mpf(value) for value in y], a, b)
+        y[coordinate] += 1e-3
+        exact_y = [mp.mpf(value) for value in y]
+        found = flatten(constraints(y[:5], y[5:], a=shape[0], b=shape[1]))
+        exact, terms = residuals(exact_y, a, b), residual_terms(exact_y, a, b)
+        gradient = gradient_along(coordinate, exact_y, a, b)
+        for k in range(7):
+            assert ulps(found[k], exact[k], terms[k]) <= 16, (name, k)
+            seen = abs(exact[k] - consistent[k])
+            # second order: the gradient changes by a few times 1e-3 of a few times itself
+            assert abs(seen - 1e-3 * abs(gradient[k])) <= 50e-6
+            if k in SEEN_IN[name]:
+                assert abs(found[k]) > 1e-5, (name, k)
+            else:
+                assert abs(found[k]) <= 1e-13, (name, k)
+
+
+def test_slip_and_gap_of_a_perturbed_state() -> None:
+    q, q_dot = kinematics(0.5, 1.3, a=2.0, b=1.0)
+    q, q_dot = q.copy(), q_dot.copy()
+    q[1] += 1e-3
+    q_dot[0] -= 1e-3
+    found = constraints(q, q_dot, a=2.0, b=1.0)
+    assert float(found.gap) == pytest.approx(1e-3, abs=1e-15)
+    assert float(found.slip) == pytest.approx(-1e-3, abs=1e-15)
+
+
+# ------------------------------------------------------------------------- shapes of arrays
+
+
+def test_broadcasting() -> None:
+    theta, omega = np.linspace(-2.0, 5.0, 4)[:, None], np.array([0.5, -1.0, 3.0])
+    q, q_dot = kinematics(theta, omega, a=2.0, b=1.0)
+    assert q.shape == q_dot.shape == (4, 3, 5)
+    found = constraints(q, q_dot, a=2.0, b=1.0)
+    assert found.position.shape == (4, 3, 3) and found.velocity.shape == (4, 3, 4)
+    assert found.gap.shape == found.slip.shape == (4, 3)
+    for i, j in np.ndindex(4, 3):
+        single_q, single_q_dot = kinematics(float(theta[i, 0]), float(omega[j]), a=2.0, b=1.0)
+        assert single_q.shape == single_q_dot.shape == (5,)
+        assert np.array_equal(single_q, q[i, j]) and np.array_equal(single_q_dot, q_dot[i, j])
+        single = constraints(single_q, single_q_dot, a=2.0, b=1.0)
+        assert single.position.shape == (3,) and single.velocity.shape == (4,)
+        assert np.ndim(single.gap) == np.ndim(single.slip) == 0
+        assert np.array_equal(single.position, found.position[i, j])
+        assert np.array_equal(single.velocity, found.velocity[i, j])
+    one_rate = constraints(q, q_dot[0, 0], a=2.0, b=1.0)
+    assert one_rate.velocity.shape == (4, 3, 4)
+    crossed = constraints(q[:, :1], q_dot[:1], a=2.0, b=1.0)
+    assert crossed.velocity.shape == (4, 3, 4) and crossed.gap.shape == (4, 3)
+    assert constraints(np.empty((0, 5)), np.empty((0, 5)), a=2.0, b=1.0).position.shape == (0, 3)
+
+
+def test_lists_are_welcome_and_left_alone() -> None:
+    q, q_dot = [0.0, 1.5, 0.2, 0.3, 1.1], [1.0, 0.0, 0.5, 0.5, 0.1]
+    arrays = np.array(q), np.array(q_dot)
+    found, again = constraints(q, q_dot, a=2.0, b=1.0), constraints(*arrays, a=2.0, b=1.0)
+    assert np.array_equal(found.velocity, again.velocity)
+    assert np.array_equal(arrays[0], q) and np.array_equal(arrays[1], q_dot)
+
+
+@pytest.mark.parametrize("length", [0, 4, 6, 10])
+def test_a_wrong_length_is_refused_by_name(length: int) -> None:
+    good = np.zeros(5)
+    with pytest.raises(ValueError, match=rf"\bq\b.*\b{length}\b"):
+        constraints(np.zeros(length), good, a=2.0, b=1.0)
+    with pytest.raises(ValueError, match=rf"\bq_dot\b.*\b{length}\b"):
+        constraints(good, np.zeros((3, length)), a=2.0, b=1.0)
+
+
+def test_shapes_that_do_not_broadcast_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"q_dot"):
+        constraints(np.zeros((3, 5)), np.zeros((4, 5)), a=2.0, b=1.0)
+    with pytest.raises(ValueError, match=r"omega"):
+        kinematics(np.zeros(3), np.zeros(4), a=2.0, b=1.0)

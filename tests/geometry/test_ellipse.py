@@ -1,0 +1,289 @@
+"""The geometry against its definitions: each function by a road that shares no formula with it."""
+
+import math
+from collections.abc import Callable
+
+import mpmath as mp
+import numpy as np
+import oracles.geometry
+import pytest
+from oracles.numbers import DIGITS, EPS, ulps
+from rolling_ellipse import geometry
+
+Shape = tuple[float, float]
+FUNCTIONS = [
+    geometry.support,
+    geometry.support_slope,
+    geometry.support_curvature,
+    geometry.curvature_radius,
+    geometry.contact_distance,
+    geometry.contact_angle,
+    geometry.centre_path,
+    geometry.arc_length,
+]
+PERIMETER = 9.6884482205476762  # a = 2, b = 1
+
+
+@pytest.fixture(autouse=True)
+def digits() -> None:
+    mp.mp.dps = DIGITS
+
+
+def boundary_length(t: object, a: float, b: float) -> mp.mpf:
+    """Length of the outline from t = 0 (the end of axis b) to (a sin t, b cos t), unwrapped."""
+    return a * mp.ellipe(t, 1 - mp.mpf(b) ** 2 / mp.mpf(a) ** 2)
+
+
+def outline_parameter(theta: float, a: float, b: float) -> mp.mpf:
+    """tan t = (a/b) tan theta, on the branch that stays within pi/2 of theta."""
+    sine, cosine = mp.sin(theta), mp.cos(theta)
+    return mp.mpf(theta) + mp.atan2((mp.mpf(a) - b) * sine * cosine, a * sine**2 + b * cosine**2)
+
+
+# ------------------------------------------------------------------ the oracles by themselves
+
+
+def test_oracle_support_is_the_lowest_point(shape: Shape) -> None:
+    for theta in (0.0, 1e-3, 0.7, 1.5707, -2.2, 40.3):
+        t = oracles.geometry.lowest_point(theta, *shape)
+        right, up = oracles.geometry.boundary_point(t, mp.mpf(theta), *map(mp.mpf, shape))
+        h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
+        assert abs(-up - h) < mp.mpf(10) ** -30 * max(shape)
+        assert abs(right - slope) < mp.mpf(10) ** -30 * max(shape)
+
+
+def test_oracle_closed_form_is_the_derivative(shape: Shape) -> None:
+    """The one closed form of h, h', h'' in the suite, in its three arithmetics: mpf, and long
+    double (1e-13 of the largest: a flat body beside its flat side bends 1e6 times its height)."""
+    for theta in (0.0, 1e-3, 0.7, 1.5707, -2.2, 40.3):
+        exact = oracles.geometry.height_slopes(theta, *shape)
+        closed = oracles.geometry.support(mp.mpf(theta), *map(mp.mpf, shape))
+        longer = oracles.geometry.support(np.longdouble(theta), *map(np.longdouble, shape))
+        size = max(abs(value) for value in exact)
+        for value, there, near in zip(exact, closed, longer, strict=True):
+            assert abs(there - value) <= mp.mpf(10) ** -28 * size
+            assert abs(mp.mpf(str(near)) - value) <= 1e-13 * size, theta
+
+
+def test_oracle_lengths_are_the_integrals(shape: Shape) -> None:
+    """Both closed forms used below, against Gauss quadrature of the definitions."""
+    a, b = map(mp.mpf, shape)
+    theta = 1.1
+    waist = min(a, b) / max(a, b)
+    ticks = [0, *(waist * 10**k for k in range(-1, 4) if waist * 10**k < theta), mp.mpf(theta)]
+    path = mp.quad(lambda angle: oracles.geometry.height(angle, *shape), ticks)
+    assert abs(path - b * mp.ellipe(theta, 1 - (a / b) ** 2)) < mp.mpf(10) ** -18 * path
+    t = outline_parameter(theta, *shape)
+    near_end = [t - (t - 0) * mp.mpf(2) ** -k for k in range(12)]
+    outline = mp.quad(lambda u: mp.hypot(a * mp.cos(u), b * mp.sin(u)), [*near_end, t])
+    assert abs(outline - boundary_length(t, *shape)) < mp.mpf(10) ** -18 * outline
+
+
+def test_ulps_reports_what_was_perturbed() -> None:
+    assert ulps(1.0 + 5 * 2.0**-52, mp.mpf(1), 1) == 5
+    assert ulps(1.0 + 1e-3, mp.mpf(1), 1) == pytest.approx(1e-3 * 2**52, rel=1e-12)
+
+
+# -------------------------------------------------------------------------- single functions
+
+
+def test_support_and_its_slope(shape: Shape, angles: list[float]) -> None:
+    """h and h' are sums or products of positive terms, a - b apart, which is exact near a circle:
+    relative, at most 3 roundings each in sin, cos and the axes and 3 more on the way."""
+    for theta in angles:
+        h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
+        assert ulps(geometry.support(theta, a=shape[0], b=shape[1]), h, h) <= 4
+        actual = geometry.support_slope(theta, a=shape[0], b=shape[1])
+        a, b = map(mp.mpf, shape)
+        exact = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h
+        assert abs(exact - slope) <= mp.mpf(10) ** -25 * max(shape)
+        # 1e-300 * 1e-3 * 1e-3 is still a normal double: nothing may vanish
+        assert ulps(actual, exact, exact) <= 8
+
+
+def test_support_and_its_slope_by_maximisation(shape: Shape) -> None:
+    """The contact point found on the outline itself: no formula of h or h' involved."""
+    for theta in (0.0, 1e-6, 0.4, 1.3, 1.5708, 2.9, -0.8, 1e4):
+        t = oracles.geometry.lowest_point(theta, *shape)
+        right, up = oracles.geometry.boundary_point(t, mp.mpf(theta), *map(mp.mpf, shape))
+        assert ulps(geometry.support(theta, a=shape[0], b=shape[1]), -up, up) <= 4
+        slope = geometry.support_slope(theta, a=shape[0], b=shape[1])
+        # golden section finds the point to 1e-40 of a turn: absolute
+        assert abs(slope - right) <= 8 * EPS * abs(right) + mp.mpf(10) ** -35 * max(shape)
+
+
+def test_curvatures(shape: Shape, angles: list[float]) -> None:
+    """rho = a^2 b^2 / h^3 carries 3 times the error of h (4 ulp) and a few roundings of its own;
+    h'' = rho - h is a difference: relative to the terms, not to itself."""
+    for theta in angles:
+        h, _, curvature = oracles.geometry.height_slopes(theta, *shape)
+        radius = h + curvature
+        actual = geometry.curvature_radius(theta, a=shape[0], b=shape[1])
+        assert ulps(actual, radius, radius) <= 16
+        actual = geometry.support_curvature(theta, a=shape[0], b=shape[1])
+        assert ulps(actual, curvature, radius + h) <= 16
+
+
+def test_contact_polar(shape: Shape, angles: list[float]) -> None:
+    """r is relative; psi = theta + (an angle within pi/2) is right to the rounding of the sum and
+    to the relative error of its second term."""
+    for theta in angles:
+        h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
+        a, b = map(mp.mpf, shape)
+        slope = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h  # relative, also near 0
+        distance, lead = mp.hypot(h, slope), mp.atan2(slope, h)
+        actual = geometry.contact_distance(theta, a=shape[0], b=shape[1])
+        assert ulps(actual, distance, distance) <= 8
+        psi = geometry.contact_angle(theta, a=shape[0], b=shape[1])
+        exact = mp.mpf(theta) + lead
+        assert abs(psi - exact) <= EPS * (abs(exact) + 8 * abs(lead))
+
+
+def test_contact_angle_is_the_reports_modulo_half_turns(shape: Shape, angles: list[float]) -> None:
+    """Report eq 5, tan psi = (a^2/b^2) tan theta: with the poles multiplied out, the sine of the
+    difference; psi itself is only as fine as its own last digit."""
+    a, b = map(mp.mpf, shape)
+    for theta in angles:
+        psi = geometry.contact_angle(theta, a=shape[0], b=shape[1])
+        rise, run = a * a * mp.sin(theta), b * b * mp.cos(theta)
+        off = (mp.sin(psi) * run - mp.cos(psi) * rise) / mp.hypot(rise, run)
+        lead = psi - mp.mpf(theta)
+        assert abs(off) <= EPS * (abs(psi) + 8 * abs(lead))
+
+
+def test_contact_angle_is_continuous_for_thousands_of_turns(shape: Shape) -> None:
+    """No step beyond the fastest turning of the contact, d(psi)/d(theta) <= (longer/shorter)^2,
+    and never backwards; the same lead over theta in the 5000th turn as in the first."""
+    a, b = shape
+    theta = np.concatenate([np.linspace(k * math.pi, (k + 1) * math.pi, 101) for k in range(10000)])
+    psi = geometry.contact_angle(theta, a=a, b=b)
+    grain = 2 * np.spacing(theta[-1])
+    steps, fastest = np.diff(psi), (max(a, b) / min(a, b)) ** 2
+    # the nearest doubles to k pi / 2 are up to an ulp off, and psi turns `fastest` times faster
+    slack = grain + min(fastest * grain, math.pi / 2)
+    assert steps.min() >= -grain
+    turned = np.diff(theta)
+    assert np.all(steps <= np.minimum(fastest * turned, math.pi / 2 + turned) + slack)
+    whole = np.arange(10000) * 101
+    assert np.all(np.abs(psi[whole] - theta[whole]) <= slack)
+
+
+def test_polar_and_cartesian_contact_agree(shape: Shape, angles: list[float]) -> None:
+    """r cos(psi - theta) = h and r sin(psi - theta) = h': psi - theta is as fine as an ulp of psi,
+    which moves one coordinate by the other."""
+    a, b = shape
+    theta = np.array(angles)
+    h, slope = geometry.support(theta, a=a, b=b), geometry.support_slope(theta, a=a, b=b)
+    r, psi = geometry.contact_distance(theta, a=a, b=b), geometry.contact_angle(theta, a=a, b=b)
+    grain = np.spacing(np.maximum(np.abs(psi), np.abs(theta)))
+    small = 16 * EPS
+    assert np.all(np.abs(r * np.cos(psi - theta) - h) <= small * r + np.abs(slope) * grain)
+    assert np.all(np.abs(r * np.sin(psi - theta) - slope) <= small * r + h * grain)
+
+
+def test_arc_length(shape: Shape, angles: list[float]) -> None:
+    """The outline's own length up to the contact point. The integrand is positive, so relative:
+    the angle's double errors are of the order of one ulp of it, the integral's a few more."""
+    for theta in angles:
+        exact = boundary_length(outline_parameter(theta, *shape), *shape)
+        actual = geometry.arc_length(theta, a=shape[0], b=shape[1])
+        assert ulps(actual, exact, exact) <= 16
+
+
+def test_centre_path(shape: Shape, angles: list[float]) -> None:
+    """x = integral of h: positive and with a condition number near 1, so relative to x itself.
+    (As the difference arc - h' it would lose (longer/shorter)^2 near the flat.)"""
+    a, b = map(mp.mpf, shape)
+    for theta in angles:
+        exact = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
+        actual = geometry.centre_path(theta, a=shape[0], b=shape[1])
+        assert ulps(actual, exact, exact) <= 16
+
+
+def test_path_rolled_is_the_path_of_the_centre_and_the_offset(shape: Shape) -> None:
+    theta = np.linspace(-30.0, 30.0, 601)
+    a, b = shape
+    rolled = geometry.centre_path(theta, a=a, b=b) + geometry.support_slope(theta, a=a, b=b)
+    bound = 40 * EPS * (np.abs(rolled) + max(a, b))
+    assert np.all(np.abs(rolled - geometry.arc_length(theta, a=a, b=b)) <= bound)
+
+
+# --------------------------------------------------------------------------- known numbers
+
+
+@pytest.mark.parametrize("path", [geometry.arc_length, geometry.centre_path])
+def test_one_turn_is_the_perimeter(path: Callable[..., float]) -> None:
+    """2 pi is 2.4e-16 short as a double: 4 ulp of 9.7 leave room for that and the integral."""
+    for a, b in ((2.0, 1.0), (1.0, 2.0)):
+        assert path(2 * math.pi, a=a, b=b) == pytest.approx(PERIMETER, abs=4 * 1.8e-15)
+        assert path(200 * math.pi, a=a, b=b) == pytest.approx(100 * PERIMETER, abs=4 * 1.2e-13)
+
+
+def test_path_of_the_centre_in_space() -> None:
+    """C(2, 4) of Project Euler 525, 10 digits: the curve (x, h) has speed sqrt(h^2 + h'^2) = r;
+    the trapezoid sum of a periodic function is exact here from 100 points on."""
+    theta = np.arange(400) * (2 * math.pi / 400)
+    h = geometry.support(theta, a=4.0, b=2.0)
+    slope = geometry.support_slope(theta, a=4.0, b=2.0)
+    length = np.hypot(h, slope).sum() * (2 * math.pi / 400)
+    assert length == pytest.approx(21.38816906, abs=5e-9)
+    distance = geometry.contact_distance(theta, a=4.0, b=2.0)
+    assert distance.sum() * (2 * math.pi / 400) == pytest.approx(length, rel=1e-14)
+
+
+def test_a_circle_is_a_circle() -> None:
+    """No rounding is left to allow for: every formula collapses."""
+    theta = np.array([0.0, 0.1, -7.0, 1e4])
+    assert np.allclose(geometry.support(theta, a=3.0, b=3.0), 3.0, rtol=4 * EPS, atol=0)
+    assert np.all(geometry.support_slope(theta, a=3.0, b=3.0) == 0)
+    assert np.all(geometry.contact_angle(theta, a=3.0, b=3.0) == theta)
+    expected = pytest.approx(3.0 * theta, rel=16 * EPS)
+    assert geometry.arc_length(theta, a=3.0, b=3.0) == expected
+    assert geometry.centre_path(theta, a=3.0, b=3.0) == expected
+
+
+# ------------------------------------------------------------------------- shapes of arrays
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_scalars_in_floats_out(function: Callable[..., object]) -> None:
+    for theta in (0.3, 1, np.float64(0.3)):
+        assert type(function(theta, a=2, b=1.0)) is float
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_broadcasting(function: Callable[..., np.ndarray]) -> None:
+    theta = np.linspace(-4.0, 9.0, 15).reshape(3, 1, 5)
+    a = np.array([[0.5], [1.0], [2.0], [7.0]])
+    values = function(theta, a=a, b=1.0)
+    assert values.shape == (3, 4, 5) and values.dtype == np.float64
+    for i, j, k in np.ndindex(values.shape):
+        single = function(float(theta[i, 0, k]), a=float(a[j, 0]), b=1.0)
+        assert values[i, j, k] == pytest.approx(single, rel=4 * EPS, abs=1e-300)
+    assert function(np.empty((0, 3)), a=2.0, b=1.0).shape == (0, 3)
+    assert function([0.0, 1.0], a=2.0, b=1.0).shape == (2,)
+    transposed = np.asfortranarray(np.linspace(0.0, 1.0, 6).reshape(2, 3))
+    strided = np.linspace(0.0, 1.0, 11)[::2].reshape(2, 3)
+    assert np.array_equal(
+        function(transposed, a=2.0, b=1.0),
+        function(np.ascontiguousarray(transposed), a=2.0, b=1.0),
+    )
+    assert np.array_equal(function(strided, a=2.0, b=1.0), function(strided.copy(), a=2.0, b=1.0))
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_inputs_are_not_modified(function: Callable[..., object]) -> None:
+    theta = np.linspace(-3.0, 3.0, 7)
+    before = theta.copy()
+    function(theta, a=2.0, b=1.0)
+    assert np.array_equal(theta, before)
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+@pytest.mark.parametrize("name", ["a", "b"])
+@pytest.mark.parametrize("value", [0.0, -1.0, math.inf, math.nan])
+def test_bad_axes_are_refused_by_name(
+    function: Callable[..., object], name: str, value: float
+) -> None:
+    with pytest.raises(ValueError, match=rf"\b{name}\b.*{value}"):
+        function(0.3, **{"a": 2.0, "b": 1.0, name: value})

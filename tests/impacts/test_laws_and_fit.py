@@ -1,0 +1,425 @@
+"""Single impacts by three laws, against the impulse path walked in small steps; the fit of one
+pair of coefficients to a series of them."""
+
+import itertools
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from oracles.numbers import EPS
+from rolling_ellipse import EventKind, Scene, geometry, impacts, simulate
+
+LAWS = impacts.LAWS
+ENERGY_KEEPING = ("stronge", "poisson")
+BODY = {"a": 0.7, "b": 0.3}
+K2 = (0.7**2 + 0.3**2) / 4
+
+
+def approaching(count: int, seed: int = 1, **body: float) -> np.ndarray:
+    """theta, x_dot, z_dot, omega of contacts that move into the ground, any slip, shape (4, n)."""
+    rng = np.random.default_rng(seed)
+    theta, omega = rng.uniform(-4, 4, count), rng.normal(0, 3, count)
+    shape = body or BODY
+    h, slope = (f(theta, **shape) for f in (geometry.support, geometry.support_slope))
+    return np.stack(
+        [
+            theta,
+            h * omega + rng.normal(0, 1.5, count),
+            slope * omega - rng.uniform(0.1, 2, count),
+            omega,
+        ]
+    )
+
+
+def contact(state: np.ndarray, velocities: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Slip and gap rate."""
+    h, slope = (f(state[0], **BODY) for f in (geometry.support, geometry.support_slope))
+    return velocities[0] - h * velocities[2], velocities[1] - slope * velocities[2]
+
+
+def speed(velocities: np.ndarray, k2: float = K2) -> np.ndarray:
+    return np.sqrt(velocities[0] ** 2 + velocities[1] ** 2 + k2 * velocities[2] ** 2)
+
+
+# ------------------------------------------------------------------------------- the oracle
+
+
+PUSHES = 5000  # each as large as this part of the approach
+
+
+def walked(law: str, state: np.ndarray, friction: float, restitution: float) -> np.ndarray:
+    """One small push after another; after each, the friction that stops the slip, cut off at
+    the cone, and a look at whether restitution has done its share. No case is told from another.
+    The body is a column of Cartesian velocities, moved by Newton's and Euler's laws per kilogram.
+    """
+    theta, x_dot, z_dot, omega = state
+    h, slope = (f(theta, **BODY) for f in (geometry.support, geometry.support_slope))
+    first = u = contact(state, state[1:])[1]
+    step = -first / PUSHES
+    impulse = work = compression_impulse = compression_work = 0.0
+    while True:
+        # G_tt = 1 + h^2/k^2 answers to the trial slip after the push alone
+        trial = x_dot - h * (omega - slope * step / K2)
+        pull = float(np.clip(-trial / (1 + h * h / K2), -friction * step, friction * step))
+        x_dot, z_dot = x_dot + pull, z_dot + step
+        omega -= (h * pull + slope * step) / K2
+        u_before, u = u, z_dot - slope * omega
+        impulse, work = impulse + step, work + step * (u_before + u) / 2
+        if u < 0:
+            compression_impulse, compression_work = impulse, work
+        elif {
+            "stronge": work - compression_work >= -(restitution**2) * compression_work,
+            "poisson": impulse >= (1 + restitution) * compression_impulse,
+            "newton": u >= -restitution * first,
+        }[law]:
+            return np.array([x_dot, z_dot, omega])
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("friction", "restitution"), [(0.1, 0.9), (0.4, 0.6), (1.1, 0.3), (0, 1)])
+def test_laws_against_the_path_in_small_steps(
+    law: str, friction: float, restitution: float
+) -> None:
+    """The walk is late by a push at the end of compression, which restitution at most doubles,
+    and by one at its own end. A push with its friction, sqrt(1 + mu^2) < 1.5 of it, moves the body
+    by sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three of them by 2e-3 of the approach."""
+    for state in approaching(25, seed=3).T:
+        found = np.array(
+            impacts.collide(*state, **BODY, friction=friction, restitution=restitution, law=law)
+        )
+        true = walked(law, state, friction, restitution)
+        approach = -contact(state, state[1:])[1]
+        assert speed(found - true) < 2e-3 * approach
+
+
+def test_the_laws_are_told_apart() -> None:
+    """The bound of the test above is far below what it has to see."""
+    state = approaching(25, seed=3)
+    found = [
+        np.stack(impacts.collide(*state, **BODY, friction=0.4, restitution=0.6, law=law))
+        for law in LAWS
+    ]
+    approach = -contact(state, state[1:])[1]
+    for one, other in itertools.combinations(found, 2):
+        assert np.max(speed(one - other) / approach) > 2e-2
+
+
+# --------------------------------------------------------------------------- what must hold
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("friction", [0.0, 0.15, 0.8, math.inf])
+def test_an_impulse_at_the_contact_within_the_cone(law: str, friction: float) -> None:
+    """Velocities of up to 10 m/s, and some tens of roundings each."""
+    state = approaching(400)
+    after = np.stack(impacts.collide(*state, **BODY, friction=friction, restitution=0.7, law=law))
+    h, slope = (f(state[0], **BODY) for f in (geometry.support, geometry.support_slope))
+    tangential, normal, spin = after - state[1:]
+    small = 100 * EPS * 10
+    # angular momentum about the contact
+    assert np.max(np.abs(K2 * spin + h * tangential + slope * normal)) < small
+    assert np.all(normal > -small)
+    if math.isfinite(friction):
+        assert np.all(np.abs(tangential) <= friction * normal + small)
+    assert np.all(contact(state, after)[1] > -small)
+
+
+@pytest.mark.parametrize("law", ENERGY_KEEPING)
+def test_stronge_and_poisson_create_no_energy(law: str, shape: tuple[float, float]) -> None:
+    a, b = shape
+    state = approaching(1000, seed=4, a=a, b=b)
+    k2 = (a * a + b * b) / 4
+    for friction in (0.0, 0.1, 0.5, 1.2, 1e6, math.inf):
+        for restitution in (0.0, 0.5, 0.9, 1.0):
+            after = impacts.collide(
+                *state, a=a, b=b, friction=friction, restitution=restitution, law=law
+            )
+            # some tens of roundings
+            assert np.all(speed(np.stack(after), k2) <= speed(state[1:], k2) * (1 + 100 * EPS))
+
+
+def test_newton_creates_energy() -> None:
+    """The contact slips forwards behind the centre. Friction helps the approach until the slip
+    stops; what it adds to u is not in u before, but the whole approach is given back."""
+    theta = -math.pi / 4
+    h, slope = geometry.support(theta, **BODY), geometry.support_slope(theta, **BODY)
+    before = np.array([0.5, -1.0, 0.0])  # no spin: slip 0.5 m/s, approach 1 m/s
+    assert h > 0 > slope
+    ratio = {
+        law: float(
+            speed(
+                np.array(
+                    impacts.collide(theta, *before, **BODY, friction=0.6, restitution=1.0, law=law)
+                )
+            )
+            / speed(before)
+        )
+        for law in LAWS
+    }
+    assert ratio["newton"] ** 2 > 1.15
+    assert all(ratio[law] <= 1 + 100 * EPS for law in ENERGY_KEEPING)
+
+
+def test_newton_is_the_ratio_of_gap_rates() -> None:
+    state = approaching(300)
+    after = np.stack(impacts.collide(*state, **BODY, friction=0.3, restitution=0.4, law="newton"))
+    before = contact(state, state[1:])[1]
+    assert np.max(np.abs(contact(state, after)[1] + 0.4 * before)) < 1000 * EPS
+
+
+def test_without_friction_or_restitution_the_laws_are_one() -> None:
+    """No corner in the path: work, impulse and speed are in the same proportion; and e = 0 ends
+    each at the end of compression."""
+    state = approaching(300)
+    for friction, restitution in ((0.0, 0.6), (0.0, 1.0), (0.5, 0.0), (math.inf, 0.0)):
+        found = [
+            np.stack(
+                impacts.collide(*state, **BODY, friction=friction, restitution=restitution, law=law)
+            )
+            for law in LAWS
+        ]
+        for other in found[1:]:
+            assert np.max(speed(other - found[0])) < 1e-13  # ten velocities' worth of roundings
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_unlimited_friction_is_the_limit_of_much(law: str) -> None:
+    """What is left goes like 1/mu: a hundredth of it for a hundred times the friction."""
+    state = approaching(300)
+    limit, much, more = (
+        np.stack(impacts.collide(*state, **BODY, friction=mu, restitution=0.7, law=law))
+        for mu in (math.inf, 1e6, 1e8)
+    )
+    ratio = np.max(speed(much - limit)) / np.max(speed(more - limit))
+    assert ratio == pytest.approx(100, rel=0.02)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_contact_that_leaves_is_left_alone(law: str) -> None:
+    found = impacts.collide(0.4, 1.0, 2.0, 0.5, **BODY, friction=0.3, restitution=0.5, law=law)
+    assert found == (1.0, 2.0, 0.5)
+
+
+# ---------------------------------------------------------------- the law of the simulations
+
+
+def test_stronge_is_what_a_simulated_body_does() -> None:
+    """A thrown ellipse meets the ground; the event has both sides of the impact, to the bit."""
+    scene = Scene(
+        2.0, 1.0, mass=3.0, theta=0.4, z=2.5, x_dot=1.5, z_dot=0.0, omega=1.0, friction=0.3,
+        restitution=0.6,
+    )  # fmt: skip
+    hit = next(e for e in simulate(scene, 1.0).events if e.kind is EventKind.IMPACT)
+    before, after = hit.state_before, hit.state_after
+    found = impacts.collide(
+        before.theta,
+        before.x_dot,
+        before.z_dot,
+        before.omega,
+        a=2.0,
+        b=1.0,
+        friction=0.3,
+        restitution=0.6,
+    )
+    # the mass is 3 kg there and 1 kg here: some of the roundings differ
+    assert found == pytest.approx((after.x_dot, after.z_dot, after.omega), rel=64 * EPS)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_arrays_are_what_single_impacts_are(law: str) -> None:
+    """Every argument may be an array; shapes broadcast; scalars give floats."""
+    state = approaching(6).reshape(4, 2, 3)
+    friction, restitution = np.array([0.1, 0.5, 2.0]), np.array([[0.2], [0.8]])
+    options = {"law": law, **BODY}
+    found = impacts.collide(*state, friction=friction, restitution=restitution, **options)
+    assert all(values.shape == (2, 3) for values in found)
+    for i, j in np.ndindex(2, 3):
+        single = impacts.collide(
+            *state[:, i, j], friction=friction[j], restitution=restitution[i, 0], **options
+        )
+        assert all(type(value) is float for value in single)
+        assert single == tuple(values[i, j] for values in found)
+
+
+def test_the_default_body_is_a_uniform_disc() -> None:
+    state, law = approaching(5), {"friction": 0.2, "restitution": 0.5}
+    default, disc, ring = (
+        np.stack(impacts.collide(*state, **BODY, **law, gyration2=k2)) for k2 in (None, K2, 2 * K2)
+    )
+    assert np.array_equal(default, disc) and not np.allclose(default, ring)
+
+
+def test_kinetic_speed_is_the_energy() -> None:
+    assert impacts.kinetic_speed(2.0, -3.0, 4.0, gyration2=2.25) == 7.0  # sqrt(4 + 9 + 36)
+    both = impacts.kinetic_speed([[3.0], [0.0]], 4.0, [0.0, 1.0], gyration2=9.0)
+    assert np.allclose(both, np.sqrt([[25, 34], [16, 25]]), rtol=4 * EPS)
+
+
+# ------------------------------------------------------------------------------------ the fit
+
+
+E, MU = 0.61, 0.25  # on no point of a first grid
+
+
+def series(law: str, noise: float, count: int = 1000) -> tuple[np.ndarray, np.ndarray]:
+    """Impacts with these coefficients and normal noise, the same in each kinetic direction."""
+    before = approaching(count, seed=7)
+    after = impacts.collide(*before, **BODY, friction=MU, restitution=E, law=law)
+    blur = np.random.default_rng(8).normal(0, 1, (3, count)) * noise
+    return before, np.stack(after) + blur / np.array([[1.0], [1.0], [math.sqrt(K2)]])
+
+
+@pytest.mark.parametrize("minimise", ["median", "rms"])
+@pytest.mark.parametrize("law", LAWS)
+def test_fit_finds_the_coefficients_without_noise(law: str, minimise: str) -> None:
+    """To its last step, 1/10240 of the range of either coefficient."""
+    fitted = impacts.fit(*series(law, 0.0, 60), **BODY, law=law, minimise=minimise)
+    assert fitted.restitution == pytest.approx(E, abs=1 / 10240)
+    assert math.atan(fitted.friction) == pytest.approx(math.atan(MU), abs=math.pi / 2 / 10240)
+    assert fitted.law == law and fitted.errors.shape == (60,)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_fit_finds_the_coefficients_through_noise(law: str) -> None:
+    """Four standard deviations each. The impacts move by 0.96 m/s (root mean square) for one of e
+    and by 1.83 m/s for one of mu, so noise of 0.2 m/s in 1000 impacts leaves 0.2/sqrt(1000) over
+    that. The length of three normal numbers has the mean square 3, known to 2/sqrt(6000) of it,
+    and the median 1.538, where its density is 0.578: known to 0.5/(0.578 sqrt(1000))."""
+    fitted = impacts.fit(*series(law, 0.2), **BODY, law=law, minimise="rms")
+    sigma = 0.2 / math.sqrt(1000)
+    assert fitted.restitution == pytest.approx(E, abs=4 * sigma / 0.96)
+    assert fitted.friction == pytest.approx(MU, abs=4 * sigma / 1.83)
+    assert fitted.rms_error == pytest.approx(0.2 * math.sqrt(3), rel=4 / math.sqrt(6000))
+    assert fitted.median_error == pytest.approx(0.2 * 1.538, abs=4 * 0.5 * sigma / 0.578)
+
+
+def test_the_median_does_not_mind_wild_trials() -> None:
+    before, after = series("stronge", 0.02)
+    after[:, ::10] *= -3.0
+    median, rms = (
+        impacts.fit(before, after, **BODY, minimise=minimise) for minimise in ("median", "rms")
+    )
+    assert median.restitution == pytest.approx(E, abs=0.02)
+    assert median.friction == pytest.approx(MU, abs=0.02)
+    assert abs(rms.restitution - E) > 0.04
+    assert median.median_error < rms.median_error and rms.rms_error < median.rms_error
+
+
+def test_errors_are_those_of_the_coefficients_found() -> None:
+    before, after = series("newton", 0.1, 50)
+    fitted = impacts.fit(before, after, **BODY, law="stronge")
+    predicted = np.stack(
+        impacts.collide(*before, **BODY, friction=fitted.friction, restitution=fitted.restitution)
+    )
+    assert np.allclose(fitted.errors, speed(predicted - after), rtol=1e-12)
+    assert fitted.median_error == np.median(fitted.errors)
+    assert fitted.rms_error == pytest.approx(math.sqrt(np.mean(fitted.errors**2)), rel=1e-14)
+    # least among its neighbours, and the same every time
+    for de, dmu in ((0.05, 0), (-0.05, 0), (0, 0.05), (0, -0.05)):
+        moved = impacts.collide(
+            *before,
+            **BODY,
+            friction=fitted.friction + dmu,
+            restitution=fitted.restitution + de,
+        )
+        assert np.median(speed(np.stack(moved) - after)) > fitted.median_error
+    again = impacts.fit(before, after, **BODY, law="stronge")
+    assert (again.restitution, again.friction) == (fitted.restitution, fitted.friction)
+
+
+def test_what_sticks_bounds_friction_from_below() -> None:
+    """Any friction above the largest |J_t|/J_n of these impacts makes the same of them."""
+    before = approaching(200, seed=9)
+    after = np.stack(impacts.collide(*before, **BODY, friction=math.inf, restitution=0.5))
+    normal = after[1] - before[2]
+    kept = normal > 0.05  # where friction alone stops the approach, none is enough
+    before, after = before[:, kept], after[:, kept]
+    enough = np.max(np.abs(after[0] - before[1]) / normal[kept])
+    fitted = impacts.fit(before, after, **BODY, minimise="rms")
+    assert fitted.restitution == pytest.approx(0.5, abs=1e-3)
+    assert fitted.friction > 0.95 * enough
+
+
+# --------------------------------------------------------------------------------- bad input
+
+GOOD = {
+    "theta": 0.3, "x_dot": 1.0, "z_dot": -1.0, "omega": 0.5, "a": 0.7, "b": 0.3, "friction": 0.3,
+    "restitution": 0.5, "gyration2": 0.1,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("theta", math.nan, r"theta must be a finite number \[rad\].*, got nan"),
+        ("x_dot", math.inf, r"x_dot must be a finite number \[m/s\].*, got inf"),
+        ("z_dot", math.nan, r"z_dot must be a finite number \[m/s\].*, got nan"),
+        ("omega", -math.inf, r"omega must be a finite number \[rad/s\].*, got -inf"),
+        ("a", -1.0, r"a must be a positive finite length \[m\], got -1.0"),
+        ("b", 0.0, r"b must be a positive finite length \[m\], got 0.0"),
+        ("a", 400.0, r"a/b must be between 1e-3 and 1e3, got 1333.3"),
+        ("gyration2", 0.0, r"gyration2 must be a positive finite area \[m\^2\], got 0.0"),
+        ("friction", -0.1, r"friction must be a coefficient of at least 0 .*, got -0.1"),
+        ("friction", math.nan, "friction must be a coefficient of at least 0 .*, got nan"),
+        ("restitution", 1.1, "restitution must be between 0 and 1, got 1.1"),
+        ("restitution", -0.1, "restitution must be between 0 and 1, got -0.1"),
+    ],
+)
+def test_numbers_out_of_range(law: str, name: str, value: float, message: str) -> None:
+    for wrong in (value, [GOOD[name], value]):  # alone, and as one of several
+        with pytest.raises(ValueError, match=f"^{message}"):
+            impacts.collide(**GOOD | {name: wrong}, law=law)
+
+
+def test_names_and_kinds() -> None:
+    with pytest.raises(ValueError, match="law must be one of 'stronge', 'poisson', 'newton', got"):
+        impacts.collide(**GOOD, law="kane")
+    with pytest.raises(TypeError, match="omega must be a number or an array of numbers, got 'x'"):
+        impacts.collide(**GOOD | {"omega": "x"})
+    with pytest.raises(
+        ValueError, match=r"must broadcast together, .*theta \(2,\), .*omega \(3,\)"
+    ):
+        impacts.collide(**GOOD | {"theta": [0.1, 0.2], "omega": [1.0, 2.0, 3.0]})
+    with pytest.raises(ValueError, match=r"gyration2 must be a positive finite area .*, got -1.0"):
+        impacts.kinetic_speed(1.0, 2.0, 3.0, gyration2=-1.0)
+    with pytest.raises(ValueError, match="z_dot must be finite, got nan"):
+        impacts.kinetic_speed(1.0, [2.0, math.nan], 3.0, gyration2=1.0)
+
+
+def changed(of: np.ndarray, row: int, value: float) -> np.ndarray:
+    copy = of.copy()
+    copy[row, 3] = value
+    return copy
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda b, a: (b[:3], a), r"before must be 4 columns .*, got shape \(3, 8\)"),
+        (lambda b, a: (b, a[0]), r"after must be 3 columns .*, got shape \(8,\)"),
+        (lambda b, a: (b[:, :0], a[:, :0]), r"before must be 4 columns .*, got shape \(4, 0\)"),
+        (lambda b, a: (b, a[:, :5]), "after must have as many impacts as before, 8, got 5"),
+        (lambda b, a: (changed(b, 1, math.nan), a), "before must be finite, got nan"),
+        (lambda b, a: (b, changed(a, 2, math.inf)), "after must be finite, got inf"),
+        (lambda b, a: (changed(b, 2, 50.0), a), "before must be moving into the ground .*, got 49"),
+    ],
+)
+def test_series_that_cannot_be_fitted(
+    change: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]], message: str
+) -> None:
+    with pytest.raises(ValueError, match=f"^{message}"):
+        impacts.fit(*change(*series("stronge", 0.0, 8)), **BODY)
+
+
+def test_fit_names_its_options() -> None:
+    good = series("stronge", 0.0, 8)
+    with pytest.raises(ValueError, match="minimise must be one of 'median', 'rms', got 'mean'"):
+        impacts.fit(*good, **BODY, minimise="mean")
+    with pytest.raises(ValueError, match=r"law must be one of .*, got 'kane'"):
+        impacts.fit(*good, **BODY, law="kane")
+    with pytest.raises(ValueError, match=r"b must be a positive finite length \[m\], got -0.3"):
+        impacts.fit(*good, a=0.7, b=-0.3)
+    with pytest.raises(ValueError, match=r"gyration2 must be a positive finite area .*, got 0.0"):
+        impacts.fit(*good, **BODY, gyration2=0.0)

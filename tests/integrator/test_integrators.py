@@ -1,0 +1,631 @@
+"""Stepping rolling: orders, tolerances, peers, what they conserve, how they end, what is refused.
+
+The truth on level ground is the exact flow, which steps nothing and is good to 1e-15 (held against
+40 digits by test_flow_reference.py); on a slope it is the energy.
+"""
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.numbers import EPS
+from rolling_ellipse import IntegrationError, Mode, Scene, Status, Trajectory
+from scipy.integrate import solve_ivp
+
+# most motions here are about the rolling equation, whether a ground could give the forces or not
+pytestmark = pytest.mark.filterwarnings("ignore:rolling is true until")
+
+METHODS: dict[str, dict[str, Any]] = {
+    "rk4": {"method": "rk4"},
+    "dopri5": {"method": "dopri5"},
+    "dop853": {"method": "dop853"},
+    "gauss2": {"method": "gauss", "stages": 2},
+    "gauss3": {"method": "gauss", "stages": 3},
+    "gauss4": {"method": "gauss", "stages": 4},
+    "radau": {"method": "radau"},
+}
+ORDERS = dict(zip(METHODS, (4, 5, 8, 4, 6, 8, 5), strict=True))
+PAIRS = ("dopri5", "dop853")
+IMPLICIT = ("gauss2", "gauss3", "gauss4", "radau")
+each_method = pytest.mark.parametrize("name", METHODS)
+STATE = ("t", "theta", "omega", "x")
+
+STANDING = Scene(0.7, 1.9, theta=1.2, omega=1.0)
+
+
+def roll(scene: Scene, t: Any, name: str, **how: Any) -> Trajectory:
+    """The motion by a method of METHODS, however it ends."""
+    return rl.simulate(scene, t, model="rolling", raise_on_failure=False, **METHODS[name], **how)
+
+
+def stepped(scene: Scene, t: Any, name: str, step: float = 0.02) -> Trajectory:
+    return roll(scene, t, name, step=step)
+
+
+def error(trajectory: Trajectory) -> np.ndarray:
+    """Distance from the exact motion at each sample: of theta and of omega, in its own size."""
+    exact = rl.simulate(trajectory.scene, trajectory.t, method="exact")
+    fastest = np.max(np.abs(exact.omega))
+    off: np.ndarray = np.hypot(
+        trajectory.theta - exact.theta, (trajectory.omega - exact.omega) / max(fastest, 1)
+    )
+    return off
+
+
+def same_bits(one: Trajectory, other: Trajectory) -> bool:
+    return all(np.array_equal(getattr(one, name), getattr(other, name)) for name in STATE)
+
+
+# ------------------------------------------------------------------------------------ orders
+
+# rotation, libration, and nearly a circle, long enough for errors to add up. Order 8 shows only
+# between where the next term of the error is small and where rounding begins: mild outlines. The
+# last number is the largest step tried [s].
+ORDER_SCENES = {
+    "rotation": (Scene(2.0, 1.0, omega=3.2), 5.0, 0.1),
+    "libration": (Scene(1.2, 1.0, theta=0.5), 3.0, 0.25),
+    "circle-like": (Scene(1.1, 1.0, theta=0.3, omega=2.0), 2.0, 0.25),
+}
+# errors used for the fit: above rounding (1e-15), and small enough for the leading term to rule
+LOW_ORDER_WINDOW = (1e-12, 1e-9)
+HIGH_ORDER_WINDOW = (2e-14, 1e-11)
+BETWEEN = (0.25, 0.5, 0.8)
+
+
+def errors_at_and_between_steps(
+    scene: Scene, t_end: float, name: str, steps: int
+) -> tuple[float, float]:
+    """Root mean square error at the ends of up to 60 steps, and at three places inside each."""
+    h = t_end / steps
+    first = np.unique(np.linspace(0, steps - 1, 60).astype(int))[:, None]
+    times = np.minimum((first + np.array([*BETWEEN, 1.0])) * h, t_end)
+    once, where = np.unique(times, return_inverse=True)
+    off = error(stepped(scene, once, name, h))[where].reshape(times.shape)
+    return math.sqrt(np.mean(off[:, -1] ** 2)), math.sqrt(np.mean(off[:, :-1] ** 2))
+
+
+@pytest.mark.parametrize("where", ORDER_SCENES)
+@each_method
+def test_measured_order_is_the_nominal_one(where: str, name: str) -> None:
+    scene, t_end, largest_step = ORDER_SCENES[where]
+    order = ORDERS[name]
+    low, high = HIGH_ORDER_WINDOW if order == 8 else LOW_ORDER_WINDOW
+    rows = []
+    for steps in np.unique(np.round(t_end / largest_step * 2 ** np.arange(0, 10, 1 / 8))):
+        rows.append((t_end / steps, *errors_at_and_between_steps(scene, t_end, name, int(steps))))
+        if max(rows[-1][1:]) < low:
+            break
+    h, *columns = np.array(rows).T
+    found = []
+    for off in columns:
+        inside = (low < off) & (off < high)
+        assert np.count_nonzero(inside) >= 8
+        found.append(np.polyfit(np.log(h[inside]), np.log(off[inside]), 1)[0])
+    assert found == pytest.approx([order, order], abs=0.15)
+
+
+# -------------------------------------------------------------------------------- tolerances
+
+# for motions that swing, a half turn is half a swing
+ACCURATE = {
+    "report": rl.scenes.report,
+    "rocking": rl.scenes.rocking,
+    "rolling": rl.scenes.rolling,
+    "standing": STANDING,
+    "thin": rl.scenes.thin,
+}
+
+
+@pytest.mark.parametrize("scene", ACCURATE.values(), ids=ACCURATE)
+def test_ten_half_turns_at_a_strict_tolerance(scene: Scene) -> None:
+    """Up to 1300 steps, each good to about 1e-13; where the motion turns round or over, errors grow
+    a few times."""
+    half_turns = 10
+    trajectory = roll(scene, half_turns * rl.period(scene) / 2, "dop853", rtol=1e-12, atol=1e-14)
+    assert trajectory.success
+    assert np.max(error(trajectory)) <= 1e-9
+
+
+# not beside the separatrix, where a motion amplifies errors by any factor
+TOLERANCE_SCENES = {
+    "rolling": rl.scenes.rolling,
+    "rocking": rl.scenes.rocking,
+    "standing": STANDING,
+    "thin": rl.scenes.thin,
+}
+TOLERANCES = 10.0 ** -np.arange(4, 12.5, 0.5)
+
+
+@pytest.mark.parametrize("scene", TOLERANCE_SCENES.values(), ids=TOLERANCE_SCENES)
+@pytest.mark.parametrize("name", PAIRS)
+def test_the_error_is_proportional_to_the_tolerance(name: str, scene: Scene) -> None:
+    """Over eight decades; the largest error of the motion, as that at one time may pass 0."""
+    largest = [
+        np.max(error(roll(scene, 5.0, name, rtol=rtol, atol=rtol / 100))) for rtol in TOLERANCES
+    ]
+    slope = np.polyfit(np.log(TOLERANCES), np.log(largest), 1)[0]
+    assert 0.8 <= slope <= 1.2, slope
+
+
+PEERS = {"dop853": "DOP853", "dopri5": "RK45"}
+
+
+def rolling_equation(scene: Scene) -> Callable[[float, Any], list[float]]:
+    """(theta', omega') on level ground, from h, h' and rho."""
+    a2, b2, gravity, gyration2 = scene.a**2, scene.b**2, scene.gravity, scene.gyration2
+
+    def slopes(_: float, y: Any) -> list[float]:
+        theta, omega = y
+        sine, cosine = math.sin(theta), math.cos(theta)
+        h = math.sqrt(a2 * sine**2 + b2 * cosine**2)
+        lead = (a2 - b2) * sine * cosine / h
+        load = gravity + a2 * b2 / h**3 * omega**2
+        return [omega, -lead * load / (gyration2 + h**2 + lead**2)]
+
+    return slopes
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
+    """The same pairs with the same step control: steps and evaluations within 10 %, the error at
+    the end no larger in the mean; where the tolerance is loose, chance moves single ones."""
+    gains = []
+    for scene, rtol in itertools.product(TOLERANCE_SCENES.values(), TOLERANCES[::3]):
+        trajectory = roll(scene, [5.0], name, rtol=rtol, atol=rtol / 100)
+        start = [scene.theta, scene.omega]
+        peer = solve_ivp(
+            rolling_equation(scene), (0, 5), start, PEERS[name], rtol=rtol, atol=rtol / 100
+        )
+        assert trajectory.stats["steps"] == pytest.approx(peer.t.size - 1, rel=0.1, abs=2)
+        assert trajectory.stats["evaluations"] == pytest.approx(peer.nfev, rel=0.1, abs=20)
+        exact = rl.simulate(scene, [5.0], method="exact")
+        ours = math.hypot(*(trajectory.theta - exact.theta), *(trajectory.omega - exact.omega))
+        theirs = math.hypot(*(peer.y[:, -1] - [exact.theta[0], exact.omega[0]]))
+        gains.append(theirs / ours)
+    assert np.exp(np.mean(np.log(gains))) >= 1 / 1.1, gains
+
+
+# -------------------------------------------------------------------------------- conservation
+
+
+@pytest.mark.parametrize("slope", [0.1, -0.3, 0.8])
+@pytest.mark.parametrize("ratio", [0.01, 0.1, 0.5, 1.0, 2.0, 10.0, 100.0])
+@pytest.mark.parametrize("name", PAIRS)
+def test_energy_on_a_slope(name: str, ratio: float, slope: float) -> None:
+    """A step may miss theta and omega by sqrt(2) rtol of their sizes (the norm is a mean), and the
+    energy by |V'| and D |omega| times that. The estimates are of a lower order than the steps,
+    whose errors therefore stay below a tenth of them."""
+    rtol = 1e-9
+    scene = Scene(ratio, 1.0, slope=slope, theta=0.3, omega=1.0)
+    t_end = 3 * math.sqrt(max(ratio, 1.0))
+    motion = roll(scene, t_end, name, rtol=rtol, atol=1e-14)
+    lead = np.abs(rl.geometry.support_slope(motion.theta, a=ratio, b=1.0))
+    inertia = scene.gyration2 + motion.r**2
+    change = inertia * motion.omega**2 + scene.gravity * (lead + motion.z) * np.abs(motion.theta)
+    allowed = 0.1 * motion.stats["steps"] * math.sqrt(2) * rtol * np.max(change)
+    assert np.max(np.abs(motion.energy - motion.energy[0])) <= allowed
+    assert allowed <= 1e-3 * np.max(motion.kinetic_energy)
+
+
+def energy_error(trajectory: Trajectory) -> np.ndarray:
+    off: np.ndarray = np.abs(trajectory.energy / trajectory.energy[0] - 1)
+    return off
+
+
+@pytest.mark.parametrize("name", ["gauss2", "gauss3", "gauss4"])
+def test_gauss_does_not_drift_in_energy(name: str) -> None:
+    """A symplectic method keeps it within a band, which the first tenth of 30 000 steps shows to
+    within what sampling misses, 10 %, and rounding, which walks at random: the root of the steps
+    times an ulp. RK4 with the same steps loses energy all the time."""
+    times = np.linspace(0, 600, 3001)
+    off = energy_error(stepped(rl.scenes.rocking, times, name))
+    rounding = EPS * math.sqrt(30_000)
+    assert np.max(off[1500:]) <= 1.1 * np.max(off[:300]) + rounding
+    drifting = energy_error(stepped(rl.scenes.rocking, times, "rk4"))
+    assert np.max(drifting[1500:]) > 5 * np.max(drifting[:300])
+
+
+@pytest.mark.parametrize("name", ["gauss2", "gauss3", "gauss4"])
+def test_gauss_undoes_itself(name: str) -> None:
+    """Turned round, the steps lead back to the start, however coarse they are: up to the rounding
+    of 240 steps, an ulp each at most. Radau, which damps, does not get back."""
+
+    def back(name: str) -> float:
+        there = stepped(rl.scenes.rocking, [6.0], name, 0.05)
+        turned = Scene(2.0, 1.0, theta=there.theta[0], omega=-there.omega[0])
+        again = stepped(turned, [6.0], name, 0.05)
+        return math.hypot(again.theta[0] - rl.scenes.rocking.theta, again.omega[0])
+
+    assert back(name) <= 1e-13
+    assert back("radau") > 1e-7
+
+
+@pytest.mark.parametrize("angle", [0.0, math.pi / 2], ids=["flat", "tip"])
+@pytest.mark.parametrize("name", IMPLICIT)
+def test_the_stages_are_solved_however_near_an_equilibrium_a_step_starts(
+    name: str, angle: float
+) -> None:
+    """Where theta'' nearly vanishes, so does every other change of the iteration for the stages:
+    that is no reason to end it. A start moved by d moves the end by a few d, and by rounding."""
+    scene = Scene(2.0, 1.0, theta=angle, omega=3.2)
+    reference = stepped(scene, [0.03], name, 0.03)
+    for d in (1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5):
+        beside = stepped(replace(scene, theta=angle + d), [0.03], name, 0.03)
+        off = abs(beside.theta[0] - reference.theta[0]) + abs(beside.omega[0] - reference.omega[0])
+        assert off <= 10 * d + 16 * EPS, (d, off)
+
+
+# ---------------------------------------------------------------------------------- symmetries
+
+
+@each_method
+@pytest.mark.parametrize("half_turns", [1, 2, -3])
+def test_half_turns_make_no_difference(name: str, half_turns: int) -> None:
+    """The ellipse is the same after half a turn, whose double is within 4e-16; a fixed step makes
+    the same errors, and the swing amplifies the difference some hundredfold."""
+    start = Scene(2.0, 1.0, theta=0.4, omega=3.0)
+    one = stepped(start, 3.0, name)
+    other = stepped(replace(start, theta=0.4 + half_turns * math.pi), 3.0, name)
+    assert np.max(np.abs(other.theta - one.theta - half_turns * math.pi)) <= 1e-13
+    assert np.max(np.abs(other.omega - one.omega)) <= 2e-13
+    assert np.max(np.abs(other.x - one.x)) <= 1e-13
+
+
+@each_method
+def test_far_from_zero_nothing_is_lost(name: str) -> None:
+    """Angles of 1e6 have a grain of 1e-10: the motion has the error of one near 0, and that."""
+    far = Scene(2.0, 1.0, theta=1e6, omega=3.0, x=-1e6)
+    near = replace(far, theta=math.remainder(1e6, 2 * math.pi), x=0.0)
+    here, there = (stepped(scene, 3.0, name) for scene in (near, far))
+    turned = far.theta - near.theta
+    assert np.max(np.abs(there.theta - here.theta - turned)) <= 2e-9
+    assert np.max(np.abs(there.omega - here.omega)) <= 2e-9
+    assert np.max(np.abs(there.x - here.x + 1e6)) <= 2e-9
+
+
+@each_method
+def test_the_centre_goes_as_far_as_the_outline_says(name: str) -> None:
+    """x is the integral of h over theta for every method, error or not: 8 ulp of the way."""
+    trajectory = stepped(replace(rl.scenes.rolling, x=-3.0), 20.0, name)
+    path = rl.geometry.centre_path(trajectory.theta, a=2.0, b=1.0)
+    off = trajectory.x - trajectory.x[0] - (path - path[0])
+    assert np.max(np.abs(off)) <= 8 * EPS * np.max(np.abs(path))
+
+
+UNITS = {"km": 2.0**20, "um": 2.0**-20, "far out": 2.0**60, "far in": 2.0**-60}
+
+
+@pytest.mark.parametrize("unit", UNITS.values(), ids=UNITS)
+@pytest.mark.parametrize("weight", [1.0, 2.0**40, 2.0**-40], ids=["", "heavy", "light"])
+@each_method
+def test_steps_do_not_depend_on_units(name: str, weight: float, unit: float) -> None:
+    """Powers of 4 of length and gravity scale time by a power of 2, and no bit changes; the linear
+    equations of Radau may be solved in another order."""
+    scene = Scene(1.3, 1.0, theta=0.4, omega=1.7)
+    time = math.sqrt(unit / weight)
+    gravity = scene.gravity * weight
+    scaled = Scene(1.3 * unit, unit, theta=0.4, omega=1.7 / time, gravity=gravity)
+    one = stepped(scene, 3.0, name)
+    other = stepped(scaled, one.t * time, name, 0.02 * time)
+    if name == "radau":
+        assert np.max(np.abs(one.theta - other.theta)) <= 1e-14
+    else:
+        assert np.array_equal(one.theta, other.theta)
+        assert np.array_equal(one.omega, other.omega * time)
+        assert np.array_equal(one.x * unit, other.x)
+
+
+@pytest.mark.parametrize("unit", UNITS.values(), ids=UNITS)
+@pytest.mark.parametrize("name", PAIRS)
+def test_control_of_the_error_does_not_depend_on_units(name: str, unit: float) -> None:
+    """Relative tolerances alone; only the first step, a guess, knows of seconds, and grows tenfold
+    a step until it fits."""
+    scene = Scene(1.3, 1.0, theta=0.4, omega=1.7)
+    time = math.sqrt(unit)
+    scaled = Scene(1.3 * unit, unit, theta=0.4, omega=1.7 / time)
+    one = roll(scene, 3.0, name, rtol=1e-9, atol=0.0)
+    other = roll(scaled, one.t * time, name, rtol=1e-9, atol=0.0)
+    assert abs(one.stats["steps"] - other.stats["steps"]) <= 3 + abs(math.log10(time))
+    assert np.max(np.abs(one.theta - other.theta)) <= 1e-8
+
+
+EXTREME = {
+    "heavy": (Scene(2.0, 1.0, gravity=1e30, theta=0.5), 1e-15),
+    "light": (Scene(2.0, 1.0, gravity=1e-30, theta=0.5), 1e15),
+    "large": (Scene(1e30, 0.5e30, theta=0.5), 1e15),
+    "small": (Scene(1e-29, 0.5e-29, theta=0.5), 1e-15),
+    "fast": (Scene(2.0, 1.0, theta=0.1, omega=1e50), 1e-50),
+    "slow": (Scene(2.0, 1.0, omega=1e-90), 1.0),
+}
+
+
+@pytest.mark.parametrize("where", EXTREME)
+@each_method
+def test_extreme_scales(name: str, where: str) -> None:
+    """As far as a scene may go, in steps of a thousandth of the time simulated: even order 4 is
+    then within 1e-9 of the size of the motion."""
+    scene, time = EXTREME[where]
+    trajectory = stepped(scene, np.linspace(0, time, 101), name, time / 1000)
+    exact = rl.simulate(scene, trajectory.t, method="exact")
+    fastest = np.max(np.abs(exact.omega))
+    assert trajectory.t.size == 101
+    assert np.max(np.abs(trajectory.theta - exact.theta)) <= 1e-9 * fastest * time
+    assert np.max(np.abs(trajectory.omega - exact.omega)) <= 1e-9 * fastest
+
+
+@pytest.mark.parametrize("theta", [1e-8, 1e-100, 1e-155, 1e-160, 1e-165, 1e-200, 1e-300])
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_motion_far_below_the_tolerance_takes_few_steps(name: str, theta: float) -> None:
+    """Errors whose squares are no doubles any more are small all the same; none can add more than
+    the 1e-12 that the tolerance allows it."""
+    trajectory = roll(Scene(2.0, 1.0, theta=theta), 5.0, name, max_steps=200)
+    assert trajectory.status is Status.COMPLETED
+    assert np.max(error(trajectory)) <= 1e-10
+
+
+@pytest.mark.parametrize("span", [1e-300, 1e-200, 1e-20])
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_short_span_takes_few_steps(name: str, span: float) -> None:
+    trajectory = roll(rl.scenes.rolling, span, name, max_steps=200)
+    assert trajectory.status is Status.COMPLETED and trajectory.t[-1] == span
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        Scene(2.0, 1.0, x=4.0),
+        Scene(2.0, 1.0, theta=math.pi / 2),
+        Scene(0.7, 1.9, theta=math.pi / 2),
+        Scene(0.7, 1.9),
+        Scene(1.0, 1.0, theta=0.3),
+    ],
+    ids=["flat", "tip", "a < b flat", "a < b tip", "circle"],
+)
+@each_method
+def test_what_rests_stays(name: str, scene: Scene) -> None:
+    """Whatever the method: pi/2 is a double only within rounding, and from there the equation
+    would take half a minute to fall off the tip."""
+    for how in [{"step": 0.1}] if name not in PAIRS else [{"step": 0.1}, {}]:
+        trajectory = roll(scene, 60.0, name, **how)
+        assert np.all(trajectory.mode == Mode.REST)
+        assert np.all(trajectory.theta == scene.theta) and np.all(trajectory.omega == 0)
+        assert np.all(trajectory.x == scene.x)
+
+
+# ------------------------------------------------------------------------------ time and samples
+
+
+@pytest.mark.parametrize(
+    ("span", "step", "steps"),
+    [(0.02, 0.02, 1), (0.03, 0.02, 2), (0.06, 0.02, 3), (0.7, 0.1, 7), (1.0, 0.3, 4)],
+)
+@each_method
+def test_the_last_step_ends_at_the_end(name: str, span: float, step: float, steps: int) -> None:
+    """With a shorter one where needed, and none for the rounding of 0.7/0.1. The error is that of
+    even steps, of up to (0.3/0.25)^8 = 4.3 times less."""
+    scene = replace(rl.scenes.rocking, omega=1.0)
+    trajectory = stepped(scene, span, name, step)
+    assert trajectory.stats["steps"] == steps
+    assert trajectory.t[-1] == trajectory.t_end == span
+    whole = stepped(scene, [span], name, span / math.ceil(span / step - 1e-9))
+    assert error(trajectory)[-1] <= 10 * max(error(whole)[0], 1e-12)
+
+
+@each_method
+def test_time_zero(name: str) -> None:
+    trajectory = stepped(rl.scenes.rolling, 0, name)
+    assert trajectory.t.tolist() == [0.0] and trajectory.omega.tolist() == [3.2]
+    assert trajectory.stats["steps"] == 0 and trajectory.status is Status.COMPLETED
+
+
+@each_method
+def test_samples_do_not_depend_on_what_else_is_asked_for(name: str) -> None:
+    """More than a thousand of them, each third, in another order, and beyond any chunk."""
+    times = np.linspace(0, 5, 5001)
+    trajectory = stepped(rl.scenes.rolling, times, name)
+    third = stepped(rl.scenes.rolling, times[1001::3], name)
+    assert same_bits(third, trajectory.sol(times[1001::3]))
+    order = np.random.default_rng(3).permutation(times.size)
+    mixed = trajectory.sol(times[order])
+    for field in STATE:
+        assert np.array_equal(getattr(mixed, field), getattr(trajectory, field)[order])
+    assert same_bits(trajectory.sol(times), trajectory)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_samples_of_controlled_steps_do_not_depend_on_what_else_is_asked_for(name: str) -> None:
+    times = np.linspace(0, 5, 5001)
+    trajectory = roll(rl.scenes.rolling, times, name)
+    assert same_bits(roll(rl.scenes.rolling, times[2::3], name), trajectory.sol(times[2::3]))
+
+
+@each_method
+def test_dense_output_meets_the_steps(name: str) -> None:
+    """A motion that ends with a step has the same state there as one that goes on, up to the
+    rounding of its shorter last step; on both sides of it there is no jump."""
+    scene, step = rl.scenes.rolling, 0.02
+    whole = stepped(scene, 2.0, name, step)
+    for n in (1, 7, 50, 99):
+        end = stepped(scene, [n * step], name, step)
+        at = whole.sol(n * step)
+        assert np.abs(at.theta[0] - end.theta[0]) <= 4 * EPS * 10
+        assert np.abs(at.omega[0] - end.omega[0]) <= 16 * EPS * 10
+        near = whole.sol(np.array([1 - 1e-9, 1, 1 + 1e-9]) * n * step)
+        assert np.all(np.abs(np.diff(near.theta)) <= 10 * 1e-9 * n * step)
+        assert np.all(np.diff(near.theta) > 0)
+
+
+@each_method
+def test_a_million_samples(name: str) -> None:
+    times = np.linspace(0, 5, 1_000_001)
+    trajectory = stepped(rl.scenes.rolling, times, name)
+    few = stepped(rl.scenes.rolling, times[::100_000], name)
+    assert trajectory.theta.size == 1_000_001
+    assert np.array_equal(trajectory.theta[::100_000], few.theta)
+    assert np.all(np.diff(trajectory.theta) > 0)
+
+
+@each_method
+@pytest.mark.parametrize("stops", [False, True])
+def test_files_keep_the_motion(name: str, stops: bool, tmp_path: Path) -> None:
+    """The same bits at other times after loading, also of a motion that stopped early."""
+    times = np.linspace(0, 5, 301)
+    limit = 100 if stops else 10_000
+    trajectory = roll(rl.scenes.report, times, name, step=0.03, max_steps=limit)
+    assert trajectory.status is (Status.MAX_STEPS if stops else Status.COMPLETED)
+    trajectory.save(tmp_path / "motion.npz")
+    loaded = rl.load(tmp_path / "motion.npz")
+    assert same_bits(loaded, trajectory)
+    for fact in ("status", "message", "reason", "method", "settings", "stats", "t_end", "span"):
+        assert getattr(loaded, fact) == getattr(trajectory, fact), fact
+    others = np.random.default_rng(1).uniform(0, trajectory.t_end, 500)
+    assert same_bits(loaded.sol(others), trajectory.sol(others))
+
+
+# -------------------------------------------------------------------------------- how it ends
+
+
+@pytest.mark.parametrize("how", [{}, {"step": 0.01}], ids=["controlled", "fixed"])
+def test_max_steps(how: dict[str, float]) -> None:
+    times = np.linspace(0, 50, 5001)
+    with pytest.raises(IntegrationError, match="max_steps = 40") as caught:
+        rl.simulate(rl.scenes.rolling, times, model="rolling", method="dop853", max_steps=40, **how)
+    raised = caught.value.trajectory
+    returned = roll(rl.scenes.rolling, times, "dop853", max_steps=40, **how)
+    assert same_bits(raised, returned)
+    for trajectory in (raised, returned):
+        assert trajectory.status is Status.MAX_STEPS and not trajectory.success
+        assert trajectory.stats["steps"] == 40
+        assert 0.3 < trajectory.t_end < 10
+        assert np.array_equal(trajectory.t, times[times <= trajectory.t_end])
+        with pytest.raises(ValueError, match=r"^t must lie in"):
+            trajectory.sol(np.nextafter(trajectory.t_end, 50))
+    enough = roll(rl.scenes.rolling, returned.t_end, "dop853", max_steps=40, **how)
+    assert enough.status is Status.COMPLETED
+
+
+def test_a_motion_that_stops_before_the_first_sample() -> None:
+    trajectory = roll(rl.scenes.rolling, [5.0], "rk4", step=0.01, max_steps=10)
+    assert trajectory.t.size == 0 and trajectory.t_end == pytest.approx(0.1)
+    assert trajectory.sol(0.05).t.size == 1
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_step_too_small(name: str) -> None:
+    with pytest.raises(IntegrationError, match="no step of a size that changes t"):
+        rl.simulate(rl.scenes.rolling, 1.0, model="rolling", method=name, rtol=0.0, atol=1e-300)
+    trajectory = roll(rl.scenes.rolling, 1.0, name, rtol=0.0, atol=1e-300)
+    assert trajectory.status is Status.STEP_TOO_SMALL
+    assert trajectory.t.tolist() == [0.0] and trajectory.stats["steps"] == 0
+
+
+ARRAYS = (
+    "theta", "omega", "x", "z", "psi", "r", "x_dot", "z_dot", "psi_dot", "r_dot", "x_ddot",
+    "z_ddot", "omega_dot", "normal_force", "friction_force", "energy", "contact_x", "q", "q_dot",
+    "multipliers",
+)  # fmt: skip
+OVERSTEPPED = {"thin": Scene(2.0, 0.002, theta=0.3, omega=1.0), "fast": Scene(2.0, 0.2, omega=1e3)}
+
+
+@pytest.mark.parametrize("step", [0.1, 1.0, 10.0, 100.0])
+@pytest.mark.parametrize("scene", OVERSTEPPED.values(), ids=OVERSTEPPED)
+@each_method
+def test_steps_much_too_large_give_no_nonsense_numbers(
+    name: str, scene: Scene, step: float
+) -> None:
+    """They are refused (STEP_TOO_LARGE) or wrong, but what there is, is finite."""
+    trajectory = stepped(scene, 100.0, name, step)
+    refused = trajectory.status is Status.STEP_TOO_LARGE
+    assert refused or trajectory.t.size == 1001
+    for field in ARRAYS:
+        assert np.all(np.isfinite(getattr(trajectory, field))), field
+    inside = trajectory.sol(np.linspace(0, trajectory.t_end, 1000))
+    assert np.all(np.isfinite(inside.theta)) and np.all(np.isfinite(inside.energy))
+
+
+@pytest.mark.parametrize("name", IMPLICIT)
+def test_step_too_large(name: str) -> None:
+    with pytest.raises(IntegrationError, match="a step of 10 s cannot be solved at t = 0 s"):
+        rl.simulate(OVERSTEPPED["thin"], 100.0, model="rolling", step=10.0, **METHODS[name])
+    trajectory = stepped(OVERSTEPPED["thin"], 100.0, name, 10.0)
+    assert trajectory.status is Status.STEP_TOO_LARGE
+    assert trajectory.t.tolist() == [0.0] and trajectory.t_end == 0
+    assert trajectory.stats["steps"] == 0
+
+
+@pytest.mark.parametrize("tolerance", [1.0, 1e3, 1e300])
+@pytest.mark.parametrize("name", PAIRS)
+def test_tolerances_much_too_loose_give_no_nonsense_numbers(name: str, tolerance: float) -> None:
+    trajectory = roll(rl.scenes.rolling, 20.0, name, rtol=tolerance, atol=tolerance)
+    for field in ARRAYS:
+        assert np.all(np.isfinite(getattr(trajectory, field))), field
+
+
+# ---------------------------------------------------------------------------------- bad input
+
+BAD = [
+    ({"method": "rk4"}, "step must be given.*'rk4'.*got None"),
+    ({"method": "gauss"}, "step must be given.*'gauss'.*got None"),
+    ({"method": "radau"}, "step must be given.*'radau'.*got None"),
+    ({"method": "rk4", "step": 0.0}, "step must be a positive finite time.*got 0.0"),
+    ({"method": "rk4", "step": -0.1}, "step must be a positive finite time.*got -0.1"),
+    ({"method": "dop853", "step": math.nan}, "step must be a positive finite time.*got nan"),
+    ({"method": "gauss", "step": math.inf}, "step must be a positive finite time.*got inf"),
+    ({"method": "radau", "step": 2.5}, r"step must be at most the time simulated, 2.0 .*got 2.5"),
+    ({"method": "rk4", "step": 1e-300}, r"step must be at least 2.2\d+e-15 .*got 1e-300"),
+    ({"method": "exact", "step": 0.1}, "step must be None for method 'exact'.*got 0.1"),
+    ({"method": "auto", "step": 0.1}, "step must be None for method 'auto'.*got 0.1"),
+    ({"method": "dop853", "rtol": -1e-3}, "rtol must be.*at least 0, got -0.001"),
+    ({"method": "dop853", "rtol": math.nan}, "rtol must be.*got nan"),
+    ({"method": "dop853", "rtol": math.inf}, "rtol must be.*got inf"),
+    ({"method": "dopri5", "atol": -1e-9}, "atol must be.*at least 0, got -1e-09"),
+    ({"method": "dopri5", "atol": math.nan}, "atol must be.*got nan"),
+    ({"method": "dopri5", "atol": math.inf}, "atol must be.*got inf"),
+    ({"method": "dopri5", "rtol": 0, "atol": 0}, "rtol and atol must not both be 0"),
+    ({"method": "gauss", "step": 0.1, "stages": 1}, "stages must be 2, 3 or 4, got 1"),
+    ({"method": "gauss", "step": 0.1, "stages": 5}, "stages must be 2, 3 or 4, got 5"),
+    ({"method": "rk4", "step": 0.1, "stages": 4}, "stages must be None for method 'rk4'.*got 4"),
+    ({"method": "exact", "stages": 2}, "stages must be None for method 'exact'.*got 2"),
+    ({"method": "dop853", "max_steps": 0}, "max_steps must be at least 1, got 0"),
+    ({"method": "dop853", "max_steps": -3}, "max_steps must be at least 1, got -3"),
+    ({"method": "dop853", "max_steps": 2**40}, "max_steps must be less than 2.*got 1099511627776"),
+    ({"method": "heun"}, "method must be one of.*'dop853'.*got 'heun'"),
+    ({"method": "DOP853"}, "method must be one of.*got 'DOP853'"),
+    ({"method": None}, "method must be one of.*got None"),
+]
+
+
+@pytest.mark.parametrize(("how", "said"), BAD, ids=[f"{how}" for how, _ in BAD])
+def test_wrong_settings_are_refused_by_name(how: dict[str, Any], said: str) -> None:
+    with pytest.raises(ValueError, match=f"^{said}"):
+        rl.simulate(rl.scenes.rolling, 2.0, model="rolling", **how)
+
+
+@pytest.mark.parametrize(
+    ("how", "said"),
+    [
+        ({"method": "gauss", "step": 0.1, "stages": 2.5}, "stages must be a whole number, got 2.5"),
+        ({"method": "dop853", "max_steps": 1e3}, "max_steps must be a whole number, got 1000.0"),
+        ({"method": "dop853", "rtol": "tight"}, "rtol must be a number, got 'tight'"),
+        ({"method": "rk4", "step": [0.1, 0.2]}, "step must be a number"),
+    ],
+)
+def test_what_is_no_number_is_refused_by_name(how: dict[str, Any], said: str) -> None:
+    with pytest.raises(TypeError, match=f"^{said}"):
+        rl.simulate(rl.scenes.rolling, 2.0, model="rolling", **how)
+
+
+def test_the_exact_method_needs_level_ground() -> None:
+    with pytest.raises(ValueError, match=r"^slope must be 0 for method 'exact', got 0\.1"):
+        rl.simulate(Scene(2.0, 1.0, slope=0.1), 1.0, model="rolling", method="exact")
+
+
+def test_auto_steps_where_there_is_no_exact_motion() -> None:
+    assert rl.simulate(rl.scenes.rolling, 1.0).method == "exact"
+    assert rl.simulate(Scene(2.0, 1.0, slope=0.1), 1.0).method == "dop853"

@@ -1,0 +1,472 @@
+"""The model "multipliers": its matrix, its accelerations and multipliers, its motions, its files.
+
+The constraints are differentiated numerically in mpmath (f1 ... f4 as oracles/constraints.py writes
+them down); the linear system is put to the test by substituting its solution back, with a matrix
+written here in long double and its rate by complex steps; motions are held against exact rolling.
+"""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.constraints import along, no_slip, positions
+from oracles.multipliers import GENERIC, SCENES, forces, matrix, matrix_slopes, settings
+from oracles.numbers import DIGITS, EPS, ulps
+from rolling_ellipse import Scene, Status, Trajectory, _core, simulate
+from rolling_ellipse._settings import Settings
+
+Shape = tuple[float, float]
+Long = Any  # arrays of np.longdouble
+SHAPES = {
+    "circle": (1.0, 1.0),
+    "circle + 1e-8": (1.0 + 1e-8, 1.0),
+    "generic": (2.0, 1.0),
+    "standing": (0.7, 1.9),
+    "thin": (2.0, 0.02),
+}
+each_shape = pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
+EXPLICIT = ("none", "baumgarte", "projection", "projection+energy")
+QUARTER = math.pi / 2
+
+
+def random_states(shape: Shape, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """q and q_dot that obey nothing, of the size of the body, r > 0."""
+    generator = np.random.default_rng(31)
+    size = max(shape)
+    q = generator.normal(size=(count, 5)) * [size, size, 3.0, 3.0, size]
+    q[:, 4] = np.abs(q[:, 4])
+    return q, generator.normal(size=(count, 5)) * [size, size, 1.0, 1.0, size]
+
+
+def states(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
+    """States that obey nothing; rolling ones at quarter turns and far away; the latter, too, a
+    little off the constraints."""
+    angles = [k * QUARTER for k in (-3, -1, 0, 1, 2, 6)] + [0.3, 1e5, -1e5, 25000 * QUARTER]
+    rolling = rl.kinematics(np.array(angles), -1.7, a=shape[0], b=shape[1])
+    free = random_states(shape, 16)
+    shift = 1e-3 * np.random.default_rng(4).normal(size=(2, len(angles), 5))
+    parts = [free, rolling, (rolling[0] + shift[0], rolling[1] + shift[1])]
+    q, q_dot = (np.concatenate(values) for values in zip(*parts, strict=True))
+    return q, q_dot
+
+
+# ------------------------------------------------------------------ the matrix and its rate
+
+
+def exact_matrix(q: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[list[mp.mpf]]:
+    """What q_dot is multiplied with in f1 and in the rates of f2, f3, f4."""
+    units = [[mp.mpf(j == k) for k in range(5)] for j in range(5)]
+    columns = [[no_slip(q, unit), *along(positions, q, unit, a, b)] for unit in units]
+    return [[columns[j][k] for j in range(5)] for k in range(4)]
+
+
+def exact_drift(q: list[mp.mpf], q_dot: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
+    """Rate of f1 and second rates of f2, f3, f4 when q moves on with a constant q_dot."""
+
+    def later(t: mp.mpf) -> list[mp.mpf]:
+        return [value + t * rate for value, rate in zip(q, q_dot, strict=True)]
+
+    second = [mp.diff(lambda t, k=k: positions(later(t), a, b)[k], 0, 2) for k in range(3)]
+    return [mp.diff(lambda t: no_slip(later(t), q_dot), 0), *second]
+
+
+def drift_terms(q: Long, q_dot: Long, a: float, b: float) -> list[float]:
+    """How large the terms of the drift are: sums without signs, with what the rounding of
+    psi - theta does to its sine and cosine."""
+    _, _, theta, psi, r = (float(value) for value in q)
+    _, _, omega, psi_dot, r_dot = (abs(float(value)) for value in q_dot)
+    lean = psi - theta
+    sine = abs(math.sin(lean)) + abs(math.cos(lean) * lean)
+    cosine = abs(math.cos(lean)) + abs(math.sin(lean) * lean)
+    turn = abs(float(q_dot[3]) - float(q_dot[2]))
+    polar = a * b / math.hypot(b * math.sin(psi), a * math.cos(psi))
+    bend = (a - b) * (a + b) * polar**3 / (a * b) ** 2
+    slope = bend * math.sin(2 * psi) / 2
+    second = 3 * slope**2 / polar + abs(bend * math.cos(2 * psi))
+    return [
+        (r * sine * turn + r_dot * cosine) * omega,
+        2 * r_dot * sine * turn + r * cosine * turn**2,
+        second * psi_dot**2,
+        0.0,  # a product: as good as its value
+    ]
+
+
+@each_shape
+def test_matrix_and_drift_by_differentiation(shape: Shape) -> None:
+    """At any state, not only at rolling ones: 16 ulp of an entry or of the terms it is made of
+    (products of some ten factors, each an ulp at most, and sums of few)."""
+    a, b = map(mp.mpf, shape)
+    q, q_dot = states(shape)
+    rows, drift = _core.constraint_system(q, q_dot, *shape)
+    assert rows.shape == (len(q), 20) and drift.shape == (len(q), 4)
+    off_rows, off_drift = [], []
+    rest = mp.mpf(10) ** -30  # more than a numerical derivative leaves of an entry that is 0
+    with mp.workdps(DIGITS):
+        for i in range(len(q)):
+            point, rate = ([mp.mpf(value) for value in values[i]] for values in (q, q_dot))
+            grain = abs(q[i, 4] * (q[i, 3] - q[i, 2]))  # of r cos, r sin by rounding psi - theta
+            for k, row in enumerate(exact_matrix(point, a, b)):
+                for found, entry in zip(rows[i, 5 * k : 5 * k + 5], row, strict=True):
+                    terms = abs(entry) + (grain if k < 2 else 0) + rest
+                    off_rows.append(ulps(found, entry, terms))
+            terms_of = drift_terms(q[i], q_dot[i], *shape)
+            for k, entry in enumerate(exact_drift(point, rate, a, b)):
+                terms = abs(entry) + terms_of[k] + rest
+                off_drift.append(ulps(drift[i, k], entry, terms))
+    print(f"matrix {max(off_rows):.2g} ulp, drift {max(off_drift):.2g} ulp")
+    assert max(off_rows) <= 16 and max(off_drift) <= 16
+
+
+# ---------------------------------------------------------------------- the linear system
+
+
+def misses(
+    scene: Scene, how: Settings, q: Long, q_dot: Long, q_ddot: Long, multipliers: Long
+) -> dict[str, Long]:
+    """By how much M q_ddot = Q + A^T lambda and A q_ddot + A_dot q_dot = 0 (or Baumgarte's
+    feedback) are missed, relative to the sums of their terms without signs; for the second each row
+    times the largest acceleration, angles as ways: what elimination can promise."""
+    point, rate = q.astype(np.longdouble), q_dot.astype(np.longdouble)
+    mass, force = forces(scene)
+    rows, slopes = matrix(point, scene.a, scene.b), matrix_slopes(point, scene.a, scene.b)
+    pushes = rows * multipliers[:, :, None]
+    balance = mass * q_ddot - force - pushes.sum(axis=1)
+    balance_terms = np.abs(mass * q_ddot) + np.abs(force) + np.abs(pushes).sum(axis=1)
+    drift = np.einsum("jnik,nj,nk->ni", slopes, rate, rate)
+    demand = np.einsum("nik,nk->ni", rows, q_ddot) + drift
+    size = max(scene.a, scene.b)
+    unit = np.array([1, 1, size, size, 1])
+    largest = np.max(np.abs(q_ddot) * unit, axis=1)
+    terms = (np.abs(rows) / unit).sum(axis=2) * largest[:, None]
+    terms += np.einsum("jnik,nj,nk->ni", np.abs(slopes), np.abs(rate), np.abs(rate))
+    if how.stabilization == "baumgarte":
+        alpha, beta = how.baumgarte
+        held = rl.constraints(q, q_dot, a=scene.a, b=scene.b)
+        demand += 2 * alpha * held.velocity
+        demand[:, 1:] += beta**2 * held.position
+        terms += 2 * alpha * np.einsum("nik,nk->ni", np.abs(rows), np.abs(rate))
+        sizes = [np.abs(point[:, 1]) + point[:, 4], point[:, 4] + size]
+        terms[:, 1:] += beta**2 * np.stack([*sizes, 2 + np.abs(point[:, 3] - point[:, 2])], axis=1)
+    return {
+        "forces": np.abs(balance) / np.where(balance_terms > 0, balance_terms, 1),
+        "accelerations": np.abs(demand) / np.where(terms > 0, terms, 1),
+    }
+
+
+@each_shape
+@pytest.mark.parametrize("stabilization", ["none", "baumgarte"])
+def test_back_substitution(shape: Shape, stabilization: str) -> None:
+    """With formulas that the core does not know: 1e-13 (some 500 ulp; a solution by elimination
+    misses by its growth times the nine sums of each row). On a slope, at states of any kind."""
+    scene = Scene(*shape, mass=3.0, gravity=3.7, slope=-0.2)
+    how = settings(stabilization=stabilization, baumgarte=(3.0, 5.0))
+    q, q_dot = states(shape)
+    solved = _core.multiplier_detail(scene.core, how.core, q, q_dot)
+    missed = misses(scene, how, q, q_dot, *solved)
+    print(", ".join(f"{name} {np.max(miss):.2g}" for name, miss in missed.items()))
+    assert max(np.max(miss) for miss in missed.values()) <= 1e-13
+
+
+@pytest.mark.parametrize("column", range(9))
+def test_back_substitution_sees_a_millionth(column: int) -> None:
+    """In any acceleration or multiplier, somewhere."""
+    scene, how = Scene(2.0, 1.0), settings()
+    q, q_dot = states((2.0, 1.0))
+    q_ddot, multipliers = _core.multiplier_detail(scene.core, how.core, q, q_dot)
+    solved = np.concatenate([q_ddot, multipliers], axis=1)
+    solved[:, column] *= 1 + 1e-6
+    missed = misses(scene, how, q, q_dot, solved[:, :5], solved[:, 5:])
+    assert 1e-8 < max(np.max(miss) for miss in missed.values()) < 1e-5
+
+
+@each_shape
+def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
+    """50 random rolling states: accelerations, N, F and all multipliers of the model "rolling", to
+    1e-12 of the terms they are made of (gravity is one: z_ddot is lambda_2/m - g)."""
+    scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(7)
+    theta, omega = generator.uniform(-10, 10, 50), generator.normal(0, 3, 50)
+    q, q_dot, exact, normal, friction, exact_multipliers = _core.rolling_detail(
+        scene.core, theta, omega, np.zeros(50)
+    )
+    found, multipliers = _core.multiplier_detail(scene.core, settings().core, q, q_dot)
+    r, rates2 = q[:, 4], q_dot[:, 2] ** 2 + q_dot[:, 3] ** 2
+    way = scene.gravity + r * (np.abs(exact[:, 2]) + np.abs(exact[:, 3]) + rates2)
+    angular = np.abs(exact[:, 2:4])
+    terms = np.stack([way, way, angular[:, 0], angular[:, 1], way], axis=1)
+    shares = np.abs(found - exact) / np.where(terms > 0, terms, EPS)
+    push = scene.mass * way[:, None] * np.ones(4)
+    # lambda_4 = R' lambda_3 - r sin(psi - theta) lambda_2 is 0 as far as psi lets R'(psi) be so
+    slope = np.abs(matrix(q, *shape)[:, 2, 3])
+    aspect = max(shape) / min(shape)
+    push[:, 3] *= r + slope + r * aspect**2 * EPS * np.abs(q[:, 3]) / 1e-12
+    share_of_push = np.abs(multipliers - exact_multipliers) / push
+    print(f"accelerations {np.max(shares):.2g}, multipliers {np.max(share_of_push):.2g}")
+    assert np.max(shares) <= 1e-12 and np.max(share_of_push) <= 1e-12
+    assert np.array_equal(exact_multipliers[:, :2], np.stack([friction, normal], axis=1))
+
+
+# ---------------------------------------------------------------------- the projection
+
+
+def rolling_direction(q: np.ndarray, a: float, b: float) -> Long:
+    """q_dot of theta_dot = 1 that the constraints allow."""
+    rows = matrix(q.astype(np.longdouble), a, b)
+    direction = np.zeros(5, np.longdouble)
+    direction[[0, 2, 3]] = -rows[0, 2], 1, -rows[3, 2]
+    direction[4] = -rows[2, 3] * direction[3]
+    direction[1] = -(rows[1, 2:] @ direction[2:])
+    return direction
+
+
+@each_shape
+def test_projection_meets_the_constraints_at_the_nearest_state(shape: Shape) -> None:
+    """From some 1e-4 off: residuals of the size of rounding, and a change without a part along the
+    rolling direction, in the metric of M: of velocities none but rounding, of positions what is of
+    second order (x, which no position constraint contains, stays)."""
+    scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(11)
+    inertia = np.array([1, 1, scene.gyration2, 0, 0], np.longdouble)
+    size, least = max(shape), min(shape)
+    shift = 1e-4 * least / size
+    for theta in (0.0, 0.4, QUARTER, -2.2, 40.3):
+        rolling, rate = rl.kinematics(theta, 1.3, a=shape[0], b=shape[1])
+        q, q_dot = (
+            values + shift * generator.uniform(-1, 1, 5) * [size, size, 1, 1, size]
+            for values in (rolling, rate)
+        )
+        found, found_rate = _core.project(scene.core, q[None].copy(), q_dot[None].copy())
+        held = rl.constraints(found, found_rate, a=shape[0], b=shape[1])
+        grain = 16 * EPS * max(1.0, abs(theta)) * (size / least) ** 2
+        assert np.max(np.abs(held.position)) <= grain * size
+        assert np.max(np.abs(held.velocity)) <= 8 * grain * size * np.max(np.abs(q_dot))
+        assert found[0] == q[0]
+        direction = rolling_direction(found, *shape)
+        weight = direction @ (inertia * direction)
+        along_velocity = (found_rate - q_dot) @ (inertia * direction) / weight
+        along_position = (found - q)[1:] @ (inertia * direction)[1:] / weight
+        assert abs(along_velocity) <= 16 * EPS * np.max(np.abs(q_dot)) * size / least
+        assert abs(along_position) <= 50 * (shift * size / least) ** 2
+        again = _core.project(scene.core, found[None].copy(), found_rate[None].copy())
+        assert np.max(np.abs(again[0] - found)) <= grain * size
+        assert np.max(np.abs(again[1] - found_rate)) <= 8 * grain * size * np.max(np.abs(q_dot))
+
+
+# ---------------------------------------------------------------------- motions
+
+STATE = (
+    "x", "z", "theta", "psi", "r", "x_dot", "z_dot", "omega", "psi_dot", "r_dot", "contact_x",
+    "turns",
+)  # fmt: skip
+FORCES = ("normal_force", "friction_force")
+
+
+@pytest.mark.parametrize("stabilization", EXPLICIT)
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_motions_are_those_of_rolling(scene: Scene, stabilization: str) -> None:
+    """2 s at rtol 1e-12, beside the model "rolling" (exact where it can be, dop853 at 1e-13). 1e-9:
+    some 100 steps, each 1e-12 off, and the motion parts neighbours by at most some exp(lambda t) =
+    e^3.4 on the way; a rounding of a far theta (1.5e-11) parts them, too. With feedback the forces
+    contain what is missed in velocity, times 2 alpha m = 60 kg/s at most."""
+    times = np.linspace(0, 2, 41)
+    tight = {"rtol": 1e-13, "atol": 1e-13} if scene.slope else {}
+    exact = simulate(scene, times, model="rolling", **tight)
+    found = simulate(
+        scene, times, model="multipliers", stabilization=stabilization, rtol=1e-12, atol=1e-12
+    )
+    assert (found.model, found.method, found.status) == ("multipliers", "dop853", Status.COMPLETED)
+    # d^2 psi/dtheta^2 and the forces multiply an error in theta by a power of the aspect
+    allowed = 1e-9 * (max(scene.a, scene.b) / min(scene.a, scene.b)) ** 2
+    feedback = 60 if stabilization == "baumgarte" else 1
+    off = {}
+    for name in STATE + FORCES:
+        off[name] = np.max(np.abs(getattr(found, name) - getattr(exact, name)))
+        assert off[name] <= allowed * (feedback if name in FORCES else 1), name
+    print(", ".join(f"{name} {value:.1g}" for name, value in off.items()))
+
+
+@pytest.mark.parametrize("stabilization", EXPLICIT)
+def test_far_starts_are_as_good_as_near_ones(stabilization: str) -> None:
+    """theta = 1e5, whose last digit is 1.5e-11: 10 s at rtol 1e-13 end as exactly as a sample can
+    say it. A psi rounded like theta would break f4 by as much and be carried on for the 10 s."""
+    scene = Scene(2.0, 1.0, theta=1e5, omega=3.2)
+    found = simulate(
+        scene, [10.0], model="multipliers", stabilization=stabilization, rtol=1e-13, atol=1e-13
+    )
+    off = abs(found.theta[0] - simulate(scene, [10.0]).theta[0])
+    print(f"{stabilization}: {off:.1e}")
+    assert off <= 1e-10
+
+
+@pytest.mark.parametrize("stabilization", EXPLICIT)
+@pytest.mark.parametrize("theta", [0.0, QUARTER])
+def test_rest(theta: float, stabilization: str) -> None:
+    """On the flat side nothing moves. On the tip theta is a double, and what rounding leaves grows
+    like exp(1.674 t), 4300 times in 5 s: 8 ulp of the angle become 1.5e-11."""
+    scene = Scene(2.0, 1.0, mass=3.0, theta=theta, x=4.0)
+    found = simulate(scene, 5.0, model="multipliers", stabilization=stabilization)
+    grown = 1.5e-11 if theta else 0.0
+    assert np.max(np.abs(found.q - found.q[0])) <= grown
+    rate = 20 if stabilization == "baumgarte" else 1.674  # of what errors do there: 2 alpha
+    assert np.max(np.abs(found.q_dot)) <= 2 * rate * grown  # x' = h omega, the fastest
+    # the forces answer theta by some ten weights per radian, with feedback a hundred
+    assert np.max(np.abs(found.normal_force - 3 * 9.81)) <= 100 * grown + 8 * EPS * 3 * 9.81
+
+
+ORDERS = {
+    "rk4": (4, [200, 400, 800]),
+    "dopri5": (5, [160, 320, 640]),
+    "dop853": (8, [80, 110, 150]),
+}
+
+
+@pytest.mark.parametrize("stabilization", ["none", "baumgarte", "projection"])
+@pytest.mark.parametrize("method", ORDERS)
+def test_order(method: str, stabilization: str) -> None:
+    """Largest error of q at all knots of 3.37 half turns over the size of the steps. At these sizes
+    the terms of the next order are still seen: the slope lies between the two orders, closer to its
+    own."""
+    order, counts = ORDERS[method]
+    scene = Scene(1.2, 1.0, theta=0.2, omega=4.0)
+    span = 3.37 * rl.period(scene) / 2
+    errors = []
+    for count in counts:
+        times = np.append(np.arange(count) * (span / count), span)
+        found = simulate(
+            scene,
+            times,
+            model="multipliers",
+            method=method,
+            stabilization=stabilization,
+            step=span / count,
+        )
+        errors.append(np.max(np.abs(found.q - simulate(scene, times).q)))
+    slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    print(f"{method}, {stabilization}: slope {slope:.2f}, errors", *(f"{e:.1e}" for e in errors))
+    assert order - 0.15 <= slope <= order + 0.75
+
+
+@pytest.fixture(scope="module", params=[*EXPLICIT, "ggl"])
+def motion(request: pytest.FixtureRequest) -> Iterator[Trajectory]:
+    method = {"method": "radau", "step": 0.02} if request.param == "ggl" else {}
+    yield simulate(
+        GENERIC, np.linspace(0, 4, 101), model="multipliers", stabilization=request.param, **method
+    )
+
+
+def test_arrays_are_what_they_promise(motion: Trajectory) -> None:
+    """Shapes, types, and that the stored state is the one everything is computed from."""
+    n = motion.t.size
+    for name, columns in {"q": 5, "q_dot": 5, "multipliers": 4}.items():
+        values = getattr(motion, name)
+        assert values.shape == (n, columns) and values.dtype == np.float64, name
+        assert values.flags.c_contiguous and not values.flags.writeable, name
+    for i, name in enumerate(("x", "z", "theta", "psi", "r")):
+        assert np.array_equal(motion.q[:, i], getattr(motion, name))
+    for i, name in enumerate(("x_dot", "z_dot", "omega", "psi_dot", "r_dot")):
+        assert np.array_equal(motion.q_dot[:, i], getattr(motion, name))
+    assert np.array_equal(motion.multipliers[:, 0], motion.friction_force)
+    assert np.array_equal(motion.multipliers[:, 1], motion.normal_force)
+    q_ddot = np.stack(
+        [motion.x_ddot, motion.z_ddot, motion.omega_dot, motion.psi_ddot, motion.r_ddot], axis=1
+    )
+    missed = misses(GENERIC, motion.settings, motion.q, motion.q_dot, q_ddot, motion.multipliers)
+    assert max(np.max(miss) for miss in missed.values()) <= 1e-13
+    energy = (motion.x_dot**2 + motion.z_dot**2 + GENERIC.gyration2 * motion.omega**2) / 2
+    assert np.allclose(motion.energy, energy + GENERIC.gravity * motion.z, rtol=8 * EPS, atol=0)
+
+
+def test_files_keep_every_bit(motion: Trajectory, tmp_path: Path) -> None:
+    """Of the samples, of what follows from them, and of `sol` at other times."""
+    path = tmp_path / "motion.npz"
+    motion.save(path)
+    loaded = rl.load(path)
+    assert loaded.settings == motion.settings and loaded.scene == motion.scene
+    between = np.array([0.0, 0.013, 1.7, 3.999, 4.0])
+    for first, second in ((loaded, motion), (loaded.sol(between), motion.sol(between))):
+        for name in ("t", "q", "q_dot", "multipliers", "x_ddot", "omega_dot", "energy"):
+            assert np.array_equal(getattr(first, name), getattr(second, name)), name
+
+
+def test_samples_do_not_depend_on_each_other(motion: Trajectory) -> None:
+    """`sol` anywhere gives the bits that any other set of times gives, in any order."""
+    times = np.array([3.7, 0.0, 1.111, 4.0, 1.112])
+    together = motion.sol(times)
+    for i, t in enumerate(times):
+        alone = motion.sol(t)
+        assert np.array_equal(alone.q[0], together.q[i])
+        assert np.array_equal(alone.q_dot[0], together.q_dot[i])
+
+
+def test_a_start_in_coordinates() -> None:
+    """Without stabilization the motion starts there, off the constraints or not."""
+    q, q_dot = rl.kinematics(0.4, 2.0, a=2.0, b=1.0)
+    q, q_dot = q + 1e-3 * np.arange(5), q_dot - 1e-3
+    times = np.array([0.0, 0.5])
+    found = Trajectory.computed(Scene(2.0, 1.0), settings(), times, start=(q, q_dot))
+    assert np.array_equal(found.q[0], q) and np.array_equal(found.q_dot[0], q_dot)
+    assert np.max(np.abs(found.constraint_residuals().position)) > 1e-3
+
+
+def test_max_steps_leaves_what_there_is() -> None:
+    with pytest.raises(rl.IntegrationError, match="max_steps = 10 ") as caught:
+        simulate(GENERIC, 4.0, model="multipliers", max_steps=10)
+    cut = caught.value.trajectory
+    assert cut.status is Status.MAX_STEPS and 0 < cut.t_end < 4
+    assert cut.q.shape == (cut.t.size, 5) and cut.t[-1] <= cut.t_end
+    assert np.all(np.isfinite(cut.sol(cut.t_end).q))
+
+
+# ---------------------------------------------------------------------- wrong questions
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"stabilization": "glue"}, r"^stabilization must be one of 'none'.*'ggl'.*, got 'glue'"),
+        ({"stabilization": None}, r"^stabilization must be one of .*, got None"),
+        ({"baumgarte": (-1.0, 1.0)}, r"^baumgarte must be two finite gains .*, got -1"),
+        ({"baumgarte": (1.0, math.nan)}, r"^baumgarte must be two finite gains .*, got nan"),
+        ({"baumgarte": (math.inf, 1.0)}, r"^baumgarte must be two finite gains .*, got inf"),
+        ({"baumgarte": (1.0, 1e308)}, r"^baumgarte must be two .* at most 1e50 .*, got 1e\+308"),
+        ({"baumgarte": 3.0}, r"^baumgarte must be two numbers, got 3\.0"),
+        ({"baumgarte": (1.0,)}, r"^baumgarte must be two numbers, got \(1\.0,\)"),
+        ({"baumgarte": (1.0, 2.0, 3.0)}, r"^baumgarte must be two numbers, got"),
+        ({"method": "exact"}, r"^method must be one of .*'radau' for .*, got 'exact'"),
+        ({"method": "gauss", "step": 0.1}, r"^method must be one of .*, got 'gauss'"),
+        ({"method": "rk4"}, r"^step must be given \[s\] for method 'rk4', got None"),
+        ({"method": "rk4", "step": -0.1}, r"^step must be a positive finite time"),
+        ({"stages": 3}, r"^stages must be None for method"),
+        (
+            {"method": "radau", "step": 0.1},
+            r"^stabilization must be 'ggl' for method 'radau', got 'projection'",
+        ),
+        ({"method": "radau", "step": 0.1, "stabilization": "none"}, r"must be 'ggl'.*got 'none'"),
+        ({"model": "rolling", "stabilization": "none"}, r"^stabilization .*'rolling'.*got 'none'"),
+        ({"model": "auto", "stabilization": "ggl"}, r"^stabilization .*'auto'.*got 'ggl'"),
+    ],
+)
+def test_wrong_arguments_are_refused_by_name(arguments: dict[str, Any], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        simulate(GENERIC, 1.0, **({"model": "multipliers"} | arguments))
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "dopri5", "rk4"])
+def test_ggl_is_for_radau(method: str) -> None:
+    step = {"step": 0.01} if method == "rk4" else {}
+    with pytest.raises(ValueError, match=r"^stabilization must not be 'ggl', which only .*'radau'"):
+        simulate(GENERIC, 1.0, model="multipliers", method=method, stabilization="ggl", **step)
+
+
+def test_gains_that_are_no_numbers() -> None:
+    with pytest.raises(TypeError, match=r"^baumgarte must be a number, got 'a'"):
+        simulate(GENERIC, 1.0, model="multipliers", baumgarte=("a", 1.0))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["drop", "slip"])
+def test_what_does_not_roll_is_refused(name: str) -> None:
+    with pytest.raises(ValueError, match=r"^model 'multipliers' must start rolling, but"):
+        simulate(getattr(rl.scenes, name), 1.0, model="multipliers")

@@ -1,0 +1,42 @@
+"""The report's constraints f1 ... f4 written down once more, with q = (x, z, theta, psi, r)."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import mpmath as mp
+
+Positions = Callable[[Sequence[Any], Any, Any], list[Any]]
+
+
+def lead(theta: Any, a: Any, b: Any) -> Any:
+    """psi - theta of a body on the ground, continuous (report eq 5 less theta)."""
+    sine, cosine = mp.sin(theta), mp.cos(theta)
+    return mp.atan2((a * a - b * b) * sine * cosine, (b * cosine) ** 2 + (a * sine) ** 2)
+
+
+def positions(q: Sequence[Any], a: Any, b: Any) -> list[Any]:
+    """f2, f3, f4."""
+    _, z, theta, psi, r = q
+    return [
+        z - r * mp.cos(psi - theta),
+        r - a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2),
+        psi - theta - lead(theta, a, b),
+    ]
+
+
+def no_slip(q: Sequence[Any], q_dot: Sequence[Any]) -> Any:
+    """f1 [m/s]."""
+    return q_dot[0] - q[4] * mp.cos(q[3] - q[2]) * q_dot[2]
+
+
+def along(function: Positions, q: Sequence[Any], q_dot: Sequence[Any], a: Any, b: Any) -> list[Any]:
+    """Rate of each entry of function(q, a, b) when q moves with q_dot."""
+    return [
+        mp.diff(
+            lambda t, k=k: function(
+                [value + t * rate for value, rate in zip(q, q_dot, strict=True)], a, b
+            )[k],
+            0,
+        )
+        for k in range(3)
+    ]

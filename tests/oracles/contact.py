@@ -1,0 +1,68 @@
+"""Bodies on every kind of ground and in every state, and what their contact has to obey."""
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from rolling_ellipse import InitialState, Scene
+
+from oracles.geometry import support
+
+FRICTIONS = [0.0, 0.05, 0.2, 0.5, 0.8, 1.2, 2.0, 5.0, 100.0, math.inf]
+RESTITUTIONS = [0.0, 0.0, 0.3, 0.7, 0.95, 1.0]
+SLOPES = [0.0, 0.0, 0.1, 0.4, -0.7]
+
+
+class Response(NamedTuple):
+    """Slip and gap rate, and what impulses along and away from the ground change of them."""
+
+    slip: Any
+    gap_rate: Any
+    tangential: Any
+    normal: Any
+    coupling: Any
+
+
+def response(scene: Scene, state: InitialState) -> Response:
+    """Of a touching body: v of the material point, and 1/m + arm^2/I."""
+    at = support(state.theta, scene.a, scene.b)
+    mass, inertia = scene.mass, scene.mass * scene.gyration2
+    return Response(
+        state.x_dot - at.h * state.omega,
+        state.z_dot - at.slope * state.omega,
+        1 / mass + at.h**2 / inertia,
+        1 / mass + at.slope**2 / inertia,
+        at.h * at.slope / inertia,
+    )
+
+
+def kinetic_energy(scene: Scene, state: InitialState) -> float:
+    inertia = scene.mass * scene.gyration2
+    linear = scene.mass * (state.x_dot**2 + state.z_dot**2)
+    return 0.5 * (linear + inertia * state.omega**2)
+
+
+def random_scenes(count: int, seed: int, **given: Any) -> Iterator[Scene]:
+    """In the air, sliding or rolling, lying or standing, a tenth of them circles."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        a, b = (10 ** rng.uniform(-0.5, 0.5, 2)).tolist()
+        b = a if rng.random() < 0.1 else b
+        theta, omega = float(rng.uniform(-4, 4)), float(3 * rng.normal())
+        values = {
+            "theta": theta,
+            "omega": omega,
+            "friction": float(rng.choice(FRICTIONS)),
+            "restitution": float(rng.choice(RESTITUTIONS)),
+            "slope": float(rng.choice(SLOPES)),
+            "mass": float(10 ** rng.uniform(-1, 1)),
+        }
+        start = rng.integers(3)
+        speeds = rng.normal(size=3).tolist()
+        if start == 0:
+            height = float(support(theta, a, b).h) + abs(speeds[0])
+            values |= {"z": height, "x_dot": 2 * speeds[1], "z_dot": speeds[2]}
+        elif start == 1:
+            values |= {"x_dot": 3 * speeds[1]}
+        yield Scene(a, b, **(values | given))

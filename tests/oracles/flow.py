@@ -1,0 +1,50 @@
+"""Units of the answers of `flow`: what one rounding of every input does to them, and two ulp.
+
+`grain` and `carried` come from `flow` itself: only bounds between answers of the package, and never
+its truth, may rest on them.
+"""
+
+import math
+
+import numpy as np
+from rolling_ellipse import flow, geometry
+
+from oracles.numbers import EPS
+
+# One unit is the unavoidable error of a backward stable method that rounds every input once; four
+# leave room for some roundings inside. A wrong digit anywhere in front of them shows.
+LARGEST_ERROR = 4.0
+
+PARAMETERS = ("a", "b", "gyration2", "gravity", "theta", "omega")
+Motion = tuple[float, ...]
+
+
+def arguments(motion: Motion) -> dict[str, float]:
+    """Keyword arguments of `flow`."""
+    return dict(zip(PARAMETERS, motion, strict=True))
+
+
+def grain(t: float, motion: Motion) -> np.ndarray:
+    """Units of theta, omega, x at t, here by central differences of `flow` itself: only bounds
+    between answers of `flow` rest on them."""
+    start, small = arguments(motion), 1e-7
+    total = np.zeros(3)
+    for name in PARAMETERS:
+        size = abs(start[name]) if name != "theta" else 1.0
+        ends = [flow(t, **(start | {name: start[name] + s * small * size})) for s in (1, -1)]
+        total += np.abs(np.subtract(*ends)) / (2 * small) * EPS
+    answer = flow(t, **start)
+    total += 2 * np.array([math.ulp(value) for value in answer])
+    total[2] += geometry.support(answer[0], a=motion[0], b=motion[1]) * 2 * math.ulp(answer[0])
+    return total
+
+
+def carried(t1: float, motion: Motion, reached: Motion, t2: float) -> np.ndarray:
+    """What the error of a state at t1 can be t2 later, and that of the second way itself."""
+    error, step = LARGEST_ERROR * grain(t1, motion), 1e-7
+    start = arguments(reached)
+    total = LARGEST_ERROR * grain(t2, reached) + [0, 0, error[2]]
+    for name, i in (("theta", 0), ("omega", 1)):
+        ends = [flow(t2, **(start | {name: start[name] + s * step})) for s in (1, -1)]
+        total += np.abs(np.subtract(*ends)) / (2 * step) * error[i]
+    return total

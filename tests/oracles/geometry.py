@@ -1,0 +1,112 @@
+"""The ellipse on its tangent, by definition and in the one closed form that the suite knows.
+
+Nothing of the package is imported here. theta is clockwise positive; "flat" is the position of
+least height, "tip" of largest, and the reduced angle phi in [0, pi/2] is the rotation away from
+flat, whichever semi-axis is the longer.
+"""
+
+from typing import Any, NamedTuple
+
+import mpmath as mp
+import numpy as np
+from numpy.typing import ArrayLike
+
+from oracles.numbers import DIGITS, Long
+
+# ---------------------------------------------------------------- by definition (mpmath)
+
+
+def boundary_point(t: Any, theta: Any, a: Any, b: Any) -> tuple[Any, Any]:
+    """Point t of the outline, from G, of the ellipse turned clockwise by theta: (right, up)."""
+    along, across = a * mp.cos(t), b * mp.sin(t)
+    cosine, sine = mp.cos(theta), mp.sin(theta)
+    return along * cosine + across * sine, across * cosine - along * sine
+
+
+def lowest_point(theta: float, a: float, b: float) -> Any:
+    """Outline parameter t of the lowest point, by golden section to half the working digits."""
+
+    def depth(t: Any) -> Any:
+        return -boundary_point(t, turned, mp.mpf(a), mp.mpf(b))[1]
+
+    with mp.workdps(2 * DIGITS):
+        turned = mp.mpf(theta)
+        best = max((mp.pi * k / 4 for k in range(8)), key=depth)
+        low, high = best - mp.pi / 4, best + mp.pi / 4
+        golden = (mp.sqrt(5) - 1) / 2
+        left, right = high - golden * (high - low), low + golden * (high - low)
+        depth_left, depth_right = depth(left), depth(right)
+        while high - low > mp.mpf(10) ** -DIGITS:
+            if depth_left > depth_right:
+                high, right, depth_right = right, left, depth_left
+                left = high - golden * (high - low)
+                depth_left = depth(left)
+            else:
+                low, left, depth_left = left, right, depth_right
+                right = low + golden * (high - low)
+                depth_right = depth(right)
+        return (low + high) / 2
+
+
+def height(theta: Any, a: float, b: float) -> Any:
+    """h(theta) [m], closed form (held against `lowest_point` by test_ellipse.py)."""
+    return mp.sqrt((a * mp.sin(theta)) ** 2 + (b * mp.cos(theta)) ** 2)
+
+
+def height_slopes(theta: float, a: float, b: float) -> tuple[Any, Any, Any]:
+    """h, h', h'' [m] by numerical differentiation of h, good to 30 digits of the largest."""
+    with mp.workdps(2 * DIGITS):
+        turned, long_axis, short_axis = mp.mpf(theta), mp.mpf(a), mp.mpf(b)
+        derivatives = mp.diffs(lambda angle: height(angle, long_axis, short_axis), turned, 2)
+        return tuple(+value for value in derivatives)
+
+
+# ---------------------------------------------------------------- in closed form
+
+
+class Support(NamedTuple):
+    """h, h' and h'' [m]."""
+
+    h: Any
+    slope: Any
+    curvature: Any
+
+
+def support(theta: Any, a: Any, b: Any) -> Support:
+    """At angles, in their arithmetic: numbers, arrays of any float, or mpf (held against
+    `height_slopes`, that is against the definition, by test_ellipse.py)."""
+    exactly = any(isinstance(value, mp.mpf) for value in (theta, a, b))
+    arithmetic: Any = mp if exactly else np
+    return _support(arithmetic.sin(theta), arithmetic.cos(theta), a, b, arithmetic.sqrt)
+
+
+def _support(sine: Any, cosine: Any, a: Any, b: Any, root: Any) -> Support:
+    """h'' = (a b)^2/h^3 - h in factors: near a circle, and beside the flat side of a thin body,
+    the terms cancel."""
+    h = root((a * sine) ** 2 + (b * cosine) ** 2)
+    bend = (a - b) * (b * cosine**2 - a * sine**2)
+    return Support(h, (a - b) * (a + b) * sine * cosine / h, bend * (a * b + h * h) / h**3)
+
+
+def reduced(theta: ArrayLike, a: ArrayLike, b: ArrayLike) -> tuple[Long, Long]:
+    """|sin phi| and |cos phi| of the reduced angle of theta."""
+    turned = np.asarray(theta, np.longdouble)
+    sine, cosine = np.abs(np.sin(turned)), np.abs(np.cos(turned))
+    lies = np.asarray(a) >= np.asarray(b)
+    return np.where(lies, sine, cosine), np.where(lies, cosine, sine)
+
+
+class Outline(NamedTuple):
+    """h, h', rho, h'' [m]; h' signed as for phi in [0, pi/2] with a the longer one."""
+
+    h: Long
+    slope: Long
+    rho: Long
+    curvature: Long
+
+
+def outline(a: Long, b: Long, sine: Long, cosine: Long) -> Outline:
+    """At a reduced angle."""
+    longer, shorter = np.maximum(a, b), np.minimum(a, b)
+    h, slope, curvature = _support(sine, cosine, longer, shorter, np.sqrt)
+    return Outline(h, slope, (a * b) ** 2 / h**3, curvature)

@@ -1,0 +1,54 @@
+"""The roads out of a process and back, what is sent along them, and what it is to be the same."""
+
+import copy
+import dataclasses
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import rolling_ellipse as rl
+
+ROADS: dict[str, Callable[[Any], Any]] = {
+    **{f"protocol {p}": lambda thing, p=p: pickle.loads(pickle.dumps(thing, p)) for p in range(6)},
+    "copy": copy.copy,
+    "deepcopy": copy.deepcopy,
+}
+
+
+def require_same(one: Any, other: Any, where: str = "it") -> None:
+    """The same type and bits all the way down, and arrays as writable as they were."""
+    assert type(one) is type(other), where
+    if isinstance(one, np.ndarray):
+        assert one.dtype == other.dtype and one.shape == other.shape, where
+        assert one.tobytes() == other.tobytes(), where
+        assert one.flags.writeable == other.flags.writeable, where
+    elif dataclasses.is_dataclass(one):
+        for field in dataclasses.fields(one):
+            name = field.name
+            require_same(getattr(one, name), getattr(other, name), f"{where}.{name}")
+    elif isinstance(one, (tuple, list)):
+        assert len(one) == len(other), where
+        for i, (a, b) in enumerate(zip(one, other, strict=True)):
+            require_same(a, b, f"{where}[{i}]")
+    elif isinstance(one, Exception):
+        assert str(one) == str(other) and one.args == other.args, where
+        require_same(vars(one), vars(other), where)
+    elif isinstance(one, dict):
+        assert list(one) == list(other), where
+        for key in one:
+            require_same(one[key], other[key], f"{where}[{key!r}]")
+    elif callable(one):
+        require_same(one(), other(), where)
+    else:
+        assert one == other or (one != one and other != other), where
+
+
+def core_objects() -> dict[str, Any]:
+    motion = rl.simulate(rl.scenes.bounce, 1.5)
+    return {
+        "Scene": motion.scene.core,
+        "Impulse": rl.Impulse(1.0).core,
+        "Settings": motion.settings.core,
+        "Solution": motion._solution,
+    }

@@ -1,0 +1,20 @@
+"""The committed reference tables: decimal text of 30 digits and more, and how to be held to it."""
+
+import csv
+from decimal import Context, Decimal
+
+from oracles.paths import REFERENCE
+
+# The tables have 30 or 40 digits: subtract in 60 so that a difference is exact.
+EXACT = Context(prec=60)
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    """All lines of a table, by column."""
+    with (REFERENCE / f"{name}.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def difference(value: float, exact: str) -> float:
+    """value - exact, rounded once."""
+    return float(EXACT.subtract(Decimal(float(value)), Decimal(exact)))

@@ -1,0 +1,596 @@
+"""`thresholds`: closed forms, printed numbers, and each speed by what it is the threshold of."""
+
+import math
+from itertools import pairwise, takewhile
+from typing import Any, NamedTuple
+
+import mpmath as mp
+import numpy as np
+import oracles.geometry
+import oracles.rolling
+import pytest
+from oracles.numbers import DIGITS, EPS, Long
+from rolling_ellipse import Event, EventKind, Scene, simulate, thresholds
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+Shape = tuple[float, float]
+SHAPES = [(2.0, 1.0), (0.7, 1.9), (1.05, 1.0), (1.6, 1.0), (9.0, 1.0), (1.0, 25.0), (1.0, 1e-3)]
+GRAVITY = 3.7
+
+
+def gyration2_of(shape: Shape, kind: str) -> float:
+    a, b = shape
+    return {"disc": (a * a + b * b) / 4, "hoop": max(a, b) ** 2, "core": 0.03 * max(a, b) ** 2}[
+        kind
+    ]
+
+
+def rolling(shape: Shape, gyration2: float, omega: Any) -> oracles.rolling.Motion:
+    """Passing the flat position at these speeds [rad/s]."""
+    flat = 0.0 if shape[0] >= shape[1] else math.pi / 2
+    lying = oracles.rolling.motion(
+        *shape, gyration2, GRAVITY, flat, np.atleast_1d(np.longdouble(0))
+    )
+    lift = (gyration2 + np.longdouble(min(shape)) ** 2) * np.atleast_1d(omega) ** 2 / 2
+    wide = np.broadcast_arrays(*lying, lift)
+    return oracles.rolling.Motion(*wide[:4], lift=lift)
+
+
+def beside(speed: float, by: float) -> Long:
+    return np.longdouble(speed) * (1 + np.array([-by, by], np.longdouble))
+
+
+def lower(speed: float) -> Long:
+    return np.longdouble(speed) * np.linspace(0.02, 0.999, 60)
+
+
+both = pytest.mark.parametrize("shape", SHAPES)
+inertias = pytest.mark.parametrize("kind", ["disc", "hoop", "core"])
+
+
+@both
+@inertias
+def test_closed_forms(shape: Shape, kind: str) -> None:
+    """From the potential g h alone: the barrier, and its curvature at the bottom and at the top."""
+    mp.mp.dps = DIGITS
+    gyration2 = gyration2_of(shape, kind)
+    found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
+    flat, tip = (mp.mpf(0), mp.pi / 2) if shape[0] > shape[1] else (mp.pi / 2, mp.mpf(0))
+    low, _, bowl = oracles.geometry.height_slopes(flat, *shape)
+    top, _, hill = oracles.geometry.height_slopes(tip, *shape)
+    at_flat = gyration2 + low**2
+    for actual, exact in (
+        (found.roll_over_speed, mp.sqrt(2 * GRAVITY * (top - low) / at_flat)),
+        (found.rocking_rate, mp.sqrt(GRAVITY * bowl / at_flat)),
+        (found.tip_rate, mp.sqrt(-GRAVITY * hill / (gyration2 + top**2))),
+    ):
+        assert abs(actual - exact) <= 1e-13 * exact
+
+
+def test_printed_numbers() -> None:
+    """2:1 disc, g = 9.81: every digit that is printed."""
+    found = thresholds(2.0, 1.0)
+    assert round(found.roll_over_speed, 3) == 2.953
+    assert round(found.contact_loss_speed, 4) == 4.8432
+    assert round(math.degrees(found.contact_loss_angle), 2) == 62.36
+    assert found.rocking_rate == pytest.approx(3.616628264005025, rel=1e-14)
+    assert found.tip_rate == pytest.approx(1.6741735701106808, rel=1e-14)
+    assert found.painleve_friction == pytest.approx(1.352698667647026, rel=1e-14)
+    assert round(math.degrees(found.painleve_angle), 3) == 56.636
+
+
+def test_defaults_are_the_disc_on_earth_without_limit_of_friction() -> None:
+    explicit = thresholds(2.0, 1.0, gravity=9.81, gyration2=1.25, friction=math.inf)
+    assert thresholds(2.0, 1.0) == explicit
+
+
+@both
+@inertias
+def test_loss_of_contact_by_its_definition(shape: Shape, kind: str) -> None:
+    """N stays positive all the way round below the speed and does not just above it; at the speed
+    it vanishes at the angle."""
+    gyration2 = gyration2_of(shape, kind)
+    found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
+    speed = found.contact_loss_speed
+    normal = oracles.rolling.extremes(rolling(shape, gyration2, beside(speed, 1e-11))).normal
+    assert normal[0] > 0 > normal[1]
+    assert np.all(oracles.rolling.extremes(rolling(shape, gyration2, lower(speed))).normal > 0)
+    at = rolling(shape, gyration2, speed)
+    there = oracles.rolling.forces(
+        at, *oracles.geometry.reduced([found.contact_loss_angle], *shape)
+    )
+    # the least N is flat in the angle, which is known to the root of the rounding, 1e-8
+    assert abs(there.normal[0]) <= 100 * there.normal_error[0]
+    assert 0 <= found.contact_loss_angle <= math.pi / 2
+
+
+@both
+@inertias
+@pytest.mark.parametrize("friction", [0.01, 0.2, 0.5, 1.3, 10.0])
+def test_slip_by_its_definition(shape: Shape, kind: str, friction: float) -> None:
+    """The smallest flat speed whose motion needs the friction somewhere: no slower one does."""
+    gyration2 = gyration2_of(shape, kind)
+    found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2, friction=friction)
+    speed = found.slip_speed
+    needed = oracles.rolling.extremes(rolling(shape, gyration2, beside(speed, 1e-10))).needed
+    assert needed[0] < friction < needed[1]
+    assert np.all(
+        oracles.rolling.extremes(rolling(shape, gyration2, lower(speed))).needed < friction
+    )
+    assert speed < found.contact_loss_speed
+    at = rolling(shape, gyration2, speed)
+    there = oracles.rolling.forces(at, *oracles.geometry.reduced([found.slip_angle], *shape))
+    assert abs(there.friction[0] / there.normal[0]) == pytest.approx(friction, rel=1e-7)
+    assert 0 <= found.slip_angle <= math.pi / 2
+
+
+@both
+def test_slip_at_the_limits_of_friction(shape: Shape) -> None:
+    """None at all: it slips as soon as it rocks. Without limit: not while N > 0."""
+    assert thresholds(*shape, friction=0.0).slip_speed == 0
+    found = thresholds(*shape)
+    assert found.slip_speed >= found.contact_loss_speed * (1 - 1e-12)
+    nearly = thresholds(*shape, friction=1e12)
+    assert nearly.slip_speed == pytest.approx(found.contact_loss_speed, rel=1e-6)
+
+
+@both
+@inertias
+def test_friction_to_roll_over(shape: Shape, kind: str) -> None:
+    """The most that is needed at the energy of the barrier; inf where N is lost before."""
+    gyration2 = gyration2_of(shape, kind)
+    found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
+    rise = GRAVITY * np.array([abs(np.longdouble(shape[0]) - np.longdouble(shape[1]))])
+    truth = oracles.rolling.extremes(rolling(shape, gyration2, [0.0])._replace(lift=rise))
+    assert math.isinf(found.friction_to_roll_over) == bool(np.isinf(truth.needed[0]))
+    if np.isfinite(truth.needed[0]):
+        error = float(truth.needed_error[0])
+        assert found.friction_to_roll_over == pytest.approx(float(truth.needed[0]), abs=error)
+    over = found.contact_loss_speed > found.roll_over_speed
+    assert over == math.isfinite(found.friction_to_roll_over)
+
+
+def painleve(shape: Shape, gyration2: float) -> tuple[float, float]:
+    """Least mu with a normal response <= 0 to a normal push while sliding, and the reduced angle:
+    1/m + h'^2/I <= mu h |h'|/I."""
+
+    def least(tangent: Long) -> Long:
+        cosine = 1 / np.sqrt(1 + tangent**2)
+        h, slope, *_ = oracles.geometry.outline(a, b, tangent * cosine, cosine)
+        return (gyration2 + slope**2) / (h * slope)
+
+    a, b = (np.array([value], np.longdouble) for value in shape)
+    grid = np.geomspace(np.longdouble(1e-8), np.longdouble(1e4), 3000)
+    best = int(np.argmin(least(grid)))
+    found = oracles.rolling.golden_minimum(least, grid[[best - 1]], grid[[best + 1]], 60)
+    return float(least(found)[0]), math.atan(float(found[0]))
+
+
+@both
+@inertias
+def test_painleve(shape: Shape, kind: str) -> None:
+    """The value to 1e-13; the angle of a minimum to the root of that."""
+    gyration2 = gyration2_of(shape, kind)
+    found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
+    friction, angle = painleve(shape, gyration2)
+    assert found.painleve_friction == pytest.approx(friction, rel=1e-13)
+    reduced = found.painleve_angle if shape[0] > shape[1] else math.pi / 2 - found.painleve_angle
+    assert reduced == pytest.approx(angle, rel=1e-6)
+
+
+@pytest.mark.parametrize(("share", "limit"), [(1 / 4, math.sqrt(5) / 2), (1 / 3, 4 / 3)])
+def test_painleve_of_a_needle(share: float, limit: float) -> None:
+    """b -> 0 with k^2 = share a^2 (disc, rod): (k^2 + a^2 c^2)/(a^2 s c) = (share (1 + T^2) + 1)/T
+    is least 2 sqrt(share (share + 1)); what is left is of the order of (b/a)^2."""
+    off = [
+        thresholds(1.0, b, gyration2=share).painleve_friction / limit - 1
+        for b in (1e-1, 1e-2, 1e-3)
+    ]
+    assert abs(off[2]) < 3e-6
+    for coarse, fine in pairwise(off):
+        assert math.log10(abs(coarse / fine)) == pytest.approx(2, abs=0.15)
+
+
+def test_the_angle_of_lost_contact_leaves_the_tip_at_root_three() -> None:
+    for ratio in (1.05, 1.5, 1.732):
+        assert thresholds(ratio, 1.0).contact_loss_angle == pytest.approx(math.pi / 2, abs=1e-7)
+        assert thresholds(1.0, ratio).contact_loss_angle == pytest.approx(0, abs=1e-7)
+    leaves = math.pi / 2 - thresholds(math.sqrt(3) * (1 + 1e-4), 1.0).contact_loss_angle
+    further = math.pi / 2 - thresholds(math.sqrt(3) * (1 + 4e-4), 1.0).contact_loss_angle
+    assert 1e-3 < leaves < 0.1
+    assert further / leaves == pytest.approx(2, abs=0.01)  # like a square root
+
+
+def test_the_speed_at_which_the_tip_leaves() -> None:
+    """Up to a/b = root three N vanishes at the tip first: omega^2 = g a/(a^2 - b^2) there."""
+    at_tip = 9.81 * 1.5 / (1.5**2 - 1)
+    inertia = (1.5**2 + 1) / 4
+    speed2 = ((inertia + 1.5**2) * at_tip + 2 * 9.81 * 0.5) / (inertia + 1)
+    assert thresholds(1.5, 1.0).contact_loss_speed == pytest.approx(math.sqrt(speed2), rel=1e-13)
+
+
+def test_no_roll_over_by_rolling_alone_above_9_7532168() -> None:
+    below, above = thresholds(9.75321675, 1.0), thresholds(9.75321685, 1.0)
+    assert below.contact_loss_speed > below.roll_over_speed
+    assert above.contact_loss_speed < above.roll_over_speed
+    assert math.isfinite(below.friction_to_roll_over)
+    assert math.isinf(above.friction_to_roll_over)
+
+
+@both
+def test_axes_swapped(shape: Shape) -> None:
+    """The same body, described the other way: the same speeds; angles a quarter turn off."""
+    one, other = (thresholds(*axes, friction=0.4) for axes in (shape, shape[::-1]))
+    for name in (
+        "roll_over_speed",
+        "contact_loss_speed",
+        "slip_speed",
+        "friction_to_roll_over",
+        "painleve_friction",
+        "rocking_rate",
+        "tip_rate",
+    ):
+        assert getattr(one, name) == pytest.approx(getattr(other, name), rel=1e-13), name
+    for name in ("contact_loss_angle", "slip_angle", "painleve_angle"):
+        quarter = getattr(one, name) + getattr(other, name)
+        assert quarter == pytest.approx(math.pi / 2, abs=1e-7), name
+
+
+def test_a_circle_has_no_threshold() -> None:
+    found = thresholds(1.3, 1.3, friction=0.2)
+    assert found.roll_over_speed == found.rocking_rate == found.tip_rate == 0
+    assert math.isinf(found.contact_loss_speed) and math.isinf(found.slip_speed)
+    assert math.isinf(found.painleve_friction) and found.friction_to_roll_over == 0
+
+
+def test_speeds_scale_like_the_root_of_gravity() -> None:
+    """omega^2 / g is a matter of lengths alone; 4 ulp for the root and the product."""
+    one, four = (
+        thresholds(2.0, 1.0, friction=0.4),
+        thresholds(2.0, 1.0, gravity=4 * 9.81, friction=0.4),
+    )
+    for name in ("roll_over_speed", "contact_loss_speed", "slip_speed", "rocking_rate", "tip_rate"):
+        assert getattr(four, name) == pytest.approx(2 * getattr(one, name), rel=16 * EPS), name
+    assert four.friction_to_roll_over == pytest.approx(one.friction_to_roll_over, rel=1e-13)
+    assert four.painleve_friction == pytest.approx(one.painleve_friction, rel=16 * EPS)
+
+
+# --------------------------------------------------------------------- lift_off_speed
+#
+# At the threshold c = g + h'' omega^2 vanishes on the tip. Where c = 0 while the body slides, N = F
+# = 0 and omega stands still, so that the slope of c is omega^2 times that of h'', which falls up to
+# the tip: c cannot touch zero there, only cross it; on the tip h'' is least, and so can c be.
+
+
+def lift_off(shape: Shape, gyration2: float, friction: float) -> float:
+    return thresholds(
+        *shape, gravity=GRAVITY, gyration2=gyration2, friction=friction
+    ).lift_off_speed
+
+
+def tip_speed2(shape: Shape) -> float:
+    """omega^2 = g L/(L^2 - S^2): with h'' = S^2/L - L the free body just leaves the ground."""
+    long, short = max(shape), min(shape)
+    return GRAVITY * long / ((long - short) * (long + short))
+
+
+class Body(NamedTuple):
+    """By the semi-axes, whichever is which: the angle is the one from the flat position."""
+
+    long: float
+    short: float
+    gyration2: float
+
+    def outline(self, angle: float) -> tuple[float, float, float]:
+        """h, h', h'' [m]."""
+        sine, cosine = math.sin(angle), math.cos(angle)
+        h = math.hypot(self.long * sine, self.short * cosine)
+        slope = (self.long**2 - self.short**2) * sine * cosine / h
+        return h, slope, (self.long * self.short) ** 2 / h**3 - h
+
+    def rolling(self, angle: float, energy: float) -> tuple[float, float, float]:
+        """omega^2, N/m and F/m of rolling with an energy E/m."""
+        h, slope, curvature = self.outline(angle)
+        inertia = self.gyration2 + h * h + slope * slope
+        omega2 = 2 * (energy - GRAVITY * h) / inertia
+        turning = -slope * (GRAVITY + (h + curvature) * omega2) / inertia
+        normal = GRAVITY + slope * turning + curvature * omega2
+        return omega2, normal, h * turning + slope * omega2
+
+    def grip(self, angle: float, energy: float, friction: float) -> float:
+        _, normal, force = self.rolling(angle, energy)
+        return friction * normal - abs(force)
+
+    def sliding(self, side: float, friction: float) -> Any:
+        """The rates, by the angle, of omega^2/2 and of the slip v. For c < 0 they go on smoothly,
+        with a ground that pulls: so the c found on the tip changes its sign with the speed."""
+
+        def rates(angle: float, y: Any) -> list[float]:
+            h, slope, curvature = self.outline(angle)
+            c = GRAVITY + 2 * curvature * y[0]
+            normal = c / (1 + slope * (slope - friction * side * h) / self.gyration2)
+            force = -friction * side * normal
+            turning = -(h * force + slope * normal) / self.gyration2
+            omega = math.sqrt(2 * y[0])
+            return [turning, (force - h * turning) / omega - slope * omega]
+
+        return rates
+
+
+class Climb(NamedTuple):
+    pressure: float  # c on the tip, per mass
+    slides: int
+
+
+def climb(
+    body: Body, friction: float, speed: float, rtol: float = 1e-12, longest: float = 0.02
+) -> Climb:
+    """From rolling over the flat up to the tip: rolling by the energy, slides integrated."""
+    tip, angle, slides = math.pi / 2, 0.0, 0
+    energy = (body.gyration2 + body.short**2) * speed**2 / 2 + GRAVITY * body.short
+    side = half_square = 0.0
+    rolls = True
+    while True:
+        if rolls:
+            grid = np.linspace(angle, tip, 2001)
+            broken = [p for p in grid[1:] if body.grip(p, energy, friction) < 0]
+            if not broken:
+                return Climb(GRAVITY + body.outline(tip)[2] * body.rolling(tip, energy)[0], slides)
+            step = grid[1] - grid[0]
+            angle = brentq(body.grip, broken[0] - step, broken[0], (energy, friction), xtol=1e-15)
+            omega2, _, force = body.rolling(angle, energy)
+            side, half_square = -math.copysign(1.0, force), omega2 / 2
+
+        def slip(_: float, y: Any) -> float:
+            return float(y[1])
+
+        slip.terminal, slip.direction = True, -side  # type: ignore[attr-defined]
+        slides += 1
+        slide = solve_ivp(
+            body.sliding(side, friction),
+            (angle, tip),
+            [half_square, 0.0],
+            method="DOP853",
+            rtol=rtol,
+            atol=1e-15,
+            max_step=longest,
+            events=slip,
+        )
+        angle, half_square = slide.t[-1], slide.y[0, -1]
+        h, slope, curvature = body.outline(angle)
+        if slide.status == 0:
+            return Climb(GRAVITY + 2 * curvature * half_square, slides)
+        energy = (body.gyration2 + h * h + slope * slope) * half_square + GRAVITY * h
+        rolls, side = body.grip(angle, energy, friction) >= 0, -side
+
+
+def climbed(shape: Shape, gyration2: float, friction: float, **settings: float) -> float:
+    """The speed at which c on the tip vanishes, between 1 % off what is claimed."""
+    body = Body(max(shape), min(shape), gyration2)
+    claimed = lift_off(shape, gyration2, friction)
+    found: float = brentq(
+        lambda speed: climb(body, friction, speed, **settings).pressure,
+        0.99 * claimed,
+        1.01 * claimed,
+        xtol=1e-15 * claimed,
+        rtol=1e-14,
+    )
+    return found
+
+
+LIFTS = [
+    ((2.0, 1.0), "disc", 0.2, 1),
+    ((2.0, 1.0), "disc", 1.3, 1),
+    ((2.0, 1.0), "disc", 20.0, 1),
+    ((2.0, 1.0), "disc", 0.05, 2),
+    ((1.0, 5.0), "disc", 0.05, 2),
+    ((0.7, 1.9), "hoop", 0.3, 1),
+    ((9.0, 1.0), "disc", 0.5, 1),
+    ((1.0, 1.05), "disc", 0.05, 1),
+    ((1.3, 1.0), "core", 0.1, 1),
+]
+
+
+def test_lift_off_printed_numbers() -> None:
+    """2:1 disc, g = 9.81: five decimals."""
+    for friction, speed in (
+        (0.2, 4.56387),
+        (0.5, 4.65376),
+        (1.0, 4.72602),
+        (1.3, 4.74999),
+        (math.inf, 4.85896),
+    ):
+        assert round(thresholds(2.0, 1.0, friction=friction).lift_off_speed, 5) == speed
+
+
+@pytest.mark.parametrize(("shape", "kind", "friction", "slides"), LIFTS)
+def test_lift_off_by_an_independent_climb(
+    shape: Shape, kind: str, friction: float, slides: int
+) -> None:
+    """Ten digits. The climb's speed is converged to 1e-13 (the next test). The package steps to
+    1e-13 an estimate, some dozens of steps, and what they leave in omega grows on the way to the
+    tip, where c feels it, no more than the start speed's own share does: 1e-11, and ten times
+    that for what the estimates do not see. The slides counted are of the motion at the threshold:
+    with little friction the first one ends below the tip."""
+    gyration2 = gyration2_of(shape, kind)
+    found = climbed(shape, gyration2, friction)
+    assert lift_off(shape, gyration2, friction) == pytest.approx(found, rel=1e-10)
+    body = Body(max(shape), min(shape), gyration2)
+    assert climb(body, friction, found).slides == slides
+
+
+@pytest.mark.parametrize("friction", [0.05, 1.3])
+def test_the_climb_has_converged(friction: float) -> None:
+    """Thirty times the accuracy asked for and a quarter of the step: the same to 1e-13."""
+    fine = climbed((2.0, 1.0), 1.25, friction, rtol=3e-14, longest=0.005)
+    assert climbed((2.0, 1.0), 1.25, friction) == pytest.approx(fine, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("shape", "kind"),
+    [((2.0, 1.0), "disc"), ((1.0, 5.0), "disc"), ((0.7, 1.9), "hoop"), ((9.0, 1.0), "core")],
+)
+def test_lift_off_with_infinite_friction(shape: Shape, kind: str) -> None:
+    """Rolling ends where N = 0, and the slide after it has N = 0 too: the centre is in free fall,
+    with contact, which just reaches the tip if z.^2 = h'^2 omega^2 = 2 g (L - h). Two equations
+    for the angle and the speed at which the slide begins, to 30 digits; the package decides the
+    first by the root of a polynomial and the second in closed form: 1e-11 allows 1e-13 of forces
+    that cancel down to N = 0 a hundredfold."""
+    mp.mp.dps = DIGITS
+    gyration2 = gyration2_of(shape, kind)
+    long, short = mp.mpf(max(shape)), mp.mpf(min(shape))
+
+    def state(angle: Any) -> tuple[Any, Any]:
+        """N/m of rolling at that speed, and E/m."""
+        sine, cosine = mp.sin(angle), mp.cos(angle)
+        h = mp.sqrt((long * sine) ** 2 + (short * cosine) ** 2)
+        slope = (long**2 - short**2) * sine * cosine / h
+        rho = (long * short) ** 2 / h**3
+        omega2 = 2 * GRAVITY * (long - h) / slope**2
+        inertia = gyration2 + h**2 + slope**2
+        turning = -slope * (GRAVITY + rho * omega2) / inertia
+        normal = GRAVITY + slope * turning + (rho - h) * omega2
+        return normal, inertia * omega2 / 2 + GRAVITY * h
+
+    grid = [mp.pi / 2 * k / 200 for k in range(20, 199)]
+    signs = [state(angle)[0] > 0 for angle in grid]
+    changes = [k for k, (one, next_) in enumerate(pairwise(signs)) if one != next_]
+    assert len(changes) == 1
+    angle = mp.findroot(
+        lambda angle: state(angle)[0],
+        (grid[changes[0]], grid[changes[0] + 1]),
+        solver="anderson",
+        tol=1e-60,
+    )
+    energy = state(angle)[1]
+    exact = mp.sqrt(2 * (energy - GRAVITY * short) / (gyration2 + short**2))
+    assert lift_off(shape, gyration2, math.inf) == pytest.approx(float(exact), rel=1e-11)
+    body = Body(max(shape), min(shape), gyration2)
+    before = np.linspace(0, float(angle) * (1 - 1e-6), 1000)
+    assert min(body.rolling(angle, float(energy))[1] for angle in before) > 0
+
+
+@both
+@inertias
+def test_lift_off_without_friction(shape: Shape, kind: str) -> None:
+    """(k^2 + h'^2) omega^2/2 + g h stays: nothing pushes sideways; h' = 0 in the flat and on the
+    tip. The package integrates, to 1e-13 a step; one slide from the flat to the tip is some ten
+    steps, whose errors nothing amplifies here: 1e-12."""
+    gyration2 = gyration2_of(shape, kind)
+    rise = GRAVITY * abs(shape[0] - shape[1])
+    exact = math.sqrt(tip_speed2(shape) + 2 * rise / gyration2)
+    assert lift_off(shape, gyration2, 0.0) == pytest.approx(exact, rel=1e-12)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.05, 0.2, 1.3, 5.0, math.inf])
+@pytest.mark.parametrize(
+    ("shape", "kind"), [((2.0, 1.0), "disc"), ((0.7, 1.9), "hoop"), ((1.6, 1.0), "core")]
+)
+def test_lift_off_is_a_threshold(shape: Shape, kind: str, friction: float) -> None:
+    """Slower, it keeps the ground up to the tip; faster, it leaves it before; not only beside the
+    threshold, where 1e-6 of the speed makes the c that vanishes on the tip vanish some 1e-3 rad
+    before, but everywhere."""
+    gyration2 = gyration2_of(shape, kind)
+    speed = lift_off(shape, gyration2, friction)
+    flat = 0.0 if shape[0] > shape[1] else math.pi / 2
+    tip = flat + math.pi / 2
+    for share in (0.5, 0.8, 0.95, 0.99, 1 - 1e-6, 1 + 1e-6, 1.01, 1.05, 1.3, 3.0):
+        scene = Scene(
+            *shape,
+            gravity=GRAVITY,
+            inertia=gyration2,
+            friction=friction,
+            theta=flat,
+            omega=share * speed,
+        )
+        span = 8 * math.sqrt(max(shape) / GRAVITY)
+        motion = simulate(scene, span, model="contact", max_events=4, raise_on_failure=False)
+        left = [
+            event.state_before.theta < tip
+            for event in motion.events
+            if event.kind is EventKind.LIFT_OFF
+        ]
+        assert any(left) == (share > 1), share
+
+
+def on_its_way_up(event: Event) -> bool:
+    return event.state_before.theta < math.pi / 2 and event.state_before.omega > 0
+
+
+@pytest.mark.parametrize("friction", [0.25, 0.3, 0.45, 0.505])
+def test_jams_between_speeds_of_leaving(friction: float) -> None:
+    """A body with its mass near the centre, above Painleve's friction: what the numbers say of
+    each speed is what the contact model does, also beside the ends of the ranges. Not closer than
+    1e-4: slides that run into the point at which c and B vanish together tell a jam from leaving
+    by their last digits."""
+    gyration2 = 0.0435
+    found = thresholds(2.0, 1.0, gravity=GRAVITY, gyration2=gyration2, friction=friction)
+    assert friction > found.painleve_friction and found.lift_off_speed is not None
+    edges = [found.lift_off_speed, *(edge for jams in found.jam_speeds for edge in jams)]
+    assert len(found.jam_speeds) == 1 and max(edges) < math.inf
+    speeds = [edge * share for edge in edges for share in (0.97, 1 - 1e-4, 1 + 1e-4, 1.01, 1.03)]
+    for speed in speeds:
+        scene = Scene(2.0, 1.0, gravity=GRAVITY, inertia=gyration2, friction=friction, omega=speed)
+        motion = simulate(scene, 3.0, model="contact", max_events=8, raise_on_failure=False)
+        upwards = list(takewhile(on_its_way_up, motion.events))
+        jams = any(one.kind is EventKind.JAM for one in upwards)
+        leaves = any(one.kind is EventKind.LIFT_OFF for one in upwards)
+        assert jams == any(low <= speed < high for low, high in found.jam_speeds), speed
+        assert leaves == (speed >= found.lift_off_speed and not jams), speed
+
+
+def test_discs_do_not_jam_before_they_leave() -> None:
+    for aspect in (1.2, 2.0, 5.0, 20.0):
+        for friction in (1.3, 2.0, 50.0):
+            assert thresholds(aspect, 1.0, friction=friction).jam_speeds == ()
+
+
+def test_what_is_too_stiff_to_follow_has_no_lift_off_speed() -> None:
+    """Hardly any inertia, and a friction that answers every pressure at once."""
+    found = thresholds(3**0.5, 1.0, gravity=1.0, gyration2=1e-12, friction=1e299)
+    assert found.lift_off_speed is None and found.jam_speeds == ()
+    assert found.contact_loss_speed == pytest.approx(found.slip_speed, rel=1e-9)
+
+
+def test_a_circle_never_lifts_off() -> None:
+    for friction in (0.0, 0.3, math.inf):
+        assert math.isinf(thresholds(0.7, 0.7, friction=friction).lift_off_speed)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.05, 0.4, 3.0, math.inf])
+def test_lift_off_scales_and_swaps(friction: float) -> None:
+    """omega^2/g is a matter of lengths alone, and which semi-axis is called a is none at all. The
+    same body in other numbers is integrated in other roundings: 1e-10, as above."""
+    for shape in SHAPES[:6]:
+        one = thresholds(*shape, friction=friction).lift_off_speed
+        other = thresholds(*shape[::-1], friction=friction).lift_off_speed
+        four = thresholds(*shape, gravity=4 * 9.81, friction=friction).lift_off_speed
+        assert other == pytest.approx(one, rel=1e-10)
+        assert four == pytest.approx(2 * one, rel=1e-10)
+
+
+def test_it_slips_before_it_lifts_off() -> None:
+    """Random bodies; where the slip begins on the tip itself the two speeds are the same."""
+    rng = np.random.default_rng(41)
+    for _ in range(150):
+        long, short = 10 ** rng.uniform(0.05, 2.9), 10 ** rng.uniform(-1, 1)
+        gyration2 = (long * short) ** 2 * 10 ** rng.uniform(-2, 0)
+        friction = float(rng.choice([0.0, 0.05, 0.3, 1.0, 10.0, math.inf]))
+        shape = (long * short, short) if rng.random() < 0.5 else (short, long * short)
+        found = thresholds(*shape, gyration2=gyration2, friction=friction)
+        assert 0 <= found.slip_speed <= found.lift_off_speed < math.inf
+
+
+def test_lift_off_of_nearly_circles_with_infinite_friction() -> None:
+    """Up to a/b = root three N of rolling vanishes on the tip first, with omega^2 = g a/(a^2 - b^2)
+    and N = c = 0: slip and lift-off are one."""
+    for k in range(60):
+        ratio = 1 + 10 ** (-4 + 0.06 * k)
+        found = thresholds(ratio, 1.0, friction=math.inf)
+        speed2 = 9.81 * ratio / ((ratio - 1) * (ratio + 1))
+        gyration2 = (ratio * ratio + 1) / 4
+        flat2 = ((gyration2 + ratio**2) * speed2 + 2 * 9.81 * (ratio - 1)) / (gyration2 + 1)
+        # closed forms, and rolling that ends some 1e-7 beside the tip: c feels the square of that
+        assert found.lift_off_speed == pytest.approx(math.sqrt(flat2), rel=1e-12)
+        assert found.slip_speed <= found.lift_off_speed

@@ -1,0 +1,373 @@
+"""Sliding, flight, rest and what joins them, read back from the pictures that show them."""
+
+import itertools
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import rolling_ellipse as rl
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation
+from numpy.typing import NDArray
+from oracles.pictures import outline, support
+
+Array = NDArray[np.float64]
+SCENES = {
+    "jump": rl.scenes.jump,  # rolls, slides, flies, hits and rolls on
+    "slope": rl.scenes.slope,  # slips twice, jumps twice
+    "slip": rl.scenes.slip,  # starts to slide
+    "bounce": rl.scenes.bounce,  # nothing but flight, in which ten impacts are
+    "backwards": rl.Scene(2.0, 1.0, omega=-5.2, friction=1.0),
+    "settling": rl.Scene(2.0, 1.0, z=1.5, restitution=0.5, friction=0.5),  # many impacts, rest
+}
+FEW_EVENTS = {name: scene for name, scene in SCENES.items() if name != "settling"}
+NAMES = {rl.Mode.SLIDING: "sliding", rl.Mode.FLIGHT: "flight", rl.Mode.REST: "rest"}
+
+
+@pytest.fixture(params=SCENES.values(), ids=SCENES.keys())
+def motion(request: pytest.FixtureRequest) -> rl.Trajectory:
+    return rl.simulate(request.param, 6.0)
+
+
+@pytest.fixture
+def jump() -> rl.Trajectory:
+    return rl.simulate(rl.scenes.jump, 3.0)
+
+
+@pytest.fixture(autouse=True)
+def nothing_left_open() -> Iterator[None]:
+    yield
+    assert plt.get_fignums() == []
+
+
+def new_axes(width: float = 7.0, height: float = 3.4) -> Axes:
+    return Figure(figsize=(width, height), layout="constrained").add_subplot()
+
+
+def two_axes(width: float = 7.0, height: float = 5.0) -> list[Axes]:
+    return list(Figure(figsize=(width, height), layout="constrained").subplots(2, sharex=True))
+
+
+def drawn(ax: Axes) -> Axes:
+    """The same, laid out."""
+    FigureCanvasAgg(ax.figure).draw()
+    return ax
+
+
+def legend_of(ax: Axes) -> list[str]:
+    return [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def event_names(ax: Axes) -> list[Annotation]:
+    return [text for text in ax.texts if isinstance(text, Annotation)]
+
+
+def boxes_of(artist: Any) -> list[tuple[float, float, float, float]]:
+    """Left, right, bottom and top of the rectangles of a shade."""
+    corners = [path.vertices for path in artist.get_paths()]
+    return [(*v[:, 0][[0, 2]], v[:, 1].min(), v[:, 1].max()) for v in map(ordered, corners)]
+
+
+def ordered(corners: Array) -> Array:
+    left, bottom = corners.min(axis=0)
+    right, top = corners.max(axis=0)
+    return np.array([[left, bottom], [left, top], [right, top], [right, bottom]])
+
+
+def shades_of(marks: tuple[Any, ...]) -> list[Any]:
+    return [mark for mark in marks if type(mark).__name__ != "LineCollection"
+            and hasattr(mark, "get_hatch")]  # fmt: skip
+
+
+def lines_of(marks: tuple[Any, ...]) -> list[list[float]]:
+    """Times of the dotted lines, motion by motion."""
+    found = [mark for mark in marks if type(mark).__name__ == "LineCollection"]
+    return [[float(segment[0, 0]) for segment in mark.get_segments()] for mark in found]
+
+
+# ------------------------------------------------------------------------------ over time
+
+
+def test_every_sample_lies_in_the_shade_of_its_mode(motion: rl.Trajectory) -> None:
+    shown = rl.plot_energy(motion, ax=new_axes())
+    looks = {}
+    for shade in shades_of(shown.marks):
+        for left, right, bottom, top in boxes_of(shade):
+            assert (bottom, top) == (0, 1)
+            inside = (left < motion.t) & (motion.t < right)
+            (mode,) = set(motion.mode[inside]) or {None}
+            looks[mode] = (shade.get_hatch(), tuple(shade.get_facecolor()[0]))
+    assert set(looks) - {None} == set(motion.mode) - {rl.Mode.ROLLING}
+    shaded = np.zeros(motion.t.size, bool)
+    for left, right, *_ in itertools.chain(*map(boxes_of, shades_of(shown.marks))):
+        # both ends: the last sample is the end of the last shade
+        shaded |= (left <= motion.t) & (motion.t <= right)
+    assert np.array_equal(shaded[motion.mode != rl.Mode.ROLLING], np.ones(shaded.sum(), bool))
+    assert legend_of(shown.ax)[3:] == [NAMES[mode] for mode in NAMES if mode in looks]
+
+
+def test_shades_begin_and_end_at_the_events(jump: rl.Trajectory) -> None:
+    slip, lift_off, impact = (event.t for event in jump.events)
+    sliding, flight = shades_of(rl.plot_energy(jump, ax=new_axes()).marks)
+    assert boxes_of(sliding) == [(slip, pytest.approx(lift_off, abs=1e-15), 0, 1)]
+    assert boxes_of(flight) == [(lift_off, pytest.approx(impact, abs=1e-15), 0, 1)]
+
+
+def test_modes_are_told_apart_in_grey(jump: rl.Trajectory) -> None:
+    settling = rl.simulate(SCENES["settling"], 6.0)
+    shades = [
+        *shades_of(rl.plot_energy(jump, ax=new_axes()).marks),
+        *shades_of(rl.plot_energy(settling, ax=new_axes()).marks),
+    ]
+    hatches = {shade.get_hatch() for shade in shades}
+    assert len(shades) == 4 and len(hatches) == 3  # flight twice
+    for shade in shades:
+        red, green, blue = to_rgb(shade.get_facecolor()[0])
+        assert red == green == blue > 0.85  # discreet
+
+
+@pytest.mark.parametrize("picture", [rl.plot_energy, rl.plot_forces, rl.plot_constraints])
+def test_events_are_lines_with_names(picture: Any, motion: rl.Trajectory) -> None:
+    axes = [new_axes()] if picture is rl.plot_energy else two_axes()
+    shown = picture(motion, ax=axes if len(axes) > 1 else axes[0])
+    moments = [event.t for event in motion.events]
+    assert moments and lines_of(shown.marks) == [moments] * len(axes)
+    names = event_names(axes[0])
+    crowded = motion.scene == SCENES["settling"]
+    assert [name.xy[0] for name in names] == ([] if crowded else moments)
+    expected = [event.kind.name.lower().replace("_", "-") for event in motion.events]
+    assert [name.get_text() for name in names] == ([] if crowded else expected)
+    assert len(axes) == 1 or event_names(axes[1]) == []
+
+
+@pytest.mark.parametrize("scene", FEW_EVENTS.values(), ids=FEW_EVENTS.keys())
+def test_names_are_clear_of_one_another_and_of_the_curves(scene: rl.Scene) -> None:
+    motion = rl.simulate(scene, 6.0)
+    ax = drawn(rl.plot_forces(motion, ax=two_axes()).axes[0])
+    names, window = event_names(ax), ax.get_window_extent()
+    boxes = [name.get_window_extent() for name in names]
+    for box in boxes:
+        assert window.x0 <= box.x0 and box.x1 <= window.x1 + 1 and box.y1 <= window.y1
+    for one, other in itertools.combinations(boxes, 2):
+        assert not one.overlaps(other)
+    values = np.concatenate([motion.normal_force, motion.friction_force])
+    highest = ax.transData.transform([(0, values.max())])[0, 1]
+    assert min(box.y0 for box in boxes) > highest
+
+
+def test_many_events_are_marks_only() -> None:
+    bouncing = rl.simulate(rl.scenes.bounce, 60.0)
+    shown = rl.plot_energy(bouncing, ax=new_axes())
+    assert len(lines_of(shown.marks)[0]) == len(bouncing.events) > 80
+    assert event_names(shown.ax) == []
+
+
+def test_names_are_left_out_where_there_is_no_room(jump: rl.Trajectory) -> None:
+    low = rl.plot_energy(jump, ax=Figure(figsize=(3.2, 1.0)).add_subplot()).ax
+    assert event_names(low) == [] and len(event_names(rl.plot_energy(jump, ax=new_axes()).ax)) == 3
+
+
+def test_only_events_among_the_samples_are_marked(jump: rl.Trajectory) -> None:
+    slip, lift_off, impact = (event.t for event in jump.events)
+    part = jump.sol(np.linspace((slip + lift_off) / 2, (lift_off + impact) / 2, 50))
+    shown = rl.plot_energy(part, ax=new_axes())
+    assert lines_of(shown.marks) == [[lift_off]]
+    sliding, flight = shades_of(shown.marks)
+    assert boxes_of(sliding)[0][:2] == pytest.approx((part.t[0], lift_off), abs=1e-15)
+    assert boxes_of(flight)[0][:2] == pytest.approx((lift_off, part.t[-1]), abs=1e-15)
+
+
+def test_of_several_motions_each_has_a_row(jump: rl.Trajectory) -> None:
+    slip = rl.simulate(rl.scenes.slip, 3.0)
+    report = rl.simulate(rl.scenes.report, 3.0)
+    shown = rl.plot_forces([jump, report, slip], ax=two_axes(), labels=["one", "two", "three"])
+    upper, lower = shown.axes
+    assert legend_of(upper)[3:] == ["normal", "friction", "sliding", "flight"]
+    rows = [[box[2:] for box in boxes_of(shade)] for shade in shades_of(shown.marks)]
+    first, third = rows[0][0], rows[2][0]
+    assert rows == [[first], [first], [third]] * 2  # slides and flies; slides
+    assert 1 >= first[1] > first[0] > third[1] > third[0] > 0.8  # with room for the second between
+    assert first[0] - third[1] > third[1] - third[0]
+    assert event_names(upper) == event_names(lower) == []
+    assert [len(times) for times in lines_of(shown.marks)] == [3, 1] * 2
+
+
+def test_what_rolls_has_no_shade() -> None:
+    for scene in (rl.scenes.report, rl.Scene(2.0, 1.0)):  # rolls; rests, by the rolling model
+        shown = rl.plot_forces(rl.simulate(scene, 2.0), ax=two_axes())
+        assert shown.marks == () and legend_of(shown.axes[0]) == ["normal", "friction"]
+
+
+def test_forces_are_zero_in_flight_and_at_the_limit_while_sliding(motion: rl.Trajectory) -> None:
+    shown = rl.plot_forces(motion, ax=two_axes())
+    normal, friction = (line.get_ydata() for line in (shown.normal[0], shown.friction[0]))
+    flying, sliding = motion.mode == rl.Mode.FLIGHT, motion.mode == rl.Mode.SLIDING
+    assert np.all(normal[flying] == 0) and np.all(friction[flying] == 0)
+    assert np.all(normal[~flying] > 0)
+    limit = motion.scene.friction * normal[sliding]
+    assert np.abs(friction[sliding]) == pytest.approx(limit, rel=1e-14)  # one product, one quotient
+    assert shown.axes[0].get_ylim()[1] > 0
+
+
+def test_constraints_show_only_what_the_ground_holds(motion: rl.Trajectory) -> None:
+    upper, lower = rl.plot_constraints(motion, ax=two_axes()).lines
+    values = {line.get_label().removesuffix(" = 0"): line.get_ydata() for line in (*upper, *lower)}
+    flying, sliding = motion.mode == rl.Mode.FLIGHT, motion.mode == rl.Mode.SLIDING
+    for name in ("gap", "f2", "df2/dt"):
+        assert np.array_equal(np.isnan(values[name]), flying)
+    for name in ("slip", "f1"):
+        assert np.array_equal(np.isnan(values[name]), flying | sliding)
+    for name in ("f3", "f4", "df3/dt", "df4/dt"):
+        assert np.all(np.isfinite(values[name]))
+    # what is held is held to rounding: some hundred of them
+    assert max(float(np.nanmax(value, initial=0.0)) for value in values.values()) < 1e-13
+
+
+def test_energy_lost_to_the_ground_is_no_error(jump: rl.Trajectory) -> None:
+    report = rl.simulate(rl.scenes.report, 3.0)
+    for motions, what in (([report, report], "error"), ([report, jump], "change")):
+        assert rl.plot_energy(motions, ax=new_axes()).ax.get_ylabel() == f"relative energy {what}"
+
+
+def test_overview_of_a_motion_with_contacts_that_change(motion: rl.Trajectory) -> None:
+    shown = rl.plot(motion, figure=Figure(figsize=(10, 8.5), layout="constrained"))
+    modes = len(set(motion.mode) - {rl.Mode.ROLLING})
+    assert len(shades_of(shown.marks)) == 6 * modes
+    assert lines_of(shown.marks) == [[event.t for event in motion.events]] * 6
+    assert shown.energy_error.get_label() == "energy change"
+    shown.figure.draw_without_rendering()
+
+
+# ------------------------------------------------------------------------ over the ground
+
+
+def test_strobe_marks_the_contact_only_where_there_is_one(motion: rl.Trajectory) -> None:
+    shown = rl.plot_strobe(motion, ax=new_axes(), count=37, t_end=3.0)
+    at = motion.sol(np.linspace(0.0, 3.0, 37))
+    contacts, slides = shown.contacts.get_xydata(), shown.slides.get_xydata()
+    for i, body in enumerate(shown.bodies):
+        x, z = support(body)
+        if at.mode[i] == rl.Mode.FLIGHT:
+            assert z > -1e-12 and np.all(np.isnan(contacts[i]))
+        else:
+            assert contacts[i] == pytest.approx([x, 0], abs=1e-11) and abs(z) < 1e-12
+        if at.mode[i] == rl.Mode.SLIDING:
+            assert np.array_equal(slides[i], contacts[i])
+        else:
+            assert np.all(np.isnan(slides[i]))
+    assert shown.slides.get_marker() != shown.contacts.get_marker()
+    path = motion.sol(np.linspace(0.0, 3.0, len(shown.skid_path.get_xdata())))
+    skid, contact = shown.skid_path.get_xdata(), shown.contact_path.get_xdata()
+    sliding = path.mode == rl.Mode.SLIDING
+    assert np.array_equal(np.isnan(skid), ~sliding)
+    assert np.array_equal(skid[sliding], path.contact_x[sliding])
+    assert np.array_equal(np.isnan(contact), path.mode == rl.Mode.FLIGHT)
+    assert ("sliding" in legend_of(shown.ax)) == bool(sliding.any())
+
+
+@pytest.mark.parametrize("width", [3.2, 6.0, 10.0])
+def test_the_strobes_title_is_clear_of_its_legend(jump: rl.Trajectory, width: float) -> None:
+    ax = drawn(rl.plot_strobe(jump, ax=new_axes(width, 2.4), t_end=2.0).ax)
+    (title,) = ax.findobj(lambda artist: "positions" in getattr(artist, "get_text", str)())
+    assert not title.get_window_extent().overlaps(ax.get_legend().get_window_extent().padded(-1))
+
+
+def test_paths_mark_events_where_the_body_touches(motion: rl.Trajectory) -> None:
+    shown = rl.plot_paths(motion, ax=new_axes())
+    (lines,) = shown.events
+    found = {line.get_label().removeprefix("_"): line for line in lines}
+    expected: dict[str, list[float]] = {}
+    a, b = motion.scene.a, motion.scene.b
+    for event in motion.events:
+        state, name = event.state_after, event.kind.name.lower().replace("_", "-")
+        # the lowest point of the outline a cos(s), b sin(s) turned clockwise by theta
+        s = math.atan2(-b * math.cos(state.theta), a * math.sin(state.theta))
+        lead = a * math.cos(s) * math.cos(state.theta) + b * math.sin(s) * math.sin(state.theta)
+        expected.setdefault(name, []).append(state.x + lead)
+    assert list(found) == list(expected)
+    for name, places in expected.items():
+        assert found[name].get_xdata() == pytest.approx(places, abs=1e-9)
+        assert np.all(found[name].get_ydata() == 0)
+    assert legend_of(shown.ax)[3:] == list(expected)
+    assert len({line.get_marker() for line in lines}) == len(lines)
+    touching = np.isfinite(shown.contacts[0].get_xdata())
+    assert np.array_equal(touching, motion.mode != rl.Mode.FLIGHT)
+
+
+def test_paths_of_several_motions_have_events_in_their_colours(jump: rl.Trajectory) -> None:
+    slip = rl.simulate(rl.scenes.slip, 3.0)
+    shown = rl.plot_paths([jump, slip], ax=new_axes(), labels=["one", "other"])
+    assert [len(lines) for lines in shown.events] == [3, 1]
+    for lines, centre in zip(shown.events, shown.centres, strict=True):
+        assert {line.get_markeredgecolor() for line in lines} == {centre.get_color()}
+    assert legend_of(shown.ax)[-4:] == ["slip", "lift-off", "impact", "stick"]
+
+
+# ------------------------------------------------------------------------------ animation
+
+
+def test_every_frame_shows_what_the_body_does(motion: rl.Trajectory) -> None:
+    animation = rl.animate(motion, width=320)
+    (strip,) = animation.strips
+    slip = strip.motion.constraint_residuals().slip
+    for i in range(animation.t.size):
+        animation.draw(i)
+        mode, points = strip.motion.mode[i], outline(strip.body, 4000)
+        flies, slides = mode == rl.Mode.FLIGHT, mode == rl.Mode.SLIDING
+        assert np.isfinite(strip.contact.get_xdata()[0]) == (not flies)
+        assert np.isfinite(strip.slip.get_xdata()[0]) == slides
+        if slides:
+            assert strip.slip.get_xydata()[0] == pytest.approx(strip.contact.get_xydata()[0])
+            assert strip.slip.get_marker() == (">" if slip[i] > 0 else "<")
+        shadow = strip.shadow.get_xdata()
+        if flies:  # as wide as the body: 4000 points miss its ends by 1e-6 of its size
+            ends = [points[:, 0].min(), points[:, 0].max()]
+            assert shadow == pytest.approx(ends, abs=4e-6)
+        assert len(shadow) == (2 if flies else 0)
+        said = strip.caption.get_text()
+        assert said == ("flies" if flies else "slides" if slides else "")
+        skidded = np.isfinite(strip.skid_trace.get_xdata())
+        assert np.array_equal(skidded, strip.motion.mode[: i + 1] == rl.Mode.SLIDING)
+
+
+def test_the_mark_of_a_slip_points_the_way_it_slides() -> None:
+    """Pushed forwards without turning, the contact slides forwards; spun on the spot, backwards."""
+    pushed = rl.Scene(2.0, 1.0, x_dot=3.0, omega=0.0, friction=0.2)
+    spun = rl.Scene(2.0, 1.0, x_dot=0.0, omega=2.0, friction=0.2)
+    for scene, marker in ((pushed, ">"), (spun, "<")):
+        (strip,) = rl.animate(rl.simulate(scene, 0.1)).strips
+        assert strip.slip.get_marker() == marker
+
+
+def test_the_mark_of_a_slip_lies_along_a_slope() -> None:
+    sliding = rl.simulate(rl.Scene(2.0, 1.0, slope=0.5, x_dot=4.0, omega=0.0, friction=0.2), 0.1)
+    (strip,) = rl.animate(sliding).strips
+    marker = strip.slip._marker  # matplotlib has no public way to its shape
+    head, *base = marker.get_transform().transform(marker.get_path().vertices[:3])
+    pointing = head - np.mean(base, axis=0)
+    downhill = [math.cos(0.5), -math.sin(0.5)]
+    assert pointing / np.linalg.norm(pointing) == pytest.approx(downhill, abs=1e-12)
+
+
+def test_grey_frames_tell_contact_slip_and_flight_apart(jump: rl.Trajectory) -> None:
+    """White, black and between: a fifth of the scale is told apart at a glance."""
+    (strip,) = rl.animate(jump).strips
+    rolling, sliding, shadow = (
+        float(np.dot(to_rgb(colour), (0.21, 0.72, 0.07)))
+        for colour in (
+            strip.contact.get_markerfacecolor(),
+            strip.slip.get_markerfacecolor(),
+            strip.shadow.get_color(),
+        )
+    )
+    assert rolling - shadow > 0.2 and shadow - sliding > 0.2

@@ -1,0 +1,200 @@
+"""Several motions in one moving picture, read back from its artists."""
+
+import math
+import warnings
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+
+matplotlib.use("Agg")
+
+import rolling_ellipse as rl
+from matplotlib.figure import Figure
+from oracles.pictures import outline
+from PIL import Image
+from rolling_ellipse._pictures.animation import RollingAnimation
+
+
+def moved(seconds: float, *scenes: rl.Scene) -> list[rl.Trajectory]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rl.ValidityWarning)
+        return [rl.simulate(scene, seconds, model="rolling") for scene in scenes]
+
+
+SLOW, FAST = rl.scenes.rolling, rl.Scene(2.0, 1.0, omega=4.0)
+REPORT_AND_ROCKING = moved(6.0, rl.scenes.report, rl.scenes.rocking)
+STILL = [*REPORT_AND_ROCKING, *moved(6.0, rl.scenes.circle)]
+FOLLOWED = moved(14.0, SLOW, FAST)  # 51 m long, 20 m apart
+PARTED = moved(20.0, SLOW, FAST, rl.Scene(1.0, 1.0, omega=-2.0))  # 113 m apart
+SIZES = moved(6.0, rl.scenes.thin, rl.Scene(0.2, 0.1, omega=15.0, x=3.0), rl.Scene(0.7, 1.9))
+COMPARISONS = {"still": STILL, "followed": FOLLOWED, "parted": PARTED, "sizes": SIZES}
+
+
+@pytest.fixture(params=COMPARISONS.values(), ids=COMPARISONS.keys())
+def motions(request: pytest.FixtureRequest) -> list[rl.Trajectory]:
+    found: list[rl.Trajectory] = request.param
+    return found
+
+
+def compared(motions: list[rl.Trajectory], width: int = 640) -> RollingAnimation:
+    """All of the motions in four frames a second."""
+    return rl.animate(motions, t_end=float(motions[0].t[-1]), fps=4, width=width)
+
+
+def frames(animation: RollingAnimation) -> range:
+    return range(animation.t.size)
+
+
+def test_every_strip_shows_its_motion_at_the_time_of_the_clock(
+    motions: list[rl.Trajectory],
+) -> None:
+    animation = compared(motions)
+    assert len(animation.strips) == len(motions)
+    for i in frames(animation)[::7]:
+        animation.draw(i)
+        assert animation.clock.get_text() == f"t = {i / 4:.2f} s"
+        for strip, motion in zip(animation.strips, motions, strict=True):
+            at = motion.sol(i / 4)  # one time: other roundings than those of many
+            assert strip.body.get_center() == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
+            assert strip.body.angle == pytest.approx(-math.degrees(at.theta[0]), rel=1e-14)
+            assert (strip.body.width, strip.body.height) == (2 * motion.scene.a, 2 * motion.scene.b)
+
+
+def test_every_body_is_seen_whole_on_its_ground(motions: list[rl.Trajectory]) -> None:
+    animation = compared(motions)
+    for i in frames(animation):
+        animation.draw(i)
+        for strip in animation.strips:
+            (left, right), (bottom, top) = strip.ax.get_xlim(), strip.ax.get_ylim()
+            points = outline(strip.body)
+            assert left < points[:, 0].min() and points[:, 0].max() < right
+            assert bottom < 0 and points[:, 1].max() < top
+            ticks = [float(tick[0, 0]) for tick in strip.ruler.ticks.get_segments()]
+            assert ticks[0] < left and right < ticks[-1]
+
+
+def test_the_strips_have_one_scale_and_fill_the_picture(motions: list[rl.Trajectory]) -> None:
+    animation = compared(motions)
+    boxes = [strip.ax.get_position() for strip in animation.strips]
+    edges = [1.0, *(box.y0 for box in boxes)]
+    assert [box.y1 for box in boxes] == pytest.approx(edges[:-1], abs=1e-14)
+    assert edges[-1] == pytest.approx(0, abs=1e-14)
+    assert all((box.x0, box.x1) == (0, 1) for box in boxes)
+    width, height = animation.figure.get_size_inches()
+    for strip, box in zip(animation.strips, boxes, strict=True):
+        across = np.ptp(strip.ax.get_xlim()) / width
+        upwards = np.ptp(strip.ax.get_ylim()) / (box.height * height)
+        assert across == pytest.approx(np.ptp(animation.strips[0].ax.get_xlim()) / width, rel=1e-14)
+        assert upwards == pytest.approx(across, rel=0.02)  # the height is rounded up to even pixels
+
+
+@pytest.mark.parametrize(
+    ("motions", "same_ground", "views"),
+    [(STILL, True, 1), (FOLLOWED, True, 57), (PARTED, False, 81)],
+    ids=["still", "followed", "parted"],
+)
+def test_the_strips_show_the_same_ground_unless_the_motions_part(
+    motions: list[rl.Trajectory], same_ground: bool, views: int
+) -> None:
+    animation = compared(motions)
+    seen = set()
+    for i in frames(animation):
+        animation.draw(i)
+        ends = [strip.ax.get_xlim() for strip in animation.strips]
+        assert (len(set(ends)) == 1) == (same_ground or i == 0)  # all start at x = 0
+        seen.add(ends[0])
+    assert len(seen) == views
+
+
+def test_parted_motions_say_where_they_are() -> None:
+    animation = rl.animate(PARTED, labels=["slow", "fast", "back"], t_end=20.0, fps=4)
+    animation.draw(80)
+    captions = [strip.caption.get_text() for strip in animation.strips]
+    assert captions == [
+        f"{label}   x = {motion.x[-1]:.1f} m".replace("-", "−")
+        for label, motion in zip(("slow", "fast", "back"), PARTED, strict=True)
+    ]
+
+
+def test_captions_name_the_motions() -> None:
+    animation = rl.animate(FOLLOWED, t_end=1.0)
+    captions = [strip.caption.get_text() for strip in animation.strips]
+    assert captions == ["omega = 3.2 rad/s", "omega = 4 rad/s"]
+    mine = rl.animate(FOLLOWED, t_end=1.0, labels=["one", "other"])
+    assert [strip.caption.get_text() for strip in mine.strips] == ["one", "other"]
+
+
+def test_a_motion_that_ends_earlier_stays_where_it_ended() -> None:
+    short, long = rl.simulate(SLOW, 1.0), rl.simulate(SLOW, 3.0)
+    animation = rl.animate([short, long], labels=["short", "long"], fps=4)
+    assert animation.t[-1] == 3.0
+    first, second = animation.strips
+    for i in frames(animation):
+        animation.draw(i)
+        at = short.sol(min(i / 4, 1.0))
+        assert first.body.get_center() == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
+        assert first.caption.get_text() == ("short   ended at 1 s" if i > 4 else "short")
+        assert second.caption.get_text() == "long"
+
+
+def test_a_strip_says_when_its_rolling_is_no_longer_valid() -> None:
+    animation = rl.animate(moved(1.0, rl.scenes.jump, SLOW), labels=["jump", "slow"])
+    animation.draw(25)
+    captions = [strip.caption.get_text() for strip in animation.strips]
+    assert captions == ["jump   rolling is no longer valid", "slow"]
+
+
+@pytest.mark.parametrize("width", [320, 640])
+def test_texts_are_clear_of_one_another_and_of_the_bodies(
+    motions: list[rl.Trajectory], width: int
+) -> None:
+    animation = compared(motions, width)
+    for i in frames(animation)[::9]:
+        animation.draw(i)
+        clock = animation.clock.get_window_extent()
+        assert clock.x0 > animation.strips[0].caption.get_window_extent().x1
+        for strip in animation.strips:
+            text, box = strip.caption.get_window_extent(), strip.ax.get_window_extent()
+            assert text.x0 > 0 and text.x1 < box.x1 and text.y1 < box.y1
+            assert text.y0 > strip.ax.transData.transform(outline(strip.body))[:, 1].max()
+            figures = [label for label in strip.ruler.labels if label.get_text()]
+            assert min(label.get_window_extent().y0 for label in figures) > box.y0
+
+
+def test_it_draws_into_a_figure_it_is_given() -> None:
+    for size in ((5, 5), (10, 1), (2, 8)):
+        animation = rl.animate(STILL, t_end=1.0, fps=4, figure=Figure(figsize=size))
+        assert tuple(animation.figure.get_size_inches()) == size
+        for strip in animation.strips:
+            (left, right), (bottom, top) = strip.ax.get_xlim(), strip.ax.get_ylim()
+            height = strip.ax.get_position().height * size[1]
+            assert (top - bottom) / height == pytest.approx((right - left) / size[0], rel=1e-12)
+            points = outline(strip.body)
+            assert bottom < 0 and points[:, 1].max() < top
+            assert left < points[:, 0].min() and points[:, 0].max() < right
+
+
+def test_a_file_of_several_motions(tmp_path: Path) -> None:
+    path = tmp_path / "race.gif"
+    rl.animate(REPORT_AND_ROCKING, path, t_end=0.2, width=160, dpi=50)
+    with Image.open(path) as gif:
+        assert gif.n_frames == 6
+        assert gif.size[0] == 160 and gif.size[1] % 2 == 0
+
+
+def test_wrong_input_is_refused_by_name() -> None:
+    with pytest.raises(ValueError, match="labels must be 2, one for each trajectory, got 1"):
+        rl.animate(FOLLOWED, labels=["one"])
+    with pytest.raises(ValueError, match=r"trajectories must be .*, got none"):
+        rl.animate([])
+    with pytest.raises(TypeError, match=r"trajectories must be .*, got Scene\("):
+        rl.animate([SLOW])  # type: ignore[list-item]
+    with pytest.raises(ValueError, match=r"t_end must be within \[0, 20\] s, got 21"):
+        rl.animate([*FOLLOWED, *PARTED], t_end=21)
+
+
+def test_the_user_s_layout_is_left_alone() -> None:
+    with matplotlib.rc_context({"figure.constrained_layout.use": True}):
+        rl.animate(rl.simulate(rl.scenes.rocking, 0.1))  # any warning is an error

@@ -1,0 +1,282 @@
+"""The code itself: linter, formatters, type checker, generated files, one version, walls.
+
+Everything is found beside this file, so that the suite runs from a source checkout with the
+package installed as users install it.
+"""
+
+import ast
+import os
+import platform
+import re
+import subprocess
+import sys
+import sysconfig
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import rolling_ellipse
+from oracles.paths import ROOT
+
+SOURCES = sorted((ROOT / "src").rglob("*.[ch]pp"))
+GENERATED = {
+    ROOT / "src" / "numerics" / "gauss_legendre.hpp": ROOT / "tools" / "make_gauss_legendre.py",
+    ROOT / "src" / "integrator" / "collocation.hpp": ROOT / "tools" / "make_collocation.py",
+}
+PYTHON_FOLDERS = ("python", "tests", "tools", "docs")
+BINDINGS = ROOT / "src" / "bindings"
+CORE = [path for path in SOURCES if path.parent != BINDINGS]
+# The order of the data: a folder includes only itself and those before it; "" is src itself.
+FOLDERS = (
+    "numerics", "integrator", "geometry", "scene", "rolling", "proof", "multipliers", "contact",
+    "outcome", "", "bindings",
+)  # fmt: skip
+# The same of the package: a module imports only those before it ("" is the package itself); what is
+# slow to load, pictures above all, may be imported where it is needed.
+MODULES = (
+    "_core", "_fields", "_check", "geometry", "_constraints", "_scene", "scenes", "_settings",
+    "_events", "_status", "_samples", "_trajectory", "_simulate", "_flow", "_certify", "_outcome",
+    "_export", "impacts", "report", "_pictures", "", "__main__",
+)  # fmt: skip
+COMPLEX_PRODUCTS = """
+void one(const double* x, const double* y, double* z) {
+    const double re = x[0] * y[0] - x[1] * y[1];
+    const double im = x[0] * y[1] + x[1] * y[0];
+    z[0] = re;
+    z[1] = im;
+}
+void many(const double* __restrict x, const double* __restrict y, double* __restrict z) {
+    for (int i = 0; i < 64; ++i) one(x + 2 * i, y + 2 * i, z + 2 * i);
+}
+"""
+
+
+def run(*command: str | Path) -> str:
+    """Output of a command in the checkout; what it says is the message if it fails."""
+    done = subprocess.run(
+        [str(part) for part in command], cwd=ROOT, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, f"{command[0]}:\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+def clang_format() -> Path:
+    """The script that the test extra puts beside the interpreter."""
+    found = Path(sysconfig.get_path("scripts")) / "clang-format"
+    assert found.exists(), f"{found} is missing: pip install '.[test]'"
+    return found
+
+
+# -------------------------------------------------------------------------------- tools
+
+
+def test_ruff() -> None:
+    run(sys.executable, "-m", "ruff", "check", "--no-cache", ".")
+
+
+def test_ruff_format() -> None:
+    """Python files; newer versions also take code in Markdown, where comments are aligned."""
+    run(sys.executable, "-m", "ruff", "format", "--no-cache", "--check", *PYTHON_FOLDERS)
+
+
+def test_mypy(tmp_path: Path) -> None:
+    """The package as written here, strict by the project's settings."""
+    package = ROOT / "python" / "rolling_ellipse"
+    # -p would take the installed package: the path given wins over `packages` of the settings
+    run(sys.executable, "-m", "mypy", f"--cache-dir={tmp_path}", package)
+
+
+def test_clang_format() -> None:
+    run(clang_format(), "--dry-run", "-Werror", *(p for p in SOURCES if p not in GENERATED))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "command"),
+    [
+        ("unused.py", "import os\n", ["-m", "ruff", "check", "--no-cache"]),
+        ("quotes.py", "x = 'one'\n", ["-m", "ruff", "format", "--no-cache", "--check"]),
+        ("untyped.py", "def f(x):\n    return x\n", ["-m", "mypy", "--strict"]),
+    ],
+)
+def test_the_tools_refuse_what_is_wrong(
+    name: str, text: str, command: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / name
+    path.write_text(text)
+    done = subprocess.run(
+        [sys.executable, *command, str(path)], cwd=tmp_path, capture_output=True, timeout=300
+    )
+    assert done.returncode == 1, done.stderr
+
+
+def test_clang_format_refuses_what_is_wrong(tmp_path: Path) -> None:
+    (tmp_path / ".clang-format").write_text((ROOT / ".clang-format").read_text())
+    path = tmp_path / "wide.cpp"
+    path.write_text("int   f( ){return 1;}\n")
+    done = subprocess.run(
+        [clang_format(), "--dry-run", "-Werror", path], capture_output=True, timeout=60
+    )
+    assert done.returncode != 0
+
+
+# -------------------------------------------------------------- generated files and numbers
+
+
+@pytest.mark.parametrize(("table", "script"), GENERATED.items(), ids=lambda path: path.stem)
+def test_tables_are_what_their_scripts_print(table: Path, script: Path) -> None:
+    assert table.read_text(encoding="utf-8") == run(sys.executable, script)
+
+
+def test_one_version() -> None:
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    version = settings["project"]["version"]
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    found = re.search(r"^version:\s*\"?([^\"\s]+)", citation, re.MULTILINE)
+    assert found and found[1] == version
+    assert rolling_ellipse.__version__ == version
+    # and nowhere else
+    literal = f'"{version}"'
+    for path in (*SOURCES, *(ROOT / "python").rglob("*.py"), ROOT / "CMakeLists.txt"):
+        assert literal not in path.read_text(encoding="utf-8"), path
+
+
+def test_every_requirement_states_its_oldest_version() -> None:
+    """Those that tools/oldest_versions.py runs the suite with."""
+    versions = run(sys.executable, ROOT / "tools" / "oldest_versions.py", "--list").split()
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    for needed in settings["project"]["dependencies"]:
+        assert needed.replace(">=", "==") in versions
+
+
+# --------------------------------------------------------------------------------- walls
+
+
+def included(path: Path) -> list[str]:
+    text = path.read_text(encoding="utf-8")
+    return re.findall(r"^\s*#\s*include\s*[<\"]([^>\"]+)[>\"]", text, re.MULTILINE)
+
+
+def test_only_the_bindings_know_python() -> None:
+    assert any(name.startswith("pybind11/") for name in included(BINDINGS / "arrays.hpp"))
+    assert len(CORE) > 20
+    for path in CORE:
+        for name in included(path):
+            assert not name.startswith(("pybind11", "Python.h", "numpy")), f"{path.name}: {name}"
+        assert "PyObject" not in path.read_text(encoding="utf-8")
+
+
+def folder_of(name: str) -> int:
+    """Place of a source in the order of the folders, by its path from src."""
+    return FOLDERS.index(name.rpartition("/")[0])
+
+
+def test_each_folder_includes_only_those_before_it() -> None:
+    between = 0
+    for path in SOURCES:
+        name = path.relative_to(ROOT / "src").as_posix()
+        for other in re.findall(r'#include "(.+)"', path.read_text(encoding="utf-8")):
+            assert (ROOT / "src" / other).is_file(), f"{name}: {other} is not a path from src"
+            assert folder_of(other) <= folder_of(name), f"{name} includes {other}"
+            between += folder_of(other) < folder_of(name)
+    assert between > 50  # fewer: the includes are no longer recognised
+
+
+def imported_modules(path: Path, package: Path) -> list[str]:
+    """Modules of MODULES that a file imports when it is loaded."""
+    here = list(path.relative_to(package).with_suffix("").parts)
+    found = []
+    for line in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(line, ast.ImportFrom) and line.level:
+            module = here[: -line.level] + (line.module.split(".") if line.module else [])
+            found += module[:1] or [name.name for name in line.names]
+    return [name if name in MODULES else "" for name in found]
+
+
+def test_each_module_imports_only_those_before_it() -> None:
+    package = ROOT / "python" / "rolling_ellipse"
+    between = 0
+    for path in package.rglob("*.py"):
+        name = path.relative_to(package).with_suffix("").parts[0]
+        mine = MODULES.index("" if name == "__init__" else name)
+        for other in imported_modules(path, package):
+            assert MODULES.index(other) <= mine, f"{path.name} imports {other or package.name}"
+            between += MODULES.index(other) < mine
+    assert between > 50  # fewer: the imports are no longer recognised
+
+
+def test_matplotlib_is_loaded_with_the_first_picture() -> None:
+    script = (
+        "import sys, rolling_ellipse; assert 'matplotlib' not in sys.modules;"
+        "assert {'plot', 'animate', '__version__'} <= set(dir(rolling_ellipse));"
+        "from rolling_ellipse import plot; assert 'matplotlib' in sys.modules;"
+        "assert rolling_ellipse.plot is plot"
+    )
+    run(sys.executable, "-c", script)
+
+
+def test_no_arithmetic_that_depends_on_the_mood_of_the_compiler() -> None:
+    """-ffast-math breaks the compensated sums; -march=native would not run on other machines."""
+    build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    for setting in ("-ffp-contract=off", "-fno-tree-vectorize", "EIGEN_DONT_VECTORIZE"):
+        assert setting in build
+    settings = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    for text in (build, settings, *(path.read_text(encoding="utf-8") for path in SOURCES)):
+        for flag in ("-ffast-math", "-Ofast", "-funsafe-math", "-march=native", "fast_math"):
+            assert flag not in text
+
+
+@pytest.fixture
+def fused(tmp_path: Path) -> Callable[..., list[str]]:
+    """Fused instructions in the assembly of a source, built as in CMakeLists.txt but with -mfma."""
+    if platform.machine() != "x86_64":
+        pytest.skip(f"-mfma is a flag of x86-64, not of {platform.machine()}")
+    build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    found = re.search(r"target_compile_options\(rolling_ellipse_core PUBLIC (.+)\n", build)
+    assert found
+    flags = ["-std=c++17", "-O3", "-mavx2", "-mfma", "-Isrc", *found[1].split()]
+
+    def instructions(source: Path, *more: str) -> list[str]:
+        assembly = tmp_path / f"{source.stem}.s"
+        run(os.environ.get("CXX", "c++"), *flags, *more, "-S", source, "-o", assembly)
+        return re.findall(r"\bvfn?m(?:add|sub)\w+", assembly.read_text())
+
+    return instructions
+
+
+def test_nothing_is_fused_unless_written(fused: Callable[..., list[str]], tmp_path: Path) -> None:
+    product = tmp_path / "product.cpp"
+    product.write_text(COMPLEX_PRODUCTS)
+    assert fused(product) == []
+    written = tmp_path / "written.cpp"
+    written.write_text("double f(double x) { return __builtin_fma(x, x, x); }")
+    assert len(fused(written)) == 1
+
+
+def test_nothing_is_fused_in_vectors_where_they_are_wanted(
+    fused: Callable[..., list[str]],
+) -> None:
+    """Packed ones would be; of single numbers are those that are written."""
+    build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    found = re.search(
+        r"set_source_files_properties\(([^)]*)PROPERTIES COMPILE_OPTIONS (.+)\)", build
+    )
+    assert found
+    for name in found[1].split():
+        assert all(each.endswith("sd") for each in fused(ROOT / name, found[2])), name
+
+
+def test_every_source_is_built_and_included_once() -> None:
+    build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    build = "".join(re.findall(r"(?:add_library|add_module)\([^)]*\)", build))
+    for path in SOURCES:
+        if path.suffix == ".cpp":
+            name = path.relative_to(ROOT).as_posix()
+            assert len(re.findall(rf"\b{re.escape(name)}\b", build)) == 1, name
+        else:
+            assert "#pragma once" in path.read_text(encoding="utf-8"), path.name
+
+
+def test_it_carries_its_types() -> None:
+    installed = Path(rolling_ellipse.__file__).resolve().parent
+    assert (installed / "py.typed").exists() and (installed / "_core.pyi").exists()

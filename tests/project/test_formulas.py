@@ -1,0 +1,62 @@
+"""The numbered formulas: defined and shown true in the physics notebook, cited by the core.
+
+A comment of the core that says ``physics (12)`` means the formula under the heading ``### (12)`` of
+notebooks/02_physics.ipynb; ``physics (23, 24)`` means two of them.
+"""
+
+import re
+from itertools import pairwise
+
+import nbformat
+from oracles.paths import ROOT
+
+SOURCES = sorted((ROOT / "src").rglob("*.[ch]pp"))
+CELLS = nbformat.read(ROOT / "notebooks" / "02_physics.ipynb", 4).cells
+
+
+def headings(cell: nbformat.NotebookNode) -> list[int]:
+    """Numbers of the formulas that a cell defines."""
+    found = re.findall(r"^### \((\d+)\) \S", cell.source, re.MULTILINE)
+    return [int(number) for number in found] if cell.cell_type == "markdown" else []
+
+
+def citations(text: str) -> list[int]:
+    """Numbers of the formulas that a source text cites."""
+    found = re.findall(r"\bphysics \(([^)]*)\)", text)
+    return [int(number) for numbers in found for number in numbers.split(",")]
+
+
+DEFINED = [number for cell in CELLS for number in headings(cell)]
+CITED = {path.name: citations(path.read_text(encoding="utf-8")) for path in SOURCES}
+
+
+def test_citations_are_told_from_other_brackets() -> None:
+    text = "// h: physics (1)\n x = f(2);  // physics (23, 24); eq (5), physics of (6), (7)"
+    assert citations(text) == [1, 23, 24]
+
+
+def test_each_number_is_defined_once_and_none_is_missing() -> None:
+    assert list(range(1, len(DEFINED) + 1)) == DEFINED
+    assert len(DEFINED) >= 30  # fewer: the headings are no longer recognised
+
+
+def test_every_formula_is_cited_by_the_core() -> None:
+    assert set(DEFINED).difference(*CITED.values()) == set()
+
+
+def test_every_citation_is_defined() -> None:
+    undefined = {name: set(numbers).difference(DEFINED) for name, numbers in CITED.items()}
+    assert {name: numbers for name, numbers in undefined.items() if numbers} == {}
+
+
+def test_the_core_says_once_what_the_numbers_are() -> None:
+    texts = {path.name: path.read_text(encoding="utf-8") for path in SOURCES}
+    assert [name for name, text in texts.items() if "02_physics.ipynb" in text] == ["ellipse.hpp"]
+
+
+def test_every_formula_is_shown_by_the_cell_below_it() -> None:
+    """One formula to a cell of text; the cell of code below it checks that very number."""
+    for text, below in pairwise(CELLS):
+        for number in headings(text):
+            assert headings(text) == [number], f"({number}) shares its cell"
+            assert below.cell_type == "code" and f"check({number}, " in below.source, number

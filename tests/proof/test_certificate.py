@@ -1,0 +1,643 @@
+"""`certify` against brute force on ten thousand random scenes.
+
+The oracle (oracles/rolling.py) knows Newton's law, the energy and dense samples in long double,
+refined to 1e-16; the package proves signs of polynomials. Every error bound is what the oracle says
+double arithmetic may lose: 1e-12 of the terms, and what a few ulp of the energy do to them.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import mpmath as mp
+import numpy as np
+import oracles.geometry
+import oracles.rolling
+import pytest
+from numpy.typing import NDArray
+from oracles.numbers import DIGITS, EPS, PI, Long
+from oracles.rolling import Motion
+from rolling_ellipse import Impulse, Scene, Validity, certify
+
+SCENES, CHUNK = 10_000, 500
+EDGE_MARGIN = 1e-5  # nearer to a threshold, relative, EDGE may be said
+Floats = NDArray[np.float64]
+
+
+# ------------------------------------------------------------------------- the random scenes
+
+
+class Sample(NamedTuple):
+    """Scenes as columns; inertia = nan stands for the uniform disc."""
+
+    a: Floats
+    b: Floats
+    mass: Floats
+    gravity: Floats
+    inertia: Floats
+    friction: Floats
+    theta: Floats
+    omega: Floats
+
+    def motion(self, rows: Any = slice(None)) -> Motion:
+        """What rolls, from the very doubles the package is given."""
+        a, b, mass, gravity, inertia, _, theta, omega = (field[rows] for field in self)
+        gyration2 = gyration2_of(a, b, mass, inertia)
+        return oracles.rolling.motion(a, b, gyration2, gravity, theta, omega)
+
+    def scene(self, row: int) -> Scene:
+        a, b, mass, gravity, inertia, friction, theta, omega = (float(field[row]) for field in self)
+        return Scene(
+            a,
+            b,
+            mass=mass,
+            gravity=gravity,
+            inertia=None if math.isnan(inertia) else inertia,
+            friction=friction,
+            theta=theta,
+            omega=omega,
+        )
+
+
+def gyration2_of(a: Floats, b: Floats, mass: Floats, inertia: Floats) -> Long:
+    wide = [np.asarray(field, np.longdouble) for field in (a, b, mass, inertia)]
+    return np.where(np.isnan(inertia), (wide[0] ** 2 + wide[1] ** 2) / 4, wide[3] / wide[2])
+
+
+def random_bodies(count: int, rng: np.random.Generator) -> tuple[Floats, ...]:
+    """a, b, mass, gravity, inertia: a/b over six decades, half of them of ordinary shape, a tenth
+    nearly circular; half discs, the others from nearly a point mass to a hoop."""
+    thin, ordinary = rng.uniform(-2.999, 2.999, count), rng.uniform(-1.1, 1.1, count)
+    ratio = 10 ** np.where(rng.random(count) < 0.5, thin, ordinary)
+    circular = 1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-8, -1, count)
+    ratio = np.where(rng.random(count) < 0.1, circular, ratio)
+    b = 10 ** rng.uniform(-2, 2, count)
+    a = b * ratio
+    mass, gravity = 10 ** rng.uniform(-2, 3, count), 10 ** rng.uniform(-1, 2, count)
+    inertia = mass * np.maximum(a, b) ** 2 * 10 ** rng.uniform(-3, 0, count)
+    return a, b, mass, gravity, np.where(rng.random(count) < 0.5, np.nan, inertia)
+
+
+def random_lifts(still: Motion, loss: Long, rng: np.random.Generator) -> Long:
+    """E/m above lying flat: swings of all sizes, rotations up to and beyond the loss of contact,
+    and crowds about the separatrix (to 1e-12) and about the loss of contact (to 1e-9)."""
+    count = still.a.size
+    barrier = still.gravity * np.abs(still.a - still.b)
+    side = rng.choice([-1, 1], count)
+    kinds = [
+        barrier * rng.uniform(0, 1, count),
+        barrier * 10 ** rng.uniform(-5, 0, count),
+        barrier + np.abs(loss - barrier) * rng.uniform(0, 1, count),
+        loss * 10 ** rng.uniform(-0.5, 2, count),
+        barrier * (1 + side * 10 ** rng.uniform(-12, -2, count)),
+        loss * (1 + side * 10 ** rng.uniform(-9, -2, count)),
+    ]
+    chosen: Long = np.choose(rng.integers(len(kinds), size=count), kinds)
+    return chosen
+
+
+def random_states(moving: Motion, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """theta and omega somewhere on each motion, up to 300 turns away; some at rest for a moment."""
+    count = moving.a.size
+    on = oracles.rolling.chart(moving)
+    sine, cosine = on.sides(on.top * rng.uniform(0, 1, count))
+    phi = np.arctan2(sine, cosine) * rng.choice([-1, 1], count)
+    far = np.where(rng.random(count) < 0.3, 600, 2)
+    flat = np.where(moving.a >= moving.b, 0, PI / 2) + PI * np.round(
+        far * rng.uniform(-1, 1, count)
+    )
+    theta = (flat + phi).astype(float)
+    omega = oracles.rolling.speed(
+        moving, *oracles.geometry.reduced(theta, moving.a, moving.b)
+    ).astype(float)
+    at_rest = rng.random(count) < 0.1
+    return theta, np.where(at_rest, 0.0, omega) * rng.choice([-1, 1], count)
+
+
+def random_frictions(needed: Long, rng: np.random.Generator) -> Floats:
+    """inf, 0, anything from ice to rubber, and close to what is needed (to 1e-9) where that is."""
+    count = needed.size
+    near = needed * (1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-9, -1, count))
+    anything = 10 ** rng.uniform(np.log10(0.05), np.log10(2.0), count)
+    near = np.where((needed > 0.01) & (needed < 3), near, anything)
+    kinds = [np.full(count, np.inf), np.zeros(count), anything, anything, near, near, near]
+    return np.choose(rng.integers(len(kinds), size=count), kinds).astype(float)
+
+
+def random_sample(count: int, seed: int) -> Sample:
+    rng = np.random.default_rng(seed)
+    a, b, mass, gravity, inertia = random_bodies(count, rng)
+    gyration2 = gyration2_of(a, b, mass, inertia)
+    loss = oracles.rolling.contact_loss_lift(a, b, gyration2, gravity)
+    still = oracles.rolling.motion(a, b, gyration2, gravity, np.where(a >= b, 0.0, np.pi / 2), 0.0)
+    theta, omega = random_states(still._replace(lift=random_lifts(still, loss, rng)), rng)
+    frictionless = Sample(a, b, mass, gravity, inertia, np.zeros(count), theta, omega)
+    needed = oracles.rolling.extremes(frictionless.motion()).needed
+    return frictionless._replace(friction=random_frictions(needed, rng))
+
+
+class Judged(NamedTuple):
+    """What the package said, and the truth, per mass."""
+
+    sample: Sample
+    validity: NDArray[np.object_]
+    normal: Floats
+    normal_angle: Floats
+    needed: Floats
+    needed_angle: Floats
+    ends_at: Floats
+    truth: oracles.rolling.Extremes
+
+    def margins(self) -> tuple[Long, Long]:
+        """By how much N > 0 and |F| <= mu N hold where they are worst, in the oracle's errors."""
+        moving, friction, truth = self.sample.motion(), self.sample.friction, self.truth
+        there = oracles.rolling.forces(moving, *oracles.rolling.chart(moving).sides(truth.needed_v))
+        limited = np.isfinite(friction)
+        mu = np.where(limited, friction, 0)
+        grip = mu * there.normal - np.abs(there.friction)
+        grip /= mu * there.normal_error + there.friction_error + np.finfo(float).tiny
+        grip = np.where(np.isinf(truth.needed), -np.inf, grip)
+        return truth.normal / truth.normal_error, np.where(limited, grip, np.inf)
+
+    def distance(self) -> Long:
+        """Relative, to the nearer threshold: of the friction to the needed, or of N/(m g) to 0."""
+        friction, needed = self.sample.friction, self.truth.needed
+        known = np.isfinite(friction) & np.isfinite(needed) & (needed > 0)
+        off = np.abs(np.where(known, friction, np.inf) / np.where(known, needed, 1) - 1)
+        return np.minimum(off, np.abs(self.truth.normal) / self.sample.gravity)
+
+
+def column(found: list[Any], name: str) -> Floats:
+    """None, what a Certificate without a number says, as nan."""
+    values = [getattr(one, name) for one in found]
+    return np.array([math.nan if value is None else value for value in values])
+
+
+def judge(count: int, seed: int) -> Judged:
+    sample = random_sample(count, seed)
+    found = [certify(sample.scene(row)) for row in range(count)]
+    return Judged(
+        sample,
+        np.array([one.validity for one in found], dtype=object),
+        column(found, "smallest_normal_force") / sample.mass,
+        column(found, "smallest_normal_force_angle"),
+        column(found, "largest_friction_needed"),
+        column(found, "largest_friction_needed_angle"),
+        column(found, "ends_at"),
+        oracles.rolling.extremes(sample.motion()),
+    )
+
+
+@pytest.fixture(scope="module")
+def judged() -> list[Judged]:
+    """In chunks: 500 scenes x 300 samples of long double are 2.4 MB per intermediate array."""
+    return [judge(CHUNK, seed) for seed in range(SCENES // CHUNK)]
+
+
+def at_rest(sample: Sample) -> NDArray[np.bool_]:
+    """Stays for ever by decree: omega = 0 and h' within 8 ulp of the size of the body."""
+    _, slope, *_ = oracles.geometry.outline(sample.a, sample.b, *reduced_start(sample))
+    resting: NDArray[np.bool_] = slope <= 8 * EPS * np.maximum(sample.a, sample.b)
+    return (sample.omega == 0) & resting
+
+
+def starts_rolling(chunk: Judged) -> NDArray[np.bool_]:
+    """False where the package may refuse to look at the motion: without friction contact is
+    sliding, and a body that is thrown off at once (free gap acceleration >= 0) is in flight."""
+    sample = chunk.sample
+    *_, curvature = oracles.geometry.outline(sample.a, sample.b, *reduced_start(sample))
+    thrown = sample.gravity + curvature * np.asarray(sample.omega, np.longdouble) ** 2 <= 0
+    return (sample.friction > 0) & ~thrown
+
+
+def reduced_start(sample: Sample) -> tuple[Long, Long]:
+    return oracles.geometry.reduced(sample.theta, sample.a, sample.b)
+
+
+# ---------------------------------------------------------------- the oracle by itself
+
+
+def test_oracle_forces_against_differentiated_energy() -> None:
+    """Long double with Newton's law against 40 digits that differentiate h and omega^2(theta)."""
+    mp.mp.dps = DIGITS
+    sample = random_sample(60, 99)
+    moving = sample.motion()
+    found = oracles.rolling.forces(moving, *reduced_start(sample))
+    for row in range(60):
+        a, b, theta, omega = (mp.mpf(float(sample[k][row])) for k in (0, 1, 6, 7))
+        mass, inertia = sample.mass[row], sample.inertia[row]
+        disc = (a**2 + b**2) / 4
+        gyration2 = disc if math.isnan(inertia) else mp.mpf(inertia) / mp.mpf(mass)
+        h, slope, _ = oracles.geometry.height_slopes(theta, a, b)
+        energy = (gyration2 + h**2 + slope**2) * omega**2 / 2 + sample.gravity[row] * h
+        normal, friction = oracles.rolling.forces_by_differentiation(
+            theta, a, b, gyration2, sample.gravity[row], energy
+        )
+        for actual, exact, error in (
+            (found.normal[row], normal, found.normal_error[row]),
+            (found.friction[row], abs(friction), found.friction_error[row]),
+        ):
+            off = abs(abs(mp.mpf(str(actual))) - abs(exact))
+            assert off <= 1e-4 * mp.mpf(str(error)), (row, actual, exact)  # i.e. 1e-16
+
+
+def test_oracle_extremes_do_not_depend_on_the_sampling() -> None:
+    moving = random_sample(200, 98).motion()
+    coarse, fine = oracles.rolling.extremes(moving, 300), oracles.rolling.extremes(moving, 3000)
+    assert np.all(np.abs(coarse.normal - fine.normal) <= 1e-3 * fine.normal_error)
+    assert np.array_equal(np.isinf(coarse.needed), np.isinf(fine.needed))
+    finite = np.isfinite(fine.needed)
+    off = np.abs(coarse.needed[finite] - fine.needed[finite])
+    assert np.all(off <= 1e-3 * fine.needed_error[finite])
+
+
+def test_oracle_loss_of_contact_is_where_the_smallest_normal_force_vanishes() -> None:
+    a, b, mass, gravity, inertia = random_bodies(300, np.random.default_rng(97))
+    gyration2 = gyration2_of(a, b, mass, inertia)
+    still = oracles.rolling.motion(a, b, gyration2, gravity, np.where(a >= b, 0.0, np.pi / 2), 0.0)
+    loss = oracles.rolling.contact_loss_lift(a, b, gyration2, gravity)
+    assert np.all(oracles.rolling.extremes(still._replace(lift=loss * (1 - 1e-9))).normal > 0)
+    assert np.all(oracles.rolling.extremes(still._replace(lift=loss * (1 + 1e-9))).normal < 0)
+
+
+def test_the_random_scenes_meet_every_case(judged: list[Judged]) -> None:
+    """A suite that never visits the interesting cases proves nothing."""
+    samples = [chunk.sample for chunk in judged]
+    needed = np.concatenate([chunk.truth.needed for chunk in judged])
+    friction = np.concatenate([sample.friction for sample in samples])
+    moving = [sample.motion() for sample in samples]
+    barrier = [part.gravity * np.abs(part.a - part.b) for part in moving]
+    swings = np.concatenate([p.lift < top for p, top in zip(moving, barrier, strict=True)])
+    ratio = np.concatenate([sample.a / sample.b for sample in samples])
+    omega = np.concatenate([sample.omega for sample in samples])
+    truly = needed <= friction
+    known = np.isfinite(needed) & np.isfinite(friction) & (needed > 0)
+    beside = np.abs(friction[known] / needed[known] - 1)
+    for case in (swings, truly, np.isinf(needed), ratio > 1, np.isinf(friction)):
+        assert 0.1 < case.mean() < 0.9
+    assert (beside < 1e-6).sum() > 200
+    assert (ratio < 3e-3).sum() > 100 and (ratio > 300).sum() > 100
+    assert (np.abs(ratio - 1) < 1e-4).sum() > 100
+    assert (omega == 0).sum() > 500 and (friction == 0).sum() > 500
+
+
+# ------------------------------------------------------------------------------ the claims
+
+
+def test_no_false_verdict(judged: list[Judged]) -> None:
+    """VALID and INVALID are claims of proof; EDGE is for what rounding cannot tell: only within
+    EDGE_MARGIN of a threshold, and rarely."""
+    edges = 0
+    for chunk in judged:
+        contact, grip = chunk.margins()
+        margin = np.minimum(contact, grip)
+        rolls = starts_rolling(chunk)
+        valid, invalid, edge, no_proof = (
+            chunk.validity == verdict
+            for verdict in (Validity.VALID, Validity.INVALID, Validity.EDGE, Validity.NO_PROOF)
+        )
+        # 0.1 errors: the truth is known to 1e-16, the inputs the package forms (k^2) to 1e-16 too
+        false = (valid & (margin < -0.1) & ~at_rest(chunk.sample)) | (invalid & (margin > 0.1))
+        assert not false.any(), [chunk.sample.scene(int(row)) for row in np.flatnonzero(false)[:3]]
+        vague = edge & (chunk.distance() > EDGE_MARGIN)
+        assert not vague.any(), [chunk.sample.scene(int(row)) for row in np.flatnonzero(vague)[:3]]
+        assert not np.any(no_proof & rolls)
+        assert np.all(valid | invalid | edge | no_proof)
+        edges += int(edge.sum())
+    assert edges < 0.002 * SCENES
+
+
+def test_smallest_normal_force(judged: list[Judged]) -> None:
+    for chunk in judged:
+        known = chunk.validity != Validity.NO_PROOF
+        off = np.abs(chunk.normal - chunk.truth.normal)
+        assert np.all(off[known] <= chunk.truth.normal_error[known])
+        angle = chunk.normal_angle[known]
+        assert np.all((angle >= 0) & (angle <= math.pi / 2))
+        sides = oracles.geometry.reduced(angle, chunk.sample.a[known], chunk.sample.b[known])
+        there = oracles.rolling.forces(chunk.sample.motion(known), *sides)
+        # an extreme is flat, or the angle's own ulp moves it: 1e-6 of the terms allows both
+        slack = 1e6 * there.normal_error
+        assert np.all(np.abs(there.normal - chunk.truth.normal[known]) <= slack)
+
+
+def test_largest_friction_needed(judged: list[Judged]) -> None:
+    """|F/N| inherits the errors of both forces, divided by N; where N reaches 0 it is inf."""
+    for chunk in judged:
+        known = chunk.validity != Validity.NO_PROOF
+        contact = chunk.truth.normal / chunk.truth.normal_error
+        lost, kept = known & (contact < -1), known & (contact > 1)
+        assert np.all(np.isinf(chunk.needed[lost]))
+        off = np.abs(chunk.needed[kept] - chunk.truth.needed[kept])
+        assert np.all(off <= chunk.truth.needed_error[kept])
+        angle = chunk.needed_angle[kept]
+        assert np.all((angle >= 0) & (angle <= math.pi / 2))
+        sides = oracles.geometry.reduced(angle, chunk.sample.a[kept], chunk.sample.b[kept])
+        there = oracles.rolling.forces(chunk.sample.motion(kept), *sides)
+        sturdy = contact[kept] > 1e4  # else the peak is narrower than the angle can say
+        ratio = np.abs(there.friction / there.normal)
+        near = np.abs(ratio - chunk.truth.needed[kept]) <= 1e6 * chunk.truth.needed_error[kept]
+        assert np.all(near | ~sturdy)
+
+
+def test_ends_at_is_given_for_what_ends(judged: list[Judged]) -> None:
+    for chunk in judged:
+        given = np.isfinite(chunk.ends_at)
+        assert not np.any(given & (chunk.validity == Validity.VALID))
+        assert np.all(given[chunk.validity == Validity.INVALID])
+
+
+class Road(NamedTuple):
+    """The angles a motion goes through from its start, once through everything it reaches:
+    signed reduced angle phi (theta = base + phi), forwards, one leg or, in a swing, two."""
+
+    base: np.longdouble
+    start: np.longdouble
+    direction: int
+    turn: np.longdouble  # the largest |phi|, or inf
+    legs: list[Long]
+
+
+def road(moving: Motion, theta: float, omega: float) -> Road:
+    """`moving` has one entry, in arrays of length 1."""
+    standing = bool(moving.a[0] < moving.b[0])
+    offset = np.longdouble(theta) - (PI / 2 if standing else 0)
+    half_turns = np.round(offset / PI)
+    start = offset - half_turns * PI
+    base = np.longdouble(theta) - start
+    direction = int(np.sign(omega) if omega else -np.sign(start))
+    on = oracles.rolling.chart(moving)
+    sine, cosine = on.sides(on.top * np.linspace(np.longdouble(0), 1, 1200))
+    quarter = np.arctan2(sine, cosine)
+    swings = moving.lift[0] < moving.gravity[0] * abs(moving.a[0] - moving.b[0])
+    turn = quarter[-1] if swings else np.longdouble(np.inf)
+    every = np.concatenate([-quarter[::-1], quarter])
+    if not swings:
+        every = np.concatenate([every - PI, every, every + PI])
+    every = every * direction  # from here on forwards is up
+    begin = start * direction
+    if swings:
+        return Road(base, start, direction, turn, [every[every >= begin], every[::-1]])
+    return Road(base, start, direction, turn, [every[(every >= begin) & (every <= begin + PI)]])
+
+
+def slack(moving: Motion, friction: float, phi: Long) -> Long:
+    """How far the rolling law is from breaking, in the errors of double arithmetic."""
+    found = oracles.rolling.forces(moving, np.abs(np.sin(phi)), np.abs(np.cos(phi)))
+    contact = found.normal / found.normal_error
+    if math.isinf(friction):
+        return contact
+    grip = friction * found.normal - np.abs(found.friction)
+    return np.minimum(contact, grip / (friction * found.normal_error + found.friction_error))
+
+
+def assert_ends_there(
+    moving: Motion, friction: float, theta: float, omega: float, ends: float
+) -> None:
+    """The law holds everywhere before `ends` and breaks there."""
+    way = road(moving, theta, omega)
+    if slack(moving, friction, np.array([way.start]))[0] < -1:
+        assert ends == theta
+        return
+    end = (np.longdouble(ends) - way.base) * way.direction  # forwards is up
+    begin = way.start * way.direction
+    waist = float(oracles.rolling.chart(moving).waist[0])
+    # as an angle, rounding is an ulp of it; as a root, 1e-8 of the narrowest feature there
+    near = 8 * np.spacing(max(abs(ends), abs(theta))) + 1e-8 * max(abs(float(end)), waist)
+    assert abs(end) <= way.turn + near
+    leg = 0 if end >= begin - near else 1
+    assert leg < len(way.legs), "behind the start of a rotation"
+    before = way.legs[0][way.legs[0] < end - near] if leg == 0 else way.legs[0]
+    if leg == 1:
+        before = np.concatenate([before, way.legs[1][way.legs[1] > end + near]])
+    assert np.all(slack(moving, friction, before) >= -1), "broken earlier"
+    forwards = near if leg == 0 else -near
+    around = slack(moving, friction, np.array([end - forwards, end + forwards]))
+    assert around[0] > 0 or abs(end - begin) <= near, "broken before"
+    assert around[1] < 0, "still unbroken after"
+
+
+def test_ends_at_is_the_first_end(judged: list[Judged]) -> None:
+    """Scenes that clearly break (by 1e-4 of the forces: there the law is crossed, not grazed),
+    each on a road of 1200 points per quarter turn."""
+    checked = 0
+    for chunk in judged:
+        contact, grip = chunk.margins()
+        worst = np.where(np.isinf(chunk.sample.friction), contact, grip)
+        clear = (worst < -1e8) & (chunk.validity == Validity.INVALID)
+        for row in np.flatnonzero(clear & (chunk.sample.friction > 0))[:100]:
+            sample = chunk.sample
+            moving = sample.motion(slice(row, row + 1))
+            state = (float(sample.theta[row]), float(sample.omega[row]))
+            friction = float(sample.friction[row])
+            try:
+                assert_ends_there(moving, friction, *state, float(chunk.ends_at[row]))
+            except AssertionError as failure:
+                raise AssertionError(f"{failure}: {sample.scene(int(row))}") from failure
+            checked += 1
+    assert checked >= 1000
+
+
+def test_ends_at_beside_the_tip_with_little_weight() -> None:
+    """N is 2.6e-9 of the weight on the tip and the start 3.7e-9 rad beside it, too far for this
+    friction already: h cannot tell the two apart, the angle can."""
+    scene = Scene(
+        2.239752036298014,
+        2.87251997990579,
+        gravity=5.632220764118916,
+        friction=0.056465590484008184,
+        theta=851.3716091191411,
+        omega=-2.236362243677252,
+    )
+    assert certify(scene).validity is Validity.INVALID
+    assert certify(scene).ends_at == scene.theta
+
+
+@pytest.mark.parametrize("shift", [1e-3, -1e-3])
+def test_a_wrong_end_is_noticed(shift: float) -> None:
+    """The tester tested: grip is lost at 0.2488 rad here, and nowhere near."""
+    scene = Scene(2.0, 1.0, friction=0.2, omega=2.0)
+    moving = oracles.rolling.motion(
+        *(np.array([value]) for value in (2.0, 1.0, 1.25, 9.81, 0.0, 2.0))
+    )
+    ends = certify(scene).ends_at
+    assert ends is not None
+    assert_ends_there(moving, 0.2, 0.0, 2.0, ends)
+    with pytest.raises(AssertionError, match=r"broken|unbroken"):
+        assert_ends_there(moving, 0.2, 0.0, 2.0, ends + shift)
+
+
+def test_a_hairs_breadth_from_the_threshold() -> None:
+    """Friction 1e-13, 1e-14, 1e-15 beside what is needed: EDGE, or the truth."""
+    said_edge = 0
+    for seed in range(3):
+        sample = random_sample(100, 1000 + seed)
+        truth = oracles.rolling.extremes(sample.motion())
+        for sign in (1, -1):
+            friction = (truth.needed * (1 + sign * np.longdouble(10) ** -(13 + seed))).astype(float)
+            close = sample._replace(friction=friction)
+            for row in np.flatnonzero(np.isfinite(friction) & (friction > 0)):
+                verdict = certify(close.scene(int(row))).validity
+                exact = Validity.VALID if friction[row] >= truth.needed[row] else Validity.INVALID
+                assert verdict in (exact, Validity.EDGE), close.scene(int(row))
+                said_edge += verdict is Validity.EDGE
+    assert said_edge > 0
+
+
+# ------------------------------------------------------------------------- special scenes
+
+
+@pytest.mark.parametrize("friction", [math.inf, 0.5, 1e-9])
+@pytest.mark.parametrize("omega", [0.0, 2.0, -1e3])
+def test_a_circle_rolls_for_ever(friction: float, omega: float) -> None:
+    found = certify(Scene(1.5, 1.5, mass=2.0, omega=omega, friction=friction))
+    assert found.validity is Validity.VALID and found.ends_at is None
+    # N = m g exactly, but omega^2 (rho - h) may leave the rounding of rho - h = 0
+    rounding = 8 * EPS * (9.81 + 1.5 * omega**2)
+    assert found.smallest_normal_force == pytest.approx(2 * 9.81, abs=2 * rounding)
+    assert found.largest_friction_needed == pytest.approx(0.0, abs=rounding / 9.81)
+
+
+def test_a_circle_needs_no_friction() -> None:
+    assert certify(Scene(1.5, 1.5, omega=2.0, friction=0.0)).validity is not Validity.INVALID
+
+
+@pytest.mark.parametrize("friction", [math.inf, 0.8])
+@pytest.mark.parametrize(
+    ("a", "b", "theta"),
+    [
+        (2.0, 1.0, 0.0),
+        (2.0, 1.0, -3 * math.pi),
+        (1.0, 2.0, math.pi / 2),
+        (2.0, 1.0, math.pi / 2),
+        (1.0, 2.0, 0.0),
+    ],
+    ids=["flat", "flat, turned", "flat standing axes", "tip", "tip standing axes"],
+)
+def test_at_rest_in_equilibrium(a: float, b: float, theta: float, friction: float) -> None:
+    found = certify(Scene(a, b, mass=3.0, theta=theta, friction=friction))
+    assert found.validity is Validity.VALID and found.ends_at is None
+
+
+@pytest.mark.parametrize("friction", [math.inf, 0.01, 0.0])
+def test_at_rest_lying_flat_the_numbers_are_those_of_rest(friction: float) -> None:
+    found = certify(Scene(2.0, 1.0, mass=3.0, friction=friction))
+    assert found.validity is Validity.VALID or (
+        friction == 0 and found.validity is Validity.NO_PROOF
+    )
+    assert found.smallest_normal_force == pytest.approx(3 * 9.81, rel=4 * EPS)
+    assert found.largest_friction_needed == 0
+
+
+def test_at_rest_on_the_tip_little_friction_is_no_proof_of_slipping() -> None:
+    """It stays there for ever: conservative is allowed, wrong is not."""
+    found = certify(Scene(2.0, 1.0, theta=math.pi / 2, friction=0.01))
+    assert found.validity is not Validity.INVALID
+
+
+@pytest.mark.parametrize("side", [-1e-12, 0.0, 1e-12])
+@pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.0, 2.0), (9.0, 1.0)])
+def test_beside_the_separatrix(a: float, b: float, side: float) -> None:
+    """Whether it just turns back or just goes over, the forces are those of the separatrix."""
+    longer, shorter = max(a, b), min(a, b)
+    gyration2 = (a * a + b * b) / 4
+    omega = math.sqrt(2 * 9.81 * (longer - shorter) / (gyration2 + shorter**2)) * (1 + side)
+    theta = 0.0 if a > b else math.pi / 2
+    found = certify(Scene(a, b, theta=theta, omega=omega))
+    moving = oracles.rolling.motion(*(np.array([v]) for v in (a, b, gyration2, 9.81, theta, omega)))
+    truth = oracles.rolling.extremes(moving)
+    assert found.validity is Validity.VALID
+    error = float(truth.normal_error[0])
+    assert found.smallest_normal_force == pytest.approx(float(truth.normal[0]), abs=error)
+    error = float(truth.needed_error[0])
+    assert found.largest_friction_needed == pytest.approx(float(truth.needed[0]), abs=error)
+    for factor, expected in ((1 + 1e-6, Validity.VALID), (1 - 1e-6, Validity.INVALID)):
+        friction = float(truth.needed[0]) * factor
+        again = certify(Scene(a, b, theta=theta, omega=omega, friction=friction))
+        assert again.validity is expected
+
+
+@pytest.mark.parametrize("omega", [0.3, -2.0])
+def test_from_the_tip_as_from_flat(omega: float) -> None:
+    """The same motion, entered at the tip."""
+    at_flat = math.sqrt((2 * 9.81 * 1.0 + (1.25 + 4) * omega**2) / (1.25 + 1))
+    tip = certify(Scene(2.0, 1.0, theta=math.pi / 2, omega=omega))
+    flat = certify(Scene(2.0, 1.0, omega=at_flat))
+    assert tip.validity is flat.validity is Validity.VALID
+    assert tip.smallest_normal_force == pytest.approx(flat.smallest_normal_force, rel=1e-12)
+    assert tip.largest_friction_needed == pytest.approx(flat.largest_friction_needed, rel=1e-11)
+
+
+def test_too_fast_on_the_tip_cannot_even_start() -> None:
+    """Rolling over the tip of 2:1 keeps N > 0 up to omega^2 = g a/(a^2 - b^2), other things equal;
+    twice that speed throws the body off at once."""
+    limit = math.sqrt(9.81 * 2 / 3)
+    found = certify(Scene(2.0, 1.0, theta=math.pi / 2, omega=2 * limit))
+    assert found.validity in (Validity.INVALID, Validity.NO_PROOF)
+    if found.validity is Validity.INVALID:
+        assert found.ends_at == math.pi / 2
+
+
+@pytest.mark.parametrize("theta", [0.4, -2.0])
+@pytest.mark.parametrize("omega", [0.0, 1.0])
+def test_without_friction_it_does_not_roll(theta: float, omega: float) -> None:
+    found = certify(Scene(2.0, 1.0, theta=theta, omega=omega, friction=0.0))
+    assert found.validity in (Validity.INVALID, Validity.NO_PROOF)
+    if found.validity is Validity.INVALID:
+        assert found.ends_at == theta
+
+
+@pytest.mark.parametrize("omega", [1.0, 3.2, 4.8])
+def test_unlimited_friction_leaves_only_the_contact(omega: float) -> None:
+    assert certify(Scene(2.0, 1.0, omega=omega)).validity is Validity.VALID
+    lost = certify(Scene(2.0, 1.0, omega=4.85))
+    assert lost.validity is Validity.INVALID and math.isinf(lost.largest_friction_needed)
+    # it is lost near where the threshold loses it, 62.36 degrees, a little before
+    assert lost.ends_at is not None and 0 < math.radians(62.36) - lost.ends_at < 0.1
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        Scene(2.0, 1.0, omega=3.0, slope=0.1),
+        Scene(2.0, 1.0, slope=-1e-6),
+        Scene(2.0, 1.0, theta=0.5, z=2.5),
+        Scene(2.0, 1.0, omega=1.0, z_dot=0.5),
+        Scene(2.0, 1.0, omega=0.0, x_dot=3.0, friction=0.2),
+        Scene(2.0, 1.0, friction=0.5, impulse=Impulse.press(5.0, 1.5)),
+    ],
+    ids=["slope", "slight slope", "in the air", "leaving", "sliding", "sliding after the blow"],
+)
+def test_no_proof_where_it_does_not_roll_on_level_ground(scene: Scene) -> None:
+    found = certify(scene)
+    assert found.validity is Validity.NO_PROOF
+    assert found.reason
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1e6])
+def test_the_unit_of_length_has_no_say(unit: float) -> None:
+    """Lengths and gravity in another unit: the same ratios, N scaled like gravity."""
+    one = certify(Scene(2.0, 1.0, omega=3.2, friction=0.7))
+    other = certify(Scene(2.0 * unit, unit, gravity=9.81 * unit, omega=3.2, friction=0.7))
+    assert one.validity is other.validity
+    assert other.largest_friction_needed == pytest.approx(one.largest_friction_needed, rel=1e-12)
+    assert other.smallest_normal_force == pytest.approx(one.smallest_normal_force * unit, rel=1e-12)
+
+
+def test_the_state_after_the_blow_is_what_is_certified() -> None:
+    """The report's blow makes 3.2 rad/s of rolling; it must not be certified at rest, nor at the
+    free body's 5.76, which rolling could not keep."""
+    struck = certify(Scene(2.0, 1.0, mass=10.0, impulse=Impulse.press(48.0, 1.5)))
+    moving = certify(Scene(2.0, 1.0, mass=10.0, omega=3.2))
+    assert struck.validity is Validity.VALID
+    assert struck.smallest_normal_force == pytest.approx(moving.smallest_normal_force, rel=1e-12)
+    assert certify(Scene(2.0, 1.0, mass=10.0, omega=5.76)).validity is Validity.INVALID
+
+
+def test_the_reason_is_a_sentence_with_a_number() -> None:
+    for scene in (
+        Scene(2.0, 1.0, omega=3.2),
+        Scene(2.0, 1.0, omega=3.2, friction=0.3),
+        Scene(2.0, 1.0, omega=5.0),
+    ):
+        reason = certify(scene).reason
+        assert len(reason) > 20 and any(character.isdigit() for character in reason)

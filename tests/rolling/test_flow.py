@@ -1,0 +1,503 @@
+"""`flow` and `period` beyond the table of test_flow_reference.py: limits, symmetries, arrays.
+
+The oracle is the energy integral in 40 digits of reference/make_rolling_reference.py, which shares
+nothing with the package. A unit is what one rounding of every input does to an answer, plus two
+units in its last place; LARGEST_ERROR of them is what test_flow_reference.py allows, too.
+"""
+
+import math
+import signal
+import time
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import make_rolling_reference as reference
+import mpmath as mp
+import numpy as np
+import pytest
+from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion, arguments, carried, grain
+from oracles.geometry import support
+from oracles.numbers import EPS
+from rolling_ellipse import Scene, flow, geometry, period, thresholds
+
+DIGITS = 40
+ROLL_OVER = thresholds(2.0, 1.0).roll_over_speed
+# semi-axes, k^2, gravity, theta, omega
+MOTIONS = {
+    "libration": (2.0, 1.0, 1.25, 9.81, 0.2, 1.0),
+    "small libration": (2.0, 1.0, 1.25, 9.81, 1e-3, 0.0),
+    "rotation": (2.0, 1.0, 1.25, 9.81, 0.2, 3.2),
+    "backwards": (2.0, 1.0, 1.25, 9.81, -1.1, -4.0),
+    "fast": (1.5, 1.0, 0.3, 3.7, 0.4, 1e4),
+    "just over the tip": (2.0, 1.0, 1.25, 9.81, 0.0, ROLL_OVER * (1 + 1e-9)),
+    "just not over it": (2.0, 1.0, 1.25, 9.81, 0.0, ROLL_OVER * (1 - 1e-9)),
+    "thin": (2.0, 0.02, 1.0001, 9.81, 0.3, 0.0),
+    "thin turning": (1.0, 1.1e-3, 0.25, 9.81, 0.1, 7.0),
+    "standing": (0.7, 1.9, 1.025, 9.81, 1.3, 0.8),
+    "standing turning": (0.7, 1.9, 1.025, 9.81, 0.1, -2.5),
+    "hoop": (1.1, 1.0, 1.21, 1.62, 0.7, 0.3),
+    "circle + 1e-8": (1.0 + 1e-8, 1.0, 0.5, 9.81, 0.3, 2.0),
+}
+each_motion = pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+
+
+@pytest.fixture(autouse=True)
+def digits() -> Any:
+    with mp.workdps(DIGITS):
+        yield
+
+
+@cache
+def rule(count: int) -> reference.Rule:
+    return reference.gauss_rule(count, 1.8)
+
+
+def exact_period(motion: Motion, count: int = 28) -> Any:
+    """Four quarters of the energy integral."""
+    return 4 * reference.RollingEllipse(reference.Scene(*motion), rule(count)).quarter_time
+
+
+def period_unit(motion: Motion) -> float:
+    """One rounding of each input by central differences, and two ulp; few digits do."""
+    small, total = mp.mpf("1e-18"), mp.mpf(0)
+    for i, value in enumerate(motion):
+        change = small * (abs(mp.mpf(value)) if PARAMETERS[i] != "theta" else 1)
+        if change:
+            ends = [(*motion[:i], value + sign * change, *motion[i + 1 :]) for sign in (1, -1)]
+            up, down = (exact_period(end, 12) for end in ends)
+            total += abs(up - down) / (2 * small) * reference.ROUNDING
+    return float(total) + 2 * math.ulp(float(exact_period(motion, 12)))
+
+
+# ---------------------------------------------------------------------------------- the period
+
+
+@each_motion
+def test_the_oracle_has_thirty_digits(motion: Motion) -> None:
+    """Two rules of different order: the error of the coarser one is far above the other's."""
+    coarse, fine = exact_period(motion), exact_period(motion, 40)
+    assert abs(coarse - fine) <= mp.mpf("1e-30") * fine
+
+
+@each_motion
+def test_period_against_the_energy_integral(motion: Motion) -> None:
+    a, b, gyration2, gravity, theta, omega = motion
+    scene = Scene(a, b, inertia=gyration2, gravity=gravity, theta=theta, omega=omega)
+    exact, unit = exact_period(motion), period_unit(motion)
+    off = float(abs(period(scene) - exact)) / unit
+    print(f"{off:.3g} units of {unit / float(exact):.2g}")
+    assert off <= LARGEST_ERROR
+
+
+def test_the_unit_of_the_period_is_sharp() -> None:
+    """16 ulp of the speed are seen: the bound is not wide."""
+    motion = MOTIONS["rotation"]
+    changed = (*motion[:5], motion[5] * (1 + 16 * EPS))
+    off = float(abs(exact_period(changed) - exact_period(motion))) / period_unit(motion)
+    assert off > LARGEST_ERROR
+
+
+def test_period_of_rest_and_of_a_circle() -> None:
+    assert period(Scene(2.0, 1.0)) == math.inf
+    assert period(Scene(2.0, 1.0, theta=math.pi / 2)) == math.inf
+    assert period(Scene(1.5, 1.5, omega=-3.0)) == 2 * math.pi / 3
+
+
+@pytest.mark.parametrize("motion", [MOTIONS["libration"], MOTIONS["rotation"], MOTIONS["standing"]])
+def test_the_period_is_that_of_the_flow(motion: Motion) -> None:
+    """After a period the state is the same, to the units and what half an ulp of the period is."""
+    a, b, gyration2, gravity, theta, omega = motion
+    scene = Scene(a, b, inertia=gyration2, gravity=gravity, theta=theta, omega=omega)
+    time = period(scene)
+    later = np.array(flow(time, **arguments(motion)))
+    turns = round((later[0] - theta) / (2 * math.pi))
+    path = geometry.centre_path(2 * math.pi * turns, a=a, b=b)
+    before = [theta + 2 * math.pi * turns, omega, path]
+    moved = 1e-6 * np.abs(flow(1e-6, **arguments(motion)) - np.array([theta, omega, 0.0]))
+    rates = moved / 1e-12  # theta_dot, omega_dot, x_dot
+    assert np.all(np.abs(later - before) <= 4 * grain(time, motion) + rates * math.ulp(time))
+
+
+# ------------------------------------------------------------------------- circle and nearly so
+
+
+@pytest.mark.parametrize("radius", [1.0, 0.37, 1e-3, 250.0])
+@pytest.mark.parametrize("theta", [0.0, 0.7, -3.0, 1e4])
+def test_a_circle_turns_uniformly(radius: float, theta: float) -> None:
+    """Two roundings at most, each half an ulp of its result: one ulp of the larger."""
+    for omega in (2.0, -0.3, 1e5):
+        for t in (1e-9, 0.1, 7.7, -3.3, 1e6):
+            angle, speed, x = flow(t, a=radius, b=radius, theta=theta, omega=omega)
+            turn = Fraction(omega) * Fraction(t)
+            allowed = max(math.ulp(float(turn)), math.ulp(angle))
+            assert abs(Fraction(angle) - theta - turn) <= Fraction(allowed)
+            assert speed == omega
+            assert abs(Fraction(x) - Fraction(radius) * turn) <= Fraction(math.ulp(x))
+
+
+@pytest.mark.parametrize(
+    ("theta", "omega"), [(0.3, 2.0), (0.3, -1e-3), (1.0, 1e-6), (0.2, 0.0), (1.5, 0.0)]
+)
+def test_a_hair_beside_the_circle_nothing_is_lost(theta: float, omega: float) -> None:
+    """a - b = 1e-8 is an exact difference of the given numbers: the roundings of a and b, which
+    would alone be worth 1e-8 in the slow motions, are not granted."""
+    a, b = 1.0 + 1e-8, 1.0
+    scene = reference.Scene(a, b, (a * a + b * b) / 4, 9.81, theta, omega)
+    exactly = reference.motion(scene, rule(28))
+    changes = reference.sensitivities(scene, rule(20))
+    for t in (0.1, 3.0, 5e4):
+        exact = exactly.state(mp.mpf(t))
+        granted = changes(mp.mpf(t))[2:]  # without those of a and b, the first two
+        unit = reference.units(granted, exact)
+        found = flow(t, a=a, b=b, theta=theta, omega=omega)
+        off = [float(abs(f - e)) / u for f, e, u in zip(found, exact, unit, strict=True)]
+        print(f"t = {t:g}: {max(off):.3g} units")
+        assert max(off) <= LARGEST_ERROR
+
+
+# --------------------------------------------------------------------------- rest and separatrix
+
+
+@pytest.mark.parametrize("shape", [(2.0, 1.0), (0.7, 1.9), (1.0, 1e-3)])
+@pytest.mark.parametrize("quarter", [0, 1, 2, -1, -3, 5])
+def test_rest_stays_at_the_flat_and_on_the_tip(shape: tuple[float, float], quarter: int) -> None:
+    """Where the double next to the quarter turn is an equilibrium: |h'| within 8 ulp of h. Lying
+    on pi or 5 pi/2 it may miss that: it then rocks by the rounding of the angle."""
+    theta = quarter * math.pi / 2
+    a, b = shape
+    slope = geometry.support_slope(theta, a=a, b=b)
+    in_equilibrium = abs(slope) <= 8 * EPS * geometry.support(theta, a=a, b=b)
+    assert in_equilibrium or abs(quarter) > 1
+    for t in (0.0, 1e-3, 50.0, -50.0, 1e12):
+        answer = flow(t, a=a, b=b, theta=theta, omega=0.0)
+        if in_equilibrium:
+            assert answer == (theta, 0.0, 0.0)
+        else:
+            assert abs(answer[0] - theta) <= 2 * math.ulp(theta)
+
+
+def test_beside_the_tip_it_falls() -> None:
+    """The other side of rest: a millionth off the tip is no equilibrium."""
+    side = 1e-6
+    left = flow(12.0, a=2.0, b=1.0, theta=math.pi / 2 - side, omega=0.0)
+    right = flow(12.0, a=2.0, b=1.0, theta=math.pi / 2 + side, omega=0.0)
+    assert left[0] < math.pi / 2 - 0.5 and right[0] > math.pi / 2 + 0.5
+
+
+@pytest.mark.parametrize("side", [1e-12, -1e-12])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_within_1e_12_of_the_separatrix(side: float, direction: int) -> None:
+    """As many units as anywhere; the unit grows like exp(tip rate * t) while it hangs there, and
+    again with every passage, so the last time is beyond the first one (period near 50 s)."""
+    motion = (2.0, 1.0, 1.25, 9.81, 0.0, direction * ROLL_OVER * (1 + side))
+    scene = reference.Scene(*motion)
+    exactly, changes = (
+        reference.motion(scene, rule(28)),
+        reference.sensitivities(scene, rule(20)),
+    )
+    for t in (0.5, 3.0, 12.0, 20.0, 30.0):
+        exact = exactly.state(mp.mpf(t))
+        unit = reference.units(changes(mp.mpf(t)), exact)
+        found = flow(t, **arguments(motion))
+        off = [float(abs(f - e)) / u for f, e, u in zip(found, exact, unit, strict=True)]
+        assert max(off) <= LARGEST_ERROR
+    turned = direction * flow(30.0, **arguments(motion))[0]
+    assert turned > math.pi / 2 if side > 0 else turned < math.pi / 2
+
+
+def separatrix_speeds(a: float, b: float, theta: float) -> list[float]:
+    """Doubles whose energy is that of the tip for the package: around the roll-over speed, those
+    that neither return nor pass in a million seconds (the nearest others take 50 s)."""
+    speed = thresholds(a, b).roll_over_speed
+    around = [speed + k * math.ulp(speed) for k in range(-6, 7)]
+    resting = math.pi / 2 if a > b else math.pi
+    ends = [flow(1e6, a=a, b=b, theta=theta, omega=omega)[0] for omega in around]
+    return [w for w, end in zip(around, ends, strict=True) if abs(end - resting) < 1e-9]
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_on_the_separatrix_it_creeps_to_the_tip_and_never_passes(direction: int) -> None:
+    speeds = separatrix_speeds(2.0, 1.0, 0.0)
+    assert speeds, "no double has the energy of the tip: choose another shape"
+    times = np.concatenate([np.linspace(0, 60, 60_001), np.geomspace(61, 1e12, 200)])
+    path = geometry.centre_path(math.pi / 2, a=2.0, b=1.0)
+    for speed in speeds:
+        theta, omega, x = flow(times, a=2.0, b=1.0, theta=0.0, omega=direction * speed)
+        theta, omega, x = direction * theta, direction * omega, direction * x
+        # the double math.pi/2 lies below pi/2: to reach it is not to pass
+        assert np.all(np.diff(theta) >= 0) and theta[-1] <= math.pi / 2
+        assert np.all(np.diff(omega) <= 0) and omega[-1] >= 0
+        # x is a sum of a path and an angle that each may waver by an ulp
+        assert np.all(np.diff(x) >= -2 * math.ulp(path)) and x[-1] <= path + 2 * math.ulp(path)
+        # close to the tip the distance decays at the tip rate; the rest is of second order in it
+        near = np.flatnonzero((math.pi / 2 - theta < 1e-3) & (math.pi / 2 - theta > 1e-5))
+        rates = np.diff(np.log(math.pi / 2 - theta[near])) / np.diff(times[near])
+        rate = thresholds(2.0, 1.0).tip_rate
+        assert np.median(rates) == pytest.approx(-rate, rel=1e-4)
+
+
+def test_on_the_separatrix_the_period_is_infinite() -> None:
+    """As documented for what never comes back."""
+    for speed in separatrix_speeds(2.0, 1.0, 0.0):
+        assert period(Scene(2.0, 1.0, omega=speed)) == math.inf
+
+
+# -------------------------------------------------------------------------------- symmetries
+
+# the grain of states that fell through the neighbourhood of the tip is no longer linear
+ORDINARY = [name for name in MOTIONS if not name.startswith("just")]
+ordinary = pytest.mark.parametrize("motion", [MOTIONS[name] for name in ORDINARY], ids=ORDINARY)
+
+
+@each_motion
+def test_mirror(motion: Motion) -> None:
+    """Seen from the other side: the same bits, with the other sign."""
+    times = np.array([-1e3, -0.7, 1e-6, 0.2, 3.0, 44.0, 1e7])
+    start = arguments(motion)
+    seen = start | {"theta": -start["theta"], "omega": -start["omega"]}
+    for one, other in zip(flow(times, **start), flow(times, **seen), strict=True):
+        assert np.array_equal(one, -other)
+
+
+@ordinary
+def test_negative_times_are_the_motion_backwards(motion: Motion) -> None:
+    """The film run backwards starts with the opposite speed."""
+    start = arguments(motion)
+    for t in (1e-6, 0.3, 2.0, 33.0):
+        before = np.array(flow(-t, **start))
+        after = np.array(flow(t, **(start | {"omega": -start["omega"]})))
+        off = np.abs(before - after * [1, -1, 1])
+        assert np.all(off <= 2 * LARGEST_ERROR * grain(t, motion))  # both may be off
+
+
+@ordinary
+def test_there_and_back(motion: Motion) -> None:
+    """The state reached is only known to its units; going back carries them along."""
+    a, b, gyration2, gravity, theta, omega = motion
+    for t in (0.3, 2.0, 33.0):
+        there = flow(t, **arguments(motion))
+        reached = (a, b, gyration2, gravity, there[0], there[1])
+        back = np.array(flow(-t, **arguments(reached)))
+        off = np.abs(back - [theta, omega, -there[2]])
+        assert np.all(off <= carried(t, motion, reached, -t))
+
+
+@ordinary
+def test_two_steps_are_one(motion: Motion) -> None:
+    for t1, t2 in ((0.25, 0.5), (1.0, 7.0), (30.0, -2.0), (5.0, 200.0)):
+        first = flow(t1, **arguments(motion))
+        reached = (*motion[:4], first[0], first[1])
+        second = np.add(flow(t2, **arguments(reached)), [0, 0, first[2]])
+        off = np.abs(second - flow(t1 + t2, **arguments(motion)))
+        unit = LARGEST_ERROR * grain(t1 + t2, motion)
+        assert np.all(off <= carried(t1, motion, reached, t2) + unit)
+
+
+# ------------------------------------------------------------------------------------ energy
+
+
+def energy_misses(motion: Motion, times: np.ndarray, omega_factor: float = 1.0) -> float:
+    """Largest error of the energy in ulp, after what 2 ulp of theta excuse; in long double.
+
+    theta is the start plus what it turned: its grain is that of the larger of both.
+    """
+    a, b, gyration2, gravity, *_ = (np.longdouble(value) for value in motion)
+    found = flow(times, **arguments(motion))
+
+    def terms(theta: Any, omega: Any) -> tuple[Any, Any]:
+        h, slope, curvature = support(theta, a, b)
+        energy = (gyration2 + h**2 + slope**2) * omega**2 / 2 + gravity * h
+        by_angle = slope * (h + curvature) * omega**2 + gravity * slope
+        return energy, np.abs(by_angle)
+
+    theta, omega = (np.asarray(values, np.longdouble) for values in found[:2])
+    energy, by_angle = terms(theta, omega * omega_factor)
+    start, _ = terms(np.longdouble(motion[4]), np.longdouble(motion[5]))
+    excused = 2 * np.spacing(np.maximum(np.abs(found[0]), abs(motion[4]))) * by_angle
+    return float(np.max((np.abs(energy - start) - excused) / start) / EPS)
+
+
+@each_motion
+def test_energy_is_constant(motion: Motion) -> None:
+    """16 ulp of E/m over 1e5 samples of a hundred swings; if it swings, also after 1e9 s (if it
+    turns, theta is a large number by then and its grain hides everything)."""
+    swing = float(exact_period(motion, 12))
+    spans = [np.linspace(0, 100 * swing, 100_000)]
+    if reference.RollingEllipse(reference.Scene(*motion), rule(12)).rocks:
+        spans.append(1e9 + np.linspace(0, swing, 1000))
+    for times in spans:
+        misses = energy_misses(motion, times)
+        print(f"{misses:.3g} ulp")
+        assert misses <= 16
+
+
+def test_the_energy_check_sees_omega() -> None:
+    times = np.linspace(0, 10, 1000)
+    assert energy_misses(MOTIONS["rotation"], times, 1 + 1e-3) > 1e9
+    assert energy_misses(MOTIONS["rotation"], times, 1 + 64 * EPS) > 16
+
+
+@each_motion
+def test_x_is_the_path_of_the_centre(motion: Motion) -> None:
+    """Against elliptic integrals of the angle, 8 ulp each, and what 2 ulp of the angle are."""
+    a, b, theta0 = motion[0], motion[1], motion[4]
+    for t in (1e-3, 0.7, 20.0, -300.0):
+        theta, _, x = flow(t, **arguments(motion))
+        # mpmath's E(phi | m) is unwrapped over whole turns
+        paths = [b * mp.ellipe(mp.mpf(end), 1 - (mp.mpf(a) / b) ** 2) for end in (theta, theta0)]
+        height = max(a, b)
+        excused = 2 * height * math.ulp(theta)
+        assert abs(x - (paths[0] - paths[1])) <= excused + 8 * math.ulp(x)
+
+
+# -------------------------------------------------------------------------- shapes and threads
+
+
+def test_scalars_in_floats_out() -> None:
+    start = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
+    expected = flow(1.5, **start)
+    ints = flow(2, a=2, b=1, theta=0, omega=3)
+    numpy_scalars = flow(np.float64(1.5), **{k: np.float64(v) for k, v in start.items()})
+    zero_d = flow(np.array(1.5), **start, gravity=np.array(9.81), gyration2=np.array(1.25))
+    for answer in (expected, ints, numpy_scalars, zero_d):
+        assert isinstance(answer, tuple) and [type(value) for value in answer] == [float] * 3
+    assert numpy_scalars == zero_d == expected
+
+
+def test_broadcasting() -> None:
+    """Every element of the broadcast shape is the scalar call with its arguments."""
+    t, omega = np.array([0.0, 0.3, 2.0, 9.0]), np.array([[1.0], [3.2], [-4.0]])
+    b, gravity = np.array([[[1.0]], [[2.0]], [[0.01]]]), [9.81, 1.62, 3.7, 9.81]
+    found = flow(t, a=2.0, b=b, theta=0.3, omega=omega, gravity=gravity)
+    assert [values.shape for values in found] == [(3, 3, 4)] * 3
+    assert all(values.dtype == np.float64 for values in found)
+    for i, j, k in np.ndindex(3, 3, 4):
+        start = {"a": 2.0, "b": float(b[i, 0, 0]), "theta": 0.3, "omega": float(omega[j, 0])}
+        single = flow(float(t[k]), **start, gravity=gravity[k])
+        gyration2 = float((4.0 + b[i, 0, 0] ** 2) / 4)
+        unit = grain(float(t[k]), (2.0, start["b"], gyration2, gravity[k], 0.3, start["omega"]))
+        # bits may differ with the number of samples, within the stated accuracy
+        off = np.abs([values[i, j, k] for values in found] - np.array(single))
+        assert np.all(off <= LARGEST_ERROR * unit)
+
+
+def test_lists_float32_and_empty_arrays() -> None:
+    start = {"a": 2.0, "b": 1.0, "theta": 0.25, "omega": 3.25}
+    times = [0.0, 0.5, 1.25]
+    expected = flow(np.array(times), **start)
+    for given in (times, tuple(times), np.array(times, np.float32), np.array(times)[::-1][::-1]):
+        for one, other in zip(flow(given, **start), expected, strict=True):
+            assert one.dtype == np.float64 and np.array_equal(one, other)
+    backwards = flow(np.array(times)[::-1], **start)
+    for one, other in zip(backwards, expected, strict=True):
+        assert np.array_equal(one[::-1], other)
+    assert [values.shape for values in flow([], **start)] == [(0,)] * 3
+    assert [values.shape for values in flow(np.empty((0, 4)), **start)] == [(0, 4)] * 3
+    assert [values.shape for values in flow([1.0], **start)] == [(1,)] * 3
+    assert [values.shape for values in flow(1.0, **(start | {"a": [2.0, 3.0]}))] == [(2,)] * 3
+
+
+def test_inputs_are_not_modified() -> None:
+    generator = np.random.default_rng(3)
+    given = {name: generator.uniform(1, 2, 50) for name in ("t", *PARAMETERS)}
+    kept = {name: values.copy() for name, values in given.items()}
+    for values in given.values():
+        values.flags.writeable = False
+    answers = flow(**given)
+    for name, values in given.items():
+        assert np.array_equal(values, kept[name])
+        assert not any(np.shares_memory(values, answer) for answer in answers)
+
+
+def test_workers_have_no_say_in_the_bits() -> None:
+    """20000 motions are 20 chunks: every worker gets some."""
+    generator = np.random.default_rng(4)
+    n = 20_000
+    start = {
+        "a": generator.uniform(0.5, 2, n),
+        "b": generator.uniform(0.5, 2, n),
+        "theta": generator.uniform(-4, 4, n),
+        "omega": generator.normal(0, 4, n),
+    }
+    times = generator.uniform(-20, 20, n)
+    alone = flow(times, **start)
+    for workers in (2, 3, -1):
+        for one, other in zip(alone, flow(times, **start, workers=workers), strict=True):
+            assert np.array_equal(one, other)
+    one_motion = flow(times, a=2.0, b=1.0, theta=0.1, omega=3.2)
+    shared = flow(times, a=2.0, b=1.0, theta=0.1, omega=3.2, workers=2)
+    assert all(np.array_equal(one, other) for one, other in zip(one_motion, shared, strict=True))
+
+
+# -------------------------------------------------------------------------------- bad input
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        *((name, bad) for name in ("t", *PARAMETERS) for bad in (math.nan, math.inf)),
+        *((name, bad) for name in ("a", "b", "gyration2", "gravity") for bad in (0.0, -1.0)),
+    ],
+)
+def test_wrong_numbers_are_refused_by_name(name: str, value: float) -> None:
+    """From a scalar call, from an array, and from the last of many elements on two threads."""
+    start = {"t": 1.0} | arguments(MOTIONS["rotation"])
+    many = np.full(5000, start[name])
+    many[-1] = value
+    for changed in ({name: value}, {name: [start[name], value]}, {name: many, "workers": 2}):
+        with pytest.raises(ValueError, match=rf"^{name}\b.*{value}"):
+            flow(**(start | changed))
+
+
+@pytest.mark.parametrize("value", ["1", None, 1j, [[1.0], [2.0, 3.0]], {}])
+@pytest.mark.parametrize("name", ["t", "a", "theta", "gravity"])
+def test_what_is_no_number_is_refused_by_name(name: str, value: object) -> None:
+    start = {"t": 1.0} | arguments(MOTIONS["rotation"])
+    with pytest.raises(TypeError, match=rf"^{name} must be"):
+        flow(**(start | {name: value}))
+
+
+def test_shapes_that_do_not_broadcast_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"t \(3,\).*omega \(2,\)"):
+        flow([1.0, 2.0, 3.0], a=2.0, b=1.0, theta=0.0, omega=[1.0, 2.0])
+
+
+@pytest.mark.parametrize(
+    ("workers", "error"), [(0, ValueError), (-2, ValueError), (1.5, TypeError), (True, TypeError)]
+)
+def test_wrong_workers_are_refused_by_name(workers: Any, error: type[Exception]) -> None:
+    with pytest.raises(error, match=r"^workers must be"):
+        flow(1.0, a=2.0, b=1.0, theta=0.0, omega=1.0, workers=workers)
+
+
+# ----------------------------------------------------------------------------------- Ctrl-C
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_ctrl_c_stops_a_long_call(workers: int) -> None:
+    """A call of many seconds, interrupted after 0.3 s, must not run to its end: the answer to
+    Ctrl-C is KeyboardInterrupt, not a wait. The full time is scaled from a part of the same call,
+    so the machine's speed and load cancel; a quarter of it is hundreds of chunks."""
+    n, part = 3_000_000, 30_000
+    angles = np.linspace(0.1, 0.4, n)  # each another motion, the dearest kind
+    start = {"a": 2.0, "b": 1.0, "omega": 3.2, "workers": workers}
+
+    def seconds(count: int) -> float:
+        begin = time.perf_counter()
+        flow(5.0, theta=angles[:count], **start)
+        return time.perf_counter() - begin
+
+    full = seconds(part) * n / part
+    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
+    begin = time.perf_counter()
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        with pytest.raises(KeyboardInterrupt):
+            flow(5.0, theta=angles, **start)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, usual)
+    taken = time.perf_counter() - begin
+    print(f"stopped after {taken:.2f} s of {full:.1f} s")
+    assert taken < 0.3 + full / 4

@@ -1,0 +1,333 @@
+"""The state just after an applied impulse, against the collision law followed step by step."""
+
+import itertools
+import math
+from typing import NamedTuple
+
+import mpmath as mp
+import numpy as np
+import oracles.geometry
+import pytest
+from oracles.numbers import DIGITS, EPS
+from rolling_ellipse import Impulse, Mode, Scene
+
+MASS = 3.0
+FRICTIONS = [0.0, 0.05, 0.2, 0.6, 1.0, 5.0, math.inf]
+
+
+# ------------------------------------------------------------------------------- the oracle
+
+
+class Contact(NamedTuple):
+    """Slip and gap rate of a body without reaction, and what a unit of reaction does to them."""
+
+    slip: mp.mpf
+    gap_rate: mp.mpf
+    tangential: mp.mpf
+    normal: mp.mpf
+    coupling: mp.mpf
+
+
+def free_contact(scene: Scene, impulse: Impulse) -> tuple[Contact, mp.mpf]:
+    """After Newton's and Euler's laws for the applied impulse alone; also the free omega."""
+    h, slope, _ = oracles.geometry.height_slopes(scene.theta, scene.a, scene.b)
+    mass, inertia = mp.mpf(scene.mass), mp.mpf(scene.gyration2) * mp.mpf(scene.mass)
+    jx, jz, dx, dz = (mp.mpf(value) for value in (impulse.jx, impulse.jz, impulse.dx, impulse.dz))
+    omega = scene.omega + (dz * jx - dx * jz) / inertia
+    x_dot, z_dot = h * scene.omega + jx / mass, slope * scene.omega + jz / mass
+    return Contact(
+        x_dot - h * omega,
+        z_dot - slope * omega,
+        1 / mass + h * h / inertia,
+        1 / mass + slope * slope / inertia,
+        h * slope / inertia,
+    ), omega
+
+
+def reaction(contact: Contact, friction: mp.mpf) -> tuple[mp.mpf, mp.mpf]:
+    """Coulomb's law along the normal impulse until the approach ends: each slip, stop, stick or
+    reversal is one straight piece."""
+    slip, gap_rate, *_ = contact
+    along, across = mp.mpf(0), mp.mpf(0)
+    while gap_rate < 0:
+        if slip == 0 and abs(contact.coupling) <= friction * contact.tangential:
+            pull = -contact.coupling / contact.tangential
+        else:
+            pull = -friction * mp.sign(slip if slip != 0 else contact.coupling)
+        slip_change = contact.coupling + contact.tangential * pull
+        gap_change = contact.normal + contact.coupling * pull
+        until_stop = -slip / slip_change if slip * slip_change < 0 else mp.inf
+        until_end = -gap_rate / gap_change if gap_change > 0 else mp.inf
+        step = min(until_stop, until_end)
+        along, across = along + pull * step, across + step
+        slip = mp.mpf(0) if step == until_stop else slip + slip_change * step
+        gap_rate = mp.mpf(0) if step == until_end else gap_rate + gap_change * step
+    return along, across
+
+
+def reaction_in_small_steps(contact: Contact, friction: float, steps: int) -> tuple[float, float]:
+    """The same law with no cases at all: after each small push the friction that stops the slip,
+    cut off at the cone."""
+    slip, gap_rate, tangential, normal, coupling = map(float, contact)
+    push = -gap_rate / normal / steps
+    along = across = 0.0
+    while gap_rate < 0:
+        across += push
+        pull = -(slip + coupling * push) / tangential
+        pull = min(max(pull, -friction * push), friction * push)
+        along += pull
+        slip += coupling * push + tangential * pull
+        gap_rate += normal * push + coupling * pull
+    return along, across
+
+
+def random_scenes(count: int, seed: int = 5) -> list[Scene]:
+    """Rolling or resting bodies of many shapes, struck anywhere."""
+    rng = np.random.default_rng(seed)
+    scenes = []
+    for friction in itertools.islice(itertools.cycle(FRICTIONS), count):
+        a, b = (10 ** rng.uniform(-0.7, 0.7, 2)).tolist()
+        jx, jz, dx, dz = rng.normal(size=4).tolist()
+        impulse = Impulse(6 * jx, 6 * jz, dx=a * dx, dz=b * dz)
+        theta, omega = rng.uniform(-7, 7), rng.choice([0.0, 1.0]) * rng.normal()
+        inertia = MASS * max(a, b) ** 2 * rng.uniform(0.05, 0.6)
+        scenes.append(
+            Scene(
+                a,
+                b,
+                mass=MASS,
+                inertia=float(inertia),
+                theta=float(theta),
+                omega=float(omega),
+                friction=friction,
+                impulse=impulse,
+            )
+        )
+    return scenes
+
+
+@pytest.fixture(autouse=True)
+def digits() -> None:
+    mp.mp.dps = DIGITS
+
+
+def test_oracle_against_small_steps() -> None:
+    """First order in the step, so ten thousand steps agree to a few parts in ten thousand."""
+    compared = 0
+    for scene in random_scenes(70, seed=6):
+        if not math.isfinite(scene.friction) or scene.impulse is None:
+            continue
+        contact, _ = free_contact(scene, scene.impulse)
+        if contact.gap_rate >= 0:
+            continue
+        exact = reaction(contact, mp.mpf(scene.friction))
+        steps = reaction_in_small_steps(contact, scene.friction, 10_000)
+        size = abs(exact[0]) + exact[1]
+        assert abs(steps[0] - exact[0]) < 1e-3 * size and abs(steps[1] - exact[1]) < 1e-3 * size
+        compared += 1
+    assert compared > 20
+
+
+# --------------------------------------------------------------------------- random impulses
+
+RANDOM = random_scenes(210)
+
+
+@pytest.mark.parametrize("scene", RANDOM, ids=range(len(RANDOM)))
+def test_collision_law(scene: Scene) -> None:
+    """For mu = inf the limit of large mu (its error goes like 1/mu), else to rounding."""
+    assert scene.impulse is not None
+    contact, free_omega = free_contact(scene, scene.impulse)
+    unlimited = math.isinf(scene.friction)
+    friction = mp.mpf(10) ** 20 if unlimited else mp.mpf(scene.friction)
+    along, across = reaction(contact, friction) if contact.gap_rate < 0 else (0, 0)
+    h, slope, _ = oracles.geometry.height_slopes(scene.theta, scene.a, scene.b)
+    inertia = mp.mpf(scene.gyration2) * MASS
+    found = scene.initial_state
+    # impulses and arms of a few units each, and quotients of them: 100 roundings
+    size = 100 * EPS * (abs(contact.slip) + abs(contact.gap_rate)) / contact.normal
+    size += 100 * EPS * (abs(scene.impulse.jx) + abs(scene.impulse.jz))
+    assert abs(found.free_omega - free_omega) <= 100 * EPS * (1 + abs(free_omega))
+    assert abs(found.reaction_x - along) <= size * (1 + scene_stiffness(contact))
+    assert abs(found.reaction_z - across) <= size * (1 + scene_stiffness(contact))
+    omega = free_omega - (h * along + slope * across) / inertia
+    assert abs(found.omega - omega) <= size * (1 + scene_stiffness(contact)) * (1 + h) / inertia
+
+
+def scene_stiffness(contact: Contact) -> mp.mpf:
+    """How much solving for the reaction magnifies a rounding of the contact's response."""
+    determinant = contact.normal * contact.tangential - contact.coupling**2
+    return (contact.normal + contact.tangential) ** 2 / determinant
+
+
+@pytest.mark.parametrize("scene", RANDOM, ids=range(len(RANDOM)))
+def test_what_every_collision_obeys(scene: Scene) -> None:
+    assert scene.impulse is not None
+    impulse, found = scene.impulse, scene.initial_state
+    h, slope, _ = (
+        float(value) for value in oracles.geometry.height_slopes(scene.theta, scene.a, scene.b)
+    )
+    inertia = scene.gyration2 * MASS
+    spin = impulse.dz * impulse.jx - impulse.dx * impulse.jz
+    reach = scene.a + scene.b
+    size = abs(impulse.jx) + abs(impulse.jz) + abs(found.reaction_x) + abs(found.reaction_z)
+    size += MASS * reach * (abs(scene.omega) + abs(found.omega) + abs(found.free_omega))
+    small = 100 * EPS * size
+    # momentum and angular momentum
+    linear_x = MASS * (found.x_dot - h * scene.omega)
+    linear_z = MASS * (found.z_dot - slope * scene.omega)
+    angular = inertia * (found.omega - scene.omega)
+    assert linear_x == pytest.approx(impulse.jx + found.reaction_x, abs=small)
+    assert linear_z == pytest.approx(impulse.jz + found.reaction_z, abs=small)
+    reacted = -h * found.reaction_x - slope * found.reaction_z
+    arms = reach + abs(impulse.dx) + abs(impulse.dz)
+    assert angular == pytest.approx(spin + reacted, abs=small * arms)
+    # the ground only pushes, within the cone, and is not entered
+    assert found.reaction_z >= 0
+    if math.isfinite(scene.friction):
+        assert abs(found.reaction_x) <= scene.friction * found.reaction_z + small
+    assert found.z_dot - slope * found.omega >= -small / MASS
+    # it takes energy from the free response, never gives
+    free_x, free_z = h * scene.omega + impulse.jx / MASS, slope * scene.omega + impulse.jz / MASS
+    free = MASS * (free_x**2 + free_z**2) + inertia * found.free_omega**2
+    after = MASS * (found.x_dot**2 + found.z_dot**2) + inertia * found.omega**2
+    assert after <= free * (1 + 100 * EPS) + small
+    # and the mode is what the velocities say
+    assert found.theta == scene.theta and found.x == scene.x
+    leaves = found.z_dot - slope * found.omega > small / MASS or thrown_off(scene, found.omega)
+    assert leaves == (found.mode == Mode.FLIGHT)
+    if found.mode == Mode.ROLLING:
+        assert found.x_dot == pytest.approx(h * found.omega, rel=8 * EPS)
+    if abs(found.x_dot - h * found.omega) > small / MASS * (1 + scene.a + scene.b) and not leaves:
+        assert found.mode == Mode.SLIDING
+
+
+def thrown_off(scene: Scene, omega: float) -> bool:
+    """The free body's gap opens at once: g + h'' omega^2 < 0."""
+    *_, curvature = oracles.geometry.height_slopes(scene.theta, scene.a, scene.b)
+    return bool(scene.gravity + curvature * omega**2 < 0)
+
+
+def test_the_random_impulses_meet_every_outcome() -> None:
+    modes = [scene.initial_state.mode for scene in RANDOM]
+    for mode in (Mode.ROLLING, Mode.SLIDING, Mode.FLIGHT):
+        assert modes.count(mode) >= 20
+
+
+# ----------------------------------------------------------------------------- known numbers
+
+
+def test_the_report_scene_rolls_off_with_3_2_not_5_76() -> None:
+    """omega = F d/(m (k^2 + b^2)) = 48 * 1.5 / (10 * 2.25); eq 48 has k^2 alone: frictionless."""
+    found = Scene(2.0, 1.0, mass=10.0, impulse=Impulse.press(48.0, 1.5)).initial_state
+    assert found.omega == pytest.approx(3.2, rel=4 * EPS)
+    assert found.free_omega == pytest.approx(5.76, rel=4 * EPS)
+    assert found.mode == Mode.ROLLING
+    assert found.x_dot == pytest.approx(3.2, rel=4 * EPS) and found.z_dot == 0
+    assert found.reaction_x == pytest.approx(10 * 1 * 3.2, rel=8 * EPS)  # m h d_omega - Jx
+    assert found.reaction_z == pytest.approx(48.0, rel=4 * EPS)  # m h' d_omega - Jz
+
+
+def test_press_is_a_downward_impulse_at_a_distance() -> None:
+    assert Impulse.press(48.0, 1.5) == Impulse(0.0, -48.0, dx=1.5)
+
+
+def test_without_friction_eq_48_is_exact() -> None:
+    found = Scene(2.0, 1.0, mass=10.0, friction=0.0, impulse=Impulse.press(48.0, 1.5)).initial_state
+    assert found.omega == found.free_omega == pytest.approx(5.76, rel=4 * EPS)
+    assert found.x_dot == 0 and found.reaction_x == 0
+    assert found.mode == Mode.SLIDING
+
+
+@pytest.mark.parametrize("force", [1.0, 48.0, 1e4])
+@pytest.mark.parametrize("distance", [1.5, 0.4, -1.5])
+def test_pressed_flat_it_sticks_only_with_enough_friction(force: float, distance: float) -> None:
+    """mu >= b |d|/(k^2 + b^2), whatever the force: 2/3 for the report's ellipse at 1.5 m."""
+    enough = 1.0 * abs(distance) / (1.25 + 1)
+    rolled = force * distance / (10 * (1.25 + 1))
+    blow = Impulse.press(force, distance)
+    sticks = Scene(2.0, 1.0, mass=10.0, friction=enough * (1 + 1e-9), impulse=blow).initial_state
+    assert sticks.mode == Mode.ROLLING
+    assert sticks.omega == pytest.approx(rolled, rel=8 * EPS)
+    slides = Scene(2.0, 1.0, mass=10.0, friction=enough * 0.999, impulse=blow).initial_state
+    assert slides.mode == Mode.SLIDING
+    assert abs(slides.omega) > abs(rolled) and abs(slides.x_dot) < abs(rolled)
+    assert abs(slides.reaction_x) == pytest.approx(0.999 * enough * slides.reaction_z, rel=1e-14)
+
+
+def test_the_slip_may_reverse_instead_of_sticking() -> None:
+    """mu = 0.2 is below |Gnt|/Gtt: the sticking outcome -0.7171 is not what happens."""
+    scene = Scene(2.0, 1.0, mass=1.0, theta=0.5, friction=0.2, impulse=Impulse(-1.0, -4.0, dx=0.6))
+    assert round(scene.initial_state.omega, 4) == -0.8618
+    assert scene.initial_state.mode == Mode.SLIDING
+    h, slope, _ = (float(value) for value in oracles.geometry.height_slopes(0.5, 2.0, 1.0))
+    sticking = (-1.0 * h - 4.0 * (slope - 0.6)) / (1.25 + h * h + slope * slope)
+    assert round(sticking, 4) == -0.7171
+    stuck = Scene(2.0, 1.0, mass=1.0, theta=0.5, impulse=Impulse(-1.0, -4.0, dx=0.6)).initial_state
+    change = stuck.omega
+    assert change == pytest.approx(sticking, rel=1e-14)
+    assert stuck.reaction_x == pytest.approx(h * change + 1.0, rel=1e-14)
+    assert stuck.reaction_z == pytest.approx(slope * change + 4.0, rel=1e-14)
+
+
+@pytest.mark.parametrize("push", [2.0, -2.0])
+def test_a_horizontal_push_with_unlimited_friction_rolls(push: float) -> None:
+    """Lambda_z = 0 and mu = inf: inf * 0 must not be computed. At G, lying flat:
+    m (k^2 + b^2) omega = J b."""
+    found = Scene(2.0, 1.0, mass=1.0, impulse=Impulse(push, 0.0)).initial_state
+    assert found.mode == Mode.ROLLING
+    assert found.omega == pytest.approx(push * 1.0 / 2.25, rel=4 * EPS)
+    assert found.reaction_z == 0
+    assert found.reaction_x == pytest.approx(found.omega - push, rel=8 * EPS)
+    limited = Scene(2.0, 1.0, mass=1.0, friction=5.0, impulse=Impulse(push, 0.0)).initial_state
+    assert limited.mode == Mode.SLIDING and limited.omega == 0 and limited.reaction_x == 0
+
+
+def test_unlimited_friction_takes_a_given_slip_at_once() -> None:
+    """Lying flat h' = 0: D omega = h x_dot, by the impulse m (h omega - x_dot) alone."""
+    found = Scene(2.0, 1.0, mass=2.0, x_dot=4.5).initial_state
+    assert found.mode == Mode.ROLLING
+    assert found.omega == pytest.approx(1.0 * 4.5 / 2.25, rel=4 * EPS)
+    assert found.x_dot == found.omega * 1.0
+    assert found.reaction_x == pytest.approx(2 * (2.0 - 4.5), rel=8 * EPS)
+    assert found.reaction_z == 0
+
+
+def test_pulled_up_it_leaves_the_ground() -> None:
+    found = Scene(2.0, 1.0, mass=2.0, omega=0.5, impulse=Impulse(1.0, 6.0)).initial_state
+    assert found.mode == Mode.FLIGHT
+    assert found.reaction_x == found.reaction_z == 0
+    assert found.z_dot == 3.0 and found.x_dot == pytest.approx(1.0, rel=4 * EPS)
+    assert found.omega == found.free_omega == 0.5
+
+
+def test_in_the_air_nothing_reacts() -> None:
+    scene = Scene(2.0, 1.0, mass=2.0, z=3.0, impulse=Impulse(1.0, -6.0, dx=0.5, dz=0.2))
+    found = scene.initial_state
+    assert found.mode == Mode.FLIGHT and found.reaction_x == found.reaction_z == 0
+    assert (found.x_dot, found.z_dot) == (0.5, -3.0)
+    assert found.omega == pytest.approx((0.2 * 1.0 + 0.5 * 6.0) / (2 * 1.25), rel=4 * EPS)
+
+
+def test_restitution_does_not_take_part_in_an_applied_impulse() -> None:
+    for friction in (0.2, math.inf):
+        plain, bouncing = (
+            Scene(
+                2.0,
+                1.0,
+                theta=0.5,
+                friction=friction,
+                restitution=restitution,
+                impulse=Impulse(-1.0, -4.0, dx=0.6),
+            ).initial_state
+            for restitution in (0.0, 0.9)
+        )
+        assert plain == bouncing
+
+
+def test_no_impulse_changes_nothing() -> None:
+    found = Scene(2.0, 1.0, theta=0.3, omega=1.7, x=4.0).initial_state
+    assert found.omega == found.free_omega == 1.7
+    assert found.reaction_x == found.reaction_z == 0 and found.x == 4.0
+    zero = Scene(2.0, 1.0, theta=0.3, omega=1.7, x=4.0, impulse=Impulse()).initial_state
+    assert (zero.omega, zero.x_dot, zero.z_dot) == (found.omega, found.x_dot, found.z_dot)

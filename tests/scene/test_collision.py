@@ -1,0 +1,280 @@
+"""Collisions with restitution: the law followed along its impulse path, and what it may never do.
+
+The path is followed twice, by straight pieces and by many small pushes that know no cases.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from oracles.contact import Response, kinetic_energy, random_scenes, response
+from oracles.geometry import support
+from oracles.numbers import EPS
+from rolling_ellipse import Event, EventKind, Mode, Scene, simulate
+
+
+class Hit(NamedTuple):
+    scene: Scene
+    event: Event
+
+    @property
+    def before(self) -> Response:
+        return response(self.scene, self.event.state_before)
+
+    @property
+    def after(self) -> Response:
+        return response(self.scene, self.event.state_after)
+
+
+def hits(count: int, seed: int, bounces: int = 100, **given: Any) -> list[Hit]:
+    """Impacts of bodies that bounce about."""
+    found: list[Hit] = []
+    for scene in random_scenes(10 * count, seed, **given):
+        motion = simulate(scene, 60.0, model="contact", max_events=bounces, raise_on_failure=False)
+        found += [Hit(scene, event) for event in motion.events if event.kind is EventKind.IMPACT]
+        if len(found) >= count:
+            return found[:count]
+    raise AssertionError(f"only {len(found)} impacts")
+
+
+def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[float, float]:
+    """Each slip, stop, stick or reversal is a straight piece of u(p), v(p), p the normal impulse;
+    it ends when the normal work of restitution is e^2 that of compression."""
+    slip, gap_rate, tangential, normal, coupling = contact
+    along = across = work = 0.0
+    owed = math.inf  # work of restitution, known when compression ends
+    while True:
+        sticks = slip == 0 and abs(coupling) <= friction * tangential
+        if sticks:
+            pull = -coupling / tangential
+        else:
+            pull = -friction * math.copysign(1.0, slip if slip != 0 else coupling)
+        slip_change = 0.0 if sticks else coupling + tangential * pull
+        gap_change = normal + coupling * pull
+        step = -slip / slip_change if slip * slip_change < 0 else math.inf
+        stops = True
+        if gap_rate < 0:
+            until_end = -gap_rate / gap_change if gap_change > 0 else math.inf
+        else:
+            owed = e * e * -work if math.isinf(owed) else owed
+            until_end = (math.sqrt(gap_rate**2 + 2 * gap_change * owed) - gap_rate) / gap_change
+        if until_end <= step:
+            step, stops = until_end, False
+        gained = step * (gap_rate + gap_change * step / 2)
+        along, across = along + pull * step, across + step
+        compresses = gap_rate < 0
+        slip = 0.0 if stops else slip + slip_change * step
+        gap_rate += gap_change * step
+        if compresses:
+            work += gained
+            gap_rate = gap_rate if stops else 0.0
+        else:
+            owed -= gained
+            if not stops:
+                return along, across
+
+
+def reaction_in_small_pushes(
+    contacts: Response, friction: Any, e: Any, pushes: int
+) -> tuple[Any, Any]:
+    """Arrays of impacts at once: after each push the friction that stops the slip, cut off at the
+    cone; the work is summed as it comes."""
+    slip, gap_rate, tangential, normal, coupling = (np.array(part) for part in contacts)
+    determinant = normal * tangential - coupling**2
+    push = 2 * (np.abs(gap_rate) + np.abs(slip)) * (normal + tangential) / determinant / pushes
+    along, across = np.zeros_like(slip), np.zeros_like(slip)
+    compressed, restored = np.zeros_like(slip), np.zeros_like(slip)
+    active = np.full(slip.shape, True)
+    while active.any():
+        step = np.where(active, push, 0.0)
+        pull = np.clip(-(slip + coupling * step) / tangential, -friction * step, friction * step)
+        gap_change = normal * step + coupling * pull
+        work = step * (gap_rate + gap_change / 2)
+        compressed -= np.where(gap_rate < 0, work, 0)
+        restored += np.where(gap_rate < 0, 0, work)
+        along, across = along + pull, across + step
+        slip += coupling * step + tangential * pull
+        gap_rate += gap_change
+        active &= (gap_rate < 0) | (restored < e * e * compressed)
+    return along, across
+
+
+def impulses(hit: Hit) -> tuple[float, float]:
+    """What the ground gave, by Newton's law for the centre."""
+    before, after = hit.event.state_before, hit.event.state_after
+    mass = hit.scene.mass
+    return mass * (after.x_dot - before.x_dot), mass * (after.z_dot - before.z_dot)
+
+
+@pytest.fixture(scope="module")
+def limited() -> list[Hit]:
+    """With finite friction, of any size."""
+    return [hit for hit in hits(1200, 3) if math.isfinite(hit.scene.friction)]
+
+
+# ----------------------------------------------------------------------------- the path
+
+
+def test_the_pieces_are_what_small_pushes_add_up_to(limited: list[Hit]) -> None:
+    """First order: with n pushes an error of a few parts in n, of impulses up to the largest."""
+    chosen = [hit for hit in limited if abs(hit.before.slip) < 30 * abs(hit.before.gap_rate)][:300]
+    contacts = Response(*(np.array(part) for part in zip(*(h.before for h in chosen), strict=True)))
+    friction = np.array([hit.scene.friction for hit in chosen])
+    e = np.array([hit.scene.restitution for hit in chosen])
+    small = reaction_in_small_pushes(contacts, friction, e, 4000)
+    exact = np.array(
+        [reaction_by_pieces(h.before, h.scene.friction, h.scene.restitution) for h in chosen]
+    )
+    scale = (np.abs(contacts.gap_rate) + np.abs(contacts.slip)) * (
+        (contacts.normal + contacts.tangential)
+        / (contacts.normal * contacts.tangential - contacts.coupling**2)
+    )
+    for found, meant in zip(small, exact.T, strict=True):
+        assert np.max(np.abs(found - meant) / scale) < 5e-3
+
+
+def test_impacts_follow_the_path(limited: list[Hit]) -> None:
+    """Some hundred roundings, magnified by solving for the reaction. The speeds carry roundings of
+    the size of the body's velocity, and e > 0 a square root of the work: absolute, in the scale of
+    the impulse that stops the velocity."""
+    assert len(limited) > 800
+    for hit in limited:
+        before, state = hit.before, hit.event.state_before
+        meant = reaction_by_pieces(before, hit.scene.friction, hit.scene.restitution)
+        determinant = before.normal * before.tangential - before.coupling**2
+        speed = math.hypot(state.x_dot, state.z_dot) + abs(state.omega) * (
+            hit.scene.a + hit.scene.b
+        )
+        scale = speed * (before.normal + before.tangential) / determinant
+        for found, exact in zip(impulses(hit), meant, strict=True):
+            assert abs(found - exact) <= 300 * EPS * scale
+
+
+def test_the_random_impacts_meet_every_outcome(limited: list[Hit]) -> None:
+    outcomes = {"stick": 0, "slip on": 0, "reverse": 0}
+    for hit in limited:
+        v, w = hit.before.slip, hit.after.slip
+        sticks = abs(w) <= 1e-13 * (abs(v) + abs(hit.before.gap_rate))
+        outcomes["stick" if sticks else "slip on" if v * w > 0 else "reverse"] += 1
+    assert min(outcomes.values()) >= 20, outcomes
+
+
+# ----------------------------------------------------------------------------- energy
+
+
+def test_no_impact_gains_energy() -> None:
+    """1e5 impacts. Three velocities are rounded, squared and summed: 8 roundings."""
+    worst = max(
+        (kinetic_energy(hit.scene, hit.event.state_after) / before - 1)
+        for hit in hits(100_000, 5, bounces=300)
+        if (before := kinetic_energy(hit.scene, hit.event.state_before)) > 0
+    )
+    print(f"largest gain {worst:.2g}")
+    assert worst <= 8 * EPS
+
+
+def test_without_friction_an_elastic_impact_keeps_its_energy() -> None:
+    for hit in hits(500, 7, friction=0.0, restitution=1.0):
+        before = kinetic_energy(hit.scene, hit.event.state_before)
+        assert kinetic_energy(hit.scene, hit.event.state_after) == pytest.approx(
+            before, rel=8 * EPS
+        )
+        assert hit.event.state_after.x_dot == hit.event.state_before.x_dot
+
+
+# ----------------------------------------------------------------------------- special cases
+
+
+def one_hit(**given: Any) -> Hit:
+    """The first impact of the 2:1 disc that comes down on 0.5 rad."""
+    h = float(support(0.5, 2.0, 1.0).h)
+    values = {"theta": 0.5, "z": h + 0.3, "x_dot": 0.0, "omega": 0.0} | given
+    scene = Scene(2.0, 1.0, mass=1.7, **values)
+    return Hit(scene, simulate(scene, 5.0, model="contact").events[0])
+
+
+@pytest.mark.parametrize("e", [0.0, 0.4, 1.0])
+def test_slip_starts_from_none_where_friction_cannot_stop_it(e: float) -> None:
+    """mu < |Gnt|/Gtt = 0.498: it slides off to the side of Gnt; B = Gnn - mu |Gnt|."""
+    hit = one_hit(friction=0.2, restitution=e)
+    slip, u, tangential, normal, coupling = hit.before
+    assert slip == 0 and coupling / tangential > 0.2
+    across = (1 + e) * -u / (normal - 0.2 * coupling)
+    assert impulses(hit) == pytest.approx((-0.2 * across, across), rel=1e-14)
+    assert hit.after.slip == pytest.approx((coupling - 0.2 * tangential) * across, rel=1e-14)
+    assert hit.after.gap_rate == pytest.approx(-e * u, rel=1e-14, abs=8 * EPS)
+
+
+@pytest.mark.parametrize("friction", [0.8, 5.0, math.inf])
+@pytest.mark.parametrize("e", [0.0, 0.4, 1.0])
+def test_without_slip_it_sticks_where_friction_is_enough(friction: float, e: float) -> None:
+    hit = one_hit(friction=friction, restitution=e)
+    _, u, tangential, normal, coupling = hit.before
+    across = (1 + e) * -u * tangential / (normal * tangential - coupling**2)
+    meant = (-coupling / tangential * across, across)
+    assert impulses(hit) == pytest.approx(meant, rel=1e-14)
+    assert hit.after.slip == 0 and hit.after.gap_rate == pytest.approx(-e * u, rel=1e-14, abs=1e-15)
+    assert hit.event.state_after.mode == (Mode.FLIGHT if e else Mode.ROLLING)
+
+
+def test_a_slow_slip_is_reversed() -> None:
+    """Against a Gnt that friction cannot hold: it stops on the way, and goes on the other way."""
+    hit = one_hit(friction=0.2, restitution=0.6, x_dot=-0.3)
+    slip, u, tangential, normal, coupling = hit.before
+    until_stop = -slip / (coupling + 0.2 * tangential)
+    gap_rate = u + (normal + 0.2 * coupling) * until_stop
+    compression = -until_stop * (u + gap_rate) / 2
+    assert gap_rate < 0  # still coming down when the slip stops
+    response = normal - 0.2 * coupling
+    compression += gap_rate**2 / (2 * response)
+    rebound = math.sqrt(2 * response * 0.36 * compression)  # u^2/(2 B) = e^2 W
+    assert hit.after.gap_rate == pytest.approx(rebound, rel=1e-14)
+    meant = (coupling - 0.2 * tangential) * (rebound - gap_rate) / response
+    assert hit.after.slip == pytest.approx(meant, rel=1e-14) and slip * meant < 0
+
+
+def test_the_ratio_of_normal_speeds_is_not_the_restitution() -> None:
+    """Elastic, with friction and slip: Stronge's coefficient is one of energies."""
+    ratios = []
+    for slip in np.linspace(-3, 3, 13):
+        hit = one_hit(friction=0.5, restitution=1.0, x_dot=float(slip))
+        ratios.append(-hit.after.gap_rate / hit.before.gap_rate)
+    assert min(ratios) < 0.85 and max(ratios) > 1.01
+
+
+def test_unlimited_friction_by_its_three_formulas() -> None:
+    """physics.md: u1 = u - v Gnt/Gtt without slip; stuck, stuck without pressure, or friction
+    alone. Their terms are of the size of the velocities and the response."""
+    met = [0, 0, 0]
+    for hit in hits(600, 11, friction=math.inf):
+        v, u, tangential, normal, coupling = hit.before
+        e, mass, state = hit.scene.restitution, hit.scene.mass, hit.event.state_before
+        u1, determinant = u - v * coupling / tangential, normal * tangential - coupling**2
+        if u1 <= 0:
+            across = -(1 + e) * u1 * tangential / determinant
+            case, meant = 0, (-(v + coupling * across) / tangential, across)
+            v_after, u_after = 0.0, -e * u1
+        elif u1 <= e * abs(u):
+            case, meant = 1, (-v / tangential, 0.0)
+            v_after, u_after = 0.0, u1
+        else:
+            case, meant = 2, ((1 + e) * abs(u) / coupling, 0.0)
+            v_after, u_after = v + tangential * meant[0], e * abs(u)
+        met[case] += 1
+        speed = math.hypot(state.x_dot, state.z_dot) + abs(state.omega) * (
+            hit.scene.a + hit.scene.b
+        )
+        rough = 100 * EPS * speed * (normal + tangential) / determinant
+        assert np.allclose(impulses(hit), meant, rtol=1e-12, atol=rough * (1 + mass * normal))
+        size = rough * (normal + tangential) + 100 * EPS * abs(v_after)
+        assert abs(hit.after.slip - v_after) <= size * (1 + abs(meant[0]) / mass)
+        assert abs(hit.after.gap_rate - u_after) <= size
+    assert min(met) >= 10, met
+
+
+def test_the_reaction_of_an_event_is_what_the_centre_gains() -> None:
+    hit = one_hit(friction=0.3, restitution=0.5, x_dot=1.0)
+    after = hit.event.state_after
+    assert (after.reaction_x, after.reaction_z) == pytest.approx(impulses(hit), rel=4 * EPS)
+    assert after.free_omega == hit.event.state_before.omega
