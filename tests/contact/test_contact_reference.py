@@ -163,6 +163,7 @@ def test_an_error_of_1e_9_is_seen() -> None:
 
 def test_a_small_change_of_an_input_is_seen() -> None:
     """1e-9 more gravity, in every scene in which anything moves."""
+    compared = 0
     for motion in MOTIONS:
         if "jam" in motion.kinds:
             continue
@@ -171,6 +172,8 @@ def test_a_small_change_of_an_input_is_seen() -> None:
         found = computed(changed.scene, float(motion.values[-1][0]))
         if [*found.kinds, "state"] == motion.kinds:
             assert shares(motion, found.values).max() > 1, motion.name
+            compared += 1
+    assert compared >= 85  # of 94: jams, and motions that come to other events, are left out
 
 
 # ------------------------------------------------------------------------------- the table
