@@ -4,6 +4,8 @@ import math
 
 import pytest
 
+pytest.register_assert_rewrite("oracles")
+
 # neutral (the circle), a hair beside it (where a*a - b*b cancels), generic, standing up, thin both
 # ways up to the limits of the package, and sizes far from a metre (nothing may depend on the unit)
 SHAPES = {

@@ -2,7 +2,6 @@
 
 import itertools
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import matplotlib
@@ -11,7 +10,6 @@ import pytest
 
 matplotlib.use("Agg")
 
-import matplotlib.pyplot as plt
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -42,12 +40,6 @@ def motion(request: pytest.FixtureRequest) -> rl.Trajectory:
 @pytest.fixture
 def jump() -> rl.Trajectory:
     return rl.simulate(rl.scenes.jump, 3.0)
-
-
-@pytest.fixture(autouse=True)
-def nothing_left_open() -> Iterator[None]:
-    yield
-    assert plt.get_fignums() == []
 
 
 def new_axes(width: float = 7.0, height: float = 3.4) -> Axes:

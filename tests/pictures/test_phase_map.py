@@ -2,7 +2,6 @@
 
 import itertools
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import matplotlib
@@ -30,12 +29,6 @@ SHOWN = {"aspect": (1, 20), "energy": (0, 4), "speed": (0, 2 * math.sqrt(9.81)),
 LEVEL_MARKS = {"separatrix", "contact loss", "lift-off"}
 COARSE = 24
 pairs = pytest.mark.parametrize(("x", "y"), PAIRS, ids=[f"{x}-{y}" for x, y in PAIRS])
-
-
-@pytest.fixture(autouse=True)
-def nothing_left_open() -> Iterator[None]:
-    yield
-    assert plt.get_fignums() == []
 
 
 def new_axes(width: float = 6.4, height: float = 4.4) -> Axes:

@@ -1,0 +1,52 @@
+"""Axes to draw on, motions to draw, and what is read back from the artists."""
+
+import dataclasses
+
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+
+import rolling_ellipse as rl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+PICTURES = {
+    "phase": rl.plot_phase,
+    "forces": rl.plot_forces,
+    "energy": rl.plot_energy,
+    "constraints": rl.plot_constraints,
+    "paths": rl.plot_paths,
+}
+TWO_PANELS = (rl.plot_forces, rl.plot_constraints)
+
+
+def drifting(motion: rl.Trajectory, rate: float) -> rl.Trajectory:
+    """A motion that grows faster than it should."""
+    grown = 1 + rate * motion.t
+    return dataclasses.replace(motion, theta=motion.theta * grown, omega=motion.omega * grown)
+
+
+def rough(motion: rl.Trajectory, friction: float) -> rl.Trajectory:
+    return dataclasses.replace(motion, scene=dataclasses.replace(motion.scene, friction=friction))
+
+
+def new_axes(width: float = 6.0, height: float = 4.0) -> Axes:
+    return Figure(figsize=(width, height), layout="constrained").add_subplot()
+
+
+def two_axes(width: float = 6.0, height: float = 5.0) -> list[Axes]:
+    return list(Figure(figsize=(width, height), layout="constrained").subplots(2, sharex=True))
+
+
+def legend_of(ax: Axes) -> list[str]:
+    legend = ax.get_legend()
+    return [] if legend is None else [text.get_text() for text in legend.get_texts()]
+
+
+def data(line: Line2D) -> tuple[Array, Array]:
+    x, y = line.get_data()
+    return np.asarray(x), np.asarray(y)

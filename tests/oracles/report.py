@@ -1,0 +1,27 @@
+"""The body of the report, and starts for its equations."""
+
+import math
+
+import numpy as np
+import rolling_ellipse as rl
+from numpy.typing import NDArray
+from rolling_ellipse import report
+
+Array = NDArray[np.float64]
+BODY = {"a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.81}
+SHAPE = {"a": 2.0, "b": 1.0}
+
+
+def start(theta: float, omega: float, printed: tuple[str, ...] = ()) -> tuple[Array, Array]:
+    q, _ = rl.kinematics(theta, omega, **SHAPE)
+    return q, report.consistent_rates(q, omega, printed=printed, **SHAPE)
+
+
+def off_by(f2: float, f3: float, f4: float) -> tuple[Array, Array]:
+    """At rest, flat, with these residuals."""
+    psi = f4
+    r = f3 + 2.0 / math.sqrt(math.sin(psi) ** 2 + 4 * math.cos(psi) ** 2)
+    return np.array([0, f2 + r * math.cos(psi), 0, psi, r]), np.zeros(5)
+
+
+Q, Q_DOT = rl.kinematics(0.2, 2.0, **SHAPE)

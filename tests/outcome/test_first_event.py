@@ -1,0 +1,283 @@
+"""`classify` on random scenes: against a walk along the angles, `certify` and `simulate`.
+
+The walk is brute force in long double: Newton's law (oracles/rolling.py) at thousands of angles
+from the start on, through the flat position if the body goes down first, to the tip or the turning
+point.
+"""
+
+import math
+from collections import Counter
+from typing import NamedTuple
+
+import numpy as np
+import oracles.geometry
+import oracles.rolling
+import pytest
+from numpy.typing import NDArray
+from oracles.numbers import PI, Long
+from oracles.outcome import Codes, Sample, random_sample
+from oracles.rolling import Motion
+from rolling_ellipse import EventKind, Mode, Outcome, Scene, Validity, certify, classify, simulate
+
+STEPS, CHUNK = 4000, 100
+CLEAR = 1e-6  # of the forces, of the energy, of gravity: nearer to zero a margin decides nothing
+
+
+# ----------------------------------------------------------------------------------------- the walk
+
+
+class Start(NamedTuple):
+    """Where it goes, and the reduced angle counted that way: rising from the flat at 0 to the tip
+    at pi/2. Exactly on the tip it has the half turn before it, whichever way it goes."""
+
+    direction: Long
+    angle: Long
+
+
+def start_of(sample: Sample) -> Start:
+    offset = sample.theta - np.where(sample.a < sample.b, PI / 2, np.longdouble(0))
+    angle = offset - np.round(offset / PI) * PI
+    direction = np.where(sample.omega != 0, np.sign(sample.omega), -np.sign(angle))
+    ahead = np.where(np.abs(angle) == PI / 2, -PI / 2, direction * angle)
+    return Start(direction, ahead)
+
+
+def at_rest(sample: Sample) -> NDArray[np.bool_]:
+    """No motion, and exactly on an axis (nothing else in these samples is near to one)."""
+    offset = sample.theta - np.where(sample.a < sample.b, PI / 2, np.longdouble(0))
+    resting: NDArray[np.bool_] = (sample.omega == 0) & (2 * offset / PI % 1 == 0)
+    return resting
+
+
+def slack(moving: Motion, friction: Long, tangent: Long) -> Long:
+    """How far rolling is from its end at a tangent of the reduced angle: 1 when all of the forces
+    would have to go. The oracle's errors are 1e-12 of their terms, and more where the energy, or
+    a - b, is all rounding."""
+    cosine = 1 / np.sqrt(1 + tangent**2)
+    found = oracles.rolling.forces(moving, np.abs(tangent) * cosine, cosine)
+    contact = found.normal / found.normal_error
+    mu = np.where(np.isinf(friction), 0, friction)
+    grip = mu * found.normal - np.abs(found.friction)
+    grip /= mu * found.normal_error + found.friction_error + np.finfo(float).tiny
+    return 1e-12 * np.where(np.isinf(friction), contact, np.minimum(contact, grip))
+
+
+def least_slack(sample: Sample) -> Long:
+    """On the way from the start up to the tip or the turning point: steps even in v, tan = waist
+    sinh v, fine beside the flat and the tip; dips towards zero refined by golden section."""
+    moving, angle = sample.motion(), start_of(sample).angle
+    on = oracles.rolling.chart(moving)
+    highest = on.waist * np.sinh(on.top)
+    tangent = np.where(angle == -PI / 2, -np.longdouble(1e9), np.tan(angle))  # tan of rounding
+    tangent = np.clip(tangent, -np.longdouble(1e9), highest)
+    begin = np.arcsinh(tangent / on.waist)
+    share = np.linspace(np.longdouble(0), 1, STEPS + 1)
+    v = begin[:, None] + (on.top - begin)[:, None] * share
+    friction = sample.friction.astype(np.longdouble)
+    values = slack(
+        moving.at((slice(None), None)), friction[:, None], on.waist[:, None] * np.sinh(v)
+    )
+    least: Long = values.min(1)
+    # between samples at most 0.016 apart a dip goes deeper by 3e-5 of its second derivative by v,
+    # and what changes within v = 0.1 or so is not in these forces
+    rows, columns = oracles.rolling.local_minima(values, np.where(least < -0.01, -np.inf, 0.01))
+    if rows.size:
+        part, held, waist = moving.at(rows), friction[rows], on.waist[rows]
+        dip = oracles.rolling.golden_minimum(
+            lambda v: slack(part, held, waist * np.sinh(v)),
+            v[rows, np.maximum(columns - 1, 0)],
+            v[rows, np.minimum(columns + 1, STEPS)],
+        )
+        np.minimum.at(least, rows, slack(part, held, waist * np.sinh(dip)))
+    return least
+
+
+class Walk(NamedTuple):
+    outcome: Codes
+    clear: NDArray[np.bool_]  # no margin within CLEAR of zero
+
+
+def walk(sample: Sample) -> Walk:
+    moving = sample.motion()
+    sine, cosine = oracles.geometry.reduced(sample.theta, sample.a, sample.b)
+    curvature = oracles.geometry.outline(moving.a, moving.b, sine, cosine).curvature
+    spin = curvature * np.asarray(sample.omega, np.longdouble) ** 2
+    pressed = (moving.gravity + spin) / (moving.gravity + np.abs(spin))
+    barrier = moving.gravity * np.abs(moving.a - moving.b)
+    over = (moving.lift - barrier) / (moving.lift + barrier)
+    rolls = least_slack(sample)
+    rests = at_rest(sample)
+    outcome = np.select(
+        [rests, pressed < 0, (rolls < 0) & np.isinf(sample.friction), rolls < 0, over < 0],
+        [
+            Outcome.RESTS,
+            Outcome.LOSES_CONTACT,
+            Outcome.LOSES_CONTACT,
+            Outcome.SLIPS,
+            Outcome.ROCKS,
+        ],
+        Outcome.ROLLS_OVER,
+    ).astype(np.int8)
+    nearest = np.minimum(np.abs(pressed), np.minimum(np.abs(rolls), np.abs(over)))
+    return Walk(outcome, rests | (nearest > CLEAR))
+
+
+class Walked(NamedTuple):
+    sample: Sample
+    truth: Codes
+
+
+@pytest.fixture(scope="module")
+def walked() -> list[Walked]:
+    """In chunks: 100 scenes x 4001 angles of long double are 6.4 MB per intermediate array."""
+    chunks = []
+    for seed in range(6):
+        sample = random_sample(CHUNK, seed)
+        found = walk(sample)
+        chunks.append(Walked(sample.only(found.clear), found.outcome[found.clear]))
+    assert sum(chunk.truth.size for chunk in chunks) > 0.95 * 6 * CHUNK
+    return chunks
+
+
+def test_the_random_scenes_meet_every_case(walked: list[Walked]) -> None:
+    """Every outcome; up and down; and bodies that would slip on heights they do not meet."""
+    counts: Counter[int] = Counter()
+    beyond = up = down = 0
+    for sample, truth in walked:
+        counts.update(truth.tolist())
+        on_the_way = start_of(sample).angle
+        up += int((on_the_way > 0).sum())
+        down += int((on_the_way < 0).sum())
+        needed = oracles.rolling.extremes(sample.motion()).needed
+        unbroken = (truth == Outcome.ROLLS_OVER) | (truth == Outcome.ROCKS)
+        beyond += int((unbroken & (needed > sample.friction) & (on_the_way > 0)).sum())
+    for outcome, least in (
+        (Outcome.RESTS, 10),
+        (Outcome.ROCKS, 50),
+        (Outcome.ROLLS_OVER, 30),
+        (Outcome.SLIPS, 100),
+        (Outcome.LOSES_CONTACT, 40),
+    ):
+        assert counts[outcome] >= least, counts
+    assert min(up, down) > 100
+    assert beyond >= 5
+
+
+def test_what_comes_first_on_the_walk(walked: list[Walked]) -> None:
+    for sample, truth in walked:
+        wrong = np.flatnonzero(sample.outcomes() != truth)
+        assert wrong.size == 0, [
+            (sample.scene(int(row)), Outcome(int(truth[row])).name) for row in wrong[:3]
+        ]
+
+
+def test_a_wrong_way_is_noticed(walked: list[Walked]) -> None:
+    """The tester tested: what is met first depends on which way it goes."""
+    differ = 0
+    for sample, truth in walked:
+        differ += int((sample._replace(omega=-sample.omega).outcomes() != truth).sum())
+    assert differ >= 5
+
+
+def test_seen_from_behind(walked: list[Walked]) -> None:
+    """The mirror image: theta and omega change their signs and nothing happens otherwise."""
+    for sample, _ in walked:
+        mirrored = sample._replace(theta=-sample.theta, omega=-sample.omega)
+        assert np.array_equal(mirrored.outcomes(), sample.outcomes())
+
+
+def test_scalar_and_array_agree(walked: list[Walked]) -> None:
+    sample = walked[0].sample
+    codes = sample.outcomes()
+    for row in range(codes.size):
+        alone = classify(**{name: float(x[row]) for name, x in sample._asdict().items()})
+        assert alone is Outcome(int(codes[row]))
+
+
+# ----------------------------------------------------------------------------- certify and simulate
+
+
+def test_agreement_with_the_certificate() -> None:
+    """A proof for the whole motion is one for its beginning. From the flat position, or from the
+    tip, the way up to the next tip meets every height: there also what is invalid ends."""
+    ended = 0
+    for seed in (11, 12):
+        for at_axis in (False, True):
+            sample = random_sample(400, seed)
+            if at_axis:
+                sample = sample._replace(theta=np.zeros(400))
+            for row, code in enumerate(sample.outcomes()):
+                found = certify(sample.scene(row)).validity
+                if found is Validity.VALID:
+                    held = (Outcome.ROCKS, Outcome.ROLLS_OVER, Outcome.RESTS)
+                    assert code in held, sample.scene(row)
+                elif found is Validity.INVALID and at_axis:
+                    assert code in (Outcome.SLIPS, Outcome.LOSES_CONTACT), sample.scene(row)
+                    ended += 1
+    assert ended > 200
+
+
+def first_of(scene: Scene, start: float, direction: float) -> Outcome:
+    """What the contact motion comes to first; `start` is the angle from the flat, that way."""
+    broken = Outcome.LOSES_CONTACT if math.isinf(scene.friction) else Outcome.SLIPS
+    span = 4 * math.sqrt(max(scene.a, scene.b) / scene.gravity)
+    for _ in range(12):
+        times = np.linspace(0, span, 300)
+        motion = simulate(scene, times, model="contact", max_events=1, raise_on_failure=False)
+        if motion.mode[0] != Mode.ROLLING:
+            others = {Mode.REST: Outcome.RESTS, Mode.FLIGHT: Outcome.LOSES_CONTACT}
+            return others.get(Mode(int(motion.mode[0])), broken)
+        event = motion.events[0] if motion.events else None
+        rolled = motion.t <= (event.t if event else math.inf)
+        theta, omega = motion.theta[rolled], motion.omega[rolled]
+        if event:
+            theta = np.append(theta, event.state_before.theta)
+            omega = np.append(omega, event.state_before.omega)
+        if np.any(start + direction * (theta - scene.theta) > math.pi / 2):
+            return Outcome.ROLLS_OVER
+        if np.any(direction * omega < 0):
+            return Outcome.ROCKS
+        if event:
+            assert event.kind is EventKind.SLIP
+            return broken
+        span *= 2
+    raise AssertionError(f"nothing happens: {scene}")
+
+
+def test_agreement_with_the_first_event_of_the_contact_motion(walked: list[Walked]) -> None:
+    met: Counter[Outcome] = Counter()
+    for sample, truth in walked[:3]:
+        start = start_of(sample)
+        for row, code in enumerate(truth.tolist()):
+            scene = sample.scene(row)
+            first = first_of(scene, float(start.angle[row]), float(start.direction[row]))
+            assert first == code, scene
+            met[first] += 1
+    assert len(met) == 5
+
+
+# ------------------------------------------------------------------------------------------ a crowd
+
+
+def test_a_crowd_never_jams_and_is_hardly_ever_undecided() -> None:
+    """1e5 scenes; rounding blurs the margins by 1e-12 or so of what they can be, so that even
+    crowds about the thresholds leave far fewer than one in a thousand undecided."""
+    rng = np.random.default_rng(31)
+    count = 100_000
+    a = 10 ** rng.uniform(-2, 2, count)
+    top = np.sqrt(9.81 / np.maximum(a, 1.0))
+    found = classify(
+        a=a,
+        b=1.0,
+        omega=top * rng.normal(size=count) * 10 ** rng.uniform(-1, 1, count),
+        theta=rng.uniform(-4, 4, count),
+        friction=np.where(rng.random(count) < 0.2, np.inf, rng.uniform(0, 2, count)),
+        gyration2=np.maximum(a, 1.0) ** 2 * 10 ** rng.uniform(-2, 0, count),
+        workers=2,
+    )
+    assert isinstance(found, np.ndarray)
+    counts = np.bincount(found, minlength=7)
+    assert counts[Outcome.JAMS] == 0
+    assert counts[Outcome.EDGE] < 1e-3 * count
+    for outcome in (Outcome.ROCKS, Outcome.ROLLS_OVER, Outcome.SLIPS, Outcome.LOSES_CONTACT):
+        assert counts[outcome] > 1000

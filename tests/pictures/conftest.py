@@ -1,0 +1,41 @@
+"""Motions to draw; a picture drawn where it was told leaves pyplot alone."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import matplotlib
+import pytest
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import rolling_ellipse as rl
+from oracles.curves import PICTURES, drifting
+from oracles.pictures import ORDINARY_SCENES
+
+
+@pytest.fixture(params=PICTURES.values(), ids=PICTURES.keys())
+def picture(request: pytest.FixtureRequest) -> Callable[..., Any]:
+    return request.param
+
+
+@pytest.fixture(params=ORDINARY_SCENES.values(), ids=ORDINARY_SCENES.keys())
+def trajectory(request: pytest.FixtureRequest) -> rl.Trajectory:
+    return rl.simulate(request.param, 4.0, model="rolling")
+
+
+@pytest.fixture
+def report() -> rl.Trajectory:
+    return rl.simulate(rl.scenes.report, 6.0)
+
+
+@pytest.fixture
+def several(report: rl.Trajectory) -> list[rl.Trajectory]:
+    return [report, drifting(report, 1e-3), drifting(report, -2e-2)]
+
+
+@pytest.fixture(autouse=True)
+def nothing_left_open() -> Iterator[None]:
+    """A picture drawn where it was told leaves pyplot alone."""
+    yield
+    assert plt.get_fignums() == []

@@ -1,0 +1,76 @@
+"""`plot_forces`, read back from its artists."""
+
+from collections.abc import Callable
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+
+matplotlib.use("Agg")
+
+import rolling_ellipse as rl
+from matplotlib.figure import Figure
+from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
+
+
+def test_forces_are_the_trajectory(trajectory: rl.Trajectory) -> None:
+    limited = rough(trajectory, 0.7)
+    shown = rl.plot_forces([trajectory, limited], ax=two_axes())
+    for motion, normal, friction, needed in zip(
+        (trajectory, limited), shown.normal, shown.friction, shown.needed, strict=True
+    ):
+        for line, values in (
+            (normal, motion.normal_force),
+            (friction, motion.friction_force),
+            (needed, motion.friction_needed),
+        ):
+            assert np.array_equal(data(line)[0], motion.t)
+            assert np.array_equal(data(line)[1], values)
+    assert shown.limits[0] is None and shown.available[0] is None
+    corners = shown.limits[1].get_paths()[0].vertices[:, 1]
+    bound = 0.7 * trajectory.normal_force.max()
+    assert (corners.min(), corners.max()) == (-bound, bound)
+    assert list(shown.available[1].get_ydata()) == [0.7, 0.7]
+    shown.axes[0].figure.draw_without_rendering()
+
+
+def test_one_axes_for_the_forces_alone(report: rl.Trajectory) -> None:
+    shown = rl.plot_forces(report, ax=new_axes())
+    assert len(shown.axes) == 1 and shown.needed == () and shown.available == ()
+    assert legend_of(shown.axes[0]) == ["normal", "friction"]
+
+
+def test_needed_friction_is_shown_up_to_a_bound_where_n_vanishes() -> None:
+    with pytest.warns(rl.ValidityWarning):
+        jump = rl.simulate(rl.scenes.jump, 2.0, model="rolling")
+    assert np.isinf(jump.friction_needed).any()
+    upper, lower = rl.plot_forces(jump, ax=two_axes()).axes
+    assert lower.get_ylim() == pytest.approx((0.0, 3.45))
+    assert upper.get_ylim()[0] < jump.normal_force.min() < 0
+    assert legend_of(lower) == ["μ"]
+
+
+def test_needed_friction_fills_its_panel(report: rl.Trajectory) -> None:
+    _, lower = rl.plot_forces(report, ax=two_axes()).axes
+    assert lower.get_ylim()[1] == pytest.approx(1.15 * report.friction_needed.max())
+    _, lower = rl.plot_forces(rough(report, 0.9), ax=two_axes()).axes
+    assert lower.get_ylim()[1] == pytest.approx(1.15 * 0.9)
+
+
+def test_spikes_leave_room_for_ordinary_forces(report: rl.Trajectory) -> None:
+    thin = rl.simulate(rl.scenes.thin, np.linspace(0.0, 2.0, 8001))
+    weight = 9.81
+    assert thin.normal_force.max() > 100 * weight
+    ax = rl.plot_forces(thin, ax=new_axes()).axes[0]
+    bottom, ordinary, top = ax.transData.transform([(0, 0), (0, weight), (0, 100 * weight)])[:, 1]
+    assert ordinary - bottom > 0.3 * (top - bottom)
+    assert rl.plot_forces(report, ax=new_axes()).axes[0].get_yscale() == "linear"
+
+
+@pytest.mark.parametrize("picture", TWO_PANELS)
+def test_axes_are_one_or_two(picture: Callable[..., Any], report: rl.Trajectory) -> None:
+    three = list(Figure().subplots(3))
+    for wrong in (three, [], "here", [three[0], None]):
+        with pytest.raises(ValueError, match="ax must be one matplotlib Axes or two, got"):
+            picture(report, ax=wrong)

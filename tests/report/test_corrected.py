@@ -1,0 +1,234 @@
+"""The corrected equations from any start: refused, projected or taken as given."""
+
+import math
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.report import Q_DOT, SHAPE, Array, Q, off_by
+from rolling_ellipse import report
+
+OWN_Q, OWN_RATES = np.array([0.0, 1, 0, 0, 1]), np.array([0, 1, 1, 1.5, 0])  # of the report's run
+
+OWN_VIOLATIONS = "f1 = -1 m/s; rate of f2 = 1 m/s; rate of f4 = -2.5 rad/s"
+FIXED = {"rk4": 0.01, "radau": 0.01}  # steps [s]
+WAYS = [
+    *((method, how) for method in ("dop853", "dopri5", "rk4")
+      for how in ("none", "baumgarte", "projection", "projection+energy")),
+    ("radau", "ggl"),
+]  # fmt: skip
+
+
+def corrected(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
+    motion = report.simulate(q, q_dot, t, **{**SHAPE, **options})
+    assert isinstance(motion, rl.Trajectory)
+    return motion
+
+
+def as_given(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
+    """Whatever is said of the start and of the ground it leaves."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", report.InconsistentStartWarning)
+        warnings.simplefilter("ignore", rl.ValidityWarning)
+        return corrected(q, q_dot, t, consistent="as_given", **options)
+
+
+@pytest.mark.parametrize("options", [{}, {"consistent": "refuse"}, {"stabilization": "none"}])
+def test_corrected_refuses_and_names_every_violation(options: dict[str, Any]) -> None:
+    message = f"^q and q_dot must meet the constraints at t = 0, got {OWN_VIOLATIONS}$"
+    with pytest.raises(ValueError, match=message):
+        corrected(OWN_Q, OWN_RATES, 1.0, **options)
+    with pytest.raises(ValueError, match=r"at t = 0, got f2 = 0.5 m; f3 = 0.25 m; f4 = -0.3 rad$"):
+        corrected(*off_by(0.5, 0.25, -0.3), 1.0, **options)
+    with pytest.raises(ValueError, match=r"at t = 0, got f1 = 0.5 m/s$"):
+        corrected(Q, Q_DOT + np.eye(5)[0] / 2, 1.0, **options)
+
+
+def test_corrected_projects_the_reports_own_start() -> None:
+    """Flat on the ground already, so only rates change: omega = k^2 / (k^2 + h^2) = 1.25 / 2.25 of
+    the 1 rad/s (x_dot = 0, and z_dot finds h' = 0), psi_dot = (a/b)^2 omega there."""
+    motion = corrected(OWN_Q, OWN_RATES, [0.0, 1.0], consistent="project", mass=3.0)
+    assert np.array_equal(motion.q[0], OWN_Q)
+    assert motion.q_dot[0] == pytest.approx([5 / 9, 0, 5 / 9, 20 / 9, 0], rel=1e-14, abs=1e-15)
+    assert motion.success and abs(motion.constraint_residuals().gap[1]) < 1e-14
+
+
+def test_corrected_projects_to_the_nearest_state() -> None:
+    """Among all angles, then among all rates there, none is nearer in the kinetic metric."""
+    q, q_dot = np.array([0.3, 1.5, 0.4, 5.0, 3.0]), np.array([1.0, 0.5, 2.0, 7.0, -3.0])
+    motion = corrected(q, q_dot, [0.0], consistent="project", mass=3.0)
+    there, rates = motion.q[0], motion.q_dot[0]
+
+    def distance2(change: Array) -> Array:
+        """Twice the kinetic energy of (x, z, theta) over the mass; psi and r have none."""
+        found: Array = change[..., :3] ** 2 @ [1, 1, 1.25]
+        return found
+
+    angles = 0.4 + np.linspace(-np.pi, np.pi, 20_001)
+    places, _ = rl.kinematics(angles, 0.0, **SHAPE)
+    places[:, 0] = 0.3  # x is free: it stays
+    costs = distance2(places - q)
+    assert distance2(there - q) <= costs.min() and there[0] == 0.3
+    assert there[2] == pytest.approx(angles[costs.argmin()], abs=angles[1] - angles[0])
+    speeds = np.linspace(-5, 5, 20_001)
+    _, flows = rl.kinematics(there[2], speeds, **SHAPE)
+    costs = distance2(flows - q_dot)
+    assert distance2(rates - q_dot) <= costs.min()
+    assert rates[2] == pytest.approx(speeds[costs.argmin()], abs=speeds[1] - speeds[0])
+    residuals = rl.constraints(there, rates, **SHAPE)
+    assert np.max(np.abs(residuals.position)) < 1e-15
+    assert np.max(np.abs(residuals.velocity)) < 1e-14
+    again = corrected(there, rates, [0.0], consistent="project")
+    assert np.array_equal(again.q[0], there) and np.array_equal(again.q_dot[0], rates)
+
+
+def test_corrected_runs_the_reports_own_start_as_given_and_says_so() -> None:
+    with pytest.warns() as caught:
+        motion = corrected(
+            OWN_Q, OWN_RATES, np.linspace(0, 2, 21), consistent="as_given", stabilization="none"
+        )
+    said = {warning.category: str(warning.message) for warning in caught}
+    assert (
+        said[report.InconsistentStartWarning] == f"the start violates constraints: {OWN_VIOLATIONS}"
+    )
+    assert said.keys() == {report.InconsistentStartWarning, rl.ValidityWarning}
+    assert {warning.filename for warning in caught} == {__file__}
+    assert np.array_equal(motion.q[0], OWN_Q) and np.array_equal(motion.q_dot[0], OWN_RATES)
+    # index 1 keeps the rates of f1 ... f4: 1e-8 a step, some 100 of them, in rates of some 10
+    held = motion.constraint_residuals()
+    law = np.outer(motion.t, [1.0, 0.0, -2.5])
+    assert np.allclose(held.position, law, rtol=0, atol=1e-5)
+    assert np.allclose(held.velocity, [-1, 1, 0, -2.5], rtol=0, atol=1e-5)
+    assert np.max(np.abs(held.gap)) > 1
+
+
+LAWS = {  # of the gap after (gap, rate of it) = (0, 1) or (1, 0)
+    "none": lambda t, gap, rate: gap + rate * t,
+    # s^2 + 20 s + 100 = 0: both roots -10
+    "baumgarte": lambda t, gap, rate: (gap + (rate + 10 * gap) * t) * np.exp(-10 * t),
+    "projection": lambda t, gap, rate: 0 * t,
+    "projection+energy": lambda t, gap, rate: 0 * t,
+    "ggl": lambda t, gap, rate: 0 * t,
+}
+
+
+@pytest.mark.parametrize(("stabilization", "law"), LAWS.items(), ids=LAWS)
+@pytest.mark.parametrize(("gap", "rate"), [(0.0, 1.0), (0.1, 0.0)])
+def test_what_becomes_of_an_inconsistent_start(
+    stabilization: str, law: Any, gap: float, rate: float
+) -> None:
+    """Lifted off the ground, or thrown: without stabilization the gap grows for ever."""
+    shift = np.eye(5)[1]
+    options = {"step": 0.01} if stabilization == "ggl" else {}
+    times = np.linspace(0.02, 1, 50)
+    motion = as_given(
+        Q + gap * shift, Q_DOT + rate * shift, times, stabilization=stabilization, **options
+    )
+    # 1e-8 a step as above; less for what is projected to the last digit
+    bound = 1e-5 if stabilization in ("none", "baumgarte") else 1e-14
+    assert np.allclose(motion.constraint_residuals().gap, law(times, gap, rate), atol=bound, rtol=0)
+
+
+@pytest.mark.parametrize(("method", "stabilization"), WAYS)
+def test_corrected_follows_the_exact_motion(method: str, stabilization: str) -> None:
+    """The same bits as the model "multipliers" from the scene, and what the equations mean."""
+    times = np.linspace(0, 3, 31)
+    step = FIXED.get(method)
+    scene = rl.Scene(2.0, 1.0, mass=10.0, theta=0.2, omega=2.0, x=float(Q[0]))
+    how = {"stabilization": stabilization, "step": step, "rtol": 1e-11, "atol": 1e-11}
+    motion = corrected(Q, Q_DOT, times, mass=10.0, method=method, **how)
+    same = rl.simulate(scene, times, model="multipliers", method=method, **how)
+    assert motion.model == "multipliers" and motion.method == method
+    for name in ("q", "q_dot", "multipliers"):
+        assert np.array_equal(getattr(motion, name), getattr(same, name))
+    exact = rl.simulate(scene, times, model="rolling")
+    # pairs: 1e-11 a step, some 500 of them, in states up to 10. Fixed steps: for 3 s the next term
+    # of the Taylor series of a motion that turns by up to 5 rad/s, with its third harmonic
+    order = 4 if method == "rk4" else 5
+    bound = 5e-8
+    if step is not None:
+        bound = 3 * 15 ** (order + 1) * step**order / math.factorial(order + 1)
+    assert np.max(np.abs(motion.q - exact.q)) < bound
+    assert np.max(np.abs(motion.q_dot - exact.q_dot)) < 10 * bound
+    forces = np.column_stack([exact.friction_force, exact.normal_force])
+    assert np.max(np.abs(motion.multipliers[:, :2] - forces)) < 10 * 10 * bound
+
+
+def test_corrected_has_defaults_of_its_own() -> None:
+    default = corrected(Q, Q_DOT, [1.0])
+    assert (default.settings.method, default.settings.stabilization) == ("dop853", "projection")
+    assert (default.settings.rtol, default.settings.atol) == (1e-8, 1e-10)
+    index_2 = corrected(Q, Q_DOT, [1.0], stabilization="ggl", step=0.01)
+    assert (index_2.settings.method, index_2.settings.stabilization) == ("radau", "ggl")
+    gains = corrected(Q, Q_DOT, [1.0], stabilization="baumgarte", baumgarte=(3.0, 4.0))
+    assert gains.settings.baumgarte == (3.0, 4.0)
+    heavy = corrected(Q, Q_DOT, [1.0], mass=7.0, gravity=12.0)
+    assert (heavy.scene.mass, heavy.scene.gravity) == (7.0, 12.0)
+    scene = heavy.scene
+    assert (scene.x, scene.theta, scene.omega) == (Q[0], Q[2], Q_DOT[2]) and Q[0] != 0
+    assert corrected(Q, Q_DOT, 1.0).t.size == 1001
+
+
+@pytest.mark.parametrize("start", [(Q, Q_DOT), (OWN_Q, OWN_RATES)], ids=["consistent", "not"])
+def test_corrected_is_saved_with_its_start(start: tuple[Array, Array], tmp_path: Path) -> None:
+    """A scene cannot hold it: theta and omega say nothing of a z_dot that is too large."""
+    motion = as_given(*start, np.linspace(0, 2, 21), stabilization="none")
+    motion.save(tmp_path / "motion.npz")
+    back = rl.Trajectory.load(tmp_path / "motion.npz")
+    assert np.array_equal(back.start, motion.start) and np.array_equal(back.start, start)
+    between = np.linspace(0.03, 1.97, 50)
+    for one, other in ((motion, back), (motion.sol(between), back.sol(between))):
+        for name in ("q", "q_dot", "multipliers", "energy"):
+            assert np.array_equal(getattr(one, name), getattr(other, name))
+    assert back.settings == motion.settings and back.reason == motion.reason
+    assert back.valid_until == motion.valid_until
+
+
+def test_corrected_raises_where_it_stops() -> None:
+    times = np.linspace(0, 1, 11)
+    with pytest.raises(
+        rl.IntegrationError, match=r"^max_steps = 3 steps ended at t = 0\.1"
+    ) as caught:
+        corrected(Q, Q_DOT, times, max_steps=3)
+    there = caught.value.trajectory
+    assert there.status is rl.Status.MAX_STEPS and there.stats["steps"] == 3
+    assert there.t.tolist() == [0.0, 0.1] and 0.1 <= there.t_end < 0.2
+    whole = corrected(Q, Q_DOT, times)
+    assert np.array_equal(there.q, whole.q[:2])
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"q": [1, 2, 3]}, r"q must have 5 entries .*, got shape \(3,\)"),
+        ({"q_dot": [0, 0, math.inf, 0, 0]}, "q_dot must be finite, got"),
+        ({"t": [0.0, 2.0, 1.0]}, "t must be strictly increasing, got"),
+        ({"b": 0.0}, "b must be .*, got 0"),
+        ({"gravity": -1.0}, "gravity must be .*, got -1"),
+        ({"consistent": "no"}, "consistent must be one of 'refuse', .*, got 'no'"),
+        ({"method": "euler"}, "method must be one of .*, got 'euler'"),
+        ({"method": "exact"}, "method must be one of 'dop853', .* 'multipliers', got 'exact'"),
+        ({"method": "rk4"}, r"step must be given \[s\] for method 'rk4', got None"),
+        ({"stabilization": "glue"}, "stabilization must be one of 'none', .*, got 'glue'"),
+        ({"stabilization": "ggl"}, r"step must be given \[s\] for method 'radau', got None"),
+        (
+            {"stabilization": "ggl", "method": "rk4"},
+            "stabilization must not be 'ggl', .* got 'ggl'",
+        ),
+        ({"method": "radau", "step": 0.1}, "stabilization must be 'ggl' .*, got 'projection'"),
+        ({"baumgarte": 10.0}, "baumgarte must be two numbers, got 10.0"),
+        ({"stabilization": "baumgarte", "baumgarte": (10.0, -1.0)}, "baumgarte must be .*, got -1"),
+        ({"rtol": -1e-3}, "rtol must be .*, got -0.001"),
+        ({"atol": math.inf}, "atol must be .*, got inf"),
+        ({"step": 0.0}, "step must be a positive finite time .*, got 0"),
+        ({"max_steps": 0}, "max_steps must be at least 1, got 0"),
+    ],
+)
+def test_corrected_refuses_bad_input_by_name(change: dict[str, Any], message: str) -> None:
+    arguments = {"q": Q, "q_dot": Q_DOT, "t": 1.0, **SHAPE, **change}
+    q, q_dot, t = (arguments.pop(name) for name in ("q", "q_dot", "t"))
+    with pytest.raises(ValueError, match=f"^{message}"):
+        report.simulate(q, q_dot, t, **arguments)

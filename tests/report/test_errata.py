@@ -1,0 +1,412 @@
+"""The errata of the report: each row by two numbers, its equations one by one.
+
+The right numbers are held against closed forms written down here once more, from h and its
+derivatives (oracles/geometry.py), with psi and r by r cos(psi - theta) = h and
+r sin(psi - theta) = h'.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.geometry import Support, support
+from oracles.numbers import EPS
+from oracles.report import BODY, SHAPE, Array
+from rolling_ellipse import report
+
+UNEVEN = {"a": 2.0, "b": 0.7, "mass": 3.0, "gravity": 9.81}
+ANGLE = 0.7  # where the errata are evaluated
+
+
+class Exact:
+    """The errata's exact motion (theta = 0.2, omega = 3.2 rad/s) where it passes an angle."""
+
+    def __init__(self, theta: float, a: float = 2.0, b: float = 1.0) -> None:
+        def inertia(at: Support) -> float:
+            return float((a * a + b * b) / 4 + at.h**2 + at.slope**2)
+
+        start, here = support(0.2, a, b), support(theta, a, b)
+        energy = inertia(start) * 3.2**2 / 2 + 9.81 * start.h
+        self.h, self.slope, curvature = (float(value) for value in here)
+        self.rho = self.h + curvature
+        self.omega = math.sqrt(2 * (energy - 9.81 * self.h) / inertia(here))
+        self.alpha = -self.slope * (9.81 + self.rho * self.omega**2) / inertia(here)
+        self.normal = 9.81 + self.slope * self.alpha + curvature * self.omega**2  # over m
+        # rates of psi = theta + atan2(h', h) and r = hypot(h, h')
+        r2 = self.h**2 + self.slope**2
+        self.psi_dot = self.omega * (1 + (curvature * self.h - self.slope**2) / r2)
+        self.r_dot = self.slope * self.rho / math.sqrt(r2) * self.omega
+        self.psi = theta + math.atan2(self.slope, self.h)
+        self.polar = (b * math.sin(self.psi)) ** 2 + (a * math.cos(self.psi)) ** 2
+
+
+def numbers(where: str) -> report.Comparison:
+    (erratum,) = (e for e in report.errata() if e.where == where)
+    found = erratum.evaluate()
+    print(f"{erratum.where}: {erratum.quantity}: printed {found.printed:.6g}, "
+          f"right {found.right:.6g}, gap {found.gap:.6g}")  # fmt: skip
+    assert found.gap == found.printed - found.right
+    return found
+
+
+def close(value: float) -> Any:
+    """Within 100 ulp: some ten operations in either form, none of which cancels tenfold."""
+    return pytest.approx(value, rel=100 * EPS, abs=0)
+
+
+def zero(scale: float) -> Any:
+    """Rounding of terms of a size, as `close`."""
+    return pytest.approx(0, abs=100 * EPS * scale)
+
+
+# --------------------------------------------------------------------------------------- the errata
+
+
+def test_f1_is_the_velocity_of_the_geometric_contact() -> None:
+    """x_dot + d/dt h' = (h + h'') omega = rho omega."""
+    found, at = numbers("eqs 9, 10, f1"), Exact(ANGLE)
+    assert found.printed == close(at.rho * at.omega)
+    assert found.right == zero(at.h * at.omega)
+
+
+def test_f1_frozen_means_no_advance() -> None:
+    """With f1 = 0 the body spins over the spot: x + h' stays while theta makes its way."""
+    q, _ = rl.kinematics(0.2, 2.0, **SHAPE)
+    rates = report.consistent_rates(q, 2.0, printed=("f1",), **SHAPE)
+    motion = report.simulate(q, rates, 0.5, equations="printed", printed=("f1",), **SHAPE)
+    contact = report.contact_x(motion.q, **SHAPE)
+    assert abs(motion.q[-1, 2] - motion.q[0, 2]) > 0.3
+    assert np.ptp(contact) < 1e-6  # 0.5 s with an error of 1e-8 a step
+
+
+def test_the_cases_are_wrong_in_the_third_quadrant() -> None:
+    found, at = numbers("section 2.2, cases 1 and 2"), Exact(4.0)
+    assert found.printed == close(-at.slope) and found.right == close(at.slope)
+    # and right where they were looked at; on the arctan's branches f2 has a sign of its own
+    for theta, sign in ((0.7, 1), (2.0, 1), (4.0, -1), (5.5, 1)):
+        lead = float(report.case_lead(theta, **SHAPE))
+        assert lead == pytest.approx(sign * Exact(theta).slope, rel=1e-14)
+        cosine = math.cos(float(report.eq_5(theta, **SHAPE)) - theta)
+        assert (cosine < 0) == (math.pi / 2 < theta < 3 * math.pi / 2)
+
+
+def test_df2_has_both_signs_wrong() -> None:
+    found, at = numbers("eq 32, df2, row 2"), Exact(ANGLE)
+    # r sin (psi_dot - theta_dot) goes out of the right row, twice as much stays in the printed one
+    assert found.printed == close(-2 * at.slope * (at.psi_dot - at.omega))
+    assert found.right == zero(at.slope * at.psi_dot)
+
+
+def test_df3_lost_its_exponent() -> None:
+    found, at = numbers("eq 32, df3"), Exact(ANGLE)
+    printed = 2 * at.polar * at.r_dot - 6 * math.sin(at.psi) ** 2 * at.psi_dot
+    assert found.printed == close(printed)
+    assert found.right == zero(2 * at.polar**1.5 * at.r_dot)
+
+
+def test_a44_has_the_wrong_sign() -> None:
+    found, at = numbers("eq 35, code a44"), Exact(ANGLE)
+    term = 4 * (math.tan(ANGLE) ** 2 + 1) * at.omega
+    assert found.printed == close(2 * term) and found.right == zero(term)
+
+
+def test_eq_37_has_the_wrong_sign() -> None:
+    """The term is the moment of N about the contact: lambda3 a b c^2 sin 2psi = N h'."""
+    found, at = numbers("eq 37"), Exact(ANGLE)
+    moment = 10 * at.normal * at.slope
+    assert found.right == close(-moment) and found.printed == close(moment)
+
+
+def test_eq_38_is_no_derivative_of_eq_10() -> None:
+    found, at = numbers("eq 38, f1 and f2"), Exact(ANGLE)
+    sine = math.sin(at.psi - ANGLE)
+    z_dot, turning = at.slope * at.omega, at.psi_dot * at.slope
+    assert found.printed == close(z_dot - at.r_dot * sine - turning + at.omega * at.h)
+    assert found.right == zero(at.h * at.omega)
+    # nor is its f1 the f1 of eq 10: rho omega there
+    q, q_dot = rl.kinematics(ANGLE, at.omega, **SHAPE)
+    printed = report.eq_38(q, q_dot, **SHAPE)
+    x_dot, radius_dot = at.h * at.omega, at.r_dot * math.cos(at.psi - ANGLE)
+    assert printed[0] == close(x_dot - radius_dot - (at.psi_dot - at.omega) * at.slope)
+    assert abs(printed[0] - report.f1(q, q_dot)) > 0.1
+    # while its f3 and f4 are right
+    assert np.allclose(printed[2:], 0, atol=100 * EPS * 30)
+
+
+def test_lambda2_has_gravity_upside_down() -> None:
+    found, at = numbers("eq 39, λ2"), Exact(ANGLE)
+    assert found.right == close(10 * at.normal)
+    assert found.printed == close(10 * at.normal - 2 * 98.1)
+
+
+def test_lambda3_divides_by_zero() -> None:
+    found = numbers("eq 39, λ3")
+    at = Exact(math.pi / 2 - 1e-3)
+    # sin 2psi has lost 3 digits there; the right one none
+    cosine = math.cos(at.psi - (math.pi / 2 - 1e-3))
+    assert found.right == close(10 * at.normal * cosine / (2 * at.polar**1.5))
+    assert found.printed > 1e6 * found.right
+    flat, circle = Exact(0.0), {**BODY, "a": 1.0}
+    for body, theta in ((BODY, 0.0), (circle, 0.3)):
+        q, q_dot = rl.kinematics(theta, flat.omega, a=body["a"], b=1.0)
+        q_ddot = np.zeros(5)
+        with np.errstate(invalid="raise"):  # the division is its own business
+            assert not math.isfinite(report.eq_39(q, q_ddot, **body)[2])
+        assert math.isfinite(report.multipliers(q, q_ddot, **body)[2])
+        assert report.constraint_rates(q, q_dot, a=body["a"], b=1.0) == zero(10)
+
+
+def test_lambda4_is_off_by_b_squared() -> None:
+    found = numbers("eq 39, λ4")
+    assert found.printed == close(found.right / 0.8**2)
+    # what follows from eq 35 with df4's sign and lambda1, lambda2 of eq 39
+    q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
+    q_ddot = np.array([0.3, -0.8, 1.1, 0.0, 0.0])
+    one, two, _, _ = report.eq_39(q, q_ddot, **UNEVEN)
+    fourth = report.lambda4_numerator(q, q_ddot, **UNEVEN) / (4 * 2.0**2)
+    left = report.eqs_33_to_37(q, q_ddot, [one, two, 0.0, -fourth], **UNEVEN)
+    assert left[2] == zero(30)
+
+
+def test_f_lost_terms() -> None:
+    """What eq 40 has too much or too little, against all the terms in eq 42."""
+    found = numbers("eqs 40, 42")
+    assert abs(found.gap) > abs(found.right)
+    q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
+    q_ddot = np.array([0.3, -0.8, 1.1, 0.2, 0.1])
+    (_, _, theta, psi, r), (x, z, spin, _, _) = q, q_ddot
+    a, b, m = 2.0, 0.7, 3.0
+    c2, t2 = math.cos(theta) ** 2, math.tan(theta) ** 2
+    sine, cosine = r * math.sin(psi - theta), r * math.cos(psi - theta)
+    without_mass = (b**6 + a**2 * b**4 + a**4 * b**2 * t2) * spin * c2
+    without_mass += 4 * a**2 * b**2 * (z * sine - x * cosine)
+    garbled = a**6 * spin * c2 * (1 - m * t2) + a**4 * b**2 * t2
+    too_many = 4 * a**4 * m * c2 * (x * cosine * t2 - z * r * math.sin(psi))
+    without_cosine = 4 * b**4 * x * m * cosine * (1 - c2)
+    gap = report.eq_40(q, q_ddot, **UNEVEN) - report.complete_f(q, q_ddot, **UNEVEN)
+    expected = (1 - m) * without_mass + garbled + too_many + without_cosine
+    assert gap == pytest.approx(expected, rel=1e-12)
+
+
+def test_printed_equations_of_motion_are_off_by_the_misprints() -> None:
+    """x, z and r agree; theta and psi are off by df2, f1 and the signs of lambda3 and lambda4."""
+    q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
+    q_ddot, forces = np.array([0.3, -0.8, 1.1, 0.2, 0.1]), np.array([1.0, -2.0, 0.5, 0.7])
+    printed = report.eqs_33_to_37(q, q_ddot, forces, **UNEVEN)
+    right = report.equations_of_motion(q, q_ddot, forces, **UNEVEN)
+    gap = printed - right
+    assert gap[:2] == zero(30)
+    sine, cosine = math.sin(q[3] - q[2]), math.cos(q[3] - q[2])
+    lever = q[4] * sine
+    sec2 = 1 + math.tan(0.6) ** 2
+    # theta: -lambda2 r sin for +, and -lambda4 a^2 sec^2 for +
+    assert gap[2] == pytest.approx(-2 * lever * -2.0 - 2 * 0.7 * 4 * sec2, rel=1e-13)
+    # psi: lambda1 r cos for 0, -lambda2 r sin for +, +lambda3 ... for -
+    squeeze = 2 * 0.7 * (4 - 0.49) * math.sin(2 * q[3])
+    assert gap[3] == pytest.approx(q[4] * cosine - 2 * lever * -2.0 + 2 * 0.5 * squeeze, rel=1e-13)
+    # r: lambda1 sin for 0
+    assert gap[4] == pytest.approx(sine, rel=1e-13)
+
+
+def test_tan_is_infinite_at_a_quarter_turn() -> None:
+    found = numbers("eq 32, df4, code")
+    assert found.printed > 1e30 and found.right == close(16.0)
+
+
+def test_appendix_b_has_another_radius() -> None:
+    found, at = numbers("appendix B"), Exact(ANGLE)
+    assert found.right == close(math.hypot(at.h, at.slope))
+    assert found.gap < -0.5
+    assert float(report.appendix_b_radius(0.0, **SHAPE)) == close(0.5)  # b/a, not b
+    q, _ = rl.kinematics(ANGLE, 1.0, **SHAPE)
+    printed, right = report.appendix_b_r_x(q, **SHAPE), report.contact_x(q, **SHAPE)
+    assert right - q[0] == close(at.slope)
+    assert printed - q[0] == pytest.approx(at.slope * found.printed / found.right, rel=1e-13)
+
+
+def test_eq_48_is_right_on_ice_only() -> None:
+    found = numbers("eqs 45–48")
+    assert found.printed == close(5.76) and found.right == close(3.2)
+    on_ice = rl.Scene(2.0, 1.0, mass=10.0, friction=0.0, impulse=rl.Impulse.press(48.0, 1.5))
+    assert on_ice.initial_state.omega == close(found.printed)
+
+
+def test_back_substitution_sees_nothing() -> None:
+    found = numbers("section 4.2.2, Figure 11")
+    assert found.printed < 1e-7  # tolerance 1e-12 a step, 10 kg, accelerations up to 1e3
+    assert found.right > 0.09
+
+
+def test_a_broken_solution_is_seen_by_back_substitution() -> None:
+    """The test itself works: it reports what the solution is changed by."""
+    q, q_dot = rl.kinematics(0.2, 2.0, **SHAPE)
+    motion = report.simulate(q, q_dot, [0.1], equations="printed", printed=(), **SHAPE)
+    assert np.max(np.abs(motion.back_substitution())) < 1e-7
+    motion.multipliers[0, 1] += 1e-3
+    assert motion.back_substitution()[0, 1] == pytest.approx(-1e-3, rel=1e-3)
+
+
+def test_psi_is_discontinuous_by_its_branch() -> None:
+    found, at = numbers("section 4.2.2, Figure 12"), Exact(2.0)
+    assert found.right == close(at.psi) and found.gap == close(-math.pi)
+    theta = np.linspace(-10, 10, 4001)
+    # d psi/d theta is at most a^2/b^2
+    assert np.max(np.abs(np.diff(rl.geometry.contact_angle(theta, **SHAPE)))) < 4.01 * 0.005
+    assert np.max(np.abs(np.diff(report.eq_5(theta, **SHAPE)))) > 3.1
+
+
+def test_figure_13_rolls_over_too_early() -> None:
+    found = numbers("Figure 13")
+    assert found.printed == 1 and found.right == close(math.sqrt(2 * 9.81 / 2.25))
+    slow, fast = (rl.simulate(rl.Scene(2.0, 1.0, omega=w), 5.0) for w in (1.0, 3.0))
+    assert np.max(np.abs(slow.theta)) < 0.3 and fast.theta[-1] > math.pi
+    # fastest when flat (theta = 0, pi), slowest when tall
+    flat, tall = np.argmax(fast.omega), np.argmin(fast.omega)
+    assert abs(math.sin(fast.theta[flat])) < 0.02 and abs(math.cos(fast.theta[tall])) < 0.02
+
+
+def test_every_row_is_in_the_table() -> None:
+    lines = report.errata_table().splitlines()
+    errata = report.errata()
+    assert len(errata) == 17 and len({e.where for e in errata}) == 17
+    assert lines[1] == "|---|---|---|---|---:|---:|" and len(lines) == 2 + len(errata)
+    for line, erratum in zip(lines[2:], errata, strict=True):
+        cells = [cell.strip() for cell in line.strip("|").split(" | ")]
+        assert cells[:4] == [erratum.where, erratum.printed, erratum.finding, erratum.quantity]
+        found = erratum.evaluate()
+        assert float(cells[4]) == pytest.approx(found.printed, rel=1e-3)
+        assert float(cells[5]) == pytest.approx(found.right, rel=1e-3, abs=1e-12)
+
+
+# ---------------------------------------------------------------------------- equations, one by one
+
+
+def trajectory() -> rl.Trajectory:
+    scene = rl.Scene(2.0, 0.7, mass=3.0, theta=0.2, omega=3.9)
+    return rl.simulate(scene, np.linspace(0.05, 3.0, 60))
+
+
+def accelerations(motion: rl.Trajectory) -> Array:
+    columns = motion.x_ddot, motion.z_ddot, motion.omega_dot, motion.psi_ddot, motion.r_ddot
+    return np.stack(columns, axis=1)
+
+
+def test_right_equations_hold_on_an_exact_motion() -> None:
+    motion = trajectory()
+    shape, q_ddot = {"a": 2.0, "b": 0.7}, accelerations(motion)
+    forces = report.multipliers(motion.q, q_ddot, **UNEVEN)
+    left = report.equations_of_motion(motion.q, q_ddot, forces, **UNEVEN)
+    matrix = report.constraint_matrix(motion.q, printed=("tan",), **shape)
+    # 100 ulp of the largest terms: of row 4 with the tangent, lambda4 times a^4 tan^2/b^2
+    scale = 100 + np.max(np.abs(matrix[:, 3]), axis=1) * np.abs(forces[:, 3])
+    assert np.all(np.abs(left) <= 100 * EPS * scale[:, None] + 1e-12)
+    assert np.max(np.abs(report.eqs_33_to_37(motion.q, q_ddot, forces, **UNEVEN))) > 1
+    rates = report.constraint_rates(motion.q, motion.q_dot, **shape)
+    terms = np.einsum("nij,nj->ni", np.abs(matrix), np.abs(motion.q_dot))
+    assert np.all(np.abs(rates) <= 100 * EPS * (terms + 1))
+
+
+def test_multipliers_are_those_of_the_package() -> None:
+    """F, N, and lambda3 of rows that are 2 (...)^(3/2) times the gradient of f3; lambda4 = 0."""
+    motion = trajectory()
+    forces = report.multipliers(motion.q, accelerations(motion), **UNEVEN)
+    polar = (0.7 * np.sin(motion.psi)) ** 2 + (2.0 * np.cos(motion.psi)) ** 2
+    scale = np.max(np.abs(motion.multipliers))
+    assert np.allclose(forces[:, :2], motion.multipliers[:, :2], rtol=0, atol=1e-13 * scale)
+    third = forces[:, 2] * 2 * polar**1.5
+    assert np.allclose(third, motion.multipliers[:, 2], rtol=0, atol=1e-13 * scale)
+    assert np.max(np.abs(forces[:, 3])) < 1e-12 * scale
+
+
+def test_right_rows_are_the_gradients_of_f1_to_f4() -> None:
+    """At any state, also off the constraints: row times rates = scale times `constraints`."""
+    generator = np.random.default_rng(5)
+    q, q_dot = generator.uniform(-2, 2, (2, 200, 5))
+    velocity = rl.constraints(q, q_dot, a=2.0, b=0.7).velocity
+    matrix = report.constraint_matrix(q, a=2.0, b=0.7, printed=())
+    rates = np.einsum("nij,nj->ni", matrix, q_dot)
+    scales = np.stack([np.ones(200), np.ones(200), matrix[:, 2, 4], matrix[:, 3, 3]], axis=1)
+    assert np.allclose(rates, scales * velocity, rtol=1e-12, atol=1e-12)
+
+
+def test_printed_f1_to_f4_on_an_exact_motion() -> None:
+    motion = trajectory()
+    shape = {"a": 2.0, "b": 0.7}
+    assert np.max(np.abs(report.f2(motion.q))) < 1e-14
+    assert np.max(np.abs(report.f3(motion.q, **shape))) < 1e-14
+    turns = report.f4(motion.q, **shape) / math.pi
+    assert np.allclose(turns, np.round(turns), atol=1e-14) and np.ptp(np.round(turns)) >= 2
+    # case 1 is case 2 with the contact on the other side
+    q, q_dot = motion.q, motion.q_dot
+    one, two = (report.f1(q, q_dot, case=case) for case in ("1", "2"))
+    assert np.allclose((one + two) / 2, q_dot[:, 0], rtol=1e-14)
+    second = report.case_sign(motion.theta) < 0
+    mixed = report.f1(q, q_dot, case="as_it_is")
+    assert np.any(second) and np.array_equal(mixed, np.where(second, one, two))
+
+
+def test_misprints_change_what_they_name() -> None:
+    q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
+    right = report.constraint_matrix(q, a=2.0, b=0.7, printed=())
+    entries = {"f1": {(0, 3), (0, 4)}, "df2": {(1, 2), (1, 3)}, "df3": {(2, 3), (2, 4)},
+               "a44": {(3, 2)}, "tan": {(3, 2), (3, 3)}}  # fmt: skip
+    assert set(entries) == set(report.MISPRINTS)
+    for name, expected in entries.items():
+        changed = report.constraint_matrix(q, a=2.0, b=0.7, printed=(name,)) != right
+        assert {tuple(index) for index in np.argwhere(changed)} == expected
+    sine, cosine = math.sin(q[3] - 0.6), math.cos(q[3] - 0.6)
+    first = report.constraint_matrix(q, a=2.0, b=0.7, printed=report.EQ_32)[0]
+    assert first == pytest.approx([1, 0, -q[4] * cosine, q[4] * cosine, sine], rel=1e-14)
+
+
+def f_of_eq_42(q: Array, q_ddot: Array, a: float, b: float, mass: float, gravity: float) -> float:
+    """The terms in the bracket of eq 42, as printed."""
+    (_, _, theta, psi, r), (x, z, spin, _, _) = q, q_ddot
+    m, g, s, c = mass, gravity, math.sin(psi - theta), math.cos(psi - theta)
+    c2, t2 = math.cos(theta) ** 2, math.tan(theta) ** 2
+    return (
+        b**6 * spin * m * c2 + a**6 * spin * m * c2 * t2 + a**2 * b**4 * spin * m * c2
+        - 4 * a**2 * b**2 * x * m * r * c + a**4 * b**2 * spin * m * c2 * t2
+        + 4 * a**2 * b**2 * z * m * r * s - 4 * a**2 * b**2 * g * m * r * s
+        + 4 * b**4 * x * m * r * c * c2 - 4 * b**4 * z * m * r * s * c2
+        + 4 * b**4 * g * m * r * s * c2 + 4 * a**4 * x * m * r * c * c2 * t2
+        - 4 * a**4 * z * m * r * s * c2 * t2 + 4 * a**4 * g * m * r * s * c2 * t2
+    )  # fmt: skip
+
+
+def test_eq_42_has_all_the_terms_that_eq_40_lost() -> None:
+    q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
+    q_ddot = np.array([0.3, -0.8, 1.1, 0.2, 0.1])
+    complete = float(report.complete_f(q, q_ddot, **UNEVEN))
+    assert f_of_eq_42(q, q_ddot, **UNEVEN) == pytest.approx(complete, rel=1e-12)
+    # eq 41 with it is eq 36 with the multipliers put in
+    one, two, _, _ = report.eq_39(q, q_ddot, **UNEVEN)
+    third = complete / (4 * (2.0 * 0.7) ** 3 * math.sin(2 * q[3]) * (4 - 0.49))
+    eq_36 = report.eqs_33_to_37(q, q_ddot, [one, two, third, 0.0], **UNEVEN)[4]
+    complete_41 = float(report.eq_41(q, q_ddot, complete=True, **UNEVEN))
+    assert complete_41 == pytest.approx(-eq_36, rel=1e-12)
+    head = two * math.cos(q[3] - q[2]) - one * math.sin(q[3] - q[2])
+    factor = 2 * 4 * math.cos(q[3]) ** 2 + 2 * 0.49 * math.sin(q[3])
+    printed = float(report.eq_42(q, q_ddot, **UNEVEN))
+    assert printed == pytest.approx(head - factor * complete, rel=1e-12)
+    printed_41 = float(report.eq_41(q, q_ddot, **UNEVEN))
+    assert printed_41 == pytest.approx(head - printed * third / complete, rel=1e-12)
+    assert abs(printed_41 - complete_41) > 0.1
+
+
+@pytest.mark.parametrize(
+    ("function", "power", "agrees"),
+    [(report.complete_f, 6, True), (report.eq_40, 6, False), (report.eq_42, 9, False)],
+)
+def test_dimensions(function: Any, power: int, agrees: bool) -> None:
+    """In millimetres and grams the same state must give 1000^power times 1000 the number.
+
+    F is kg m^6/s^2, F1 = 2 (...)^(3/2) F is m^3 more.
+    """
+    q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
+    q_ddot, lengths = np.array([0.3, -0.8, 1.1, 0.2, 0.1]), np.array([1e3, 1e3, 1, 1, 1e3])
+    small = {"a": 2e3, "b": 0.7e3, "mass": 3e3, "gravity": 9.81e3}
+    ratio = function(q * lengths, q_ddot * lengths, **small) / function(q, q_ddot, **UNEVEN)
+    assert (abs(ratio / 1e3 ** (power + 1) - 1) < 1e-12) == agrees

@@ -1,0 +1,283 @@
+"""The equations as printed: the motion they give, the starts they take, what they refuse."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.report import BODY, Q_DOT, SHAPE, Array, Q, off_by, start
+from rolling_ellipse import report
+from rolling_ellipse.report._runge_kutta import Steps, integrate
+
+# ----------------------------------------------------------------------------------- the simulation
+
+GAPS = [  # the rows as printed, and the gap 0.25 s after theta = 0.2, theta_dot = 2 rad/s [m]
+    (("f1", "df2"), -0.305),
+    (("df2",), 0.052),
+    (("f1", "df2", "a44"), -0.093),
+    (("a44",), -0.758),
+    (report.CODE, -0.093),
+    (report.MATRIX, -0.305),
+]
+
+
+def run(q: Array, q_dot: Array, t: Any, **options: Any) -> report.PrintedMotion:
+    motion = report.simulate(q, q_dot, t, equations="printed", **{**SHAPE, **options})
+    assert isinstance(motion, report.PrintedMotion)
+    return motion
+
+
+def test_the_given_times_are_left_alone() -> None:
+    """And what becomes of them later is nothing to the motion."""
+    times = np.linspace(0.0, 0.1, 5)
+    q, q_dot = rl.kinematics(0.3, 2.0, a=2.0, b=1.0)
+    motion = report.simulate(q, q_dot, times, a=2.0, b=1.0, equations="printed", printed=())
+    assert times.flags.writeable and not np.shares_memory(motion.t, times)
+    assert motion.t.tolist() == times.tolist()
+
+
+@pytest.mark.parametrize(("printed", "gap"), GAPS)
+@pytest.mark.parametrize("mass", [1.0, 10.0])
+def test_wrong_equations_lift_it_off(printed: tuple[str, ...], gap: float, mass: float) -> None:
+    """(a) wrong equations, a start that they allow, tight tolerance: not the method's fault."""
+    q, q_dot = start(0.2, 2.0, printed)
+    loose, tight = (
+        run(q, q_dot, [0.25], printed=printed, mass=mass, rtol=rtol, atol=rtol)
+        for rtol in (1e-8, 1e-11)
+    )
+    print(printed, tight.gap)
+    assert tight.gap[0] == pytest.approx(gap, abs=5e-4)  # three decimals are given
+    assert abs(loose.gap[0] - tight.gap[0]) < 1e-6
+    assert tight.start.violations == ()
+    # constraint forces do no work on rates that their own rows allow, so the energy sees nothing
+    kinetic = mass * (q_dot[0] ** 2 + q_dot[1] ** 2 + 1.25 * q_dot[2] ** 2) / 2
+    assert tight.energy[0] == pytest.approx(kinetic + mass * 9.81 * q[1], rel=1e-8)
+    assert np.array_equal(tight.constraint_residuals().gap, tight.gap)
+
+
+def test_only_the_misprints_lift_it_off() -> None:
+    q, q_dot = start(0.2, 2.0)
+    motion = run(q, q_dot, [0.25], printed=(), rtol=1e-11, atol=1e-11)
+    assert abs(motion.gap[0]) < 1e-10
+
+
+def test_right_rows_give_the_exact_motion() -> None:
+    q, q_dot = start(0.2, 2.0)
+    times = np.linspace(0, 3, 31)
+    motion = run(q, q_dot, times, printed=(), rtol=1e-11, atol=1e-11)
+    exact = rl.simulate(rl.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), times)
+    # 1e-11 a step, some 500 of them, growing with the square of time for index 1
+    assert np.max(np.abs(motion.q - exact.q)) < 1e-8
+    assert np.max(np.abs(motion.q_dot - exact.q_dot)) < 1e-8
+    assert np.max(np.abs(motion.multipliers[:, :2] - exact.multipliers[:, :2])) < 1e-6
+    assert np.max(np.abs(motion.energy / motion.energy[0] - 1)) < 1e-9
+
+
+def test_an_inconsistent_start_lifts_it_off() -> None:
+    """(b) right equations from z_dot one too large: f2 = t, since its second derivative is 0."""
+    q, q_dot = start(0.2, 2.0)
+    q_dot[1] += 1.0
+    times = np.linspace(0, 1, 11)
+    with pytest.warns(report.InconsistentStartWarning, match="rate of f2 = 1 m/s"):
+        motion = run(q, q_dot, times, printed=(), consistent="as_given")
+    assert np.allclose(motion.gap, times, rtol=0, atol=1e-6)
+    assert motion.start.violations == ("rate of f2 = 1 m/s",)
+    projected = run(q, q_dot, times, printed=(), consistent="project")
+    assert np.max(np.abs(projected.gap)) < 1e-6
+    assert projected.start.q_dot_change[1] < -0.5
+
+
+def test_large_steps_lift_it_off() -> None:
+    """(c) right equations, consistent start, RK4: 0.84 m and +40 % after 60 s, by the step."""
+    q, q_dot = start(0.0, 3.2)
+    coarse = run(q, q_dot, [0, 60], printed=(), method="rk4", step=0.02)
+    assert coarse.gap[1] == pytest.approx(0.84, abs=5e-3)
+    assert coarse.energy[1] / coarse.energy[0] - 1 == pytest.approx(0.40, abs=5e-3)
+    # it goes away with the step, as the wrong equations and the wrong start do not: order 4
+    errors = [
+        abs(run(q, q_dot, [0, 6], printed=(), method="rk4", step=step).gap[1])
+        for step in (0.02, 0.01, 0.005)
+    ]
+    assert errors[0] > 4 * errors[1] > 16 * errors[2] > 0
+    assert errors[2] < 1e-4
+
+
+@pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("dopri5", 5)])
+def test_order(method: str, order: int) -> None:
+    """On y' = y cos t, y = exp(sin t), whose higher terms are as large as the first."""
+    sizes = np.array([0.1, 0.05, 0.025])
+    errors = []
+    for size in sizes:
+        steps = Steps(method, 1e-3, 1e-3, float(size), 10_000)
+        y, message = integrate(
+            lambda y: np.array([y[0] * math.cos(y[1]), 1.0]), np.array([1.0, 0.0]),
+            np.array([2.0]), steps,
+        )  # fmt: skip
+        assert message == ""
+        errors.append(abs(y[0, 0] - math.exp(math.sin(2.0))))
+    slope = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
+    assert slope == pytest.approx(order, abs=0.15)
+
+
+def test_samples_do_not_steer() -> None:
+    """The steps are the method's own; between them the pair's dense output of order 4."""
+    q, q_dot = start(0.2, 2.0)
+    few = run(q, q_dot, [0.5, 1.0], printed=())
+    many = run(q, q_dot, np.linspace(0, 1, 101), printed=())
+    assert np.array_equal(few.q, many.q[[50, 100]])
+    exact = rl.simulate(rl.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), many.t)
+    # rtol is 1e-8; an order less between the steps
+    assert np.max(np.abs(many.q - exact.q)) < 1e-6
+    assert run(q, q_dot, 0.1, printed=()).t.size == 1001
+
+
+def test_the_tangent_does_not_get_over_the_tip() -> None:
+    """With tan as printed the system is singular at a quarter turn: it stops, and says when."""
+    q, q_dot = start(0.0, 3.2)
+    motion = run(q, q_dot, np.linspace(0, 12, 121), printed=("tan",), method="rk4", step=0.02)
+    assert 0 < motion.t.size < 121 and "at 1.98 s" in motion.message
+    assert np.all(np.isfinite(motion.q))
+    over = run(q, q_dot, np.linspace(0, 12, 121), printed=(), method="rk4", step=0.02)
+    assert over.message == "" and over.q[-1, 2] > 2 * math.pi
+
+
+def test_max_steps() -> None:
+    q, q_dot = start(0.2, 2.0)
+    motion = run(q, q_dot, [0.0, 1.0], printed=(), max_steps=3)
+    assert motion.t.tolist() == [0.0] and motion.message.startswith("max_steps reached at 0.")
+
+
+# ---------------------------------------------------------------------------------------- the start
+
+
+@pytest.mark.parametrize("shape", [(2.0, 1.0), (1.0, 1.0), (1.0 + 1e-8, 1.0), (0.7, 1.9)])
+@pytest.mark.parametrize("printed", [(), ("f1",), ("f1", "df2", "a44")])
+def test_exact_starts_are_consistent_and_others_are_not(
+    shape: tuple[float, float], printed: tuple[str, ...]
+) -> None:
+    a, b = shape
+    for theta in (0.0, 0.2, -2.3, 333.3, 1e4):
+        q, q_dot = rl.kinematics(theta, 1.7, a=a, b=b)
+        if printed:
+            q_dot = report.consistent_rates(q, 1.7, a=a, b=b, printed=printed)
+        options = {"a": a, "b": b, "equations": "printed", "printed": printed, "max_steps": 1}
+        motion = report.simulate(q, q_dot, 0.0, **options)
+        assert motion.start.violations == ()
+        for i in range(1, 5):  # a part in 1e9 (of a radian and a metre at least) is seen
+            moved = q.copy()
+            moved[i] += 1e-9 * max(1.0, abs(q[i]))
+            with pytest.raises(ValueError, match="must meet the constraints"):
+                report.simulate(moved, q_dot, 0.0, **options)
+        faster = q_dot.copy()
+        faster[0] += 1e-9
+        with pytest.raises(ValueError, match="f1"):
+            report.simulate(q, faster, 0.0, **options)
+
+
+def test_the_reports_own_start_is_refused_by_name() -> None:
+    """z_dot = 1 m/s while lying flat, no x_dot, psi_dot that does not fit."""
+    q, q_dot = [0, 1, 0, 0, 1], [0, 1, 1, 1.5, 0]
+    violated = r"f1 = -1 m/s; rate of f2 = 1 m/s; rate of f4 = -2.5 rad/s$"
+    with pytest.raises(ValueError, match=violated):
+        run(q, q_dot, 1.0, printed=())
+    code = "f1 as printed = 0.5 m/s; rate of f2 as printed = 1 m/s; rate of f4 as printed = 5.5"
+    with pytest.raises(ValueError, match=code):
+        run(q, q_dot, 1.0)
+    with pytest.raises(ValueError, match=r"f2 = 0.5 m; f3 = 0.25 m; f4 = -0.3 rad$"):
+        run(*off_by(0.5, 0.25, -0.3), 1.0, printed=())
+
+
+def test_projection_takes_the_nearest_state() -> None:
+    """In the kinetic metric: no neighbour on the ground is nearer, no other speed either."""
+    q, q_dot = np.array([0.3, 1.5, 0.4, 5.0, 3.0]), np.array([1.0, 0.5, 2.0, 7.0, -3.0])
+    motion = run(q, q_dot, [0.0], printed=(), consistent="project", mass=3.0)
+    there, rates = motion.q[0], motion.q_dot[0]
+    assert np.array_equal(motion.start.q_change, there - q)
+    assert np.array_equal(motion.start.q_dot_change, rates - q_dot)
+    residuals = rl.constraints(there, rates, **SHAPE)
+    assert np.max(np.abs(residuals.position)) < 1e-15
+    assert np.max(np.abs(residuals.velocity)) < 1e-14
+    assert there[0] == 0.3
+
+    def distance2(theta: Array) -> Array:
+        height = rl.geometry.support(theta, **SHAPE)
+        return (1.5 - height) ** 2 + 1.25 * (theta - 0.4) ** 2
+
+    everywhere = np.linspace(-3, 3, 6001)
+    assert distance2(there[2]) <= np.min(distance2(everywhere))
+    # stationary: to second order in 1e-4, 1e-8 of a curvature of about 1
+    assert distance2(there[2] + 1e-4) == pytest.approx(distance2(there[2] - 1e-4), abs=1e-10)
+    h, slope = rl.geometry.support(there[2], **SHAPE), rl.geometry.support_slope(there[2], **SHAPE)
+    omega = (h * 1.0 + slope * 0.5 + 1.25 * 2.0) / (1.25 + h**2 + slope**2)
+    assert rates[2] == pytest.approx(omega, rel=1e-14)
+    assert rates[:3] == pytest.approx([h * omega, slope * omega, omega], rel=1e-14)
+    again = run(there, rates, [0.0], printed=(), consistent="project")
+    assert np.array_equal(again.q[0], there)  # consistent already: nothing is changed
+
+
+def test_motion_says_what_it_is() -> None:
+    q, q_dot = start(0.2, 2.0)
+    motion = run(q, q_dot, [0.0, 0.1], printed=())
+    assert repr(motion).startswith("<PrintedMotion: 2 samples, t = 0 ... 0.1 s, as printed: none")
+    energy = 0.5 * (q_dot[0] ** 2 + q_dot[1] ** 2 + 1.25 * 4.0) + 9.81 * q[1]
+    assert motion.energy[0] == pytest.approx(energy, rel=1e-14)
+
+
+# ---------------------------------------------------------------------------------------- bad input
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"q": [1, 2, 3]}, r"q must have 5 entries .*, got shape \(3,\)"),
+        ({"q_dot": [[0] * 5]}, r"q_dot must have 5 entries .*, got shape \(1, 5\)"),
+        ({"q": [0, 1, math.nan, 0, 1]}, "q must be finite, got"),
+        ({"t": -1.0}, "t must not be negative"),
+        ({"a": -1.0}, "a must be .*, got -1"),
+        ({"mass": 0.0}, "mass must be .*, got 0"),
+        ({"equations": "wrong"}, "equations must be one of 'corrected', 'printed', got 'wrong'"),
+        ({"consistent": "maybe"}, "consistent must be one of 'refuse', .*, got 'maybe'"),
+        ({"stabilization": "none"}, "stabilization must be None for the printed .*, got 'none'"),
+        ({"printed": ("f1", "f9")}, "printed must hold names out of .*, got 'f9'"),
+        ({"printed": 3}, "printed must hold names out of .*, got 3"),
+        ({"method": "euler"}, "method must be one of 'dopri5', 'rk4', got 'euler'"),
+        ({"method": "rk4"}, "step must be a positive time for the method 'rk4', got None"),
+        ({"step": 0.0}, "step must be positive and finite, got 0.0"),
+        ({"rtol": -1e-3}, "rtol must be positive and finite, got -0.001"),
+        ({"atol": math.inf}, "atol must be positive and finite, got inf"),
+        ({"max_steps": 0}, "max_steps must be at least 1, got 0"),
+    ],
+)
+def test_bad_input_is_refused_by_name(change: dict[str, Any], message: str) -> None:
+    arguments = {"q": Q, "q_dot": Q_DOT, "t": 1.0, "equations": "printed", **SHAPE, **change}
+    q, q_dot, t = (arguments.pop(name) for name in ("q", "q_dot", "t"))
+    with pytest.raises(ValueError, match=message):
+        report.simulate(q, q_dot, t, **arguments)
+
+
+def test_bad_input_of_the_equations() -> None:
+    with pytest.raises(ValueError, match="q must have 5 entries"):
+        report.f2([1.0, 2.0])
+    with pytest.raises(ValueError, match="case must be one of"):
+        report.f1(Q, Q_DOT, case="3")
+    with pytest.raises(ValueError, match="multipliers must have 4 entries"):
+        report.equations_of_motion(Q, Q_DOT, [1.0, 2.0], **BODY)
+    with pytest.raises(ValueError, match="b must be"):
+        report.constraint_matrix(Q, a=2.0, b=0.0)
+    with pytest.raises(TypeError, match="theta must be a number"):
+        report.eq_5("flat", **SHAPE)
+
+
+@pytest.mark.parametrize(
+    ("equations", "name", "value"),
+    [
+        ("corrected", "printed", ("f1",)),
+        ("printed", "stabilization", "projection"),
+        ("printed", "baumgarte", (1.0, 1.0)),
+    ],
+)
+def test_what_is_of_no_use_is_refused(equations: str, name: str, value: object) -> None:
+    q, q_dot = rl.kinematics(0.2, 2.0, a=2.0, b=1.0)
+    with pytest.raises(ValueError, match=f"^{name} must be None for the {equations} equations"):
+        rl.report.simulate(q, q_dot, 1.0, a=2.0, b=1.0, equations=equations, **{name: value})

@@ -1,0 +1,16 @@
+"""A motion that most tests of this folder look at."""
+
+import pytest
+import rolling_ellipse as rl
+from oracles.trajectory import SCENES
+from rolling_ellipse import Trajectory, simulate
+
+
+@pytest.fixture(scope="module", params=SCENES.values(), ids=SCENES)
+def motion(request: pytest.FixtureRequest) -> Trajectory:
+    return simulate(request.param, 4.0)
+
+
+@pytest.fixture(scope="module")
+def report() -> Trajectory:
+    return simulate(rl.scenes.report, 6.0)

@@ -1,0 +1,334 @@
+"""The samples of a Trajectory: every array by its definition, and the residuals of a million.
+
+Forces come from Newton's law and from differentiating the energy, multipliers from the five
+Lagrange equations with gradients written down here; the geometry once more in long double.
+"""
+
+import dataclasses
+from typing import Any, NamedTuple
+
+import mpmath as mp
+import numpy as np
+import oracles.geometry
+import oracles.rolling
+import pytest
+import rolling_ellipse as rl
+from oracles.geometry import support
+from oracles.numbers import DIGITS, EPS, PI
+from oracles.trajectory import MATRICES, SCENES, VECTORS
+from rolling_ellipse import Scene, Trajectory, simulate
+
+Long = Any  # arrays of np.longdouble
+
+
+class Outline(NamedTuple):
+    """Geometry at the angles of a trajectory, in long double [m]."""
+
+    h: Long
+    slope: Long
+    curvature: Long
+    lead: Long  # psi - theta, continuous
+    lead_rate: Long  # d lead / d theta
+
+
+def outline(trajectory: Trajectory) -> Outline:
+    a, b = np.longdouble(trajectory.scene.a), np.longdouble(trajectory.scene.b)
+    theta = trajectory.theta.astype(np.longdouble)
+    sine, cosine, gap2 = np.sin(theta), np.cos(theta), (a - b) * (a + b)
+    over, under = gap2 * sine * cosine, b * b * cosine**2 + a * a * sine**2
+    over_rate, under_rate = gap2 * (cosine**2 - sine**2), 2 * gap2 * sine * cosine
+    rate = (over_rate * under - over * under_rate) / (over**2 + under**2)
+    return Outline(*support(theta, a, b), np.arctan2(over, under), rate)
+
+
+def close(actual: np.ndarray, exact: Long, terms: Long, ulps: float) -> None:
+    """`ulps` units of 2^-52 of the terms that were added, at every sample."""
+    off = np.abs(actual.astype(np.longdouble) - exact)
+    worst = float(np.max(off / np.where(terms > 0, terms, np.inf))) / EPS if off.size else 0.0
+    assert np.all(off <= ulps * EPS * terms), f"{worst:.3g} ulp"
+
+
+def test_close_sees_ten_ulp() -> None:
+    values = np.linspace(1, 2, 5)
+    close(values, values, values, 0)
+    with pytest.raises(AssertionError, match="ulp"):
+        close(values * (1 + 10 * EPS), values, values, 8)
+
+
+# ------------------------------------------------------------------------------------------- arrays
+
+
+def test_arrays_are_what_they_promise(motion: Trajectory) -> None:
+    n = motion.t.size
+    arrays = {name: (n,) for name in VECTORS} | {name: (n, k) for name, k in MATRICES.items()}
+    for name, shape in arrays.items():
+        values = getattr(motion, name)
+        assert values.shape == shape and values.dtype == np.float64, name
+        assert values.flags.c_contiguous and not values.flags.writeable, name
+        assert np.all(np.isfinite(values)), name
+        with pytest.raises(ValueError, match="read-only"):
+            values[0] = 1.0
+    assert motion.mode.shape == (n,) and motion.mode.dtype == np.int8
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        motion.theta = motion.t  # type: ignore[misc]
+    columns = ("x", "z", "theta", "psi", "r")
+    rates = ("x_dot", "z_dot", "omega", "psi_dot", "r_dot")
+    for i, (name, rate) in enumerate(zip(columns, rates, strict=True)):
+        assert np.array_equal(motion.q[:, i], getattr(motion, name))
+        assert np.array_equal(motion.q_dot[:, i], getattr(motion, rate))
+
+
+def test_positions_and_velocities(motion: Trajectory) -> None:
+    """A handful of roundings each: h, h', psi and r from theta, the rates from them and omega."""
+    e, omega = outline(motion), motion.omega.astype(np.longdouble)
+    close(motion.z, e.h, e.h, 4)
+    r, grain_of_psi = np.hypot(e.h, e.slope), np.abs(motion.psi) + 8 * np.abs(e.lead)
+    close(motion.psi, motion.theta + e.lead, grain_of_psi, 1)
+    # r may follow the psi that is handed out (so that f3 is 0): dr/dpsi = r tan(psi - theta)
+    close(motion.r, r, 8 * r + r * np.abs(e.slope) / e.h * grain_of_psi, 1)
+    close(motion.x_dot, e.h * omega, np.abs(e.h * omega), 8)
+    close(motion.z_dot, e.slope * omega, np.abs(e.slope * omega), 16)
+    close(motion.psi_dot, (1 + e.lead_rate) * omega, (1 + np.abs(e.lead_rate)) * abs(omega), 16)
+    close(motion.contact_x, motion.x + e.slope, np.abs(motion.x) + e.h + np.abs(e.slope), 8)
+    turns = (motion.theta.astype(np.longdouble) - motion.scene.theta) / (2 * PI)
+    close(motion.turns, turns, np.abs(motion.turns), 4)
+
+
+def test_the_contact_rolls_off_the_outline(motion: Trajectory) -> None:
+    """The way of the contact is the arc length between the angles; 16 ulp, and an ulp of theta
+    times the radius of curvature, which is large where a thin body lies flat."""
+    a, b = motion.scene.a, motion.scene.b
+    arc = rl.geometry.arc_length(motion.theta, a=a, b=b)
+    way = motion.contact_x - motion.contact_x[0]
+    radius = rl.geometry.curvature_radius(motion.theta, a=a, b=b)
+    size = np.abs(motion.contact_x) + abs(motion.contact_x[0]) + np.abs(arc) + max(a, b)
+    grain = 2 * np.spacing(np.maximum(np.abs(motion.theta), abs(motion.scene.theta)))
+    assert np.all(np.abs(way - (arc - arc[0])) <= 16 * EPS * size + grain * radius)
+
+
+DERIVATIVES = {
+    "x": "x_dot", "z": "z_dot", "theta": "omega", "psi": "psi_dot", "r": "r_dot",
+    "x_dot": "x_ddot", "z_dot": "z_ddot", "omega": "omega_dot", "psi_dot": "psi_ddot",
+    "r_dot": "r_ddot", "turns": None,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [name for name, rate in DERIVATIVES.items() if rate])
+def test_rates_are_derivatives(motion: Trajectory, name: str) -> None:
+    """Central differences D(d) of `sol` at times d and 2 d away. D(d) misses the rate by c d^2 +
+    O(d^4), so D(2 d) - D(d) = 3 c d^2 is three times that; and by the grain of the values over d:
+    16 ulp of their size, and a few ulp of theta through their slope in theta."""
+    scene = motion.scene
+    step = 1e-4 * min(scene.a, scene.b) / max(scene.a, scene.b)
+    times = motion.t[5:-5:7]
+    at = {k: motion.sol(times + k * step) for k in (-2, -1, 0, 1, 2)}
+    values = {k: getattr(trajectory, name) for k, trajectory in at.items()}
+    rate = getattr(at[0], DERIVATIVES[name] or "")
+    near = (values[1] - values[-1]) / (2 * step)
+    far = (values[2] - values[-2]) / (4 * step)
+    # a rate of change per theta: that per time over omega, but where the body turns back
+    fast = np.abs(at[0].omega) > 1e-2
+    per_theta = np.where(fast, np.abs(rate / np.where(fast, at[0].omega, 1.0)), 0.0)
+    theta_grain = 2 * np.spacing(np.maximum(np.abs(at[0].theta), 1.0))
+    largest = np.max(np.abs(values[0]))
+    noise = (16 * EPS * largest + per_theta * theta_grain) / step
+    off, allowed = np.abs(near - rate)[fast], (np.abs(far - near) + noise)[fast]
+    assert np.all(off <= allowed)
+    # and the bound means something
+    assert np.median(allowed) <= 1e-5 * np.max(np.abs(rate)) + 1e-9 * largest
+
+
+def test_newton_and_euler(motion: Trajectory) -> None:
+    """Forces from the accelerations, and the torque balance, which no one put in."""
+    scene, e = motion.scene, outline(motion)
+    mass, weight = scene.mass, scene.mass * scene.gravity
+    inertia = scene.mass * scene.gyration2
+    lift = mass * np.abs(motion.z_ddot)
+    close(motion.friction_force, mass * motion.x_ddot, mass * np.abs(motion.x_ddot), 4)
+    close(motion.normal_force, mass * motion.z_ddot + weight, lift + weight, 4)
+    turning = -e.h * motion.friction_force - e.slope * motion.normal_force
+    # both forces are sums h omega_dot + h' omega^2, h' omega_dot + h'' omega^2
+    omega2, omega_dot = motion.omega**2, np.abs(motion.omega_dot)
+    push = mass * (e.h * omega_dot + np.abs(e.slope) * omega2)
+    lever = mass * (np.abs(e.slope) * omega_dot + np.abs(e.curvature) * omega2) + weight
+    terms = e.h * push + np.abs(e.slope) * lever + inertia * omega_dot
+    close(inertia * motion.omega_dot, turning, terms, 32)
+    needed = np.abs(motion.friction_force) / motion.normal_force
+    close(motion.friction_needed, needed, needed, 2)
+
+
+def test_forces_by_differentiating_the_energy(motion: Trajectory) -> None:
+    """d(omega^2)/dtheta of the energy that the stored state has, everything numerical in mpmath:
+    32 ulp of the terms."""
+    scene = motion.scene
+    with mp.workdps(DIGITS):
+        for i in range(0, 1001, 125):
+            theta, omega = mp.mpf(motion.theta[i]), mp.mpf(motion.omega[i])
+            h, slope, curvature = oracles.geometry.height_slopes(theta, scene.a, scene.b)
+            inertia = scene.gyration2 + h * h + slope * slope
+            energy = inertia * omega**2 / 2 + scene.gravity * h
+            normal, friction = oracles.rolling.forces_by_differentiation(
+                theta, scene.a, scene.b, scene.gyration2, scene.gravity, energy
+            )
+            spin, turn = omega**2, abs(slope) * (scene.gravity + (h + curvature) * omega**2)
+            turn = turn / inertia
+            terms = scene.gravity + abs(slope) * turn + (abs(curvature) + 2 * h) * spin
+            off = abs(motion.normal_force[i] / scene.mass - normal)
+            assert off <= 32 * EPS * terms + 1e-30  # what the differentiation leaves of a zero
+            off = abs(motion.friction_force[i] / scene.mass - friction)
+            assert off <= 32 * EPS * (h * turn + abs(slope) * spin) + 1e-30
+
+
+def gradients(motion: Trajectory) -> Long:
+    """Rows of f1 ... f4 along x, z, theta, psi, r, from the stored coordinates: (4, 5, n)."""
+    a, b = np.longdouble(motion.scene.a), np.longdouble(motion.scene.b)
+    psi, r = motion.psi.astype(np.longdouble), motion.r.astype(np.longdouble)
+    sine, cosine = np.sin(psi - motion.theta), np.cos(psi - motion.theta)
+    root = np.sqrt(b * b * np.sin(psi) ** 2 + a * a * np.cos(psi) ** 2)
+    # f3 = r - a b/root, root^2 has the slope (b^2 - a^2) sin 2 psi
+    polar = a * b * (b - a) * (b + a) * np.sin(2 * psi) / (2 * root**3)
+    none, one = np.zeros_like(psi), np.ones_like(psi)
+    return np.array(
+        [
+            [one, none, -r * cosine, none, none],
+            [none, one, -r * sine, r * sine, -cosine],
+            [none, none, none, polar, one],
+            [none, none, -(1 + outline(motion).lead_rate), one, none],
+        ]
+    )
+
+
+def bend(motion: Trajectory) -> Long:
+    """d^2 R/dpsi^2 of f3's R(psi) [m]."""
+    a, b = np.longdouble(motion.scene.a), np.longdouble(motion.scene.b)
+    psi, gap2 = motion.psi.astype(np.longdouble), (a - b) * (a + b)
+    root = np.sqrt(b * b * np.sin(psi) ** 2 + a * a * np.cos(psi) ** 2)
+    swing = 3 * gap2 * np.sin(2 * psi) ** 2 / (4 * root**5)
+    return a * b * gap2 * (np.cos(2 * psi) / root**3 + swing)
+
+
+def test_lagrange_equations(motion: Trajectory) -> None:
+    """M q_ddot = Q + A^T lambda in all five coordinates, psi and r without mass; and the rates
+    obey A q_dot = 0, which a wrong sign in A would not let them. 64 ulp of the terms: the forces
+    alone have some ten roundings, and psi - theta its own."""
+    mass, weight = motion.scene.mass, motion.scene.mass * motion.scene.gravity
+    inertia, none = mass * motion.scene.gyration2, np.zeros_like(motion.t)
+    rows = gradients(motion)
+    products = rows * motion.multipliers.T[:, None, :]
+    moments = np.array(
+        [mass * motion.x_ddot, mass * motion.z_ddot, inertia * motion.omega_dot, none, none]
+    )
+    drive = np.array([none, none - weight, none, none, none])
+    # what the accelerations are sums of: h omega_dot + h' omega^2 and so on, all below this
+    force = mass * motion.r * (np.abs(motion.omega_dot) + motion.omega**2) + weight
+    lever = motion.r * (1 + np.abs(motion.psi))  # psi - theta is formed from a rounded psi
+    # lambda4 is the difference of two equal moments (0, the ground being level), each of the
+    # rounded psi: the rounding of psi, bent by the outline, and of 1 + lead_rate times as much
+    lead = outline(motion)
+    blur = motion.normal_force * np.abs(bend(motion)) * (np.abs(motion.psi) + 8 * abs(lead.lead))
+    turning = force * lever + (1 + np.abs(lead.lead_rate)) * blur
+    grain = np.array([force, force, turning, force * lever + blur, force])
+    off = np.abs(moments - drive - products.sum(0))
+    assert np.all(off <= 64 * EPS * (np.abs(products).sum(0) + grain))
+    assert np.array_equal(motion.multipliers[:, 0], motion.friction_force)
+    assert np.array_equal(motion.multipliers[:, 1], motion.normal_force)
+    along = rows * motion.q_dot.T[None, :, :]
+    speed = np.abs(along).sum(1) + motion.r * np.abs(motion.psi) * np.abs(motion.psi_dot)
+    assert np.all(np.abs(along.sum(1)) <= 64 * EPS * speed)
+
+
+def test_lagrange_equations_see_a_wrong_multiplier(report: Trajectory) -> None:
+    rows = gradients(report)
+    changed = report.multipliers * [1, 1, 1 + 1e-3, 1]
+    products = rows * changed.T[:, None, :]
+    assert np.max(np.abs(products.sum(0)[4])) > 1e-4 * np.max(np.abs(report.multipliers[:, 2]))
+
+
+def test_energies(motion: Trajectory) -> None:
+    scene = motion.scene
+    kinetic = (scene.mass * (motion.x_dot**2 + motion.z_dot**2)) / 2
+    kinetic = kinetic + scene.mass * scene.gyration2 * motion.omega**2 / 2
+    potential = scene.mass * scene.gravity * motion.z
+    close(motion.kinetic_energy, kinetic, kinetic, 8)
+    close(motion.potential_energy, potential, potential, 8)
+    assert np.array_equal(motion.energy, motion.kinetic_energy + motion.potential_energy)
+
+
+# ---------------------------------------------------------------------------------------- residuals
+
+LONG_RUNS = {
+    "report": (rl.scenes.report, 60.0),
+    "rocking": (rl.scenes.rocking, 60.0),
+    "thin": (rl.scenes.thin, 60.0),
+    "circle": (rl.scenes.circle, 60.0),
+    "standing": (SCENES["standing"], 60.0),
+    "a million radians": (rl.scenes.rolling, 7e5),
+}
+
+
+@pytest.mark.parametrize(("scene", "t_end"), LONG_RUNS.values(), ids=LONG_RUNS)
+def test_residuals_of_a_million_samples(scene: Scene, t_end: float) -> None:
+    """Nothing grows: 1e-14 of the size, and 2 ulp of theta, which the ground feels through h'.
+
+    Velocities: that times omega; the rates of f2, f3 and f4 are differences of terms in psi_dot.
+    Energy: 16 ulp, and what 2 ulp of theta are.
+    """
+    trajectory = simulate(scene, np.linspace(0, t_end, 1_000_000))
+    if t_end > 1e5:
+        assert trajectory.theta[-1] > 1e6
+    grain = 2 * np.spacing(np.maximum(np.abs(trajectory.theta), abs(scene.theta)))
+    allowed = (1e-14 + grain) * max(scene.a, scene.b)
+    residuals = trajectory.constraint_residuals()
+    speed = np.abs(trajectory.omega)
+    rate = speed + np.abs(trajectory.psi_dot)
+    lever = np.abs(trajectory.contact_x - trajectory.x)  # |h'|
+    # |dE/dtheta| at constant omega is |I_dot omega / 2 + m g h'|, and rolling conserves E:
+    # it is the moment of inertia about the contact times |omega_dot|
+    inertia = scene.mass * (scene.gyration2 + trajectory.z**2 + lever**2)
+    by_theta = inertia * np.abs(trajectory.omega_dot)
+    start = trajectory.energy[0]
+    drift = np.maximum(np.abs(trajectory.energy - start) - grain * by_theta, 0)
+    shares = {
+        **{f"f{k + 2}": np.abs(residuals.position[:, k]) / allowed for k in range(3)},
+        "gap": np.abs(residuals.gap) / allowed,
+        "f1": np.abs(residuals.velocity[:, 0]) / np.where(speed > 0, allowed * speed, EPS),
+        "slip": np.abs(residuals.slip) / np.where(speed > 0, allowed * speed, EPS),
+        "rates": np.max(np.abs(residuals.velocity[:, 1:]), axis=1)
+        / np.where(rate > 0, allowed * rate, EPS),
+        "energy": drift / (16 * EPS * start),
+    }
+    print(", ".join(f"{name} {np.max(share):.2g}" for name, share in shares.items()))
+    print(
+        f"worst: position {np.max(np.abs(residuals.position)):.2g}, velocity "
+        f"{np.max(np.abs(residuals.velocity)):.2g}, gap {np.max(np.abs(residuals.gap)):.2g}, slip "
+        f"{np.max(np.abs(residuals.slip)):.2g}, energy {np.max(drift) / start / EPS:.2g} ulp"
+    )
+    for name, share in shares.items():
+        assert np.max(share) <= 1, name
+
+
+@pytest.mark.parametrize("column", ["z", "theta", "psi", "r"])
+def test_residuals_see_a_millimetre(report: Trajectory, column: str) -> None:
+    """A change of 1e-3 in a stored array is reported as some 1e-3, by f2 ... f4."""
+    q = report.q.copy()
+    q[:, ["x", "z", "theta", "psi", "r"].index(column)] += 1e-3
+    residuals = rl.constraints(q, report.q_dot, a=2.0, b=1.0)
+    assert 5e-4 < np.max(np.abs(residuals.position)) < 1e-2
+    if column in ("z", "theta"):
+        assert 5e-4 < np.max(np.abs(residuals.gap)) < 1e-2
+
+
+@pytest.mark.parametrize("column", ["x", "z", "theta", "psi", "r"])
+def test_velocity_residuals_see_a_millimetre_a_second(report: Trajectory, column: str) -> None:
+    q_dot = report.q_dot.copy()
+    q_dot[:, ["x", "z", "theta", "psi", "r"].index(column)] += 1e-3
+    residuals = rl.constraints(report.q, q_dot, a=2.0, b=1.0)
+    assert 5e-4 < np.max(np.abs(residuals.velocity)) < 2e-2
+    if column in ("x", "theta"):
+        assert 5e-4 < np.max(np.abs(residuals.slip)) < 1e-2
+
+
+def test_energy_sees_a_thousandth_of_omega(report: Trajectory) -> None:
+    changed = dataclasses.replace(report, omega=report.omega * (1 + 1e-3))
+    gained = changed.energy / report.energy - 1
+    assert np.allclose(gained, 2e-3 * report.kinetic_energy / report.energy, rtol=1e-3)

@@ -1,0 +1,76 @@
+"""The same motion at other times: `sol`, `scene_at`."""
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.flow import carried
+from oracles.numbers import EPS
+from oracles.trajectory import SCENES
+from rolling_ellipse import Impulse, Mode, Trajectory, simulate
+
+
+def test_sol_in_any_order(report: Trajectory) -> None:
+    times = [5.0, 0.0, 6.0, 0.3, 0.3]
+    found = report.sol(times)
+    assert found.t.tolist() == times and found.scene is report.scene
+    assert found.theta[3] == found.theta[4]
+    for i, t in enumerate(times):
+        single = report.sol(t)
+        assert single.t.shape == (1,)
+        for name in ("theta", "omega", "x", "normal_force"):
+            assert getattr(single, name)[0] == pytest.approx(getattr(found, name)[i], rel=1e-13)
+    again = report.sol(report.t)
+    assert np.array_equal(again.theta, report.theta) and np.array_equal(again.x, report.x)
+    assert np.array_equal(found.sol(report.t).omega, report.omega)
+    assert not np.shares_memory(again.t, report.t)
+
+
+@pytest.mark.parametrize("t", [-1e-9, 6.000001, math.nan, [0.0, 7.5], math.inf])
+def test_sol_refuses_times_outside(report: Trajectory, t: Any) -> None:
+    value = np.ravel(t)[-1]
+    with pytest.raises(ValueError, match=rf"^t must lie in \[0, 6.0\], got {value}"):
+        report.sol(t)
+
+
+def test_sol_refuses_what_is_no_list_of_times(report: Trajectory) -> None:
+    with pytest.raises(ValueError, match=r"^t must be.*shape \(1, 2\)"):
+        report.sol([[0.0, 1.0]])
+    with pytest.raises(TypeError, match=r"^t must be"):
+        report.sol("now")
+
+
+@pytest.mark.parametrize("name", ["report", "rocking", "standing", "circle"])
+def test_scene_at_goes_on(name: str) -> None:
+    """The same motion from the state at 1.7 s: to what that state's rounding becomes."""
+    scene, t1, t2 = SCENES[name], 1.7, 4.0
+    whole = simulate(scene, t2)
+    later = whole.scene_at(t1)
+    assert later.impulse is None and later.mass == scene.mass and later.friction == scene.friction
+    at = whole.sol(t1)
+    assert (later.theta, later.omega, later.x) == (at.theta[0], at.omega[0], at.x[0])
+    assert later.initial_state.mode is Mode.ROLLING
+    rest = simulate(later, t2 - t1)
+    start = scene.initial_state
+    body = (scene.a, scene.b, scene.gyration2, scene.gravity)
+    motion = (*body, start.theta, start.omega)
+    allowed = carried(t1, motion, (*body, later.theta, later.omega), t2 - t1)
+    allowed = allowed + 2 * EPS * np.array([0, 0, abs(at.x[0]) + abs(whole.x[-1])])
+    for field, bound in zip(("theta", "omega", "x"), allowed, strict=True):
+        assert abs(getattr(rest, field)[-1] - getattr(whole, field)[-1]) <= 2 * bound
+
+
+def test_scene_at_takes_another_impulse() -> None:
+    """physics: m D (omega+ - omega-) = Jx (h + dz) + Jz (h' - dx)."""
+    whole = simulate(rl.scenes.report, 6.0)
+    later = whole.scene_at(2.0)
+    again = dataclasses.replace(later, impulse=Impulse(2.0, -30.0, dx=0.3, dz=-0.1))
+    at = whole.sol(2.0)
+    h, slope = at.z[0], at.contact_x[0] - at.x[0]
+    moment = 2.0 * (h - 0.1) - 30.0 * (slope - 0.3)
+    gained = moment / (10.0 * (again.gyration2 + h * h + slope * slope))
+    assert again.initial_state.omega == pytest.approx(at.omega[0] + gained, rel=1e-13)
+    assert simulate(again, 1.0, model="rolling").omega[0] == again.initial_state.omega
