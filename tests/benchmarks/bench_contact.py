@@ -24,8 +24,8 @@ from bench_flow import processor
 from bench_integrators import Cases, Run, interleaved, peer
 from rolling_ellipse import EventKind, Mode, Scene, certify, simulate
 
-DROPPED = {"z": 2.5, "theta": 0.3, "omega": 8.0, "restitution": 0.5}
-ON_A_SLOPE = {"slope": 0.1, "omega": -2.0}
+DROPPED: dict[str, Any] = {"z": 2.5, "theta": 0.3, "omega": 8.0, "restitution": 0.5}
+ON_A_SLOPE: dict[str, Any] = {"slope": 0.1, "omega": -2.0}
 SCENES = {  # with their end times
     "Jumps: slip, lift-off, impact, stick": (Scene(2.0, 1.0, friction=0.3, omega=7.0), 3.55),
     "Bounces with spin, e = 0.5": (Scene(2.0, 1.0, friction=0.3, **DROPPED), 2.255),

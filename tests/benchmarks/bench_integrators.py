@@ -84,7 +84,7 @@ def own_case(scene: Scene, t: float, method: str, **how: Any) -> Case:
 
 def flow_case(scene: Scene, t: float) -> Case:
     """The scalar call of exact rolling."""
-    start = {"a": scene.a, "b": scene.b, "theta": scene.theta, "omega": scene.omega}
+    start: dict[str, Any] = {"a": scene.a, "b": scene.b, "theta": scene.theta, "omega": scene.omega}
     return lambda: Run(0, 0, flow(t, **start)[0])
 
 

@@ -20,7 +20,7 @@ from rolling_ellipse import Scene, classify, flow, scenes, simulate, thresholds
 ROUNDS = 5
 TIMES = np.linspace(0.0, 500.0, 20_000_000)
 ANGLES = np.linspace(0.1, 1.4, 200_000)
-LONG = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
+LONG: dict[str, Any] = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
 FREE = Scene(2.0, 1.0, friction=0.0, omega=3.0, x_dot=1.0)
 SLIDING = simulate(FREE, 5.0, model="contact")
 BOUNCING = Scene(2.0, 1.0, theta=0.5, z=3.0, friction=0.0, restitution=1.0)

@@ -16,8 +16,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from matplotlib.animation import PillowWriter
+from matplotlib.animation import FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from oracles.pictures import frames_of
 from PIL import Image
 from rolling_ellipse import report
 from rolling_ellipse._pictures.animation import movies as movies
@@ -58,7 +60,7 @@ def test_what_is_no_trajectory(value: Any) -> None:
     refused("trajectory", rl.plot, value)
     refused("trajectory", rl.plot_strobe, value)
     for draw in (*CURVES, rl.animate):
-        refused("trajectories", draw, value)
+        refused("trajectories", draw, value)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
@@ -104,7 +106,7 @@ def test_a_given_figure_stays_as_it_is() -> None:
 @pytest.mark.parametrize("draw", [rl.plot, rl.plot_strobe, *CURVES])
 def test_a_drawing_that_fails_closes_its_figure(draw: Any, monkeypatch: Any) -> None:
     mine = plt.figure()
-    monkeypatch.setattr(plt.Axes, "plot", lambda *args, **options: 1 / 0)
+    monkeypatch.setattr(Axes, "plot", lambda *args, **options: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         draw(MOTION)
     assert plt.get_fignums() == [mine.number]
@@ -116,7 +118,8 @@ def test_what_cannot_be_made() -> None:
     with pytest.raises(ValueError, match="count must be at most 10000, got 1000000000000"):
         rl.plot_strobe(MOTION, count=10**12)
     frames = "t_end must be shown in at most 1000000 frames, got 1.0, which is .* frames at fps = "
-    for options in ({"speed": 1e-12}, {"speed": 1e-6, "fps": 1000}):
+    slow: list[dict[str, Any]] = [{"speed": 1e-12}, {"speed": 1e-6, "fps": 1000}]
+    for options in slow:
         with pytest.raises(ValueError, match=frames):
             rl.animate(MOTION, t_end=1.0, **options)
     wrong: dict[str, tuple[Any, ...]] = {
@@ -168,7 +171,8 @@ def test_an_old_film_stays_until_the_new_one_is_whole(
     path = tmp_path / f"roll{suffix}"
     path.write_bytes(b"old")
     film = rl.animate(MOTION, **SMALL)
-    draw, drawn = film._func, []
+    drawn: list[Any] = []
+    draw = film._func  # type: ignore[attr-defined]
 
     def stops(i: int, *args: Any) -> Any:
         drawn.append(i)
@@ -218,7 +222,7 @@ def test_an_extra_without_a_program(monkeypatch: Any) -> None:
         raise RuntimeError("No ffmpeg exe could be found")
 
     monkeypatch.setattr(imageio, "get_ffmpeg_exe", missing)
-    monkeypatch.setattr(movies.FFMpegWriter, "isAvailable", lambda: False)
+    monkeypatch.setattr(FFMpegWriter, "isAvailable", lambda: False)
     with pytest.raises(FileNotFoundError, match=r"rolling_ellipse\[video\]"):
         rl.animate(MOTION, "roll.mp4")
 
@@ -232,8 +236,9 @@ def test_writers_of_ones_own(tmp_path: Path) -> None:
     film = rl.animate(MOTION, **SMALL)
     film.save(tmp_path / "roll.gif", PillowWriter(fps=5))
     with Image.open(tmp_path / "roll.gif") as picture:
-        assert picture.n_frames == film.t.size
-    for value in (42, [], np.array(["pillow"]), "no_such"):
+        assert frames_of(picture) == film.t.size
+    values: list[Any] = [42, [], np.array(["pillow"]), "no_such"]
+    for value in values:
         refused("writer", lambda writer: film.save(tmp_path / "roll.gif", writer), value)
 
 

@@ -164,7 +164,7 @@ def test_threads_that_cannot_start_are_not_missed() -> None:
 
 # ---------------------------------------------------------------------------------- Ctrl-C
 
-LONG = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
+LONG: dict[str, Any] = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
 MANY = np.linspace(0.0, 1e3, 40_000_000)
 LOOPS: dict[str, Callable[[], Any]] = {
     "times of flow": lambda: flow(MANY, a=2.0, b=1.0, theta=0.1, omega=3.2),

@@ -59,7 +59,7 @@ ARRAY_DOORS: list[tuple[str, Door]] = [
     ("omega", lambda v: report.consistent_rates(Q, v, **AXES)),
 ]
 
-NO_NUMBERS = [
+NO_NUMBERS: list[Any] = [
     None, {}, object, float, np.float64, "2", b"2", np.str_("2"), np.bytes_(b"2"), np.array("2"),
     np.array(b"2"), 2j, np.complex64(2 + 1j), np.array(2 + 0j), np.datetime64("2020"),
     np.timedelta64(2), np.array(2.0, dtype=object), np.zeros((), dtype=[("a", float)]),
@@ -133,24 +133,26 @@ def test_masked_entries(name: str, door: Door) -> None:
 
 def test_masked_columns_of_a_series() -> None:
     column = np.ma.array([-1.0, -1.0], mask=[False, True])
-    before, after = [[0.0, 0.0], column, [-1.0, -1.0], [0.0, 0.0]], np.zeros((3, 2))
+    before: list[Any] = [[0.0, 0.0], column, [-1.0, -1.0], [0.0, 0.0]]
+    after: Any = np.zeros((3, 2))
     with pytest.raises(ValueError, match="before must have no masked entries"):
         impacts.fit(before, after, **AXES)
     with pytest.raises(ValueError, match="q must have no masked entries"):
-        rl.constraints(np.ma.array(Q, mask=[0, 0, 1, 0, 0]), Q_DOT, **AXES)
+        rl.constraints(np.ma.array(Q, mask=[False, False, True, False, False]), Q_DOT, **AXES)
 
 
 def test_numbers_of_every_kind() -> None:
     """They are worth what their doubles are, alone and in arrays."""
-    for two in (
+    numbers: list[Any] = [
         2, np.float32(2), np.float16(2), np.longdouble(2), np.int8(2), np.uint64(2), Decimal(2),
         Fraction(2), np.array(2.0), np.array(2), np.array(2, dtype=">f4"), np.ma.array(2.0),
-    ):  # fmt: skip
+    ]  # fmt: skip
+    for two in numbers:
         assert rl.Scene(two, 1.0) == rl.Scene(2.0, 1.0)
         assert type(rl.Scene(two, 1.0).a) is float
         assert rl.flow(**{**FLOW, "a": two}) == rl.flow(**FLOW)
     assert rl.Scene(True, 1.0).a == 1.0
-    assert MOTION.scene_at(Fraction(1, 2)) == MOTION.scene_at(0.5)
+    assert MOTION.scene_at(Fraction(1, 2)) == MOTION.scene_at(0.5)  # type: ignore[arg-type]
     times = [0.25, 0.5]
     expected = rl.flow(times, **AXES, theta=0.2, omega=1.0)
     for given in (

@@ -24,7 +24,7 @@ from rolling_ellipse._samples import ContactSamples
 from rolling_ellipse._settings import Settings
 
 TIMES = np.linspace(0.0, 1.5, 40)
-MOTIONS = {
+MOTIONS: dict[str, Callable[[], Any]] = {
     "rolling": lambda: simulate(rl.scenes.report, TIMES),
     "gauss": lambda: simulate(rl.scenes.rocking, TIMES, method="gauss", step=0.01),
     "multipliers": lambda: simulate(rl.scenes.report, TIMES, model="multipliers"),

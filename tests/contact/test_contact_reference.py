@@ -8,6 +8,7 @@ events of the same kinds in the same order, every value within 50 units, at leas
 import functools
 import itertools
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import mpmath
@@ -276,7 +277,8 @@ def test_table_keeps_the_laws(motion: Motion) -> None:
     """
     with mpmath.workdps(50):
         laws = Laws(motion)
-        last, then, flying = laws.start, mpmath.mpf(0), motion.kinds[0] == "impact"
+        last: Sequence[Any] = laws.start
+        then, flying = mpmath.mpf(0), motion.kinds[0] == "impact"
         for kind, texts in zip(motion.kinds, motion.values, strict=True):
             t, *state = map(mpmath.mpf, texts)
             slip, rate, size = laws.motion(state)

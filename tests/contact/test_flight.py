@@ -73,7 +73,7 @@ def random_flight(rng: np.random.Generator) -> Scene:
     a, b = (10 ** rng.uniform(-0.7, 0.7, 2)).tolist()
     theta, omega = float(rng.uniform(-4, 4)), float(rng.normal() * 10 ** rng.uniform(-2, 1.5))
     at = support(theta, a, b)
-    start = {"z": float(at.h) + 10 ** rng.uniform(-6, 1), "z_dot": 3 * rng.normal()}
+    start: dict[str, Any] = {"z": float(at.h) + 10 ** rng.uniform(-6, 1), "z_dot": 3 * rng.normal()}
     if rng.random() < 0.4:
         start = {"z_dot": float(at.slope) * omega + 10 ** rng.uniform(-6, 1)}
     slope = float(rng.choice([0.0, 0.0, 0.5, -1.2]))

@@ -26,7 +26,7 @@ from oracles.pickles import require_same
 from rolling_ellipse import Trajectory, simulate
 
 TIMES = np.linspace(0.0, 1.5, 12)
-SAVED = {
+SAVED: dict[str, Callable[[], Any]] = {
     "rolling": lambda: simulate(rl.scenes.report, TIMES),
     "contact": lambda: simulate(rl.scenes.bounce, 2 * TIMES, max_events=3, raise_on_failure=False),
     "multipliers": lambda: rl.report.simulate(
@@ -55,7 +55,7 @@ def contents(
 
 def taken_apart(content: bytes) -> tuple[Any, dict[str, Any]]:
     with np.load(io.BytesIO(content)) as data:
-        arrays = {name: data[name] for name in data.files}
+        arrays: dict[str, Any] = {name: data[name] for name in data.files}
     return json.loads(str(arrays.pop("about"))), arrays
 
 
@@ -185,7 +185,7 @@ def test_wrong_values_are_refused(name: str, contents: dict[str, bytes], tmp_pat
     roads = [road for road in places(about) if road]
     for road in roads:
         for label, value in WRONG_VALUES.items():
-            wrong = changed(about, road, lambda part, key, new=value: part.__setitem__(key, new))
+            wrong = changed(about, road, lambda part, key, new=value: part.__setitem__(key, new))  # type: ignore[misc]
             path.write_bytes(put_together(wrong, arrays))
             try:
                 found = rl.load(path)
@@ -489,7 +489,7 @@ def test_what_load_would_refuse_is_not_saved(
 @pytest.mark.parametrize("name", ["valid_until", "t_end", "span"])
 def test_times_are_numbers(name: str, motions: dict[str, Trajectory]) -> None:
     with pytest.raises(TypeError, match=f"^{name} must be a number, got 'late'"):
-        dataclasses.replace(motions["contact"], **{name: "late"})
+        dataclasses.replace(motions["contact"], **{name: "late"})  # type: ignore[arg-type]
 
 
 def test_an_exception_while_saving_leaves_the_old_file(

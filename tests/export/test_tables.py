@@ -21,7 +21,7 @@ BLOWN = rl.Scene(
 SCENES = {"report": rl.scenes.report, "rocking": rl.scenes.rocking, "blown": BLOWN}
 
 
-@pytest.fixture(scope="module", params=SCENES.values(), ids=SCENES)
+@pytest.fixture(scope="module", params=list(SCENES.values()), ids=list(SCENES))
 def motion(request: pytest.FixtureRequest) -> rl.Trajectory:
     return rl.simulate(request.param, np.linspace(0.5, 2.0, 31))
 

@@ -4,6 +4,7 @@ pair of coefficients to a series of them."""
 import itertools
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from rolling_ellipse import EventKind, Scene, geometry, impacts, simulate
 
 LAWS = impacts.LAWS
 ENERGY_KEEPING = ("stronge", "poisson")
-BODY = {"a": 0.7, "b": 0.3}
+BODY: dict[str, Any] = {"a": 0.7, "b": 0.3}
 K2 = (0.7**2 + 0.3**2) / 4
 
 
@@ -57,7 +58,9 @@ def walked(law: str, state: np.ndarray, friction: float, restitution: float) -> 
     h, slope = (f(theta, **BODY) for f in (geometry.support, geometry.support_slope))
     first = u = contact(state, state[1:])[1]
     step = -first / PUSHES
-    impulse = work = compression_impulse = compression_work = 0.0
+    impulse: Any = 0.0
+    work: Any = 0.0
+    compression_impulse = compression_work = 0.0
     while True:
         # G_tt = 1 + h^2/k^2 answers to the trial slip after the push alone
         trial = x_dot - h * (omega - slope * step / K2)
@@ -231,7 +234,7 @@ def test_arrays_are_what_single_impacts_are(law: str) -> None:
     """Every argument may be an array; shapes broadcast; scalars give floats."""
     state = approaching(6).reshape(4, 2, 3)
     friction, restitution = np.array([0.1, 0.5, 2.0]), np.array([[0.2], [0.8]])
-    options = {"law": law, **BODY}
+    options: dict[str, Any] = {"law": law, **BODY}
     found = impacts.collide(*state, friction=friction, restitution=restitution, **options)
     assert all(values.shape == (2, 3) for values in found)
     for i, j in np.ndindex(2, 3):
@@ -243,9 +246,10 @@ def test_arrays_are_what_single_impacts_are(law: str) -> None:
 
 
 def test_the_default_body_is_a_uniform_disc() -> None:
-    state, law = approaching(5), {"friction": 0.2, "restitution": 0.5}
+    state: Any = approaching(5)
+    law: dict[str, Any] = {**BODY, "friction": 0.2, "restitution": 0.5}
     default, disc, ring = (
-        np.stack(impacts.collide(*state, **BODY, **law, gyration2=k2)) for k2 in (None, K2, 2 * K2)
+        np.stack(impacts.collide(*state, **law, gyration2=k2)) for k2 in (None, K2, 2 * K2)
     )
     assert np.array_equal(default, disc) and not np.allclose(default, ring)
 
@@ -262,7 +266,7 @@ def test_kinetic_speed_is_the_energy() -> None:
 E, MU = 0.61, 0.25  # on no point of a first grid
 
 
-def series(law: str, noise: float, count: int = 1000) -> tuple[np.ndarray, np.ndarray]:
+def series(law: str, noise: float, count: int = 1000) -> tuple[Any, Any]:
     """Impacts with these coefficients and normal noise, the same in each kinetic direction."""
     before = approaching(count, seed=7)
     after = impacts.collide(*before, **BODY, friction=MU, restitution=E, law=law)
@@ -330,8 +334,8 @@ def test_errors_are_those_of_the_coefficients_found() -> None:
 
 def test_what_sticks_bounds_friction_from_below() -> None:
     """Any friction above the largest |J_t|/J_n of these impacts makes the same of them."""
-    before = approaching(200, seed=9)
-    after = np.stack(impacts.collide(*before, **BODY, friction=math.inf, restitution=0.5))
+    before: Any = approaching(200, seed=9)
+    after: Any = np.stack(impacts.collide(*before, **BODY, friction=math.inf, restitution=0.5))
     normal = after[1] - before[2]
     kept = normal > 0.05  # where friction alone stops the approach, none is enough
     before, after = before[:, kept], after[:, kept]
@@ -343,7 +347,7 @@ def test_what_sticks_bounds_friction_from_below() -> None:
 
 # --------------------------------------------------------------------------------- bad input
 
-GOOD = {
+GOOD: dict[str, Any] = {
     "theta": 0.3, "x_dot": 1.0, "z_dot": -1.0, "omega": 0.5, "a": 0.7, "b": 0.3, "friction": 0.3,
     "restitution": 0.5, "gyration2": 0.1,
 }  # fmt: skip
@@ -407,7 +411,7 @@ def changed(of: np.ndarray, row: int, value: float) -> np.ndarray:
     ],
 )
 def test_series_that_cannot_be_fitted(
-    change: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]], message: str
+    change: Callable[[Any, Any], tuple[Any, Any]], message: str
 ) -> None:
     with pytest.raises(ValueError, match=f"^{message}"):
         impacts.fit(*change(*series("stronge", 0.0, 8)), **BODY)

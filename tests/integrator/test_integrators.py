@@ -492,7 +492,7 @@ def test_files_keep_the_motion(name: str, stops: bool, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("how", [{}, {"step": 0.01}], ids=["controlled", "fixed"])
-def test_max_steps(how: dict[str, float]) -> None:
+def test_max_steps(how: dict[str, Any]) -> None:
     times = np.linspace(0, 50, 5001)
     with pytest.raises(IntegrationError, match="max_steps = 40") as caught:
         rl.simulate(rl.scenes.rolling, times, model="rolling", method="dop853", max_steps=40, **how)

@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 class Errors(NamedTuple):
     """What a motion has lost after so many half swings, flat at each of them."""
 
-    half_swings: Floats
+    half_swings: Any
     energy: Floats  # (..., n), relative
     delay: Floats  # (..., n) of the phase [s]
 
@@ -59,7 +59,7 @@ def energy_error(theta: Floats, omega: Floats, start: float) -> Floats:
     return np.asarray(change / (before + np.longdouble(GRAVITY) * B), float)
 
 
-def errors(half_swings: Floats, **method: Any) -> Errors:
+def errors(half_swings: Any, **method: Any) -> Errors:
     """Of a method, on the motion that starts with OMEGA."""
     t = half_swings * (STEPS * STEP / 100)
     found = simulate(Scene(A, B, omega=OMEGA), t, model="rolling", max_steps=10**8, **method)
@@ -97,7 +97,9 @@ def growth(energy: Floats) -> float:
     from_start = np.concatenate([np.zeros((*energy.shape[:-1], 1)), energy], axis=-1)
     lags = spread(1, energy.shape[-1])
     changes = [from_start[..., lag:] - from_start[..., :-lag] for lag in lags]
-    return exponent(lags, np.array([math.sqrt(np.mean(change**2)) for change in changes]))
+    return exponent(
+        lags.astype(float), np.array([math.sqrt(np.mean(change**2)) for change in changes])
+    )
 
 
 # ------------------------------------------------------------------------ the ruler itself

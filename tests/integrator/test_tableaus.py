@@ -276,7 +276,7 @@ def collocation(name: str) -> dict[str, Long]:
     return {key: long(values) for key, values in TABLEAUS[name].items()}
 
 
-CHECKS = {**dict.fromkeys(GAUSS, check_gauss), "radau": check_radau}
+CHECKS: dict[str, Callable[..., None]] = {**dict.fromkeys(GAUSS, check_gauss), "radau": check_radau}
 
 
 @pytest.mark.parametrize("name", CHECKS)

@@ -272,7 +272,7 @@ def test_motions_are_those_of_rolling(scene: Scene, stabilization: str) -> None:
     e^3.4 on the way; a rounding of a far theta (1.5e-11) parts them, too. With feedback the forces
     contain what is missed in velocity, times 2 alpha m = 60 kg/s at most."""
     times = np.linspace(0, 2, 41)
-    tight = {"rtol": 1e-13, "atol": 1e-13} if scene.slope else {}
+    tight: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-13} if scene.slope else {}
     exact = simulate(scene, times, model="rolling", **tight)
     found = simulate(
         scene, times, model="multipliers", stabilization=stabilization, rtol=1e-12, atol=1e-12
@@ -351,7 +351,7 @@ def test_order(method: str, stabilization: str) -> None:
 
 @pytest.fixture(scope="module", params=[*EXPLICIT, "ggl"])
 def motion(request: pytest.FixtureRequest) -> Iterator[Trajectory]:
-    method = {"method": "radau", "step": 0.02} if request.param == "ggl" else {}
+    method: dict[str, Any] = {"method": "radau", "step": 0.02} if request.param == "ggl" else {}
     yield simulate(
         GENERIC, np.linspace(0, 4, 101), model="multipliers", stabilization=request.param, **method
     )
@@ -456,7 +456,7 @@ def test_wrong_arguments_are_refused_by_name(arguments: dict[str, Any], said: st
 
 @pytest.mark.parametrize("method", ["auto", "dop853", "dopri5", "rk4"])
 def test_ggl_is_for_radau(method: str) -> None:
-    step = {"step": 0.01} if method == "rk4" else {}
+    step: dict[str, Any] = {"step": 0.01} if method == "rk4" else {}
     with pytest.raises(ValueError, match=r"^stabilization must not be 'ggl', which only .*'radau'"):
         simulate(GENERIC, 1.0, model="multipliers", method=method, stabilization="ggl", **step)
 

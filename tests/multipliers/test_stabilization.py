@@ -7,6 +7,7 @@ the stability function of the method, the index-2 system converges with its orde
 import math
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -130,7 +131,7 @@ def test_drift_grows_like_t_squared(scene: Scene, method: str, step: float, last
 # ---------------------------------------------------------------------------- beside each other
 
 SPANS = np.array([1, 10, 100, 1000])
-KEPT = {
+KEPT: dict[str, dict[str, Any]] = {
     "none": {"stabilization": "none"},
     "gains of 1": {"stabilization": "baumgarte", "baumgarte": (1.0, 1.0)},
     "gains of 10": {"stabilization": "baumgarte", "baumgarte": (10.0, 10.0)},

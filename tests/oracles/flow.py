@@ -5,6 +5,7 @@ its truth, may rest on them.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 from rolling_ellipse import flow, geometry
@@ -19,7 +20,7 @@ PARAMETERS = ("a", "b", "gyration2", "gravity", "theta", "omega")
 Motion = tuple[float, ...]
 
 
-def arguments(motion: Motion) -> dict[str, float]:
+def arguments(motion: Motion) -> dict[str, Any]:
     """Keyword arguments of `flow`."""
     return dict(zip(PARAMETERS, motion, strict=True))
 
@@ -32,7 +33,7 @@ def grain(t: float, motion: Motion) -> np.ndarray:
     for name in PARAMETERS:
         size = abs(start[name]) if name != "theta" else 1.0
         ends = [flow(t, **(start | {name: start[name] + s * small * size})) for s in (1, -1)]
-        total += np.abs(np.subtract(*ends)) / (2 * small) * EPS
+        total += np.abs(np.subtract(ends[0], ends[1])) / (2 * small) * EPS
     answer = flow(t, **start)
     total += 2 * np.array([math.ulp(value) for value in answer])
     total[2] += geometry.support(answer[0], a=motion[0], b=motion[1]) * 2 * math.ulp(answer[0])
@@ -42,9 +43,9 @@ def grain(t: float, motion: Motion) -> np.ndarray:
 def carried(t1: float, motion: Motion, reached: Motion, t2: float) -> np.ndarray:
     """What the error of a state at t1 can be t2 later, and that of the second way itself."""
     error, step = LARGEST_ERROR * grain(t1, motion), 1e-7
-    start = arguments(reached)
+    start: dict[str, Any] = arguments(reached)
     total = LARGEST_ERROR * grain(t2, reached) + [0, 0, error[2]]
     for name, i in (("theta", 0), ("omega", 1)):
         ends = [flow(t2, **(start | {name: start[name] + s * step})) for s in (1, -1)]
-        total += np.abs(np.subtract(*ends)) / (2 * step) * error[i]
+        total += np.abs(np.subtract(ends[0], ends[1])) / (2 * step) * error[i]
     return total

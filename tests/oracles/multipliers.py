@@ -31,7 +31,7 @@ SCENES = {
 
 def settings(**changes: Any) -> Settings:
     """Arguments of `simulate`, the model being "multipliers"."""
-    defaults = {
+    defaults: dict[str, Any] = {
         "model": "multipliers",
         "method": "auto",
         "rtol": 1e-10,

@@ -16,3 +16,9 @@ def ulps(actual: float, exact: Any, scale: Any) -> float:
     """Error of `actual` in units of 2^-52 of `scale` (inf where the scale is 0 and it is wrong)."""
     error = abs(mp.mpf(actual) - exact)
     return 0.0 if error == 0 else float(error / abs(scale) / EPS) if scale else float("inf")
+
+
+def known(value: float | None) -> float:
+    """A number that must be there."""
+    assert value is not None
+    return value

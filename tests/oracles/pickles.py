@@ -4,13 +4,19 @@ import copy
 import dataclasses
 import pickle
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
 
+
+def pickled(protocol: int, thing: Any) -> Any:
+    return pickle.loads(pickle.dumps(thing, protocol))
+
+
 ROADS: dict[str, Callable[[Any], Any]] = {
-    **{f"protocol {p}": lambda thing, p=p: pickle.loads(pickle.dumps(thing, p)) for p in range(6)},
+    **{f"protocol {p}": partial(pickled, p) for p in range(6)},
     "copy": copy.copy,
     "deepcopy": copy.deepcopy,
 }

@@ -1,9 +1,16 @@
 """Scenes to draw, and what a drawn ellipse is, from matplotlib's own transform of it."""
 
+from typing import Any
+
 import numpy as np
 import rolling_ellipse as rl
+from matplotlib.axes import Axes
+from matplotlib.collections import Collection
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
+from PIL.Image import Image
 
 ORDINARY_SCENES = {
     "report": rl.scenes.report,
@@ -32,3 +39,34 @@ def outline(body: Ellipse, count: int = 200) -> NDArray[np.float64]:
     return np.asarray(
         body.get_patch_transform().transform(np.column_stack([np.cos(angle), np.sin(angle)]))
     )
+
+
+def figure_of(ax: Axes) -> Figure:
+    """The figure itself, not a part of one."""
+    figure = ax.figure
+    assert isinstance(figure, Figure)
+    return figure
+
+
+def legend_in(ax: Axes) -> Legend:
+    """The legend that must be there."""
+    legend = ax.get_legend()
+    assert legend is not None
+    return legend
+
+
+def centre_of(body: Ellipse) -> tuple[float, float]:
+    """matplotlib's own annotation says it is a number."""
+    centre: Any = body.get_center()
+    return centre[0], centre[1]
+
+
+def points_of(collection: Collection | None) -> NDArray[np.float64]:
+    """Corners (n, 2) of the first path of a band that must be there."""
+    assert collection is not None
+    return np.asarray(collection.get_paths()[0].vertices)
+
+
+def frames_of(image: Image) -> int:
+    """Frames of a GIF; Pillow's annotation does not know of them."""
+    return int(image.n_frames)  # type: ignore[attr-defined]

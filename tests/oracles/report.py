@@ -1,6 +1,7 @@
 """The body of the report, and starts for its equations."""
 
 import math
+from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
@@ -8,8 +9,8 @@ from numpy.typing import NDArray
 from rolling_ellipse import report
 
 Array = NDArray[np.float64]
-BODY = {"a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.81}
-SHAPE = {"a": 2.0, "b": 1.0}
+BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.81}
+SHAPE: dict[str, Any] = {"a": 2.0, "b": 1.0}
 
 
 def start(theta: float, omega: float, printed: tuple[str, ...] = ()) -> tuple[Array, Array]:

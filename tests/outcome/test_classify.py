@@ -276,4 +276,4 @@ def test_other_bad_arguments() -> None:
     with pytest.raises(ValueError, match="workers"):
         classify(**GOOD, workers=0)
     with pytest.raises(TypeError):
-        classify(2.0, 1.0, 3.0)  # type: ignore[misc]
+        classify(2.0, 1.0, 3.0)  # type: ignore[call-arg]

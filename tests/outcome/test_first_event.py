@@ -7,7 +7,7 @@ point.
 
 import math
 from collections import Counter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import oracles.geometry
@@ -190,7 +190,8 @@ def test_scalar_and_array_agree(walked: list[Walked]) -> None:
     sample = walked[0].sample
     codes = sample.outcomes()
     for row in range(codes.size):
-        alone = classify(**{name: float(x[row]) for name, x in sample._asdict().items()})
+        single: dict[str, Any] = {name: float(x[row]) for name, x in sample._asdict().items()}
+        alone = classify(**single)
         assert alone is Outcome(int(codes[row]))
 
 

@@ -14,12 +14,12 @@ from oracles.curves import PICTURES, drifting
 from oracles.pictures import ORDINARY_SCENES
 
 
-@pytest.fixture(params=PICTURES.values(), ids=PICTURES.keys())
+@pytest.fixture(params=list(PICTURES.values()), ids=list(PICTURES))
 def picture(request: pytest.FixtureRequest) -> Callable[..., Any]:
     return request.param
 
 
-@pytest.fixture(params=ORDINARY_SCENES.values(), ids=ORDINARY_SCENES.keys())
+@pytest.fixture(params=list(ORDINARY_SCENES.values()), ids=list(ORDINARY_SCENES))
 def trajectory(request: pytest.FixtureRequest) -> rl.Trajectory:
     return rl.simulate(request.param, 4.0, model="rolling")
 

@@ -19,6 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
+from oracles.pictures import figure_of
 from rolling_ellipse._pictures.labels import labels_of
 from rolling_ellipse._pictures.styles import styles_of
 
@@ -102,14 +103,14 @@ def test_any_span_and_a_single_sample(picture: Callable[..., Any], span: float) 
     trajectory = rl.simulate(rl.scenes.rolling, span)
     ax = new_axes()
     picture([trajectory, trajectory], ax=ax)
-    ax.figure.draw_without_rendering()
+    figure_of(ax).draw_without_rendering()
 
 
 @pytest.mark.parametrize("scene", [rl.Scene(2.0, 1.0), rl.Scene(1.0, 1.0)])
 def test_a_body_at_rest(picture: Callable[..., Any], scene: rl.Scene) -> None:
     ax = new_axes()
     picture(rl.simulate(scene, 1.0), ax=ax)
-    ax.figure.draw_without_rendering()
+    figure_of(ax).draw_without_rendering()
 
 
 @pytest.fixture(params=["one", "several", "thin"])
@@ -129,7 +130,7 @@ def test_nothing_overlaps_at_320_by_240(
     axes = two_axes(3.2, 2.4) if panels == 2 else [new_axes(3.2, 2.4)]
     names = ["rolling, exact", "multipliers, dop853", "multipliers, rk4"][: len(crowd)]
     picture(crowd, ax=axes if panels == 2 else axes[0], labels=names)
-    axes[0].figure.draw(FigureCanvasAgg(axes[0].figure).get_renderer())
+    figure_of(axes[0]).draw(FigureCanvasAgg(figure_of(axes[0])).get_renderer())
     boxes = []
     for ax in axes:
         window = ax.get_window_extent()
@@ -176,7 +177,7 @@ def lightness(colour: str) -> float:
 @pytest.mark.parametrize("picture", OVER_TIME)
 def test_events_are_dotted_lines(picture: Callable[..., Any], report: rl.Trajectory) -> None:
     events = tuple(SimpleNamespace(t=t, kind="slip") for t in (1.5, 4.0))
-    shown = picture(dataclasses.replace(report, kept_events=events), ax=new_axes())
+    shown = picture(dataclasses.replace(report, kept_events=events), ax=new_axes())  # type: ignore[arg-type]
     (mark,) = shown.marks
     assert [segment[0, 0] for segment in mark.get_segments()] == [1.5, 4.0]
 
@@ -190,7 +191,7 @@ def test_time_that_is_not_valid_has_grey_ground(
     (ground,) = picture(half, ax=new_axes()).marks
     assert (ground.get_x(), ground.get_x() + ground.get_width()) == (2.5, 6.0)
     ground, start = picture([report, half], ax=new_axes()).marks
-    assert ground.get_x() == 2.5 and list(start.get_xdata()) == [2.5, 2.5]
+    assert ground.get_x() == 2.5 and list(np.asarray(start.get_xdata())) == [2.5, 2.5]
 
 
 @pytest.mark.parametrize("picture", [rl.plot_phase, rl.plot_paths])

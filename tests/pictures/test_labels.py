@@ -111,7 +111,8 @@ def test_one_or_several() -> None:
         ([ROLLING, 3], TypeError, "trajectories must be .*, got 3 among them"),
         (
             dataclasses.replace(
-                ROLLING, **dict.fromkeys(("t", "theta", "omega", "x"), np.empty(0))
+                ROLLING,
+                **dict.fromkeys(("t", "theta", "omega", "x"), np.empty(0)),  # type: ignore[arg-type]
             ),
             ValueError,
             "every trajectory must have samples, got <Trajectory rolling/exact: no samples",

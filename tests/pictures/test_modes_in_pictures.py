@@ -17,7 +17,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 from numpy.typing import NDArray
-from oracles.pictures import outline, support
+from oracles.pictures import figure_of, legend_in, outline, support
 
 Array = NDArray[np.float64]
 SCENES = {
@@ -32,7 +32,7 @@ FEW_EVENTS = {name: scene for name, scene in SCENES.items() if name != "settling
 NAMES = {rl.Mode.SLIDING: "sliding", rl.Mode.FLIGHT: "flight", rl.Mode.REST: "rest"}
 
 
-@pytest.fixture(params=SCENES.values(), ids=SCENES.keys())
+@pytest.fixture(params=list(SCENES.values()), ids=list(SCENES))
 def motion(request: pytest.FixtureRequest) -> rl.Trajectory:
     return rl.simulate(request.param, 6.0)
 
@@ -52,12 +52,12 @@ def two_axes(width: float = 7.0, height: float = 5.0) -> list[Axes]:
 
 def drawn(ax: Axes) -> Axes:
     """The same, laid out."""
-    FigureCanvasAgg(ax.figure).draw()
+    FigureCanvasAgg(figure_of(ax)).draw()
     return ax
 
 
 def legend_of(ax: Axes) -> list[str]:
-    return [text.get_text() for text in ax.get_legend().get_texts()]
+    return [text.get_text() for text in legend_in(ax).get_texts()]
 
 
 def event_names(ax: Axes) -> list[Annotation]:
@@ -202,7 +202,9 @@ def test_what_rolls_has_no_shade() -> None:
 
 def test_forces_are_zero_in_flight_and_at_the_limit_while_sliding(motion: rl.Trajectory) -> None:
     shown = rl.plot_forces(motion, ax=two_axes())
-    normal, friction = (line.get_ydata() for line in (shown.normal[0], shown.friction[0]))
+    normal, friction = (
+        np.asarray(line.get_ydata()) for line in (shown.normal[0], shown.friction[0])
+    )
     flying, sliding = motion.mode == rl.Mode.FLIGHT, motion.mode == rl.Mode.SLIDING
     assert np.all(normal[flying] == 0) and np.all(friction[flying] == 0)
     assert np.all(normal[~flying] > 0)
@@ -213,7 +215,10 @@ def test_forces_are_zero_in_flight_and_at_the_limit_while_sliding(motion: rl.Tra
 
 def test_constraints_show_only_what_the_ground_holds(motion: rl.Trajectory) -> None:
     upper, lower = rl.plot_constraints(motion, ax=two_axes()).lines
-    values = {line.get_label().removesuffix(" = 0"): line.get_ydata() for line in (*upper, *lower)}
+    values = {
+        str(line.get_label()).removesuffix(" = 0"): np.asarray(line.get_ydata())
+        for line in (*upper, *lower)
+    }
     flying, sliding = motion.mode == rl.Mode.FLIGHT, motion.mode == rl.Mode.SLIDING
     for name in ("gap", "f2", "df2/dt"):
         assert np.array_equal(np.isnan(values[name]), flying)
@@ -246,7 +251,10 @@ def test_overview_of_a_motion_with_contacts_that_change(motion: rl.Trajectory) -
 def test_strobe_marks_the_contact_only_where_there_is_one(motion: rl.Trajectory) -> None:
     shown = rl.plot_strobe(motion, ax=new_axes(), count=37, t_end=3.0)
     at = motion.sol(np.linspace(0.0, 3.0, 37))
-    contacts, slides = shown.contacts.get_xydata(), shown.slides.get_xydata()
+    contacts, slides = (
+        np.asarray(shown.contacts.get_xydata()),
+        np.asarray(shown.slides.get_xydata()),
+    )
     for i, body in enumerate(shown.bodies):
         x, z = support(body)
         if at.mode[i] == rl.Mode.FLIGHT:
@@ -258,8 +266,11 @@ def test_strobe_marks_the_contact_only_where_there_is_one(motion: rl.Trajectory)
         else:
             assert np.all(np.isnan(slides[i]))
     assert shown.slides.get_marker() != shown.contacts.get_marker()
-    path = motion.sol(np.linspace(0.0, 3.0, len(shown.skid_path.get_xdata())))
-    skid, contact = shown.skid_path.get_xdata(), shown.contact_path.get_xdata()
+    path = motion.sol(np.linspace(0.0, 3.0, len(np.asarray(shown.skid_path.get_xdata()))))
+    skid, contact = (
+        np.asarray(shown.skid_path.get_xdata()),
+        np.asarray(shown.contact_path.get_xdata()),
+    )
     sliding = path.mode == rl.Mode.SLIDING
     assert np.array_equal(np.isnan(skid), ~sliding)
     assert np.array_equal(skid[sliding], path.contact_x[sliding])
@@ -271,13 +282,13 @@ def test_strobe_marks_the_contact_only_where_there_is_one(motion: rl.Trajectory)
 def test_the_strobes_title_is_clear_of_its_legend(jump: rl.Trajectory, width: float) -> None:
     ax = drawn(rl.plot_strobe(jump, ax=new_axes(width, 2.4), t_end=2.0).ax)
     (title,) = ax.findobj(lambda artist: "positions" in getattr(artist, "get_text", str)())
-    assert not title.get_window_extent().overlaps(ax.get_legend().get_window_extent().padded(-1))
+    assert not title.get_window_extent().overlaps(legend_in(ax).get_window_extent().padded(-1))
 
 
 def test_paths_mark_events_where_the_body_touches(motion: rl.Trajectory) -> None:
     shown = rl.plot_paths(motion, ax=new_axes())
     (lines,) = shown.events
-    found = {line.get_label().removeprefix("_"): line for line in lines}
+    found = {str(line.get_label()).removeprefix("_"): line for line in lines}
     expected: dict[str, list[float]] = {}
     a, b = motion.scene.a, motion.scene.b
     for event in motion.events:
@@ -288,11 +299,11 @@ def test_paths_mark_events_where_the_body_touches(motion: rl.Trajectory) -> None
         expected.setdefault(name, []).append(state.x + lead)
     assert list(found) == list(expected)
     for name, places in expected.items():
-        assert found[name].get_xdata() == pytest.approx(places, abs=1e-9)
-        assert np.all(found[name].get_ydata() == 0)
+        assert np.asarray(found[name].get_xdata()) == pytest.approx(places, abs=1e-9)
+        assert np.all(np.asarray(found[name].get_ydata()) == 0)
     assert legend_of(shown.ax)[3:] == list(expected)
     assert len({line.get_marker() for line in lines}) == len(lines)
-    touching = np.isfinite(shown.contacts[0].get_xdata())
+    touching = np.isfinite(np.asarray(shown.contacts[0].get_xdata()))
     assert np.array_equal(touching, motion.mode != rl.Mode.FLIGHT)
 
 
@@ -316,19 +327,21 @@ def test_every_frame_shows_what_the_body_does(motion: rl.Trajectory) -> None:
         animation.draw(i)
         mode, points = strip.motion.mode[i], outline(strip.body, 4000)
         flies, slides = mode == rl.Mode.FLIGHT, mode == rl.Mode.SLIDING
-        assert np.isfinite(strip.contact.get_xdata()[0]) == (not flies)
-        assert np.isfinite(strip.slip.get_xdata()[0]) == slides
+        assert np.isfinite(np.asarray(strip.contact.get_xdata())[0]) == (not flies)
+        assert np.isfinite(np.asarray(strip.slip.get_xdata())[0]) == slides
         if slides:
-            assert strip.slip.get_xydata()[0] == pytest.approx(strip.contact.get_xydata()[0])
+            assert np.asarray(strip.slip.get_xydata())[0] == pytest.approx(
+                np.asarray(strip.contact.get_xydata())[0]
+            )
             assert strip.slip.get_marker() == (">" if slip[i] > 0 else "<")
-        shadow = strip.shadow.get_xdata()
+        shadow = np.asarray(strip.shadow.get_xdata())
         if flies:  # as wide as the body: 4000 points miss its ends by 1e-6 of its size
             ends = [points[:, 0].min(), points[:, 0].max()]
             assert shadow == pytest.approx(ends, abs=4e-6)
         assert len(shadow) == (2 if flies else 0)
         said = strip.caption.get_text()
         assert said == ("flies" if flies else "slides" if slides else "")
-        skidded = np.isfinite(strip.skid_trace.get_xdata())
+        skidded = np.isfinite(np.asarray(strip.skid_trace.get_xdata()))
         assert np.array_equal(skidded, strip.motion.mode[: i + 1] == rl.Mode.SLIDING)
 
 
@@ -344,7 +357,8 @@ def test_the_mark_of_a_slip_points_the_way_it_slides() -> None:
 def test_the_mark_of_a_slip_lies_along_a_slope() -> None:
     sliding = rl.simulate(rl.Scene(2.0, 1.0, slope=0.5, x_dot=4.0, omega=0.0, friction=0.2), 0.1)
     (strip,) = rl.animate(sliding).strips
-    marker = strip.slip._marker  # matplotlib has no public way to its shape
+    # matplotlib has no public way to its shape
+    marker = strip.slip._marker  # type: ignore[attr-defined]
     head, *base = marker.get_transform().transform(marker.get_path().vertices[:3])
     pointing = head - np.mean(base, axis=0)
     downhill = [math.cos(0.5), -math.sin(0.5)]

@@ -12,6 +12,7 @@ matplotlib.use("Agg")
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
+from oracles.pictures import figure_of, points_of
 
 
 def test_forces_are_the_trajectory(trajectory: rl.Trajectory) -> None:
@@ -28,11 +29,12 @@ def test_forces_are_the_trajectory(trajectory: rl.Trajectory) -> None:
             assert np.array_equal(data(line)[0], motion.t)
             assert np.array_equal(data(line)[1], values)
     assert shown.limits[0] is None and shown.available[0] is None
-    corners = shown.limits[1].get_paths()[0].vertices[:, 1]
+    corners = points_of(shown.limits[1])[:, 1]
     bound = 0.7 * trajectory.normal_force.max()
     assert (corners.min(), corners.max()) == (-bound, bound)
-    assert list(shown.available[1].get_ydata()) == [0.7, 0.7]
-    shown.axes[0].figure.draw_without_rendering()
+    available = shown.available[1]
+    assert available is not None and list(np.asarray(available.get_ydata())) == [0.7, 0.7]
+    figure_of(shown.axes[0]).draw_without_rendering()
 
 
 def test_one_axes_for_the_forces_alone(report: rl.Trajectory) -> None:

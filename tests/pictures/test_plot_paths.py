@@ -11,15 +11,18 @@ matplotlib.use("Agg")
 
 import rolling_ellipse as rl
 from oracles.curves import Array, data, legend_of, new_axes
+from oracles.pictures import figure_of
 from rolling_ellipse._pictures import ground as drawing
 
 
 def test_paths_are_the_trajectory(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_paths(trajectory, ax=new_axes())
-    assert np.array_equal(shown.centres[0].get_xydata(), np.column_stack(data_of(trajectory)))
+    assert np.array_equal(
+        np.asarray(shown.centres[0].get_xydata()), np.column_stack(data_of(trajectory))
+    )
     assert np.array_equal(data(shown.contacts[0])[0], trajectory.contact_x)
     assert np.all(data(shown.contacts[0])[1] == 0)
-    tips = shown.tips[0].get_xydata()
+    tips = np.asarray(shown.tips[0].get_xydata())
     for i in range(0, trajectory.t.size, 100):
         end = drawing.body_patch(trajectory, i).get_patch_transform().transform((1.0, 0.0))
         assert tips[i] == pytest.approx(end, rel=1e-13, abs=1e-12)  # theta passed through degrees
@@ -33,7 +36,7 @@ def test_paths_of_several_motions_share_one_view(report: rl.Trajectory) -> None:
     small = rl.simulate(rl.Scene(0.5, 0.5, omega=-4.0, x=-3.0), 6.0)
     shown = rl.plot_paths([report, small], ax=new_axes(), labels=["large", "small"])
     assert legend_of(shown.ax) == ["large", "small", "centre", "end of axis a"]
-    shown.ax.figure.draw_without_rendering()
+    figure_of(shown.ax).draw_without_rendering()
     (left, right), (bottom, top) = shown.ax.get_xlim(), shown.ax.get_ylim()
     for line in (*shown.centres, *shown.tips, *shown.contacts):
         x, z = data(line)

@@ -11,7 +11,7 @@ matplotlib.use("Agg")
 
 import rolling_ellipse as rl
 from oracles.curves import data, legend_of, new_axes
-from oracles.pictures import ORDINARY_SCENES
+from oracles.pictures import ORDINARY_SCENES, figure_of
 
 
 def test_phase_is_the_trajectory(trajectory: rl.Trajectory) -> None:
@@ -107,6 +107,6 @@ def test_folding_is_a_choice(report: rl.Trajectory) -> None:
 
 def test_ticks_of_the_phase_plane_are_quarter_turns(report: rl.Trajectory) -> None:
     ax = rl.plot_phase(report, ax=new_axes(9.0, 4.0)).ax
-    ax.figure.draw_without_rendering()
+    figure_of(ax).draw_without_rendering()
     texts = [label.get_text() for label in ax.get_xticklabels()]
     assert texts == ["−π/2", "0", "π/2", "π", "3π/2", "2π", "5π/2", "3π", "7π/2"]

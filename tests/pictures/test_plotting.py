@@ -4,6 +4,7 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -16,7 +17,8 @@ import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from matplotlib.figure import Figure
-from oracles.pictures import ORDINARY_SCENES, outline, support
+from matplotlib.patches import Rectangle
+from oracles.pictures import ORDINARY_SCENES, centre_of, figure_of, outline, points_of, support
 from rolling_ellipse._pictures import ground as drawing
 
 SCENES = {
@@ -25,7 +27,7 @@ SCENES = {
 }
 
 
-@pytest.fixture(params=SCENES.values(), ids=SCENES.keys())
+@pytest.fixture(params=list(SCENES.values()), ids=list(SCENES))
 def trajectory(request: pytest.FixtureRequest) -> rl.Trajectory:
     return rl.simulate(request.param, 4.0, model="rolling")
 
@@ -52,7 +54,7 @@ def new_axes() -> Axes:
 
 
 def curves(ax: Axes) -> list[matplotlib.lines.Line2D]:
-    return [line for line in ax.lines if not line.get_label().startswith("_")]
+    return [line for line in ax.lines if not str(line.get_label()).startswith("_")]
 
 
 # ------------------------------------------------------------------------------- plot_strobe
@@ -63,10 +65,10 @@ def test_strobe_bodies_stand_on_the_ground_at_even_times(trajectory: rl.Trajecto
     at = trajectory.sol(np.linspace(0.0, 3.0, 9))
     size = max(trajectory.scene.a, trajectory.scene.b)
     assert len(shown.bodies) == len(shown.hands) == 9
-    contact_x, contact_z = shown.contacts.get_data()
+    contact_x, contact_z = np.asarray(shown.contacts.get_data())
     assert np.all(contact_z == 0)
     for i, body in enumerate(shown.bodies):
-        assert body.get_center() == (at.x[i], at.z[i])
+        assert centre_of(body) == (at.x[i], at.z[i])
         assert (body.width, body.height) == (2 * trajectory.scene.a, 2 * trajectory.scene.b)
         lowest_x, lowest_z = support(body)
         # theta passes through degrees: 100 rad keep 1e-14 rad, times rho or size; x up to 10 m
@@ -78,24 +80,26 @@ def test_strobe_bodies_stand_on_the_ground_at_even_times(trajectory: rl.Trajecto
 def test_strobe_hand_ends_on_the_outline_at_the_end_of_axis_a(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     for body, hand in zip(shown.bodies, shown.hands, strict=True):
-        end = hand.get_xydata()[1]
+        end = np.asarray(hand.get_xydata())[1]
         # the unit circle's (1, 0), sent through the patch's own transform
         expected = body.get_patch_transform().transform((1.0, 0.0))
-        assert np.allclose(hand.get_xydata()[0], body.get_center(), rtol=0, atol=0)
+        assert np.allclose(np.asarray(hand.get_xydata())[0], centre_of(body), rtol=0, atol=0)
         assert np.allclose(end, expected, rtol=1e-13, atol=1e-12 * trajectory.scene.a)
 
 
 def test_strobe_paths_are_the_trajectory(report: rl.Trajectory) -> None:
     shown = rl.plot_strobe(report, ax=new_axes())
-    path = report.sol(np.linspace(0.0, 6.0, len(shown.centre_path.get_xdata())))
-    assert np.array_equal(shown.centre_path.get_xydata(), np.column_stack([path.x, path.z]))
-    assert np.array_equal(shown.contact_path.get_xdata(), path.contact_x)
-    assert np.all(shown.contact_path.get_ydata() == 0)
+    path = report.sol(np.linspace(0.0, 6.0, len(np.asarray(shown.centre_path.get_xdata()))))
+    assert np.array_equal(
+        np.asarray(shown.centre_path.get_xydata()), np.column_stack([path.x, path.z])
+    )
+    assert np.array_equal(np.asarray(shown.contact_path.get_xdata()), path.contact_x)
+    assert np.all(np.asarray(shown.contact_path.get_ydata()) == 0)
 
 
 def test_the_check_of_the_ground_sees_a_millimetre(report: rl.Trajectory) -> None:
     body = rl.plot_strobe(report, ax=new_axes()).bodies[4]
-    x, z = body.get_center()
+    x, z = centre_of(body)
     body.set_center((x, z + 1e-3))
     assert support(body)[1] == pytest.approx(1e-3, abs=1e-12)
     body.set_center((x, z))
@@ -134,7 +138,7 @@ def test_strobe_dots_what_the_model_is_not_valid_for(report: rl.Trajectory) -> N
 
 def test_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes())
-    shown.ax.figure.draw_without_rendering()
+    figure_of(shown.ax).draw_without_rendering()
     (left, right), (bottom, top) = shown.ax.get_xlim(), shown.ax.get_ylim()
     for body in shown.bodies:
         points = outline(body)
@@ -155,14 +159,14 @@ def test_early_bodies_are_lighter_than_late_ones() -> None:
 def test_strobe_of_any_span_and_of_a_single_sample(scale: float) -> None:
     trajectory = rl.simulate(rl.scenes.report, scale)
     shown = rl.plot_strobe(trajectory, ax=new_axes())
-    shown.ax.figure.draw_without_rendering()
+    figure_of(shown.ax).draw_without_rendering()
     assert len(shown.bodies) == 13
 
 
 def test_strobe_makes_its_own_figure_without_an_ax(report: rl.Trajectory) -> None:
     shown = rl.plot_strobe(report)
-    assert plt.get_fignums() == [shown.ax.figure.number]
-    plt.close(shown.ax.figure)
+    assert plt.get_fignums() == [figure_of(shown.ax).number]
+    plt.close(figure_of(shown.ax))
 
 
 @pytest.mark.parametrize(
@@ -175,7 +179,7 @@ def test_strobe_makes_its_own_figure_without_an_ax(report: rl.Trajectory) -> Non
     ],
 )
 def test_strobe_refuses_by_name(
-    report: rl.Trajectory, options: dict[str, float], message: str
+    report: rl.Trajectory, options: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(ValueError, match=message):
         rl.plot_strobe(report, ax=new_axes(), **options)
@@ -209,8 +213,8 @@ def test_overview_curves_are_the_trajectory(trajectory: rl.Trajectory) -> None:
         (shown.kinetic_energy, trajectory.kinetic_energy),
         (shown.potential_energy, trajectory.potential_energy),
     ]:
-        assert np.array_equal(line.get_xdata(), trajectory.t)
-        assert np.array_equal(line.get_ydata(), values)
+        assert np.array_equal(np.asarray(line.get_xdata()), trajectory.t)
+        assert np.array_equal(np.asarray(line.get_ydata()), values)
     shown.figure.draw_without_rendering()
 
 
@@ -223,11 +227,11 @@ def test_overview_errors_are_those_of_the_single_pictures(trajectory: rl.Traject
         (shown.velocity_error, velocity),
         (shown.energy_error, energy),
     ]:
-        assert np.array_equal(line.get_xydata(), single.get_xydata())
+        assert np.array_equal(np.asarray(line.get_xydata()), np.asarray(single.get_xydata()))
 
 
 def test_overview_energy_error_is_relative_to_the_energy_there_is(report: rl.Trajectory) -> None:
-    error = rl.plot(report, figure=Figure()).energy_error.get_ydata()
+    error = np.asarray(rl.plot(report, figure=Figure()).energy_error.get_ydata())
     # both energies are >= 0 on level ground from z = 0, so that their sum is the energy
     expected = np.abs(report.energy / report.energy[0] - 1)
     assert error == pytest.approx(expected, abs=1e-15)
@@ -236,11 +240,12 @@ def test_overview_energy_error_is_relative_to_the_energy_there_is(report: rl.Tra
 
 def test_overview_shows_an_energy_error_of_1e_3(report: rl.Trajectory) -> None:
     drifting = dataclasses.replace(report, omega=report.omega * np.linspace(1.0, 1.001, 1001))
-    error = rl.plot(drifting, figure=Figure()).energy_error.get_ydata()
+    error = np.asarray(rl.plot(drifting, figure=Figure()).energy_error.get_ydata())
     kinetic = report.kinetic_energy[-1] / report.energy[0]
     # the scale, the largest energy, drifts along: up to 2e-3 of the error
     assert error[-1] == pytest.approx(kinetic * (1.001**2 - 1), rel=2e-3)
     ax = rl.plot(drifting, figure=Figure()).energy_error.axes
+    assert isinstance(ax, Axes)
     assert ax.get_ylim()[0] < error[-1] < ax.get_ylim()[1]
 
 
@@ -270,7 +275,7 @@ def test_overview_draws_the_limit_of_friction(report: rl.Trajectory) -> None:
     assert rl.plot(report, figure=Figure()).friction_limit is None
     rough = dataclasses.replace(report, scene=dataclasses.replace(report.scene, friction=0.9))
     band = rl.plot(rough, figure=Figure()).friction_limit
-    corners = band.get_paths()[0].vertices
+    corners = points_of(band)
     assert corners[:, 1].max() == 0.9 * report.normal_force.max()
     assert corners[:, 1].min() == -0.9 * report.normal_force.max()
 
@@ -282,6 +287,7 @@ def test_overview_marks_where_the_model_is_not_valid(report: rl.Trajectory) -> N
     assert "not valid from 2.5 s" in half.figure.get_suptitle()
     assert len(half.marks) == 6
     for mark in half.marks:
+        assert isinstance(mark, Rectangle)
         assert (mark.get_x(), mark.get_x() + mark.get_width()) == (2.5, 6.0)
 
 

@@ -12,7 +12,7 @@ matplotlib.use("Agg")
 
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
-from oracles.pictures import outline
+from oracles.pictures import centre_of, frames_of, outline
 from PIL import Image
 from rolling_ellipse._pictures.animation import RollingAnimation
 
@@ -32,7 +32,7 @@ SIZES = moved(6.0, rl.scenes.thin, rl.Scene(0.2, 0.1, omega=15.0, x=3.0), rl.Sce
 COMPARISONS = {"still": STILL, "followed": FOLLOWED, "parted": PARTED, "sizes": SIZES}
 
 
-@pytest.fixture(params=COMPARISONS.values(), ids=COMPARISONS.keys())
+@pytest.fixture(params=list(COMPARISONS.values()), ids=list(COMPARISONS))
 def motions(request: pytest.FixtureRequest) -> list[rl.Trajectory]:
     found: list[rl.Trajectory] = request.param
     return found
@@ -57,7 +57,7 @@ def test_every_strip_shows_its_motion_at_the_time_of_the_clock(
         assert animation.clock.get_text() == f"t = {i / 4:.2f} s"
         for strip, motion in zip(animation.strips, motions, strict=True):
             at = motion.sol(i / 4)  # one time: other roundings than those of many
-            assert strip.body.get_center() == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
+            assert centre_of(strip.body) == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
             assert strip.body.angle == pytest.approx(-math.degrees(at.theta[0]), rel=1e-14)
             assert (strip.body.width, strip.body.height) == (2 * motion.scene.a, 2 * motion.scene.b)
 
@@ -134,7 +134,7 @@ def test_a_motion_that_ends_earlier_stays_where_it_ended() -> None:
     for i in frames(animation):
         animation.draw(i)
         at = short.sol(min(i / 4, 1.0))
-        assert first.body.get_center() == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
+        assert centre_of(first.body) == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
         assert first.caption.get_text() == ("short   ended at 1 s" if i > 4 else "short")
         assert second.caption.get_text() == "long"
 
@@ -180,7 +180,7 @@ def test_a_file_of_several_motions(tmp_path: Path) -> None:
     path = tmp_path / "race.gif"
     rl.animate(REPORT_AND_ROCKING, path, t_end=0.2, width=160, dpi=50)
     with Image.open(path) as gif:
-        assert gif.n_frames == 6
+        assert frames_of(gif) == 6
         assert gif.size[0] == 160 and gif.size[1] % 2 == 0
 
 

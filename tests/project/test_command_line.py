@@ -18,6 +18,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
+from oracles.pictures import frames_of
 from PIL import Image
 from rolling_ellipse import __main__ as command_line
 from rolling_ellipse.__main__ import main
@@ -114,7 +115,14 @@ def test_json_on_stdout(tmp_path: Path) -> None:
 
 
 def test_options_make_another_scene_without_impulse(command: Any) -> None:
-    options = {"a": 3.0, "b": 1.5, "mass": 2.0, "theta": 0.3, "omega": 1.25, "friction": 5.0}
+    options: dict[str, Any] = {
+        "a": 3.0,
+        "b": 1.5,
+        "mass": 2.0,
+        "theta": 0.3,
+        "omega": 1.25,
+        "friction": 5.0,
+    }
     text = [part for name, value in options.items() for part in (f"--{name}", str(value))]
     code, out, _ = command(*text, "--restitution", "0.5", "--slope", "0", "--time", "2.5", "--json")
     assert code == 0
@@ -185,9 +193,9 @@ def test_save_writes_an_animation(tmp_path: Path) -> None:
     code, out, err = typed(tmp_path, "--time", "0.5", "--save", "roll.gif")
     assert (code, err) == (0, "") and "distance" in out
     with Image.open(tmp_path / "roll.gif") as picture:
-        assert picture.format == "GIF" and picture.n_frames > 5
+        assert picture.format == "GIF" and frames_of(picture) > 5
         shown = 0
-        for i in range(picture.n_frames):
+        for i in range(frames_of(picture)):
             picture.seek(i)
             shown += picture.info["duration"]
             picture.load()

@@ -72,7 +72,7 @@ from operator import mul
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import gmpy2  # type: ignore[import-untyped]
+import gmpy2
 from gmpy2 import mpfr
 from series import Road, product, quotient, square_root, value
 

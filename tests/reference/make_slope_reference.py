@@ -47,7 +47,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import gmpy2  # type: ignore[import-untyped]
+import gmpy2
 from gmpy2 import mpfr
 from series import Road, product, quotient, square_root, value
 

@@ -4,7 +4,7 @@ import math
 from operator import mul
 from typing import Any, NamedTuple
 
-import gmpy2  # type: ignore[import-untyped]
+import gmpy2
 from gmpy2 import mpfr
 
 

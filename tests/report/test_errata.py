@@ -16,7 +16,7 @@ from oracles.numbers import EPS
 from oracles.report import BODY, SHAPE, Array
 from rolling_ellipse import report
 
-UNEVEN = {"a": 2.0, "b": 0.7, "mass": 3.0, "gravity": 9.81}
+UNEVEN: dict[str, Any] = {"a": 2.0, "b": 0.7, "mass": 3.0, "gravity": 9.81}
 ANGLE = 0.7  # where the errata are evaluated
 
 
@@ -243,6 +243,7 @@ def test_a_broken_solution_is_seen_by_back_substitution() -> None:
     """The test itself works: it reports what the solution is changed by."""
     q, q_dot = rl.kinematics(0.2, 2.0, **SHAPE)
     motion = report.simulate(q, q_dot, [0.1], equations="printed", printed=(), **SHAPE)
+    assert isinstance(motion, report.PrintedMotion)
     assert np.max(np.abs(motion.back_substitution())) < 1e-7
     motion.multipliers[0, 1] += 1e-3
     assert motion.back_substitution()[0, 1] == pytest.approx(-1e-3, rel=1e-3)

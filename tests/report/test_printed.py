@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from numpy.typing import ArrayLike
 from oracles.report import BODY, Q_DOT, SHAPE, Array, Q, off_by, start
 from rolling_ellipse import report
 from rolling_ellipse.report._runge_kutta import Steps, integrate
@@ -22,7 +23,7 @@ GAPS = [  # the rows as printed, and the gap 0.25 s after theta = 0.2, theta_dot
 ]
 
 
-def run(q: Array, q_dot: Array, t: Any, **options: Any) -> report.PrintedMotion:
+def run(q: ArrayLike, q_dot: ArrayLike, t: Any, **options: Any) -> report.PrintedMotion:
     motion = report.simulate(q, q_dot, t, equations="printed", **{**SHAPE, **options})
     assert isinstance(motion, report.PrintedMotion)
     return motion
@@ -161,8 +162,15 @@ def test_exact_starts_are_consistent_and_others_are_not(
         q, q_dot = rl.kinematics(theta, 1.7, a=a, b=b)
         if printed:
             q_dot = report.consistent_rates(q, 1.7, a=a, b=b, printed=printed)
-        options = {"a": a, "b": b, "equations": "printed", "printed": printed, "max_steps": 1}
+        options: dict[str, Any] = {
+            "a": a,
+            "b": b,
+            "equations": "printed",
+            "printed": printed,
+            "max_steps": 1,
+        }
         motion = report.simulate(q, q_dot, 0.0, **options)
+        assert isinstance(motion, report.PrintedMotion)
         assert motion.start.violations == ()
         for i in range(1, 5):  # a part in 1e9 (of a radian and a metre at least) is seen
             moved = q.copy()
@@ -280,4 +288,4 @@ def test_bad_input_of_the_equations() -> None:
 def test_what_is_of_no_use_is_refused(equations: str, name: str, value: object) -> None:
     q, q_dot = rl.kinematics(0.2, 2.0, a=2.0, b=1.0)
     with pytest.raises(ValueError, match=f"^{name} must be None for the {equations} equations"):
-        rl.report.simulate(q, q_dot, 1.0, a=2.0, b=1.0, equations=equations, **{name: value})
+        rl.report.simulate(q, q_dot, 1.0, a=2.0, b=1.0, equations=equations, **{name: value})  # type: ignore[arg-type]

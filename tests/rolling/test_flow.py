@@ -254,7 +254,7 @@ ordinary = pytest.mark.parametrize("motion", [MOTIONS[name] for name in ORDINARY
 def test_mirror(motion: Motion) -> None:
     """Seen from the other side: the same bits, with the other sign."""
     times = np.array([-1e3, -0.7, 1e-6, 0.2, 3.0, 44.0, 1e7])
-    start = arguments(motion)
+    start: dict[str, Any] = arguments(motion)
     seen = start | {"theta": -start["theta"], "omega": -start["omega"]}
     for one, other in zip(flow(times, **start), flow(times, **seen), strict=True):
         assert np.array_equal(one, -other)
@@ -263,7 +263,7 @@ def test_mirror(motion: Motion) -> None:
 @ordinary
 def test_negative_times_are_the_motion_backwards(motion: Motion) -> None:
     """The film run backwards starts with the opposite speed."""
-    start = arguments(motion)
+    start: dict[str, Any] = arguments(motion)
     for t in (1e-6, 0.3, 2.0, 33.0):
         before = np.array(flow(-t, **start))
         after = np.array(flow(t, **(start | {"omega": -start["omega"]})))
@@ -355,10 +355,10 @@ def test_x_is_the_path_of_the_centre(motion: Motion) -> None:
 
 
 def test_scalars_in_floats_out() -> None:
-    start = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
+    start: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
     expected = flow(1.5, **start)
     ints = flow(2, a=2, b=1, theta=0, omega=3)
-    numpy_scalars = flow(np.float64(1.5), **{k: np.float64(v) for k, v in start.items()})
+    numpy_scalars = flow(np.float64(1.5), **{k: np.float64(v) for k, v in start.items()})  # type: ignore[arg-type]
     zero_d = flow(np.array(1.5), **start, gravity=np.array(9.81), gyration2=np.array(1.25))
     for answer in (expected, ints, numpy_scalars, zero_d):
         assert isinstance(answer, tuple) and [type(value) for value in answer] == [float] * 3
@@ -373,7 +373,12 @@ def test_broadcasting() -> None:
     assert [values.shape for values in found] == [(3, 3, 4)] * 3
     assert all(values.dtype == np.float64 for values in found)
     for i, j, k in np.ndindex(3, 3, 4):
-        start = {"a": 2.0, "b": float(b[i, 0, 0]), "theta": 0.3, "omega": float(omega[j, 0])}
+        start: dict[str, Any] = {
+            "a": 2.0,
+            "b": float(b[i, 0, 0]),
+            "theta": 0.3,
+            "omega": float(omega[j, 0]),
+        }
         single = flow(float(t[k]), **start, gravity=gravity[k])
         gyration2 = float((4.0 + b[i, 0, 0] ** 2) / 4)
         unit = grain(float(t[k]), (2.0, start["b"], gyration2, gravity[k], 0.3, start["omega"]))
@@ -383,7 +388,7 @@ def test_broadcasting() -> None:
 
 
 def test_lists_float32_and_empty_arrays() -> None:
-    start = {"a": 2.0, "b": 1.0, "theta": 0.25, "omega": 3.25}
+    start: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.25, "omega": 3.25}
     times = [0.0, 0.5, 1.25]
     expected = flow(np.array(times), **start)
     for given in (times, tuple(times), np.array(times, np.float32), np.array(times)[::-1][::-1]):
@@ -400,7 +405,7 @@ def test_lists_float32_and_empty_arrays() -> None:
 
 def test_inputs_are_not_modified() -> None:
     generator = np.random.default_rng(3)
-    given = {name: generator.uniform(1, 2, 50) for name in ("t", *PARAMETERS)}
+    given: dict[str, Any] = {name: generator.uniform(1, 2, 50) for name in ("t", *PARAMETERS)}
     kept = {name: values.copy() for name, values in given.items()}
     for values in given.values():
         values.flags.writeable = False
@@ -414,7 +419,7 @@ def test_workers_have_no_say_in_the_bits() -> None:
     """20000 motions are 20 chunks: every worker gets some."""
     generator = np.random.default_rng(4)
     n = 20_000
-    start = {
+    start: dict[str, Any] = {
         "a": generator.uniform(0.5, 2, n),
         "b": generator.uniform(0.5, 2, n),
         "theta": generator.uniform(-4, 4, n),
@@ -442,7 +447,7 @@ def test_workers_have_no_say_in_the_bits() -> None:
 )
 def test_wrong_numbers_are_refused_by_name(name: str, value: float) -> None:
     """From a scalar call, from an array, and from the last of many elements on two threads."""
-    start = {"t": 1.0} | arguments(MOTIONS["rotation"])
+    start: dict[str, Any] = {"t": 1.0} | arguments(MOTIONS["rotation"])
     many = np.full(5000, start[name])
     many[-1] = value
     for changed in ({name: value}, {name: [start[name], value]}, {name: many, "workers": 2}):
@@ -453,7 +458,7 @@ def test_wrong_numbers_are_refused_by_name(name: str, value: float) -> None:
 @pytest.mark.parametrize("value", ["1", None, 1j, [[1.0], [2.0, 3.0]], {}])
 @pytest.mark.parametrize("name", ["t", "a", "theta", "gravity"])
 def test_what_is_no_number_is_refused_by_name(name: str, value: object) -> None:
-    start = {"t": 1.0} | arguments(MOTIONS["rotation"])
+    start: dict[str, Any] = {"t": 1.0} | arguments(MOTIONS["rotation"])
     with pytest.raises(TypeError, match=rf"^{name} must be"):
         flow(**(start | {name: value}))
 
@@ -481,7 +486,7 @@ def test_ctrl_c_stops_a_long_call(workers: int) -> None:
     so the machine's speed and load cancel; a quarter of it is hundreds of chunks."""
     n, part = 3_000_000, 30_000
     angles = np.linspace(0.1, 0.4, n)  # each another motion, the dearest kind
-    start = {"a": 2.0, "b": 1.0, "omega": 3.2, "workers": workers}
+    start: dict[str, Any] = {"a": 2.0, "b": 1.0, "omega": 3.2, "workers": workers}
 
     def seconds(count: int) -> float:
         begin = time.perf_counter()

@@ -67,7 +67,9 @@ def test_acceleration_and_its_derivatives(shape: tuple[float, float], slope: flo
     for theta in ANGLES:
         for omega in (speed * unit for speed in SPEEDS):
             exact, sizes = lagrange(scene, theta, omega)
-            acceleration, jacobian = _core.rolling_equation(scene.core, [theta], [omega])
+            acceleration, jacobian = _core.rolling_equation(
+                scene.core, np.array([theta]), np.array([omega])
+            )
             found = Motion(acceleration[0], *jacobian[0])
             off = Motion(*map(ulps, found, exact, sizes))
             assert max(off) <= 8, (theta, omega, off)
@@ -76,12 +78,15 @@ def test_acceleration_and_its_derivatives(shape: tuple[float, float], slope: flo
 def test_a_wrong_equation_is_seen() -> None:
     """The same scene with 1e-12 more gravity, slope or k^2 is thousands of ulp away."""
     scene = Scene(2.0, 1.0, slope=0.3)
-    for change in (
+    changes: list[dict[str, Any]] = [
         {"gravity": scene.gravity * (1 + 1e-12)},
         {"slope": scene.slope + 1e-12},
         {"inertia": scene.gyration2 * (1 + 1e-12)},
-    ):
-        found, _ = _core.rolling_equation(replace(scene, **change).core, [0.4], [1.5])
+    ]
+    for change in changes:
+        found, _ = _core.rolling_equation(
+            replace(scene, **change).core, np.array([0.4]), np.array([1.5])
+        )
         exact, sizes = lagrange(scene, 0.4, 1.5)
         assert ulps(found[0], exact.acceleration, sizes.acceleration) > 500
 

@@ -27,7 +27,7 @@ class Motion(NamedTuple):
     """One scene, its times (3,), answers as decimal text (3, 5) and their units (3, 5)."""
 
     name: str
-    parameters: dict[str, float]
+    parameters: dict[str, Any]
     times: list[float]
     answers: list[list[str]]
     units: NDArray[np.float64]

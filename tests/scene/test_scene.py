@@ -92,19 +92,22 @@ def test_mass_is_neither_at_a_point_nor_far_outside(share: float) -> None:
 @pytest.mark.parametrize("axes", [(1000.0, 1.0), (1.0, 1000.0), (1e-3, 1.0), (1e-9, 1e-9)])
 def test_scene_accepts_the_limits(axes: tuple[float, float]) -> None:
     assert Scene(*axes).initial_state.z > 0
-    for given in ({"friction": 0.0}, {"friction": INF}, {"restitution": 1.0}, {"slope": -1.57}):
+    limits: list[dict[str, Any]] = [
+        {"friction": 0.0}, {"friction": INF}, {"restitution": 1.0}, {"slope": -1.57},
+    ]  # fmt: skip
+    for given in limits:
         Scene(*axes, **given)
 
 
 def test_numbers_of_any_kind_are_welcome() -> None:
     reference = Scene(2.0, 1.0, omega=3.0)
     for number in (3, np.float64(3), np.float32(3), np.int64(3)):
-        assert Scene(2, 1, omega=number) == reference
+        assert Scene(2, 1, omega=number) == reference  # type: ignore[arg-type]
 
 
 def test_scene_wants_names() -> None:
     with pytest.raises(TypeError):
-        Scene(2.0, 1.0, 10.0)  # type: ignore[misc]
+        Scene(2.0, 1.0, 10.0)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="mas"):
         Scene(2.0, 1.0, mas=10.0)  # type: ignore[call-arg]
 
@@ -128,8 +131,8 @@ def test_impulse_refuses_what_is_no_number(name: str, value: object) -> None:
 def test_press_refuses_wrong_values(position: int) -> None:
     good = [48.0, 1.5]
     for value, error in ((NAN, ValueError), (INF, ValueError), ("1", TypeError), (None, TypeError)):
-        given = list(good)
-        given[position] = value  # type: ignore[call-overload]
+        given: list[Any] = list(good)
+        given[position] = value
         with pytest.raises(error, match=r"\b(F|d)\b" if position == 0 else r"\bd\b"):
             Impulse.press(*given)
 
@@ -303,7 +306,7 @@ def test_simulate_refuses_wrong_times(error: type[Exception], t: object) -> None
 @pytest.mark.parametrize("name", ["model", "method"])
 @pytest.mark.parametrize("value", ["", "Auto", "no_such", "rk5"])
 def test_simulate_refuses_unknown_names_and_lists_the_known(name: str, value: str) -> None:
-    given = {"scene": scene(omega=1.0), "t": 1.0, name: value}
+    given: dict[str, Any] = {"scene": scene(omega=1.0), "t": 1.0, name: value}
     assert_refused(ValueError, name, repr(value), simulate, **given)
     known = {
         "model": ["auto", "rolling", "multipliers"],
@@ -317,14 +320,19 @@ def test_simulate_refuses_unknown_names_and_lists_the_known(name: str, value: st
 
 @pytest.mark.parametrize("method", ["exact", "dop853", "dopri5", "rk4", "gauss", "radau"])
 def test_the_contact_model_chooses_its_methods(method: str) -> None:
-    given = {"scene": scene(omega=1.0), "t": 1.0, "model": "contact", "method": method}
+    given: dict[str, Any] = {
+        "scene": scene(omega=1.0),
+        "t": 1.0,
+        "model": "contact",
+        "method": method,
+    }
     assert_refused(ValueError, "method", repr(method), simulate, **given)
 
 
 @pytest.mark.parametrize("name", ["model", "method"])
 @pytest.mark.parametrize("value", [None, 1, ["auto"]], ids=str)
 def test_simulate_refuses_names_that_are_no_text(name: str, value: object) -> None:
-    given = {"scene": scene(omega=1.0), "t": 1.0, name: value}
+    given: dict[str, Any] = {"scene": scene(omega=1.0), "t": 1.0, name: value}
     with pytest.raises((TypeError, ValueError), match=rf"\b{name}\b.*{re.escape(repr(value))}"):
         simulate(**given)
 
@@ -421,7 +429,7 @@ def test_constraints_and_kinematics_refuse_wrong_axes(name: str) -> None:
     }
     for call, state in states.items():
         for value in POSITIVE:
-            axes = {"a": 2.0, "b": 1.0, name: value}
+            axes: dict[str, Any] = {"a": 2.0, "b": 1.0, name: value}
             assert_refused(ValueError, name, repr(value), call, **state, **axes)
         for nothing in ("1", None):
             axes = {"a": 2.0, "b": 1.0, name: nothing}

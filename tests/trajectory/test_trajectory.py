@@ -246,17 +246,17 @@ def test_what_is_no_array_of_numbers_is_refused(value: Any) -> None:
         with pytest.raises(TypeError, match=f"^{name} must be"):
             dataclasses.replace(five_samples(), **{name: value})
     with pytest.raises(TypeError, match=r"^contact must be ContactSamples or None, got \(1, 2\)"):
-        dataclasses.replace(five_samples(), contact=(1, 2))
+        dataclasses.replace(five_samples(), contact=(1, 2))  # type: ignore[arg-type]
 
 
 def test_any_numbers_become_float64() -> None:
     for x in ([0, 1, 2, 3, 4], range(5), np.arange(5, dtype=np.float32), np.arange(10.0)[::2] / 2):
-        made = dataclasses.replace(five_samples(), x=x)
+        made = dataclasses.replace(five_samples(), x=x)  # type: ignore[arg-type]
         assert made.x.dtype == np.float64 and made.x.tolist() == [0, 1, 2, 3, 4]
         assert made.x.flags.c_contiguous and not made.x.flags.writeable
     contact = five_samples().contact
     assert contact is not None
-    made = dataclasses.replace(five_samples(), contact=contact._replace(mode=[2, 2, 2, 1, 3]))
+    made = dataclasses.replace(five_samples(), contact=contact._replace(mode=[2, 2, 2, 1, 3]))  # type: ignore[arg-type]
     assert made.mode.dtype == np.int8 and made.mode.tolist() == [2, 2, 2, 1, 3]
 
 
@@ -278,7 +278,7 @@ def test_the_arrays_of_others_are_left_alone() -> None:
         assert not np.shares_memory(made.mode, mode)
         assert mine.flags.writeable and mode.flags.writeable
     again = dataclasses.replace(made)
-    assert again.x is made.x and again.contact is not None
+    assert again.x is made.x and again.contact is not None and made.contact is not None
     assert again.contact.z is made.contact.z  # what nobody can write to need not be copied
 
 
