@@ -50,3 +50,14 @@ def shape(request: pytest.FixtureRequest) -> tuple[float, float]:
 def angles() -> list[float]:
     """Rotations theta [rad] that have been trouble for somebody."""
     return ANGLES
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks what `pytest -m quick` runs."""
+    from oracles.paths import TESTS
+    from oracles.quick import QUICK
+
+    for item in items:
+        file = item.path.relative_to(TESTS).as_posix()
+        if file in QUICK or f"{file}::{item.name.partition('[')[0]}" in QUICK:
+            item.add_marker(pytest.mark.quick)

@@ -453,7 +453,6 @@ def test_no_motion_leads_to_two_motions() -> None:
         motion = simulate(scene, 4.0, model="contact", max_events=200, raise_on_failure=False)
         jams += motion.status is Status.JAMMED
         assert "two motions" not in motion.message or motion.t_end == 0
-    print(jams)
     assert jams > 20
 
 
@@ -670,7 +669,6 @@ def test_the_start_says_what_the_body_does() -> None:
         does = {"ROLLING": "rolls", "SLIDING": "slides", "FLIGHT": "flies", "REST": "rests"}
         assert does[mode.name] in scene.initial_state.reason
         met[mode] += 1
-    print(met)
     assert min(met[mode] for mode in (Mode.ROLLING, Mode.SLIDING, Mode.FLIGHT)) > 50
 
 
@@ -770,7 +768,6 @@ def test_a_slide_takes_as_many_steps_whatever_its_size() -> None:
     for b in (1.0, 1e-9, 1e12, 3e-25):
         scene = Scene(2 * b, b, omega=4.77 / math.sqrt(b), friction=0.5)
         counts.append(simulate(scene, 2 * math.sqrt(b), model="contact").stats["steps"])
-    print(counts)
     assert max(counts) <= 1.1 * min(counts)
 
 

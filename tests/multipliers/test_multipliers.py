@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.constraints import along, no_slip, positions
+from oracles.margins import told
 from oracles.multipliers import GENERIC, SCENES, forces, matrix, matrix_slopes, settings
 from oracles.numbers import DIGITS, EPS, ulps
 from rolling_ellipse import Scene, Status, Trajectory, _core, simulate
@@ -118,7 +119,7 @@ def test_matrix_and_drift_by_differentiation(shape: Shape) -> None:
             for k, entry in enumerate(exact_drift(point, rate, a, b)):
                 terms = abs(entry) + terms_of[k] + rest
                 off_drift.append(ulps(drift[i, k], entry, terms))
-    print(f"matrix {max(off_rows):.2g} ulp, drift {max(off_drift):.2g} ulp")
+    told(f"matrix {max(off_rows):.2g} ulp, drift {max(off_drift):.2g} ulp")
     assert max(off_rows) <= 16 and max(off_drift) <= 16
 
 
@@ -168,7 +169,7 @@ def test_back_substitution(shape: Shape, stabilization: str) -> None:
     q, q_dot = states(shape)
     solved = _core.multiplier_detail(scene.core, how.core, q, q_dot)
     missed = misses(scene, how, q, q_dot, *solved)
-    print(", ".join(f"{name} {np.max(miss):.2g}" for name, miss in missed.items()))
+    told(", ".join(f"{name} {np.max(miss):.2g}" for name, miss in missed.items()))
     assert max(np.max(miss) for miss in missed.values()) <= 1e-13
 
 
@@ -205,7 +206,7 @@ def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
     aspect = max(shape) / min(shape)
     push[:, 3] *= r + slope + r * aspect**2 * EPS * np.abs(q[:, 3]) / 1e-12
     share_of_push = np.abs(multipliers - exact_multipliers) / push
-    print(f"accelerations {np.max(shares):.2g}, multipliers {np.max(share_of_push):.2g}")
+    told(f"accelerations {np.max(shares):.2g}, multipliers {np.max(share_of_push):.2g}")
     assert np.max(shares) <= 1e-12 and np.max(share_of_push) <= 1e-12
     assert np.array_equal(exact_multipliers[:, :2], np.stack([friction, normal], axis=1))
 
@@ -285,7 +286,7 @@ def test_motions_are_those_of_rolling(scene: Scene, stabilization: str) -> None:
     for name in STATE + FORCES:
         off[name] = np.max(np.abs(getattr(found, name) - getattr(exact, name)))
         assert off[name] <= allowed * (feedback if name in FORCES else 1), name
-    print(", ".join(f"{name} {value:.1g}" for name, value in off.items()))
+    told(", ".join(f"{name} {value:.1g}" for name, value in off.items()))
 
 
 @pytest.mark.parametrize("stabilization", EXPLICIT)
@@ -297,7 +298,7 @@ def test_far_starts_are_as_good_as_near_ones(stabilization: str) -> None:
         scene, [10.0], model="multipliers", stabilization=stabilization, rtol=1e-13, atol=1e-13
     )
     off = abs(found.theta[0] - simulate(scene, [10.0]).theta[0])
-    print(f"{stabilization}: {off:.1e}")
+    told(f"{stabilization}: {off:.1e}")
     assert off <= 1e-10
 
 
@@ -345,7 +346,7 @@ def test_order(method: str, stabilization: str) -> None:
         )
         errors.append(np.max(np.abs(found.q - simulate(scene, times).q)))
     slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-    print(f"{method}, {stabilization}: slope {slope:.2f}, errors", *(f"{e:.1e}" for e in errors))
+    told(f"{method}, {stabilization}: slope {slope:.2f}, errors", *(f"{e:.1e}" for e in errors))
     assert order - 0.15 <= slope <= order + 0.75
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from oracles.margins import told
 from oracles.multipliers import SCENES, forces, matrix, matrix_slopes, settings
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, Status, Trajectory, simulate
@@ -67,7 +68,7 @@ def test_the_drift_is_that_of_the_equations() -> None:
         y = y + step / 6 * (k1 + 2 * k2 + 2 * k3 + slope(y + step * k3))
     found = multipliers(scene, [300 * step], method="rk4", stabilization="none", step=step)
     own = rl.constraints(y[:5], y[5:], a=2.0, b=1.0)
-    print(f"gap after 6 s: {float(own.gap):.6e} m")
+    told(f"gap after 6 s: {float(own.gap):.6e} m")
     assert np.max(np.abs(found.q[0] - y[:5])) <= 1e-11
     assert np.max(np.abs(found.q_dot[0] - y[5:])) <= 1e-11
     assert abs(float(own.gap)) > 1e-4
@@ -84,7 +85,7 @@ def test_a_minute_of_drift() -> None:
         )
         gap = found.constraint_residuals().gap[-1]
         figures.append((gap, found.energy[-1] / found.energy[0] - 1))
-        print(f"step {step} s: gap {gap:.3g} m, energy {figures[-1][1]:+.3g}")
+        told(f"step {step} s: gap {gap:.3g} m, energy {figures[-1][1]:+.3g}")
     (gap, energy), (fine_gap, fine_energy) = figures
     assert gap == pytest.approx(-0.65, abs=0.005) and energy == pytest.approx(-0.28, abs=0.005)
     assert abs(fine_gap) <= abs(gap) / 8**3 and abs(fine_energy) <= abs(energy) / 8**3
@@ -119,7 +120,7 @@ def test_drift_grows_like_t_squared(scene: Scene, method: str, step: float, last
         envelope = np.maximum.accumulate(largest)
         slopes.append(np.polyfit(np.log(spans), np.log(envelope), 1)[0])
     gap = np.max(np.abs(held.gap))
-    print(
+    told(
         f"{method}, a/b = {scene.a}: gap {gap:.2g} m after {last} half turns; slopes of gap "
         f"{slopes[0]:.3f}, positions {slopes[1]:.3f}, velocities {slopes[2]:.3f}"
     )
@@ -157,9 +158,9 @@ def test_what_each_stabilization_is_worth(kept: dict[str, Trajectory]) -> None:
     exact = simulate(ROUND, kept["none"].t)
     errors = {name: np.abs(found.theta - exact.theta) for name, found in kept.items()}
     gaps = {name: np.abs(found.constraint_residuals().gap) for name, found in kept.items()}
-    print(f"\n{'half turns':20}" + "".join(f"{n:>10}" for n in SPANS) + "   gap after the last")
+    told(f"\n{'half turns':20}" + "".join(f"{n:>10}" for n in SPANS) + "   gap after the last")
     for name, row in errors.items():
-        print(f"{name:20}" + "".join(f"{error:10.1e}" for error in row) + f"{gaps[name][-1]:10.1e}")
+        told(f"{name:20}" + "".join(f"{error:10.1e}" for error in row) + f"{gaps[name][-1]:10.1e}")
     later = SPANS >= 10
     order = ["projection+energy", "projection", "gains of 10", "none"]
     for better, worse in pairwise(order):
@@ -186,8 +187,8 @@ def test_energy_over_a_thousand_half_turns(kept: dict[str, Trajectory]) -> None:
     found = kept["projection+energy"]
     times = np.random.default_rng(5).uniform(0, found.t_end, 1000)
     lost = np.max(np.abs(found.sol(times).energy / start - 1))
-    print(", ".join(f"{name} {value:.1e}" for name, value in ends.items()))
-    print(f"projection+energy, at any of 1000 times: {lost / EPS:.2g} ulp")
+    told(", ".join(f"{name} {value:.1e}" for name, value in ends.items()))
+    told(f"projection+energy, at any of 1000 times: {lost / EPS:.2g} ulp")
     assert lost <= 8 * EPS
     assert min(ends.values()) > 1e-6
 
@@ -199,7 +200,7 @@ def test_the_path_shows_what_no_residual_does(kept: dict[str, Trajectory]) -> No
         found = kept[name]
         path = centre_path(found.theta, a=1.5, b=1.0) - centre_path(0.2, a=1.5, b=1.0)
         missed = np.abs(found.x - path)
-        print(f"{name}: " + ", ".join(f"{value:.1e}" for value in missed))
+        told(f"{name}: " + ", ".join(f"{value:.1e}" for value in missed))
         assert 50 * missed[1] < missed[-1] < 200 * missed[1]  # 10 and 1000 half turns
         assert missed[-1] < 1e-4
 
@@ -272,7 +273,7 @@ def test_gains_have_a_limit(mix: tuple[float, float]) -> None:
         )
         lost = found.status is Status.STEP_TOO_LARGE
         missed.append(math.inf if lost else worst_residual(found))
-    print(f"gains {mix} x {low:.1f} 1/s: residuals {missed[0]:.1e} below, {missed[1]:.1e} above")
+    told(f"gains {mix} x {low:.1f} 1/s: residuals {missed[0]:.1e} below, {missed[1]:.1e} above")
     assert missed[0] < 1e-2 and missed[1] > 1.0
 
 
@@ -293,7 +294,7 @@ def test_projection_between_steps(scene: Scene, stabilization: str) -> None:
     }
     held = found.constraint_residuals()
     position, velocity = np.max(np.abs(held.position)), np.max(np.abs(held.velocity))
-    print(
+    told(
         ", ".join(f"{name} {value:.1e}" for name, value in off.items()),
         f"; positions {position:.1e}, velocities {velocity:.1e}, gap "
         f"{np.max(np.abs(held.gap)):.1e}, slip {np.max(np.abs(held.slip)):.1e}",
@@ -314,7 +315,7 @@ def test_energy_is_kept_at_any_time(name: str) -> None:
     weight = scene.mass * scene.gravity
     terms = found.kinetic_energy + weight * (found.z + abs(math.sin(scene.slope)) * abs(found.x))
     off = np.abs(found.energy - found.energy[0]) / (terms + terms[0])
-    print(f"{name}: energy {np.max(off) / EPS:.2g} ulp")
+    told(f"{name}: energy {np.max(off) / EPS:.2g} ulp")
     assert np.max(off) <= 8 * EPS
 
 
@@ -342,7 +343,7 @@ def test_order_of_the_index_2_system() -> None:
             ]
         )
     slopes = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-    print("slopes of theta, q, q_dot, multipliers:", ", ".join(f"{slope:.2f}" for slope in slopes))
+    told("slopes of theta, q, q_dot, multipliers:", ", ".join(f"{slope:.2f}" for slope in slopes))
     assert np.max(np.abs(slopes - 5)) <= 0.15
 
 
@@ -357,7 +358,7 @@ def test_index_2_keeps_the_constraints_everywhere(name: str) -> None:
     held = found.constraint_residuals()
     position, velocity = np.max(np.abs(held.position)), np.max(np.abs(held.velocity))
     truncation = np.max(np.abs(found.theta - exact.theta))
-    print(f"{name}: theta {truncation:.1e}, positions {position:.1e}, velocities {velocity:.1e}")
+    told(f"{name}: theta {truncation:.1e}, positions {position:.1e}, velocities {velocity:.1e}")
     size, aspect = max(scene.a, scene.b), max(scene.a / scene.b, scene.b / scene.a)
     grain = 64 * EPS * size * aspect
     rate = 1 + np.max(np.abs(found.psi_dot))
@@ -374,7 +375,7 @@ def test_a_step_that_is_not_solved_is_not_taken(name: str, step: float) -> None:
     constraints like all others: a step of the index-2 system ends on them or not at all."""
     times = np.arange(round(1 / step) + 1) * step
     found = ggl(SCENES[name], times, step=step, raise_on_failure=False)
-    print(f"{name}: {found.status.name} at {found.t_end} s, residuals {worst_residual(found):.1e}")
+    told(f"{name}: {found.status.name} at {found.t_end} s, residuals {worst_residual(found):.1e}")
     assert worst_residual(found) <= 1e-10
 
 

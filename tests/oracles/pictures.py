@@ -70,3 +70,16 @@ def points_of(collection: Collection | None) -> NDArray[np.float64]:
 def frames_of(image: Image) -> int:
     """Frames of a GIF; Pillow's annotation does not know of them."""
     return int(image.n_frames)  # type: ignore[attr-defined]
+
+
+def shows_something(figure: Figure) -> bool:
+    """Every axes has finite limits and an artist at a finite place, and none at infinity."""
+    for ax in figure.axes:
+        points = [np.asarray(line.get_xydata(), float) for line in ax.lines]
+        points += [np.asarray(body.get_extents().get_points()) for body in ax.patches]
+        places = np.concatenate(points)
+        if np.any(np.isinf(places)) or not np.any(np.all(np.isfinite(places), axis=1)):
+            return False
+        if not np.all(np.isfinite([*ax.get_xlim(), *ax.get_ylim()])):
+            return False
+    return len(figure.axes) > 0

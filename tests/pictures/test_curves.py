@@ -2,6 +2,7 @@
 
 import dataclasses
 import itertools
+import math
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -19,7 +20,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
-from oracles.pictures import figure_of
+from oracles.pictures import figure_of, shows_something
 from rolling_ellipse._pictures.labels import labels_of
 from rolling_ellipse._pictures.styles import styles_of
 
@@ -98,12 +99,23 @@ def test_a_picture_of_its_own(picture: Callable[..., Any], report: rl.Trajectory
     plt.close(ax.figure)
 
 
+def test_an_empty_picture_is_seen() -> None:
+    ax = new_axes()
+    for values, shown in (([0.0, 1.0], True), ([0.0, math.nan], True), ([0.0, math.inf], False)):
+        (line,) = ax.plot([0.0, 1.0], values)
+        assert shows_something(figure_of(ax)) == shown
+        line.remove()
+    ax.plot([0.0, 1.0], [math.nan, math.nan])
+    assert not shows_something(figure_of(ax))
+
+
 @pytest.mark.parametrize("span", [0.0, 1e-6, 1e4])
 def test_any_span_and_a_single_sample(picture: Callable[..., Any], span: float) -> None:
     trajectory = rl.simulate(rl.scenes.rolling, span)
     ax = new_axes()
     picture([trajectory, trajectory], ax=ax)
     figure_of(ax).draw_without_rendering()
+    assert shows_something(figure_of(ax))
 
 
 @pytest.mark.parametrize("scene", [rl.Scene(2.0, 1.0), rl.Scene(1.0, 1.0)])
@@ -111,6 +123,7 @@ def test_a_body_at_rest(picture: Callable[..., Any], scene: rl.Scene) -> None:
     ax = new_axes()
     picture(rl.simulate(scene, 1.0), ax=ax)
     figure_of(ax).draw_without_rendering()
+    assert shows_something(figure_of(ax))
 
 
 @pytest.fixture(params=["one", "several", "thin"])

@@ -18,7 +18,15 @@ from matplotlib.axes import Axes
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from oracles.pictures import ORDINARY_SCENES, centre_of, figure_of, outline, points_of, support
+from oracles.pictures import (
+    ORDINARY_SCENES,
+    centre_of,
+    figure_of,
+    outline,
+    points_of,
+    shows_something,
+    support,
+)
 from rolling_ellipse._pictures import ground as drawing
 
 SCENES = {
@@ -302,4 +310,6 @@ def test_overview_uses_the_figure_it_is_given_or_makes_one(report: rl.Trajectory
 @pytest.mark.parametrize("span", [0.0, 1e-6, 1e5])
 def test_overview_of_any_span(span: float) -> None:
     trajectory = rl.simulate(rl.scenes.rolling, span)
-    rl.plot(trajectory, figure=Figure(layout="constrained")).figure.draw_without_rendering()
+    figure = rl.plot(trajectory, figure=Figure(layout="constrained")).figure
+    figure.draw_without_rendering()
+    assert shows_something(figure)

@@ -12,7 +12,7 @@ matplotlib.use("Agg")
 
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
-from oracles.pictures import centre_of, frames_of, outline
+from oracles.pictures import centre_of, frames_of, outline, shows_something
 from PIL import Image
 from rolling_ellipse._pictures.animation import RollingAnimation
 
@@ -197,4 +197,5 @@ def test_wrong_input_is_refused_by_name() -> None:
 
 def test_the_user_s_layout_is_left_alone() -> None:
     with matplotlib.rc_context({"figure.constrained_layout.use": True}):
-        rl.animate(rl.simulate(rl.scenes.rocking, 0.1))  # any warning is an error
+        animation = rl.animate(rl.simulate(rl.scenes.rocking, 0.1))  # any warning is an error
+    assert shows_something(animation.figure)

@@ -17,7 +17,8 @@ from pathlib import Path
 
 import pytest
 import rolling_ellipse
-from oracles.paths import ROOT
+from oracles.paths import ROOT, TESTS
+from oracles.quick import QUICK
 
 SOURCES = sorted((ROOT / "src").rglob("*.[ch]pp"))
 GENERATED = {
@@ -145,6 +146,27 @@ def test_every_requirement_states_its_oldest_version() -> None:
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     for needed in settings["project"]["dependencies"]:
         assert needed.replace(">=", "==") in versions
+
+
+# --------------------------------------------------------------------------------- tests
+
+
+def test_no_test_imports_another() -> None:
+    """What two of them need is in tests/oracles."""
+    files = sorted(TESTS.glob("*/test_*.py"))
+    assert len(files) > 40 and len({path.name for path in files}) == len(files)
+    for path in files:
+        text = path.read_text(encoding="utf-8")
+        assert not re.search(r"^\s*(?:from|import) test_", text, re.MULTILINE), path.name
+
+
+def test_quick_tests_come_from_every_folder() -> None:
+    for name in QUICK:
+        file, _, test = name.partition("::")
+        text = (TESTS / file).read_text(encoding="utf-8")
+        assert f"def {test or 'test_'}" in text, name
+    folders = {path.parent.name for path in TESTS.glob("*/test_*.py")}
+    assert {name.partition("/")[0] for name in QUICK} == folders
 
 
 # --------------------------------------------------------------------------------- walls

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.geometry import Support, support
+from oracles.margins import told
 from oracles.numbers import EPS
 from oracles.report import BODY, SHAPE, Array
 from rolling_ellipse import report
@@ -45,7 +46,7 @@ class Exact:
 def numbers(where: str) -> report.Comparison:
     (erratum,) = (e for e in report.errata() if e.where == where)
     found = erratum.evaluate()
-    print(f"{erratum.where}: {erratum.quantity}: printed {found.printed:.6g}, "
+    told(f"{erratum.where}: {erratum.quantity}: printed {found.printed:.6g}, "
           f"right {found.right:.6g}, gap {found.gap:.6g}")  # fmt: skip
     assert found.gap == found.printed - found.right
     return found

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from numpy.typing import ArrayLike
+from oracles.margins import told
 from oracles.report import BODY, Q_DOT, SHAPE, Array, Q, off_by, start
 from rolling_ellipse import report
 from rolling_ellipse.report._runge_kutta import Steps, integrate
@@ -47,7 +48,7 @@ def test_wrong_equations_lift_it_off(printed: tuple[str, ...], gap: float, mass:
         run(q, q_dot, [0.25], printed=printed, mass=mass, rtol=rtol, atol=rtol)
         for rtol in (1e-8, 1e-11)
     )
-    print(printed, tight.gap)
+    told(printed, tight.gap)
     assert tight.gap[0] == pytest.approx(gap, abs=5e-4)  # three decimals are given
     assert abs(loose.gap[0] - tight.gap[0]) < 1e-6
     assert tight.start.violations == ()

@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion, arguments, carried, grain
 from oracles.geometry import support
+from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, flow, geometry, period, thresholds
 
@@ -86,7 +87,7 @@ def test_period_against_the_energy_integral(motion: Motion) -> None:
     scene = Scene(a, b, inertia=gyration2, gravity=gravity, theta=theta, omega=omega)
     exact, unit = exact_period(motion), period_unit(motion)
     off = float(abs(period(scene) - exact)) / unit
-    print(f"{off:.3g} units of {unit / float(exact):.2g}")
+    told(f"{off:.3g} units of {unit / float(exact):.2g}")
     assert off <= LARGEST_ERROR
 
 
@@ -152,7 +153,7 @@ def test_a_hair_beside_the_circle_nothing_is_lost(theta: float, omega: float) ->
         unit = reference.units(granted, exact)
         found = flow(t, a=a, b=b, theta=theta, omega=omega)
         off = [float(abs(f - e)) / u for f, e, u in zip(found, exact, unit, strict=True)]
-        print(f"t = {t:g}: {max(off):.3g} units")
+        told(f"t = {t:g}: {max(off):.3g} units")
         assert max(off) <= LARGEST_ERROR
 
 
@@ -328,7 +329,7 @@ def test_energy_is_constant(motion: Motion) -> None:
         spans.append(1e9 + np.linspace(0, swing, 1000))
     for times in spans:
         misses = energy_misses(motion, times)
-        print(f"{misses:.3g} ulp")
+        told(f"{misses:.3g} ulp")
         assert misses <= 16
 
 
@@ -504,5 +505,5 @@ def test_ctrl_c_stops_a_long_call(workers: int) -> None:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, usual)
     taken = time.perf_counter() - begin
-    print(f"stopped after {taken:.2f} s of {full:.1f} s")
+    told(f"stopped after {taken:.2f} s of {full:.1f} s")
     assert taken < 0.3 + full / 4

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from oracles import table
 from oracles.flow import LARGEST_ERROR
+from oracles.margins import told
 from rolling_ellipse import flow
 
 INPUTS = {"a": "a", "b": "b", "gyration2": "gyration2", "gravity": "gravity"}
@@ -111,7 +112,7 @@ def test_flow_is_within_a_few_units(
     rows: list[Row], call: Callable[[list[Row]], Iterator[Answer]], largest: float
 ) -> None:
     found = errors(rows, call)
-    print("\n" + report(rows, found))
+    told("\n" + report(rows, found))
     too_large = [i for i, one in enumerate(found) if not all(one <= largest)]  # catches nan
     worst = sorted(too_large, key=lambda i: -np.nan_to_num(found[i], nan=math.inf).max())[:5]
     assert not too_large, (
@@ -139,7 +140,7 @@ def test_a_few_ulp_of_an_input_are_seen(rows: list[Row], name: str) -> None:
         return row._replace(arguments={**row.arguments, name: value + ulps * math.ulp(value)})
 
     found = errors([changed(row) for row in rows if row.kind != "far_angle"], one_by_one)
-    print(f"{ulps} ulp of {name} are up to {np.nanmax(found):.3g} units")
+    told(f"{ulps} ulp of {name} are up to {np.nanmax(found):.3g} units")
     assert np.nanmax(found) > LARGEST_ERROR
 
 

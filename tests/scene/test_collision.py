@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from oracles.contact import Response, kinetic_energy, random_scenes, response
 from oracles.geometry import support
+from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Event, EventKind, Mode, Scene, simulate
 
@@ -170,7 +171,7 @@ def test_no_impact_gains_energy() -> None:
         for hit in hits(100_000, 5, bounces=300)
         if (before := kinetic_energy(hit.scene, hit.event.state_before)) > 0
     )
-    print(f"largest gain {worst:.2g}")
+    told(f"largest gain {worst:.2g}")
     assert worst <= 8 * EPS
 
 

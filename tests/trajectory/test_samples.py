@@ -14,6 +14,7 @@ import oracles.rolling
 import pytest
 import rolling_ellipse as rl
 from oracles.geometry import support
+from oracles.margins import told
 from oracles.numbers import DIGITS, EPS, PI
 from oracles.trajectory import MATRICES, SCENES, VECTORS
 from rolling_ellipse import Scene, Trajectory, simulate
@@ -297,8 +298,8 @@ def test_residuals_of_a_million_samples(scene: Scene, t_end: float) -> None:
         / np.where(rate > 0, allowed * rate, EPS),
         "energy": drift / (16 * EPS * start),
     }
-    print(", ".join(f"{name} {np.max(share):.2g}" for name, share in shares.items()))
-    print(
+    told(", ".join(f"{name} {np.max(share):.2g}" for name, share in shares.items()))
+    told(
         f"worst: position {np.max(np.abs(residuals.position)):.2g}, velocity "
         f"{np.max(np.abs(residuals.velocity)):.2g}, gap {np.max(np.abs(residuals.gap)):.2g}, slip "
         f"{np.max(np.abs(residuals.slip)):.2g}, energy {np.max(drift) / start / EPS:.2g} ulp"

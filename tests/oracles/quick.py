@@ -1,0 +1,32 @@
+"""What `pytest -m quick` runs: files, and single tests of slow files, from every folder.
+
+A minute that sees most mistakes; the whole suite is what counts.
+"""
+
+QUICK = (
+    "integrator/test_tableaus.py",
+    "geometry/test_constraints.py::test_kinematics_against_differentiation",
+    "geometry/test_ellipse.py::test_curvatures",
+    "geometry/test_ellipse.py::test_support_and_its_slope",
+    "scene/test_blow.py",
+    "scene/test_scene.py",
+    "rolling/test_flow_reference.py",
+    "proof/test_certificate.py::test_a_hairs_breadth_from_the_threshold",
+    "proof/test_certificate.py::test_beside_the_separatrix",
+    "multipliers/test_multipliers.py",
+    "contact/test_contact_reference.py",
+    "outcome/test_classify.py",
+    "trajectory/test_saving.py",
+    "trajectory/test_sol.py",
+    "trajectory/test_trajectory.py",
+    "border/test_check.py",
+    "export/test_atomic.py",
+    "impacts/test_laws_and_fit.py::test_series_that_cannot_be_fitted",
+    "impacts/test_laws_and_fit.py::test_stronge_and_poisson_create_no_energy",
+    "report/test_errata.py",
+    "pictures/test_labels.py",
+    "pictures/test_plot_forces.py",
+    "pictures/test_plot_phase.py",
+    "project/test_formulas.py",
+    "project/test_physics_numbers.py",
+)
