@@ -22,7 +22,7 @@ from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
 from oracles.pictures import figure_of, shows_something
 from rolling_ellipse._pictures.labels import labels_of
-from rolling_ellipse._pictures.styles import styles_of
+from rolling_ellipse._pictures.comparison import Comparison
 
 OVER_TIME = (rl.plot_forces, rl.plot_energy, rl.plot_constraints)
 
@@ -169,12 +169,12 @@ def tick_labels(ax: Axes) -> list[Text]:
 
 def test_motions_differ_in_lightness_and_dashes(report: rl.Trajectory) -> None:
     for count in range(2, 6):
-        styles = styles_of([report] * count, None)
+        styles = Comparison([report] * count).styles
         for one, other in itertools.combinations(styles, 2):
             # two greys 10 apart in L* of 100 are told apart at a glance
             assert abs(lightness(one.colour) - lightness(other.colour)) > 10
             assert one.dash != other.dash and one.marker != other.marker
-    shades = [lightness(style.colour) for style in styles_of([report] * 12, None)]
+    shades = [lightness(style.colour) for style in Comparison([report] * 12).styles]
     assert np.all(np.diff(shades) < -2)
 
 

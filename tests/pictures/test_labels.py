@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from rolling_ellipse._pictures.labels import SCENE_UNITS, labels_of, motions_of
+from rolling_ellipse._pictures.comparison import Comparison
+from rolling_ellipse._pictures.labels import SCENE_UNITS, labels_of
 
 ROLLING = rl.simulate(rl.scenes.rolling, 1.0)
 
@@ -99,8 +100,8 @@ def test_wrong_labels_are_refused_by_name(labels: Any, message: str) -> None:
 
 
 def test_one_or_several() -> None:
-    assert motions_of(ROLLING) == (ROLLING,)
-    assert motions_of([ROLLING, ROLLING]) == (ROLLING, ROLLING)
+    assert Comparison(ROLLING).motions == (ROLLING,)
+    assert Comparison([ROLLING, ROLLING]).motions == (ROLLING, ROLLING)
 
 
 @pytest.mark.parametrize(
@@ -123,7 +124,7 @@ def test_what_is_no_motion_is_refused_by_name(
     trajectories: Any, error: type[Exception], message: str
 ) -> None:
     with pytest.raises(error, match=message):
-        motions_of(trajectories)
+        Comparison(trajectories)
 
 
 def test_every_number_of_a_scene_has_a_unit() -> None:

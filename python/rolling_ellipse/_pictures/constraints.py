@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .axes import leaving_no_figure, panels_of
-from .labels import motions_of
+from .comparison import Comparison, Style
+from .legends import name_curves, some_of
 from .modes import mode_handles
 from .panels import (
     draw_dots,
@@ -15,11 +16,6 @@ from .panels import (
     position_errors,
     velocity_errors,
     worst,
-)
-from .styles import (
-    name_curves,
-    some_of,
-    styles_of,
 )
 
 if TYPE_CHECKING:
@@ -31,7 +27,6 @@ if TYPE_CHECKING:
 
     from .._check import FloatArray
     from .._trajectory import Trajectory
-    from .styles import Style
 
 
 @dataclass(frozen=True, repr=False)
@@ -80,23 +75,21 @@ def plot_constraints(
     TypeError
         If something is no trajectory.
     """
-    motions = motions_of(trajectories)
-    styles = styles_of(motions, labels)
+    shown = Comparison(trajectories, labels)
     panels = panels_of(ax)
-    alone = len(motions) == 1
     lines: list[list[Line2D]] = [[] for _ in panels]
-    for motion, look in zip(motions, [None] if alone else styles, strict=True):
-        shown = _errors_of(motion, len(panels), look)
-        for panel, drawn, errors in zip(panels, lines, shown, strict=True):
+    for motion, style in shown:
+        of_panels = _errors_of(motion, len(panels), style)
+        for panel, drawn, errors in zip(panels, lines, of_panels, strict=True):
             for rank, (name, values) in enumerate(errors.items()):
-                drawn.append(draw_dots(panel, motion, values, name, rank, look))
+                drawn.append(draw_dots(panel, motion, values, name, rank, style))
     names = ("positions", "velocities") if len(panels) == 2 else ("constraint error",)
     for panel, drawn, name in zip(panels, lines, names, strict=True):
         dress_errors(panel, drawn, name)
-        if alone or panel is panels[0]:
-            modes = mode_handles(motions) if panel is panels[0] else []
+        if shown.alone or panel is panels[0]:
+            modes = mode_handles(shown.motions) if panel is panels[0] else []
             name_curves(panel, [*some_of(drawn), *modes])
-    marks = dress_panels(panels, motions, None if alone else styles)
+    marks = dress_panels(panels, shown)
     return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
 
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from .._check import choice
 from .axes import axes_of, leaving_no_figure
-from .labels import motions_of
+from .comparison import Comparison
+from .legends import name_curves, some_of
 from .modes import mode_handles
 from .panels import (
     DASHES,
@@ -16,13 +17,6 @@ from .panels import (
     dress_errors,
     dress_over_time,
     energy_error,
-)
-from .styles import (
-    motion_handles,
-    name_curves,
-    quantity_handles,
-    some_of,
-    styles_of,
 )
 
 if TYPE_CHECKING:
@@ -89,31 +83,27 @@ def plot_energy(
     TypeError
         If something is no trajectory.
     """
-    motions = motions_of(trajectories)
-    styles = styles_of(motions, labels)
-    alone = len(motions) == 1
-    default = "energies" if alone else "error"
+    shown = Comparison(trajectories, labels)
+    default = "energies" if shown.alone else "error"
     kind = choice("kind", default if kind is None else kind, KINDS)
     ax = axes_of(ax, (7, 3.4))
-    looks = [None] if alone else styles
     energies: list[tuple[Line2D, Line2D, Line2D]] = []
     errors: list[Line2D] = []
-    for motion, look in zip(motions, looks, strict=True):
+    for motion, style in shown:
         if kind == "energies":
-            energies.append(draw_energies(ax, motion, look))
+            energies.append(draw_energies(ax, motion, style))
         else:
-            label = "energy error" if look is None else look.label
-            errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, look))
+            label = "energy error" if style is None else style.label
+            errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, style))
     if kind == "error":
-        changes = any(motion.events for motion in motions)  # friction and impacts are no errors
-        dress_errors(ax, errors, f"relative energy {'change' if changes else 'error'}")
-        name_curves(ax, [*some_of(errors), *mode_handles(motions)])
+        # what friction and impacts take is no error
+        word = "change" if any(motion.events for motion in shown.motions) else "error"
+        dress_errors(ax, errors, f"relative energy {word}")
+        handles: list[Artist] = [*some_of(errors)]
     else:
         quantities = list(zip(("total", "kinetic", "potential"), DASHES, strict=True))
-        handles: list[Artist] = ax.get_legend_handles_labels()[0]
-        if not alone:
-            handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
-        name_curves(ax, [*handles, *mode_handles(motions)])
-    marks = dress_over_time(ax, motions, None if alone else styles)
+        handles = shown.handles(ax, quantities)
+    name_curves(ax, [*handles, *mode_handles(shown.motions)])
+    marks = dress_over_time(ax, shown)
     total, kinetic, potential = zip(*energies, strict=True) if energies else ((), (), ())
     return Energy(ax, total, kinetic, potential, tuple(errors), marks)

@@ -9,16 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .axes import leaving_no_figure, panels_of
+from .comparison import Comparison, Style
 from .ground import GREY, INK
-from .labels import motions_of
+from .legends import name_curves, quantity_handles
 from .modes import mode_handles
 from .panels import DASHES, draw_forces, dress_forces, dress_panels
-from .styles import (
-    motion_handles,
-    name_curves,
-    quantity_handles,
-    styles_of,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,7 +24,6 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
     from .._trajectory import Trajectory
-    from .styles import Style
 
 _LIMIT = ":"
 _STEEP = 3.0  # |F|/N beyond which the scale does not follow: it is infinite where N vanishes
@@ -89,28 +83,21 @@ def plot_forces(
     TypeError
         If something is no trajectory.
     """
-    motions = motions_of(trajectories)
-    styles = styles_of(motions, labels)
+    shown = Comparison(trajectories, labels)
     panels = panels_of(ax)
-    alone = len(motions) == 1
-    looks = [None] if alone else styles
-    drawn = [
-        draw_forces(panels[0], motion, look) for motion, look in zip(motions, looks, strict=True)
-    ]
-    dress_forces(panels[0], motions)
+    drawn = [draw_forces(panels[0], motion, style) for motion, style in shown]
+    dress_forces(panels[0], shown.motions)
     needed: list[Line2D] = []
     available: list[Line2D | None] = []
     if len(panels) == 2:
-        for motion, look in zip(motions, looks, strict=True):
-            needed.append(_draw_needed(panels[1], motion, look))
-            available.append(_draw_available(panels[1], motion, look))
-        _dress_needed(panels[1], motions, any(available))
-    marks = dress_panels(panels, motions, None if alone else styles)
+        for motion, style in shown:
+            needed.append(_draw_needed(panels[1], motion, style))
+            available.append(_draw_available(panels[1], motion, style))
+        _dress_needed(panels[1], shown.motions, any(available))
+    marks = dress_panels(panels, shown)
     quantities = [("normal", DASHES[0]), ("friction", DASHES[1])]
-    handles: list[Artist] = panels[0].get_legend_handles_labels()[0]
-    if not alone:
-        handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
-    name_curves(panels[0], [*handles, *mode_handles(motions)])
+    handles = shown.handles(panels[0], quantities)
+    name_curves(panels[0], [*handles, *mode_handles(shown.motions)])
     normal, friction, limits = zip(*drawn, strict=True)
     return Forces(tuple(panels), normal, friction, limits, tuple(needed), tuple(available), marks)
 

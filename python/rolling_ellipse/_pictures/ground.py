@@ -20,8 +20,6 @@ from matplotlib.transforms import Affine2D
 from .._core import Mode
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from matplotlib.axes import Axes
 
     from .._check import FloatArray
@@ -148,12 +146,3 @@ class Ruler:
         for label, place in zip(self.labels, places[::5], strict=True):
             label.set_position((place, -2.2 * self._depth))
             label.set_text(f"{place:.10g} m".replace("-", "−"))
-
-
-def legend_above(ax: Axes, handles: Sequence[Any] | None = None, columns: int = 3) -> None:
-    """A legend above the axes on the right, where it covers nothing."""
-    given = {} if handles is None else {"handles": handles}
-    ax.legend(
-        loc="lower right", bbox_to_anchor=(1, 1), ncols=columns, frameon=False, fontsize="small",
-        borderaxespad=0.1, handlelength=1.8, columnspacing=1.2, markerscale=2, **given,
-    )  # fmt: skip

@@ -1,14 +1,16 @@
-"""One motion or several: the list that comparing pictures start from, and names for its members."""
+"""What tells the motions of one picture apart, in words."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .._check import shown
 from .._scene import Impulse, Scene
-from .._trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from .._trajectory import Trajectory
 
 SCENE_UNITS = {
     "a": "m", "b": "m", "mass": "kg", "gravity": "m/s²", "inertia": "kg m²", "slope": "rad",
@@ -16,42 +18,6 @@ SCENE_UNITS = {
     "x_dot": "m/s", "z_dot": "m/s",
 }  # fmt: skip
 MOST_FACTS = 3  # in one label; more would be longer than a small picture is wide
-
-
-def motions_of(trajectories: Trajectory | Sequence[Trajectory]) -> tuple[Trajectory, ...]:
-    """Return one trajectory or several as a tuple.
-
-    Raises
-    ------
-    TypeError
-        If something is no Trajectory.
-    ValueError
-        If there is none, or one has no samples.
-    """
-    if isinstance(trajectories, Trajectory):
-        motions: tuple[Trajectory, ...] = (trajectories,)
-    else:
-        wanted = "trajectories must be a Trajectory or a sequence of them"
-        if not isinstance(trajectories, Sequence):
-            raise TypeError(f"{wanted}, got {shown(trajectories)}")
-        motions = tuple(trajectories)
-        for motion in motions:
-            if not isinstance(motion, Trajectory):
-                raise TypeError(f"{wanted}, got {shown(motion)} among them")
-        if not motions:
-            raise ValueError(f"{wanted}, got none")
-    for motion in motions:
-        if motion.t.size == 0:
-            raise ValueError(f"every trajectory must have samples, got {motion!r}")
-    return motions
-
-
-def require_motion(trajectory: object) -> None:
-    """Raise TypeError for what is no Trajectory, ValueError for one without samples."""
-    if not isinstance(trajectory, Trajectory):
-        raise TypeError(f"trajectory must be a Trajectory, got {shown(trajectory)}")
-    if trajectory.t.size == 0:
-        raise ValueError("trajectory must have samples, got none")
 
 
 def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) -> list[str]:

@@ -1,6 +1,7 @@
-"""What a body does, under its curves over time: modes as greys, events as dotted lines with names.
+"""What a body does, under its curves: modes as greys, events as dotted lines with names.
 
-Greys differ in hatches too, so that they are told apart in print.
+Greys differ in hatches too, so that they are told apart in print. Where the model of a motion is
+not valid, its curves have grey ground.
 """
 
 from __future__ import annotations
@@ -11,14 +12,16 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
 
 from .._core import EventKind, Mode
-from .ground import INK
+from .ground import GREY, INK
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
+    from .._check import FloatArray
     from .._events import Event
     from .._trajectory import Trajectory
 
@@ -128,6 +131,29 @@ def name_events(ax: Axes, motion: Trajectory) -> list[Artist]:
         )
         for name, event, shift in zip(names, events, shifts, strict=True)
     ]  # fmt: skip
+
+
+def shade_invalid(
+    ax: Axes, motion: Trajectory, colour: str | None = None, share: float = 1.0
+) -> list[Artist]:
+    """Shade the time from which on the model is not valid.
+
+    Several grounds add up: the darker, the more of the motions it is. Each motion then has its
+    `share`, and a line of its colour where the model ends.
+    """
+    start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
+    if not start < end:
+        return []
+    ground: list[Artist] = [ax.axvspan(start, end, color=GREY, alpha=0.15 * share, lw=0, zorder=0)]
+    return ground if colour is None else [*ground, ax.axvline(start, color=colour, lw=1.2)]
+
+
+def draw_invalid_ground(ax: Axes, x: FloatArray, y: FloatArray, **options: Any) -> Line2D:
+    """Draw grey ground along a curve, where a model is not valid; NaN where it is."""
+    (ground,) = ax.plot(
+        x, y, color="0.87", lw=8, solid_capstyle="round", zorder=1.7, label="_invalid", **options
+    )
+    return ground
 
 
 def _shifts(places: list[float], width: float, room: float) -> list[float]:

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .axes import figure_of, leaving_no_figure
+from .comparison import Comparison
 from .ground import INK
+from .legends import name_curves
 from .modes import mode_handles
 from .panels import (
     draw_dots,
@@ -24,7 +26,6 @@ from .panels import (
     worst,
 )
 from .strobe import Strobe, check_strobe, plot_strobe
-from .styles import name_curves
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -133,15 +134,16 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
 
 def _dress_panels(panels: Sequence[Axes], trajectory: Trajectory) -> tuple[Artist, ...]:
     """Give two columns of three panels one time axis, and legends where there are several lines."""
+    shown = Comparison(trajectory)
     marks: list[Artist] = []
     for panel in panels:
-        marks += dress_over_time(panel, [trajectory], named=False)
+        marks += dress_over_time(panel, shown, named=False)
         if panel is not panels[0]:
             panel.sharex(panels[0])
         if panel not in (panels[2], panels[5]):
             panel.set_xlabel("")
             panel.tick_params(labelbottom=False)
-    modes = mode_handles([trajectory])
+    modes = mode_handles(shown.motions)
     name_curves(panels[3], [*panels[3].get_legend_handles_labels()[0], *modes])
     for panel in panels[4:]:
         name_curves(panel)

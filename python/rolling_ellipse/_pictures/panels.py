@@ -14,7 +14,7 @@ from matplotlib.ticker import SymmetricalLogLocator
 
 from .._core import Mode
 from .ground import BLUE, GREY, INK, ORANGE, PLUM
-from .modes import mark_events, name_events, shade_modes
+from .modes import mark_events, name_events, shade_invalid, shade_modes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from .._check import FloatArray
     from .._trajectory import Trajectory
-    from .styles import Style
+    from .comparison import Comparison, Style
 
 DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
 _COLOURS = (INK, ORANGE, BLUE)
@@ -168,13 +168,7 @@ def dress_errors(ax: Axes, lines: Sequence[Line2D], label: str) -> None:
     ax.set_ylabel(label)
 
 
-def dress_over_time(
-    ax: Axes,
-    motions: Sequence[Trajectory],
-    styles: Sequence[Style] | None = None,
-    *,
-    named: bool = True,
-) -> tuple[Artist, ...]:
+def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple[Artist, ...]:
     """Label the time axis; shade modes, mark events and where a model is not valid.
 
     Events of a single motion have names where there is room, unless they are not to be `named`.
@@ -185,28 +179,25 @@ def dress_over_time(
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
     marks: list[Artist] = []
-    for row, motion in enumerate(motions):
-        colour = GREY if styles is None else styles[row].colour
-        marks += shade_modes(ax, motion, None if styles is None else row, colour)
-        marks += mark_events(ax, motion, colour)
-        start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
-        if start < end:  # several grounds add up: the darker, the more of the motions it is
-            alpha = 0.15 / len(motions)
-            marks.append(ax.axvspan(start, end, color=GREY, alpha=alpha, lw=0, zorder=0))
-            if styles is not None:
-                marks.append(ax.axvline(start, color=colour, lw=1.2))
-    if styles is None and named:
-        marks += name_events(ax, motions[0])
+    for row, (motion, style) in enumerate(shown):
+        if style is None:
+            marks += shade_modes(ax, motion)
+            marks += mark_events(ax, motion, GREY)
+            marks += shade_invalid(ax, motion)
+        else:
+            marks += shade_modes(ax, motion, row, style.colour)
+            marks += mark_events(ax, motion, style.colour)
+            marks += shade_invalid(ax, motion, style.colour, 1 / len(shown.motions))
+    if shown.alone and named:
+        marks += name_events(ax, shown.motions[0])
     return tuple(marks)
 
 
-def dress_panels(
-    panels: Sequence[Axes], motions: Sequence[Trajectory], styles: Sequence[Style] | None
-) -> tuple[Artist, ...]:
+def dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
     """Dress one panel, or two of which the upper one leaves a shared time axis to the lower."""
     marks: list[Artist] = []
     for panel in panels:
-        marks += dress_over_time(panel, motions, styles, named=panel is panels[0])
+        marks += dress_over_time(panel, shown, named=panel is panels[0])
     if len(panels) == 2 and panels[0].get_shared_x_axes().joined(*panels):
         panels[0].set_xlabel("")
         panels[0].figure.align_ylabels(panels)

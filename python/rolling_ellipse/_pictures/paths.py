@@ -11,28 +11,20 @@ from matplotlib.lines import Line2D
 from .._core import EventKind
 from . import ground as drawing
 from .axes import axes_of, leaving_no_figure
+from .comparison import Comparison, Style
 from .ground import BLUE, INK, ORANGE
-from .labels import motions_of
-from .modes import EVENT_NAMES, events_shown
+from .legends import name_curves
+from .modes import EVENT_NAMES, draw_invalid_ground, events_shown
 from .panels import sparse_markers
 from .strobe import dress_ground_axes, figure_size, turned_until
-from .styles import (
-    draw_invalid_ground,
-    motion_handles,
-    name_curves,
-    quantity_handles,
-    styles_of,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.patches import Polygon
 
     from .._trajectory import Trajectory
-    from .styles import Style
 
 _CENTRE, _TIP = "-", "--"
 _EVENTS = {
@@ -100,8 +92,8 @@ def plot_paths(
     TypeError
         If something is no trajectory.
     """
-    motions = motions_of(trajectories)
-    styles = styles_of(motions, labels)
+    shown = Comparison(trajectories, labels)
+    motions = shown.motions
     slopes = sorted({motion.scene.slope for motion in motions})
     if len(slopes) > 1:
         raise ValueError(f"trajectories must be on one slope, got {slopes!r}")
@@ -111,17 +103,14 @@ def plot_paths(
     places = np.concatenate([motion.x for motion in motions])
     ground = drawing.fill_earth(ax, motions[0].scene, places.min(), places.max())
     drawn = [
-        _draw_paths(ax, motion, None if len(motions) == 1 else style, rank / len(motions))
-        for rank, (motion, style) in enumerate(zip(motions, styles, strict=True))
+        _draw_paths(ax, motion, style, rank / len(motions))
+        for rank, (motion, style) in enumerate(shown)
     ]
     dress_ground_axes(ax, motions[0].scene, view)
     _title(ax, end, max(float(motion.t[-1]) for motion in motions))
     quantities = [("centre", _CENTRE), ("end of axis a", _TIP)]
-    handles: list[Artist] = ax.get_legend_handles_labels()[0]
-    if len(motions) > 1:
-        handles = [*motion_handles(styles, solid=True), *quantity_handles(quantities)]
-    colours = [INK] if len(motions) == 1 else [style.colour for style in styles]
-    events = [_draw_events(ax, m, colour) for m, colour in zip(motions, colours, strict=True)]
+    handles = shown.handles(ax, quantities)
+    events = [_draw_events(ax, m, INK if style is None else style.colour) for m, style in shown]
     name_curves(ax, [*handles, *_event_handles(motions)])
     centres, tips, contacts = zip(*drawn, strict=True)
     marks = tuple(_draw_invalid(ax, m) for m in motions if m.valid_until < m.t[-1])

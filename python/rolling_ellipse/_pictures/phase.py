@@ -11,15 +11,11 @@ from matplotlib.ticker import MaxNLocator
 
 from .._check import flag
 from .axes import axes_of, leaving_no_figure
+from .comparison import Comparison
 from .ground import GREY
-from .labels import motions_of
+from .legends import name_curves
+from .modes import draw_invalid_ground
 from .separatrix import QUARTER, flat_angle, flat_angles, separatrix, separatrix_speed
-from .styles import (
-    draw_invalid_ground,
-    motion_handles,
-    name_curves,
-    styles_of,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +26,6 @@ if TYPE_CHECKING:
     from .._check import FloatArray
     from .._scene import Scene
     from .._trajectory import Trajectory
-    from .styles import Style
 
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
 _SMALL = 0.1  # of the separatrix's speed: a slower motion would be a dot in a whole eye
@@ -90,8 +85,8 @@ def plot_phase(
     TypeError
         If something is no trajectory.
     """
-    motions = motions_of(trajectories)
-    styles = styles_of(motions, labels)
+    shown = Comparison(trajectories, labels)
+    motions = shown.motions
     if fold is None:
         fold = any(np.ptp(motion.theta) > _FEW_TURNS * 2 * math.pi for motion in motions)
     fold = flag("fold", fold)
@@ -100,19 +95,19 @@ def plot_phase(
     lines: list[Line2D] = []
     starts: list[Line2D] = []
     marks: list[Line2D] = []
-    for motion, style in zip(motions, styles, strict=True):
+    for motion, style in zip(motions, shown.styles, strict=True):
         theta, omega = _path(motion.theta, motion.omega, flat, fold)
         lines += ax.plot(theta, omega, color=style.colour, ls=style.dash, label=style.label)
         starts += ax.plot(theta[:1], omega[:1], color=style.colour, ls="none", marker="o", ms=5)
         if motion.valid_until < motion.t[-1]:
             late = np.where(motion.t >= motion.valid_until, motion.omega, np.nan)
             marks.append(draw_invalid_ground(ax, *_path(motion.theta, late, flat, fold)))
-    bodies = _bodies(motions, styles)
+    bodies = _bodies(shown)
     if bodies:
         _choose_view(ax, motions, bodies[0][0], fold)
     separatrices, equilibria = _draw_portrait(ax, bodies)
     _dress_phase(ax)
-    handles = [] if len(motions) == 1 else motion_handles(styles, solid=False)
+    handles = [] if shown.alone else shown.motion_handles(solid=False)
     name_curves(ax, [*handles, *(line for line in separatrices[:1] if _is_in_view(ax, line))])
     return Phase(ax, tuple(lines), tuple(starts), separatrices, equilibria, tuple(marks))
 
@@ -143,10 +138,10 @@ def _path(
     )
 
 
-def _bodies(motions: Sequence[Trajectory], styles: Sequence[Style]) -> list[tuple[Scene, str]]:
+def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
     """The different bodies that have a separatrix, and the colour of each."""
     bodies: dict[tuple[float, ...], tuple[Scene, str]] = {}
-    for motion, style in zip(motions, styles, strict=True):
+    for motion, style in zip(shown.motions, shown.styles, strict=True):
         scene = motion.scene
         if scene.slope == 0 and scene.a != scene.b:
             key = (scene.a, scene.b, scene.gravity, scene.gyration2)

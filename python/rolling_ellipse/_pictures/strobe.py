@@ -11,9 +11,9 @@ from matplotlib.ticker import MaxNLocator
 from .._check import number, whole_within
 from . import ground as drawing
 from .axes import axes_of, leaving_no_figure
+from .comparison import require_motion
 from .ground import FILL, INK, ORANGE, PLUM, SHOWN_TURNS, SKID, TIMES
-from .labels import require_motion
-from .styles import name_curves
+from .legends import name_curves
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

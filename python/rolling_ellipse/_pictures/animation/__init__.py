@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 
 from ..._check import choice, file_name, flag, number, positive, shown, whole, whole_within
 from ..._export.atomic import replacing
+from ..comparison import Comparison
 from ..ground import INK
-from ..labels import labels_of, motions_of
 from .camera import cameras
 from .movies import gif_delay, movie_writer, progress_bar, told
 from .strip import Strip
@@ -112,8 +112,8 @@ def animate(
     if figure is not None and not isinstance(figure, Figure):
         raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
     progress = flag("progress", progress)
-    motions = motions_of(trajectories)
-    names = labels_of(motions, labels)
+    compared = Comparison(trajectories, labels)
+    motions, names = compared.motions, [style.label for style in compared.styles]
     latest = max(float(motion.t[-1]) for motion in motions)
     last = latest if t_end is None else number("t_end", t_end)
     if not 0 <= last <= latest:

@@ -14,7 +14,7 @@ from ..._core import Outcome
 from ..._outcome import classify
 from ..axes import axes_of, leaving_no_figure, require_axes
 from ..ground import BLUE, GREY, INK, ORANGE, PLUM, SKY
-from ..styles import name_curves
+from ..legends import name_curves
 from .marks import draw_marks, marks_of
 from .plane import plane_of
 

@@ -1,0 +1,129 @@
+"""The motions of one picture, and how they are told apart.
+
+Several motions differ in colour (hue and lightness), and in dashes where one quantity is drawn or
+in markers where dashes tell the quantities apart: the pictures read in grey.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.colors import to_hex
+from matplotlib.lines import Line2D
+
+from .._check import shown
+from .._trajectory import Trajectory
+from .ground import BLUE, INK, ORANGE, PLUM, SKY, TIMES
+from .labels import labels_of
+from .legends import quantity_handles, some_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_COLOURS = (INK, ORANGE, BLUE, SKY, PLUM)
+_DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5)), (0, (9, 3)))
+_MARKERS = (".", "x", "+", "1", "2")
+
+
+@dataclass(frozen=True)
+class Style:
+    """How one motion of several looks."""
+
+    label: str
+    colour: str
+    dash: Any
+    marker: str
+
+
+class Comparison:
+    """One motion or several of one picture, in the order given.
+
+    Iteration gives each motion with its style. A motion that is alone has None instead: then
+    colours are free to tell its quantities apart.
+
+    Attributes
+    ----------
+    motions : tuple of Trajectory
+        At least one, each with samples.
+    styles : tuple of Style
+        The look and the name of each motion among the others.
+    alone : bool
+        Whether there is a single motion.
+
+    Raises
+    ------
+    TypeError
+        If something is no Trajectory.
+    ValueError
+        If there is none, one has no samples, or there are not as many labels as trajectories.
+    """
+
+    def __init__(
+        self,
+        trajectories: Trajectory | Sequence[Trajectory],
+        labels: Sequence[str] | None = None,
+    ) -> None:
+        self.motions = _motions(trajectories)
+        self.styles = _styles(labels_of(self.motions, labels))
+        self.alone = len(self.motions) == 1
+
+    def __iter__(self) -> Iterator[tuple[Trajectory, Style | None]]:
+        styles = [None] if self.alone else self.styles
+        return zip(self.motions, styles, strict=True)
+
+    def handles(self, ax: Axes, quantities: Sequence[tuple[str, str]]) -> list[Any]:
+        """Entries of a legend: the curves of one motion, else motions and (name, dash) of each."""
+        if self.alone:
+            return list(ax.get_legend_handles_labels()[0])
+        return [*self.motion_handles(solid=True), *quantity_handles(quantities)]
+
+    def motion_handles(self, *, solid: bool) -> list[Line2D]:
+        """Entries of a legend for the motions: their dashes, or `solid` lines with markers."""
+        return [
+            Line2D(
+                [], [], color=style.colour, label=style.label, ms=3, mew=0.8,
+                ls="-" if solid else style.dash, marker=style.marker if solid else "",
+            )
+            for style in some_of(self.styles)
+        ]  # fmt: skip
+
+
+def require_motion(trajectory: object) -> None:
+    """Raise TypeError for what is no Trajectory, ValueError for one without samples."""
+    if not isinstance(trajectory, Trajectory):
+        raise TypeError(f"trajectory must be a Trajectory, got {shown(trajectory)}")
+    if trajectory.t.size == 0:
+        raise ValueError("trajectory must have samples, got none")
+
+
+def _motions(trajectories: Trajectory | Sequence[Trajectory]) -> tuple[Trajectory, ...]:
+    if isinstance(trajectories, Trajectory):
+        motions: tuple[Trajectory, ...] = (trajectories,)
+    else:
+        wanted = "trajectories must be a Trajectory or a sequence of them"
+        if not isinstance(trajectories, Sequence):
+            raise TypeError(f"{wanted}, got {shown(trajectories)}")
+        motions = tuple(trajectories)
+        for motion in motions:
+            if not isinstance(motion, Trajectory):
+                raise TypeError(f"{wanted}, got {shown(motion)} among them")
+        if not motions:
+            raise ValueError(f"{wanted}, got none")
+    for motion in motions:
+        if motion.t.size == 0:
+            raise ValueError(f"every trajectory must have samples, got {motion!r}")
+    return motions
+
+
+def _styles(labels: Sequence[str]) -> tuple[Style, ...]:
+    count = len(labels)
+    colours = _COLOURS[:count]
+    if count > len(_COLOURS):  # from light to dark
+        colours = tuple(to_hex(TIMES(share)) for share in np.linspace(0, 1, count))
+    return tuple(
+        Style(label, colours[i], _DASHES[i % len(_DASHES)], _MARKERS[i % len(_MARKERS)])
+        for i, label in enumerate(labels)
+    )

@@ -1,0 +1,52 @@
+"""Legends above the axes, in as few rows as there is room for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+from matplotlib.font_manager import FontProperties
+from matplotlib.lines import Line2D
+
+from .ground import GREY
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_Entry = TypeVar("_Entry")
+
+_NAMED = 8  # more names than this would fill the picture
+
+
+def some_of(entries: Sequence[_Entry]) -> list[_Entry]:
+    """Return what a legend has room for: all, or evenly spread ones with the first and the last."""
+    places = np.linspace(0, len(entries) - 1, min(len(entries), _NAMED)).round()
+    return [entries[int(i)] for i in places]
+
+
+def quantity_handles(quantities: Sequence[tuple[str, str]]) -> list[Line2D]:
+    """Entries of a legend for (name, dash) of what is drawn of every motion."""
+    return [Line2D([], [], color=GREY, ls=dash, label=name) for name, dash in quantities]
+
+
+def name_curves(ax: Axes, handles: Sequence[Any] | None = None) -> None:
+    """Give the axes a legend above them on the right, where it covers nothing."""
+    entries = ax.get_legend_handles_labels()[0] if handles is None else list(handles)
+    if entries:
+        ax.legend(
+            handles=entries, ncols=_columns(ax, entries), loc="lower right", bbox_to_anchor=(1, 1),
+            frameon=False, fontsize="small", borderaxespad=0.1, handlelength=1.8,
+            columnspacing=1.2, markerscale=2,
+        )  # fmt: skip
+
+
+def _columns(ax: Axes, entries: Sequence[Any]) -> int:
+    """Return in how many columns the entries are as wide as the axes at most."""
+    points = FontProperties(size="small").get_size_in_points()
+    room = ax.get_window_extent().width * 72 / ax.figure.dpi
+    widths = [points * (3.6 + 0.56 * len(str(entry.get_label()))) for entry in entries]
+    columns = len(entries)
+    while columns > 1 and sum(map(max, np.array_split(widths, columns))) > room:
+        columns -= 1
+    return columns
