@@ -7,16 +7,10 @@ from typing import TYPE_CHECKING
 
 from .axes import leaving_no_figure, panels_of
 from .comparison import Comparison, Style
+from .errors import constraint_errors, worst
 from .legends import name_curves, some_of
 from .modes import mode_handles
-from .panels import (
-    draw_dots,
-    dress_errors,
-    dress_panels,
-    position_errors,
-    velocity_errors,
-    worst,
-)
+from .panels import draw_dots, dress_errors, dress_panels
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-    from .._check import FloatArray
     from .._trajectory import Trajectory
+    from .errors import Errors
 
 
 @dataclass(frozen=True, repr=False)
@@ -93,13 +87,13 @@ def plot_constraints(
     return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
 
 
-def _errors_of(motion: Trajectory, panels: int, style: Style | None) -> list[dict[str, FloatArray]]:
+def _errors_of(motion: Trajectory, panels: int, style: Style | None) -> list[Errors]:
     """For each panel the errors to draw by name: all of one motion, the worst of one of several."""
-    position, velocity = position_errors(motion), velocity_errors(motion)
+    positions, velocities = constraint_errors(motion)
     if style is None and panels == 2:
-        return [position, velocity]
+        return [positions, velocities]
     if style is None:
-        return [{"positions": worst(position), "velocities": worst(velocity)}]
+        return [{"positions": worst(positions), "velocities": worst(velocities)}]
     if panels == 2:
-        return [{style.label: worst(position)}, {style.label: worst(velocity)}]
-    return [{style.label: worst(position | velocity)}]
+        return [{style.label: worst(positions)}, {style.label: worst(velocities)}]
+    return [{style.label: worst({**positions, **velocities})}]

@@ -8,16 +8,10 @@ from typing import TYPE_CHECKING
 from .._check import choice
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
+from .errors import energy_error
 from .legends import name_curves, some_of
 from .modes import mode_handles
-from .panels import (
-    DASHES,
-    draw_dots,
-    draw_energies,
-    dress_errors,
-    dress_over_time,
-    energy_error,
-)
+from .panels import DASHES, draw_dots, draw_energies, dress_errors, dress_over_time
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

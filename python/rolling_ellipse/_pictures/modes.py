@@ -25,15 +25,7 @@ if TYPE_CHECKING:
     from .._events import Event
     from .._trajectory import Trajectory
 
-EVENT_NAMES = {
-    EventKind.SLIP: "slip",
-    EventKind.STICK: "stick",
-    EventKind.REVERSE: "reverse",
-    EventKind.LIFT_OFF: "lift-off",
-    EventKind.IMPACT: "impact",
-    EventKind.REST: "rest",
-    EventKind.JAM: "jam",
-}
+EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
 _SHADES: dict[Mode, dict[str, Any]] = {
     Mode.SLIDING: {"facecolor": "0.95", "edgecolor": "0.72", "hatch": "////"},
     Mode.FLIGHT: {"facecolor": "0.9", "edgecolor": "0.9"},

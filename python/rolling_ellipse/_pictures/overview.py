@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from .axes import figure_of, leaving_no_figure
 from .comparison import Comparison
+from .errors import constraint_errors, energy_error, worst
 from .ground import INK
 from .legends import name_curves
 from .modes import mode_handles
@@ -20,10 +21,6 @@ from .panels import (
     dress_errors,
     dress_forces,
     dress_over_time,
-    energy_error,
-    position_errors,
-    velocity_errors,
-    worst,
 )
 from .strobe import Strobe, check_strobe, plot_strobe
 
@@ -119,9 +116,10 @@ def _draw_state(ax: Axes, t: FloatArray, values: FloatArray, label: str) -> Line
 
 
 def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line2D]:
+    positions, velocities = constraint_errors(trajectory)
     errors = {
-        "positions": worst(position_errors(trajectory)),
-        "velocities": worst(velocity_errors(trajectory)),
+        "positions": worst(positions),
+        "velocities": worst(velocities),
         "energy change" if trajectory.events else "energy": energy_error(trajectory),
     }
     position, velocity, energy = (

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import SymmetricalLogLocator
 
-from .._core import Mode
 from .ground import BLUE, GREY, INK, ORANGE, PLUM
 from .modes import mark_events, name_events, shade_invalid, shade_modes
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
@@ -109,55 +108,6 @@ def draw_energies(
         draw_curve(ax, motion, motion.kinetic_energy, "kinetic", 1, style),
         draw_curve(ax, motion, motion.potential_energy, "potential", 2, style),
     )
-
-
-def energy_error(motion: Trajectory) -> FloatArray:
-    """|E - E(first sample)| over the largest |kinetic| + |potential| energy of the motion."""
-    scale = np.max(np.abs(motion.kinetic_energy) + np.abs(motion.potential_energy))
-    error: FloatArray = np.abs(motion.energy - motion.energy[0]) / scale
-    return error
-
-
-def position_errors(motion: Trajectory) -> dict[str, FloatArray]:
-    """|f2|, |f3| and the gap in units of the longer semi-axis, |f4| in radians; each (n,).
-
-    In flight there is no ground to miss: f2 and the gap are NaN.
-    """
-    found, length = motion.constraint_residuals(), _length(motion)
-    f2, f3, f4 = np.abs(found.position).T
-    free = np.where(motion.mode == Mode.FLIGHT, np.nan, 1 / length)
-    return {"f2": f2 * free, "f3": f3 / length, "f4": f4, "gap": np.abs(found.gap) * free}
-
-
-def velocity_errors(motion: Trajectory) -> dict[str, FloatArray]:
-    """|f1|, the slip and the rates of f2, f3, f4, as `position_errors` over 1/max|omega|; (n,).
-
-    A motion without rotation is measured by its free-fall speed, sqrt(gravity length). In flight
-    the ground asks nothing of f1, f2 and the slip, nor of f1 and the slip while sliding: NaN.
-    """
-    found, length = motion.constraint_residuals(), _length(motion)
-    rate = float(np.max(np.abs(motion.omega))) or math.sqrt(motion.scene.gravity / length)
-    f1, f2, f3, f4 = np.abs(found.velocity).T / rate
-    free = np.where(motion.mode == Mode.FLIGHT, np.nan, 1 / length)
-    loose = np.where(motion.mode == Mode.SLIDING, np.nan, free)
-    slip = np.abs(found.slip) / rate * loose
-    return {
-        "f1": f1 * loose,
-        "df2/dt": f2 * free,
-        "df3/dt": f3 / length,
-        "df4/dt": f4,
-        "slip": slip,
-    }
-
-
-def worst(errors: Mapping[str, FloatArray]) -> FloatArray:
-    """The largest of several errors at each time, (n,), of those that are errors there."""
-    largest: FloatArray = np.fmax.reduce(list(errors.values()))
-    return largest
-
-
-def _length(motion: Trajectory) -> float:
-    return max(motion.scene.a, motion.scene.b)
 
 
 def dress_errors(ax: Axes, lines: Sequence[Line2D], label: str) -> None:

@@ -13,10 +13,7 @@ from .._settings import Settings
 from .._simulate import report_status, sample_times
 from .._trajectory import Trajectory
 from ._motion import PrintedMotion, follow
-from ._rows import (
-    CODE,
-    misprints,
-)
+from ._rows import CODE, misprints
 from ._runge_kutta import Steps, smallest_step
 from ._start import InconsistentStartWarning, Start, project, violations
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +9,7 @@ import numpy as np
 
 from ..._outcome import thresholds
 from ..ground import INK, PLUM
+from .discs import LAST_WITHIN, TIP_ASPECT, last_aspect_to_roll_over
 from .names import Names, visible_part
 
 if TYPE_CHECKING:
@@ -24,14 +23,6 @@ if TYPE_CHECKING:
     from ..._outcome import Thresholds
     from .plane import Plane
 
-TIP_ASPECT = math.sqrt(3)
-"""Up to this a/b of a uniform disc the N of rolling vanishes at the tip first.
-
-Exactly: at the speed at which N(h) of physics (33) vanishes at the tip, its slope there, with
-k^2 = (a^2 + b^2)/4, has the sign of a^2 - 3 b^2: beyond, N is least before the tip.
-"""
-
-_LAST_WITHIN = 9.0, 10.0  # where `last_aspect_to_roll_over` looks
 _POINTS = 49  # of a curve: each is one call of `thresholds`, some milliseconds
 _LIFT_OFF = {"color": PLUM, "ls": (0, (6, 1.5, 1.5, 1.5)), "lw": 1.2}
 _LOOK: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
@@ -65,31 +56,11 @@ def marks_of(plane: Plane) -> Iterator[Mark]:
         if low < TIP_ASPECT < high:
             names = ("beyond √3 N fails midway", "√3")
             yield _straight(plane, "tip", "aspect", TIP_ASPECT, names)
-        if low < _LAST_WITHIN[1] and _LAST_WITHIN[0] < high:
+        if low < LAST_WITHIN[1] and LAST_WITHIN[0] < high:
             last = last_aspect_to_roll_over()
             if low < last < high:
                 names = (f"beyond {last:.4g} none rolls over", f"{last:.3g}")
                 yield _straight(plane, "last to roll over", "aspect", last, names)
-
-
-@functools.cache
-def last_aspect_to_roll_over() -> float:
-    """The a/b of a uniform disc above which rolling ends before the tip, whatever the friction.
-
-    Where the speed that N > 0 allows is the one that rolling over takes, both from `thresholds`:
-    by secants. Neither length nor gravity matters.
-    """
-
-    def spare(aspect: float) -> float:
-        found = thresholds(aspect, 1.0, friction=0.0)
-        return found.contact_loss_speed / found.roll_over_speed - 1
-
-    before, here = _LAST_WITHIN
-    then, now = spare(before), spare(here)
-    while abs(here - before) > 1e-9 and now != then:  # the next step is of rounding
-        before, here = here, here - now * (here - before) / (now - then)
-        then, now = now, spare(here)
-    return here
 
 
 def _level_marks(plane: Plane) -> Iterator[Mark]:

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ..._check import FloatArray, choice, number, positive, uniform_disc
+from ..._check import FloatArray, choice, number, positive
+from .discs import roll_over_speed
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")
 _LEVELS = {"energy", "speed"}  # of which one follows from the other
@@ -50,18 +51,13 @@ class Plane:
         places[[0, -1]] = self.range_of(name)
         return places
 
-    def roll_over_speed(self, aspect: Any) -> Any:
-        """What rolling over takes, at the flat position [rad/s], physics (44)."""
-        aspect = np.asarray(aspect)
-        inertia = uniform_disc(aspect, 1.0) + 1.0
-        return np.sqrt(2 * self.gravity / self.b * (aspect - 1) / inertia)
-
     def scenes(self, x: FloatArray, y: FloatArray) -> dict[str, Any]:
         """Arguments of `classify` at points of the plane."""
         values: dict[str, Any] = {**self.fixed, self.axes[0]: x, self.axes[1]: y}
         speed = values.get("speed")
         if speed is None:
-            speed = np.sqrt(values["energy"]) * self.roll_over_speed(values["aspect"])
+            over = roll_over_speed(values["aspect"], self.b, self.gravity)
+            speed = np.sqrt(values["energy"]) * over
         return {
             "a": values["aspect"] * self.b, "b": self.b, "omega": speed,
             "friction": values["friction"], "gravity": self.gravity,
