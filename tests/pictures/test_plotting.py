@@ -28,6 +28,7 @@ from oracles.pictures import (
     support,
 )
 from rolling_ellipse._pictures import ground as drawing
+from rolling_ellipse._pictures.palette import TIMES
 
 SCENES = {
     **ORDINARY_SCENES,
@@ -159,7 +160,7 @@ def test_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajector
 
 
 def test_early_bodies_are_lighter_than_late_ones() -> None:
-    lightness = [np.dot(drawing.TIMES(s)[:3], (0.21, 0.72, 0.07)) for s in np.linspace(0, 1, 20)]
+    lightness = [np.dot(TIMES(s)[:3], (0.21, 0.72, 0.07)) for s in np.linspace(0, 1, 20)]
     assert np.all(np.diff(lightness) < 0)
 
 

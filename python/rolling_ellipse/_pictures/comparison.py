@@ -16,9 +16,9 @@ from matplotlib.lines import Line2D
 
 from .._check import shown
 from .._trajectory import Trajectory
-from .ground import BLUE, INK, ORANGE, PLUM, SKY, TIMES
 from .labels import labels_of
 from .legends import quantity_handles, some_of
+from .palette import BLUE, INK, ORANGE, PLUM, SKY, TIMES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,9 +10,9 @@ import numpy as np
 
 from .axes import leaving_no_figure, panels_of
 from .comparison import Comparison, Style
-from .ground import GREY, INK
 from .legends import name_curves, quantity_handles
 from .modes import mode_handles
+from .palette import GREY, INK
 from .panels import DASHES, draw_forces, dress_forces, dress_panels
 
 if TYPE_CHECKING:

@@ -1,8 +1,7 @@
 """The body and its ground as matplotlib artists, for still and moving pictures alike.
 
 Artists live in ground axes (x along the ground, z normal to it); `tilted` turns them to what the
-eye sees. Colours differ in lightness as well as in hue: they read in grey and for colour-blind
-eyes.
+eye sees.
 """
 
 from __future__ import annotations
@@ -12,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from matplotlib.patches import Ellipse, Polygon
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D
 
 from .._core import Mode
+from .palette import EARTH, GREY, PLUM
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,10 +25,6 @@ if TYPE_CHECKING:
     from .._scene import Scene
     from .._trajectory import Trajectory
 
-INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
-SKY, PLUM = "#8fc3e0", "#7a2e4d"
-FILL = to_rgb(BLUE)
-TIMES = LinearSegmentedColormap.from_list("times", ["#bcd9ea", BLUE, INK])  # early to late
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
 SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be a thin stripe
 

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 
-from .ground import GREY
+from .palette import GREY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

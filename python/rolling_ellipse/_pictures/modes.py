@@ -12,7 +12,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
 
 from .._core import EventKind, Mode
-from .ground import GREY, INK
+from .palette import GREY, INK
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

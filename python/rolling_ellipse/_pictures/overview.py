@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 from .axes import figure_of, leaving_no_figure
 from .comparison import Comparison
 from .errors import constraint_errors, energy_error, worst
-from .ground import INK
 from .legends import name_curves
 from .modes import mode_handles
+from .palette import INK
 from .panels import (
     draw_dots,
     draw_energies,

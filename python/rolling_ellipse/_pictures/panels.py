@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import SymmetricalLogLocator
 
-from .ground import BLUE, GREY, INK, ORANGE, PLUM
 from .modes import mark_events, name_events, shade_invalid, shade_modes
+from .palette import BLUE, GREY, INK, ORANGE, PLUM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

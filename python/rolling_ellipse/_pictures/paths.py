@@ -12,9 +12,9 @@ from .._core import EventKind
 from . import ground as drawing
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison, Style
-from .ground import BLUE, INK, ORANGE
 from .legends import name_curves
 from .modes import EVENT_NAMES, draw_invalid_ground, events_shown
+from .palette import BLUE, INK, ORANGE
 from .panels import sparse_markers
 from .strobe import dress_ground_axes, figure_size, turned_until
 

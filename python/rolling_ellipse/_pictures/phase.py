@@ -12,9 +12,9 @@ from matplotlib.ticker import MaxNLocator
 from .._check import flag
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
-from .ground import GREY
 from .legends import name_curves
 from .modes import draw_invalid_ground
+from .palette import GREY
 from .separatrix import QUARTER, flat_angle, flat_angles, separatrix, separatrix_speed
 
 if TYPE_CHECKING:

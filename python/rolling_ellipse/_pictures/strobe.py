@@ -12,8 +12,9 @@ from .._check import number, whole_within
 from . import ground as drawing
 from .axes import axes_of, leaving_no_figure
 from .comparison import require_motion
-from .ground import FILL, INK, ORANGE, PLUM, SHOWN_TURNS, SKID, TIMES
+from .ground import SHOWN_TURNS, SKID
 from .legends import name_curves
+from .palette import FILL, INK, ORANGE, PLUM, TIMES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from ..._check import choice, file_name, flag, number, positive, shown, whole, whole_within
 from ..._export.atomic import replacing
 from ..comparison import Comparison
-from ..ground import INK
+from ..palette import INK
 from .camera import cameras
 from .movies import gif_delay, movie_writer, progress_bar, told
 from .strip import Strip

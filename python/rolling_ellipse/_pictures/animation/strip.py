@@ -11,15 +11,31 @@ from matplotlib.markers import MarkerStyle
 from ..._core import Mode
 from ...geometry import support
 from .. import ground as drawing
-from ..ground import BLUE, FILL, GREY, INK, ORANGE, PLUM, SKID
+from ..ground import SKID
+from ..palette import BLUE, FILL, GREY, INK, ORANGE, PLUM
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
 
     from ..._check import FloatArray
     from ..._trajectory import Trajectory
+
+# How what moves looks; what has a greater zorder lies over the rest.
+_BODY: dict[str, Any] = {"facecolor": (*FILL, 0.25), "edgecolor": INK, "lw": 1.8, "zorder": 4}
+_LINES: dict[str, dict[str, Any]] = {
+    "shadow": {"zorder": 2, "color": GREY, "lw": 5, "solid_capstyle": "round"},
+    "skid_trace": {"zorder": 2, **SKID},
+    "tip_trace": {"zorder": 3, "color": BLUE, "lw": 1, "alpha": 0.6},
+    "centre_trace": {"zorder": 5, "color": ORANGE, "lw": 1.8},
+    "axis_a": {"zorder": 5, "color": INK, "lw": 1.2},
+    "axis_b": {"zorder": 5, "color": INK, "lw": 1.2, "ls": (0, (4, 3))},
+    "tip": {"zorder": 6, "color": BLUE, "marker": "o", "ms": 6},
+    "contact": {
+        "zorder": 7, "ls": "none", "marker": "o", "ms": 6, "mfc": "white", "mec": INK, "mew": 1.5,
+    },
+    "slip": {"zorder": 8, "ls": "none", "ms": 11, "mfc": PLUM, "mec": "white", "mew": 0.8},
+}  # fmt: skip
 
 
 class Strip:
@@ -80,23 +96,16 @@ class Strip:
         drawing.draw_ground(ax, motion, span)
         self.ruler = drawing.Ruler(ax, motion.scene, span)
 
-        def line(zorder: int, **style: Any) -> Line2D:
-            return ax.plot([], [], transform=on_slope, zorder=zorder, **style)[0]
-
-        self.body = drawing.body_patch(
-            motion, 0, facecolor=(*FILL, 0.25), edgecolor=INK, lw=1.8, zorder=4
-        )
+        self.body = drawing.body_patch(motion, 0, **_BODY)
         self.body.set_transform(on_slope)
         ax.add_patch(self.body)
-        self.shadow = line(2, color=GREY, lw=5, solid_capstyle="round")
-        self.skid_trace = line(2, **SKID)
-        self.tip_trace = line(3, color=BLUE, lw=1, alpha=0.6)
-        self.centre_trace = line(5, color=ORANGE, lw=1.8)
-        self.axis_a = line(5, color=INK, lw=1.2)
-        self.axis_b = line(5, color=INK, lw=1.2, ls=(0, (4, 3)))
-        self.tip = line(6, color=BLUE, marker="o", ms=6)
-        self.contact = line(7, ls="none", marker="o", ms=6, mfc="white", mec=INK, mew=1.5)
-        self.slip = line(8, ls="none", ms=11, mfc=PLUM, mec="white", mew=0.8)
+        lines = {
+            name: ax.plot([], [], transform=on_slope, **look)[0] for name, look in _LINES.items()
+        }
+        self.shadow, self.skid_trace = lines["shadow"], lines["skid_trace"]
+        self.tip_trace, self.centre_trace = lines["tip_trace"], lines["centre_trace"]
+        self.axis_a, self.axis_b = lines["axis_a"], lines["axis_b"]
+        self.tip, self.contact, self.slip = lines["tip"], lines["contact"], lines["slip"]
         self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=INK)
 
     def draw(self, i: int) -> list[Artist]:

@@ -13,8 +13,8 @@ from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 from ..._core import Outcome
 from ..._outcome import classify
 from ..axes import axes_of, leaving_no_figure, require_axes
-from ..ground import BLUE, GREY, INK, ORANGE, PLUM, SKY
 from ..legends import name_curves
+from ..palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
 from .marks import draw_marks, marks_of
 from .plane import plane_of
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..._outcome import thresholds
-from ..ground import INK, PLUM
+from ..palette import INK, PLUM
 from .discs import LAST_WITHIN, TIP_ASPECT, last_aspect_to_roll_over
 from .names import Names, visible_part
 

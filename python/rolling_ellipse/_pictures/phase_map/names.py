@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.font_manager import FontProperties
 from matplotlib.patheffects import withStroke
 
-from ..ground import INK
+from ..palette import INK
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
