@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import os
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from operator import index
 from typing import Any
@@ -18,8 +19,10 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+COORDINATES = 5  # x, z, theta, psi, r
 
 _DOUBLE = np.dtype(np.float64)
+_MOST_WORKERS = 1024
 _LONGEST = 300  # characters of a value in a message
 
 
@@ -80,6 +83,18 @@ def whole_within(name: str, value: Any, most: int) -> int:
     if found > most:
         raise ValueError(f"{name} must be at most {most}, got {shown(value)}")
     return found
+
+
+def worker_count(workers: int) -> int:
+    """Return the number of threads that ``workers`` stands for."""
+    count = whole("workers", workers)
+    if count == -1:
+        return min(os.cpu_count() or 1, _MOST_WORKERS)
+    if not 1 <= count <= _MOST_WORKERS:
+        raise ValueError(
+            f"workers must be an int from 1 to {_MOST_WORKERS}, or -1 for all cores, got {count}"
+        )
+    return count
 
 
 def flag(name: str, value: Any) -> bool:
@@ -166,6 +181,17 @@ def finite(name: str, value: Any) -> FloatArray:
     return found
 
 
+def coordinates(name: str, value: Any) -> FloatArray:
+    """Return ``value`` as an array of coordinates of finite numbers along its last axis."""
+    found = finite(name, value)
+    if found.ndim == 0 or found.shape[-1] != COORDINATES:
+        raise ValueError(
+            f"{name} must have 5 entries (x, z, theta, psi, r) along its last axis, "
+            f"got shape {found.shape}"
+        )
+    return found
+
+
 def common_shape(arrays: dict[str, FloatArray], axes: slice) -> tuple[int, ...]:
     """Return the shape to which arrays broadcast along some of their axes, or raise ValueError."""
     try:
@@ -173,6 +199,11 @@ def common_shape(arrays: dict[str, FloatArray], axes: slice) -> tuple[int, ...]:
     except ValueError:
         shapes = ", ".join(f"{name} {values.shape}" for name, values in arrays.items())
         raise ValueError(f"arguments must broadcast together, got shapes {shapes}") from None
+
+
+def require_together(**arguments: Any) -> None:
+    """Raise ValueError if axes before the last do not broadcast."""
+    common_shape({name: array(name, value) for name, value in arguments.items()}, slice(-1))
 
 
 def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
@@ -189,6 +220,30 @@ def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
         (values if values.size == 1 else np.broadcast_to(values, shape)).ravel()
         for values in arrays.values()
     ]
+
+
+def shaped(found: Any, shape: tuple[int, ...]) -> Any:
+    """Return an array of all elements, or a tuple of them, in their shape: floats for scalars."""
+    if isinstance(found, tuple):
+        return tuple([shaped(values, shape) for values in found])
+    return float(found[0]) if shape == () else found.reshape(shape)
+
+
+def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> Any:
+    """Return what a function of the core makes of bodies, `shaped`; the arguments broadcast.
+
+    The function takes the number of elements, the arguments as `broadcast` returns them, and the
+    settings. Where ``gyration2`` is None, it is that of uniform discs of semi-axes ``a`` and ``b``.
+    """
+    if arguments["gyration2"] is not None:
+        shape, columns = broadcast(**arguments)
+    else:
+        place = list(arguments).index("gyration2")
+        del arguments["gyration2"]
+        shape, columns = broadcast(**arguments)
+        known = dict(zip(arguments, columns, strict=True))
+        columns.insert(place, uniform_disc(known["a"], known["b"]))
+    return shaped(function(math.prod(shape), columns, *settings), shape)
 
 
 def uniform_disc(a: Any, b: Any) -> FloatArray:

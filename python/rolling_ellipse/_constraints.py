@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._check import FloatArray, array, broadcast, common_shape, finite, number, require
-
-COORDINATES = 5
+from ._check import COORDINATES as COORDINATES
+from ._check import FloatArray, broadcast, coordinates, number, require, require_together
 
 
 @dataclass(frozen=True)
@@ -69,21 +68,6 @@ def velocity_errors(
     }
 
 
-def _coordinates(name: str, value: Any) -> FloatArray:
-    found = finite(name, value)
-    if found.ndim == 0 or found.shape[-1] != COORDINATES:
-        raise ValueError(
-            f"{name} must have 5 entries (x, z, theta, psi, r) along its last axis, "
-            f"got shape {found.shape}"
-        )
-    return found
-
-
-def require_together(**arguments: Any) -> None:
-    """Raise ValueError if axes before the last do not broadcast."""
-    common_shape({name: array(name, value) for name, value in arguments.items()}, slice(-1))
-
-
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
     """Evaluate the four constraints, and gap and slip by a road of their own, for any state.
 
@@ -107,7 +91,7 @@ def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResidual
     ValueError
         If a shape or a semi-axis is wrong, or a coordinate or rate is not finite.
     """
-    q, q_dot = _coordinates("q", q), _coordinates("q_dot", q_dot)
+    q, q_dot = coordinates("q", q), coordinates("q_dot", q_dot)
     require_together(q=q, q_dot=q_dot)
     q, q_dot = np.broadcast_arrays(q, q_dot)
     shape = q.shape[:-1]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import os
 from contextlib import suppress
 from types import NoneType
 from typing import Any
@@ -11,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, array, broadcast, uniform_disc, whole
+from ._check import array, evaluate, shaped
+from ._check import worker_count as worker_count
 from ._scene import Scene, require_scene
 
 _SCALARS = (float, int, np.float64)
-_MOST_WORKERS = 1024
 
 
 def flow(
@@ -75,33 +73,12 @@ def flow(
                 return _core.flow_scalar(t, *one, gyration2)
             times = array("t", t)
             found = _core.flow_times(times.ravel(), *one, gyration2, threads)
-            return _shaped(found, times.shape)
-    arguments = {"t": t, "a": a, "b": b, "theta": theta, "omega": omega, "gravity": gravity}
-    if gyration2 is not None:
-        arguments["gyration2"] = gyration2
-    shape, columns = broadcast(**arguments)
-    if gyration2 is None:
-        columns.append(uniform_disc(columns[1], columns[2]))
-    return _shaped(_core.flow_array(math.prod(shape), columns, threads), shape)
-
-
-def _shaped(results: tuple[FloatArray, ...], shape: tuple[int, ...]) -> tuple[Any, Any, Any]:
-    if shape == ():
-        return tuple(float(v[0]) for v in results)  # type: ignore[return-value]
-    theta, omega, x = (v.reshape(shape) for v in results)
-    return theta, omega, x
-
-
-def worker_count(workers: int) -> int:
-    """Return the number of threads that ``workers`` stands for."""
-    count = whole("workers", workers)
-    if count == -1:
-        return min(os.cpu_count() or 1, _MOST_WORKERS)
-    if not 1 <= count <= _MOST_WORKERS:
-        raise ValueError(
-            f"workers must be an int from 1 to {_MOST_WORKERS}, or -1 for all cores, got {count}"
-        )
-    return count
+            return shaped(found, times.shape)  # type: ignore[no-any-return]
+    found = evaluate(
+        _core.flow_array, threads, t=t, a=a, b=b, theta=theta, omega=omega, gravity=gravity,
+        gyration2=gyration2,
+    )  # fmt: skip
+    return found  # type: ignore[no-any-return]
 
 
 def period(scene: Scene) -> float:

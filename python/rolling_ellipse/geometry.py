@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, broadcast, require
+from ._check import FloatArray, broadcast, require, shaped
 
 __all__ = [
     "arc_length", "centre_path", "contact_angle", "contact_distance", "curvature_radius",
@@ -24,10 +24,9 @@ __all__ = [
 
 
 def _evaluate(function: Callable[..., FloatArray], theta: Any, a: Any, b: Any) -> Any:
-    shape, arguments = broadcast(theta=theta, a=a, b=b)
-    require("theta", "finite", arguments[0], np.isfinite(arguments[0]))
-    values = function(math.prod(shape), arguments)
-    return float(values[0]) if shape == () else values.reshape(shape)
+    shape, columns = broadcast(theta=theta, a=a, b=b)
+    require("theta", "finite", columns[0], np.isfinite(columns[0]))
+    return shaped(function(math.prod(shape), columns), shape)
 
 
 def support(theta: Any, *, a: Any, b: Any) -> Any:

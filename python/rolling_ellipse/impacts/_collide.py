@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from .. import _core
-from .._check import FloatArray, broadcast, choice, require, uniform_disc
+from .._check import FloatArray, broadcast, choice, evaluate, require, shaped
 from . import _restitution
 
 LAWS = ("stronge", "poisson", "newton")
@@ -64,25 +63,16 @@ def collide(
     W. J. Stronge, Impact Mechanics, Cambridge University Press, 2000, ch. 3 to 5.
     """
     choice("law", law, LAWS)
-    arguments = {
-        "theta": theta,
-        "x_dot": x_dot,
-        "z_dot": z_dot,
-        "omega": omega,
-        "a": a,
-        "b": b,
-        "gyration2": 1.0 if gyration2 is None else gyration2,
-        "friction": friction,
-        "restitution": restitution,
-    }
-    shape, columns = broadcast(**arguments)
-    if gyration2 is None:
-        columns[6] = uniform_disc(columns[4], columns[5])
-    # run for every law: it refuses by name what is out of range
-    after = _core.collide_arrays(math.prod(shape), columns)
-    if law != "stronge":
-        after = _restitution.collide(law, columns)
-    return _shaped(after[0], shape), _shaped(after[1], shape), _shaped(after[2], shape)
+    found = evaluate(
+        _after, law, theta=theta, x_dot=x_dot, z_dot=z_dot, omega=omega, a=a, b=b,
+        gyration2=gyration2, friction=friction, restitution=restitution,
+    )  # fmt: skip
+    return found  # type: ignore[no-any-return]
+
+
+def _after(count: int, columns: list[FloatArray], law: str) -> tuple[FloatArray, ...]:
+    after = _core.collide_arrays(count, columns)  # for every law: it refuses what is out of range
+    return after if law == "stronge" else _restitution.collide(law, columns)
 
 
 def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
@@ -113,10 +103,4 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
         require(name, "finite", values, np.isfinite(values))
     require("gyration2", "a positive finite area [m^2]", k2, (k2 > 0) & np.isfinite(k2))
     with np.errstate(over="ignore"):  # infinite, where it is beyond the doubles
-        return _shaped(np.hypot(np.hypot(x_dot, z_dot), np.sqrt(k2) * omega), shape)
-
-
-def _shaped(values: FloatArray, shape: tuple[int, ...]) -> Any:
-    if shape == ():
-        return float(values.item())
-    return np.array(np.broadcast_to(values, math.prod(shape))).reshape(shape)  # one to write to
+        return shaped(np.hypot(np.hypot(x_dot, z_dot), np.sqrt(k2) * omega), shape)

@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import FloatArray, choice, finite, number
-from .._constraints import _coordinates, require_together
+from .._check import FloatArray, choice, coordinates, finite, number, require_together
 from .._scene import Impulse, Scene
 from ..geometry import support_slope
 from ._rows import rows
@@ -22,7 +21,7 @@ CASES = ("as_it_is", "1", "2")
 
 def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
     """theta, psi, r, sin and cos of psi - theta; the others must have as many states, or one."""
-    found = _coordinates("q", q)
+    found = coordinates("q", q)
     require_together(q=found, **others)
     theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
     return theta, psi, r, np.sin(psi - theta), np.cos(psi - theta)
@@ -65,7 +64,7 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
     Right is x_dot - r cos(psi - theta) theta_dot, the first velocity residual of `constraints`.
     """
     theta, _, r, sine, cosine = state(q, q_dot=q_dot)
-    rates = _coordinates("q_dot", q_dot)
+    rates = coordinates("q_dot", q_dot)
     choice("case", case, CASES)
     sign = {"1": -1.0, "2": 1.0}.get(case, case_sign(theta))
     turning = rates[..., 3] - rates[..., 2]
@@ -76,7 +75,7 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
 def f2(q: Any) -> FloatArray:
     """Return f2 of eq 10 [m]; it is right with the continuous psi."""
     _, _, r, _, cosine = state(q)
-    return _coordinates("q", q)[..., 1] - r * cosine
+    return coordinates("q", q)[..., 1] - r * cosine
 
 
 def f3(q: Any, *, a: float, b: float) -> FloatArray:
@@ -102,7 +101,7 @@ def eqs_33_to_37(
     """Return the residuals of eqs 33, 34, 35, 37, 36 (x, z, theta, psi, r), (..., 5)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot, multipliers=multipliers)
-    inertia, ddot = body.mass * (body.a**2 + body.b**2) / 4, _coordinates("q_ddot", q_ddot)
+    inertia, ddot = body.mass * (body.a**2 + body.b**2) / 4, coordinates("q_ddot", q_ddot)
     one, two, three, four = _multipliers(multipliers)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
     tangent = np.tan(theta)
@@ -125,9 +124,9 @@ def equations_of_motion(
     """Return what eqs 33, 34, 35, 37, 36 must be, with the corrected rows, (..., 5)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
-    ddot = _coordinates("q_ddot", q_ddot)
+    ddot = coordinates("q_ddot", q_ddot)
     pull = np.einsum(
-        "...ij,...i->...j", rows(_coordinates("q", q), body.a, body.b, ("tan",)),
+        "...ij,...i->...j", rows(coordinates("q", q), body.a, body.b, ("tan",)),
         np.stack(_multipliers(multipliers), axis=-1),
     )  # fmt: skip
     mass_of = np.array([1, 1, body.gyration2, 0, 0]) * body.mass
@@ -148,7 +147,7 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     """Return the rates of f1 (f1 itself), f2, f3 and f4 as eq 38 prints them, (..., 4)."""
     body = Scene(a, b)
     theta, psi, r, sine, cosine = state(q, q_dot=q_dot)
-    x, z, spin, turn, stretch = np.moveaxis(_coordinates("q_dot", q_dot), -1, 0)
+    x, z, spin, turn, stretch = np.moveaxis(coordinates("q_dot", q_dot), -1, 0)
     squeeze = body.a * body.b * (body.a**2 - body.b**2) * np.sin(2 * psi)
     tangent = np.tan(theta)
     return np.stack(
@@ -167,8 +166,8 @@ def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     """Return what eq 38 must be, in its scaling, (..., 4)."""
     body = Scene(a, b)
     require_together(q=q, q_dot=q_dot)
-    matrix = rows(_coordinates("q", q), body.a, body.b, ("tan",))
-    found: FloatArray = np.einsum("...ij,...j->...i", matrix, _coordinates("q_dot", q_dot))
+    matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
+    found: FloatArray = np.einsum("...ij,...j->...i", matrix, coordinates("q_dot", q_dot))
     return found
 
 
@@ -208,11 +207,11 @@ def appendix_b_r_x(q: Any, *, a: float, b: float) -> FloatArray:
     theta, _, _, _, _ = state(q)
     angle = eq_5(theta, a=a, b=b) - theta
     radius = appendix_b_radius(theta, a=a, b=b)
-    found: FloatArray = _coordinates("q", q)[..., 0] + radius * np.sin(angle)
+    found: FloatArray = coordinates("q", q)[..., 0] + radius * np.sin(angle)
     return found
 
 
 def contact_x(q: Any, *, a: float, b: float) -> FloatArray:
     """Return x_C = x + h' [m]."""
-    found: FloatArray = _coordinates("q", q)[..., 0] + support_slope(state(q)[0], a=a, b=b)
+    found: FloatArray = coordinates("q", q)[..., 0] + support_slope(state(q)[0], a=a, b=b)
     return found

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import FloatArray, flag
-from .._constraints import _coordinates, require_together
+from .._check import FloatArray, coordinates, flag, require_together
 from .._scene import Scene
 from ._equations import polar, state
 from ._rows import rows
@@ -17,7 +16,7 @@ def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
     """Return lambda1 ... lambda4 as eq 39 prints them (lambda3 with F of eq 40), (..., 4)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     _, psi, _, _, _ = state(q, q_ddot=q_ddot)
-    ddot = _coordinates("q_ddot", q_ddot)
+    ddot = coordinates("q_ddot", q_ddot)
     squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
     with np.errstate(divide="ignore", invalid="ignore"):
         third = eq_40(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity) / squeeze
@@ -39,7 +38,7 @@ def lambda4_numerator(
     """Return the numerator of lambda4 in eq 39; over 4 a^2 it follows from eqs 32 and 35."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
-    x, z, spin, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
+    x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
     turning = (body.a**2 + body.b**2) * spin
     levers = 4 * r * x * cosine - 4 * r * z * sine + 4 * r * body.gravity * sine
     found: FloatArray = -body.mass * np.cos(theta) ** 2 * (turning + levers)
@@ -56,8 +55,8 @@ def multipliers(
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
     require_together(q=q, q_ddot=q_ddot)
-    ddot = _coordinates("q_ddot", q_ddot)
-    matrix = rows(_coordinates("q", q), body.a, body.b, ("tan",))
+    ddot = coordinates("q_ddot", q_ddot)
+    matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
     friction, normal = body.mass * ddot[..., 0], body.mass * (ddot[..., 1] + body.gravity)
     third = -normal * matrix[..., 1, 4] / matrix[..., 2, 4]
     fourth = -(normal * matrix[..., 1, 3] + third * matrix[..., 2, 3]) / matrix[..., 3, 3]
@@ -68,7 +67,7 @@ def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
     """Return F of eq 40, term by term as printed; right: `complete_f`."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot)
-    x, z, spin, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
+    x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
     a, b, m, g = body.a, body.b, body.mass, body.gravity
     c2, t2 = np.cos(theta) ** 2, np.tan(theta) ** 2
     found: FloatArray = (
@@ -94,7 +93,7 @@ def complete_f(
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
-    x, z, _, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
+    x, z, _, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
     lever = body.mass * r * (x * cosine - (z - body.gravity) * sine)
     numerator = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
     turned = body.a**4 * np.tan(theta) ** 2 + body.b**4
@@ -140,6 +139,6 @@ def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 
 def _head(q: Any, q_ddot: Any, body: Scene) -> FloatArray:
     _, _, _, sine, cosine = state(q, q_ddot=q_ddot)
-    x, z, _, _, _ = np.moveaxis(_coordinates("q_ddot", q_ddot), -1, 0)
+    x, z, _, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
     found: FloatArray = body.mass * (cosine * (z - body.gravity) - x * sine)
     return found

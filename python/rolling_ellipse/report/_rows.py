@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .._check import FloatArray, finite, shown
-from .._constraints import COORDINATES, _coordinates, require_together
+from .._check import COORDINATES, FloatArray, coordinates, finite, require_together, shown
 from .._scene import Scene
 
 #: What can be as printed: the rows of f1, f2 and f3 (eq 32), the sign of a44 (appendix C), and
@@ -116,7 +115,7 @@ def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> Flo
         If a name, a shape or a semi-axis is wrong.
     """
     body = Scene(a, b)
-    return rows(_coordinates("q", q), body.a, body.b, misprints(printed))
+    return rows(coordinates("q", q), body.a, body.b, misprints(printed))
 
 
 def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = CODE) -> FloatArray:
@@ -143,6 +142,6 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
     body = Scene(a, b)
     speed = finite("omega", omega)[..., None]
     require_together(q=q, omega=speed)
-    allowed = direction(_coordinates("q", q), body.a, body.b, misprints(printed))
+    allowed = direction(coordinates("q", q), body.a, body.b, misprints(printed))
     rates: FloatArray = allowed * speed
     return rates
