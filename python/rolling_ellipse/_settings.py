@@ -79,3 +79,19 @@ def _whole(name: str, value: Any) -> int:
     if not -(2**31) <= found < 2**31:
         raise ValueError(f"{name} must be less than 2**31 in size, got {shown(value)}")
     return found
+
+
+# What `simulate` takes where nothing is said. Not defaults of the fields: a file names all of them.
+DEFAULTS = Settings(
+    model="auto",
+    method="auto",
+    rtol=1e-10,
+    atol=1e-12,
+    step=None,
+    stages=None,
+    stabilization="projection",
+    baumgarte=(10.0, 10.0),
+    max_steps=1_000_000,
+    max_events=10_000,
+    rest_speed=None,
+)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ._check import FloatArray, array, flag, shown
 from ._scene import Scene, require_scene
-from ._settings import Settings
+from ._settings import DEFAULTS, Settings
 from ._status import IntegrationError, Status, ValidityWarning
 from ._trajectory import Trajectory
 
@@ -20,17 +20,17 @@ def simulate(
     scene: Scene,
     t: Any,
     *,
-    model: str = "auto",
-    method: str = "auto",
-    rtol: float = 1e-10,
-    atol: float = 1e-12,
-    step: float | None = None,
-    stages: int | None = None,
-    stabilization: str = "projection",
-    baumgarte: tuple[float, float] = (10.0, 10.0),
-    max_steps: int = 1_000_000,
-    max_events: int = 10_000,
-    rest_speed: float | None = None,
+    model: str = DEFAULTS.model,
+    method: str = DEFAULTS.method,
+    rtol: float = DEFAULTS.rtol,
+    atol: float = DEFAULTS.atol,
+    step: float | None = DEFAULTS.step,
+    stages: int | None = DEFAULTS.stages,
+    stabilization: str = DEFAULTS.stabilization,
+    baumgarte: tuple[float, float] = DEFAULTS.baumgarte,
+    max_steps: int = DEFAULTS.max_steps,
+    max_events: int = DEFAULTS.max_events,
+    rest_speed: float | None = DEFAULTS.rest_speed,
     raise_on_failure: bool = True,
 ) -> Trajectory:
     """Simulate a scene from t = 0 and sample the motion.

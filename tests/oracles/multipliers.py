@@ -1,12 +1,13 @@
 """The model "multipliers": the suite's own matrix, its slopes and forces; scenes and settings."""
 
+import dataclasses
 import math
 from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import Scene
-from rolling_ellipse._settings import Settings
+from rolling_ellipse._settings import DEFAULTS, Settings
 
 from oracles.numbers import Long
 
@@ -31,20 +32,8 @@ SCENES = {
 
 def settings(**changes: Any) -> Settings:
     """Arguments of `simulate`, the model being "multipliers"."""
-    defaults: dict[str, Any] = {
-        "model": "multipliers",
-        "method": "auto",
-        "rtol": 1e-10,
-        "atol": 1e-12,
-        "step": None,
-        "stages": None,
-        "stabilization": "none",
-        "baumgarte": (10.0, 10.0),
-        "max_steps": 1_000_000,
-        "max_events": 10_000,
-        "rest_speed": None,
-    }
-    return Settings(**(defaults | changes))
+    ours = {"model": "multipliers", "stabilization": "none"}
+    return dataclasses.replace(DEFAULTS, **(ours | changes))
 
 
 def matrix(q: Long, a: float, b: float) -> Long:

@@ -9,7 +9,7 @@ from typing import Any
 from .._check import FloatArray, choice, finite, optional_number, positive, shown, whole_within
 from .._constraints import COORDINATES
 from .._scene import Scene
-from .._settings import Settings
+from .._settings import DEFAULTS, Settings
 from .._simulate import report_status, sample_times
 from .._trajectory import Trajectory
 from ._motion import PrintedMotion, follow
@@ -94,20 +94,7 @@ def simulate(
     state = _vector("q", q), _vector("q_dot", q_dot)
     if equations == "corrected":
         _require_none("printed", printed, equations)
-        default = "radau" if isinstance(stabilization, str) and stabilization == "ggl" else "dop853"
-        settings = Settings(
-            model="multipliers",
-            method=default if method is None else method,
-            rtol=rtol,
-            atol=atol,
-            step=step,
-            stages=None,
-            stabilization="projection" if stabilization is None else stabilization,
-            baumgarte=(10.0, 10.0) if baumgarte is None else baumgarte,
-            max_steps=max_steps,
-            max_events=1,
-            rest_speed=None,
-        )
+        settings = _settings_of(method, stabilization, baumgarte, rtol, atol, step, max_steps)
         start = _checked_start(*state, body, (), consistent)
         return _corrected(start, times, body, settings)
     _require_none("stabilization", stabilization, equations)
@@ -120,6 +107,36 @@ def simulate(
         )
     names = misprints(CODE if printed is None else printed)
     return follow(_checked_start(*state, body, names, consistent), times, body, names, steps)
+
+
+def _settings_of(
+    method: str | None,
+    stabilization: str | None,
+    baumgarte: tuple[float, float] | None,
+    rtol: float,
+    atol: float,
+    step: float | None,
+    max_steps: int,
+) -> Settings:
+    """Return the settings of the model "multipliers"; None stands for what is usual there."""
+    if method is None:
+        method = "radau" if _is_ggl(stabilization) else "dop853"
+    return replace(
+        DEFAULTS,
+        model="multipliers",
+        method=method,
+        stabilization=DEFAULTS.stabilization if stabilization is None else stabilization,
+        baumgarte=DEFAULTS.baumgarte if baumgarte is None else baumgarte,
+        rtol=rtol,
+        atol=atol,
+        step=step,
+        max_steps=max_steps,
+        max_events=1,  # this model has none
+    )
+
+
+def _is_ggl(stabilization: object) -> bool:  # which may be an array, that == would compare by entry
+    return isinstance(stabilization, str) and stabilization == "ggl"
 
 
 def _corrected(start: Start, t: FloatArray, body: Scene, settings: Settings) -> Trajectory:
