@@ -1,4 +1,6 @@
 // The table of contents: scene -> initial state -> certificate -> model -> solution.
+//
+// Here and everywhere, "physics (4)" is formula (4) of notebooks/02_physics.ipynb.
 #pragma once
 
 #include "contact/contact.hpp"

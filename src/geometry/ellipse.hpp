@@ -1,7 +1,5 @@
 // Geometry of an ellipse that touches a straight ground, by its support function.
 //
-// Here and everywhere, "physics (4)" is formula (4) of notebooks/02_physics.ipynb.
-//
 // theta is the clockwise rotation of the body; at theta = 0 the axis a is parallel to the ground.
 // All functions hold for a > b, a = b and a < b and for any angle.
 #pragma once

@@ -7,8 +7,7 @@
 #pragma once
 
 #include "integrator/collocation.hpp"
-#include "integrator/partial_step.hpp"
-#include "integrator/stagnation.hpp"
+#include "integrator/implicit.hpp"
 
 namespace rolling_ellipse {
 

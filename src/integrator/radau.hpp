@@ -8,8 +8,7 @@
 #include <complex>
 
 #include "integrator/collocation.hpp"
-#include "integrator/partial_step.hpp"
-#include "integrator/stagnation.hpp"
+#include "integrator/implicit.hpp"
 
 namespace rolling_ellipse {
 

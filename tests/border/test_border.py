@@ -44,7 +44,7 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
         r"^omega must have shape \(3,\), got \(2,\)$",
     ),
     "detail of contact": (
-        lambda: _core.contact_detail(SCENE, numbered(8, 6)),
+        lambda: _core.contact_detail(SCENE, *numbered(8, 6)),
         r"^normal_force must have shape \(2,\), got \(3,\)$",
     ),
     "detail of multipliers": (
@@ -96,7 +96,7 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
         r"^restitution must have shape \(2,\), got \(3,\)$",
     ),
     "samples": (
-        lambda: TIMES.sample(FIVES),
+        lambda: TIMES.sample_rolling(FIVES),
         r"^t must have shape \(10,\), got \(2, 5\)$",
     ),
 }
@@ -111,7 +111,7 @@ def test_arrays_of_another_size_are_refused_by_name(call: Callable[[], Any], mes
 @pytest.mark.parametrize("t", [-1e-9, 1.0 + 1e-9, np.nan, np.inf])
 def test_times_that_a_solution_does_not_know_are_refused(t: float) -> None:
     for sample in (
-        TIMES.sample,
+        TIMES.sample_rolling,
         SLIDES.sample_contact,
         COORDINATES._solution.sample_coordinates,
     ):
@@ -171,7 +171,7 @@ LOOPS: dict[str, Callable[[], Any]] = {
     "motions of flow": lambda: flow(
         1.0, a=2.0, b=1.0, theta=MANY[:4_000_000], omega=3.2, workers=2
     ),
-    "samples of rolling": lambda: TIMES.sample(MANY / 1e3),
+    "samples of rolling": lambda: TIMES.sample_rolling(MANY / 1e3),
     "samples of contact": lambda: SLIDES.sample_contact(MANY / 1e3),
     "steps of a fixed size": lambda: simulate(
         scenes.rolling, [1e4], model="rolling", method="rk4", step=1e-5, **LONG

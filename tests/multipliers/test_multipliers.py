@@ -191,8 +191,10 @@ def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
     1e-12 of the terms they are made of (gravity is one: z_ddot is lambda_2/m - g)."""
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(7)
     theta, omega = generator.uniform(-10, 10, 50), generator.normal(0, 3, 50)
-    q, q_dot, exact, normal, friction, exact_multipliers = _core.rolling_detail(
-        scene.core, theta, omega, np.zeros(50)
+    known = _core.rolling_detail(scene.core, theta, omega, np.zeros(50))
+    q, q_dot, exact, exact_multipliers, normal, friction = (
+        known[name]
+        for name in ("q", "q_dot", "q_ddot", "multipliers", "normal_force", "friction_force")
     )
     found, multipliers = _core.multiplier_detail(scene.core, settings().core, q, q_dot)
     r, rates2 = q[:, 4], q_dot[:, 2] ** 2 + q_dot[:, 3] ** 2

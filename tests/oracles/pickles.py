@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
+from rolling_ellipse import _core
 
 
 def pickled(protocol: int, thing: Any) -> Any:
@@ -52,9 +53,19 @@ def require_same(one: Any, other: Any, where: str = "it") -> None:
 
 def core_objects() -> dict[str, Any]:
     motion = rl.simulate(rl.scenes.bounce, 1.5)
+    thresholds = _core.thresholds(2.0, 1.0, 9.81, 0.0435, 0.505)  # one that may jam
     return {
         "Scene": motion.scene.core,
         "Impulse": rl.Impulse(1.0).core,
         "Settings": motion.settings.core,
         "Solution": motion._solution,
+        "Event": motion._solution.events[0],
+        "State": motion._solution.events[0].before,
+        "InitialState": _core.initial_state(motion.scene.core),
+        "Continuation": _core.first_continuation(
+            motion.scene.core, _core.initial_state(motion.scene.core).state
+        ),
+        "Certificate": _core.certify(motion.scene.core),
+        "Thresholds": thresholds,
+        "SpeedRange": thresholds.jam_speeds[0],
     }

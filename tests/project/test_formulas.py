@@ -51,7 +51,7 @@ def test_every_citation_is_defined() -> None:
 
 def test_the_core_says_once_what_the_numbers_are() -> None:
     texts = {path.name: path.read_text(encoding="utf-8") for path in SOURCES}
-    assert [name for name, text in texts.items() if "02_physics.ipynb" in text] == ["ellipse.hpp"]
+    assert [name for name, text in texts.items() if "02_physics.ipynb" in text] == ["simulate.hpp"]
 
 
 def test_every_formula_is_shown_by_the_cell_below_it() -> None:

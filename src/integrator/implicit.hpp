@@ -1,5 +1,4 @@
-// When to end an iteration that is carried to the last bit: once the changes of no component
-// shrink any more (M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861, 3.2).
+// What implicit methods share: when their iteration ends, and their dense output.
 #pragma once
 
 #include <array>
@@ -11,6 +10,8 @@ namespace rolling_ellipse {
 template <int N, int Stages>
 using StageVectors = std::array<Vector<N>, Stages>;
 
+// When to end an iteration that is carried to the last bit: once the changes of no component
+// shrink any more (M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861, 3.2).
 template <int N, int Stages>
 class Stagnation {
   public:
@@ -52,5 +53,23 @@ class Stagnation {
 // they do not become small.
 inline constexpr int most_iterations = 200;
 inline constexpr double small_change = 1e-6;
+
+// Dense output of an implicit method, of its full order: the method itself, with a shorter step. A
+// step so large that its parts cannot be solved is known at its start only.
+template <class Method, class System>
+struct PartialStep {
+    static constexpr int N = System::size;
+
+    const System& f;
+    Point<N> from;
+    double h;
+
+    // y at the fraction s of the step less y at its start.
+    Vector<N> change(double s) const {
+        Point<N> point = from;
+        if (!Method(f).advance(point, s * h)) return Vector<N>::Zero();
+        return (point.y - from.y) + (point.carry - from.carry);
+    }
+};
 
 }  // namespace rolling_ellipse

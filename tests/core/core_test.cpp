@@ -1,0 +1,156 @@
+// What Python cannot reach: the pieces under the models, and the core as a C++ program uses it.
+//
+//     cmake --preset release && cmake --build --preset release && ctest --preset release
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <vector>
+
+#include "integrator/first_negative.hpp"
+#include "numerics/bisect.hpp"
+#include "numerics/double_double.hpp"
+#include "numerics/polynomial.hpp"
+#include "simulate.hpp"
+
+using namespace rolling_ellipse;
+
+namespace {
+
+int failures = 0;
+
+void check(bool holds, const char* what, int line) {
+    if (holds) return;
+    std::printf("line %d: %s\n", line, what);
+    ++failures;
+}
+#define CHECK(...) check((__VA_ARGS__), #__VA_ARGS__, __LINE__)
+
+void a_double_double_keeps_what_rounding_takes() {
+    const DoubleDouble sum = two_sum(1.0, 0x1p-80);
+    CHECK(sum.high == 1.0 && sum.low == 0x1p-80);
+    const DoubleDouble product = two_product(1 + epsilon, 1 + epsilon);  // 1 + 2 eps + eps^2
+    CHECK(product.high == 1 + 2 * epsilon && product.low == epsilon * epsilon);
+}
+
+void bisection_ends_at_neighbours() {
+    const Bracket root = bisect(1.0, 2.0, [](double x) { return x * x >= 2; });
+    CHECK(root.high == std::nextafter(root.low, 2.0));
+    CHECK(root.low * root.low < 2 && root.high * root.high >= 2);
+}
+
+void a_polynomial_that_touches_zero_has_no_sign() {
+    const Polynomial<1> x_minus_a_third = polynomial(-1.0 / 3, 1.0);
+    const Polynomial<2> touches = x_minus_a_third * x_minus_a_third;
+    CHECK(sign_on_unit_interval(bernstein(touches)) == Sign::undecided);
+    CHECK(sign_on_unit_interval(bernstein(touches + polynomial(1e-9))) == Sign::positive);
+    CHECK(sign_on_unit_interval(bernstein(touches - polynomial(1e-9))) != Sign::positive);
+}
+
+// A margin that is negative between two looks only, for a thousandth of their distance.
+void a_dip_between_two_looks_is_found() {
+    const auto margin = [](double t) {
+        const double off = (t - 2.3) / 5e-4;
+        return std::array<double, 1>{2.5e-7 * (off * off - 1)};
+    };
+    FirstNegative<1> finder;
+    for (double t = 0.0; t <= 5.0 && !(finder.found() < infinity); t += 1.0) finder.look(t, margin);
+    CHECK(std::abs(finder.found() - (2.3 - 5e-4)) < 1e-12);
+    FirstNegative<1> none;
+    for (double t = 0.0; t <= 5.0; t += 1.0) {
+        none.look(t, [&](double at) { return std::array<double, 1>{margin(at)[0] + 3e-7}; });
+    }
+    CHECK(none.found() == infinity);
+}
+
+Scene ellipse() {
+    Scene scene{};
+    scene.a = 2.0;
+    scene.b = 1.0;
+    scene.mass = 10.0;
+    scene.gravity = 9.81;
+    scene.inertia = scene.mass * uniform_disc_gyration2(scene.a, scene.b);
+    scene.friction = 0.3;
+    scene.restitution = 0.5;
+    scene.omega = 5.5;  // it rolls, slides, leaves the ground and comes down again
+    return scene;
+}
+
+Settings automatic() {
+    Settings settings{};
+    settings.stabilization = Stabilization::projection;
+    settings.rtol = 1e-10;
+    settings.atol = 1e-12;
+    settings.max_steps = 1'000'000;
+    settings.max_events = 10'000;
+    return settings;
+}
+
+// Whatever a segment is, it gives the coordinates and the state of one and the same motion.
+void every_segment_knows_every_kind_of_sample() {
+    const Scene scene = ellipse();
+    const Solution solution = simulate(scene, automatic(), 3.0, [] {});
+    CHECK(solution.model == Model::contact && solution.ending == Ending::completed);
+    CHECK(solution.motion.segments.size() > 3);
+    const Sampler look(solution.motion, 3.0, 301);
+    std::vector<double> times;
+    for (int i = 0; i <= 300; ++i) times.push_back(0.01 * i);
+    std::vector<ContactSample> states(times.size());
+    std::vector<FlowSample> flows(times.size());
+    std::vector<CoordinateState> coordinates(times.size());
+    look(times.data(), times.size(), states.data());
+    look(times.data(), times.size(), flows.data());
+    look(times.data(), times.size(), coordinates.data());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        using namespace coordinate;
+        const State& state = states[i].state;
+        const auto& [q, q_dot] = coordinates[i];
+        const auto close = [](double one, double other) {  // rolling is sampled in two ways
+            return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
+        };
+        CHECK(close(flows[i].theta, state.theta) && close(flows[i].omega, state.omega));
+        CHECK(close(flows[i].x, state.x) && close(q[x], state.x) && close(q[z], state.z));
+        CHECK(close(q_dot[x], state.x_dot) && close(q_dot[theta], state.omega));
+        CHECK(position_residuals(scene.axes(), q).tail<2>().cwiseAbs().maxCoeff() < 1e-14);
+    }
+}
+
+void a_checkpoint_that_throws_ends_the_work() {
+    int asked = 0;
+    const auto stop = [&asked] {
+        if (++asked == 2) throw std::runtime_error("enough");
+    };
+    bool stopped = false;
+    try {
+        simulate(ellipse(), automatic(), 3.0, stop);
+    } catch (const std::runtime_error&) {
+        stopped = true;
+    }
+    CHECK(stopped && asked == 2);
+}
+
+void wrong_numbers_are_refused() {
+    Scene scene = ellipse();
+    scene.friction = -1;
+    std::string message;
+    try {
+        validate(scene);
+    } catch (const std::invalid_argument& error) {
+        message = error.what();
+    }
+    CHECK(message.rfind("friction must be", 0) == 0);
+}
+
+}  // namespace
+
+int main() {
+    a_double_double_keeps_what_rounding_takes();
+    bisection_ends_at_neighbours();
+    a_polynomial_that_touches_zero_has_no_sign();
+    a_dip_between_two_looks_is_found();
+    every_segment_knows_every_kind_of_sample();
+    a_checkpoint_that_throws_ends_the_work();
+    wrong_numbers_are_refused();
+    std::printf(failures == 0 ? "all hold\n" : "%d do not hold\n", failures);
+    return failures == 0 ? 0 : 1;
+}
