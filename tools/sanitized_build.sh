@@ -4,7 +4,7 @@
 #
 #   tools/sanitized_build.sh                                   (builds only)
 #   tools/sanitized_build.sh tools/fuzz_api.py --calls 5000 --seconds-per-call 20 --no-memory-limit
-#   tools/sanitized_build.sh -m pytest tests/test_contact.py
+#   tools/sanitized_build.sh -m pytest tests/contact/test_contact.py
 #
 # PYTHON names the interpreter (default python3; it must have the build requirements); the build
 # lies in build/sanitized. Reads out of bounds, undefined arithmetic and the like end the process

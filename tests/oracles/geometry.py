@@ -5,6 +5,7 @@ least height, "tip" of largest, and the reduced angle phi in [0, pi/2] is the ro
 flat, whichever semi-axis is the longer.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import mpmath as mp
@@ -75,8 +76,12 @@ class Support(NamedTuple):
 def support(theta: Any, a: Any, b: Any) -> Support:
     """At angles, in their arithmetic: numbers, arrays of any float, or mpf (held against
     `height_slopes`, that is against the definition, by test_ellipse.py)."""
-    exactly = any(isinstance(value, mp.mpf) for value in (theta, a, b))
-    arithmetic: Any = mp if exactly else np
+    values = (theta, a, b)
+    arithmetic: Any = np
+    if any(isinstance(value, mp.mpf) for value in values):
+        arithmetic = mp
+    elif all(isinstance(value, float) for value in values):
+        arithmetic = math
     return _support(arithmetic.sin(theta), arithmetic.cos(theta), a, b, arithmetic.sqrt)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import oracles.geometry
 import oracles.rolling
 import pytest
+from oracles.geometry import Support, support
 from oracles.numbers import DIGITS, EPS, Long, known
 from rolling_ellipse import Event, EventKind, Scene, simulate, thresholds
 from scipy.integrate import solve_ivp
@@ -285,12 +286,8 @@ class Body(NamedTuple):
     short: float
     gyration2: float
 
-    def outline(self, angle: float) -> tuple[float, float, float]:
-        """h, h', h'' [m]."""
-        sine, cosine = math.sin(angle), math.cos(angle)
-        h = math.hypot(self.long * sine, self.short * cosine)
-        slope = (self.long**2 - self.short**2) * sine * cosine / h
-        return h, slope, (self.long * self.short) ** 2 / h**3 - h
+    def outline(self, angle: float) -> Support:
+        return support(angle, self.long, self.short)
 
     def rolling(self, angle: float, energy: float) -> tuple[float, float, float]:
         """omega^2, N/m and F/m of rolling with an energy E/m."""

@@ -21,6 +21,7 @@ import rolling_ellipse as rl
 from matplotlib.animation import FFMpegWriter
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from oracles.geometry import support as outline_support
 from oracles.pictures import ORDINARY_SCENES, centre_of, frames_of, outline, support
 from PIL import Image
 from rolling_ellipse._pictures import animation as animation_module
@@ -71,7 +72,7 @@ def rolled(body: tuple[float, float], theta: float, other: float) -> float:
     edges = np.linspace(theta, other, panels + 1)
     half = np.diff(edges)[:, None] / 2
     angle = edges[:-1, None] + half * (1 + NODES)
-    return float(np.sum(half * WEIGHTS * np.hypot(a * np.sin(angle), b * np.cos(angle))))
+    return float(np.sum(half * WEIGHTS * outline_support(angle, a, b).h))
 
 
 # ------------------------------------------------------------------------------------ artists

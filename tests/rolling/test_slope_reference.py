@@ -106,8 +106,7 @@ def reach_of_series(motion: Motion) -> float:
     """
     a, b, mass, inertia, gravity, slope, theta, omega = motion.parameters.values()
     k2, low, high = inertia / mass, min(a, b), max(a, b)
-    height = math.hypot(a * math.sin(theta), b * math.cos(theta))
-    offset = (a * a - b * b) * math.sin(theta) * math.cos(theta) / height
+    height, offset, _ = support(theta, a, b)
     moment = k2 + height**2 + offset**2
     # between the samples the centre is not lower than one of them by more than the body's size
     path = np.abs(motion.values[:, 2]).max() + high
