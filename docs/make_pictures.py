@@ -29,8 +29,9 @@ def methods() -> Figure:
     """Errors of the energy over 200 s; the fixed steps end at the samples."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     t = np.linspace(0.0, 200.0, 501)
-    ways = [{"model": "rolling", **how} for how in METHODS.values()]
-    motions = [rl.simulate(rl.scenes.rolling, t, **way) for way in ways]
+    motions = [
+        rl.simulate(rl.scenes.rolling, t, model="rolling", **how) for how in METHODS.values()
+    ]
     rl.plot_energy(motions, ax=figure.add_subplot(), labels=list(METHODS))
     return figure
 

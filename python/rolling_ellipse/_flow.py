@@ -53,7 +53,7 @@ def flow(
     Returns
     -------
     theta, omega, x : float or ndarray
-        Angle [rad], angular velocity [rad/s], way of the centre since the start [m]; floats if all
+        Angle [rad], angular velocity [rad/s], path of the centre since the start [m]; floats if all
         arguments are scalars, else of the broadcast shape. A body in equilibrium (omega = 0 and
         |h'| within 8 ulp of h) stays. The last bits may depend on how many times there are: many
         of one motion are read off Taylor series about points of it. Their x then has the rounding

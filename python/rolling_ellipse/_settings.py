@@ -50,7 +50,7 @@ class Settings(FieldsOnly):
 
     @cached_property
     def core(self) -> _core.Settings:
-        """The same for the core."""
+        """The settings as the core takes them."""
         return _core.Settings(
             model=_core.Model[self.model.upper()],
             method=_core.Method[self.method.upper()],

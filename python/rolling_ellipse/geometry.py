@@ -60,7 +60,7 @@ def contact_angle(theta: Any, *, a: Any, b: Any) -> Any:
 
 
 def centre_path(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the integral of h from 0 to theta, the way of the rolling centre [m].
+    """Return the integral of h from 0 to theta, the path of the rolling centre [m].
 
     By Carlson's symmetric elliptic integrals (DLMF 19.25.9 and 19.25.10) in forms without
     cancellation, for any number of turns.

@@ -30,42 +30,42 @@ SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be 
 
 
 def tilted(scene: Scene) -> Affine2D:
-    """Ground axes as the eye sees them: x down the slope, gravity down the page."""
+    """Return ground axes as the eye sees them: x down the slope, gravity down the page."""
     return Affine2D().rotate(-scene.slope)
 
 
 def body_patch(trajectory: Trajectory, i: int, **style: Any) -> Ellipse:
-    """The body at sample i (theta is clockwise, matplotlib's angle is not)."""
+    """Return the body at sample i (theta is clockwise, matplotlib's angle is not)."""
     centre = (float(trajectory.x[i]), float(trajectory.z[i]))
     angle = -math.degrees(trajectory.theta[i])
     return Ellipse(centre, 2 * trajectory.scene.a, 2 * trajectory.scene.b, angle=angle, **style)
 
 
 def tip(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """The end of axis a that lies on the right at theta = 0: x and z, (n,) [m]."""
+    """Return the end of axis a that lies on the right at theta = 0: x and z, (n,) [m]."""
     a, theta = trajectory.scene.a, trajectory.theta
     return trajectory.x + a * np.cos(theta), trajectory.z - a * np.sin(theta)
 
 
 def contact_points(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Where body and ground touch: x and z, (n,) [m]; NaN in flight."""
+    """Return where body and ground touch: x and z, (n,) [m]; NaN in flight."""
     touching = trajectory.mode != Mode.FLIGHT
     return np.where(touching, trajectory.contact_x, np.nan), np.where(touching, 0.0, np.nan)
 
 
 def skids(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
-    """Where the contact slides: x and z, (n,) [m]; NaN elsewhere."""
+    """Return where the contact slides: x and z, (n,) [m]; NaN elsewhere."""
     sliding = trajectory.mode == Mode.SLIDING
     return np.where(sliding, trajectory.contact_x, np.nan), np.where(sliding, 0.0, np.nan)
 
 
 def view(path: Trajectory) -> tuple[float, float, float, float]:
-    """Left, right, bottom, top [m] of what the eye sees of a motion, with a little air."""
+    """Return left, right, bottom, top [m] of what the eye sees of a motion, with a little air."""
     return view_of(path.scene, path.x, path.z)
 
 
 def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
-    """The same for the centres x, z [m] of a body.
+    """Return left, right, bottom, top [m] of what the eye sees of a body with centres at x, z [m].
 
     Raises
     ------

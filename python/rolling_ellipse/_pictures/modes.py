@@ -149,7 +149,7 @@ def draw_invalid_ground(ax: Axes, x: FloatArray, y: FloatArray, **options: Any) 
 
 
 def _shifts(places: list[float], width: float, room: float) -> list[float]:
-    """How far to move texts of one width, centred at ascending places, to be clear of others."""
+    """Return how far to move texts of one width, at ascending places, to be clear of each other."""
     moved: list[float] = []
     for place in places:
         moved.append(max(place, moved[-1] + width if moved else width / 2))

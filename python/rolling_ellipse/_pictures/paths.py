@@ -66,7 +66,7 @@ def plot_paths(
 
     That end is the one on the right at theta = 0. On a slope the picture is tilted, so that down
     is down. The path of the contact ends where the body leaves the ground and goes on where it hits
-    it; markers on it are events. A long way is shown over its first three turns (the title then
+    it; markers on it are events. A long path is shown over its first three turns (the title then
     says so); the lines hold all of it. Where the model is not valid, the path of the centre has
     grey ground.
 

@@ -34,12 +34,12 @@ def separatrix_speed(theta: FloatArray, scene: Scene) -> FloatArray:
 
 
 def flat_angle(scene: Scene) -> float:
-    """Where the body lies flat, up to half turns [rad]."""
+    """Return the angle at which the body lies flat, up to half turns [rad]."""
     return 0.0 if scene.a >= scene.b else QUARTER
 
 
 def flat_angles(left: float, right: float, scene: Scene) -> FloatArray:
-    """The flat positions whose half turns cover an interval of theta [rad]."""
+    """Return the flat positions whose half turns cover an interval of theta [rad]."""
     flat = flat_angle(scene)
     first = math.floor((left - flat) / math.pi + 0.5)
     last = max(math.ceil((right - flat) / math.pi - 0.5), first)
@@ -47,7 +47,10 @@ def flat_angles(left: float, right: float, scene: Scene) -> FloatArray:
 
 
 def separatrix(scene: Scene, flats: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Theta and speed, graded around each flat position, where a thin body's curve is a spike."""
+    """Return theta and speed of the curve.
+
+    They are graded around each flat position, where a thin body's curve is a spike.
+    """
     count = int(np.clip(_POINTS[1] // flats.size, 3, _POINTS[0]))
     width = min(scene.a, scene.b) / max(scene.a, scene.b)
     reach = math.asinh(100 / width)  # to 0.01 rad from the tip, where it is straight

@@ -122,14 +122,14 @@ def _title(ax: Axes, text: str) -> None:
 
 
 def figure_size(view: tuple[float, float, float, float]) -> tuple[float, float]:
-    """Size [inch] of a figure that fits left, right, bottom, top [m] of what is shown."""
+    """Return the size [inch] of a figure that fits a view: left, right, bottom, top [m]."""
     left, right, bottom, top = view
     tall = 0.8 + min(max(9 * (top - bottom) / (right - left), 1.5), 4)
     return 10, tall
 
 
 def turned_until(trajectory: Trajectory) -> float:
-    """Time of three turns or of as far a way, or the last time [s]."""
+    """Return the time of three turns or of a path as long, or the last time [s]."""
     t, x, scene = trajectory.t, trajectory.x, trajectory.scene
     turned = np.abs(trajectory.theta - trajectory.theta[0]) / (2 * np.pi)
     moved = np.abs(x - x[0]) / (2 * np.pi * max(scene.a, scene.b))
@@ -138,7 +138,7 @@ def turned_until(trajectory: Trajectory) -> float:
 
 
 def _uncrowded_until(trajectory: Trajectory) -> float:
-    """Time of three turns or as far a way, or of turning back for the second time [s]."""
+    """Return the time of three turns or of a path as long, or of the second turning back [s]."""
     t, omega = trajectory.t, trajectory.omega
     end = turned_until(trajectory)
     for i in np.flatnonzero(omega[:-1] * omega[1:] < 0)[1:2]:

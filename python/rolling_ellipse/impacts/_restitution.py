@@ -28,7 +28,7 @@ class _Path:
     rise: tuple[FloatArray, FloatArray]  # du per normal impulse; that of the second is positive
 
     def normal_impulse(self, level: FloatArray) -> FloatArray:
-        """Where u, which starts below it, passes a level."""
+        """Return the impulse at which u, which starts below it, passes a level."""
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             first = (level - self.u) / self.rise[0]
             then = self.stop + (level - self.u - self.rise[0] * self.stop) / self.rise[1]

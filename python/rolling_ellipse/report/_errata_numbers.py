@@ -13,8 +13,7 @@ from .._outcome import thresholds
 from .._scene import Scene
 from .._simulate import simulate
 from ..geometry import contact_angle, contact_distance, support, support_slope
-from . import _equations as printed_
-from . import _multipliers as forces
+from . import _equations, _multipliers
 from ._motion import follow
 from ._rows import CODE, consistent_rates, constraint_matrix
 from ._runge_kutta import Steps
@@ -64,7 +63,7 @@ def _at(theta: float, b: float = _B) -> _Exact:
     columns = there.x_ddot, there.z_ddot, there.omega_dot, there.psi_ddot, there.r_ddot
     body = {"a": _A, "b": b, "mass": _MASS, "gravity": _GRAVITY}
     q, q_dot, q_ddot = there.q[0], there.q_dot[0], np.stack(columns, axis=-1)[0]
-    return _Exact(q, q_dot, q_ddot, forces.multipliers(q, q_ddot, **body), body)
+    return _Exact(q, q_dot, q_ddot, _multipliers.multipliers(q, q_ddot, **body), body)
 
 
 GENERIC, SECOND, THIRD = 0.7, 2.0, 4.0  # angles: in the first, second and third quadrant
@@ -74,19 +73,19 @@ def velocity() -> Comparison:
     at = _at(GENERIC)
     q, q_dot = at.q, at.q_dot
     slip = q_dot[0] - q[4] * np.cos(q[3] - q[2]) * q_dot[2]
-    return Comparison(float(printed_.f1(q, q_dot)), float(slip))
+    return Comparison(float(_equations.f1(q, q_dot)), float(slip))
 
 
 def cases() -> Comparison:
-    lead = printed_.case_lead(THIRD, a=_A, b=_B)
+    lead = _equations.case_lead(THIRD, a=_A, b=_B)
     return Comparison(float(lead), support_slope(THIRD, a=_A, b=_B))
 
 
-def row(number: int, printed: tuple[str, ...]) -> Comparison:
+def row(index: int, printed: tuple[str, ...]) -> Comparison:
     """A row, as printed and right, times the rates of the exact motion."""
     at = _at(GENERIC)
     both = (constraint_matrix(at.q, printed=p, **at.shape) for p in (printed, ("tan",)))
-    return Comparison(*(float(matrix[number] @ at.q_dot) for matrix in both))
+    return Comparison(*(float(matrix[index] @ at.q_dot) for matrix in both))
 
 
 def eq_37() -> Comparison:
@@ -98,26 +97,26 @@ def eq_37() -> Comparison:
 
 def eq_38() -> Comparison:
     at = _at(GENERIC)
-    both = printed_.eq_38, printed_.constraint_rates
+    both = _equations.eq_38, _equations.constraint_rates
     return Comparison(*(float(rates(at.q, at.q_dot, **at.shape)[1]) for rates in both))
 
 
-def eq_39(number: int, theta: float) -> Comparison:
+def eq_39(index: int, theta: float) -> Comparison:
     at = _at(theta)
-    as_printed = forces.eq_39(at.q, at.q_ddot, **at.body)
-    return Comparison(float(as_printed[number]), float(at.multipliers[number]))
+    as_printed = _multipliers.eq_39(at.q, at.q_ddot, **at.body)
+    return Comparison(float(as_printed[index]), float(at.multipliers[index]))
 
 
 def lambda4() -> Comparison:
     at = _at(GENERIC, b=0.8)
-    numerator = float(forces.lambda4_numerator(at.q, at.q_ddot, **at.body))
-    as_printed = float(forces.eq_39(at.q, at.q_ddot, **at.body)[3])
+    numerator = float(_multipliers.lambda4_numerator(at.q, at.q_ddot, **at.body))
+    as_printed = float(_multipliers.eq_39(at.q, at.q_ddot, **at.body)[3])
     return Comparison(as_printed, numerator / (4 * _A**2))
 
 
 def eq_40() -> Comparison:
     at = _at(GENERIC)
-    both = forces.eq_40, forces.complete_f
+    both = _multipliers.eq_40, _multipliers.complete_f
     return Comparison(*(float(f(at.q, at.q_ddot, **at.body)) for f in both))
 
 
@@ -128,12 +127,12 @@ def quarter_turn() -> Comparison:
 
 
 def appendix_b() -> Comparison:
-    radius = printed_.appendix_b_radius(GENERIC, a=_A, b=_B)
+    radius = _equations.appendix_b_radius(GENERIC, a=_A, b=_B)
     return Comparison(float(radius), contact_distance(GENERIC, a=_A, b=_B))
 
 
 def blow() -> Comparison:
-    both = printed_.eq_48, printed_.struck_speed
+    both = _equations.eq_48, _equations.struck_speed
     return Comparison(*(speed(48.0, 1.5, a=_A, b=_B, mass=_MASS) for speed in both))
 
 
@@ -149,7 +148,7 @@ def back_substitution() -> Comparison:
 
 
 def angle() -> Comparison:
-    both = printed_.eq_5, contact_angle
+    both = _equations.eq_5, contact_angle
     return Comparison(*(float(psi(SECOND, a=_A, b=_B)) for psi in both))
 
 

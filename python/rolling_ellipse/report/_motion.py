@@ -82,12 +82,12 @@ class PrintedMotion:
         return np.concatenate([motion, np.einsum("nij,nj->ni", matrix, self.q_dot)], axis=1)
 
     def __repr__(self) -> str:
-        rows_ = ", ".join(self.printed) or "none"
+        names = ", ".join(self.printed) or "none"
         if self.t.size == 0:
-            return f"<PrintedMotion: no samples, as printed: {rows_}, {self.message}>"
+            return f"<PrintedMotion: no samples, as printed: {names}, {self.message}>"
         return (
             f"<PrintedMotion: {self.t.size} samples, t = {self.t[0]:g} ... {self.t[-1]:g} s, "
-            f"as printed: {rows_}, largest |gap| {np.max(np.abs(self.gap)):.3g} m>"
+            f"as printed: {names}, largest |gap| {np.max(np.abs(self.gap)):.3g} m>"
         )
 
 
@@ -130,9 +130,8 @@ def follow(
         q, q_dot = y[:COORDINATES], y[COORDINATES:]
         return np.concatenate([q_dot, accelerations(q, q_dot, body, printed)[0]])
 
-    with np.errstate(
-        over="ignore", invalid="ignore", divide="ignore"
-    ):  # it stops there, and says so
+    # where there is no finite solution it stops, and says so
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         samples, message = integrate(slope, np.concatenate([start.q, start.q_dot]), t, steps)
         samples = samples.reshape(-1, 2 * COORDINATES)
         q, q_dot = samples[:, :COORDINATES], samples[:, COORDINATES:]

@@ -113,12 +113,12 @@ def eq_41(
     _, psi, _, _, _ = state(q)
     arguments: dict[str, float] = dict(a=a, b=b, mass=mass, gravity=gravity)
     if complete:
-        f1_ = 2 * polar(psi, body) ** 1.5 * complete_f(q, q_ddot, **arguments)
+        spread = 2 * polar(psi, body) ** 1.5 * complete_f(q, q_ddot, **arguments)
     else:
-        f1_ = eq_42(q, q_ddot, **arguments)
+        spread = eq_42(q, q_ddot, **arguments)
     squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        found: FloatArray = _head(q, q_ddot, body) - f1_ / squeeze
+        found: FloatArray = _head(q, q_ddot, body) - spread / squeeze
     return found
 
 

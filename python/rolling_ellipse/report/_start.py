@@ -89,7 +89,7 @@ def _residuals(
 
 
 def _terms(q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
-    """How large the terms of the seven residuals are."""
+    """Return how large the terms of the seven residuals are."""
     _, z, theta, psi, r = np.abs(q)
     velocity = np.abs(_scaled_rows(q, body, printed)) @ np.abs(q_dot)
     return np.concatenate([[z + r, 2 * r, theta + psi], velocity])
@@ -113,7 +113,7 @@ def project(
 
 
 def _nearest_angle(z: float, theta: float, body: Scene) -> float:
-    """Where (z - h)^2 + k^2 (angle - theta)^2 is least: the best of a grid, then Newton.
+    """Return where (z - h)^2 + k^2 (angle - theta)^2 is least: the best of a grid, then Newton.
 
     h has the period pi, so the nearest place on it is within a quarter turn.
     """

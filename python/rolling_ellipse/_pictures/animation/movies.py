@@ -32,7 +32,7 @@ class GifWriter(PillowWriter):
         frames = [frame.convert("RGB") for frame in self._frames]  # type: ignore[attr-defined]
         if not frames:  # interrupted before the first: matplotlib finishes all the same
             return
-        # the last frame has every colour, and this way to choose them spares those of thin lines
+        # the last frame has every colour, and this choice spares those of thin lines
         palette = frames[-1].quantize(64, Image.Quantize.MAXCOVERAGE)
         first, *rest = (
             frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames
@@ -54,7 +54,7 @@ def gif_delay(fps: float) -> int | None:
 def movie_writer(
     path: str | PathLike[str], fps: float, argument: str = "path"
 ) -> tuple[AbstractMovieWriter, Any]:
-    """What writes the file, and the matplotlib settings to do so under.
+    """Return what writes the file, and the matplotlib settings to do so under.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def ffmpeg() -> str:
 
 
 def progress_bar(path: str | PathLike[str]) -> Callable[[int, int], None]:
-    """To be called with (frame, frames): a tqdm bar, or a plain count without tqdm."""
+    """Return a function of (frame, frames) that moves a tqdm bar, or counts without tqdm."""
     name = fspath(path)
     if importlib.util.find_spec("tqdm") is None:
 

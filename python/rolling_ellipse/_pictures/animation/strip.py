@@ -63,7 +63,7 @@ class Strip:
     body, axis_a, axis_b, tip, contact, slip, shadow, centre_trace, tip_trace, skid_trace
         The moving artists, their data in ground axes (x along the ground, z normal to it) [m].
         `tip` is the end of axis a that lies on the right at theta = 0. `contact` is where the body
-        touches; while it slides, `slip` is there too and points the way that it slides. In flight
+        touches; while it slides, `slip` is there too and points to where it slides. In flight
         neither is seen, but the `shadow` below the body.
     ruler
         The ticks of the ground and their figures.
@@ -136,12 +136,12 @@ class Strip:
                 self.caption]  # fmt: skip
 
     def _arrow(self, slip: float) -> MarkerStyle:
-        """A triangle along the ground, the way of the slip."""
+        """Return a triangle that points along the ground to where the contact slips."""
         along = drawing.tilted(self.motion.scene)
         return MarkerStyle(">" if slip > 0 else "<", transform=along)
 
     def _shadow(self, i: int) -> tuple[list[float], list[float]]:
-        """The ground below the body in flight, nothing else."""
+        """Return the ends of the shadow below the body in flight, and nothing elsewhere."""
         if self.motion.mode[i] != Mode.FLIGHT:
             return [], []
         scene, x = self.motion.scene, float(self.motion.x[i])

@@ -164,7 +164,7 @@ def _edges(plane: Plane, axis: str, count: int) -> FloatArray:
 
 
 def _middles(axis: str, edges: FloatArray) -> FloatArray:
-    """Of cells, as one sees them: of the logarithms for the aspect."""
+    """Return the middles of cells as one sees them: those of the logarithms for the aspect."""
     middles: FloatArray = (
         np.sqrt(edges[:-1] * edges[1:]) if axis == "aspect" else (edges[:-1] + edges[1:]) / 2
     )

@@ -50,7 +50,7 @@ def visible_part(ax: Axes, x: FloatArray, y: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class _Spot:
-    """Where a name could be: the middle of its foot and its direction, its dots, how free it is."""
+    """A place for a name: the middle of its foot and its direction, its dots, how free it is."""
 
     foot: FloatArray
     lead: FloatArray
@@ -86,14 +86,14 @@ class Names:
 
     def _best(self, i: int, letters: int, place: float, above: bool) -> _Spot | None:
         line, width = self._lines[i], _WIDTH * self._font * letters
-        way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
-        first, last = (width + self._font) / 2, way[-1] - (width + self._font) / 2
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+        first, last = (width + self._font) / 2, along[-1] - (width + self._font) / 2
         best = None
         for shift in _SHIFTS:
-            middle = (place + shift) * way[-1]
+            middle = (place + shift) * along[-1]
             for side in (above, not above) if first <= middle <= last else ():
                 ends = [
-                    np.array([np.interp(s, way, column) for column in line.T])
+                    np.array([np.interp(s, along, column) for column in line.T])
                     for s in (middle - width / 2, middle, middle + width / 2)
                 ]
                 spot = self._spot(i, ends, width, side)
@@ -129,10 +129,10 @@ class Names:
 
 
 def _dotted(line: FloatArray, step: float) -> FloatArray:
-    """The line as points at most a step apart."""
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
-    places = np.linspace(0, way[-1], max(int(way[-1] / step) + 2, 2))
-    return np.column_stack([np.interp(places, way, column) for column in line.T])
+    """Return points of the line that are at most a step apart."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    places = np.linspace(0, along[-1], max(int(along[-1] / step) + 2, 2))
+    return np.column_stack([np.interp(places, along, column) for column in line.T])
 
 
 def _distance(dots: FloatArray, points: FloatArray) -> float:

@@ -46,8 +46,8 @@ class Plane:
 
     def spaced(self, name: str, count: int) -> FloatArray:
         """Even places from end to end of an axis, in the logarithm for the aspect."""
-        spread: Any = np.geomspace if name == "aspect" else np.linspace
-        places: FloatArray = spread(*self.range_of(name), count)
+        space: Any = np.geomspace if name == "aspect" else np.linspace
+        places: FloatArray = space(*self.range_of(name), count)
         places[[0, -1]] = self.range_of(name)
         return places
 
@@ -99,7 +99,7 @@ def plane_of(
     _core.validate_length("b", b)
     shown = {**_SHOWN, "speed": (0.0, _FASTEST * math.sqrt(gravity / b))}
     limits = [
-        shown[axis] if given is None else _range(f"{argument}_range", axis, given)
+        shown[axis] if given is None else _limits(f"{argument}_range", axis, given)
         for argument, axis, given in zip("xy", axes, ranges, strict=True)
     ]
     return Plane(axes, (limits[0], limits[1]), _values(axes, fixed), b, gravity)
@@ -138,7 +138,7 @@ def _check_fixed(name: str, value: float) -> None:
         raise ValueError(f"{name} must be {wanted}, got {value}")
 
 
-def _range(argument: str, axis: str, given: Any) -> tuple[float, float]:
+def _limits(argument: str, axis: str, given: Any) -> tuple[float, float]:
     least, most = (1.0, _WIDEST) if axis == "aspect" else (0.0, math.inf)
     wanted = f"{argument} must be two ascending finite numbers, not below {least:g}"
     wanted += f" and not above {most:g}" if math.isfinite(most) else ""
