@@ -53,7 +53,7 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     ),
     "columns of multipliers": (
         lambda: _core.multiplier_detail(SCENE, SETTINGS, FIVES[:, :4], FIVES[:, :4]),
-        r"^q must have shape \(2, 5\), got \(2, 4\)$",
+        r"^q must have shape \(n, 5\), got \(2, 4\)$",
     ),
     "start in coordinates": (
         lambda: _core.simulate_coordinates(SCENE, FIVES, FIVES, SETTINGS, 1.0),
