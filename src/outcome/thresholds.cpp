@@ -49,8 +49,8 @@ void take_if_lower(Onset& onset, double value, double angle) {
     if (value < onset.value) onset = {value, angle};
 }
 
-// The energy H - S from which on N of rolling vanishes somewhere, physics (46): at H = h - r/p, with
-// r = normal_at_rest, p = normal_moving; the least such H is a root of h' p^2 - r' p + r p'.
+// The energy H - S from which on N of rolling vanishes somewhere, physics (46): at H = h - r/p,
+// with r = normal_at_rest, p = normal_moving; the least such H is a root of h' p^2 - r' p + r p'.
 Onset contact_loss(const Shape& shape) {
     const EnergyRange range = separatrix_range(shape);
     const ForcePolynomials p = force_polynomials(range);
