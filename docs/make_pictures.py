@@ -1,4 +1,4 @@
-"""Make the pictures of the README beside this file: roll.gif, overview.png and methods.png."""
+"""Make the pictures of the README beside this file: roll.gif and methods.png."""
 
 from io import BytesIO
 from pathlib import Path
@@ -20,8 +20,6 @@ METHODS = {
 def main() -> None:
     trajectory = rl.simulate(rl.scenes.report, 6.0)
     rl.animate(trajectory, HERE / "roll.gif")
-    overview = rl.plot(trajectory, figure=Figure(figsize=(10, 8.5), layout="constrained"))
-    save(overview.figure, "overview.png")
     save(methods(), "methods.png")
 
 

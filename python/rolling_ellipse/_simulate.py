@@ -45,7 +45,7 @@ def simulate(
     model : {"auto", "rolling", "multipliers", "contact"}
         "rolling" is rolling without slip; on level ground the certificate (see `certify`) says
         until when it is true, on a slope the forces along the computed motion. "contact" is the
-        whole motion: it rolls, slides, flies, hits the ground and comes to rest, on arcs joined
+        whole motion: it rolls, slides, flies, hits the ground and comes to rest, on segments joined
         by ``events``; exact rolling and flight, "dop853" at rounding level for the rest. "auto" is
         "rolling" where the certificate proves it, and "contact" elsewhere; with a method given it
         is "rolling". "multipliers" is the same motion in the report's five coordinates
