@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import array, evaluate, shaped
-from ._check import worker_count as worker_count
+from ._check import array, evaluate, shaped, worker_count
 from ._scene import Scene, require_scene
 
 _SCALARS = (float, int, np.float64)

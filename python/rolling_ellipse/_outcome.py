@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._check import broadcast, number, optional_number, uniform_disc
+from ._check import evaluate, number, optional_number, worker_count
 from ._core import Outcome
-from ._flow import worker_count
 
 
 @dataclass(frozen=True)
@@ -124,15 +123,18 @@ def classify(
         If a number is out of its range or shapes do not broadcast.
     """
     threads = worker_count(workers)
-    arguments = {"a": a, "b": b, "omega": omega, "theta": theta, "friction": friction}
-    arguments["gravity"] = gravity
-    if gyration2 is not None:
-        arguments["gyration2"] = gyration2
-    shape, columns = broadcast(**arguments)
-    if gyration2 is None:
-        columns.append(uniform_disc(columns[0], columns[1]))
-    codes = _core.classify_array(math.prod(shape), columns, threads)
-    return Outcome(int(codes[0])) if shape == () else codes.reshape(shape)
+    found = evaluate(
+        _core.classify_array,
+        threads,
+        a=a,
+        b=b,
+        omega=omega,
+        theta=theta,
+        friction=friction,
+        gravity=gravity,
+        gyration2=gyration2,
+    )
+    return Outcome(int(found)) if isinstance(found, float) else found
 
 
 def thresholds(

@@ -23,10 +23,10 @@ ContactForce SlidingEquation::force(const Geometry& at, double omega) const {
 // The impulse of N changes omega and slip in a fixed ratio, physics (54).
 SlidingEquation::LastMoment SlidingEquation::last_moment(const Vector<5>& y) const {
     const Geometry at = geometry(axes_, y[0]);
-    const double b_slope =
+    const double b_derivative =
         (2 * normal_share_ * at.dh * at.ddh + friction_share_ * (at.dh * at.dh + at.h * at.ddh)) /
         gyration2_;
-    const double turn = -contact(at, y[1]).b / b_slope;
+    const double turn = -contact(at, y[1]).b / b_derivative;
     const double after = turn / y[1];
     const double spin = -(at.h * friction_share_ + at.dh * normal_share_) / gyration2_;
     const double slip_by_turning = friction_share_ / spin - at.h;

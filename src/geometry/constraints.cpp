@@ -37,7 +37,7 @@ ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q) {
     matrix <<
         1, 0, -r * c, 0, 0,
         0, 1, -r * s, r * s, -c,
-        0, 0, 0, -polar_radius_slope(axes, psi), 1,
+        0, 0, 0, -polar_radius_derivative(axes, psi), 1,
         0, 0, -contact_angle_rate(axes, geometry(axes, theta)), 1, 0;
     // clang-format on
     return matrix;
@@ -88,7 +88,7 @@ CoordinateState kinematics(const Axes& axes, double theta, double omega) {
     state.q << centre_path(axes, theta), at.h, theta, psi, polar_radius(axes, psi);
     // physics (12)
     state.q_dot << at.h * omega, at.dh * omega, omega, psi_dot,
-        polar_radius_slope(axes, psi) * psi_dot;
+        polar_radius_derivative(axes, psi) * psi_dot;
     return state;
 }
 

@@ -174,7 +174,7 @@ double polar_radius(const Axes& axes, double psi) {
 
 // R = a b w^(-1/2), w = b^2 sin^2 + a^2 cos^2, so R' = R^3 (a^2 - b^2) sin cos/(a b)^2;
 // physics (8), with R'' below.
-double polar_radius_slope(const Axes& axes, double psi) {
+double polar_radius_derivative(const Axes& axes, double psi) {
     const double radius = polar_radius(axes, psi);
     const double scale = radius / (axes.a * axes.b);
     return radius * scale * scale * (axes.a - axes.b) * (axes.a + axes.b) * std::sin(psi) *
@@ -183,7 +183,7 @@ double polar_radius_slope(const Axes& axes, double psi) {
 
 double polar_radius_second(const Axes& axes, double psi) {
     const double radius = polar_radius(axes, psi);
-    const double slope = polar_radius_slope(axes, psi);
+    const double slope = polar_radius_derivative(axes, psi);
     const double scale = radius / (axes.a * axes.b);
     return 3 * slope * slope / radius +
            radius * scale * scale * (axes.a - axes.b) * (axes.a + axes.b) * std::cos(2 * psi);

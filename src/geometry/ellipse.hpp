@@ -72,7 +72,7 @@ double contact_distance(const Axes& axes, const Geometry& at);
 
 // Radius of the ellipse in the body direction psi (report eq 6, physics (7)), and its derivatives.
 double polar_radius(const Axes& axes, double psi);
-double polar_radius_slope(const Axes& axes, double psi);
+double polar_radius_derivative(const Axes& axes, double psi);
 double polar_radius_second(const Axes& axes, double psi);
 
 // The integral of h from 0 to theta, physics (9): the path of the centre in rolling; unwrapped.

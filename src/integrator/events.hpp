@@ -38,8 +38,9 @@ class EventRule {
     double time() const { return finder_.found(); }
     int which() const { return finder_.which(); }
 
-    // How fast it did.
-    double slope() const {
+    // Its rate there, by a difference over a share of the step in which the margin is nearly
+    // linear.
+    double rate() const {
         const double ahead = 1e-3 * now_->h;
         return (margins_at(time())[which()] - margins_at(time() - ahead)[which()]) / ahead;
     }
@@ -77,9 +78,12 @@ struct Until {
 // Ends the solution where a margin became negative: the dense output knows the time to its order
 // only, a step that ends there to that of the method. Returns the time.
 template <class Integrator, int N, class Margins>
-double end_at_event(Integrator& integrator, Steps<N>& steps, double t, int which, double slope,
+double end_at_event(Integrator& integrator, Steps<N>& steps, double t, int which, double rate,
                     const Margins& margins) {
+    // Each correction gains the digits that the dense output lacks, 6 or more; one beyond a
+    // millionth of the step would mean another root.
     constexpr int corrections = 3;
+    constexpr double largest_correction = 1e-6;
     while (steps.knots.back().t >= t && steps.knots.size() > 1) steps.knots.pop_back();
     const Knot<N> from = steps.knots.back();
     const auto step_to = [&](double time) {
@@ -93,9 +97,9 @@ double end_at_event(Integrator& integrator, Steps<N>& steps, double t, int which
     };
     Point<N> end = step_to(t);
     for (int i = 0; i < corrections; ++i) {
-        const double change = -margin(end) / slope;
+        const double change = -margin(end) / rate;
         const double size = std::abs(change);
-        if (!(size <= 1e-6 * (end.t - from.t)) || size <= epsilon * end.t) break;
+        if (!(size <= largest_correction * (end.t - from.t)) || size <= epsilon * end.t) break;
         end = step_to(end.t + change);
     }
     if (end.t > from.t) steps.knots.push_back({end.t, end.y, end.carry, from.periods});
@@ -115,7 +119,7 @@ Until integrate_until(Integrator& integrator, Steps<N>& steps, const Tolerance& 
         checkpoint);
     double time = rule.time();
     if (ending == Ending::event) {
-        time = end_at_event(integrator, steps, time, rule.which(), rule.slope(), margins);
+        time = end_at_event(integrator, steps, time, rule.which(), rule.rate(), margins);
     }
     StepCounts counts = integrator.counts();
     counts.steps = static_cast<long>(steps.knots.size() - before);

@@ -1,6 +1,7 @@
 #include "multipliers/steps.hpp"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "geometry/half_turns.hpp"
 #include "integrator/radau.hpp"
@@ -96,8 +97,11 @@ void with_integrator(Motion& motion, Action action) {
             return action(ExplicitMethod<RungeKutta4, IndexOne>(f), steps);
         case Method::dopri5:
             return action(ExplicitMethod<DormandPrince5, IndexOne>(f), steps);
-        default:
+        case Method::dop853:
             return action(ExplicitMethod<DormandPrince853, IndexOne>(f), steps);
+        default:
+            throw std::logic_error("no steps of multipliers by method '" +
+                                   name(motion.settings.method) + "'");
     }
 }
 

@@ -124,7 +124,8 @@ class Follower {
 
     // Up to the end of the slide, over the tip or until it turns back.
     Until followed(SteppedSliding& motion) {
-        constexpr long most_steps = 2000;  // of half a turn; more only where N = F = 0 at the tip
+        // A half turn takes some 100; more only where N = F = 0 at the tip.
+        constexpr long most_steps = 2000;
         const SlidingEquation& f = motion.equation;
         const double to_go = tip_ + over_the_tip - static_cast<double>(motion.theta_base);
         const auto margins = [&](const Vector<4>& y) -> std::array<double, 5> {

@@ -45,8 +45,9 @@ bool holds_at_start(const EnergyRange& range, double friction, const Start& star
     const double scale = std::isinf(friction)
                              ? std::abs(start.forces.normal)
                              : friction * std::abs(start.forces.normal) + start.forces.friction;
-    if (std::abs(here) > 64 * epsilon * scale) return here > 0;
-    constexpr double ahead = 1e-8;
+    constexpr double roundings = 64;  // behind a margin, of the operations from the angle on
+    constexpr double ahead = 1e-8;    // of the way: sqrt(epsilon), where the margin is beyond them
+    if (std::abs(here) > roundings * epsilon * scale) return here > 0;
     const double angle = std::abs(start.angle);
     const double top = rolling_forces(range, 1.0).angle;
     const double next = start.angle >= 0 ? angle + ahead * (top - angle) : angle * (1 - ahead);

@@ -9,13 +9,13 @@ namespace rolling_ellipse {
 namespace {
 
 // Numerator of dN/dx, N = h P/V^2: physics (36).
-Polynomial<7> normal_slope(const ForcePolynomials& p) {
+Polynomial<7> normal_derivative(const ForcePolynomials& p) {
     const Polynomial<6> moment = p.height * p.normal;
     return derivative(moment) * p.weight - 2.0 * (moment * derivative(p.weight));
 }
 
 // Numerator of d(F/N)^2/dx beside Q, (F/N)^2 = G Q^2/P^2: physics (36).
-Polynomial<11> needed_slope(const ForcePolynomials& p) {
+Polynomial<11> needed_derivative(const ForcePolynomials& p) {
     const Polynomial<7> bracket =
         derivative(p.friction) * p.normal - p.friction * derivative(p.normal);
     return derivative(p.slope_square) * p.friction * p.normal + 2.0 * (p.slope_square * bracket);
@@ -130,8 +130,8 @@ ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& p
             take(rolling_forces(range, x));
         }
     };
-    take_at_roots(normal_slope(polynomials));
-    take_at_roots(needed_slope(polynomials));
+    take_at_roots(normal_derivative(polynomials));
+    take_at_roots(needed_derivative(polynomials));
     take(rolling_forces(range, 1.0));
     return extremes;
 }

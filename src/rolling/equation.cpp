@@ -19,9 +19,9 @@ Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {
     const double omega = y[1];
     const double inertia = gyration2_ + at.h * at.h + at.dh * at.dh;
     const double load = gravity_.into + at.rho * omega * omega;
-    const double rho_slope = -3 * at.rho * at.dh / at.h;
+    const double rho_derivative = -3 * at.rho * at.dh / at.h;
     const double by_theta = at.dh * gravity_.along - at.ddh * load -
-                            at.dh * rho_slope * omega * omega -
+                            at.dh * rho_derivative * omega * omega -
                             2 * at.dh * at.rho * acceleration(at.sin, at.cos, omega);
     const double by_omega = -2 * at.dh * at.rho * omega;
     Matrix<2> jacobian;
@@ -60,7 +60,7 @@ SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, dou
     const double psi_dot = contact_angle_rate(axes, at) * omega;
     const double psi_ddot =
         contact_angle_rate(axes, at) * omega_dot + contact_angle_second(axes, at) * omega * omega;
-    return {psi_ddot, polar_radius_slope(axes, psi) * psi_ddot +
+    return {psi_ddot, polar_radius_derivative(axes, psi) * psi_ddot +
                           polar_radius_second(axes, psi) * psi_dot * psi_dot};
 }
 

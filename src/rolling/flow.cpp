@@ -172,6 +172,7 @@ FlowSample sample(const RollingFlow& flow, double t) {
     const QuarterPosition to = quarter_position(flow.start, now.sin_phi, now.cos_phi);
     const double quarters = now.quarters + (to.quarters - from.quarters);
     const DoubleDouble turned = half_pi_exact * quarters + (to.angle - from.angle);
+    // Where the difference of two paths would lose more than two bits, over a short time.
     const bool short_move = quarters == 0 && std::abs(t) < double(flow.phase.quarter_turn) / 8 &&
                             std::abs(to.path - from.path) < std::abs(from.path) / 4;
     const double path = short_move ? short_path(flow, t)

@@ -11,7 +11,8 @@ namespace rolling_ellipse {
 namespace {
 
 constexpr int order = taylor_order;
-constexpr std::size_t most_pieces = 400;  // on the separatrix there is no end of them
+// Motions have 5 to 50 pieces a quarter turn; on the separatrix there is no end of them.
+constexpr std::size_t most_pieces = 400;
 
 // The terms first .. last of the coefficient k of a product; two sums need not wait for each other.
 double terms(const Series& p, const Series& q, int k, int first, int last) {
@@ -90,7 +91,7 @@ MotionSeries motion_series(const SeriesConstants& body, double sin, double cos, 
 // How far from its centre a series is as good as a double, beside its own size there: the last
 // terms are one rounding then, and what is left out, smaller by another tenth, is less.
 double reach(const Series& series) {
-    constexpr double rest = 1e-16;
+    constexpr double rest = 1e-16;  // half an ulp
     double radius = 1.0;
     for (int i = 0; i < 3; ++i) {  // its size depends on the radius, by a small power of it
         const double size = std::max({std::abs(series[0]), std::abs(series[1]) * radius,
@@ -200,7 +201,9 @@ class TableMaker {
     }
 
     void fill(double low, double high) {
-        constexpr int most_tries = 8;
+        constexpr int most_tries =
+            8;  // a piece that overlaps the last is one after its radius, shortened
+        constexpr double shortened = 0.8;
         FlowPiece last = first_piece(low);
         if (!(last.high > low)) return;
         last.low = low;
@@ -209,7 +212,7 @@ class TableMaker {
             double radius = last.high - double(last.centre);
             FlowPiece next = piece_after(last, std::min(last.high + radius, high));
             for (int i = 0; i < most_tries && next.low > last.high; ++i) {
-                radius = 0.8 * (next.high - double(next.centre));
+                radius = shortened * (next.high - double(next.centre));
                 next = piece_after(last, std::min(last.high + radius, high));
             }
             if (next.low > last.high || !(next.high > last.high)) return;
@@ -333,7 +336,7 @@ void sample(const FlowTable& table, const double* times, std::size_t n, FlowSamp
 
 FlowSampler::FlowSampler(const RollingFlow& flow, double span, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // A table of a short move is small.
+    // Measured: a table costs as much as so many single times; that of a short move is small.
     const std::size_t few = span < double(flow.phase.quarter_turn) ? 8 : 40;
     if (expected >= few) table_ = flow_table(flow, span);
 }

@@ -13,22 +13,22 @@ constexpr double constant_from = 20.0;
 
 // The panel next to the end of a half (coordinate v, from the end), or to the split (w, from
 // there).
-enum class Panel { end, slope };
+enum class Panel { end, rise };
 
 double length(const Half& half, Panel panel) {
-    return panel == Panel::end ? half.end_length : half.slope_length;
+    return panel == Panel::end ? half.end_length : half.rise_length;
 }
 
-// Tangent of the offset from the end of the half: g sinh(v), with v = W - w on the slope;
+// Tangent of the offset from the end of the half: g sinh(v), with v = W - w on the rise;
 // physics (31).
 double tangent(const Half& half, Panel panel, double v) {
     if (panel == Panel::end) return half.grade * std::sinh(v);
     if (v > constant_from) return std::exp(-v);
-    return std::exp(-v) - half.slope_excess * std::sinh(v);
+    return std::exp(-v) - half.rise_excess * std::sinh(v);
 }
 
-// d tangent/dv = g cosh(v), and its negative on the slope.
-double tangent_slope(const Half& half, Panel panel, double tan) {
+// d tangent/dv = g cosh(v), and its negative on the rise.
+double tangent_rate(const Half& half, Panel panel, double tan) {
     const double slope = std::sqrt(square(tan) + square(half.grade));
     return panel == Panel::end ? slope : -slope;
 }
@@ -36,7 +36,7 @@ double tangent_slope(const Half& half, Panel panel, double tan) {
 double coordinate(const Half& half, Panel panel, double tan) {
     if (panel == Panel::end) return std::asinh(tan / half.grade);
     const double root = std::sqrt(square(tan) + square(half.grade));
-    return -std::log((tan + root) / (2 + half.slope_excess));
+    return -std::log((tan + root) / (2 + half.rise_excess));
 }
 
 double sin2_phase(const Half& half, double tan) {
@@ -69,7 +69,7 @@ const GaussRule& rule_from_anchor(const PhaseRate& rate, const Half& half, Panel
         const double s2 = square(rate.short_axis);
         const double place = std::sqrt(s2 / (rate.c2 * rate.amplitude2 + s2)) / half.grade;
         zero_of_h = std::acosh(std::max(place, 1.0));
-        if (panel == Panel::slope) zero_of_h = half.length - zero_of_h;
+        if (panel == Panel::rise) zero_of_h = half.length - zero_of_h;
     }
     const double other_end = std::min(half.length, 2 * constant_from);
     return gauss_rule(nodes_needed(pi / v, {mapped(0.0), mapped(zero_of_h), mapped(other_end)}));
@@ -84,7 +84,7 @@ const GaussRule& rule_between(double v0, double v1) {
 
 DoubleDouble time_from_anchor(const PhaseRate& rate, const Half& half, Panel panel, double v) {
     const auto rate_at = [&](double at) { return time_rate(rate, half, tangent(half, panel, at)); };
-    if (panel == Panel::slope && v > constant_from) {  // on the separatrix: there is no end panel
+    if (panel == Panel::rise && v > constant_from) {  // on the separatrix: there is no end panel
         return time_from_anchor(rate, half, panel, constant_from) +
                (v - constant_from) * rate_at(constant_from);
     }
@@ -95,11 +95,11 @@ Half graded_half(const PhaseRate& rate, bool at_tip, double grade) {
     Half half{};
     half.at_tip = at_tip;
     half.grade = grade;
-    half.slope_excess = square(grade) / (1 + std::sqrt(1 + square(grade)));
+    half.rise_excess = square(grade) / (1 + std::sqrt(1 + square(grade)));
     half.length = grade == 0.0 ? infinity : std::asinh(1 / grade);
-    half.slope_length = std::min(half.length / 2, constant_from);
-    half.end_length = half.length - half.slope_length;
-    half.slope_time = time_from_anchor(rate, half, Panel::slope, half.slope_length);
+    half.rise_length = std::min(half.length / 2, constant_from);
+    half.end_length = half.length - half.rise_length;
+    half.rise_time = time_from_anchor(rate, half, Panel::rise, half.rise_length);
     half.end_time = grade == 0.0 ? DoubleDouble{infinity, 0.0}
                                  : time_from_anchor(rate, half, Panel::end, half.end_length);
     return half;
@@ -119,7 +119,7 @@ PhasePoint point_in_panel(const PhaseRate& rate, const Half& half, Panel panel, 
         const double tan = tangent(half, panel, v);
         const double slope = time_rate(rate, half, tan);
         if (half.at_tip) return v + rest / slope;
-        const double target = tan + rest / slope * tangent_slope(half, panel, tan);
+        const double target = tan + rest / slope * tangent_rate(half, panel, tan);
         return coordinate(half, panel, std::clamp(target, 0.0, 1.0));
     };
 
@@ -143,7 +143,7 @@ PhasePoint point_in_panel(const PhaseRate& rate, const Half& half, Panel panel, 
     const double cos = 1 / std::sqrt(1 + square(tan));
     const double sin = tan * cos;
     const double correction =
-        rest / time_rate(rate, half, tan) * tangent_slope(half, panel, tan) * square(cos);
+        rest / time_rate(rate, half, tan) * tangent_rate(half, panel, tan) * square(cos);
     const PhasePoint offset{sin + cos * correction, cos - sin * correction};
     return half.at_tip ? PhasePoint{offset.cos, offset.sin} : offset;
 }
@@ -156,12 +156,12 @@ PhaseTime phase_time(const PhaseRate& rate) {
     const double flat_grade = std::sqrt(rate.d0 / (rate.d1 * rate.amplitude2 + rate.d0));
     phase.flat = graded_half(rate, false, flat_grade);
     phase.tip = graded_half(rate, true, rate.kappa);
-    phase.split = phase.flat.end_time + phase.flat.slope_time;
+    phase.split = phase.flat.end_time + phase.flat.rise_time;
     if (phase.tip.grade == 0.0) {
         phase.quarter_turn = phase.half_turn = {infinity, 0.0};
         return phase;
     }
-    phase.quarter_turn = phase.split + (phase.tip.end_time + phase.tip.slope_time);
+    phase.quarter_turn = phase.split + (phase.tip.end_time + phase.tip.rise_time);
     phase.half_turn = phase.quarter_turn * 2.0;
     return phase;
 }
@@ -177,12 +177,12 @@ DoubleDouble time_since_flat(const PhaseTime& phase, const PhasePoint& point) {
     const Half& half = at_tip ? phase.tip : phase.flat;
     const double tan = at_tip ? cos / sin : sin / cos;
     const bool near_end = half.grade > 0 && coordinate(half, Panel::end, tan) <= half.end_length;
-    const Panel panel = near_end ? Panel::end : Panel::slope;
+    const Panel panel = near_end ? Panel::end : Panel::rise;
     const double v = std::max(coordinate(half, panel, tan), 0.0);
-    // v is rounded: what it misses of the tangent is added by the slope.
+    // v is rounded: what it misses of the tangent is added by the rate.
     const double reached = tangent(half, panel, v);
-    const double missed = (tan - reached) * time_rate(phase.rate, half, reached) /
-                          tangent_slope(half, panel, reached);
+    const double missed =
+        (tan - reached) * time_rate(phase.rate, half, reached) / tangent_rate(half, panel, reached);
     const DoubleDouble from_anchor = time_from_anchor(phase.rate, half, panel, v) + missed;
 
     DoubleDouble time;
@@ -206,9 +206,9 @@ PhasePoint point_at_time(const PhaseTime& phase, DoubleDouble time) {
         const double from_flat = double(time);
         found = from_flat <= double(phase.flat.end_time)
                     ? point(phase.flat, Panel::end, from_flat)
-                    : point(phase.flat, Panel::slope, -from_split);
-    } else if (phase.tip.grade == 0.0 || from_split <= double(phase.tip.slope_time)) {
-        found = point(phase.tip, Panel::slope, from_split);
+                    : point(phase.flat, Panel::rise, -from_split);
+    } else if (phase.tip.grade == 0.0 || from_split <= double(phase.tip.rise_time)) {
+        found = point(phase.tip, Panel::rise, from_split);
     } else {
         const double to_tip = std::max(double(phase.quarter_turn - time), 0.0);
         found = point(phase.tip, Panel::end, to_tip);

@@ -24,13 +24,13 @@ namespace rolling_ellipse {
 // One half of the quarter phase: from its end (flat or tip) to the split at 45 degrees.
 struct Half {
     bool at_tip;
-    double grade;         // g
-    double slope_excess;  // sqrt(1 + g^2) - 1
-    double length;        // W
-    double end_length;    // v of the neck, where the two panels meet
-    double slope_length;  // w of the neck
+    double grade;        // g
+    double rise_excess;  // sqrt(1 + g^2) - 1
+    double length;       // W
+    double end_length;   // v of the neck, where the two panels meet
+    double rise_length;  // w of the neck
     DoubleDouble end_time;
-    DoubleDouble slope_time;
+    DoubleDouble rise_time;
 };
 
 // The constants of the integrand above.

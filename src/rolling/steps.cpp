@@ -1,6 +1,7 @@
 #include "rolling/steps.hpp"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "geometry/half_turns.hpp"
 #include "integrator/gauss.hpp"
@@ -28,9 +29,14 @@ void with_integrator(const SteppedRolling& motion, Action action) {
             if (stages == 2) return action(Gauss<2, RollingEquation>(f));
             if (stages == 3) return action(Gauss<3, RollingEquation>(f));
             return action(Gauss<4, RollingEquation>(f));
-        default:
+        case Method::dop853:
             return action(ExplicitMethod<DormandPrince853, RollingEquation>(f));
+        case Method::automatic:
+        case Method::exact:
+            break;
     }
+    throw std::logic_error("rolling takes no steps by method '" + name(motion.settings.method) +
+                           "'");
 }
 
 FlowSample flow_sample(const SteppedRolling& motion, const Knot<2>& knot, const Vector<2>& change) {

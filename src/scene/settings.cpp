@@ -20,7 +20,7 @@ void require_tolerance(const std::string& name, double value) {
     }
 }
 
-void require_positive(const std::string& name, long count) {
+void require_count(const std::string& name, long count) {
     if (count < 1) {
         throw std::invalid_argument(name + " must be at least 1, got " + std::to_string(count));
     }
@@ -163,8 +163,8 @@ void validate(const Settings& settings, double t_end) {
     validate_baumgarte(settings);
     validate_step(settings, t_end);
     validate_stages(settings);
-    require_positive("max_steps", settings.max_steps);
-    require_positive("max_events", settings.max_events);
+    require_count("max_steps", settings.max_steps);
+    require_count("max_events", settings.max_events);
     if (settings.rest_speed && !(*settings.rest_speed > 0 && std::isfinite(*settings.rest_speed))) {
         refuse("rest_speed", "a positive finite speed [m/s]", *settings.rest_speed);
     }

@@ -40,6 +40,11 @@ def require(actual: Long, exact: Any, terms: Long, factors: int) -> None:
         raise Violation(f"off by {float(np.max(off)):.3g}, allowed {float(np.max(allowed)):.3g}")
 
 
+def test_every_tableau_is_here() -> None:
+    assert {*EXPLICIT, *GAUSS, "radau"} == TABLEAUS.keys()
+    assert tuple(DENSE_ORDERS) == EXPLICIT
+
+
 # ------------------------------------------------------------------------------ rooted trees
 
 
