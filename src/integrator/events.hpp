@@ -21,7 +21,6 @@ class EventRule {
         : integrator_(integrator), steps_(steps), margins_(margins) {}
 
     AfterStep operator()(const Point<N>& point) {
-        constexpr int looks_per_step = 8;
         const Knot<N>& from = steps_.knots.back();
         const double h = point.t - from.t;
         before_ = now_;

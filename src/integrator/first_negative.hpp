@@ -10,6 +10,9 @@
 
 namespace rolling_ellipse {
 
+// Looks at a step: a dip below zero that is narrower than an eighth of it is found by its parabola.
+inline constexpr int looks_per_step = 8;
+
 // A dip below zero between two looks that are both in order is found by the parabola through three
 // of them.
 template <int N>

@@ -45,7 +45,6 @@ template <class Integrator, int N, class Rule, class Reduce, class Checkpoint>
 Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& tolerance,
                  long max_steps, double t_end, Rule after_step, Reduce reduce,
                  const Checkpoint& checkpoint) {
-    constexpr std::size_t steps_between_checks = 1024;
     double periods = steps.knots.back().periods;
     const auto visit = [&](Point<N>& point) {
         const AfterStep next = after_step(point);

@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstddef>
 
 #include "numerics/double_double.hpp"
 
@@ -44,6 +45,9 @@ void add(Point<N>& point, const Vector<N>& increment) {
     }
 }
 
+// How often long work calls its checkpoint: after some tenths of a millisecond.
+inline constexpr std::size_t steps_between_checks = 1024;
+
 struct Tolerance {
     double relative;
     double absolute;
@@ -52,8 +56,7 @@ struct Tolerance {
 // Whether no component is larger than a state may be.
 template <int N>
 bool in_range(const Vector<N>& y) {
-    constexpr double most = 1e50;
-    return (y.array().abs() <= most).all();
+    return (y.array().abs() <= largest_number).all();
 }
 
 struct StepCounts {

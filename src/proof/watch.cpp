@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "integrator/first_negative.hpp"
+#include "integrator/system.hpp"
 #include "proof/law.hpp"
 
 namespace rolling_ellipse {
 namespace {
-
-constexpr int looks_per_interval = 8;
 
 // Takes the forces in the order of time.
 class Watcher {
@@ -55,18 +54,17 @@ class Watcher {
 
 ContactWatch watch_contact(double friction, const std::vector<double>& times,
                            const ForcesAt& forces_at, const Checkpoint& checkpoint) {
-    constexpr std::size_t intervals_between_checks = 1024;
     Watcher watcher(friction, forces_at);
-    std::array<double, looks_per_interval> looks{};
-    std::array<ContactForce, looks_per_interval> forces{};
+    std::array<double, looks_per_step> looks{};
+    std::array<ContactForce, looks_per_step> forces{};
     for (std::size_t i = 0; i < times.size(); ++i) {
         const bool is_end = i + 1 == times.size();
-        const double h = is_end ? 0.0 : (times[i + 1] - times[i]) / looks_per_interval;
-        const int count = is_end ? 1 : looks_per_interval;
+        const double h = is_end ? 0.0 : (times[i + 1] - times[i]) / looks_per_step;
+        const int count = is_end ? 1 : looks_per_step;
         for (int j = 0; j < count; ++j) looks[j] = times[i] + j * h;
         forces_at(looks.data(), count, forces.data());
         for (int j = 0; j < count; ++j) watcher.take(looks[j], forces[j]);
-        if (i % intervals_between_checks == 0) checkpoint();
+        if (i % steps_between_checks == 0) checkpoint();
     }
     return watcher.result();
 }

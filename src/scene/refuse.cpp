@@ -4,13 +4,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "numerics/numbers.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
 // Within these no product of four lengths, an energy and gravity leaves the range of doubles.
 constexpr double smallest = 1e-30;
 constexpr double largest = 1e30;
-constexpr double largest_number = 1e50;  // of positions, velocities, impulses
+
 }  // namespace
 
 std::string text(double value) {
