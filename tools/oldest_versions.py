@@ -19,6 +19,9 @@ ROOT = Path(__file__).resolve().parents[1]
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = SETTINGS["project"]
 
+# Types are written for the stubs of today's NumPy, which say more than those of the oldest.
+NO_TYPES = ("--deselect", "tests/project/test_codebase.py::test_mypy")
+
 # What old versions say of newer ones beside them is no fault of the package.
 NO_DEPRECATIONS = ("-Wignore::DeprecationWarning", "-Wignore::PendingDeprecationWarning")
 
@@ -63,7 +66,9 @@ def main() -> None:
     install = (python, "-m", "pip", "install", "--quiet")
     subprocess.run([*install, *versions, "cmake", "ninja"], check=True)
     subprocess.run([*install, "--no-build-isolation", "--no-deps", ROOT], check=True)
-    tests = subprocess.run([python, "-m", "pytest", *NO_DEPRECATIONS, *arguments], cwd=ROOT)
+    tests = subprocess.run(
+        [python, "-m", "pytest", *NO_DEPRECATIONS, *NO_TYPES, *arguments], cwd=ROOT
+    )
     sys.exit(tests.returncode)
 
 

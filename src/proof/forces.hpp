@@ -10,7 +10,7 @@
 // for thin ones, near a turning point (e).
 #pragma once
 
-#include "numerics/polynomial.hpp"
+#include "numerics/bernstein.hpp"
 #include "rolling/start.hpp"
 
 namespace rolling_ellipse {

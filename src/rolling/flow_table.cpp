@@ -6,111 +6,13 @@
 #include <utility>
 
 #include "numerics/vector_levels.hpp"
+#include "rolling/motion_series.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-constexpr int order = taylor_order;
 // Motions have 5 to 50 pieces a quarter turn; on the separatrix there is no end of them.
 constexpr std::size_t most_pieces = 400;
-
-// The terms first .. last of the coefficient k of a product; two sums need not wait for each other.
-double terms(const Series& p, const Series& q, int k, int first, int last) {
-    double even = 0.0;
-    double odd = 0.0;
-    int i = first;
-    for (; i < last; i += 2) {
-        even += p[i] * q[k - i];
-        odd += p[i + 1] * q[k - i - 1];
-    }
-    if (i == last) even += p[i] * q[k - i];
-    return even + odd;
-}
-
-double product(const Series& p, const Series& q, int k) { return terms(p, q, k, 0, k); }
-
-// Without the first `from` terms and as many of the last.
-double self_product(const Series& p, int k, int from = 0) {
-    const double pairs = terms(p, p, k, from, (k + 1) / 2 - 1);
-    return 2 * pairs + (k % 2 == 0 && k / 2 >= from ? p[k / 2] * p[k / 2] : 0.0);
-}
-
-// The constants of the series, with lengths in units of the long semi-axis and time in a unit of
-// its own.
-struct SeriesConstants {
-    double short_axis2;
-    double c2;
-    double gravity;
-    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28)
-    double d1;
-};
-
-struct MotionSeries {
-    Series angle;
-    Series omega;
-    Series path;
-};
-
-// Physics (18) with D h^2 = d0 + d1 s^2, u = h^2 and s, c the sine and cosine of the angle:
-//     omega' u (d0 + d1 s^2) = -c2 s c (g u h + S^2 omega^2)
-MotionSeries motion_series(const SeriesConstants& body, double sin, double cos, double omega) {
-    Series s{sin}, c{cos}, w{omega}, s2{}, u{}, h{}, inertia{}, mass{}, sc{}, w2{}, uh{}, load{};
-    Series turning{};
-    MotionSeries motion{};
-    for (int k = 0; k <= order; ++k) {
-        s2[k] = self_product(s, k);
-        u[k] = body.c2 * s2[k];
-        inertia[k] = body.d1 * s2[k];
-        if (k == 0) {
-            u[0] += body.short_axis2;
-            inertia[0] += body.d0;
-            h[0] = std::sqrt(u[0]);
-        } else {
-            h[k] = (u[k] - self_product(h, k, 1)) / (2 * h[0]);
-        }
-        mass[k] = product(u, inertia, k);
-        sc[k] = product(s, c, k);
-        w2[k] = self_product(w, k);
-        uh[k] = product(u, h, k);
-        load[k] = body.gravity * uh[k] + body.short_axis2 * w2[k];
-        const double force = -body.c2 * product(sc, load, k);
-        const double known = terms(mass, turning, k, 1, k);
-        turning[k] = (force - known) / mass[0];
-        motion.omega[k] = w[k];
-        if (k == order) break;
-        const double next = 1.0 / (k + 1);
-        s[k + 1] = product(c, w, k) * next;
-        c[k + 1] = -product(s, w, k) * next;
-        motion.angle[k + 1] = w[k] * next;
-        motion.path[k + 1] = product(h, w, k) * next;
-        w[k + 1] = turning[k] * next;
-    }
-    return motion;
-}
-
-// How far from its centre a series is as good as a double, beside its own size there: the last
-// terms are one rounding then, and what is left out, smaller by another tenth, is less.
-double reach(const Series& series) {
-    constexpr double rest = 1e-16;  // half an ulp
-    double radius = 1.0;
-    for (int i = 0; i < 3; ++i) {  // its size depends on the radius, by a small power of it
-        const double size = std::max({std::abs(series[0]), std::abs(series[1]) * radius,
-                                      std::abs(series[2]) * square(radius)});
-        double least = infinity;
-        for (const int k : {order - 1, order}) {
-            const double last = std::abs(series[k]);
-            if (last > 0) least = std::min(least, std::pow(rest * size / last, 1.0 / k));
-        }
-        radius = least;
-    }
-    return radius;
-}
-
-double value(const Series& series, double z) {
-    double sum = series[order];
-    for (int k = order - 1; k >= 0; --k) sum = sum * z + series[k];
-    return sum;
-}
 
 class TableMaker {
   public:
@@ -151,8 +53,8 @@ class TableMaker {
                         series.path};
         found.angle[0] = position.angle;
         found.path[0] = position.path;
-        for (int k = 0; k <= order; ++k) found.omega[k] /= unit_;
-        for (int k = 1; k <= order; ++k) found.path[k] *= length_;
+        for (int k = 0; k <= series_order; ++k) found.omega[k] /= unit_;
+        for (int k = 1; k <= series_order; ++k) found.path[k] *= length_;
         return found;
     }
 
@@ -248,8 +150,8 @@ using Lanes = std::array<double, lanes>;
 
 [[gnu::always_inline]] inline Lanes values(const Series& series, const Lanes& z) {
     Lanes sum;
-    sum.fill(series[order]);
-    for (int k = order - 1; k >= 0; --k) {
+    sum.fill(series[series_order]);
+    for (int k = series_order - 1; k >= 0; --k) {
         for (std::size_t i = 0; i < lanes; ++i) sum[i] = sum[i] * z[i] + series[k];
     }
     return sum;

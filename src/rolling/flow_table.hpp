@@ -6,17 +6,14 @@
 // (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
+#include "numerics/series.hpp"
 #include "rolling/flow.hpp"
 
 namespace rolling_ellipse {
-
-inline constexpr int taylor_order = 16;
-using Series = std::array<double, taylor_order + 1>;  // of powers of the time in its unit
 
 // Angle, angular velocity and path over a stretch of time; angle and path are counted from the
 // nearest flat position or tip, which lies `quarters` quarter turns from the first flat one.

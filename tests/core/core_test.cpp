@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "integrator/first_negative.hpp"
+#include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
 #include "numerics/double_double.hpp"
-#include "numerics/polynomial.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;

@@ -1,0 +1,203 @@
+// Polynomials on one interval: signs that are proved, roots that are all found.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "numerics/polynomial.hpp"
+
+namespace rolling_ellipse {
+
+// Bernstein coefficients on [0, 1]: their least and largest bound the polynomial.
+template <int Degree>
+struct Bernstein {
+    std::array<Tracked, Degree + 1> coefficients{};
+};
+
+namespace detail {
+
+// binomial(i, j)/binomial(degree, j), physics (37)
+template <int Degree>
+constexpr auto bernstein_matrix() {
+    std::array<std::array<double, Degree + 1>, Degree + 1> rows{};
+    for (int i = 0; i <= Degree; ++i) {
+        rows[i][0] = 1.0;
+        for (int j = 0; j < i; ++j) {
+            rows[i][j + 1] = rows[i][j] * double(i - j) / double(Degree - j);
+        }
+    }
+    return rows;
+}
+
+template <int Degree>
+constexpr auto binomials() {
+    std::array<double, Degree + 1> row{1.0};
+    for (int i = 0; i < Degree; ++i) row[i + 1] = row[i] * (Degree - i) / (i + 1);
+    return row;
+}
+
+}  // namespace detail
+
+template <int N>
+Bernstein<N> bernstein(const Polynomial<N>& p) {
+    static constexpr auto matrix = detail::bernstein_matrix<N>();
+    Bernstein<N> result;
+    for (int i = 0; i <= N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            result.coefficients[i] =
+                result.coefficients[i] + tracked(matrix[i][j]) * p.coefficients[j];
+        }
+    }
+    return result;
+}
+
+// The value at 0 < x < 1: Horner's scheme in the smaller of x/(1 - x) and its inverse.
+template <int N>
+double value(const Bernstein<N>& p, double x) {
+    static constexpr auto binomial = detail::binomials<N>();
+    const bool near_zero = x < 0.5;
+    const double ratio = near_zero ? x / (1 - x) : (1 - x) / x;
+    double sum = 0.0;
+    double power = 1.0;
+    for (int i = 0; i <= N; ++i) {
+        const int j = near_zero ? N - i : i;
+        sum = sum * ratio + binomial[j] * p.coefficients[j].value;
+        power *= i < N ? std::max(x, 1 - x) : 1.0;
+    }
+    return sum * power;
+}
+
+// p on [0, at] and on [at, 1]: de Casteljau's subdivision.
+template <int N>
+struct Parts {
+    Bernstein<N> left;
+    Bernstein<N> right;
+};
+
+template <int N>
+Parts<N> divided(const Bernstein<N>& p, double at = 0.5) {
+    Parts<N> parts{{}, p};
+    auto& work = parts.right.coefficients;
+    for (int level = 0; level < N; ++level) {
+        parts.left.coefficients[level] = work[0];
+        for (int i = 0; i < N - level; ++i) {
+            work[i] = tracked(1 - at) * work[i] + tracked(at) * work[i + 1];
+        }
+    }
+    parts.left.coefficients[N] = work[0];
+    return parts;
+}
+
+namespace detail {
+
+// Bisections after which an interval of [0, 1] counts as a point.
+constexpr int deepest = 48;
+
+template <int N>
+bool all(const Bernstein<N>& p, Sign wanted) {
+    return std::all_of(p.coefficients.begin(), p.coefficients.end(),
+                       [wanted](Tracked c) { return sign(c) == wanted; });
+}
+
+template <int N>
+Sign sign_below(const Bernstein<N>& p, int depth) {
+    if (sign(p.coefficients.front()) == Sign::negative) return Sign::negative;
+    if (sign(p.coefficients.back()) == Sign::negative) return Sign::negative;
+    if (all(p, Sign::positive)) return Sign::positive;
+    if (depth == deepest || all(p, Sign::undecided)) return Sign::undecided;
+    const Parts<N> parts = divided(p);
+    const Sign left = sign_below(parts.left, depth + 1);
+    if (left != Sign::positive) {
+        // Undecided here does not hide a proof of the contrary there.
+        return left == Sign::negative || sign_below(parts.right, depth + 1) != Sign::negative
+                   ? left
+                   : Sign::negative;
+    }
+    return sign_below(parts.right, depth + 1);
+}
+
+template <int N>
+int sign_changes(const Bernstein<N>& p) {
+    int changes = 0;
+    double last = 0.0;
+    for (const Tracked c : p.coefficients) {
+        if (c.value == 0.0) continue;
+        if (last != 0.0 && (c.value > 0) != (last > 0)) ++changes;
+        last = c.value;
+    }
+    return changes;
+}
+
+// The one sign change of p in (0, 1), by bisection with Newton's speed (regula falsi, Illinois).
+template <int N>
+double single_root(const Bernstein<N>& p) {
+    double low = 0.0;
+    double high = 1.0;
+    double f_low = p.coefficients.front().value;
+    double f_high = p.coefficients.back().value;
+    int kept = 0;
+    for (int i = 0; i < 100 && high - low > epsilon * high; ++i) {
+        double x =
+            i % 4 == 3 ? 0.5 * (low + high) : (low * f_high - high * f_low) / (f_high - f_low);
+        if (!(x > low && x < high)) x = 0.5 * (low + high);
+        if (x == low || x == high) break;
+        const double f = value(p, x);
+        if (f == 0.0) return x;
+        if ((f > 0) == (f_high > 0)) {
+            high = x;
+            f_high = f;
+            if (kept == 1) f_low /= 2;
+            kept = 1;
+        } else {
+            low = x;
+            f_low = f;
+            if (kept == -1) f_high /= 2;
+            kept = -1;
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+template <int N>
+void collect_roots(const Bernstein<N>& p, double start, double width, int depth,
+                   std::vector<double>& roots) {
+    const int changes = sign_changes(p);
+    if (changes == 0) return;
+    const double first = p.coefficients.front().value;
+    const double last = p.coefficients.back().value;
+    if (changes == 1 && first != 0.0 && last != 0.0) {
+        roots.push_back(start + width * single_root(p));
+        return;
+    }
+    if (depth == deepest || all(p, Sign::undecided)) {
+        roots.push_back(start + 0.5 * width);
+        return;
+    }
+    const Parts<N> parts = divided(p);
+    collect_roots(parts.left, start, width / 2, depth + 1, roots);
+    if (parts.right.coefficients.front().value == 0.0) roots.push_back(start + 0.5 * width);
+    collect_roots(parts.right, start + width / 2, width / 2, depth + 1, roots);
+}
+
+}  // namespace detail
+
+// positive: everywhere on [0, 1]; negative: somewhere, provably; undecided: rounding cannot tell.
+template <int N>
+Sign sign_on_unit_interval(const Bernstein<N>& p) {
+    return detail::sign_below(p, 0);
+}
+
+// All places in [0, 1] where p changes sign or may touch zero, ascending.
+template <int N>
+std::vector<double> roots_on_unit_interval(const Bernstein<N>& p) {
+    std::vector<double> roots;
+    if (p.coefficients.front().value == 0.0) roots.push_back(0.0);
+    detail::collect_roots(p, 0.0, 1.0, 0, roots);
+    if (p.coefficients.back().value == 0.0) roots.push_back(1.0);
+    std::sort(roots.begin(), roots.end());
+    return roots;
+}
+
+}  // namespace rolling_ellipse
