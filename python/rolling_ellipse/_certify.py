@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 from . import _core
 from ._core import Validity
@@ -58,5 +58,4 @@ def certify(scene: Scene) -> Certificate:
     -------
     Certificate
     """
-    found = _core.certify(require_scene(scene).core)
-    return Certificate(**{field.name: getattr(found, field.name) for field in fields(Certificate)})
+    return Certificate(**_core.certify(require_scene(scene).core))

@@ -14,8 +14,8 @@ py::array_t<std::int8_t> classify_array(py::ssize_t n, const std::array<Array, 7
     const std::array<Argument, 7> of = arguments_of<7>(
         {"a", "b", "omega", "theta", "friction", "gravity", "gyration2"}, arguments, n);
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
+        const auto& [a, b, omega, theta, friction, gravity, gyration2] = of;
         for (py::ssize_t i = begin; i < end; ++i) {
-            const auto& [a, b, omega, theta, friction, gravity, gyration2] = of;
             const Body body{a[i], b[i], gyration2[i], gravity[i]};
             validate(body);
             validate_motion(body, theta[i], omega[i]);
@@ -26,9 +26,18 @@ py::array_t<std::int8_t> classify_array(py::ssize_t n, const std::array<Array, 7
     return out;
 }
 
-template <auto Member>
-auto of_certificate() {
-    return [](const CertifiedScene& scene) { return scene.certificate.*Member; };
+py::dict certificate(const Scene& scene) {
+    const CertifiedScene certified = certify(scene);
+    const Certificate& c = certified.certificate;
+    py::dict found;
+    found["validity"] = c.end.validity;
+    found["smallest_normal_force"] = c.smallest_normal_force;
+    found["smallest_normal_force_angle"] = c.smallest_normal_force_angle;
+    found["largest_friction_needed"] = c.largest_friction_needed;
+    found["largest_friction_needed_angle"] = c.largest_friction_needed_angle;
+    found["ends_at"] = c.end.angle;
+    found["reason"] = certified.reason;
+    return found;
 }
 
 }  // namespace
@@ -50,21 +59,7 @@ void bind_certificate(py::module_& m) {
         .value("EDGE", Outcome::edge)
         .finalize();
     m.def("classify_array", classify_array, "n"_a, "arguments"_a, "workers"_a);
-    bind_class<CertifiedScene>(m, "Certificate")
-        .def_property_readonly("validity",
-                               [](const CertifiedScene& c) { return c.certificate.end.validity; })
-        .def_property_readonly("ends_at",
-                               [](const CertifiedScene& c) { return c.certificate.end.angle; })
-        .def_readonly("reason", &CertifiedScene::reason)
-        .def_property_readonly("smallest_normal_force",
-                               of_certificate<&Certificate::smallest_normal_force>())
-        .def_property_readonly("smallest_normal_force_angle",
-                               of_certificate<&Certificate::smallest_normal_force_angle>())
-        .def_property_readonly("largest_friction_needed",
-                               of_certificate<&Certificate::largest_friction_needed>())
-        .def_property_readonly("largest_friction_needed_angle",
-                               of_certificate<&Certificate::largest_friction_needed_angle>());
-    m.def("certify", [](const Scene& scene) { return certify(scene); }, "scene"_a);
+    m.def("certify", certificate, "scene"_a);
     m.def(
         "roll_over_speed", [](const Scene& scene) { return roll_over_speed(scene.body()); },
         "scene"_a);

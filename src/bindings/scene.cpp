@@ -14,12 +14,12 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
         {"theta", "x_dot", "z_dot", "omega", "a", "b", "gyration2", "friction", "restitution"},
         arguments, n);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        const auto& [theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution] = of;
+        Scene scene{};
+        scene.mass = scene.gravity = 1.0;  // which do not matter
         for (py::ssize_t i = begin; i < end; ++i) {
-            const auto& [theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution] = of;
-            Scene scene{};
             scene.a = a[i];
             scene.b = b[i];
-            scene.mass = scene.gravity = 1.0;  // which do not matter
             scene.inertia = gyration2[i];
             scene.friction = friction[i];
             scene.restitution = restitution[i];

@@ -155,7 +155,7 @@ class ExplicitMethod {
         Tableau::stages + (Tableau::error[0][Tableau::stages] != 0.0 ? 1 : 0);
 
     template <int Stage>
-    void evaluate_stage(const Point<N>& from, double h) {
+    [[gnu::always_inline]] void evaluate_stage(const Point<N>& from, double h) {
         const Vector<N> change = h * weighted_sum<StageRow<Tableau, Stage>>(k_);
         k_[Stage] = f_(from.t + Tableau::c[Stage] * h, from.y + (from.carry + change));
         ++counts_.evaluations;

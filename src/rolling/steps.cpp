@@ -13,6 +13,10 @@ namespace {
 
 constexpr int default_stages = 4;
 
+[[noreturn]] void no_steps_by(Method method) {
+    throw std::logic_error("rolling takes no steps by method '" + name(method) + "'");
+}
+
 // Call action with the integrator of a motion.
 template <class Action>
 void with_integrator(const SteppedRolling& motion, Action action) {
@@ -31,12 +35,9 @@ void with_integrator(const SteppedRolling& motion, Action action) {
             return action(Gauss<4, RollingEquation>(f));
         case Method::dop853:
             return action(ExplicitMethod<DormandPrince853, RollingEquation>(f));
-        case Method::automatic:
-        case Method::exact:
-            break;
+        default:
+            no_steps_by(motion.settings.method);
     }
-    throw std::logic_error("rolling takes no steps by method '" + name(motion.settings.method) +
-                           "'");
 }
 
 FlowSample flow_sample(const SteppedRolling& motion, const Knot<2>& knot, const Vector<2>& change) {

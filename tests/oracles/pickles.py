@@ -65,7 +65,6 @@ def core_objects() -> dict[str, Any]:
         "Continuation": _core.first_continuation(
             motion.scene.core, _core.initial_state(motion.scene.core).state
         ),
-        "Certificate": _core.certify(motion.scene.core),
         "Thresholds": thresholds,
         "SpeedRange": thresholds.jam_speeds[0],
     }
