@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 
+from ..._check import whole
 from ..._core import Outcome
 from ..._outcome import classify
 from ..axes import axes_of, leaving_no_figure, require_axes
@@ -153,10 +155,10 @@ def plot_phase_map(
 
 
 def _count(resolution: Any) -> int:
-    whole = isinstance(resolution, (int, np.integer)) and not isinstance(resolution, bool)
-    if not whole or not 1 <= resolution <= _FINEST:
-        raise ValueError(f"resolution must be an int from 1 to {_FINEST}, got {resolution!r}")
-    return int(resolution)
+    with suppress(TypeError):
+        if 1 <= (count := whole("resolution", resolution)) <= _FINEST:
+            return count
+    raise ValueError(f"resolution must be an int from 1 to {_FINEST}, got {resolution!r}")
 
 
 def _edges(plane: Plane, axis: str, count: int) -> FloatArray:
