@@ -41,10 +41,6 @@ if TYPE_CHECKING:
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
-# Fields of which each model needs its own.
-_UNUSED = {"coordinates": None, "start": None, "contact": None, "kept_events": None}
-
-
 def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Values]:
     """A read-only array, computed when first asked for."""
 
@@ -202,8 +198,7 @@ class Trajectory(FieldsOnly):
     ) -> Trajectory:
         """Make one of the core's own arrays, which need no check, and keep the solution."""
         made = object.__new__(cls)
-        found = sampled(solution, times)
-        made.__dict__.update(_UNUSED | known | found, _solution=solution)
+        made.__dict__.update(known | sampled(solution, times), _solution=solution)
         return made
 
     @cached_property

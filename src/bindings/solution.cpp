@@ -27,6 +27,7 @@ void validate_times(const Solution& solution, const double* times, py::ssize_t b
 template <class Sample, class Take>
 void look(const Solution& solution, const Array& t, Take take) {
     const py::ssize_t n = t.size();
+    require_length("t", t, n);
     const double* const times = t.data();
     const Sampler sampler(solution.motion, solution.followed_until, n);
     std::vector<Sample> samples(std::min<std::size_t>(n, chunk));
@@ -39,7 +40,6 @@ void look(const Solution& solution, const Array& t, Take take) {
 
 // theta, omega, x at each time.
 py::tuple sample_rolling(const Solution& solution, const Array& t) {
-    require_length("t", t, t.size());
     std::vector<Array> out = empty_arrays(3, t.size());
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
     look<FlowSample>(solution, t,
@@ -51,7 +51,6 @@ py::tuple sample_rolling(const Solution& solution, const Array& t) {
 
 // q and q_dot, (n, 5), at each time.
 py::tuple sample_coordinates(const Solution& solution, const Array& t) {
-    require_length("t", t, t.size());
     Array q = matrix(t.size(), 5);
     Array q_dot = matrix(t.size(), 5);
     look<CoordinateState>(solution, t,
@@ -72,7 +71,6 @@ constexpr std::pair<const char*, double ContactForce::*> force_columns[] = {
 
 // State and force at each time, an array by name for each of their numbers.
 py::dict sample_contact(const Solution& solution, const Array& t) {
-    require_length("t", t, t.size());
     py::dict found;
     std::vector<double*> columns;
     const auto add = [&](const char* name) {

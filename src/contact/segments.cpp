@@ -6,8 +6,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// Each law at times since its begin. FlowSamples and CoordinateStates are known to some at first
-// hand; otherwise they follow from state and force.
+// Each law at times since its begin. Every law knows state and force; the other samples, which some
+// laws know at first hand, follow from them.
 
 void look_at(const Scene&, const RollingFlow& flow, const double* times, std::size_t n,
              FlowSample* samples) {
@@ -107,27 +107,12 @@ void take(const Scene& scene, const ContactSample& from, CoordinateState& to) {
 }
 
 template <class Law, class Sample>
-constexpr bool known_at_first_hand =
-    std::is_same_v<Sample, ContactSample> ||
-    (std::is_same_v<Sample, CoordinateState> && std::is_same_v<Law, SteppedMultipliers>) ||
-    (std::is_same_v<Sample, FlowSample> &&
-     (std::is_same_v<Law, RollingFlow> || std::is_same_v<Law, SteppedRolling>));
-
-template <class Sample>
-void look_at(const Scene& scene, const Segment& segment, const std::vector<double>& times,
+void look_at(const Scene& scene, const Law& law, const double* times, std::size_t n,
              Sample* samples) {
-    const std::size_t n = times.size();
-    std::visit(
-        [&](const auto& law) {
-            if constexpr (known_at_first_hand<std::decay_t<decltype(law)>, Sample>) {
-                look_at(scene, law, times.data(), n, samples);
-            } else {
-                std::vector<ContactSample> found(n);
-                look_at(scene, law, times.data(), n, found.data());
-                for (std::size_t i = 0; i < n; ++i) take(scene, found[i], samples[i]);
-            }
-        },
-        segment.law);
+    static_assert(!std::is_same_v<Sample, ContactSample>, "every law must know state and force");
+    std::vector<ContactSample> found(n);
+    look_at(scene, law, times, n, found.data());
+    for (std::size_t i = 0; i < n; ++i) take(scene, found[i], samples[i]);
 }
 
 }  // namespace
@@ -164,7 +149,9 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
         for (std::size_t j = i; j < n && time(j) >= segment.begin && time(j) < end; ++j) {
             since.push_back(time(j) - segment.begin);
         }
-        look_at(scene, segment, since, samples + i);
+        std::visit(
+            [&](const auto& law) { look_at(scene, law, since.data(), since.size(), samples + i); },
+            segment.law);
         const std::size_t last = i + since.size();
         if (units.are_si()) i = last;
         for (; i < last; ++i) samples[i] = in_si(samples[i], units);

@@ -1,7 +1,6 @@
 #include "multipliers/steps.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "geometry/half_turns.hpp"
 #include "integrator/radau.hpp"
@@ -100,8 +99,7 @@ void with_integrator(Motion& motion, Action action) {
         case Method::dop853:
             return action(ExplicitMethod<DormandPrince853, IndexOne>(f), steps);
         default:
-            throw std::logic_error("no steps of multipliers by method '" +
-                                   name(motion.settings.method) + "'");
+            no_integrator_for(motion.settings.method);
     }
 }
 

@@ -1,7 +1,6 @@
 #include "rolling/steps.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "geometry/half_turns.hpp"
 #include "integrator/gauss.hpp"
@@ -12,10 +11,6 @@ namespace rolling_ellipse {
 namespace {
 
 constexpr int default_stages = 4;
-
-[[noreturn]] void no_steps_by(Method method) {
-    throw std::logic_error("rolling takes no steps by method '" + name(method) + "'");
-}
 
 // Call action with the integrator of a motion.
 template <class Action>
@@ -36,7 +31,7 @@ void with_integrator(const SteppedRolling& motion, Action action) {
         case Method::dop853:
             return action(ExplicitMethod<DormandPrince853, RollingEquation>(f));
         default:
-            no_steps_by(motion.settings.method);
+            no_integrator_for(motion.settings.method);
     }
 }
 

@@ -9,11 +9,21 @@
 namespace rolling_ellipse {
 namespace {
 
-// Limits of k^2 beside the long semi-axis squared: below the least, k^2 is lost beside h^2 in D.
-constexpr double least_inertia = 1e-15;
-constexpr double most_inertia = 1e30;
-constexpr double energy_limit = 1e100;  // of a kinetic energy beside m g times that axis
+constexpr double energy_limit = 1e100;  // of a kinetic energy beside m g times the long semi-axis
 constexpr double aspect_limit = 1e3;
+
+// The inertia of a body, in either form, beside that of its mass at the end of the long semi-axis:
+// below the least share k^2 is lost beside h^2 in D.
+void require_inertia(const std::string& name, const std::string& kind, double value, double unit,
+                     const std::string& unit_name) {
+    constexpr double least = 1e-15;
+    constexpr double most = 1e30;
+    if (!(value > 0 && std::isfinite(value))) refuse(name, "a positive finite " + kind, value);
+    const double share = value / unit;
+    if (!(share >= least && share <= most)) {
+        refuse(name, "between 1e-15 and 1e30 times " + unit_name, value);
+    }
+}
 
 }  // namespace
 
@@ -33,13 +43,8 @@ void validate_axes(double a, double b) {
 void validate(const Body& body) {
     validate_axes(body.a, body.b);
     require_positive("gravity", "acceleration [m/s^2]", body.gravity);
-    if (!(body.gyration2 > 0 && std::isfinite(body.gyration2))) {
-        refuse("gyration2", "a positive finite area [m^2]", body.gyration2);
-    }
-    const double ratio = body.gyration2 / square(std::max(body.a, body.b));
-    if (!(ratio >= least_inertia && ratio <= most_inertia)) {
-        refuse("gyration2", "between 1e-15 and 1e30 times max(a, b)^2", body.gyration2);
-    }
+    require_inertia("gyration2", "area [m^2]", body.gyration2, square(std::max(body.a, body.b)),
+                    "max(a, b)^2");
 }
 
 void validate_motion(const Body& body, double theta, double omega) {
@@ -78,14 +83,8 @@ void validate(const Scene& scene) {
     validate_axes(scene.a, scene.b);
     require_positive("mass", "mass [kg]", scene.mass);
     require_positive("gravity", "acceleration [m/s^2]", scene.gravity);
-    if (!(scene.inertia > 0 && std::isfinite(scene.inertia))) {
-        refuse("inertia", "a positive finite moment of inertia [kg m^2]", scene.inertia);
-    }
-    const double disc = scene.mass * square(std::max(scene.a, scene.b));
-    const double ratio = scene.inertia / disc;
-    if (!(ratio >= least_inertia && ratio <= most_inertia)) {
-        refuse("inertia", "between 1e-15 and 1e30 times mass max(a, b)^2", scene.inertia);
-    }
+    require_inertia("inertia", "moment of inertia [kg m^2]", scene.inertia,
+                    scene.mass * square(std::max(scene.a, scene.b)), "mass max(a, b)^2");
     validate(scene.body());
     if (!(std::abs(scene.slope) < half_pi)) {
         refuse("slope", "an angle [rad] strictly between -pi/2 and pi/2", scene.slope);

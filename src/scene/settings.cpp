@@ -153,6 +153,10 @@ std::string name(Method method) {
     return {};
 }
 
+void no_integrator_for(Method method) {
+    throw std::logic_error("there is no integrator for the method '" + name(method) + "'");
+}
+
 void validate(const Settings& settings, double t_end) {
     require_tolerance("rtol", settings.rtol);
     require_tolerance("atol", settings.atol);

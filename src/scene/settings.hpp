@@ -38,6 +38,10 @@ std::string name(Model model);
 std::string name(Method method);
 std::string name(Stabilization stabilization);
 
+// Throws std::logic_error: a method that no model may be asked for has come where integrators are
+// chosen.
+[[noreturn]] void no_integrator_for(Method method);
+
 // Throws std::invalid_argument naming the argument, what was required and what came.
 void validate(const Settings& settings, double t_end);
 
