@@ -18,7 +18,7 @@ from ._flow import flow, period
 from ._outcome import Thresholds, classify, thresholds
 from ._scene import Impulse, InitialState, Scene
 from ._simulate import simulate
-from ._status import IntegrationError, Status, ValidityWarning
+from ._status import IntegrationError, StabilityWarning, Status, ValidityWarning
 from ._trajectory import Trajectory, load
 
 if _TYPE_CHECKING:
@@ -34,16 +34,18 @@ if _TYPE_CHECKING:
         plot_phase_map,
         plot_strobe,
     )
+    from ._work_precision import WorkPrecision, work_precision
 
     __version__: str
 
 __all__ = [
     "Certificate", "ConstraintResiduals", "Event", "EventKind", "Impulse", "InitialState",
-    "IntegrationError", "Mode", "Outcome", "Scene", "Status", "Thresholds", "Trajectory",
-    "Validity", "ValidityWarning", "__version__", "animate", "certify", "classify", "constraints",
-    "flow", "geometry", "impacts", "kinematics", "load", "period", "plot", "plot_constraints",
-    "plot_energy", "plot_forces", "plot_paths", "plot_phase", "plot_phase_map", "plot_strobe",
-    "report", "scenes", "simulate", "thresholds",
+    "IntegrationError", "Mode", "Outcome", "Scene", "StabilityWarning", "Status", "Thresholds",
+    "Trajectory", "Validity", "ValidityWarning", "WorkPrecision", "__version__", "animate",
+    "certify", "classify", "constraints", "flow", "geometry", "impacts", "kinematics", "load",
+    "period", "plot", "plot_constraints", "plot_energy", "plot_forces", "plot_paths", "plot_phase",
+    "plot_phase_map", "plot_strobe", "report", "scenes", "simulate", "thresholds",
+    "work_precision",
 ]  # fmt: skip
 
 
@@ -55,6 +57,8 @@ def __getattr__(name: str) -> _Any:
         value: _Any = version("rolling-ellipse")
     elif name in ("impacts", "report"):
         value = _import_module(f".{name}", __name__)
+    elif name in ("WorkPrecision", "work_precision"):
+        value = getattr(_import_module("._work_precision", __name__), name)
     elif name in __all__:
         value = getattr(_import_module("._pictures", __name__), name)
     else:

@@ -43,6 +43,10 @@ class ValidityWarning(UserWarning):
     """Part of the motion is not what a body on the ground would do."""
 
 
+class StabilityWarning(UserWarning):
+    """What was asked for is known to lose what the motion keeps: constraints, energy or both."""
+
+
 class IntegrationError(RuntimeError):
     """An integration stopped before its last time; `trajectory` holds what there is."""
 

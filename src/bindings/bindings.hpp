@@ -31,5 +31,6 @@ void bind_settings(py::module_& m);
 void bind_solution(py::module_& m);
 void bind_details(py::module_& m);
 void bind_tableaus(py::module_& m);
+void bind_build(py::module_& m);
 
 }  // namespace rolling_ellipse::bindings

@@ -11,4 +11,5 @@ PYBIND11_MODULE(_core, m) {
     bind_solution(m);
     bind_details(m);
     bind_tableaus(m);
+    bind_build(m);
 }

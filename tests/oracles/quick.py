@@ -19,6 +19,7 @@ QUICK = (
     "trajectory/test_saving.py",
     "trajectory/test_sol.py",
     "trajectory/test_trajectory.py",
+    "work_precision/test_results.py",
     "border/test_check.py",
     "export/test_atomic.py",
     "impacts/test_laws_and_fit.py::test_series_that_cannot_be_fitted",

@@ -7,7 +7,7 @@ import math
 import os
 import sys
 from collections.abc import Collection, Iterable
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -17,8 +17,8 @@ from .._check import choice, file_name
 from .._core import EventKind
 from .._events import Event, as_numbers, from_numbers
 from .._samples import ContactSamples
-from .._scene import Impulse, Scene
 from .._settings import METHODS, MODELS, Settings
+from .about import field_names, parsed, require_names, scene_of
 from .atomic import replacing
 from .npz import arrays as npz_arrays
 
@@ -103,15 +103,15 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
     """
     from .._status import Status
 
-    about = json.loads(text, parse_constant=_constant, object_pairs_hook=_once)
-    _require_names("about", about, ("schema", "scene", "settings", "status", "events", *_FACTS))
+    about = parsed("about", text)
+    require_names("about", about, ("schema", "scene", "settings", "status", "events", *_FACTS))
     if about["schema"] != _SCHEMA:
         raise ValueError(f"schema must be {_SCHEMA}, got {about['schema']!r}")
-    _require_names(f"model {about['model']!r}", arrays, _array_names(about["model"], arrays))
+    require_names(f"model {about['model']!r}", arrays, _array_names(about["model"], arrays))
     for name, values in arrays.items():
         _require_values(name, values)
-    scene, settings = _scene(about["scene"]), about["settings"]
-    _require_names("settings", settings, _fields(Settings))
+    scene, settings = scene_of(about["scene"]), about["settings"]
+    require_names("settings", settings, field_names(Settings))
     contact = [arrays[name] for name in ContactSamples._fields if name in arrays]
     pairs: dict[str, Any] = {name: tuple(arrays[name]) for name in _PAIRS if name in arrays}
     trajectory = kind(
@@ -132,32 +132,6 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
     return trajectory
 
 
-def _constant(text: str) -> float:
-    """Take an infinite number; JSON's reader asks for no others but NaN."""
-    if text == "NaN":
-        raise ValueError("about must hold numbers, got NaN")
-    return float(text)
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) != len(pairs):
-        raise ValueError(f"about must have each name once, got {[name for name, _ in pairs]}")
-    return found
-
-
-def _fields(kind: type[Any]) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(kind))
-
-
-def _require_names(what: str, found: Any, names: Iterable[str]) -> None:
-    required = set(names)
-    if not isinstance(found, dict):
-        raise ValueError(f"{what} must hold names and values, got {found!r}")
-    for name in sorted(required ^ set(found)):
-        raise ValueError(f"{what} must {'have' if name in required else 'not have'} {name!r}")
-
-
 def _array_names(model: Any, there: Collection[str]) -> set[str]:
     """Return the names of the arrays of a model; only "multipliers" may have a start."""
     names = set(_VECTORS)
@@ -174,15 +148,6 @@ def _require_values(name: str, values: npt.NDArray[Any]) -> None:
         raise ValueError(f"{name} must be of type {dtype}, got {values.dtype}")
     if not np.all(np.isfinite(values)):
         raise ValueError(f"{name} must be finite, got {float(values[~np.isfinite(values)][0])!r}")
-
-
-def _scene(found: Any) -> Scene:
-    _require_names("scene", found, _fields(Scene))
-    impulse = found["impulse"]
-    if impulse is not None:
-        _require_names("impulse", impulse, _fields(Impulse))
-        impulse = Impulse(**impulse)
-    return Scene(**{**found, "impulse": impulse})
 
 
 def _event(mass: float, numbers: Any) -> Event:

@@ -63,7 +63,7 @@ MODE = Quantity("mode", "1", "what the body does")
 
 def dataframe(trajectory: Trajectory) -> DataFrame:
     """Return the trajectory as a pandas DataFrame (see `Trajectory.to_dataframe`)."""
-    pandas = _required("pandas", "to_dataframe")
+    pandas = required("pandas", "to_dataframe")
     columns: dict[str, Any] = {each.name: getattr(trajectory, each.name) for each in QUANTITIES}
     columns |= dict(zip(_names(MULTIPLIERS), trajectory.multipliers.T, strict=True))
     columns["mode"] = pandas.Categorical.from_codes(trajectory.mode, [mode.name for mode in Mode])
@@ -75,7 +75,7 @@ def dataframe(trajectory: Trajectory) -> DataFrame:
 
 def dataset(trajectory: Trajectory) -> Dataset:
     """Return the trajectory as an xarray Dataset (see `Trajectory.to_xarray`)."""
-    xarray = _required("xarray", "to_xarray")
+    xarray = required("xarray", "to_xarray")
     variables: dict[str, Any] = {
         each.name: ("t", getattr(trajectory, each.name).copy(), _attributes(each))
         for each in QUANTITIES
@@ -101,7 +101,8 @@ def dataset(trajectory: Trajectory) -> Dataset:
     return found
 
 
-def _required(package: str, method: str) -> Any:
+def required(package: str, method: str) -> Any:
+    """Return a package of the extra "data", or raise ImportError that says so."""
     try:
         return importlib.import_module(package)
     except ImportError as error:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from .._errors import constraint_errors, worst
 from .axes import leaving_no_figure, panels_of
 from .comparison import Comparison, Style
-from .errors import constraint_errors, worst
 from .legends import name_curves, some_of
 from .modes import mode_handles
 from .panels import draw_dots, dress_errors, dress_panels
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
+    from .._errors import Errors
     from .._trajectory import Trajectory
-    from .errors import Errors
 
 
 @dataclass(frozen=True, repr=False)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .._check import choice
+from .._errors import energy_error
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
-from .errors import energy_error
 from .legends import name_curves, some_of
 from .modes import mode_handles
 from .panels import DASHES, draw_dots, draw_energies, dress_errors, dress_over_time

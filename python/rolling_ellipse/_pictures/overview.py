@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from .._errors import constraint_errors, energy_error, worst
 from .axes import figure_of, leaving_no_figure
 from .comparison import Comparison
-from .errors import constraint_errors, energy_error, worst
 from .legends import name_curves
 from .modes import mode_handles
 from .palette import INK

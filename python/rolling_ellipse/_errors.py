@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._constraints import position_errors, velocity_errors
+from ._constraints import position_errors, velocity_errors
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from .._check import FloatArray
-    from .._trajectory import Trajectory
+    from ._check import FloatArray
+    from ._trajectory import Trajectory
 
     Errors = Mapping[str, FloatArray]
 

@@ -1,0 +1,172 @@
+"""The race: every contender at every setting, judged once, timed side by side in rounds."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from .._check import array, positive, shown, whole_within
+from .._scene import Scene, require_scene
+from .contenders import (
+    STEPS,
+    TOLERANCES,
+    Contender,
+    default_steps,
+    default_tolerances,
+    own_contenders,
+    peer_contenders,
+)
+from .laps import Lap, judge_all, time_all
+from .machine import machine
+from .progress import Progress
+from .results import WorkPrecision
+from .truth import Judge, Truth
+
+_MOST = 1_000_000  # rounds, samples
+_JUDGING = 0.5  # share of the time in which every run is made once
+
+
+def work_precision(
+    scene: Scene,
+    t_end: float | Sequence[float],
+    *,
+    methods: Sequence[Any] | None = None,
+    tolerances: Sequence[float] | None = None,
+    steps: Sequence[float] | None = None,
+    samples: int = 64,
+    rounds: int = 20,
+    max_seconds: float = 60.0,
+    peers: Sequence[Any] = (),
+    reference: Truth | None = None,
+) -> WorkPrecision:
+    """Compute one motion in many ways, and hold the errors reached against the times taken.
+
+    Every way is tried at every setting of its ladder. Each run is judged once, against the exact
+    motion; then all are timed in rounds, one after the other, so that they share what else the
+    machine does, and the least time of each counts. What cannot be run, stops on its way or would
+    take too long stays among the runs, with its reason.
+
+    Parameters
+    ----------
+    scene : Scene
+    t_end : float or sequence of float
+        End of the motion [s]; several ends give runs for each.
+    methods : sequence, optional
+        Of the package: "flow" (the function, exact); names of methods of the model "rolling"
+        ("exact", "dop853", …); "contact"; "multipliers/dop853/projection" and the like; or
+        mappings of arguments of `simulate` (and "name"), as {"method": "gauss", "stages": 2}.
+        Without it, all that suit the scene; an empty sequence leaves the peers alone.
+    tolerances : sequence of float, optional
+        rtol of methods that control their error, atol is a hundredth; default 1e-2 … 1e-14.
+    steps : sequence of float, optional
+        Of methods that do not [s]; default a quarter to a 2048th of a half turn or half swing.
+    samples : int
+        Number of times at which the errors "l2" and "linf" are taken: no parts of any period.
+    rounds : int
+        How often each run is timed, unless it is so slow that `max_seconds` allow fewer.
+    max_seconds : float
+        After so much time [s] it ends with what it has; a call that is on its way is not cut.
+    peers : sequence
+        Other programs: objects with a ``name`` and ``prepare(scene, t_end, setting)``, which
+        returns a function of nothing that returns theta, omega, x at the end. They may have
+        ``ladder`` ("tolerances", the default, or "steps") and ``tags``; the function may have
+        ``sample(t)``, which returns the arrays at sorted times, and ``counts``, a mapping with
+        "steps", "rejected", "evaluations". A ValueError refuses, any other exception is a failure.
+    reference : callable, optional
+        theta, omega, x at increasing times, in any arithmetic, from elsewhere: without it, exact
+        rolling, or the contact motion, by whose own error nothing else can be judged.
+
+    Returns
+    -------
+    WorkPrecision
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is wrong; it is named. If the motion ends before `t_end`.
+
+    Notes
+    -----
+    The diagrams are those of E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential
+    Equations I, 2nd ed., Springer 1993, II.10.
+    """
+    begin = time.perf_counter()
+    require_scene(scene)
+    ends = _increasing("t_end", t_end)
+    ladders = {
+        TOLERANCES: _ladder("tolerances", tolerances) or default_tolerances(),
+        STEPS: _ladder("steps", steps),
+    }
+    samples = whole_within("samples", samples, _MOST)
+    rounds = whole_within("rounds", rounds, _MOST)
+    seconds = positive("max_seconds", max_seconds)
+    if reference is not None and not callable(reference):
+        raise TypeError(f"reference must be a function of times or None, got {shown(reference)}")
+    rivals = peer_contenders(_listed("peers", peers))
+    judges = [Judge(scene, end, samples, reference) for end in ends]
+    contenders = [*own_contenders(methods, scene, judges[-1].rolls), *rivals]
+    _require_apart(contenders)
+    laps = [
+        Lap(contender, judge, setting)
+        for judge in judges
+        for contender, setting in _rungs(contenders, ladders, scene, judge.t_end)
+    ]
+    with Progress(len(laps) + rounds) as progress:
+        judge_all(laps, scene, begin + _JUDGING * seconds, progress)
+        made = time_all(laps, rounds, begin + seconds, progress)
+    return WorkPrecision(
+        scene=scene,
+        runs=tuple(lap.run() for lap in laps),
+        references=tuple(judge.reference for judge in judges),
+        machine=machine() | {"rounds": str(made)},
+    )
+
+
+def _rungs(
+    contenders: Sequence[Contender], ladders: dict[str, list[float]], scene: Scene, t_end: float
+) -> Iterator[tuple[Contender, float]]:
+    """Go up all ladders together, from coarse to fine: a race that is cut has something of all."""
+    at = ladders | {STEPS: ladders[STEPS] or default_steps(scene, t_end)}
+    columns = [at[c.ladder] if c.ladder else [float("nan")] for c in contenders]
+    for i in range(max(map(len, columns), default=0)):
+        for contender, settings in zip(contenders, columns, strict=True):
+            if i < len(settings):
+                yield contender, settings[i]
+
+
+def _ladder(name: str, values: Any) -> list[float]:
+    """Return settings from coarse to fine; none where there are to be the defaults."""
+    if values is None:
+        return []
+    found = np.atleast_1d(array(name, values))
+    if found.ndim != 1 or found.size == 0:
+        raise ValueError(f"{name} must be a sequence of positive numbers, got {shown(values)}")
+    for value in found.tolist():
+        positive(name, value)
+    return sorted(set(found.tolist()), reverse=True)
+
+
+def _increasing(name: str, values: Any) -> list[float]:
+    found = np.atleast_1d(array(name, values))
+    if found.ndim != 1 or found.size == 0 or np.any(np.diff(found) <= 0):
+        raise ValueError(f"{name} must be a time or increasing times [s], got {shown(values)}")
+    return [positive(name, value) for value in found.tolist()]
+
+
+def _listed(name: str, values: Any) -> list[Any]:
+    try:
+        return list(values)
+    except TypeError:
+        raise TypeError(f"{name} must be a sequence, got {shown(values)}") from None
+
+
+def _require_apart(contenders: Sequence[Contender]) -> None:
+    names = [contender.name for contender in contenders]
+    if not names:
+        raise ValueError("methods and peers must name at least one way to compute, got none")
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"methods and peers must have names of their own, got {name!r} twice")

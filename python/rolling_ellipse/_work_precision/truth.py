@@ -1,0 +1,229 @@
+"""What a motion really is, how well that can be known, and by how much others are off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from .._check import FloatArray
+from .._errors import constraint_errors, energy_error
+from .._flow import flow
+from .._scene import Scene
+from .._simulate import simulate
+from .._trajectory import Trajectory
+from .run import Errors
+
+Columns = tuple[Any, Any, Any]  # theta, omega, x, (n,) each
+Truth = Callable[[FloatArray], Columns]
+
+ROUNDING = 2.2e-16
+_GOLDEN = (math.sqrt(5) - 1) / 2
+# Bounds of the errors of the package's own motions in units of `attainable`, as its test suite
+# holds them against tables of 30 and more digits.
+_EXACT_UNITS, _CONTACT_UNITS = 4.0, 50.0
+_LARGEST_CHANGE, _SMALLEST_CHANGE, _AGREED = 2.0**-20, 2.0**-44, 0.02
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What the runs up to one end are judged by.
+
+    Attributes
+    ----------
+    name : str
+        Where the truth comes from.
+    t_end : float
+        The end [s].
+    floor : float
+        Its own error, as a `final` error: smaller ones cannot be told apart.
+    attainable : float
+        What a relative change of 2.2e-16 of every number of the scene, one after the other, does
+        to the state at the end, and two units in the last place of theta: nobody who computes with
+        doubles can promise less.
+    """
+
+    name: str
+    t_end: float
+    floor: float
+    attainable: float
+
+
+class Judge:
+    """Knows the motion at 0, at sample times, which are no parts of any period, and at the end."""
+
+    def __init__(self, scene: Scene, t_end: float, samples: int, given: Truth | None) -> None:
+        inner = np.sort(np.modf(np.arange(1, samples + 1) * _GOLDEN)[0]) * t_end
+        self.times = np.concatenate([[0.0], inner, [t_end]])
+        self.t_end, self.rolls = t_end, _rolls(scene, t_end)
+        own: _Own = _Exact(scene, t_end) if self.rolls else _Contact(scene, t_end)
+        self._truth = _columns(own.truth if given is None else given, self.times)
+        self._sizes = self._units_of_states(scene)
+        attainable = self._attainable(own)
+        name = own.name if given is None else getattr(given, "__name__", type(given).__name__)
+        floor = own.units * attainable if given is None else float(getattr(given, "floor", 0.0))
+        self.reference = Reference(name, t_end, floor, attainable)
+
+    def final_error(self, state: tuple[float, float, float]) -> float:
+        """Return the error of a state at the end."""
+        return float(self._off(*([value] for value in state), part=slice(-1, None))[0])
+
+    def errors(self, motion: Trajectory, state: tuple[float, float, float]) -> Errors:
+        """Return the errors of a motion at all times, and of the state with which it ends."""
+        off = self._off(motion.theta, motion.omega, motion.x, part=slice(None))[1:-1]
+        positions, velocities = constraint_errors(motion)
+        return Errors(
+            final=self.final_error(state),
+            l2=math.sqrt(float(np.mean(off**2))),
+            linf=float(np.max(off)),
+            energy=float(np.max(energy_error(motion))),
+            gap=_largest(positions["gap"]),
+            slip=_largest(velocities["slip"]),
+        )
+
+    def _off(self, *found: Any, part: slice) -> FloatArray:
+        """Return the errors of states, (n,); the truth may have more digits than doubles."""
+        exact = tuple(column[part] for column in self._truth)
+        largest: FloatArray = np.max(self._parts(found, exact), axis=0)
+        return largest
+
+    def _parts(self, found: Any, exact: Any) -> FloatArray:
+        """Return the differences of theta, omega and x, (3, n), each beside its size."""
+        return np.array(
+            [
+                np.abs(np.asarray(np.asarray(one) - other, dtype=np.float64)) / size
+                for one, other, size in zip(found, exact, self._sizes, strict=True)
+            ]
+        )
+
+    def _units_of_states(self, scene: Scene) -> tuple[float, float, float]:
+        length = max(scene.a, scene.b)
+        fastest = max(abs(float(omega)) for omega in self._truth[1])
+        return 1.0, fastest or math.sqrt(scene.gravity / length), length
+
+    def _attainable(self, own: _Own) -> float:
+        ends = [float(column[-1]) for column in self._truth]
+        digits = np.array([math.ulp(end) for end in ends]) / self._sizes
+        carried = np.sum([self._carried(own, name) for name in own.inputs], axis=0)
+        return float(np.max(2 * digits + carried))
+
+    def _carried(self, own: _Own, name: str) -> FloatArray:
+        """How far the end goes when a number of the scene changes by 2.2e-16 of itself, (3,).
+
+        From ever smaller changes: of the rates, that which differs least from the one before and
+        between its two sides. Before it the motion is not linear, after it rounding rules.
+        """
+        middle = own.end(name, 0.0)
+        rate, least = np.zeros(3), math.inf
+        before, change = np.full(3, math.inf), _LARGEST_CHANGE
+        while change >= _SMALLEST_CHANGE and least > _AGREED:
+            sides = [own.end(name, change), own.end(name, -change)]
+            away = [self._parts(s, middle).ravel() / change for s in sides if s is not None]
+            if away:
+                here = np.max(away, axis=0)
+                apart = float(np.max(np.abs(here - before) + np.abs(away[0] - away[-1])))
+                size = float(np.max(here))
+                share = apart / size if size else 0.0
+                if share <= least:
+                    rate, least = here, share
+                before = here
+            change /= 16
+        return rate * ROUNDING
+
+
+class _Own:
+    """The package's own best motion of a scene, and of scenes that differ by a little."""
+
+    name: str
+    units: float  # largest error, beside what is attainable
+    inputs: tuple[str, ...]  # numbers that a double does not hold exactly
+
+    def truth(self, times: FloatArray) -> Columns:
+        """theta, omega, x at increasing times."""
+        raise NotImplementedError
+
+    def end(self, name: str, change: float) -> Columns | None:
+        """The state at the end with a number changed by a share of it; None if there is none."""
+        raise NotImplementedError
+
+
+class _Exact(_Own):
+    name, units = "exact rolling", _EXACT_UNITS
+    inputs = ("a", "b", "gyration2", "gravity", "theta", "omega")
+
+    def __init__(self, scene: Scene, t_end: float) -> None:
+        start = scene.initial_state
+        self.t_end, self.x = t_end, start.x
+        self.numbers: dict[str, Any] = {
+            "a": scene.a, "b": scene.b, "gyration2": scene.gyration2, "gravity": scene.gravity,
+            "theta": start.theta, "omega": start.omega,
+        }  # fmt: skip
+
+    def truth(self, times: FloatArray) -> Columns:
+        one_by_one = [flow(t, **self.numbers) for t in times.tolist()]  # a table errs by more
+        theta, omega, x = np.array(one_by_one).T
+        return theta, omega, self.x + x
+
+    def end(self, name: str, change: float) -> Columns | None:
+        share = change if name == "theta" else change * self.numbers[name]
+        theta, omega, x = flow(self.t_end, **(self.numbers | {name: self.numbers[name] + share}))
+        return theta, omega, self.x + x
+
+
+class _Contact(_Own):
+    name, units = "contact motion at rounding level", _CONTACT_UNITS
+
+    def __init__(self, scene: Scene, t_end: float) -> None:
+        self.scene = replace(scene, inertia=scene.mass * scene.gyration2)
+        self.t_end = t_end
+        self.inputs = ("theta", *self._numbers())
+
+    def _numbers(self) -> list[str]:
+        unsure = {"theta", "mass", "x", "impulse"}
+        names = [field.name for field in fields(Scene) if field.name not in unsure]
+        known = {name: getattr(self.scene, name) for name in names}
+        return [name for name, value in known.items() if value and math.isfinite(value)]
+
+    def truth(self, times: FloatArray) -> Columns:
+        found = simulate(self.scene, times, model="contact", raise_on_failure=False)
+        if found.t.size < times.size:
+            raise ValueError(
+                f"t_end must be a time that the motion reaches, got {self.t_end!r}: it ends at "
+                f"{found.t_end!r} s, as {found.message}"
+            )
+        return found.theta, found.omega, found.x
+
+    def end(self, name: str, change: float) -> Columns | None:
+        value = getattr(self.scene, name)
+        other = value + (change if name == "theta" else change * value)
+        with suppress(ValueError):  # as friction or the height above the ground forbid it
+            scene = replace(self.scene, **{name: other})
+            found = simulate(scene, [self.t_end], model="contact", raise_on_failure=False)
+            if found.t.size:
+                return float(found.theta[0]), float(found.omega[0]), float(found.x[0])
+        return None
+
+
+def _rolls(scene: Scene, t_end: float) -> bool:
+    """Whether level ground holds the body for certain."""
+    return simulate(scene, [t_end], raise_on_failure=False).model == "rolling"
+
+
+def _columns(truth: Truth, times: FloatArray) -> Columns:
+    columns = tuple(np.asarray(column) for column in truth(times))
+    if len(columns) != 3 or any(column.shape != times.shape for column in columns):
+        raise ValueError(
+            f"reference must return theta, omega and x, each of the shape of t, {times.shape}, "
+            f"got {[column.shape for column in columns]}"
+        )
+    return columns
+
+
+def _largest(values: FloatArray) -> float:
+    """Return the largest of those that are numbers; NaN where there is none."""
+    known = values[np.isfinite(values)]
+    return float(np.max(known)) if known.size else math.nan

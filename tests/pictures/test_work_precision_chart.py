@@ -1,0 +1,144 @@
+"""The work-precision chart: each run is where its numbers say, or on the rim with its reason."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from rolling_ellipse import Scene, WorkPrecision, work_precision
+
+SCENE = Scene(2.0, 1.0, theta=0.2, omega=3.2)
+FOUND = work_precision(
+    SCENE, [1.0, 3.0], rounds=2, samples=8, tolerances=[1e-2, 1e-6, 1e-10], steps=[0.4, 0.02],
+    methods=["flow", "dop853", "rk4", "multipliers/rk4/none", "multipliers/radau/ggl"],
+)  # fmt: skip
+FAILED = {run.name for run in FOUND.of() if not run.completed}
+
+
+@pytest.fixture
+def chart() -> Any:
+    return FOUND.plot(ax=Figure().add_subplot())
+
+
+def test_every_answer_is_drawn_and_every_gap_is_marked(chart: Any) -> None:
+    floor = FOUND.reference.floor
+    for name in FOUND.names:
+        answers = [run for run in FOUND.of() if run.name == name and run.completed]
+        x = [min(max(run.errors.final, floor), 10.0) for run in answers]
+        drawn = chart.lines[name].get_xydata()
+        assert np.array_equal(drawn, np.transpose([x, [run.time for run in answers]]))
+    assert FAILED and chart.failures.keys() == FAILED
+    for name in FAILED:
+        reason = next(r.reason for r in FOUND.of() if r.name == name and not r.completed)
+        line = next(
+            each for each in chart.reasons.get_text().splitlines() if each.startswith(f"× {name}")
+        )
+        assert reason[:40] in line
+
+
+def test_small_errors_are_on_the_right_and_what_cannot_be_known_is_grey(chart: Any) -> None:
+    first, last = chart.ax.get_xlim()
+    assert first > 1e-2 > FOUND.reference.attainable > last
+    assert chart.ax.get_xscale() == chart.ax.get_yscale() == "log"
+    assert chart.attainable.get_xdata()[0] == FOUND.reference.attainable
+    left, right = chart.floor.get_x(), chart.floor.get_x() + chart.floor.get_width()
+    assert max(left, right) == pytest.approx(FOUND.reference.floor)
+
+
+def test_set_up_is_a_hollow_mark_above_the_most_accurate_run(chart: Any) -> None:
+    line, hollow = chart.lines["flow"], chart.setups["flow"]
+    run = next(run for run in FOUND.of() if run.name == "flow")
+    assert hollow.get_xydata()[0].tolist() == [line.get_xdata()[0], run.time + run.setup]
+    assert hollow.get_markerfacecolor() == "white"
+
+
+def test_names_stand_apart_in_the_margin() -> None:
+    chart: Any = FOUND.plot()
+    figure = chart.ax.figure
+    figure.canvas.draw()
+    boxes = [chart.names[name].get_window_extent() for name in chart.lines]
+    assert {text.get_text() for text in chart.names.values()} == set(FOUND.names)
+    tops = sorted((box.y0, box.y1) for box in boxes)
+    assert all(below[1] <= above[0] + 1 for below, above in pairwise(tops))
+    width, height = figure.canvas.get_width_height()
+    for text in (*chart.names.values(), chart.reasons, chart.stamp):
+        box = text.get_window_extent()
+        assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, text
+    plt.close(figure)
+
+
+def test_kinds_of_ways_differ_in_grey_and_ways_of_a_kind_in_their_marks(chart: Any) -> None:
+    def grey(colour: Any) -> float:
+        return float(np.dot(to_rgb(colour), (0.299, 0.587, 0.114)))
+
+    kinds = {n: grey(chart.lines[n].get_color()) for n in ("flow", "rk4", "multipliers/rk4/none")}
+    shades = sorted(kinds.values())
+    assert all(abs(b - a) > 0.07 for a, b in pairwise(shades))
+    assert chart.lines["rk4"].get_marker() != chart.lines["dop853"].get_marker()
+
+
+def test_the_stamp_says_what_it_was_taken_on() -> None:
+    chart: Any = FOUND.plot()
+    text = chart.stamp.get_text()
+    for name in ("processor", "vectors", "compiler", "flags", "python", "numpy", "date", "rounds"):
+        assert FOUND.machine[name] in text
+    across, up = chart.ax.get_xlim(), chart.ax.get_ylim()
+    box = chart.ax.get_window_extent()
+    decades = abs(math.log10(across[0] / across[1])), abs(math.log10(up[0] / up[1]))
+    chart.ax.figure.canvas.draw()
+    box = chart.ax.get_window_extent()
+    assert box.width / decades[0] == pytest.approx(box.height / decades[1], rel=1e-3)
+    plt.close(chart.ax.figure)
+
+
+@pytest.mark.parametrize("x", ["linf", "energy", "gap", "steps", "evaluations", "setting"])
+@pytest.mark.parametrize("y", ["time", "samples_time", "final", "setup"])
+def test_any_quantity_goes_on_either_axis(x: str, y: str) -> None:
+    chart: Any = FOUND.plot(x, y, ax=Figure().add_subplot())
+    line = chart.lines["dop853"].get_xydata()
+    runs = [run for run in FOUND.of() if run.name == "dop853"]
+    last = runs[-1].value(y)
+    assert line[-1, 1] == (max(last, FOUND.reference.floor) if y == "final" else last)
+    chart.ax.figure.canvas.draw()
+
+
+def test_over_the_span_each_setting_has_its_line() -> None:
+    chart: Any = FOUND.plot("t_end", "final", tags=["dop853"], ax=Figure().add_subplot())
+    assert chart.lines.keys() == {("dop853", s) for s in (1e-2, 1e-6, 1e-10)}
+    for line in chart.lines.values():
+        assert line.get_xdata().tolist() == [1.0, 3.0]
+    everything: Any = FOUND.plot("t_end", "time", ax=Figure().add_subplot())
+    for mark in everything.failures.values():
+        assert set(mark.get_xdata()) <= {1.0, 3.0}
+
+
+def test_tags_choose() -> None:
+    chart: Any = FOUND.plot(tags=["multipliers"], ax=Figure().add_subplot())
+    assert {*chart.lines, *chart.failures} == {"multipliers/rk4/none", "multipliers/radau/ggl"}
+    with pytest.raises(ValueError, match=r"tags must be among dop853, exact, flow, .*got 'peer'"):
+        FOUND.plot(tags="peer", ax=Figure().add_subplot())
+
+
+def test_a_chart_without_an_answer_still_says_why() -> None:
+    runs = tuple(
+        replace(run, status="MAX_STEPS", reason="too many", time=math.nan) for run in FOUND.runs
+    )
+    found: WorkPrecision = replace(FOUND, runs=runs)
+    chart: Any = found.plot()
+    assert not chart.lines and chart.failures.keys() == set(FOUND.names)
+    assert "too many" in chart.reasons.get_text()
+    chart.ax.figure.canvas.draw()
+    plt.close(chart.ax.figure)
+
+
+@pytest.mark.parametrize("name", ["error", 3, None])
+def test_quantities_that_are_none_are_refused(name: Any) -> None:
+    with pytest.raises(ValueError, match="x must be one of final, l2, linf"):
+        FOUND.plot(name)
+    with pytest.raises(ValueError, match="y must be one of final, l2, linf"):
+        FOUND.plot("final", name)

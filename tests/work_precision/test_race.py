@@ -1,0 +1,322 @@
+"""Runs of `work_precision`: who is in it, what is measured, what is refused, what is left out.
+
+No test looks at how long something took: only at who was timed, and at errors that are known.
+"""
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.margins import told
+from rolling_ellipse import Scene, WorkPrecision, flow, simulate, work_precision
+
+ROTATION = Scene(2.0, 1.0, theta=0.2, omega=3.2)
+QUICK: dict[str, Any] = {"rounds": 1, "tolerances": [1e-4, 1e-8], "steps": [0.01], "samples": 16}
+END = 1.7
+
+
+class Peer:
+    """Exact rolling, off by what it is told to be."""
+
+    tags = ("exact", "toy")
+
+    def __init__(self, name: str = "toy", off: float = 0.0, sampled: bool = True) -> None:
+        self.name, self.off, self.sampled = name, off, sampled
+        self.prepared: list[float] = []
+
+    def prepare(self, scene: Scene, t_end: float, setting: float) -> Callable[[], Any]:
+        self.prepared.append(setting)
+        arguments: dict[str, Any] = {
+            "a": scene.a, "b": scene.b, "theta": scene.theta, "omega": scene.omega,
+        }  # fmt: skip
+
+        def run() -> tuple[Any, ...]:
+            theta, omega, x = flow(t_end, **arguments)
+            return theta + self.off, omega, x
+
+        def sample(t: Any) -> tuple[Any, ...]:
+            theta, omega, x = flow(t, **arguments)
+            return theta + self.off, omega, x
+
+        if self.sampled:
+            run.sample = sample  # type: ignore[attr-defined]
+        run.counts = {"steps": 7, "evaluations": 70}  # type: ignore[attr-defined]
+        return run
+
+
+def raced(*peers: Any, **how: Any) -> WorkPrecision:
+    return work_precision(ROTATION, END, **({"methods": ["flow"], "peers": peers} | QUICK | how))
+
+
+def only(found: WorkPrecision, name: str) -> Any:
+    """The first run of that name."""
+    return next(run for run in found.runs if run.name == name)
+
+
+# -------------------------------------------------------------------------------- errors
+
+
+@pytest.mark.parametrize("off", [1e-3, 1e-7])
+def test_an_error_is_seen_as_large_as_it_is(off: float) -> None:
+    """Of theta, by the same at all times: so far off at the end, in the mean, and at worst."""
+    errors = only(raced(Peer(off=off)), "toy").errors
+    for name in ("final", "l2", "linf"):
+        assert errors[name] == pytest.approx(off, rel=1e-6)
+    assert errors.energy > 0.01 * off  # h' is not 0 at the end
+
+
+def test_each_component_counts_in_its_own_unit() -> None:
+    """omega beside the fastest of the motion, x beside the long axis."""
+    exact = simulate(ROTATION, np.linspace(0, END, 4001))
+
+    def reference(t: Any) -> tuple[Any, ...]:
+        theta, omega, x = flow(t, a=2.0, b=1.0, theta=0.2, omega=3.2)
+        return theta, omega + 1e-3, x
+
+    error = only(raced(reference=reference), "flow").errors.final
+    assert error == pytest.approx(1e-3 / np.max(np.abs(exact.omega)), rel=1e-2)
+
+    def other(t: Any) -> tuple[Any, ...]:
+        theta, omega, x = flow(t, a=2.0, b=1.0, theta=0.2, omega=3.2)
+        return theta, omega, x + 1e-3
+
+    assert only(raced(reference=other), "flow").errors.final == pytest.approx(5e-4, rel=1e-6)
+
+
+def test_a_reference_may_have_more_digits_than_doubles() -> None:
+    """Objects that subtract, as those of mpmath or decimal do."""
+    import mpmath
+
+    def reference(t: Any) -> Any:
+        columns = flow(t, a=2.0, b=1.0, theta=0.2, omega=3.2)
+        return [np.array([mpmath.mpf(v) + mpmath.mpf("1e-20") for v in c]) for c in columns]
+
+    found = raced(reference=reference)
+    assert only(found, "flow").errors.final <= 1e-15
+    assert found.reference.name == "reference" and found.reference.floor == 0
+
+
+@pytest.mark.parametrize("method", ["dop853", "dopri5", "rk4", "gauss", "radau"])
+def test_finer_settings_err_less(method: str) -> None:
+    ladder: dict[str, Any] = {"tolerances": [1e-4, 1e-10], "steps": [0.05, 0.005]}
+    coarse, fine = work_precision(ROTATION, END, methods=[method], rounds=1, **ladder).runs
+    told(method, coarse.errors.final, fine.errors.final)
+    assert coarse.setting > fine.setting and coarse.steps < fine.steps
+    assert 20 * fine.errors.final < coarse.errors.final
+    assert 20 * fine.errors.linf < coarse.errors.linf
+    assert fine.errors.l2 <= fine.errors.linf
+
+
+def test_the_constraints_of_what_drifts_are_missed() -> None:
+    """And those of what is projected are not."""
+    found = work_precision(
+        ROTATION, 4.0, methods=["multipliers/rk4/none", "multipliers/rk4/projection"],
+        steps=[0.05], rounds=1,
+    )  # fmt: skip
+    drifting, projected = found.runs
+    assert (drifting.model, drifting.method) == ("multipliers", "rk4")
+    assert (drifting.stabilization, projected.stabilization) == ("none", "projection")
+    assert drifting.errors.gap > 1e-5 and drifting.errors.slip > 1e-5
+    assert projected.errors.gap < 1e-14 and projected.errors.slip < 1e-13
+
+
+def test_a_peer_that_gives_the_end_alone_has_no_other_errors() -> None:
+    errors = only(raced(Peer(off=1e-3, sampled=False)), "toy").errors
+    assert errors.final == pytest.approx(1e-3, rel=1e-6)
+    assert all(math.isnan(errors[name]) for name in errors if name != "final")
+
+
+# -------------------------------------------------------------------------------- who runs
+
+
+def test_every_rung_of_every_ladder_is_a_run() -> None:
+    peer, fixed = Peer(), Peer("fixed")
+    fixed.ladder = "steps"  # type: ignore[attr-defined]
+    found = raced(peer, fixed, methods=["exact", "dop853", "rk4"], steps=[0.05, 0.1])
+    settings = {name: [r.setting for r in found.runs if r.name == name] for name in found.names}
+    assert math.isnan(settings.pop("exact")[0])
+    ladders = [1e-4, 1e-8], [0.1, 0.05]
+    assert settings == {
+        "dop853": ladders[0], "rk4": ladders[1], "toy": ladders[0], "fixed": ladders[1],
+    }  # fmt: skip
+    assert peer.prepared == ladders[0] and fixed.prepared == ladders[1]
+    toy = only(found, "toy")
+    assert toy.tags == ("peer", "exact", "toy") and (toy.steps, toy.evaluations) == (7, 70)
+    assert all(run.time > 0 and run.setup >= 0 and run.samples_time > 0 for run in found.runs)
+
+
+def test_several_ends_have_runs_and_references_of_their_own() -> None:
+    found = work_precision(ROTATION, [1.0, 3.0], methods=["flow", "rk4"], **QUICK)
+    assert [reference.t_end for reference in found.references] == [1.0, 3.0]
+    assert [run.t_end for run in found.runs] == [1.0, 1.0, 3.0, 3.0]
+    assert found.of(1.0) == found.runs[:2] and found.of() == found.runs[2:]
+    with pytest.raises(ValueError, match=r"t_end must be one of 1\.0, 3\.0, got 2\.0"):
+        found.of(2.0)
+
+
+SUITABLE = {
+    "level": (ROTATION, "flow"),
+    "slope": (Scene(2.0, 1.0, slope=0.05, omega=1.0), "contact"),
+    "in the air": (Scene(2.0, 1.0, z=2.0), "contact"),
+    "slips": (Scene(2.0, 1.0, omega=5.2, friction=0.3), "contact"),
+    "at rest": (Scene(2.0, 1.0), "flow"),
+}
+
+
+@pytest.mark.parametrize(("scene", "first"), SUITABLE.values(), ids=SUITABLE)
+def test_what_suits_the_scene_runs_without_being_named(scene: Scene, first: str) -> None:
+    found = work_precision(scene, 0.5, **QUICK)
+    told(found.names)
+    assert found.names[0] == first
+    assert only(found, first).completed and only(found, first).errors.final <= 1e-12
+    for run in found.runs:
+        assert run.completed == (run.reason == "" or run.status == "COMPLETED")
+
+
+def test_a_model_that_is_too_poor_has_no_answer() -> None:
+    """Exact rolling where the body slips: its motion is not a slow one, it is none."""
+    scene = SUITABLE["slips"][0]
+    exact = only(work_precision(scene, 1.0, **QUICK), "exact")
+    assert exact.status == "VALIDITY_LOST" and "rolling is true until" in exact.reason
+    assert math.isnan(exact.errors.final) and math.isnan(exact.time)
+
+
+def test_mappings_say_anything_that_simulate_takes() -> None:
+    methods = [{"name": "two", "method": "gauss", "stages": 2}, {"method": "gauss", "stages": 4}]
+    found = work_precision(ROTATION, END, methods=methods, rounds=1, steps=[0.05])
+    assert found.names == ("two", "gauss/4")
+    two, four = found.runs
+    assert four.errors.final < 1e-2 * two.errors.final
+
+
+# ------------------------------------------------------------------------- gaps and budgets
+
+
+class Broken:
+    """Fails in one way or another."""
+
+    def __init__(self, name: str, error: Exception | None) -> None:
+        self.name, self.error = name, error
+
+    def prepare(self, scene: Scene, t_end: float, setting: float) -> Callable[[], Any]:
+        if isinstance(self.error, ValueError):
+            raise self.error
+
+        def run() -> tuple[float, float, float]:
+            if self.error is not None:
+                raise self.error
+            return math.nan, 0.0, 0.0
+
+        return run
+
+
+def test_whatever_a_peer_does_is_a_run_with_a_reason() -> None:
+    found = raced(
+        Broken("refuses", ValueError("only circles")),
+        Broken("breaks", RuntimeError("singular matrix")),
+        Broken("lies", None),
+    )
+    reasons = {run.name: (run.status, run.reason) for run in found.runs}
+    assert reasons["refuses"] == ("REFUSED", "only circles")
+    assert reasons["breaks"] == ("FAILED", "RuntimeError: singular matrix")
+    assert reasons["lies"][0] == "FAILED" and "nan" in reasons["lies"][1]
+    assert reasons["flow"] == ("COMPLETED", "")
+
+
+def test_what_stops_has_its_status_and_sentence() -> None:
+    found = work_precision(
+        ROTATION, 100.0, rounds=1, tolerances=[1e-8],
+        methods=[{"name": "short", "method": "dop853", "max_steps": 10}, "flow"],
+    )  # fmt: skip
+    short = only(found, "short")
+    assert short.status == "MAX_STEPS" and "max_steps" in short.reason
+    assert found.best(1e-8).name == "flow"  # type: ignore[union-attr]
+
+
+class Slow(Peer):
+    """Takes ten times as long for each finer setting, and would take hours at the last."""
+
+    def prepare(self, scene: Scene, t_end: float, setting: float) -> Callable[[], Any]:
+        run = super().prepare(scene, t_end, setting)
+
+        def slow() -> Any:
+            time.sleep(1e-6 / setting)
+            return run()
+
+        return slow
+
+
+def test_time_that_is_short_leaves_out_the_dearest_and_says_so() -> None:
+    found = raced(
+        Slow("slow"), tolerances=[10.0**-k for k in range(4, 11)], max_seconds=1.0, rounds=3
+    )
+    slow = [run for run in found.runs if run.name == "slow"]
+    states = [run.status for run in slow]
+    told(states)
+    first = states.index("SKIPPED")
+    assert first >= 1 and set(states[first:]) == {"SKIPPED"}
+    assert all("max_seconds" in run.reason for run in slow[first:])
+    assert only(found, "flow").completed
+
+
+def test_the_dearest_take_part_in_fewer_rounds() -> None:
+    """10 s for 10 rounds: what costs 1 ms has all of them, what costs 2 s a few."""
+    from rolling_ellipse._work_precision.laps import _shares
+
+    assert _shares([1e-3, 2.0, 0.5], 10, 10.0) == [10, 2, 9]
+    assert _shares([1e-3, 2.0], 10, 100.0) == [10, 10]
+    assert _shares([5.0, 5.0], 10, 0.0) == [1, 1]
+
+
+# ------------------------------------------------------------------------------- refusals
+
+WRONG: dict[str, tuple[dict[str, Any], type[Exception], str]] = {
+    "no methods": ({"methods": []}, ValueError, "methods and peers must name at least one"),
+    "unknown": ({"methods": ["euler"]}, ValueError, "methods must be among 'flow'.*got 'euler'"),
+    "unknown part": ({"methods": ["multipliers/rk4/glue"]}, ValueError, "methods must be among"),
+    "twice": ({"methods": ["rk4", "rk4"]}, ValueError, "names of their own, got 'rk4' twice"),
+    "number": ({"methods": [3]}, TypeError, "methods must be names.*got 3"),
+    "argument": ({"methods": [{"speed": 1}]}, ValueError, "arguments of methods must be one of"),
+    "tolerance": ({"tolerances": [0.0]}, ValueError, r"tolerances must be positive.*got 0\.0"),
+    "no tolerances": ({"tolerances": []}, ValueError, "tolerances must be a sequence"),
+    "nan": ({"tolerances": [math.nan]}, ValueError, "tolerances must be positive"),
+    "words": ({"tolerances": ["fine"]}, TypeError, "tolerances must be a number or an array"),
+    "step": ({"steps": [-1.0]}, ValueError, "steps must be positive"),
+    "samples": ({"samples": 0}, ValueError, "samples must be at least 1, got 0"),
+    "rounds": ({"rounds": 0}, ValueError, "rounds must be at least 1, got 0"),
+    "seconds": ({"max_seconds": 0}, ValueError, "max_seconds must be positive"),
+    "peer": ({"peers": [3]}, TypeError, "peers must have a name and a function prepare, got 3"),
+    "no peers": ({"peers": 3}, TypeError, "peers must be a sequence, got 3"),
+    "reference": ({"reference": 3}, TypeError, "reference must be a function of times"),
+}
+
+
+@pytest.mark.parametrize(("how", "kind", "message"), WRONG.values(), ids=WRONG)
+def test_wrong_arguments_are_refused_by_name(
+    how: dict[str, Any], kind: type[Exception], message: str
+) -> None:
+    with pytest.raises(kind, match=message):
+        work_precision(ROTATION, END, **how)
+
+
+@pytest.mark.parametrize("t_end", [0.0, -1.0, math.inf, [2.0, 1.0], []])
+def test_ends_that_are_none_are_refused(t_end: Any) -> None:
+    with pytest.raises(ValueError, match="t_end must be"):
+        work_precision(ROTATION, t_end)
+
+
+def test_an_end_that_the_motion_does_not_reach_is_refused() -> None:
+    """A slide that jams: there is nothing to judge by."""
+    jams = Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0)
+    assert simulate(jams, 1.0).status is rl.Status.JAMMED
+    with pytest.raises(ValueError, match=r"t_end must be a time that the motion reaches, got 1\.0"):
+        work_precision(jams, 1.0)
+
+
+def test_what_is_no_scene_is_refused() -> None:
+    with pytest.raises(TypeError, match="scene must be a Scene"):
+        work_precision("ellipse", 1.0)  # type: ignore[arg-type]

@@ -1,0 +1,218 @@
+"""Answers of a WorkPrecision, against tables made by hand of runs made by hand."""
+
+import copy
+import json
+import math
+import pickle
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+import rolling_ellipse as rl
+from rolling_ellipse import Scene, WorkPrecision
+from rolling_ellipse._work_precision.run import Errors, Run
+from rolling_ellipse._work_precision.truth import Reference
+
+
+def run(name: str, error: float, time: float, **other: Any) -> Run:
+    errors = Errors(final=error, l2=error / 2, linf=2 * error, energy=error / 10)
+    facts: dict[str, Any] = {
+        "model": "rolling", "method": name, "stabilization": "", "setting": error,
+        "errors": errors, "time": time,
+        "setup": 1e-5, "spread": 0.1, "steps": 10, "rejected": 1, "evaluations": 100,
+        "status": "COMPLETED", "reason": "", "tags": ("own",), "samples_time": 3 * time,
+        "t_end": 2.0,
+    }  # fmt: skip
+    return Run(name=name, **(facts | other))
+
+
+GAP: dict[str, Any] = {"status": "MAX_STEPS", "reason": "too many steps", "errors": Errors()}
+RUNS = (
+    run("sure", 1e-13, 1e-5, method="exact", setting=math.nan),
+    run("also", 1e-13, 5e-5, method="exact", setting=math.nan),
+    run("fast", 1e-3, 4e-6, tags=("peer",)),
+    run("fast", 1e-6, 5e-5, tags=("peer",)),
+    run("fast", 1e-9, 2e-4, tags=("peer",)),
+    run("slow", 5e-4, 1e-3),
+    run("slow", 1e-2, 1e-4),
+    run("lost", 0.1, math.nan, **GAP),
+    run("poor", 3.0, 1e-4),
+)
+FOUND = WorkPrecision(
+    scene=Scene(2.0, 1.0, omega=3.2),
+    runs=RUNS,
+    references=(Reference("exact rolling", 2.0, 4e-13, 1e-13),),
+    machine={"processor": "P", "rounds": "20"},
+)
+
+
+def test_best_is_the_fastest_of_those_that_are_good_enough() -> None:
+    assert FOUND.best(1e-2) is RUNS[2] and FOUND.best(1e-3) is RUNS[2]
+    assert FOUND.best(9.9e-4) is RUNS[0] and FOUND.best(1e-8) is RUNS[0]
+    assert FOUND.best() is RUNS[0]
+    assert FOUND.best(1e-13) is None  # the reference cannot tell
+    assert FOUND.best(1e-3, x="linf") is RUNS[0]  # twice the error at the end
+    assert FOUND.best(1e-2, y="evaluations") is RUNS[0]  # all take 100: the first
+
+
+def test_least_is_the_table() -> None:
+    assert FOUND.least(1e-2) == {"sure": 1e-5, "also": 5e-5, "fast": 4e-6, "slow": 1e-4}
+    assert FOUND.least(1e-5) == {"sure": 1e-5, "also": 5e-5, "fast": 5e-5}
+    assert FOUND.least(1e-12) == {"sure": 1e-5, "also": 5e-5}
+
+
+def test_unbeaten_are_those_within_the_margin() -> None:
+    decades = [10.0**-k for k in range(2, 15)]
+    assert FOUND.unbeaten() == {"fast": tuple(decades[:2]), "sure": tuple(decades[2:11])}
+    equal = FOUND.unbeaten(2.6)
+    assert equal["sure"] == tuple(decades[:11]) and equal["fast"] == tuple(decades[:2])
+    with pytest.raises(ValueError, match=r"margin must be at least 1, got 0\.9"):
+        FOUND.unbeaten(0.9)
+
+
+def test_the_verdict_says_what_the_table_says() -> None:
+    lines = FOUND.verdict().splitlines()
+    assert lines[0].startswith("To t = 2 s, judged by exact rolling (its own error 4.0e-13;")
+    assert lines[1] == "fast is unbeaten from 1e-02 to 1e-03 (4 µs);"
+    assert lines[2] == "    sure takes 2.5 × at 1e-02, 2.5 × at 1e-03"
+    assert lines[3] == "sure is unbeaten from 1e-04 to 1e-12 (10 µs);"
+    assert lines[4] == (
+        "    fast takes 5 × at 1e-04, 5 × at 1e-05, 5 × at 1e-06, 20 × at 1e-07, 20 × at 1e-08, "
+        "20 × at 1e-09"
+    )
+    assert lines[5] == "    no other gets there from 1e-10 to 1e-12"
+    assert lines[6] == (
+        "nobody has reached an error from 1e-13 to 1e-14, which the reference could not tell"
+    )
+    assert lines[7] == "time of the best peer over the package's best:"
+    assert lines[8].startswith(
+        "    1e-02 0.4 (the peer is ahead), 1e-03 0.4 (the peer is ahead), 1"
+    )
+    assert lines[8].endswith("1e-09 20, 1e-10 no peer, 1e-11 no peer, 1e-12 no peer")
+    assert lines[9] == "lost reached nothing: MAX_STEPS, too many steps"
+    assert lines[10] == "poor came no nearer than 3.0e+00"
+    assert len(lines) == 11
+
+
+def test_the_verdict_of_a_race_agrees_with_its_rows() -> None:
+    """Names and factors of the sentences, made again from the runs."""
+    scene = Scene(2.0, 1.0, theta=0.2, omega=1.0)
+    found = rl.work_precision(
+        scene, 3.0, methods=["flow", "dop853", "rk4"], rounds=2, tolerances=[1e-3, 1e-7]
+    )
+    floor = found.reference.floor
+    able = [r for r in found.runs if r.completed and max(r.errors.final, floor) <= 1e-6]
+    fastest = min(able, key=lambda each: each.time)
+    rival = min((r for r in able if r.name != fastest.name), key=lambda each: each.time)
+    text = found.verdict()
+    assert f"{fastest.name} is unbeaten" in text
+    assert f"{rival.name} takes" in text
+    assert f"{rival.time / fastest.time:.3g} × at 1e-06" in text
+
+
+def test_a_table_has_a_row_for_each_run() -> None:
+    frame = FOUND.to_dataframe()
+    assert list(frame["name"]) == [each.name for each in RUNS]
+    assert list(frame["final"])[:3] == [1e-13, 1e-13, 1e-3] and math.isnan(frame["final"][7])
+    assert frame["tags"][2] == "peer"
+
+
+@pytest.mark.parametrize(
+    "make", [copy.copy, copy.deepcopy, lambda w: pickle.loads(pickle.dumps(w))]
+)
+def test_copies_are_equal(make: Any) -> None:
+    assert repr(make(FOUND).runs) == repr(RUNS)
+
+
+def test_errors_are_attributes_and_items() -> None:
+    errors = RUNS[0].errors
+    assert errors["final"] == errors.final and set(errors) == {
+        "final", "l2", "linf", "energy", "gap", "slip",
+    }  # fmt: skip
+    with pytest.raises(KeyError):
+        errors["median"]
+
+
+# ---------------------------------------------------------------------------------- files
+
+
+def test_a_file_gives_back_what_was_saved(tmp_path: Path) -> None:
+    path = tmp_path / "race.json"
+    found = replace(FOUND, scene=replace(FOUND.scene, impulse=rl.Impulse.press(1.0, 0.5)))
+    found.save(path)
+    again = WorkPrecision.load(path)
+    assert repr(again.runs) == repr(found.runs)
+    assert (again.scene, again.references, again.machine) == (
+        found.scene, found.references, found.machine,
+    )  # fmt: skip
+    assert again.verdict() == found.verdict()
+
+    def none(literal: str) -> float:
+        raise AssertionError(literal)
+
+    json.loads(path.read_text(encoding="utf-8"), parse_constant=none)  # plain JSON: no NaN
+
+
+def changes() -> dict[str, Any]:
+    """What somebody may have done to the text of a file, by name."""
+
+    def at(*path: Any, to: Any) -> Any:
+        def change(about: Any) -> None:
+            for name in path[:-1]:
+                about = about[name]
+            about[path[-1]] = to
+
+        return change
+
+    return {
+        "schema": at("schema", to=2),
+        "no runs": at("runs", to=[]),
+        "runs": at("runs", to={}),
+        "references": at("references", to=[]),
+        "reference": at("references", 0, "floor", to=-1.0),
+        "time": at("runs", 0, "time", to="soon"),
+        "time as int": at("runs", 0, "time", to=1),
+        "time as text": at("runs", 0, "time", to="1.0"),
+        "steps": at("runs", 0, "steps", to=-1),
+        "steps as float": at("runs", 0, "steps", to=1.5),
+        "name": at("runs", 0, "name", to=3),
+        "tags": at("runs", 0, "tags", to="own"),
+        "errors": at("runs", 0, "errors", to=None),
+        "another error": at("runs", 0, "errors", "median", to=1.0),
+        "another fact": at("runs", 0, "colour", to="red"),
+        "end": at("runs", 0, "t_end", to=3.0),
+        "scene": at("scene", to=None),
+        "a": at("scene", "a", to=-1.0),
+        "a as text": at("scene", "a", to="2.0"),
+        "machine": at("machine", to=[]),
+        "machine's number": at("machine", "rounds", to=20),
+        "more": at("more", to=1),
+    }
+
+
+@pytest.mark.parametrize("change", changes().values(), ids=changes())
+def test_a_damaged_file_is_refused_by_name(change: Any, tmp_path: Path) -> None:
+    path = tmp_path / "race.json"
+    FOUND.save(path)
+    about = json.loads(path.read_text(encoding="utf-8"))
+    change(about)
+    path.write_text(json.dumps(about), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"path must name a file written by save.*race\.json"):
+        WorkPrecision.load(path)
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "3", '"race"', "{}", "\ufeff{}", '{"a":1,"a":2}'])
+def test_what_is_no_race_is_refused(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "race.json"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match="path must name a file written by save"):
+        WorkPrecision.load(path)
+
+    path = tmp_path / "race.json"
+    FOUND.save(path)
+    content = path.read_bytes()
+    for cut in range(0, len(content) - 2, 97):
+        path.write_bytes(content[:cut])
+        with pytest.raises(ValueError, match="path must name a file"):
+            WorkPrecision.load(path)

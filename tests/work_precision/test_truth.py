@@ -1,0 +1,75 @@
+"""What `work_precision` holds to be attainable, against units from 80 digits."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles import table
+from oracles.margins import told
+from rolling_ellipse import Scene, Validity, certify, flow, period, work_precision
+from rolling_ellipse._work_precision.truth import Judge
+
+ROWS = [row for row in table.rows("rolling_reference") if 0 < float(row["t"]) < 1e4]
+
+
+def scene_of(row: dict[str, str]) -> tuple[Scene, float]:
+    numbers: dict[str, Any] = {name: float(row[name]) for name in ("a", "b", "gravity")}
+    start: dict[str, Any] = {"theta": float(row["theta0"]), "omega": float(row["omega0"])}
+    return Scene(inertia=float(row["gyration2"]), **numbers, **start), float(row["t"])
+
+
+def test_attainable_is_what_the_inputs_carry() -> None:
+    """The table's units of theta, omega and x are the same sums over the inputs; the largest of the
+    three, by differences that err by a few per cent."""
+    ratios = []
+    for row in ROWS[::3]:
+        scene, t = scene_of(row)
+        if certify(scene).validity is not Validity.VALID:
+            continue
+        judge = Judge(scene, t, 8, None)
+        theta, omega, x = (float(row[f"unit_{name}"]) for name in ("theta", "omega", "x"))
+        _, fastest, length = judge._sizes
+        known = max(theta, omega / fastest, x / length)
+        ratios.append(judge.reference.attainable / known)
+    told(f"{len(ratios)} scenes: {min(ratios):.2f} ... {max(ratios):.2f}")
+    assert len(ratios) > 60
+    assert min(ratios) > 0.9 and max(ratios) < 1.05
+
+
+def test_flow_is_within_the_floor_of_40_digits() -> None:
+    """An independent truth: what the floor promises holds, and is not 0."""
+    for row in ROWS[::20]:
+        scene, t = scene_of(row)
+        if certify(scene).validity is not Validity.VALID:
+            continue
+        exact = [row[name] for name in ("theta", "omega", "x")]
+
+        def reference(times: Any, end: list[str] = exact, scene: Scene = scene) -> Any:
+            columns = flow(
+                times, a=scene.a, b=scene.b, theta=scene.theta, omega=scene.omega,
+                gravity=scene.gravity, gyration2=scene.gyration2,
+            )  # fmt: skip
+            for column, value in zip(columns, end, strict=True):
+                column[-1] = float(value)
+            return columns
+
+        own = Judge(scene, t, 4, None).reference
+        found = work_precision(
+            scene, t, methods=["flow"], samples=4, rounds=1, reference=reference
+        ).runs[0]
+        assert found.errors.final <= own.floor, row
+        assert own.floor == pytest.approx(4 * own.attainable)
+
+
+def test_near_the_separatrix_less_is_attainable() -> None:
+    """Near the tip differences grow as e^(lambda t), and a half turn takes ln(1/d)/lambda and a
+    little, at a part d from the speed that just rolls over: 0.9 of it costs d^-0.9."""
+    speed = math.sqrt(2 * 9.81 / 2.25)  # of uniform discs, 2:1, physics (44)
+    found = []
+    for k in (3, 6, 9, 12):
+        scene = Scene(2.0, 1.0, omega=speed * (1 + 10.0**-k))
+        found.append(Judge(scene, 0.45 * period(scene), 4, None).reference.attainable)
+    told(found)
+    growth = np.diff(np.log10(found)) / 3
+    assert np.all(np.abs(growth - 0.9) < 0.01)
