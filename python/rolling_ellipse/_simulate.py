@@ -10,7 +10,8 @@ import numpy as np
 from ._check import FloatArray, array, flag, shown
 from ._scene import Scene, require_scene
 from ._settings import DEFAULTS, Settings
-from ._status import IntegrationError, Status, ValidityWarning
+from ._stability import advice
+from ._status import IntegrationError, StabilityWarning, Status, ValidityWarning
 from ._trajectory import Trajectory
 
 _DEFAULT_SAMPLES = 1001
@@ -96,7 +97,10 @@ def simulate(
         ValidityWarning is issued; or JAMMED, where a slide comes to a place from which no motion
         of a rigid body goes on, or starts at one from which two do (Painleve): the arrays end
         there. At an event samples show what holds after it. Samples between steps have the
-        accuracy of the method.
+        accuracy of the method. A StabilityWarning is issued where an integrated motion has lost
+        what it should keep: a hundredth of its energy (or ten times rtol, if that is more), a
+        thousandth of the long semi-axis in its constraints; and where Baumgarte's gains are more
+        than the method bears at the step given.
 
     Raises
     ------
@@ -137,6 +141,8 @@ def simulate(
     )
     trajectory = Trajectory.computed(scene, settings, sample_times(t))
     report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=3)
+    if told := advice(trajectory):
+        warnings.warn(told, StabilityWarning, stacklevel=2)
     return trajectory
 
 

@@ -1,6 +1,7 @@
 #include "scene/settings.hpp"
 
 #include "bindings/bindings.hpp"
+#include "multipliers/feedback.hpp"
 
 namespace rolling_ellipse::bindings {
 
@@ -49,6 +50,7 @@ void bind_settings(py::module_& m) {
              }),
              py::kw_only(), "model"_a, "method"_a, "rtol"_a, "atol"_a, "step"_a, "stages"_a,
              "stabilization"_a, "baumgarte"_a, "max_steps"_a, "max_events"_a, "rest_speed"_a);
+    m.def("feedback_growth", feedback_growth, "settings"_a);
 }
 
 }  // namespace rolling_ellipse::bindings

@@ -3,6 +3,7 @@
 
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
+#include "losses.hpp"
 #include "scene/refuse.hpp"
 #include "simulate.hpp"
 
@@ -117,6 +118,11 @@ Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q
     return simulate(scene, start, settings, t_end, SignalWatch());
 }
 
+py::dict losses_by_name(const Solution& solution) {
+    const Losses found = losses(solution);
+    return py::dict("energy"_a = found.energy, "constraints"_a = found.constraints);
+}
+
 py::dict stats(const Solution& solution) {
     const auto& [steps, rejected, evaluations] = solution.counts;
     return py::dict("segments"_a = solution.motion.segments.size(), "steps"_a = steps,
@@ -160,6 +166,7 @@ void bind_solution(py::module_& m) {
         .def_readonly("method", &Solution::method)
         .def_property_readonly("stats", stats)
         .def_property_readonly("events", [](const Solution& s) { return s.motion.events; })
+        .def("losses", losses_by_name)
         .def("sample_rolling", sample_rolling, "t"_a)
         .def("sample_coordinates", sample_coordinates, "t"_a)
         .def("sample_contact", sample_contact, "t"_a);

@@ -61,6 +61,10 @@ def fitted() -> rl.impacts.FittedImpacts:
     return rl.impacts.fit(before, after, a=2.0, b=1.0)
 
 
+def raced() -> rl.WorkPrecision:
+    return rl.work_precision(rl.scenes.rolling, 1.0, methods=["flow"], rounds=2)
+
+
 OBJECTS: dict[str, Callable[[], Any]] = {
     **MOTIONS,
     "scene": lambda: rl.scenes.report,
@@ -75,6 +79,8 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "residuals": lambda: MOTIONS["rolling"]().constraint_residuals(),
     "integration error": integration_error,
     "validity warning": lambda: rl.ValidityWarning("not from 1 s on"),
+    "stability warning": lambda: rl.StabilityWarning("smaller steps"),
+    "work-precision": raced,
     "start warning": lambda: rl.report.InconsistentStartWarning("f2 = 1"),
     "printed motion": printed,
     "start": lambda: printed().start,

@@ -37,8 +37,9 @@ FOLDERS = (
 # slow to load, pictures above all, may be imported where it is needed.
 MODULES = (
     "_core", "_fields", "_check", "geometry", "_constraints", "_scene", "scenes", "_settings",
-    "_events", "_status", "_samples", "_trajectory", "_simulate", "_flow", "_certify", "_outcome",
-    "_errors", "_export", "_work_precision", "impacts", "report", "_pictures", "", "__main__",
+    "_events", "_status", "_samples", "_trajectory", "_stability", "_simulate", "_flow",
+    "_certify", "_outcome", "_errors", "_export", "_work_precision", "impacts", "report",
+    "_pictures", "", "__main__",
 )  # fmt: skip
 COMPLEX_PRODUCTS = """
 void one(const double* x, const double* y, double* z) {
