@@ -1,0 +1,58 @@
+"""The 2:1 disc on Earth, thrown from flat a hair's breadth beside the speed that rolls it over.
+
+Which side a double is on, how far, and when the body lies flat again: in mpmath, by the energy
+integral of reference/make_rolling_reference.py.
+"""
+
+from functools import cache
+from typing import Any, NamedTuple
+
+import make_rolling_reference as reference
+import mpmath as mp
+
+from oracles.numbers import DIGITS
+
+A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81  # all but g are exact, k^2 too
+
+
+class Throw(NamedTuple):
+    """From theta = 0; what the double omega means."""
+
+    omega: float  # [rad/s]
+    distance: float  # omega/omega_R - 1
+    half: float  # until it lies flat again, having rolled over (theta = pi) or back (0) [s]
+
+    @property
+    def rolls_over(self) -> bool:
+        return self.distance > 0
+
+
+@cache
+def rule() -> reference.Rule:
+    """Of the quadrature: 30 nodes on panels that grow by 1.8 reach 1e-25 and more."""
+    with mp.workdps(DIGITS):
+        return reference.gauss_rule(30, 1.8)
+
+
+def roll_over_speed() -> Any:
+    """omega_R^2 = 2 g (a - b)/(k^2 + b^2) [rad/s]."""
+    return mp.sqrt(2 * mp.mpf(GRAVITY) * (mp.mpf(A) - B) / (mp.mpf(GYRATION2) + B * B))
+
+
+def tip_rate() -> float:
+    """lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), by which the fall from the tip grows [1/s]."""
+    with mp.workdps(DIGITS):
+        return float(mp.sqrt(mp.mpf(GRAVITY) * (A * A - B * B) / (A * (mp.mpf(GYRATION2) + A * A))))
+
+
+@cache
+def throw(k: int, side: int) -> Throw:
+    """With omega = omega_R (1 + side 10^-k), rounded to a double."""
+    with mp.workdps(DIGITS):
+        exact = roll_over_speed()
+        omega = float(exact * (1 + side * mp.mpf(10) ** -k))
+        scene = reference.Scene(A, B, GYRATION2, GRAVITY, 0.0, omega)
+        moving = reference.RollingEllipse(scene, rule())
+        thrown = Throw(omega, float(mp.mpf(omega) / exact - 1), float(2 * moving.quarter_time))
+        assert moving.rocks != thrown.rolls_over  # by its energy, and by its speed
+        return thrown
