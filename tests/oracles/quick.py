@@ -16,6 +16,7 @@ QUICK = (
     "multipliers/test_multipliers.py",
     "contact/test_contact_reference.py",
     "outcome/test_classify.py",
+    "stability/test_singular_chart.py",
     "trajectory/test_saving.py",
     "trajectory/test_sol.py",
     "trajectory/test_trajectory.py",
