@@ -1,0 +1,194 @@
+"""Friction a hair's breadth beside what rolling needs: the grip is lost for an instant, or not.
+
+The need has a smooth maximum on the way up: with friction short by 10^-k it exceeds what there is
+for 10^(-k/2) of the way. What looks at samples, or at the ends of steps, does not see it from some
+k on; the certificate decides signs of polynomials and has nothing to miss.
+"""
+
+import math
+from functools import cache
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+import scipy.integrate
+from oracles.geometry import support
+from oracles.margins import told
+from oracles.numbers import DIGITS, known
+from rolling_ellipse import (
+    EventKind,
+    Outcome,
+    Scene,
+    Validity,
+    certify,
+    classify,
+    period,
+    simulate,
+)
+
+A, B, GYRATION2, GRAVITY, OMEGA = 2.0, 1.0, 1.25, 9.81, 4.5
+SCENE = Scene(A, B, omega=OMEGA)
+DISTANCES = range(1, 16)  # k
+# The margins of the polynomial of degree 10 allow for some 1e-12 of its terms.
+DECIDED = range(1, 12)
+
+
+def ratio(theta: Any) -> Any:
+    """|F|/N of rolling with the energy of SCENE, by Newton's law, in the arithmetic of theta."""
+    at = support(theta, *((mp.mpf(A), mp.mpf(B)) if isinstance(theta, mp.mpf) else (A, B)))
+    inertia = GYRATION2 + at.h**2 + at.slope**2
+    omega2 = ((GYRATION2 + B * B) * OMEGA**2 + 2 * GRAVITY * (B - at.h)) / inertia
+    bend = (A * B) ** 2 / at.h**3
+    turning = -at.slope * (GRAVITY + bend * omega2) / inertia
+    return abs(at.h * turning + at.slope * omega2) / (
+        GRAVITY + at.slope * turning + at.curvature * omega2
+    )
+
+
+@cache
+def need() -> tuple[Any, Any]:
+    """The largest, and where: the zero of its derivative, in 40 digits."""
+    with mp.workdps(DIGITS):
+        where = mp.findroot(lambda y: mp.diff(ratio, y), mp.mpf("0.85"))
+        return ratio(where), where
+
+
+def friction(k: int, side: int) -> float:
+    """What is needed, times 1 + side 10^-k."""
+    with mp.workdps(DIGITS):
+        return float(need()[0] * (1 + side * mp.mpf(10) ** -k))
+
+
+# ------------------------------------------------------------------------- by samples
+
+
+def shortfall(samples: int, seed: int = 0) -> float:
+    """By how much the largest of so many even samples of a quarter of a turn is too small, over 64
+    places that the grid may have (rms)."""
+    once = period(SCENE) / 4
+    places = np.random.default_rng(seed).uniform(0, 1, 64)
+    missed = []
+    for place in places:
+        times = (np.arange(samples) + place) * (once / samples)
+        found = simulate(SCENE, times, model="rolling", method="exact").friction_needed.max()
+        missed.append(1 - float(found) / float(need()[0]))
+    return math.sqrt(np.mean(np.square(missed)))
+
+
+def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
+    """A maximum is flat: slope -2, within what the rms of 64 draws scatters, a tenth of itself,
+    over two decades: 0.05. So a grid finds what is short by more than that, and no less."""
+    counts = [30, 100, 300, 1000, 3000]
+    short = [shortfall(count) for count in counts]
+    slope = np.polyfit(np.log(counts), np.log(short), 1)[0]
+    for count, missed in zip(counts, short, strict=True):
+        told(f"{count} samples: short by {missed:.1e}, blind from k = {-math.log10(missed):.1f} on")
+    told(f"slope {slope:.3f} (-2)")
+    assert abs(slope + 2) <= 0.05
+
+
+def seen_on_a_grid(samples: int, k: int) -> bool:
+    """A change of sign of friction - need on a trajectory with its samples at these times."""
+    times = np.linspace(0, period(SCENE), samples)
+    found = simulate(SCENE, times, model="rolling", method="exact")
+    return bool(np.any(found.friction_needed > friction(k, -1)))
+
+
+def seen_by_scipy(k: int, rtol: float) -> bool:
+    """An event of solve_ivp: a change of sign between the ends of steps."""
+    limit = friction(k, -1)
+
+    def rates(_: float, y: Any) -> list[float]:
+        at = support(float(y[0]), A, B)
+        inertia = GYRATION2 + at.h**2 + at.slope**2
+        bend = (A * B) ** 2 / at.h**3
+        return [y[1], -at.slope * (GRAVITY + bend * y[1] ** 2) / inertia]
+
+    def margin(_: float, y: Any) -> float:
+        return limit - float(ratio(float(y[0])))
+
+    how: dict[str, Any] = {"method": "DOP853", "rtol": rtol, "atol": rtol, "events": margin}
+    found = scipy.integrate.solve_ivp(rates, (0, period(SCENE)), [0.0, OMEGA], **how)
+    assert found.t.size < 300
+    return len(found.t_events[0]) > 0
+
+
+def test_what_looks_at_samples_misses_it_from_some_k_on() -> None:
+    """Grids of 100 to 1e5 samples and SciPy's event finder, against the loss that is there at every
+    k. A grid of n samples a turn has one within half a step of the place, where the need is less by
+    116/n^2 at most (the rms above says so): what is short by more it sees. It passes the place four
+    times a turn, and may be lucky: nearer by a thousand of the square one time in eight. SciPy's
+    steps, fewer than 300 a turn, see less than such a grid."""
+    blind: dict[str, int] = {}
+    for samples in (100, 1000, 10_000, 100_000):
+        found = next(k for k in DISTANCES if not seen_on_a_grid(samples, k))
+        blind[f"grid of {samples}"] = found
+        surely = math.log10(samples**2 / 116)
+        assert surely < found < surely + 3
+    for rtol in (1e-6, 1e-9, 1e-12):
+        found = next(k for k in DISTANCES if not seen_by_scipy(k, rtol))
+        blind[f"solve_ivp, rtol {rtol:g}"] = found
+        assert found < math.log10(300**2 / 116) + 3
+    told("blind from k on: " + ", ".join(f"{name}: {k}" for name, k in blind.items()))
+    assert max(blind.values()) < DECIDED[-1]
+
+
+# ------------------------------------------------------------------------- by signs
+
+
+def test_the_certificate_knows_what_is_needed() -> None:
+    """The coefficient to 1e-13, N being 0.17 of the weight and its terms ten of it; the place where
+    it is flat, so known to the root of that."""
+    found = certify(SCENE)
+    exact, where = need()
+    assert known(found.largest_friction_needed) == pytest.approx(float(exact), rel=1e-13)
+    assert known(found.largest_friction_needed_angle) == pytest.approx(float(where), abs=1e-6)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_the_certificate_misses_nothing_down_to_1e_minus_11(side: int) -> None:
+    """Right on both sides as far as double arithmetic can tell, and EDGE, never wrong, beyond;
+    `classify` likewise, for the same polynomial."""
+    verdicts = []
+    for k in DISTANCES:
+        mu = friction(k, side)
+        rolls = mu > need()[0]
+        assert rolls == (side > 0)
+        verdict = certify(Scene(A, B, omega=OMEGA, friction=mu)).validity
+        outcome = classify(a=A, b=B, omega=OMEGA, friction=mu)
+        verdicts.append(verdict.name)
+        proved = Validity.VALID if rolls else Validity.INVALID
+        becomes = Outcome.ROLLS_OVER if rolls else Outcome.SLIPS
+        edge = k not in DECIDED
+        assert verdict is proved or (edge and verdict is Validity.EDGE), k
+        assert outcome is becomes or (edge and outcome is Outcome.EDGE), k
+    told(", ".join(f"{side:+d}e-{k} {v}" for k, v in zip(DISTANCES, verdicts, strict=True)))
+    assert verdicts[-1] == "EDGE"
+
+
+@pytest.mark.parametrize("slope", [0.0, 1e-300], ids=["by the certificate", "by the event finder"])
+def test_the_motion_slips_where_it_is_short_and_nowhere_else(slope: float) -> None:
+    """On level ground the certificate gives the angle; on a slope, however little of one, an event
+    of the stepped motion, which looks for the minima of mu N - |F| and not for a change of sign.
+    The angle is where the need first exceeds mu, 10^(-k/2) before the maximum: known to some ulp
+    of the need over its slope there, 1e-15 10^(k/2), and on a slope to the error of the steps."""
+    maximum = need()[1]
+    for k in DECIDED:
+        for side in (1, -1):
+            mu = friction(k, side)
+            scene = Scene(A, B, omega=OMEGA, friction=mu, slope=slope)
+            motion = simulate(scene, period(SCENE) / 4, model="contact")
+            slips = [event for event in motion.events if event.kind is EventKind.SLIP]
+            assert bool(slips) == (side < 0), (k, side)
+            if not slips:
+                assert motion.events == ()
+                continue
+            with mp.workdps(DIGITS):
+                low, high = mp.mpf("0.5"), maximum
+                for _ in range(100):
+                    middle = (low + high) / 2
+                    low, high = (middle, high) if ratio(middle) < mu else (low, middle)
+            off = abs(slips[0].state_before.theta - float(low))
+            told(f"k = {k}: slips at {slips[0].state_before.theta:.9f} rad, off by {off:.1e}")
+            assert off <= (1e-14 if slope == 0 else 1e-13) * 10 ** (k / 2)
