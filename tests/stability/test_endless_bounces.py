@@ -1,0 +1,120 @@
+"""Infinitely many bounces in a finite time (Zeno): a body dropped flat, e = 0.5.
+
+Bounce n takes 2 v e^n/g, all of them v/g (1 + e)/(1 - e). A loop over events never gets past that
+time, steps of one size sink into the ground; the product sums the rest of the series.
+"""
+
+import math
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+from oracles.geometry import support
+from oracles.margins import told
+from oracles.numbers import DIGITS, EPS
+from rolling_ellipse import EventKind, IntegrationError, Mode, Scene, Status, simulate
+
+GRAVITY, SPEED, E, B = 9.81, 1.7, 0.5, 1.0
+UNIT = math.sqrt(GRAVITY * B)  # speeds of rest are told as parts of it [m/s]
+
+
+def dropped(theta: float = 0.0, **given: Any) -> Scene:
+    """At rest, so high that it hits the ground with SPEED (flat; tilted, about so)."""
+    height = float(support(theta, 2.0, B).h) + SPEED**2 / (2 * GRAVITY)
+    return Scene(2.0, B, theta=theta, z=height, friction=0.3, restitution=E, **given)
+
+
+def end_of_all(scene: Scene) -> float:
+    """v/g (1 + e)/(1 - e), with v from the height that the double z is [s]."""
+    assert scene.z is not None
+    with mp.workdps(DIGITS):
+        v = mp.sqrt(2 * mp.mpf(GRAVITY) * (mp.mpf(scene.z) - B))
+        return float(v / GRAVITY * (1 + mp.mpf(E)) / (1 - mp.mpf(E)))
+
+
+def test_a_loop_over_events_never_gets_past_the_last_bounce() -> None:
+    """Parabola, collision, parabola ...: from the bounce on that takes less than half an ulp of the
+    clock, n = log2(4 v/(g ulp)) = 53, time stands still, whatever number of events is allowed."""
+    scene = dropped()
+    end = end_of_all(scene)
+    t, v = SPEED / GRAVITY, SPEED * E
+    stood = 0
+    for n in range(1, 2000):
+        later = t + 2 * v / GRAVITY
+        if later == t and not stood:
+            stood = n
+        t, v = later, v * E
+    told(f"after 2000 events t = {t!r} of {end!r} s; stands still from event {stood} on")
+    assert t <= end * (1 + 4 * EPS) and v == 0.0
+    assert abs(stood - math.log2(4 * SPEED * E / (GRAVITY * math.ulp(end)))) <= 2
+
+
+@pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-4])
+def test_steps_of_one_size_sink_into_the_ground(step: float) -> None:
+    """Speed and place by Euler's symplectic steps, and -e times the speed where the body is in the
+    ground and falls: the speed comes to e g h/(1 + e), and it sinks by g h/(1 + e) a second."""
+    z, v = SPEED**2 / (2 * GRAVITY), 0.0
+    depths = []
+    for _ in range(2):
+        for _ in range(round(3 / step)):
+            v -= GRAVITY * step
+            z += v * step
+            if z < 0 and v < 0:
+                v *= -E
+        depths.append(z)
+    rate = (depths[0] - depths[1]) / 3
+    told(f"step {step}: sinks by {rate:.4g} m/s, {rate / (GRAVITY * step):.6f} g h")
+    assert rate == pytest.approx(GRAVITY * step / (1 + E), rel=1e-9)
+
+
+@pytest.mark.parametrize("decade", range(2, 14))
+def test_it_rests_at_the_exact_time_whatever_speed_counts_as_rest(decade: int) -> None:
+    """From a hundredth to 1e-13: 7 to 44 impacts, one time. A touch-down is timed to an ulp of the
+    height b over the speed with which it is met, 2e-16 m/0.02 m/s at the slowest of the first
+    seven: 1e-14 s each, 1e-13 of the whole; further ones are timed as their hops are low."""
+    scene = dropped()
+    end = end_of_all(scene)
+    motion = simulate(scene, 2 * end, rest_speed=10.0**-decade * UNIT)
+    kinds = [event.kind for event in motion.events]
+    late = motion.events[-1].t / end - 1
+    told(f"rest_speed {10.0**-decade:.0e}: {kinds.count(EventKind.IMPACT)} impacts, {late:+.1e}")
+    assert motion.status is Status.COMPLETED and kinds[-1] is EventKind.REST
+    assert abs(late) <= 1e-13
+    assert motion.mode[-1] == Mode.REST and motion.z[-1] == B and motion.omega[-1] == 0
+    # the first rebound that is slower: e^n v < rest_speed
+    count = math.ceil(math.log(SPEED / (10.0**-decade * UNIT)) / math.log(1 / E))
+    assert abs(kinds.count(EventKind.IMPACT) - count) <= 1
+
+
+@pytest.mark.parametrize("theta", [0.1, 0.3])
+def test_a_tilted_body_errs_by_the_square_of_the_speed_of_rest(theta: float) -> None:
+    """Its bounces turn it, so that those that are summed are not alike: they last as long as the
+    speed is large, and meanwhile the body turns by as much: slope 2. Bounces are whole, which
+    scatters the errors by e^-2 at most: six speeds a decade over four decades, so 0.1 of a slope.
+    And no error is larger than `simulate` says: a part rest_speed/sqrt(g b)."""
+    speeds = np.geomspace(1e-2, 1e-6, 25)
+    scene = dropped(theta)
+    exact = simulate(scene, [3.0], rest_speed=1e-10 * UNIT)
+    errors = []
+    for speed in speeds:
+        found = simulate(scene, [3.0], rest_speed=float(speed) * UNIT)
+        assert [e.kind for e in found.events if e.kind is not EventKind.IMPACT] == [
+            e.kind for e in exact.events if e.kind is not EventKind.IMPACT
+        ]
+        errors.append(max(abs(found.theta[0] - exact.theta[0]), abs(found.x[0] - exact.x[0])))
+    slope = np.polyfit(np.log(speeds), np.log(errors), 1)[0]
+    told(f"from {errors[0]:.1e} to {errors[-1]:.1e}: slope {slope:.3f} (2)")
+    assert abs(slope - 2) <= 0.1
+    assert np.all(np.array(errors) <= speeds)
+
+
+def test_the_product_too_ends_where_its_events_are_used_up() -> None:
+    """With less events than bounces are counted it says so, and does not go on wrong."""
+    with pytest.raises(IntegrationError, match="max_events = 10 events ended at t = ") as raised:
+        simulate(dropped(), 2.0, max_events=10)
+    found = raised.value.trajectory
+    assert found.status is Status.MAX_EVENTS and len(found.events) == 10
+    told(f"ended at {found.t_end:.6f} s of {end_of_all(dropped()):.6f} s")
+    assert found.t_end < end_of_all(dropped())
+    assert float(found.z.min()) >= B * (1 - EPS)
