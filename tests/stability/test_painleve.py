@@ -1,0 +1,170 @@
+"""Painleve's paradox: friction that presses the body into the ground faster than N pushes it out.
+
+While sliding N = c/B, B = Gnn - mu s Gnt. Beyond the critical friction B <= 0 somewhere: a law of
+force then gives an N that pulls, or is infinite, and goes on with it. The product ends there with a
+status whose sentence says why.
+"""
+
+import dataclasses
+import math
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from oracles.contact import random_scenes
+from oracles.geometry import support
+from oracles.margins import told
+from oracles.numbers import DIGITS, EPS
+from rolling_ellipse import EventKind, Mode, Scene, Status, simulate, thresholds
+
+A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81
+CRITICAL = 1.352698667647026  # to its last digit
+
+
+def critical() -> tuple[Any, Any]:
+    """The least (k^2 + h'^2)/(h |h'|), and where, in 40 digits."""
+
+    def ratio(theta: Any) -> Any:
+        at = support(theta, mp.mpf(A), mp.mpf(B))
+        return (GYRATION2 + at.slope**2) / (at.h * at.slope)
+
+    with mp.workdps(DIGITS):
+        where = mp.findroot(lambda y: mp.diff(ratio, y), mp.mpf("0.99"))
+        return ratio(where), where
+
+
+def sliding(friction: float, **given: Any) -> Scene:
+    """Forwards at the critical angle, without spin."""
+    return Scene(A, B, friction=friction, **({"theta": float(critical()[1]), "x_dot": 5.0} | given))
+
+
+# ------------------------------------------------------------------------- a law of force
+
+
+def pressed(y: NDArray[np.float64], friction: float) -> tuple[float, float, Any, float]:
+    """N/m, B, the support and the side of the slip of theta, omega, x, x_dot."""
+    at = support(np.asarray(y[0]), A, B)  # not of a float: math.sin(inf) would raise
+    side = float(np.sign(y[3] - at.h * y[1]))
+    response = 1 + (at.slope**2 - friction * side * at.h * at.slope) / GYRATION2
+    return float((GRAVITY + at.curvature * y[1] ** 2) / response), float(response), at, side
+
+
+def law_of_force(scene: Scene, t_end: float, step: float) -> NDArray[np.float64]:
+    """N/m, omega and x_dot at each step of the classical method, which asks no question."""
+    mu = scene.friction
+
+    def rates(y: NDArray[np.float64]) -> NDArray[np.float64]:
+        normal, _, at, side = pressed(y, mu)
+        turning = normal * (mu * side * at.h - at.slope) / GYRATION2
+        return np.array([y[1], turning, y[3], -mu * side * normal])
+
+    start = scene.initial_state
+    y = np.array([start.theta, start.omega, start.x, start.x_dot])
+    told_of = []
+    with np.errstate(all="ignore"):
+        for _ in range(round(t_end / step)):
+            told_of.append([pressed(y, mu)[0], y[1], y[3]])
+            k1 = rates(y)
+            k2 = rates(y + step / 2 * k1)
+            k3 = rates(y + step / 2 * k2)
+            y = y + step / 6 * (k1 + 2 * k2 + 2 * k3 + rates(y + step * k3))
+    return np.array(told_of)
+
+
+BEYOND = [sliding(3.0, theta=0.9), sliding(3.0, theta=0.3), sliding(1.5), sliding(1.36)]
+
+
+@pytest.mark.parametrize("scene", BEYOND, ids=["3 at 0.9", "3 at 0.3", "1.5", "1.36"])
+def test_a_law_of_force_goes_on_with_nonsense_and_the_product_jams(scene: Scene) -> None:
+    """N is negative from the first instant, though gravity presses (c = g): the ground pulls, the
+    slip grows, and the body soon moves with more than twice the energy there is, most to the point
+    of no number, with steps of either size. The product ends at that instant, with a sentence and
+    finite numbers."""
+    start = scene.initial_state
+    state = np.array([start.theta, start.omega, start.x, start.x_dot])
+    normal, response, _, side = pressed(state, scene.friction)
+    assert side > 0 and response < 0 and normal == pytest.approx(GRAVITY / response, rel=EPS)
+    there_is = start.x_dot**2 + 2 * GRAVITY * (A - B)  # twice, per mass, lying flat
+    for step in (1e-3, 1e-4):
+        motion = law_of_force(scene, 0.4, step)
+        broken = np.flatnonzero(~np.isfinite(motion).all(axis=1))
+        numbers = motion[: broken[0]] if broken.size else motion
+        most = float(np.max(np.hypot(numbers[:, 2], math.sqrt(GYRATION2) * numbers[:, 1]))) ** 2
+        until = f"no number after {broken[0] * step:.4f} s" if broken.size else "numbers to the end"
+        told(
+            f"mu = {scene.friction}, step {step}: N/m = {motion[0, 0]:.4g} m/s^2 at the start, "
+            f"{until}, {most / there_is:.1e} of the energy"
+        )
+        assert motion[0, 0] < 0 and motion[1, 0] < 0
+        assert most > 2 * there_is
+    found = simulate(scene, 1.0)
+    assert found.status is Status.JAMMED and found.success
+    assert "friction would have to push it into the ground (Painleve)" in found.message
+    assert [event.kind for event in found.events] == [EventKind.JAM]
+    assert found.t.tolist() == [0.0] and found.t_end == 0.0 and found.mode[0] == Mode.SLIDING
+    assert np.all(np.isfinite(found.normal_force)) and found.normal_force[0] >= 0
+
+
+# ------------------------------------------------------------------------- the critical friction
+
+
+def test_the_critical_friction_is_known_to_its_last_digits() -> None:
+    exact, where = critical()
+    found = thresholds(A, B)
+    assert float(exact) == CRITICAL
+    assert found.painleve_friction == pytest.approx(CRITICAL, rel=4 * EPS)
+    # a minimum is flat: its place is known to the root of that
+    assert found.painleve_angle == pytest.approx(float(where), abs=1e-7)
+
+
+@pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_it_jams_above_the_critical_friction_and_not_below(distance: float, mirrored: bool) -> None:
+    """At the critical angle, where B is a part `distance` of Gnn: below it N = g/B, however large,
+    and the slip of 5 m/s ends in proportion to B. Nearer than 1e-12 B itself is a few ulp."""
+    exact = float(critical()[0])
+    angle = float(critical()[1])
+    start = {"theta": math.pi - angle, "x_dot": -5.0} if mirrored else {}
+    above = simulate(sliding(exact * (1 + distance), **start), 0.1)
+    assert above.status is Status.JAMMED and above.t_end == 0.0
+    below = simulate(sliding(exact * (1 - distance), **start), 0.1)
+    at = support(angle, A, B)
+    response = (1 + at.slope**2 / GYRATION2) * distance
+    told(f"{distance:g}: N/m = {below.normal_force[0]:.4e}, g/B = {GRAVITY / response:.4e}")
+    assert below.status is Status.COMPLETED
+    # B is a difference of ones, off by an ulp or two of them
+    assert below.normal_force[0] == pytest.approx(GRAVITY / response, rel=4 * EPS / distance)
+    stick = below.events[0]
+    assert stick.kind is EventKind.STICK
+    # theta nearly stands meanwhile: slip and omega change as mu Gtt - Gnt to mu h - h', and
+    # B d omega/dt = (mu h - h')(g + h'' omega^2)/k^2 with h'' < 0
+    spin = (exact * at.h - at.slope) / GYRATION2
+    grip = exact * (1 + at.h**2 / GYRATION2) - at.h * at.slope / GYRATION2
+    bend = math.sqrt(-at.curvature / GRAVITY)
+    duration = response * math.atanh(5.0 * spin / grip * bend) / (spin * bend * GRAVITY)
+    told(f"{distance:g}: sticks at {stick.t:.6e} s, by the closed form {duration:.6e} s")
+    assert stick.t == pytest.approx(duration, rel=4 * distance + 4 * EPS / distance)
+    assert abs(stick.state_after.omega) == pytest.approx(
+        5.0 * spin / grip, rel=2 * distance + 1e-12
+    )
+
+
+def test_nothing_jams_below_the_critical_friction() -> None:
+    """300 random starts of the 2:1 disc, every kind, on level ground and slopes, at 1 - 1e-9 of it;
+    and with three times as much some do, so that the starts are such as could."""
+    jammed = {}
+    for friction in (CRITICAL * (1 - 1e-9), 3 * CRITICAL):
+        count = 0
+        for drawn in random_scenes(300, 53, friction=friction, mass=1.0):
+            if drawn.z is not None:
+                continue
+            scene = dataclasses.replace(drawn, a=A, b=B)
+            found = simulate(scene, 3.0, model="contact", max_events=200, raise_on_failure=False)
+            assert np.all(np.isfinite(found.omega))
+            count += found.status is Status.JAMMED
+        jammed[friction] = count
+    told(", ".join(f"mu = {friction:.6f}: {count} jam" for friction, count in jammed.items()))
+    few, many = jammed.values()
+    assert few == 0 and many >= 10
