@@ -13,7 +13,6 @@ import make_rolling_reference as reference
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.flow import LARGEST_ERROR
 from oracles.margins import told
 from oracles.numbers import DIGITS
 from oracles.separatrix import GRAVITY, GYRATION2, A, B, rule
@@ -41,7 +40,7 @@ LAWS: dict[str, tuple[float, dict[str, Any]]] = {  # power of t in the phase, an
 
 def test_the_exact_motion_loses_what_its_inputs_do_not_know() -> None:
     """1 to 1e9 half turns, flow and simulate, against 40 digits. The unit is what one rounding of
-    every input does to the answer by then: 5e-6 rad after 1e9 half turns."""
+    every input does to the answer by then: 5e-6 rad after 1e9 half turns. Within one."""
     with mp.workdps(DIGITS):
         body = reference.Scene(A, B, GYRATION2, GRAVITY, SCENE.theta, SCENE.omega)
         moving, sensitive = reference.motion(body, rule()), reference.sensitivities(body, rule())
@@ -60,7 +59,7 @@ def test_the_exact_motion_loses_what_its_inputs_do_not_know() -> None:
             ]
             missed = abs(float(answers[0][0] - state.theta))
             told(f"{half_turns:.0e} half turns: theta {missed:.1e} rad, {max(off):.2g} units")
-            assert max(off) <= LARGEST_ERROR
+            assert max(off) <= 1
             assert sampled.status is Status.COMPLETED and sampled.stats["steps"] == 0
     assert units[0] < 1e-5
 

@@ -135,7 +135,7 @@ def own_separatrix(**how: Any) -> float:
         middle = (low + high) / 2
         theta = simulate(Scene(A, B, omega=speed * (1 + middle)), times, **how).theta
         left = np.flatnonzero((theta > 2.0) | ((theta < 0.5) & (times > 2)))
-        if theta[left[0]] > 2.0:
+        if theta[left[0] if left.size else -1] > math.pi / 2:  # else it lingers to the end
             high = middle
         else:
             low = middle
