@@ -151,6 +151,30 @@ def test_it_jams_above_the_critical_friction_and_not_below(distance: float, mirr
     )
 
 
+@pytest.mark.parametrize("distance", [1e-13, 3e-14, 1e-14, 3e-15])
+def test_a_slide_that_starts_with_next_to_no_response_ends_at_once(distance: float) -> None:
+    """B of a few ulp: N makes the impulse that ends the slip before the body turns, whether it
+    stands, turns towards a smaller B or a larger one. So it rolls from then on, as it does with ten
+    times as much B; how fast follows from the impulse alone."""
+    exact, where = critical()
+    at = support(float(where), A, B)
+    spin = (float(exact) * at.h - at.slope) / GYRATION2
+    grip = float(exact) * (1 + at.h**2 / GYRATION2) - at.h * at.slope / GYRATION2
+    response = (1 + at.slope**2 / GYRATION2) * distance
+    for omega in (0.0, 1e-9, -1e-9, 0.5, -0.5):
+        scene = sliding(float(exact * (1 - mp.mpf(distance))), omega=omega)
+        slip = 5.0 - at.h * omega
+        found = simulate(scene, 0.1)
+        stick = found.events[0]
+        assert found.status is Status.COMPLETED and stick.kind is EventKind.STICK, omega
+        # N/m is g/B at least a third of the way; some 4 ulp of B = 1 - ... may be missing of it
+        longest = slip / grip * (response + 4 * EPS) / (GRAVITY / 3)
+        assert 0 <= stick.t <= longest, omega
+        turned = stick.state_after.omega - omega
+        assert turned == pytest.approx(slip * spin / grip, rel=1e-9), omega
+        assert found.mode[-1] == Mode.ROLLING and np.all(np.isfinite(found.theta))
+
+
 def test_nothing_jams_below_the_critical_friction() -> None:
     """300 random starts of the 2:1 disc, every kind, on level ground and slopes, at 1 - 1e-9 of it;
     and with three times as much some do, so that the starts are such as could."""
