@@ -1,0 +1,30 @@
+"""Other people's integrators on the rolling ellipse, one file for each library.
+
+`available()` loads those that are installed; nothing heavy is imported before.
+"""
+
+import importlib
+from typing import Any
+
+MODULES = {  # with the library that each needs; Boost's headers and g++ are looked for by its own
+    "scipy_ivp": "scipy",
+    "numba_pairs": "numbalsoda",
+    "heyoka_taylor": "heyoka",
+    "boost_odeint": "Boost.odeint",
+    "rebound_ode": "rebound",
+    "diffrax_pairs": "diffrax",
+    "sundials": "scikit-sundae",
+}
+
+
+def available() -> tuple[list[Any], dict[str, str]]:
+    """The peers at hand, and for each library that is not why."""
+    found, missing = [], {}
+    for module, library in MODULES.items():
+        try:
+            found += importlib.import_module(f".{module}", __name__).peers()
+        except ModuleNotFoundError as error:
+            missing[library] = f"{error.name} is not installed"
+        except Exception as error:  # a broken installation raises whatever it likes
+            missing[library] = f"{type(error).__name__}: {error}"
+    return found, missing

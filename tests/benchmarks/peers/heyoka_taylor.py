@@ -1,0 +1,79 @@
+"""heyoka's Taylor integrator, compiled once for each tolerance; the body is parameters."""
+
+import copy
+from typing import Any
+
+import heyoka
+import numpy as np
+from rolling_ellipse import Scene
+
+from .problem import Integration, Peer, Problem, columns, finite, problem
+
+MANY = 20_000  # samples
+
+
+def equations(slope: bool) -> list[Any]:
+    """The system with as few products of series as it can be had; none for a level ground."""
+    theta, omega, x = heyoka.make_vars("theta", "omega", "x")
+    b2, spread, a2b2, total, gamma, sigma = (heyoka.par[i] for i in range(6))
+    s, c = heyoka.sin(theta), heyoka.cos(theta)
+    u = b2 + spread * s**2
+    h = heyoka.sqrt(u)
+    turn = -s * c * spread * (gamma * h + a2b2 * omega**2 / u)
+    if slope:
+        turn += sigma * h * u
+    return [(theta, omega), (omega, turn / (total * u - a2b2)), (x, h * omega)]
+
+
+class HeyokaRun(Integration):
+    def __init__(self, given: Problem, integrator: Any) -> None:
+        self.counts, self.solver = {}, integrator
+        self.start, self.t_end = np.array(given.start), given.t_end
+        self.solver.pars[:] = given.body[: len(self.solver.pars)]
+        self.state = self.solver.state  # a view
+
+    def begin(self) -> None:
+        self.solver.time = 0.0
+        self.state[:] = self.start
+
+    def ended(self, outcome: Any, steps: int) -> None:
+        if outcome != heyoka.taylor_outcome.time_limit:
+            raise RuntimeError(f"heyoka stops with {outcome}")
+        self.counts = {"steps": steps, "rejected": 0}
+
+    def __call__(self) -> tuple[float, float, float]:
+        self.begin()
+        found = self.solver.propagate_until(self.t_end)
+        self.ended(found[0], found[3])
+        return finite(*self.state.tolist())
+
+    def sample(self, times: Any) -> Any:
+        """Its function of time is compiled anew in every run, which pays for many samples only."""
+        self.begin()
+        grid = np.concatenate(([0.0], times[int(times[0] == 0) :]))
+        if len(times) < MANY and np.all(np.diff(grid) > 0):
+            *found, states = self.solver.propagate_grid(grid)
+            self.ended(found[0], found[3])
+            return columns(states[-len(times) :])
+        found = self.solver.propagate_until(self.t_end, c_output=True)
+        self.ended(found[0], found[3])
+        return columns(found[4](times))
+
+
+class HeyokaPeer(Peer):
+    name = "heyoka"
+
+    def __init__(self) -> None:
+        self.compiled: dict[tuple[float, bool], Any] = {}
+
+    def prepare(self, scene: Scene, t_end: float, setting: float) -> HeyokaRun:
+        given = problem(scene, t_end, setting)
+        kind = setting, scene.slope != 0
+        if kind not in self.compiled:
+            how = {"tol": setting, "fast_math": True, "compact_mode": False}
+            self.compiled[kind] = heyoka.taylor_adaptive(equations(kind[1]), [0.0] * 3, **how)
+        return HeyokaRun(given, copy.copy(self.compiled[kind]))
+
+
+def peers() -> list[HeyokaPeer]:
+    return [HeyokaPeer()]

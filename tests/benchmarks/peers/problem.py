@@ -1,0 +1,102 @@
+"""What every peer is given: the equation of rolling, a scene's numbers, and when to refuse.
+
+With A = a^2, B = b^2, u = h^2 = B + (A - B) sin^2 and S = k^2 + A + B the inertia of rolling is
+D = S - AB/u, so that the equation of motion needs no h' and no radius of curvature:
+
+    (S u - AB) theta'' = h u sigma - (A - B) sin cos (gamma h + AB omega^2 / u),  x' = h omega,
+
+sigma and gamma being gravity along the ground and into it. It is the equation of the notebook with
+fewer products, from which the peers gain: heyoka half of its time.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from rolling_ellipse import Mode, Scene
+
+Rates = Callable[[Any, Any, Any], tuple[Any, Any]]
+MOST_STEPS = 1_000_000  # of one run
+
+
+class Problem(NamedTuple):
+    """Body, start and end of one run, and its tolerances."""
+
+    body: tuple[float, ...]  # B, A - B, AB, S [m^2, m^4], gamma, sigma [m/s^2]
+    start: tuple[float, float, float]  # theta [rad], omega [rad/s], x [m]
+    t_end: float  # [s]
+    rtol: float
+    atol: float
+    pace: float  # [s] in which the motion changes
+
+
+def problem(scene: Scene, t_end: float, setting: float) -> Problem:
+    """The numbers of a scene, or ValueError with the sentence that says why not."""
+    at = scene.initial_state
+    if at.mode is not Mode.ROLLING:
+        raise ValueError(f"peers integrate rolling only, and this scene starts {at.mode.name}")
+    for name, value in (("t_end", t_end), ("setting", setting)):
+        if not 0 < value < math.inf:
+            raise ValueError(f"{name} must be positive and finite, got {value!r}")
+    a2, b2 = scene.a**2, scene.b**2
+    spread = (scene.a - scene.b) * (scene.a + scene.b)
+    gamma, sigma = (scene.gravity * part(scene.slope) for part in (math.cos, math.sin))
+    body = (b2, spread, a2 * b2, scene.gyration2 + a2 + b2, gamma, sigma)
+    pace = 1 / (abs(at.omega) + math.sqrt(scene.gravity / max(scene.a, scene.b)))
+    start = (at.theta, at.omega, at.x)
+    return Problem(body, start, float(t_end), setting, setting / 100, pace)
+
+
+def rates_with(sin: Any, cos: Any, sqrt: Any) -> Rates:
+    """theta'' and x' from theta, omega and the body, for the functions of some library."""
+
+    def rates(theta: Any, omega: Any, body: Any) -> tuple[Any, Any]:
+        s, c = sin(theta), cos(theta)
+        u = body[0] + body[1] * s * s
+        h = sqrt(u)
+        hu = h * u
+        load = body[4] * hu + body[2] * omega * omega
+        turn = body[5] * hu * u - body[1] * s * c * load
+        return turn / (u * (body[3] * u - body[2])), h * omega
+
+    return rates
+
+
+RATES = rates_with(math.sin, math.cos, math.sqrt)
+
+
+class Integration(ABC):
+    """A prepared run: the call is what is timed."""
+
+    counts: dict[str, int]
+
+    @abstractmethod
+    def __call__(self) -> tuple[float, float, float]:
+        """theta, omega, x at the end, integrated anew."""
+
+
+class Peer(ABC):
+    """A contender; `prepare` compiles and allocates."""
+
+    name: str
+    ladder = "tolerances"
+    tags: tuple[str, ...] = ("peer", "compiled")
+
+    @abstractmethod
+    def prepare(self, scene: Scene, t_end: float, setting: float) -> Integration:
+        """Set up a new scene; ValueError if the peer cannot do it."""
+
+
+def columns(states: Any) -> tuple[Any, Any, Any]:
+    """theta, omega, x, from states one a row."""
+    theta, omega, x = np.ascontiguousarray(np.asarray(states).T)
+    return theta, omega, x
+
+
+def finite(theta: float, omega: float, x: float) -> tuple[float, float, float]:
+    """The state, or RuntimeError where the integration has lost it."""
+    if not math.isfinite(theta + omega + x):
+        raise RuntimeError(f"the state is not finite: {theta}, {omega}, {x}")
+    return theta, omega, x

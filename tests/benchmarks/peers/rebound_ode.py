@@ -1,0 +1,76 @@
+"""REBOUND's own interface for ODEs, which its Gragg-Bulirsch-Stoer integrator carries.
+
+The right-hand side is a C function made by numba; it finds the body behind `ref` of the ODE.
+"""
+
+import ctypes
+from typing import Any
+
+import numba
+import numpy as np
+import rebound
+from numba import types
+from rebound.ode import ODE, ODEDER
+from rolling_ellipse import Scene
+
+from .problem import RATES, Integration, Peer, Problem, columns, finite, problem
+
+_REF = ODE.ref.offset // ctypes.sizeof(ctypes.c_void_p)
+_doubles = types.CPointer(types.float64)
+_rates = numba.njit(RATES)
+
+
+@numba.cfunc(types.void(types.CPointer(_doubles), _doubles, _doubles, types.float64))
+def _right_hand_side(ode: Any, dy: Any, y: Any, t: float) -> None:
+    dy[0] = y[1]
+    dy[1], dy[2] = _rates(y[0], y[1], ode[_REF])
+
+
+class ReboundRun(Integration):
+    """The simulation is kept; a run puts it back to its start."""
+
+    def __init__(self, given: Problem) -> None:
+        self.counts, self.given = {}, given
+        self.body, self.simulation = np.array(given.body), rebound.Simulation()
+        self.simulation.integrator = "bs"
+        self.solver = self.simulation.integrator
+        self.solver.eps_rel, self.solver.eps_abs = given.rtol, given.atol
+        self.ode = self.simulation.create_ode(length=3, needs_nbody=False)
+        self.ode.ref = self.body.ctypes.data
+        self.ode._derivatives = ctypes.cast(_right_hand_side.address, ODEDER)
+        self.first_step = given.pace * given.rtol ** (1 / 9)
+
+    def begin(self) -> Any:
+        self.solver.first_or_last_step = 1
+        self.solver.previous_rejected = self.solver.target_iter = 0
+        self.simulation.t, self.simulation.dt = 0.0, self.first_step
+        self.steps = self.simulation.steps_done
+        y = self.ode.y
+        y[0], y[1], y[2] = self.given.start
+        return y
+
+    def __call__(self) -> tuple[float, float, float]:
+        y = self.begin()
+        self.simulation.integrate(self.given.t_end)
+        self.counts = {"steps": int(self.simulation.steps_done - self.steps)}
+        return finite(y[0], y[1], y[2])
+
+    def sample(self, times: Any) -> Any:
+        """It has no dense output: it stops at every time."""
+        y = self.begin()
+        states = np.empty((len(times), 3))
+        for row, t in zip(states, times, strict=True):
+            self.simulation.integrate(t)
+            row[:] = y[0], y[1], y[2]
+        return columns(states)
+
+
+class ReboundPeer(Peer):
+    name = "REBOUND BS"
+
+    def prepare(self, scene: Scene, t_end: float, setting: float) -> ReboundRun:
+        return ReboundRun(problem(scene, t_end, setting))
+
+
+def peers() -> list[ReboundPeer]:
+    return [ReboundPeer()]

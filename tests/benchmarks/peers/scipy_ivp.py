@@ -1,0 +1,73 @@
+"""SciPy's solve_ivp, with the right-hand side compiled where numba is installed.
+
+It takes no relative tolerance below 100 ulp of 1 and would warn: smaller ones are raised to that
+here, while the absolute tolerance follows the setting.
+"""
+
+from functools import partial
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+from rolling_ellipse import Scene
+from scipy.integrate import solve_ivp
+
+from .problem import RATES, Integration, Peer, Problem, Rates, columns, finite, problem
+
+LEAST_RTOL = 100 * np.finfo(float).eps
+METHODS = ("DOP853", "RK45", "LSODA", "Radau")
+
+
+def equation(rates: Rates, compiled: bool) -> Any:
+    """y' = f(t, y, body) of y = (theta, omega, x)."""
+    if not compiled:
+        return lambda t, y, body: np.array((y[1], *rates(y[0], y[1], body)))
+    import numba
+
+    inner = numba.njit(rates)
+
+    @numba.njit  # type: ignore[untyped-decorator]
+    def right_hand_side(t: float, y: Any, body: Any) -> Any:
+        turn, speed = inner(y[0], y[1], body)
+        return np.array((y[1], turn, speed))
+
+    return right_hand_side
+
+
+class ScipyRun(Integration):
+    def __init__(self, given: Problem, right_hand_side: Any, method: str) -> None:
+        self.counts, body = {}, np.array(given.body)
+        how = {"rtol": max(given.rtol, LEAST_RTOL), "atol": given.atol, "args": (body,)}
+        start, span = np.array(given.start), (0.0, given.t_end)
+        self.solve = partial(solve_ivp, right_hand_side, span, start, method, **how)
+        right_hand_side(0.0, start, body)  # compiles
+
+    def integrate(self, times: Any = None) -> Any:
+        found = self.solve(t_eval=times)
+        if not found.success:
+            raise RuntimeError(found.message)
+        self.counts = {"evaluations": int(found.nfev)}
+        if times is None:
+            self.counts["steps"] = len(found.t) - 1
+        return found.y
+
+    def __call__(self) -> tuple[float, float, float]:
+        return finite(*self.integrate()[:, -1].tolist())
+
+    def sample(self, times: Any) -> Any:
+        return columns(self.integrate(times).T)
+
+
+class ScipyPeer(Peer):
+    def __init__(self, method: str, compiled: bool, rates: Rates = RATES) -> None:
+        self.name = f"SciPy {method}, {'numba' if compiled else 'Python'}"
+        self.tags = ("peer", "compiled" if compiled else "interpreted")
+        self.method, self.right_hand_side = method, equation(rates, compiled)
+
+    def prepare(self, scene: Scene, t_end: float, setting: float) -> ScipyRun:
+        return ScipyRun(problem(scene, t_end, setting), self.right_hand_side, self.method)
+
+
+def peers() -> list[ScipyPeer]:
+    compiled = find_spec("numba") is not None
+    return [ScipyPeer(method, compiled) for method in METHODS]

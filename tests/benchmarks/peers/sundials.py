@@ -1,0 +1,126 @@
+"""SUNDIALS through scikit-sundae, which calls Python: here functions compiled by numba.
+
+CVODE integrates the equation. IDA has the body with its constraints z = h and x' = h omega:
+unknowns x, z, theta, their rates, and the forces N and F per mass, the constraints differentiated
+until the forces appear (index 1). That was the best of what was tried: the stabilised form of index
+2 (Gear, Gupta, Leimkuhler) costs as much and is less accurate. The forces are no part of the error
+test, by absolute tolerances that they never reach.
+"""
+
+import math
+from typing import Any
+
+import numba
+import numpy as np
+from rolling_ellipse import Scene
+from sksundae.cvode import CVODE
+from sksundae.ida import IDA
+
+from .problem import MOST_STEPS, RATES, Integration, Peer, Problem, columns, finite, problem
+
+LEAST_RTOL = 1e-15
+_rates = numba.njit(RATES)
+_FREE = 1e300  # absolute tolerance of a variable that no error test looks at
+
+
+@numba.njit  # type: ignore[untyped-decorator]
+def _right_hand_side(t: float, y: Any, dy: Any, body: Any) -> None:
+    dy[0] = y[1]
+    dy[1], dy[2] = _rates(y[0], y[1], body)
+
+
+@numba.njit  # type: ignore[untyped-decorator]
+def _support(theta: float, body: Any) -> Any:
+    """h, h' and h''."""
+    s, c = math.sin(theta), math.cos(theta)
+    u = body[0] + body[1] * s * s
+    h = math.sqrt(u)
+    return h, body[1] * s * c / h, body[2] / (u * h) - h
+
+
+@numba.njit  # type: ignore[untyped-decorator]
+def _residuals(t: float, y: Any, dy: Any, out: Any, body: Any) -> None:
+    """y = (x, z, theta, x', z', omega, N, F); body[6] is k^2."""
+    h, slope, bend = _support(y[2], body)
+    omega, normal, friction = y[5], y[6], y[7]
+    turn = -(h * friction + slope * normal) / body[6]
+    for i in range(3):
+        out[i] = dy[i] - y[3 + i]
+    out[3] = dy[3] - friction - body[5]
+    out[4] = dy[4] - normal + body[4]
+    out[5] = dy[5] - turn
+    out[6] = normal - body[4] - slope * turn - bend * omega * omega
+    out[7] = friction + body[5] - h * turn - slope * omega * omega
+
+
+class CvodeRun(Integration):
+    order = (0, 1, 2)  # where theta, omega, x are
+
+    def __init__(self, given: Problem, method: str) -> None:
+        self.counts, self.t_end = {}, given.t_end
+        self.initial = (np.array(given.start),)
+        how = {"rtol": given.rtol, "atol": given.atol, "max_num_steps": MOST_STEPS}
+        self.solver = CVODE(_right_hand_side, userdata=given.body, method=method, **how)
+        self.solver.init_step(0.0, *self.initial)
+        self.solver.step(given.pace * 1e-6)  # compiles
+
+    def __call__(self) -> tuple[float, float, float]:
+        self.solver.init_step(0.0, *self.initial)
+        found = self.solver.step(self.t_end)
+        self.settle(found)
+        y = found.y.tolist()
+        return finite(*(y[i] for i in self.order))
+
+    def sample(self, times: Any) -> Any:
+        """solve() takes rising times from that of the start, and more than two."""
+        stops, back = np.unique(np.concatenate(([0.0], times, [self.t_end])), return_inverse=True)
+        found = self.solver.solve(stops, *self.initial)
+        self.settle(found)
+        return columns(found.y[back[1:-1]][:, self.order])
+
+    def settle(self, found: Any) -> None:
+        if not found.success:
+            raise RuntimeError(f"SUNDIALS: {found.message}")
+        self.counts = {"evaluations": int(found.nfev)}
+
+
+class IdaRun(CvodeRun):
+    order = (2, 5, 0)
+
+    def __init__(self, given: Problem, gyration2: float) -> None:
+        self.counts, self.t_end = {}, given.t_end
+        body = (*given.body, gyration2)
+        self.initial = consistent(given, body)
+        atol = np.array([given.atol] * 6 + [_FREE] * 2)
+        how = {"rtol": given.rtol, "atol": atol, "max_num_steps": MOST_STEPS}
+        self.solver = IDA(_residuals, userdata=body, algebraic_idx=[6, 7], **how)
+        self.solver.init_step(0.0, *self.initial)
+        self.solver.step(given.pace * 1e-6)  # compiles
+
+
+def consistent(given: Problem, body: tuple[float, ...]) -> tuple[Any, Any]:
+    """All unknowns at the start, and their rates; those of the forces are not asked for."""
+    theta, omega, x = given.start
+    h, slope, bend = _support(theta, body)
+    turn, _ = RATES(theta, omega, body)
+    push, lift = h * turn + slope * omega**2, slope * turn + bend * omega**2
+    rates = [h * omega, slope * omega, omega]
+    start = np.array([x, h, theta, *rates, lift + body[4], push - body[5]])
+    return start, np.array([*rates, push, lift, turn, 0.0, 0.0])
+
+
+class SundialsPeer(Peer):
+    def __init__(self, method: str) -> None:
+        self.name, self.method = f"SUNDIALS {method}", method
+
+    def prepare(self, scene: Scene, t_end: float, setting: float) -> CvodeRun:
+        given = problem(scene, t_end, setting)
+        if setting < LEAST_RTOL:
+            raise ValueError(f"SUNDIALS takes tolerances from {LEAST_RTOL}, got {setting}")
+        if self.method == "IDA":
+            return IdaRun(given, scene.gyration2)
+        return CvodeRun(given, self.method.removeprefix("CVODE "))
+
+
+def peers() -> list[SundialsPeer]:
+    return [SundialsPeer(method) for method in ("CVODE Adams", "CVODE BDF", "IDA")]
