@@ -4,6 +4,7 @@
 """
 
 import importlib
+import warnings
 from typing import Any
 
 MODULES = {  # with the library that each needs; Boost's headers and g++ are looked for by its own
@@ -22,7 +23,8 @@ def available() -> tuple[list[Any], dict[str, str]]:
     found, missing = [], {}
     for module, library in MODULES.items():
         try:
-            found += importlib.import_module(f".{module}", __name__).peers()
+            with warnings.catch_warnings(action="ignore"):  # about themselves, while they load
+                found += importlib.import_module(f".{module}", __name__).peers()
         except ModuleNotFoundError as error:
             missing[library] = f"{error.name} is not installed"
         except Exception as error:  # a broken installation raises whatever it likes

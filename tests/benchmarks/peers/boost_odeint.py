@@ -53,6 +53,10 @@ def library() -> ctypes.CDLL:
     return ctypes.CDLL(str(built))
 
 
+def boost_version(program: ctypes.CDLL) -> str:
+    return (ctypes.c_char_p.in_dll(program, "boost_version").value or b"").decode()
+
+
 class BoostRun(Integration):
     def __init__(self, roll: Any, given: Problem, stepper: str) -> None:
         values = (*given.body, *given.start, *given[2:])
@@ -84,13 +88,14 @@ class BoostRun(Integration):
 
 
 class BoostPeer(Peer):
-    def __init__(self, roll: Any, stepper: str) -> None:
-        self.name, self.roll, self.stepper = f"Boost {stepper}", roll, stepper
+    def __init__(self, program: ctypes.CDLL, stepper: str) -> None:
+        self.name, self.roll, self.stepper = f"Boost {stepper}", program.roll, stepper
+        self.library = f"Boost {boost_version(program)}"
 
     def prepare(self, scene: Scene, t_end: float, setting: float) -> BoostRun:
         return BoostRun(self.roll, problem(scene, t_end, setting), self.stepper)
 
 
 def peers() -> list[BoostPeer]:
-    roll = library().roll
-    return [BoostPeer(roll, stepper) for stepper in STEPPERS]
+    program = library()
+    return [BoostPeer(program, stepper) for stepper in STEPPERS]

@@ -9,7 +9,17 @@ import jax.numpy as jnp
 import numpy as np
 from rolling_ellipse import Scene
 
-from .problem import MOST_STEPS, Integration, Peer, Problem, columns, finite, problem, rates_with
+from .problem import (
+    MOST_STEPS,
+    Integration,
+    Peer,
+    Problem,
+    columns,
+    finite,
+    problem,
+    rates_with,
+    version,
+)
 
 jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_platforms", "cpu")
@@ -57,6 +67,8 @@ class DiffraxRun(Integration):
 
 
 class DiffraxPeer(Peer):
+    library = version("diffrax")
+
     def __init__(self, solver: Any) -> None:
         self.name, self.solver = f"diffrax {solver.__name__}", solver()
 

@@ -7,7 +7,7 @@ import heyoka
 import numpy as np
 from rolling_ellipse import Scene
 
-from .problem import Integration, Peer, Problem, columns, finite, problem
+from .problem import Integration, Peer, Problem, columns, finite, problem, version
 
 MANY = 20_000  # samples
 
@@ -61,6 +61,7 @@ class HeyokaRun(Integration):
 
 
 class HeyokaPeer(Peer):
+    library = version("heyoka")
     name = "heyoka"
 
     def __init__(self) -> None:

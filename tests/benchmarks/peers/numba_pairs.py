@@ -7,7 +7,17 @@ import numpy as np
 from numbalsoda import dop853, lsoda, lsoda_sig
 from rolling_ellipse import Scene
 
-from .problem import MOST_STEPS, RATES, Integration, Peer, Problem, columns, finite, problem
+from .problem import (
+    MOST_STEPS,
+    RATES,
+    Integration,
+    Peer,
+    Problem,
+    columns,
+    finite,
+    problem,
+    version,
+)
 
 _rates = numba.njit(RATES)
 
@@ -42,6 +52,8 @@ class NumbaRun(Integration):
 
 
 class NumbaPeer(Peer):
+    library = version("numbalsoda")
+
     def __init__(self, solve: Any) -> None:
         self.name, self.solve = f"numbalsoda {solve.__name__}", solve
 

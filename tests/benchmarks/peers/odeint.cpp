@@ -1,6 +1,7 @@
 // Boost.odeint on the rolling ellipse, called by boost_odeint.py through ctypes.
 #include <array>
 #include <boost/numeric/odeint.hpp>
+#include <boost/version.hpp>
 #include <cmath>
 
 namespace {
@@ -129,8 +130,12 @@ Answer chosen(int stepper, bool dense, const Rates& rates, const Samples& sample
 
 }  // namespace
 
-extern "C" int roll(int stepper, int dense, const Problem* given, long count, const double* times,
-                    double* states, long* counted) {
+extern "C" {
+
+const char* boost_version = BOOST_LIB_VERSION;
+
+int roll(int stepper, int dense, const Problem* given, long count, const double* times,
+         double* states, long* counted) {
     Counts counts;
     Answer answer;
     try {
@@ -143,3 +148,5 @@ extern "C" int roll(int stepper, int dense, const Problem* given, long count, co
     counted[2] = counts.evaluations;
     return answer;
 }
+
+}  // extern "C"

@@ -12,6 +12,7 @@ fewer products, from which the peers gain: heyoka half of its time.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from importlib import metadata
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -81,12 +82,18 @@ class Peer(ABC):
     """A contender; `prepare` compiles and allocates."""
 
     name: str
+    library: str  # with its version
     ladder = "tolerances"
     tags: tuple[str, ...] = ("peer", "compiled")
 
     @abstractmethod
     def prepare(self, scene: Scene, t_end: float, setting: float) -> Integration:
         """Set up a new scene; ValueError if the peer cannot do it."""
+
+
+def version(library: str) -> str:
+    """Name and version of what pip has installed."""
+    return f"{library} {metadata.version(library)}"
 
 
 def columns(states: Any) -> tuple[Any, Any, Any]:

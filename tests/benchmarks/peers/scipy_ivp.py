@@ -12,7 +12,7 @@ import numpy as np
 from rolling_ellipse import Scene
 from scipy.integrate import solve_ivp
 
-from .problem import RATES, Integration, Peer, Problem, Rates, columns, finite, problem
+from .problem import RATES, Integration, Peer, Problem, Rates, columns, finite, problem, version
 
 LEAST_RTOL = 100 * np.finfo(float).eps
 METHODS = ("DOP853", "RK45", "LSODA", "Radau")
@@ -59,6 +59,8 @@ class ScipyRun(Integration):
 
 
 class ScipyPeer(Peer):
+    library = version("scipy")
+
     def __init__(self, method: str, compiled: bool, rates: Rates = RATES) -> None:
         self.name = f"SciPy {method}, {'numba' if compiled else 'Python'}"
         self.tags = ("peer", "compiled" if compiled else "interpreted")

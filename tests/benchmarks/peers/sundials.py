@@ -16,7 +16,17 @@ from rolling_ellipse import Scene
 from sksundae.cvode import CVODE
 from sksundae.ida import IDA
 
-from .problem import MOST_STEPS, RATES, Integration, Peer, Problem, columns, finite, problem
+from .problem import (
+    MOST_STEPS,
+    RATES,
+    Integration,
+    Peer,
+    Problem,
+    columns,
+    finite,
+    problem,
+    version,
+)
 
 LEAST_RTOL = 1e-15
 _rates = numba.njit(RATES)
@@ -110,6 +120,8 @@ def consistent(given: Problem, body: tuple[float, ...]) -> tuple[Any, Any]:
 
 
 class SundialsPeer(Peer):
+    library = version("scikit-sundae")
+
     def __init__(self, method: str) -> None:
         self.name, self.method = f"SUNDIALS {method}", method
 
