@@ -9,6 +9,7 @@ Machines differ and so does their load: compare the ratios of one run.
 """
 
 import argparse
+import math
 import os
 import platform
 import statistics
@@ -48,7 +49,7 @@ class Record(NamedTuple):
     name: str
     setting: float
     error: float
-    times: Sequence[float]  # of a call [s], one a round
+    times: list[float]  # of a call [s], one a round
     setup: float  # [s]
     reason: str
 
@@ -132,34 +133,48 @@ def seconds(run: Run, repeats: int) -> float:
     return (time.perf_counter() - begin) / repeats
 
 
+def tried(
+    contender: Any, scene: Scene, t: float, setting: float, error: Callable[[State], float]
+) -> tuple[Record, Run | None]:
+    """Prepare and call it twice; the second call, warm, is its first time."""
+    begin, setup, reached = time.perf_counter(), math.nan, math.nan
+    times: list[float] = []
+    run, reason = None, ""
+    try:
+        run = contender.prepare(scene, t, setting)
+        setup = time.perf_counter() - begin
+        reached = error(run())
+        times.append(seconds(run, 1))
+    except (ValueError, RuntimeError) as failure:
+        reason = str(failure).partition("\n")[0]
+    return Record(contender.name, setting, reached, times, setup, reason), run
+
+
 def measured(
     scene: Scene, t: float, contenders: Sequence[Any], ladders: dict[str, list[float]],
     rounds: int, longest: float,
 ) -> list[Record]:  # fmt: skip
     """Every contender at every setting; one whose call takes `longest` goes no further."""
-    error, records, runs = judge(scene, t), [], {}
+    error, records = judge(scene, t), []
+    cases: list[tuple[Record, Run]] = []
     for contender in contenders:
         for setting in ladders[contender.ladder]:
-            begin, found, reason = time.perf_counter(), np.nan, ""
-            setup = once = np.nan
-            try:
-                run = contender.prepare(scene, t, setting)
-                setup = time.perf_counter() - begin
-                once = seconds(run, 1)
-                found = error(run())
-            except (ValueError, RuntimeError) as failure:
-                reason = f"{failure}".splitlines()[0]
-            times = [once] if np.isfinite(found) else []
-            if times and once > longest:
-                reason = f"a call takes {once:.1f} s: timed once, and goes no further"
-            elif times:
-                runs[len(records)] = run, 1 + int(SHORTEST / once)
-            records.append(Record(contender.name, setting, found, times, setup, reason))
-            if once > longest:
+            begin = time.perf_counter()
+            record, run = tried(contender, scene, t, setting, error)
+            lasted = record.times[0] if record.times else time.perf_counter() - begin
+            slow = lasted > longest and run is not None
+            if slow:
+                note = f"a call takes {lasted:.1f} s: stricter settings are left out"
+                record = record._replace(reason=f"{record.reason or 'timed once'}; {note}")
+            elif record.times and run is not None:
+                cases.append((record, run))
+            records.append(record)
+            if slow:
                 break
+    repeats = [1 + int(SHORTEST / record.times[0]) for record, _ in cases]
     for _ in range(rounds):
-        for i, (run, repeats) in runs.items():
-            records[i].times.append(seconds(run, repeats))  # type: ignore[attr-defined]
+        for (record, run), count in zip(cases, repeats, strict=True):
+            record.times.append(seconds(run, count))
     return records
 
 

@@ -1,0 +1,161 @@
+"""The benchmark's peers: those installed solve the problem, those missing are named."""
+
+import importlib
+import math
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import bench_peers
+import peers
+import pytest
+from peers.problem import RATES
+from peers.scipy_ivp import ScipyPeer
+from rolling_ellipse import Mode, Scene, flow, period, simulate
+
+R = Scene(2.0, 1.0, theta=0.2, omega=3.2)
+T = 1.37 * period(R) / 2
+TOLERANCE = 1e-10
+# A tolerance is one of a step; a few hundred steps, each error growing tenfold at most on the way
+# over the tip, add up to less than 1e4 of them.
+BOUND = 1e4 * TOLERANCE
+
+
+@pytest.fixture(scope="module")
+def found() -> tuple[list[Any], dict[str, str]]:
+    installed, missing = peers.available()
+    return installed, missing
+
+
+def largest(state: Any, exact: Any) -> float:
+    return max(abs(p - q) for p, q in zip(state, exact, strict=True))
+
+
+def exact_end(t: float, gravity: float = R.gravity) -> tuple[float, float, float]:
+    theta, omega, x = flow(t, a=R.a, b=R.b, theta=R.theta, omega=R.omega, gravity=gravity)
+    return theta, omega, x
+
+
+def test_every_library_takes_part_or_is_missing_for_a_reason(found: Any) -> None:
+    installed, missing = found
+    modules = {type(peer).__module__.rpartition(".")[2] for peer in installed}
+    assert "scipy_ivp" in modules
+    for module, library in peers.MODULES.items():
+        assert (module in modules) is (library not in missing)
+    assert all(missing.values())
+    assert len({peer.name for peer in installed}) == len(installed)
+
+
+def test_a_broken_installation_is_missing_with_its_message(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(name: str, package: str | None = None) -> Any:
+        raise (
+            OSError("libsomething.so: not today")
+            if "heyoka" in name
+            else ModuleNotFoundError(f"No module named {name!r}", name=name)
+        )
+
+    monkeypatch.setattr(importlib, "import_module", broken)
+    installed, missing = peers.available()
+    assert installed == [] and missing.keys() == set(peers.MODULES.values())
+    assert missing["heyoka"] == "OSError: libsomething.so: not today"
+    assert missing["scipy"].endswith("is not installed")
+
+
+def test_no_library_is_loaded_before_it_is_asked_for() -> None:
+    folder = str(Path(peers.__file__).parents[1])
+    heavy = {"numpy", "scipy", "numba", "heyoka", "rebound", "jax", "sksundae", "mujoco"}
+    script = f"import sys; sys.path.insert(0, {folder!r}); import peers; "
+    script += f"assert not {heavy} & set(sys.modules)"
+    subprocess.run([sys.executable, "-c", script], check=True, timeout=60)
+
+
+def test_every_peer_reaches_the_exact_motion(found: Any) -> None:
+    for peer in found[0]:
+        run = peer.prepare(R, T, TOLERANCE)
+        first = run()
+        assert largest(first, exact_end(T)) < BOUND, peer.name
+        assert run() == first, f"{peer.name}: a call integrates anew"
+        assert all(count >= 0 for count in run.counts.values()), peer.name
+
+
+def test_samples_are_those_of_the_motion(found: Any) -> None:
+    times = [0.0, 0.25 * T, 0.5 * T, 0.5 * T, T]
+    exact = [exact_end(t) for t in times]
+    for peer in found[0]:
+        sampled = peer.prepare(R, T, TOLERANCE).sample(times)
+        for row, state in zip(zip(*sampled, strict=True), exact, strict=True):
+            assert largest(row, state) < 10 * BOUND, peer.name  # interpolation has a lower order
+
+
+@pytest.mark.parametrize("slope", [0.1, -0.1])
+def test_peers_and_the_package_agree_on_slopes(found: Any, slope: float) -> None:
+    scene = Scene(2.0, 1.0, slope=slope, theta=0.2, omega=2.0, x=1.0)
+    end = simulate(scene, [0.7], model="rolling", method="dop853", rtol=1e-13, atol=1e-15)
+    exact = end.theta[-1], end.omega[-1], end.x[-1]
+    for peer in found[0]:
+        assert largest(peer.prepare(scene, 0.7, TOLERANCE)(), exact) < BOUND, peer.name
+
+
+def test_scenes_that_do_not_roll_are_refused(found: Any) -> None:
+    slides = Scene(2.0, 1.0, friction=0.01, omega=3.0, x_dot=1.0)
+    flies = Scene(2.0, 1.0, z=5.0)
+    assert slides.initial_state.mode is Mode.SLIDING
+    for peer in found[0]:
+        for scene, mode in ((slides, "SLIDING"), (flies, "FLIGHT")):
+            with pytest.raises(ValueError, match=f"rolling only, and this scene starts {mode}"):
+                peer.prepare(scene, 1.0, TOLERANCE)
+        with pytest.raises(ValueError, match="t_end must be positive and finite, got inf"):
+            peer.prepare(R, math.inf, TOLERANCE)
+
+
+def test_a_peer_with_a_wrong_equation_is_noticed() -> None:
+    """Gravity 1e-3 too strong: the error is what the exact motions differ by, and not small."""
+
+    def wrong(theta: Any, omega: Any, body: Any) -> Any:
+        return RATES(theta, omega, (*body[:4], 1.001 * body[4], body[5]))
+
+    end = ScipyPeer("DOP853", compiled=False, rates=wrong).prepare(R, T, TOLERANCE)()
+    difference = largest(exact_end(T, 1.001 * R.gravity), exact_end(T))
+    assert 1e-4 < difference < 1e-2
+    assert abs(largest(end, exact_end(T)) - difference) < 2 * BOUND
+
+
+def test_quick_benchmark(found: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its judge is independent of the package, and its table has every contender."""
+    ((_, records),) = bench_peers.main(["--quick"]).items()
+    printed = capsys.readouterr().out
+    for library, reason in found[1].items():
+        assert f"missing: {library}: {reason}" in printed
+    names = {record.name for record in records}
+    assert names == bench_peers.OWN | {peer.name for peer in found[0]}
+    for name in names:
+        mine = [record for record in records if record.name == name]
+        assert all(record.times or record.reason for record in mine), name
+        reached = min(record.error for record in mine if record.times)
+        assert reached < (1e-14 if name == "flow" else BOUND), name
+    assert "best peer / best of the package" in printed
+
+
+def test_the_judge_sees_a_small_error() -> None:
+    error = bench_peers.judge(R, T)
+    theta, omega, x = exact_end(T)
+    assert error((theta, omega, x)) < 1e-14
+    assert error((theta + 1e-3, omega, x)) == pytest.approx(1e-3, rel=1e-9)
+    assert error((theta, omega, x - 2e-3)) == pytest.approx(1e-3, rel=1e-9)  # of max(a, b)
+
+
+def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
+    """Its error falls with the step; that of its own contacts does not."""
+    pytest.importorskip("mujoco")
+    mujoco_ellipse = importlib.import_module("peers.mujoco_ellipse")
+    t_end = 5.0
+    exact = exact_end(t_end)
+    errors = {}
+    for contact in ("default", "tuned"):
+        for dt in (4e-3, 1e-3):
+            end = mujoco_ellipse.motion(R, t_end, dt, contact)
+            assert abs(end.times[-1] - t_end) < 1e-9
+            errors[contact, dt] = abs(end.theta[-1] - exact[0])
+    assert errors["tuned", 1e-3] < 0.5 * errors["tuned", 4e-3]
+    assert errors["tuned", 1e-3] < 0.1 * errors["default", 1e-3]
