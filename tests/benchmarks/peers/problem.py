@@ -6,7 +6,8 @@ D = S - AB/u, so that the equation of motion needs no h' and no radius of curvat
     (S u - AB) theta'' = h u sigma - (A - B) sin cos (gamma h + AB omega^2 / u),  x' = h omega,
 
 sigma and gamma being gravity along the ground and into it. It is the equation of the notebook with
-fewer products, from which the peers gain: heyoka half of its time.
+fewer products, from which the peers gain: heyoka half of its time. S u - AB loses a factor
+A/(k^2 + B) of the last place near the flat: at most 4 for a uniform disc, however thin.
 """
 
 import math
