@@ -154,15 +154,17 @@ def measured(
     scene: Scene, t: float, contenders: Sequence[Any], ladders: dict[str, list[float]],
     rounds: int, longest: float,
 ) -> list[Record]:  # fmt: skip
-    """Every contender at every setting; one whose call takes `longest` goes no further."""
+    """Every contender at every setting; one that works but takes `longest` goes no further."""
     error, records = judge(scene, t), []
     cases: list[tuple[Record, Run]] = []
     for contender in contenders:
+        worked = False  # a failure at a loose setting does not mean one at a strict setting
         for setting in ladders[contender.ladder]:
             begin = time.perf_counter()
             record, run = tried(contender, scene, t, setting, error)
             lasted = record.times[0] if record.times else time.perf_counter() - begin
-            slow = lasted > longest and run is not None
+            worked = worked or bool(record.times)
+            slow = worked and lasted > longest and run is not None
             if slow:
                 note = f"a call takes {lasted:.1f} s: stricter settings are left out"
                 record = record._replace(reason=f"{record.reason or 'timed once'}; {note}")
