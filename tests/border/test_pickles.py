@@ -9,6 +9,7 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -61,6 +62,7 @@ def fitted() -> rl.impacts.FittedImpacts:
     return rl.impacts.fit(before, after, a=2.0, b=1.0)
 
 
+@cache
 def raced() -> rl.WorkPrecision:
     return rl.work_precision(rl.scenes.rolling, 1.0, methods=["flow"], rounds=2)
 

@@ -90,6 +90,7 @@ def errors_at_and_between_steps(
     return math.sqrt(np.mean(off[:, -1] ** 2)), math.sqrt(np.mean(off[:, :-1] ** 2))
 
 
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 @pytest.mark.parametrize("where", ORDER_SCENES)
 @each_method
 def test_measured_order_is_the_nominal_one(where: str, name: str) -> None:
@@ -533,6 +534,7 @@ ARRAYS = (
 OVERSTEPPED = {"thin": Scene(2.0, 0.002, theta=0.3, omega=1.0), "fast": Scene(2.0, 0.2, omega=1e3)}
 
 
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 @pytest.mark.parametrize("step", [0.1, 1.0, 10.0, 100.0])
 @pytest.mark.parametrize("scene", OVERSTEPPED.values(), ids=OVERSTEPPED)
 @each_method
@@ -559,6 +561,7 @@ def test_step_too_large(name: str) -> None:
     assert trajectory.stats["steps"] == 0
 
 
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 @pytest.mark.parametrize("tolerance", [1.0, 1e3, 1e300])
 @pytest.mark.parametrize("name", PAIRS)
 def test_tolerances_much_too_loose_give_no_nonsense_numbers(name: str, tolerance: float) -> None:

@@ -27,7 +27,7 @@ def test_attainable_is_what_the_inputs_carry() -> None:
         scene, t = scene_of(row)
         if certify(scene).validity is not Validity.VALID:
             continue
-        judge = Judge(scene, t, 8, None)
+        judge = Judge(scene, t, 8, None, math.inf)
         theta, omega, x = (float(row[f"unit_{name}"]) for name in ("theta", "omega", "x"))
         _, fastest, length = judge._sizes
         known = max(theta, omega / fastest, x / length)
@@ -54,7 +54,7 @@ def test_flow_is_within_the_floor_of_40_digits() -> None:
                 column[-1] = float(value)
             return columns
 
-        own = Judge(scene, t, 4, None).reference
+        own = Judge(scene, t, 4, None, math.inf).reference
         found = work_precision(
             scene, t, methods=["flow"], samples=4, rounds=1, reference=reference
         ).runs[0]
@@ -69,7 +69,7 @@ def test_near_the_separatrix_less_is_attainable() -> None:
     found = []
     for k in (3, 6, 9, 12):
         scene = Scene(2.0, 1.0, omega=speed * (1 + 10.0**-k))
-        found.append(Judge(scene, 0.45 * period(scene), 4, None).reference.attainable)
+        found.append(Judge(scene, 0.45 * period(scene), 4, None, math.inf).reference.attainable)
     told(found)
     growth = np.diff(np.log10(found)) / 3
     assert np.all(np.abs(growth - 0.9) < 0.01)

@@ -386,6 +386,34 @@ def _range(draw: Draw, name: str) -> tuple[float, float]:
     return first, draw.pick(last, last * (1 + 2**-52), 2 * last)
 
 
+def race(draw: Draw) -> Iterator[Line]:
+    drawn = scenes.scene(draw)
+    while not drawn.body.mild:  # others may take a million steps in one call
+        drawn = scenes.scene(draw)
+    ways = (
+        "flow", "exact", "dop853", "dopri5", "rk4", "gauss", "radau", "contact",
+        "multipliers/rk4/none", "multipliers/radau/ggl", "multipliers/dop853/projection",
+    )  # fmt: skip
+    arguments = {
+        "scene": drawn.code,
+        "t_end": text(drawn.body.clock * draw.between(0.01, 3)),
+        "methods": text(draw.random.sample(ways, draw.pick(1, 2, 3))),
+        "tolerances": text([draw.power(-14, 0) for _ in range(2)]),
+        "steps": text([drawn.body.clock * draw.power(-2, 0)]),
+        "samples": "4", "rounds": "2", "max_seconds": "0.2",
+    }  # fmt: skip
+    if draw.chance(0.4):
+        arguments = draw.mutated(arguments)
+        if arguments.get("max_seconds", "60")[:1].isdigit():  # no more work than asked for
+            arguments["max_seconds"] = "0.2"
+    made = call("rl.work_precision", **arguments)  # NaN are the figures of what has no answer
+    yield Line(made, "found", does="work_precision", patience=6, forgery=True)
+    yield Line("(found.verdict(), repr(found))", does="verdict")
+    yield Line("found.save('race.json') or repr(rl.WorkPrecision.load('race.json'))", does="save")
+    yield Line("found.plot()", does="WorkPrecision.plot", patience=6)
+    yield Line("plt.close('all')", does="close")
+
+
 def load(draw: Draw) -> Iterator[Line]:
     """What is no file of ours; files of ours are read where trajectories are asked."""
     content = draw.pick("b''", "b'PK'", "b'PK\\x05\\x06' + bytes(18)", "b'{}'", "bytes(1000)")
@@ -427,6 +455,7 @@ CALLS = (
     Call("report", 1, report_simulate),
     Call("errata", 0.02, errata),
     Call("phase_map", 0.15, phase_map),
+    Call("race", 0.1, race),
     Call("load", 0.3, load),
     Call("command", 0.3, command),
 )

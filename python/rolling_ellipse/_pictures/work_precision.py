@@ -122,11 +122,15 @@ def draw(
             continue
         lines[key] = ax.plot(
             [p[0] for p in points], [p[1] for p in points], color=look.colour, lw=look.width,
-            marker=look.marker, ms=4, mew=0, zorder=3,
+            marker=look.marker, ms=4, mew=0, zorder=3, scalex=False, scaley=False,
         )[0]  # fmt: skip
         if y == "time" and (hollow := _setup(ax, points, look)):
             setups[key] = hollow
     floor = attainable = None
+    drawn = [np.asarray(line.get_xydata()) for line in (*lines.values(), *setups.values())]
+    known = [reference.floor, reference.attainable] if x in _OF_STATES else []
+    for axis, column, more in ((ax.xaxis, 0, known), (ax.yaxis, 1, [])):
+        _limit(axis, [*np.concatenate([[], *(xy[:, column] for xy in drawn)]), *more])
     if x in _OF_STATES:
         floor, attainable = _limits(ax, reference)
     if x in ERRORS:
@@ -188,23 +192,32 @@ def _setup(ax: Axes, points: list[tuple[float, float, Run]], look: _Look) -> Lin
     x, time, run = min(points, key=lambda point: point[0])
     if not run.setup > 0.1 * time:
         return None
-    ax.plot([x, x], [time, time + run.setup], color=look.colour, lw=0.6, ls=":", zorder=2)
+    how: dict[str, Any] = {"color": look.colour, "scalex": False, "scaley": False}
+    ax.plot([x, x], [time, time + run.setup], lw=0.6, ls=":", zorder=2, **how)
     return ax.plot(
-        [x], [time + run.setup], color=look.colour, ls="", marker=look.marker, ms=4.5, mfc="white",
-        mew=0.8, zorder=2.5,
+        [x], [time + run.setup], ls="", marker=look.marker, ms=4.5, mfc="white", mew=0.8,
+        zorder=2.5, **how,
     )[0]  # fmt: skip
 
 
-def _limits(ax: Axes, reference: Any) -> tuple[Artist | None, Line2D]:
-    low, high = sorted(ax.get_xlim())
-    low = min(low, reference.floor / 10 or low, reference.attainable / 2)
-    ax.set_xlim(low, max(high, 10 * low))
-    line = ax.axvline(reference.attainable, color=GREY, lw=1, ls=(0, (4, 2)), zorder=1)
-    floor = None
+def _limit(axis: Axis, values: list[float]) -> None:
+    """Make room for values on a logarithmic axis, and a decade at least."""
+    shown = [value for value in values if value > 0] or [1.0]
+    low, high = math.log10(min(shown)), math.log10(max(shown))
+    half = max(0.5, (high - low) * 0.53 + 0.1)
+    middle = (low + high) / 2
+    _set_limits(axis, middle - half, middle + half)
+
+
+def _limits(ax: Axes, reference: Any) -> tuple[Artist | None, Line2D | None]:
+    words: dict[float, tuple[str, int, str]] = {}
+    line = floor = None
+    if reference.attainable > 0:
+        line = ax.axvline(reference.attainable, color=GREY, lw=1, ls=(0, (4, 2)), zorder=1)
+        words[reference.attainable] = ("attainable", -2, "right")
     if reference.floor > 0:
-        floor = ax.axvspan(low, reference.floor, color=GREY, alpha=0.18, lw=0, zorder=0)
-    words = {reference.attainable: ("attainable", -2, "right")}
-    if floor is not None:
+        least = ax.get_xlim()[0]
+        floor = ax.axvspan(least, reference.floor, color=GREY, alpha=0.18, lw=0, zorder=0)
         words[reference.floor] = ("reference's own error", 2, "left")
     for place, (word, off, side) in words.items():
         ax.annotate(
@@ -264,7 +277,7 @@ def _dress(ax: Axes) -> None:
     ax.spines[["top", "right"]].set_visible(False)
     ax.grid(True, which="major", color=GREY, alpha=0.25, lw=0.5)
     for axis in (ax.xaxis, ax.yaxis):
-        decades = _widened(axis, 1.0)
+        decades = _widened(axis, 0.0)
         if decades < _FEW:
             axis.set_major_locator(LogLocator(10.0, subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter("{x:g}")
@@ -279,13 +292,18 @@ def _widened(axis: Axis, least: float) -> float:
     if abs(last - first) < least:
         middle, half = (first + last) / 2, math.copysign(least / 2, last - first)
         first, last = middle - half, middle + half
-        axis.axes.set(**{f"{axis.axis_name}lim": (10**first, 10**last)})  # type: ignore[attr-defined]
+        _set_limits(axis, first, last)
     return float(abs(last - first))
+
+
+def _set_limits(axis: Axis, first: float, last: float) -> None:
+    """Let an axis go from one power of ten to another."""
+    axis.axes.set(**{f"{axis.axis_name}lim": (10**first, 10**last)})  # type: ignore[attr-defined]
 
 
 def _shape(ax: Axes, lines: int) -> None:
     """Make decades equally long on both axes of a figure of its own: slopes are powers then."""
-    across = _widened(ax.xaxis, 1.0)
+    across = _widened(ax.xaxis, 0.0)
     up = min(_widened(ax.yaxis, across / _FLATTEST), across)
     figure = ax.figure
     assert isinstance(figure, Figure)

@@ -126,7 +126,7 @@ def _run(found: Any) -> Run:
 def _reference(found: Any) -> Reference:
     require_names("a reference", found, field_names(Reference))
     numbers = {name: _number(name, found[name]) for name in ("t_end", "floor", "attainable")}
-    if not all(value >= 0 for value in numbers.values()):
+    if any(value < 0 for value in numbers.values()) or not numbers["t_end"] > 0:
         raise ValueError(f"a reference must have numbers of at least 0, got {found!r}")
     return Reference(name=_text("name", found["name"]), **numbers)
 

@@ -26,7 +26,8 @@ from .results import WorkPrecision
 from .truth import Judge, Truth
 
 _MOST = 1_000_000  # rounds, samples
-_JUDGING = 0.5  # share of the time in which every run is made once
+_KNOWING = 0.2  # share of the time after which no more is asked of what is attainable
+_JUDGING = 0.6  # share of the time in which every run is made once
 
 
 def work_precision(
@@ -106,7 +107,7 @@ def work_precision(
     if reference is not None and not callable(reference):
         raise TypeError(f"reference must be a function of times or None, got {shown(reference)}")
     rivals = peer_contenders(_listed("peers", peers))
-    judges = [Judge(scene, end, samples, reference) for end in ends]
+    judges = [Judge(scene, end, samples, reference, begin + _KNOWING * seconds) for end in ends]
     contenders = [*own_contenders(methods, scene, judges[-1].rolls), *rivals]
     _require_apart(contenders)
     laps = [

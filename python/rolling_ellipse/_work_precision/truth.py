@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
@@ -10,7 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from .._certify import certify
 from .._check import FloatArray
+from .._core import Validity
 from .._errors import constraint_errors, energy_error
 from .._flow import flow
 from .._scene import Scene
@@ -23,9 +26,6 @@ Truth = Callable[[FloatArray], Columns]
 
 ROUNDING = 2.2e-16
 _GOLDEN = (math.sqrt(5) - 1) / 2
-# Bounds of the errors of the package's own motions in units of `attainable`, as its test suite
-# holds them against tables of 30 and more digits.
-_EXACT_UNITS, _CONTACT_UNITS = 4.0, 50.0
 _LARGEST_CHANGE, _SMALLEST_CHANGE, _AGREED = 2.0**-20, 2.0**-44, 0.02
 
 
@@ -44,7 +44,7 @@ class Reference:
     attainable : float
         What a relative change of 2.2e-16 of every number of the scene, one after the other, does
         to the state at the end, and two units in the last place of theta: nobody who computes with
-        doubles can promise less.
+        doubles can promise less. NaN where there was no time to find out.
     """
 
     name: str
@@ -56,16 +56,18 @@ class Reference:
 class Judge:
     """Knows the motion at 0, at sample times, which are no parts of any period, and at the end."""
 
-    def __init__(self, scene: Scene, t_end: float, samples: int, given: Truth | None) -> None:
+    def __init__(
+        self, scene: Scene, t_end: float, samples: int, given: Truth | None, deadline: float
+    ) -> None:
         inner = np.sort(np.modf(np.arange(1, samples + 1) * _GOLDEN)[0]) * t_end
         self.times = np.concatenate([[0.0], inner, [t_end]])
-        self.t_end, self.rolls = t_end, _rolls(scene, t_end)
+        self.t_end, self.rolls = t_end, _rolls(scene)
         own: _Own = _Exact(scene, t_end) if self.rolls else _Contact(scene, t_end)
         self._truth = _columns(own.truth if given is None else given, self.times)
         self._sizes = self._units_of_states(scene)
-        attainable = self._attainable(own)
+        attainable = self._attainable(own, deadline)
         name = own.name if given is None else getattr(given, "__name__", type(given).__name__)
-        floor = own.units * attainable if given is None else float(getattr(given, "floor", 0.0))
+        floor = own.floor(attainable) if given is None else float(getattr(given, "floor", 0.0))
         self.reference = Reference(name, t_end, floor, attainable)
 
     def final_error(self, state: tuple[float, float, float]) -> float:
@@ -105,13 +107,15 @@ class Judge:
         fastest = max(abs(float(omega)) for omega in self._truth[1])
         return 1.0, fastest or math.sqrt(scene.gravity / length), length
 
-    def _attainable(self, own: _Own) -> float:
+    def _attainable(self, own: _Own, deadline: float) -> float:
         ends = [float(column[-1]) for column in self._truth]
         digits = np.array([math.ulp(end) for end in ends]) / self._sizes
-        carried = np.sum([self._carried(own, name) for name in own.inputs], axis=0)
+        carried = np.zeros(3)
+        for name in own.inputs:
+            carried += self._carried(own, name, deadline)
         return float(np.max(2 * digits + carried))
 
-    def _carried(self, own: _Own, name: str) -> FloatArray:
+    def _carried(self, own: _Own, name: str, deadline: float) -> FloatArray:
         """How far the end goes when a number of the scene changes by 2.2e-16 of itself, (3,).
 
         From ever smaller changes: of the rates, that which differs least from the one before and
@@ -121,6 +125,8 @@ class Judge:
         rate, least = np.zeros(3), math.inf
         before, change = np.full(3, math.inf), _LARGEST_CHANGE
         while change >= _SMALLEST_CHANGE and least > _AGREED:
+            if time.perf_counter() > deadline:
+                return np.full(3, math.nan)
             sides = [own.end(name, change), own.end(name, -change)]
             away = [self._parts(s, middle).ravel() / change for s in sides if s is not None]
             if away:
@@ -139,8 +145,11 @@ class _Own:
     """The package's own best motion of a scene, and of scenes that differ by a little."""
 
     name: str
-    units: float  # largest error, beside what is attainable
     inputs: tuple[str, ...]  # numbers that a double does not hold exactly
+
+    def floor(self, attainable: float) -> float:
+        """Its largest error, as the test suite holds it to tables of 30 and more digits."""
+        raise NotImplementedError
 
     def truth(self, times: FloatArray) -> Columns:
         """theta, omega, x at increasing times."""
@@ -152,7 +161,7 @@ class _Own:
 
 
 class _Exact(_Own):
-    name, units = "exact rolling", _EXACT_UNITS
+    name = "exact rolling"
     inputs = ("a", "b", "gyration2", "gravity", "theta", "omega")
 
     def __init__(self, scene: Scene, t_end: float) -> None:
@@ -162,6 +171,9 @@ class _Exact(_Own):
             "a": scene.a, "b": scene.b, "gyration2": scene.gyration2, "gravity": scene.gravity,
             "theta": start.theta, "omega": start.omega,
         }  # fmt: skip
+
+    def floor(self, attainable: float) -> float:
+        return 4 * (attainable if math.isfinite(attainable) else 0.0)
 
     def truth(self, times: FloatArray) -> Columns:
         one_by_one = [flow(t, **self.numbers) for t in times.tolist()]  # a table errs by more
@@ -175,7 +187,7 @@ class _Exact(_Own):
 
 
 class _Contact(_Own):
-    name, units = "contact motion at rounding level", _CONTACT_UNITS
+    name = "contact motion at rounding level"
 
     def __init__(self, scene: Scene, t_end: float) -> None:
         self.scene = replace(scene, inertia=scene.mass * scene.gyration2)
@@ -187,6 +199,9 @@ class _Contact(_Own):
         names = [field.name for field in fields(Scene) if field.name not in unsure]
         known = {name: getattr(self.scene, name) for name in names}
         return [name for name, value in known.items() if value and math.isfinite(value)]
+
+    def floor(self, attainable: float) -> float:
+        return 50 * max(attainable if math.isfinite(attainable) else 0.0, 2e-13)
 
     def truth(self, times: FloatArray) -> Columns:
         found = simulate(self.scene, times, model="contact", raise_on_failure=False)
@@ -208,9 +223,9 @@ class _Contact(_Own):
         return None
 
 
-def _rolls(scene: Scene, t_end: float) -> bool:
+def _rolls(scene: Scene) -> bool:
     """Whether level ground holds the body for certain."""
-    return simulate(scene, [t_end], raise_on_failure=False).model == "rolling"
+    return scene.slope == 0 and certify(scene).validity is Validity.VALID
 
 
 def _columns(truth: Truth, times: FloatArray) -> Columns:
