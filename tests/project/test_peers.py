@@ -123,26 +123,27 @@ def test_a_peer_with_a_wrong_equation_is_noticed() -> None:
 
 def test_quick_benchmark(found: Any, capsys: pytest.CaptureFixture[str]) -> None:
     """Its judge is independent of the package, and its table has every contender."""
-    ((_, records),) = bench_peers.main(["--quick"]).items()
+    ((_, race),) = bench_peers.main(["--quick"]).items()
     printed = capsys.readouterr().out
     for library, reason in found[1].items():
         assert f"missing: {library}: {reason}" in printed
-    names = {record.name for record in records}
-    assert names == bench_peers.OWN | {peer.name for peer in found[0]}
-    for name in names:
-        mine = [record for record in records if record.name == name]
-        assert all(record.times or record.reason for record in mine), name
-        reached = min(record.error for record in mine if record.times)
+    assert set(race.names) == {*bench_peers.METHODS, *(peer.name for peer in found[0])}
+    for name in race.names:
+        mine = [run for run in race.runs if run.name == name]
+        assert all(run.completed or run.reason for run in mine), name
+        reached = min(run.errors.final for run in mine if run.completed)
         assert reached < (1e-14 if name == "flow" else BOUND), name
-    assert "best peer / best of the package" in printed
+    assert race.reference.name == "quadrature_in_40_digits" and race.reference.floor == 0
+    assert "best peer / best of package" in printed and "is unbeaten" in printed
 
 
 def test_the_judge_sees_a_small_error() -> None:
-    error = bench_peers.judge(R, T)
-    theta, omega, x = exact_end(T)
-    assert error((theta, omega, x)) < 1e-14
-    assert error((theta + 1e-3, omega, x)) == pytest.approx(1e-3, rel=1e-9)
-    assert error((theta, omega, x - 2e-3)) == pytest.approx(1e-3, rel=1e-9)  # of max(a, b)
+    """Against exact rolling, which it shares no line with: equal within a few roundings of 7."""
+    exact = bench_peers.in_40_digits(R)
+    off = [float(v[0] - own) for v, own in zip(exact([T]), exact_end(T), strict=True)]
+    assert 0 < max(map(abs, off)) < 1e-14
+    moved = [float(v[0] - own) for v, own in zip(exact([T + 1e-3]), exact_end(T), strict=True)]
+    assert moved[0] == pytest.approx(1e-3 * exact_end(T)[1], rel=1e-2)
 
 
 def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
