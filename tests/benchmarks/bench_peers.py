@@ -71,14 +71,10 @@ def table(found: WorkPrecision) -> str:
         cells = (microseconds(least[d][name]) if name in least[d] else "-" for d in DECADES)
         line = f"{name:28}" + "".join(f"{cell:>{WIDTH}}" for cell in cells)
         if runs:
-            best, setup = (min(values) for values in zip(*map(figures, runs), strict=True))
+            best, setup = min(r.errors.final for r in runs), max(r.setup for r in runs)
             line += f"{best:12.1e}{setup * 1e3:13.3g}"
         lines.append(line)
     return "\n".join([*lines, factors(found, least)])
-
-
-def figures(run: Any) -> tuple[float, float]:
-    return run.errors.final, run.setup
 
 
 def factors(found: WorkPrecision, least: dict[float, dict[str, float]]) -> str:

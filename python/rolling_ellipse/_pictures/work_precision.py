@@ -48,10 +48,12 @@ _NAMES = {
     "t_end": "span [s]",
 }
 _MARKERS = "osD^vPX<>ph*8"
+_DASHES = ("-", "--", "-.", ":")
 _LEAST = 1e-17  # where an exact zero is drawn
 _MOST = 10.0  # errors above are no answer: drawn there, on the rim
 _REASONS = 12  # lines of those that have no answer
-_FEW, _MANY = 2.0, 12.0  # decades of an axis
+_FEW = 2.0  # decades of an axis
+_PITCH = 26.0  # of ticks, at least [points]
 _FLATTEST = 3.0  # width over height
 _KNOWN = ("setting", "t_end")  # also of runs without an answer
 _ROOM = 0.18  # of the axes, on the rim
@@ -82,6 +84,7 @@ class WorkPrecisionChart:
 class _Look:
     colour: str
     marker: str
+    dash: str
     width: float
 
 
@@ -121,7 +124,7 @@ def draw(
         if not points:
             continue
         lines[key] = ax.plot(
-            [p[0] for p in points], [p[1] for p in points], color=look.colour, lw=look.width,
+            [p[0] for p in points], [p[1] for p in points], color=look.colour, lw=look.width, ls=look.dash,
             marker=look.marker, ms=4, mew=0, zorder=3, scalex=False, scaley=False,
         )[0]  # fmt: skip
         if y == "time" and (hollow := _setup(ax, points, look)):
@@ -166,7 +169,8 @@ def _looks(found: WorkPrecision) -> dict[str, _Look]:
             continue
         colour, width = _kind(run)
         count = counts[colour] = counts.get(colour, -1) + 1
-        looks[run.name] = _Look(colour, _MARKERS[count % len(_MARKERS)], width)
+        mark, dash = _MARKERS[count % len(_MARKERS)], _DASHES[count % len(_DASHES)]
+        looks[run.name] = _Look(colour, mark, dash, width)
     return looks
 
 
@@ -282,8 +286,16 @@ def _dress(ax: Axes) -> None:
             axis.set_major_locator(LogLocator(10.0, subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter("{x:g}")
         else:
-            axis.set_major_locator(LogLocator(100.0 if decades > _MANY else 10.0, numticks=40))
+            ticks = max(3, int(_length(axis) / _PITCH))
+            axis.set_major_locator(LogLocator(10.0, numticks=min(ticks, 18)))
         axis.set_minor_locator(NullLocator())
+
+
+def _length(axis: Axis) -> float:
+    """Of an axis on the page [points]."""
+    box = axis.axes.get_window_extent()
+    inches = (box.width if axis is axis.axes.xaxis else box.height) / axis.axes.figure.dpi
+    return 72 * inches
 
 
 def _widened(axis: Axis, least: float) -> float:
@@ -317,7 +329,7 @@ def _below(ax: Axes, lines: list[str], after: int) -> Text | None:
     if not lines:
         return None
     return ax.annotate(
-        "\n".join(lines), (0, 0), xycoords="axes fraction", xytext=(0, -34 - 7.8 * after),
+        "\n".join(lines), (0, 0), xycoords="axes fraction", xytext=(0, -38 - 7.8 * after),
         textcoords="offset points", ha="left", va="top", fontsize=6, linespacing=1.1,
         color=GREY if after else INK, annotation_clip=False,
     )  # fmt: skip
