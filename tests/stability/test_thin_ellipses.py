@@ -66,6 +66,7 @@ def needed(scene: Scene, method: str) -> float:
     return count
 
 
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 @pytest.mark.parametrize("method", ["rk4", "gauss"])
 def test_steps_of_one_size_grow_like_a_over_b(method: str) -> None:
     """The passage is b/a of the swing, and the step a part of it: slope 1, but for terms of the

@@ -124,7 +124,8 @@ def draw(
         if not points:
             continue
         lines[key] = ax.plot(
-            [p[0] for p in points], [p[1] for p in points], color=look.colour, lw=look.width, ls=look.dash,
+            [p[0] for p in points], [p[1] for p in points], color=look.colour, lw=look.width,
+            ls=look.dash,
             marker=look.marker, ms=4, mew=0, zorder=3, scalex=False, scaley=False,
         )[0]  # fmt: skip
         if y == "time" and (hollow := _setup(ax, points, look)):
