@@ -1,10 +1,17 @@
-"""Make the pictures of the README beside this file: roll.gif and methods.png."""
+"""Make the pictures of the README beside this file.
 
+The chart of speed against accuracy is drawn from `peers.json`, which
+`tests/benchmarks/bench_peers.py --scenes R --half-turns 10.37 --save docs/peers.json` writes where
+other people's integrators are installed.
+"""
+
+import warnings
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import rolling_ellipse as rl
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -15,12 +22,21 @@ METHODS = {
     "gauss, 0.02 s": {"method": "gauss", "step": 0.02},
     "exact": {"method": "exact"},
 }
+DRIFTS = {  # of the classical method in five coordinates, with their looks
+    "none": ("#7a2e4d", "-"),
+    "baumgarte": ("#e07a00", "--"),
+    "projection": ("#2a6f97", "-."),
+}
+STEP = 2.0**-7
 
 
 def main() -> None:
-    trajectory = rl.simulate(rl.scenes.report, 6.0)
-    rl.animate(trajectory, HERE / "roll.gif")
+    rl.animate(rl.simulate(rl.scenes.report, 6.0), HERE / "roll.gif")
     save(methods(), "methods.png")
+    save(speed(), "speed.png")
+    save(stability(), "stability.png")
+    save(phase_map(), "phase_map.png")
+    save(strobe(), "strobe.png")
 
 
 def methods() -> Figure:
@@ -31,6 +47,61 @@ def methods() -> Figure:
         rl.simulate(rl.scenes.rolling, t, model="rolling", **how) for how in METHODS.values()
     ]
     rl.plot_energy(motions, ax=figure.add_subplot(), labels=list(METHODS))
+    return figure
+
+
+def speed() -> Figure:
+    """The package beside its peers, as they were raced."""
+    chart = rl.WorkPrecision.load(HERE / "peers.json").plot()
+    figure = chart.ax.figure
+    assert isinstance(figure, Figure)
+    return figure
+
+
+def stability() -> Figure:
+    """By how much a rolling body misses the ground, and its angle, over a thousand half turns."""
+    figure = Figure(figsize=(7, 3.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    scene = rl.Scene(1.5, 1.0, theta=0.2, omega=4.0)
+    turns = np.unique(np.geomspace(1, 1000, 31).round())
+    times = turns * rl.period(scene) / 2
+    exact = rl.simulate(scene, times)
+    for name, (colour, dash) in DRIFTS.items():
+        with warnings.catch_warnings(action="ignore", category=rl.StabilityWarning):
+            found = rl.simulate(
+                scene, times, model="multipliers", method="rk4", step=STEP, stabilization=name
+            )
+        gap = np.maximum(np.abs(found.constraint_residuals().gap), 1e-17)
+        for ax, values in ((left, gap), (right, np.abs(found.theta - exact.theta))):
+            ax.plot(turns, values, color=colour, ls=dash)
+            name_line(ax, turns, values, name, colour)
+    for ax, title in ((left, "distance from the ground [m]"), (right, "error of θ [rad]")):
+        ax.set(xscale="log", yscale="log", xlabel="half turns", xlim=(1, 1e4))
+        ax.set_title(title, loc="left", fontsize="medium")
+        ax.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def name_line(ax: Axes, x: np.ndarray, y: np.ndarray, name: str, colour: str) -> None:
+    """Write a name at the end of a line, with the power by which it grows, if it does."""
+    late = x >= 20
+    power = np.polyfit(np.log(x[late]), np.log(y[late]), 1)[0]
+    grows = f" $t^{{{power:.2f}}}$" if y[-1] > 1e-9 and power > 0.5 else ""
+    ax.annotate(
+        name + grows, (x[-1], y[-1]), xytext=(3, 0), textcoords="offset points", color=colour,
+        va="center", fontsize="x-small",
+    )  # fmt: skip
+
+
+def phase_map() -> Figure:
+    figure = Figure(figsize=(6.4, 4.0), layout="constrained")
+    rl.plot_phase_map("aspect", "energy", friction=0.5, ax=figure.add_subplot())
+    return figure
+
+
+def strobe() -> Figure:
+    figure = Figure(figsize=(7, 2.4), layout="constrained")
+    rl.plot_strobe(rl.simulate(rl.scenes.report, 3.2), ax=figure.add_subplot())
     return figure
 
 

@@ -320,7 +320,7 @@ def _shape(ax: Axes, lines: int) -> None:
     up = min(_widened(ax.yaxis, across / _FLATTEST), across)
     figure = ax.figure
     assert isinstance(figure, Figure)
-    figure.set_size_inches(10, 7.2 * up / across + 0.7 + 0.13 * lines)
+    figure.set_size_inches(10, 7.2 * up / across + 0.9 + 0.14 * lines)
     if up < across:
         ax.set_aspect("equal", adjustable="box")
 
