@@ -1,7 +1,7 @@
 """Make the pictures of the README beside this file.
 
-The chart of speed against accuracy is drawn from `peers.json`, which
-`tests/benchmarks/bench_peers.py --scenes R --half-turns 10.37 --save docs/peers.json` writes where
+The chart of speed against accuracy is drawn from `peers_R_10.37.json`, which
+`tests/benchmarks/bench_peers.py --scenes R --half-turns 10.37 --save docs` writes where
 other people's integrators are installed.
 """
 
@@ -52,7 +52,7 @@ def methods() -> Figure:
 
 def speed() -> Figure:
     """The package beside its peers, as they were raced."""
-    chart = rl.WorkPrecision.load(HERE / "peers.json").plot()
+    chart = rl.WorkPrecision.load(HERE / "peers_R_10.37.json").plot()
     figure = chart.ax.figure
     assert isinstance(figure, Figure)
     return figure
