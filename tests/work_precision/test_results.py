@@ -185,6 +185,7 @@ def changes() -> dict[str, Any]:
         "scene": at("scene", to=None),
         "a": at("scene", "a", to=-1.0),
         "a as text": at("scene", "a", to="2.0"),
+        "a as int": at("scene", "a", to=2),
         "machine": at("machine", to=[]),
         "machine's number": at("machine", "rounds", to=20),
         "more": at("more", to=1),
