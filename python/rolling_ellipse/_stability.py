@@ -29,7 +29,7 @@ def advice(motion: Trajectory) -> str | None:
             return _too_stiff(settings, step, growth)
     losses = motion._solution.losses()
     when = f"by t = {motion.t_end:g} s"
-    if losses["constraints"] > _MISSED:
+    if motion.model == "multipliers" and losses["constraints"] > _MISSED:
         return (
             f"the constraints are missed by {losses['constraints']:.2g} of the long semi-axis "
             f"{when} with stabilization {settings.stabilization!r}: use 'projection', which keeps "

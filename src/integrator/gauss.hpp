@@ -27,7 +27,7 @@ class Gauss {
         StageVectors<N, S> stages = h == last_step_ ? foreseen(point) : constant(point);
         Stagnation<N, S> stagnation;
         bool shrinking = true;
-        for (int i = 0; shrinking || stagnation.left(size(point)) > small_change; ++i) {
+        for (int i = 0; shrinking || !stagnation.settled(size(point)); ++i) {
             if (i == most_iterations) return false;
             for (int j = 0; j < S; ++j) {
                 increments_[j] = hb[j] * f_(point.t + Coefficients::c[j] * h, stages[j]);

@@ -24,12 +24,14 @@ class Stagnation {
     // turn are taken together: in second-order equations small and large ones alternate.
     bool shrinks(const StageVectors<N, Stages>& changes) {
         bool shrinking = false;
+        const bool first = std::isinf(last_[0][0]);
         largest_ = Vector<N>::Zero();
         for (int i = 0; i < Stages; ++i) {
             for (int k = 0; k < N; ++k) {
                 const double now = std::abs(changes[i][k]);
                 const double change = std::fmax(now, last_[i][k]);
                 last_[i][k] = now;
+                if (first) first_[k] = std::fmax(first_[k], now);
                 largest_[k] = std::fmax(largest_[k], change);
                 if (change != 0.0 && (change < smallest_[i][k] || std::isinf(change))) {
                     smallest_[i][k] = change;
@@ -43,16 +45,25 @@ class Stagnation {
     // The largest of the last changes, relative to a size of each component.
     double left(const Vector<N>& size) const { return largest_.cwiseQuotient(size).maxCoeff(); }
 
+    // Whether the changes are as good as none: beside what they were at first, as an iteration that
+    // diverges from a tiny start has tiny changes, too, or beside the size itself.
+    bool settled(const Vector<N>& size) const {
+        constexpr double share_of_first = 1e-6;
+        constexpr double near_rounding = 1e-11;
+        const double first = first_.cwiseQuotient(size).maxCoeff();
+        return left(size) <= std::fmax(near_rounding, share_of_first * first);
+    }
+
   private:
     StageVectors<N, Stages> last_;
     StageVectors<N, Stages> smallest_;
     Vector<N> largest_ = Vector<N>::Zero();
+    Vector<N> first_ = Vector<N>::Zero();
 };
 
-// An iteration is over when its changes are small and do not shrink any more; it has failed when
-// they do not become small.
+// An iteration is over when its changes have settled and do not shrink any more; it has failed when
+// they do not settle.
 inline constexpr int most_iterations = 200;
-inline constexpr double small_change = 1e-6;
 
 // Dense output of an implicit method, of its full order: the method itself, with a shorter step. A
 // step so large that its parts cannot be solved is known at its start only.

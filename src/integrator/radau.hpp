@@ -41,7 +41,7 @@ class Radau {
         w.fill(Vector<N>::Zero());
         Stagnation<N, 3> stagnation;
         bool shrinking = true;
-        for (int i = 0; shrinking || stagnation.left(size(point, z)) > small_change; ++i) {
+        for (int i = 0; shrinking || !stagnation.settled(size(point, z)); ++i) {
             if (i == most_iterations) return false;
             StageVectors<N, 3> slopes;
             for (int j = 0; j < 3; ++j) {

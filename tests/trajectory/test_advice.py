@@ -104,3 +104,13 @@ def test_it_points_to_the_call() -> None:
         simulate(SCENE, 20.0, step=0.02, **DRIFTING)
     assert said[0].filename == __file__
     assert issubclass(StabilityWarning, UserWarning)
+
+
+def test_what_has_no_constraints_is_not_told_of_them() -> None:
+    """However far a rolling motion has gone astray: its coordinates follow from theta."""
+    motion, (said,) = advice(
+        Scene(2.0, 1.0, theta=0.1), 300.0, model="rolling", method="rk4", step=2.0,
+        raise_on_failure=False,
+    )  # fmt: skip
+    told(motion.status, motion._solution.losses())
+    assert "the energy has changed" in said and "constraints" not in said
