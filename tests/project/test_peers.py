@@ -4,6 +4,7 @@ import importlib
 import math
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +24,12 @@ BOUND = 1e4 * TOLERANCE
 
 
 @pytest.fixture(scope="module")
-def found() -> tuple[list[Any], dict[str, str]]:
-    installed, missing = peers.available()
-    return installed, missing
+def found(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[list[Any], dict[str, str]]]:
+    """Who is there; what has to be compiled for it stays in a folder of the suite."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        installed, missing = peers.available()
+        yield installed, missing
 
 
 def largest(state: Any, exact: Any) -> float:
