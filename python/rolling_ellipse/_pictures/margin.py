@@ -14,32 +14,46 @@ if TYPE_CHECKING:
 
     from .._check import FloatArray
 
-_SIZE = 7.0  # of the letters [points]
+_SIZES = 4.5, 7.0  # of the letters [points]
 _PITCH = 1.25  # of lines, in sizes
 
 
-def label_ends(ax: Axes, lines: Mapping[Any, tuple[Line2D, str]]) -> dict[Any, Annotation]:
+def label_ends(
+    ax: Axes, lines: Mapping[Any, tuple[Line2D, str]], own_figure: bool
+) -> dict[Any, Annotation]:
     """Write the name of each line in the margin, as near as there is room to its right end.
 
-    Of more lines than there is room for, evenly spread ones are named.
+    Of more lines than there is room for, evenly spread ones are named. In a figure of its own the
+    room is known once the names have their margin: they are written twice.
     """
-    keys: list[Hashable] = list(lines)
-    if not keys:
+    if not lines:
         return {}
+    found = _written(ax, lines)
+    if own_figure:
+        ax.figure.draw_without_rendering()  # type: ignore[union-attr]
+        for name in found.values():
+            name.remove()
+        found = _written(ax, lines)
+    return found
+
+
+def _written(ax: Axes, lines: Mapping[Any, tuple[Line2D, str]]) -> dict[Any, Annotation]:
+    keys: list[Hashable] = list(lines)
     ends = np.array([_right_end(ax, lines[key][0]) for key in keys])
     height = ax.get_window_extent().height * 72 / ax.figure.dpi
-    room = max(1, int(height / (_PITCH * _SIZE)))
+    size = float(np.clip(height / (_PITCH * len(keys)), *_SIZES))
+    room = max(1, int(height / (_PITCH * size)))
     order = np.argsort(ends[:, 1], kind="stable")
     if len(keys) > room:
         order = order[np.linspace(0, len(keys) - 1, room).round().astype(int)]
     keys, ends = [keys[i] for i in order], ends[order]
-    places = _apart(ends[:, 1], _PITCH * _SIZE / height)
+    places = _apart(ends[:, 1], _PITCH * size / height)
     found = {}
     for key, end, place in zip(keys, ends, places, strict=True):
         line, name = lines[key]
         found[key] = ax.annotate(
             name, tuple(end), xycoords="axes fraction", xytext=(1.03, place),
-            textcoords="axes fraction", va="center", ha="left", fontsize=_SIZE,
+            textcoords="axes fraction", va="center", ha="left", fontsize=size,
             color=line.get_color(), annotation_clip=False,
             arrowprops={"arrowstyle": "-", "lw": 0.4, "color": line.get_color(), "alpha": 0.6,
                         "shrinkA": 1, "shrinkB": 3},

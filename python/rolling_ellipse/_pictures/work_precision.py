@@ -52,8 +52,9 @@ _DASHES = ("-", "--", "-.", ":")
 _LEAST = 1e-17  # where an exact zero is drawn
 _MOST = 10.0  # errors above are no answer: drawn there, on the rim
 _REASONS = 12  # lines of those that have no answer
+_LISTED = 8  # names in a line
 _FEW = 2.0  # decades of an axis
-_PITCH = 26.0  # of ticks, at least [points]
+_PITCH = 36.0  # of ticks, at least [points]
 _FLATTEST = 3.0  # width over height
 _KNOWN = ("setting", "t_end")  # also of runs without an answer
 _ROOM = 0.18  # of the axes, on the rim
@@ -110,7 +111,8 @@ def draw(
     floors = {each.t_end: each.floor for each in found.references}
     groups: dict[Any, list[Run]] = {}
     for run in runs:
-        groups.setdefault((run.name, run.setting) if spans else run.name, []).append(run)
+        setting = None if math.isnan(run.setting) else run.setting  # NaN is no key
+        groups.setdefault((run.name, setting) if spans else run.name, []).append(run)
     lines: dict[Any, Line2D] = {}
     setups: dict[Any, Line2D] = {}
     for key, members in groups.items():
@@ -144,7 +146,7 @@ def draw(
     told = _stamp(found) if own_figure else []
     if own_figure:
         _shape(ax, len(why) + len(told))
-    names = label_ends(ax, {key: (line, _title(key)) for key, line in lines.items()})
+    names = label_ends(ax, {key: (line, _title(key)) for key, line in lines.items()}, own_figure)
     reasons = _below(ax, why, 0)
     stamp = _below(ax, told, len(why))
     return WorkPrecisionChart(ax, lines, setups, failures, names, reasons, floor, attainable, stamp)
@@ -237,10 +239,13 @@ def _rim(
     ax: Axes, groups: dict[Any, list[Run]], looks: dict[str, _Look], x: str
 ) -> tuple[dict[Any, Line2D], list[str]]:
     """Mark the runs without an answer on the rim; return the marks, and why they have none."""
-    failed = {key: [r for r in runs if not r.completed] for key, runs in groups.items()}
-    failed = {key: runs for key, runs in failed.items() if runs}
+    gaps = {key: [r for r in runs if not r.completed] for key, runs in groups.items()}
+    late = [key for key, runs in gaps.items() if runs and len(runs) < len(groups[key])
+            and all(run.status == "SKIPPED" for run in runs)]  # fmt: skip
+    failed = {key: runs for key, runs in gaps.items() if runs and key not in late}
     marks: dict[Any, Line2D] = {}
     lines = []
+    pitch = min(0.04, 0.95 / max(1, len(failed)))
     if failed and x not in _KNOWN:  # room for their names
         first, last = ax.get_xlim()
         ax.set_xlim(first * (first / last) ** _ROOM, last)
@@ -248,7 +253,7 @@ def _rim(
         colour = looks[runs[0].name].colour
         known = [run.value(x) for run in runs] if x in _KNOWN else []
         where = ax.get_xaxis_transform() if known else ax.transAxes
-        place = (known, [1.0] * len(known)) if known else ([0.0], [0.03 + 0.04 * i])
+        place = (known, [1.0] * len(known)) if known else ([0.0], [0.03 + pitch * i])
         marks[key] = ax.plot(
             *place, transform=where, color=colour, marker="x", ms=5, mew=1.4, ls="",
             clip_on=False, zorder=5, scalex=False, scaley=False,
@@ -261,7 +266,16 @@ def _rim(
         lines.append(_why(key, runs))
     if len(lines) > _REASONS:
         lines = [*lines[: _REASONS - 1], f"… and {len(lines) - _REASONS + 1} more"]
+    if late:
+        lines.append(f"finer settings left out for want of time: {_listed(late)}")
     return marks, lines
+
+
+def _listed(keys: list[Any]) -> str:
+    """Return names, as far as a line has room."""
+    names = list(dict.fromkeys(_title(key) for key in keys))
+    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+    return ", ".join(names[:_LISTED]) + more
 
 
 def _why(key: Any, runs: list[Run]) -> str:
@@ -275,7 +289,7 @@ def _title(key: Any) -> str:
     if isinstance(key, str):
         return key
     name, setting = key
-    return name if math.isnan(setting) else f"{name}, {setting:.0e}"
+    return name if setting is None else f"{name}, {setting:.0e}"
 
 
 def _dress(ax: Axes) -> None:
@@ -322,7 +336,7 @@ def _shape(ax: Axes, lines: int) -> None:
     assert isinstance(figure, Figure)
     figure.set_size_inches(10, 7.2 * up / across + 0.9 + 0.14 * lines)
     if up < across:
-        ax.set_aspect("equal", adjustable="box")
+        ax.set_aspect("equal", adjustable="box", anchor="N")
 
 
 def _below(ax: Axes, lines: list[str], after: int) -> Text | None:
