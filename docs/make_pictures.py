@@ -14,6 +14,7 @@ import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
+from rolling_ellipse._pictures.palette import BLUE, ORANGE, PLUM
 
 HERE = Path(__file__).parent
 METHODS = {
@@ -23,9 +24,9 @@ METHODS = {
     "exact": {"method": "exact"},
 }
 DRIFTS = {  # of the classical method in five coordinates, with their looks
-    "none": ("#7a2e4d", "-"),
-    "baumgarte": ("#e07a00", "--"),
-    "projection": ("#2a6f97", "-."),
+    "none": (PLUM, "-"),
+    "baumgarte": (ORANGE, "--"),
+    "projection": (BLUE, "-."),
 }
 STEP = 2.0**-7
 

@@ -80,6 +80,15 @@ def flow(
     return found  # type: ignore[no-any-return]
 
 
+def arguments_of(scene: Scene) -> dict[str, Any]:
+    """Return the arguments of `flow` for a scene, as it is after its impulse."""
+    start = scene.initial_state
+    return {
+        "a": scene.a, "b": scene.b, "theta": start.theta, "omega": start.omega,
+        "gravity": scene.gravity, "gyration2": scene.gyration2,
+    }  # fmt: skip
+
+
 def period(scene: Scene) -> float:
     """Return the time of a full swing, or of one full turn, of the rolling motion [s].
 

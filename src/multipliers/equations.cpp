@@ -89,8 +89,9 @@ MultiplierSolution ConstrainedBody::solve(const Coordinates& q, const Coordinate
 }
 
 // physics (17)
-double ConstrainedBody::specific_energy(const Coordinates& q, const Coordinates& q_dot) const {
-    return 0.5 * q_dot.dot(specific_mass().cwiseProduct(q_dot)) - specific_force().dot(q);
+SpecificEnergy ConstrainedBody::specific_energy(const Coordinates& q,
+                                                const Coordinates& q_dot) const {
+    return {0.5 * q_dot.dot(specific_mass().cwiseProduct(q_dot)), -specific_force().dot(q)};
 }
 
 void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
@@ -108,7 +109,7 @@ void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy)
     project(q, q_dot);
     double last = infinity;
     for (int i = 0; i < most_iterations; ++i) {
-        const double excess = specific_energy(q, q_dot) - energy;
+        const double excess = specific_energy(q, q_dot).total() - energy;
         if (excess == 0 || !(std::abs(excess) < last)) return;
         last = std::abs(excess);
         const double omega = q_dot[coordinate::theta];

@@ -23,6 +23,14 @@ CoordinateState coordinate_state(const Axes& axes, const State& state);
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force);
 
+// Energy per mass [J/kg].
+struct SpecificEnergy {
+    double kinetic;
+    double potential;
+
+    double total() const { return kinetic + potential; }
+};
+
 class ConstrainedBody {
   public:
     explicit ConstrainedBody(const Scene& scene);
@@ -35,8 +43,7 @@ class ConstrainedBody {
     // Accelerations and multipliers that keep the constraints.
     MultiplierSolution solve(const Coordinates& q, const Coordinates& q_dot) const;
 
-    // Energy per mass [J/kg].
-    double specific_energy(const Coordinates& q, const Coordinates& q_dot) const;
+    SpecificEnergy specific_energy(const Coordinates& q, const Coordinates& q_dot) const;
 
     // M/m, Q/m.
     Coordinates specific_mass() const { return {1.0, 1.0, gyration2_, 0.0, 0.0}; }

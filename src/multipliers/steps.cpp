@@ -107,7 +107,8 @@ SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
                                const Settings& settings) {
     const ConstrainedBody body(scene);
     const auto& [q, q_dot] = start.state;
-    SteppedMultipliers motion{body, settings, body.specific_energy(q, q_dot), start.angle_base, {}};
+    SteppedMultipliers motion{
+        body, settings, body.specific_energy(q, q_dot).total(), start.angle_base, {}};
     const double size = settings.step.value_or(0.0);
     if (settings.stabilization == Stabilization::ggl) {
         Vector<17> y;

@@ -20,9 +20,9 @@ from typing import Any
 
 import numpy as np
 import rolling_ellipse
-from bench_flow import processor
 from bench_integrators import Cases, Run, interleaved, peer
 from rolling_ellipse import EventKind, Mode, Scene, certify, simulate
+from rolling_ellipse._work_precision.machine import machine
 
 DROPPED: dict[str, Any] = {"z": 2.5, "theta": 0.3, "omega": 8.0, "restitution": 0.5}
 ON_A_SLOPE: dict[str, Any] = {"slope": 0.1, "omega": -2.0}
@@ -288,7 +288,7 @@ def main() -> None:
     rounds = options.parse_args().rounds
     modules = [rolling_ellipse, np, *filter(None, (peer("scipy"), peer("numba")))]
     versions = ", ".join(f"{module.__name__} {module.__version__}" for module in modules)
-    print(f"{processor()}, {os.cpu_count()} cores, {platform.platform()}")
+    print(f"{machine()['processor']}, {os.cpu_count()} cores, {platform.platform()}")
     print(f"{versions}, Python {platform.python_version()}; {rounds} rounds")
     for title, (scene, t_end) in SCENES.items():
         print(f"\n{title}; {len(simulate(scene, t_end).events)} events in {t_end} s")

@@ -11,12 +11,12 @@ import platform
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import rolling_ellipse
 from rolling_ellipse import Scene, flow, period, thresholds
+from rolling_ellipse._work_precision.machine import machine
 
 REPEATS = 200  # calls in one timing of a scalar case: some milliseconds, far above the clock
 STATES = 2000  # motions in one timing of a set-up through arrays
@@ -109,16 +109,6 @@ def interleaved(cases: Cases, rounds: int) -> dict[tuple[str, str], float]:
     return least
 
 
-def processor() -> str:
-    """Name of the CPU."""
-    information = Path("/proc/cpuinfo")
-    if information.exists():
-        for line in information.read_text().splitlines():
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    return platform.processor() or platform.machine()
-
-
 def print_table(title: str, least: dict[str, float]) -> None:
     """One line a case: nanoseconds, and the ratio to the first."""
     print(f"\n{title}\n{'':34}{'ns':>12}{'ratio':>12}")
@@ -131,7 +121,7 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--rounds", type=int, default=20, help="at least 20 for figures to keep")
     rounds = options.parse_args().rounds
-    print(f"{processor()}, {os.cpu_count()} cores, {platform.platform()}")
+    print(f"{machine()['processor']}, {os.cpu_count()} cores, {platform.platform()}")
     print(
         f"rolling_ellipse {rolling_ellipse.__version__}, NumPy {np.__version__}, "
         f"Python {sys.version.split()[0]}; least of {rounds} rounds"

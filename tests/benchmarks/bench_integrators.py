@@ -19,9 +19,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import rolling_ellipse
-from bench_flow import processor
 from rolling_ellipse import Scene, flow, period, simulate
 from rolling_ellipse._core import rolling_equation
+from rolling_ellipse._work_precision.machine import machine
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
 import make_rolling_reference as reference
@@ -238,7 +238,7 @@ def main() -> None:
     for name in ("numpy", "scipy", "numba"):
         if module := sys.modules.get(name):
             versions.append(f"{name} {module.__version__}")
-    print(f"{processor()}, {os.cpu_count()} cores, {platform.platform()}")
+    print(f"{machine()['processor']}, {os.cpu_count()} cores, {platform.platform()}")
     print(f"{', '.join(versions)}, Python {sys.version.split()[0]}; {rounds} rounds")
     print_costs(cost_cases(solvers), rounds)
     for title, scene in SCENES.items():

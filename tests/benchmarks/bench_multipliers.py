@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 import rolling_ellipse
-from bench_flow import Cases, R, interleaved, print_table, processor
+from bench_flow import Cases, R, interleaved, print_table
 from rolling_ellipse import Scene, simulate
+from rolling_ellipse._work_precision.machine import machine
 
 STEPS = 4000  # some milliseconds: starting a simulation and one sample are a hundredth of it
 STEP = 2.0**-8  # [s]; 422 in half a turn
@@ -49,7 +50,7 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--rounds", type=int, default=20, help="at least 20 for figures to keep")
     rounds = options.parse_args().rounds
-    print(f"{processor()}, {os.cpu_count()} cores, {platform.platform()}")
+    print(f"{machine()['processor']}, {os.cpu_count()} cores, {platform.platform()}")
     print(
         f"rolling_ellipse {rolling_ellipse.__version__}, NumPy {np.__version__}, "
         f"Python {sys.version.split()[0]}; least of {rounds} rounds"

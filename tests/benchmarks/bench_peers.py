@@ -8,6 +8,7 @@ Machines differ and so does their load: compare the ratios of one run.
 """
 
 import argparse
+import math
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -16,6 +17,7 @@ from typing import Any
 import numpy as np
 import peers
 from rolling_ellipse import Scene, WorkPrecision, period, work_precision
+from rolling_ellipse._work_precision.words import own_and_peer
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
 import make_rolling_reference as reference
@@ -82,10 +84,9 @@ def factors(found: WorkPrecision, least: dict[float, dict[str, float]]) -> str:
     others = {run.name for run in found.runs if "peer" in run.tags}
     line = f"{'best peer / best of package':28}"
     for decade in DECADES:
-        mine = min((t for name, t in least[decade].items() if name not in others), default=None)
-        best = min((t for name, t in least[decade].items() if name in others), default=None)
-        if mine is None or best is None:
-            line += f"{'no peer' if mine else '-':>{WIDTH}}"
+        mine, best = own_and_peer(least[decade], others)
+        if math.isinf(mine) or math.isinf(best):
+            line += f"{'no peer' if math.isfinite(mine) else '-':>{WIDTH}}"
         else:
             line += f"{best / mine:{WIDTH}.2f}"
     return line
@@ -98,12 +99,15 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     options.add_argument("--rounds", type=int, default=20, help="at least 20 for figures to keep")
     options.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
     options.add_argument("--half-turns", nargs="+", type=float, default=list(HALF_TURNS))
-    options.add_argument("--seconds", type=float, default=300.0, help="for each scene and span")
+    options.add_argument(
+        "--seconds", type=float, help="for each scene and span; 300, or 50 if quick"
+    )
     options.add_argument("--save", type=Path, help="folder for what was found, as JSON")
     chosen = options.parse_args(arguments)
-    how: dict[str, Any] = {"rounds": chosen.rounds, "max_seconds": chosen.seconds}
+    seconds = chosen.seconds or (50.0 if chosen.quick else 300.0)
+    how: dict[str, Any] = {"rounds": chosen.rounds, "max_seconds": seconds}
     if chosen.quick:
-        how = {"rounds": 2, "max_seconds": 12.0, "tolerances": [1e-2, 1e-6, 1e-10, 1e-14]}
+        how |= {"rounds": 2, "tolerances": [1e-2, 1e-6, 1e-10, 1e-14]}
         chosen.scenes, chosen.half_turns = ["R"], HALF_TURNS[:1]
     found, missing = peers.available()
     print(", ".join(dict.fromkeys(peer.library for peer in found)))

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.numbers import EPS
+from oracles.stability import exponent
 from rolling_ellipse import IntegrationError, Mode, Scene, Status, Trajectory
 from scipy.integrate import solve_ivp
 
@@ -107,7 +108,7 @@ def test_measured_order_is_the_nominal_one(where: str, name: str) -> None:
     for off in columns:
         inside = (low < off) & (off < high)
         assert np.count_nonzero(inside) >= 8
-        found.append(np.polyfit(np.log(h[inside]), np.log(off[inside]), 1)[0])
+        found.append(exponent(h[inside], off[inside]))
     assert found == pytest.approx([order, order], abs=0.15)
 
 
@@ -150,7 +151,7 @@ def test_the_error_is_proportional_to_the_tolerance(name: str, scene: Scene) -> 
     largest = [
         np.max(error(roll(scene, 5.0, name, rtol=rtol, atol=rtol / 100))) for rtol in TOLERANCES
     ]
-    slope = np.polyfit(np.log(TOLERANCES), np.log(largest), 1)[0]
+    slope = exponent(TOLERANCES, largest)
     assert 0.8 <= slope <= 1.2, slope
 
 

@@ -13,6 +13,7 @@ import pytest
 from oracles.geometry import support
 from oracles.margins import told
 from oracles.numbers import DIGITS, EPS
+from oracles.stability import exponent
 from rolling_ellipse import EventKind, IntegrationError, Mode, Scene, Status, simulate
 
 GRAVITY, SPEED, E, B = 9.81, 1.7, 0.5, 1.0
@@ -103,7 +104,7 @@ def test_a_tilted_body_errs_by_the_square_of_the_speed_of_rest(theta: float) -> 
             e.kind for e in exact.events if e.kind is not EventKind.IMPACT
         ]
         errors.append(max(abs(found.theta[0] - exact.theta[0]), abs(found.x[0] - exact.x[0])))
-    slope = np.polyfit(np.log(speeds), np.log(errors), 1)[0]
+    slope = exponent(speeds, errors)
     told(f"from {errors[0]:.1e} to {errors[-1]:.1e}: slope {slope:.3f} (2)")
     assert abs(slope - 2) <= 0.1
     assert np.all(np.array(errors) <= speeds)

@@ -16,6 +16,7 @@ import scipy.integrate
 from oracles.geometry import support
 from oracles.margins import told
 from oracles.numbers import DIGITS, known
+from oracles.stability import exponent
 from rolling_ellipse import (
     EventKind,
     Outcome,
@@ -81,7 +82,7 @@ def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
     over two decades: 0.05. So a grid finds what is short by more than that, and no less."""
     counts = [30, 100, 300, 1000, 3000]
     short = [shortfall(count) for count in counts]
-    slope = np.polyfit(np.log(counts), np.log(short), 1)[0]
+    slope = exponent(counts, short)
     for count, missed in zip(counts, short, strict=True):
         told(f"{count} samples: short by {missed:.1e}, blind from k = {-math.log10(missed):.1f} on")
     told(f"slope {slope:.3f} (-2)")

@@ -16,6 +16,7 @@ import pytest
 from oracles.margins import told
 from oracles.numbers import DIGITS
 from oracles.separatrix import GRAVITY, GYRATION2, A, B, rule
+from oracles.stability import exponent
 from rolling_ellipse import IntegrationError, Scene, Status, flow, period, simulate
 
 SCENE = Scene(A, B, theta=0.2, omega=3.2)
@@ -73,7 +74,7 @@ def test_the_phase_is_lost_by_a_power_of_time(power: float, how: dict[str, Any])
     times = spans * HALF_TURN
     found = simulate(SCENE, times, **({"model": "rolling"} | how))
     missed = np.abs(found.theta - simulate(SCENE, times).theta)
-    slope = np.polyfit(np.log(spans), np.log(missed), 1)[0]
+    slope = exponent(spans, missed)
     lost = spans[-1] * (1 / missed[-1]) ** (1 / power)
     per_turn = found.stats["steps"] / spans[-1]
     told(
@@ -114,7 +115,7 @@ def test_ggl_loses_the_phase_by_the_square() -> None:
     how: dict[str, Any] = {"model": "multipliers", "method": "radau", "stabilization": "ggl"}
     found = simulate(SCENE, spans * HALF_TURN, step=0.02, **how)
     missed = np.abs(found.theta - simulate(SCENE, found.t).theta)
-    slope = np.polyfit(np.log(spans), np.log(missed), 1)[0]
+    slope = exponent(spans, missed)
     told(f"{missed[-1]:.1e} rad after {spans[-1]:.0f} half turns, slope {slope:.3f} (2)")
     assert abs(slope - 2) <= 0.15
     assert math.isfinite(found.omega[-1])

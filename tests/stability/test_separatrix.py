@@ -13,6 +13,7 @@ import pytest
 from oracles.margins import told
 from oracles.numbers import EPS
 from oracles.separatrix import A, B, Throw, throw, tip_rate
+from oracles.stability import exponent
 from rolling_ellipse import Outcome, Scene, Validity, certify, classify, flow, period, simulate
 
 DISTANCES = range(2, 15)  # k
@@ -168,7 +169,7 @@ def test_the_separatrix_of_rk4_is_off_by_its_order() -> None:
     """Steps of 0.02, 0.01 and 0.005 s: the energy lost on the way up is of fourth order."""
     steps = [0.02, 0.01, 0.005]
     shifts = [own_separatrix(model="rolling", method="rk4", step=step) for step in steps]
-    slope = np.polyfit(np.log(steps), np.log(shifts), 1)[0]
+    slope = exponent(steps, shifts)
     told(f"{', '.join(f'{shift:.2e}' for shift in shifts)}: slope {slope:.3f} (4)")
     assert abs(slope - 4) <= 0.15
 
@@ -183,6 +184,6 @@ def test_the_separatrix_of_the_pairs_is_off_by_their_tolerance(name: str) -> Non
         abs(own_separatrix(model="rolling", method=name, rtol=rtol, atol=rtol / 100))
         for rtol in tolerances
     ]
-    slope = np.polyfit(np.log(tolerances), np.log(shifts), 1)[0]
+    slope = exponent(tolerances, shifts)
     told(f"{name}: {', '.join(f'{shift:.1e}' for shift in shifts)}: slope {slope:.3f} (1)")
     assert abs(slope - 1) <= 0.15

@@ -10,10 +10,10 @@ from typing import Any
 
 import make_rolling_reference as reference
 import mpmath as mp
-import numpy as np
 import pytest
 from oracles.margins import told
 from oracles.separatrix import GRAVITY, rule
+from oracles.stability import exponent
 from rolling_ellipse import Scene, flow, period, simulate
 
 RATIOS = [1.5, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0]
@@ -41,7 +41,7 @@ def test_controlled_steps_grow_with_the_logarithm_only(method: str) -> None:
     counts = [steps_of(swing(ratio), method=method, rtol=1e-9, atol=1e-11) for ratio in RATIOS]
     told(f"{method}: " + ", ".join(f"{r:g}: {n}" for r, n in zip(RATIOS, counts, strict=True)))
     ten, hundred, thousand = (counts[RATIOS.index(ratio)] for ratio in (10, 100, 1000))
-    power = np.polyfit(np.log(RATIOS[2:]), np.log(counts[2:]), 1)[0]
+    power = exponent(RATIOS[2:], counts[2:])
     told(f"decades: +{hundred - ten}, +{thousand - hundred}; as a power {power:.3f}")
     assert 0 < thousand - hundred <= hundred - ten
     assert power < 0.2
@@ -74,7 +74,7 @@ def test_steps_of_one_size_grow_like_a_over_b(method: str) -> None:
     factor of 30 are 0.05 each."""
     ratios = RATIOS[2:6]
     counts = [needed(swing(ratio), method) for ratio in ratios]
-    slope = np.polyfit(np.log(ratios), np.log(counts), 1)[0]
+    slope = exponent(ratios, counts)
     told(f"{method}: " + ", ".join(f"{r:g}: {n:.0f}" for r, n in zip(ratios, counts, strict=True)))
     told(f"slope {slope:.3f} (1)")
     assert abs(slope - 1) <= 0.1

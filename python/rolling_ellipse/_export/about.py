@@ -1,13 +1,39 @@
-"""What a file says in JSON: each name once, no more and no fewer than there must be."""
+"""What a file holds: all that there must be, each name once, and nothing else."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import os
+from collections.abc import Callable, Iterable
 from dataclasses import fields
-from typing import Any
+from typing import Any, TypeVar
 
+from .._check import file_name
 from .._scene import Impulse, Scene
+
+_Made = TypeVar("_Made")
+
+
+def restored(path: str | os.PathLike[str], restore: Callable[[bytes], _Made]) -> _Made:
+    """Return what a function makes of the bytes of a file.
+
+    Raises
+    ------
+    ValueError
+        If it raises anything; the file is named, and what is wrong.
+    OSError
+        If the file cannot be read.
+    """
+    name = file_name("path", path)
+    with open(name, "rb") as file:
+        content = file.read()
+    try:
+        return restore(content)
+    except MemoryError:
+        raise
+    except Exception as error:  # damaged bytes raise about every kind there is, on their way here
+        wrong = str(error) or type(error).__name__
+        raise ValueError(f"path must name a file written by save, got {name!r}: {wrong}") from error
 
 
 def parsed(name: str, text: str) -> Any:

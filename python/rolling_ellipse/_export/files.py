@@ -18,7 +18,7 @@ from .._core import EventKind
 from .._events import Event, as_numbers, from_numbers
 from .._samples import ContactSamples
 from .._settings import METHODS, MODELS, Settings
-from .about import field_names, parsed, require_names, scene_of
+from .about import field_names, parsed, require_names, restored, scene_of
 from .atomic import replacing
 from .npz import arrays as npz_arrays
 
@@ -61,19 +61,14 @@ def read(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
     OSError
         If it cannot be read.
     """
-    name = file_name("path", path)
-    with open(name, "rb") as file:
-        content = file.read()
-    try:
-        arrays = npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
-        if "about" not in arrays:
-            raise ValueError("it must hold the array 'about'")
-        return _restored(kind, str(arrays.pop("about")), arrays)
-    except MemoryError:
-        raise
-    except Exception as error:  # damaged bytes raise about every kind there is, on their way here
-        wrong = str(error) or type(error).__name__
-        raise ValueError(f"path must name a file written by save, got {name!r}: {wrong}") from error
+    return restored(path, lambda content: _of_bytes(kind, content))
+
+
+def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
+    arrays = npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
+    if "about" not in arrays:
+        raise ValueError("it must hold the array 'about'")
+    return _restored(kind, str(arrays.pop("about")), arrays)
 
 
 def _about(trajectory: Trajectory) -> dict[str, Any]:

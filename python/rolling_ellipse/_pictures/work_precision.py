@@ -127,8 +127,7 @@ def draw(
             continue
         lines[key] = ax.plot(
             [p[0] for p in points], [p[1] for p in points], color=look.colour, lw=look.width,
-            ls=look.dash,
-            marker=look.marker, ms=4, mew=0, zorder=3, scalex=False, scaley=False,
+            ls=look.dash, marker=look.marker, ms=4, mew=0, zorder=3, scalex=False, scaley=False,
         )[0]  # fmt: skip
         if y == "time" and (hollow := _setup(ax, points, look)):
             setups[key] = hollow
@@ -136,9 +135,9 @@ def draw(
     drawn = [np.asarray(line.get_xydata()) for line in (*lines.values(), *setups.values())]
     known = [reference.floor, reference.attainable] if x in _OF_STATES else []
     for axis, column, more in ((ax.xaxis, 0, known), (ax.yaxis, 1, [])):
-        _limit(axis, [*np.concatenate([[], *(xy[:, column] for xy in drawn)]), *more])
+        _show_all(axis, [*np.concatenate([[], *(xy[:, column] for xy in drawn)]), *more])
     if x in _OF_STATES:
-        floor, attainable = _limits(ax, reference)
+        floor, attainable = _mark_limits(ax, reference)
     if x in ERRORS:
         ax.invert_xaxis()
     failures, why = _rim(ax, groups, looks, x)
@@ -207,7 +206,7 @@ def _setup(ax: Axes, points: list[tuple[float, float, Run]], look: _Look) -> Lin
     )[0]  # fmt: skip
 
 
-def _limit(axis: Axis, values: list[float]) -> None:
+def _show_all(axis: Axis, values: list[float]) -> None:
     """Make room for values on a logarithmic axis, and a decade at least."""
     shown = [value for value in values if value > 0] or [1.0]
     low, high = math.log10(min(shown)), math.log10(max(shown))
@@ -216,7 +215,7 @@ def _limit(axis: Axis, values: list[float]) -> None:
     _set_limits(axis, middle - half, middle + half)
 
 
-def _limits(ax: Axes, reference: Any) -> tuple[Artist | None, Line2D | None]:
+def _mark_limits(ax: Axes, reference: Any) -> tuple[Artist | None, Line2D | None]:
     words: dict[float, tuple[str, int, str]] = {}
     line = floor = None
     if reference.attainable > 0:
@@ -296,7 +295,7 @@ def _dress(ax: Axes) -> None:
     ax.spines[["top", "right"]].set_visible(False)
     ax.grid(True, which="major", color=GREY, alpha=0.25, lw=0.5)
     for axis in (ax.xaxis, ax.yaxis):
-        decades = _widened(axis, 0.0)
+        decades = _decades(axis)
         if decades < _FEW:
             axis.set_major_locator(LogLocator(10.0, subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter("{x:g}")
@@ -313,14 +312,17 @@ def _length(axis: Axis) -> float:
     return 72 * inches
 
 
-def _widened(axis: Axis, least: float) -> float:
-    """Make an axis so many decades long at least, and return how many it has."""
+def _decades(axis: Axis) -> float:
+    """How many an axis has."""
+    return abs(float(np.subtract(*np.log10(axis.get_view_interval()))))
+
+
+def _widen(axis: Axis, decades: float) -> None:
+    """Make an axis so long at least."""
     first, last = np.log10(axis.get_view_interval())
-    if abs(last - first) < least:
-        middle, half = (first + last) / 2, math.copysign(least / 2, last - first)
-        first, last = middle - half, middle + half
-        _set_limits(axis, first, last)
-    return float(abs(last - first))
+    if _decades(axis) < decades:
+        middle, half = (first + last) / 2, math.copysign(decades / 2, last - first)
+        _set_limits(axis, middle - half, middle + half)
 
 
 def _set_limits(axis: Axis, first: float, last: float) -> None:
@@ -330,8 +332,9 @@ def _set_limits(axis: Axis, first: float, last: float) -> None:
 
 def _shape(ax: Axes, lines: int) -> None:
     """Make decades equally long on both axes of a figure of its own: slopes are powers then."""
-    across = _widened(ax.xaxis, 0.0)
-    up = min(_widened(ax.yaxis, across / _FLATTEST), across)
+    across = _decades(ax.xaxis)
+    _widen(ax.yaxis, across / _FLATTEST)
+    up = min(_decades(ax.yaxis), across)
     figure = ax.figure
     assert isinstance(figure, Figure)
     figure.set_size_inches(10, 7.2 * up / across + 0.9 + 0.14 * lines)

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from .._check import FloatArray, choice, shown
-from .._flow import flow, period
+from .._flow import arguments_of, flow, period
 from .._scene import Scene
 from .._settings import DEFAULTS, METHODS, MODELS, STABILIZATIONS
 from .._simulate import simulate
@@ -54,8 +54,6 @@ class Stopped(Exception):
 class Runner:
     """A contender at one setting, ready to run."""
 
-    reason = ""  # what should be known of a run that completes
-
     def end(self) -> State:
         """Return the state at the end: what is timed."""
         raise NotImplementedError
@@ -91,11 +89,7 @@ class _Flow(Runner):
         if scene.slope or start.mode.name not in _HELD:
             raise ValueError("flow must be given a scene that rolls on level ground")
         self.scene, self.x = scene, start.x
-        self.arguments: dict[str, Any] = {
-            "a": scene.a, "b": scene.b, "theta": start.theta, "omega": start.omega,
-            "gravity": scene.gravity, "gyration2": scene.gyration2,
-        }  # fmt: skip
-        self.t_end = t_end
+        self.arguments, self.t_end = arguments_of(scene), t_end
 
     def end(self) -> State:
         theta, omega, x = flow(self.t_end, **self.arguments)

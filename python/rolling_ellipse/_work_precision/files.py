@@ -12,7 +12,7 @@ from dataclasses import asdict
 from typing import Any
 
 from .._check import file_name
-from .._export.about import field_names, parsed, require_names, scene_of
+from .._export.about import field_names, parsed, require_names, restored, scene_of
 from .._export.atomic import replacing
 from .results import WorkPrecision
 from .run import Errors, Run
@@ -48,16 +48,7 @@ def read(path: str | os.PathLike[str]) -> WorkPrecision:
     OSError
         If it cannot be read.
     """
-    name = file_name("path", path)
-    with open(name, "rb") as file:
-        content = file.read()
-    try:
-        return _restored(content.decode("utf-8"))
-    except MemoryError:
-        raise
-    except Exception as error:  # damaged text raises about every kind there is, on its way here
-        wrong = str(error) or type(error).__name__
-        raise ValueError(f"path must name a file written by save, got {name!r}: {wrong}") from error
+    return restored(path, lambda content: _restored(content.decode("utf-8")))
 
 
 def _about(found: WorkPrecision) -> dict[str, Any]:

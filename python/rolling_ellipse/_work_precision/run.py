@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 COMPLETED = "COMPLETED"
 ERRORS = ("final", "l2", "linf", "energy", "gap", "slip")
@@ -115,6 +115,3 @@ class Run:
     def value(self, quantity: str) -> float:
         """Return one of its errors or figures by name."""
         return float(self.errors[quantity] if quantity in ERRORS else getattr(self, quantity))
-
-
-NAMES = tuple(field.name for field in fields(Run))

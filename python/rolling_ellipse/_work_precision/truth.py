@@ -15,7 +15,7 @@ from .._certify import certify
 from .._check import FloatArray
 from .._core import Validity
 from .._errors import constraint_errors, energy_error
-from .._flow import flow
+from .._flow import arguments_of, flow
 from .._scene import Scene
 from .._simulate import simulate
 from .._trajectory import Trajectory
@@ -175,12 +175,8 @@ class _Exact(_Own):
     inputs = ("a", "b", "gyration2", "gravity", "theta", "omega")
 
     def __init__(self, scene: Scene, t_end: float) -> None:
-        start = scene.initial_state
-        self.t_end, self.x, self.one_by_one = t_end, start.x, True
-        self.numbers: dict[str, Any] = {
-            "a": scene.a, "b": scene.b, "gyration2": scene.gyration2, "gravity": scene.gravity,
-            "theta": start.theta, "omega": start.omega,
-        }  # fmt: skip
+        self.t_end, self.x, self.one_by_one = t_end, scene.initial_state.x, True
+        self.numbers = arguments_of(scene)
 
     def floor(self, attainable: float) -> float:
         units = 4 if self.one_by_one else 8

@@ -87,8 +87,7 @@ def _beside_peers(table: Table, peers: set[str]) -> list[str]:
         return []
     parts = []
     for decade, least in table.items():
-        own = min((v for name, v in least.items() if name not in peers), default=math.inf)
-        peer = min((v for name, v in least.items() if name in peers), default=math.inf)
+        own, peer = own_and_peer(least, peers)
         if math.isinf(own) and math.isinf(peer):
             continue
         if math.isinf(peer):
@@ -99,6 +98,13 @@ def _beside_peers(table: Table, peers: set[str]) -> list[str]:
             ahead = "" if peer >= own else " (the peer is ahead)"
             parts.append(f"{decade:.0e} {peer / own:.3g}{ahead}")
     return ["time of the best peer over the package's best:", "    " + ", ".join(parts)]
+
+
+def own_and_peer(least: dict[str, float], peers: set[str]) -> tuple[float, float]:
+    """Return the least of the package's own ways and that of the peers; infinite without any."""
+    own = min((time for name, time in least.items() if name not in peers), default=math.inf)
+    peer = min((time for name, time in least.items() if name in peers), default=math.inf)
+    return own, peer
 
 
 def _without_answer(runs: Sequence[Run]) -> list[str]:

@@ -7,9 +7,9 @@ import numpy as np
 from numbalsoda import dop853, lsoda, lsoda_sig
 from rolling_ellipse import Scene
 
+from .numba_rates import right_hand_side
 from .problem import (
     MOST_STEPS,
-    RATES,
     Integration,
     Peer,
     Problem,
@@ -19,13 +19,7 @@ from .problem import (
     version,
 )
 
-_rates = numba.njit(RATES)
-
-
-@numba.cfunc(lsoda_sig)
-def _right_hand_side(t: float, y: Any, dy: Any, body: Any) -> None:
-    dy[0] = y[1]
-    dy[1], dy[2] = _rates(y[0], y[1], body)
+_right_hand_side = numba.cfunc(lsoda_sig)(right_hand_side)
 
 
 class NumbaRun(Integration):

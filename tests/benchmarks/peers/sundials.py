@@ -16,6 +16,7 @@ from rolling_ellipse import Scene
 from sksundae.cvode import CVODE
 from sksundae.ida import IDA
 
+from .numba_rates import right_hand_side
 from .problem import (
     MOST_STEPS,
     RATES,
@@ -29,14 +30,8 @@ from .problem import (
 )
 
 LEAST_RTOL = 1e-15
-_rates = numba.njit(RATES)
+_right_hand_side = numba.njit(right_hand_side)
 _FREE = 1e300  # absolute tolerance of a variable that no error test looks at
-
-
-@numba.njit  # type: ignore[untyped-decorator]
-def _right_hand_side(t: float, y: Any, dy: Any, body: Any) -> None:
-    dy[0] = y[1]
-    dy[1], dy[2] = _rates(y[0], y[1], body)
 
 
 @numba.njit  # type: ignore[untyped-decorator]

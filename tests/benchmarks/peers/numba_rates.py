@@ -1,0 +1,15 @@
+"""The equation for libraries that take functions in place, which numba compiles."""
+
+from typing import Any
+
+import numba
+
+from .problem import RATES
+
+_rates = numba.njit(RATES)
+
+
+def right_hand_side(t: float, y: Any, dy: Any, body: Any) -> None:
+    """dy = f(t, y) of y = (theta, omega, x); to be compiled for the library at hand."""
+    dy[0] = y[1]
+    dy[1], dy[2] = _rates(y[0], y[1], body)
