@@ -30,6 +30,13 @@ def drifting(motion: rl.Trajectory, rate: float) -> rl.Trajectory:
     return dataclasses.replace(motion, theta=motion.theta * grown, omega=motion.omega * grown)
 
 
+def seen(motion: rl.Trajectory, line: Line2D) -> rl.Trajectory:
+    """The motion at the times of a curve over time, which are its own: all of the span."""
+    times = data(line)[0]
+    assert times[0] == motion.t[0] and times[-1] == motion.t[-1] and np.all(np.diff(times) >= 0)
+    return motion.sol(times)
+
+
 def rough(motion: rl.Trajectory, friction: float) -> rl.Trajectory:
     return dataclasses.replace(motion, scene=dataclasses.replace(motion.scene, friction=friction))
 

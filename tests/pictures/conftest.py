@@ -1,5 +1,6 @@
 """Motions to draw; a picture drawn where it was told leaves pyplot alone."""
 
+import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -10,7 +11,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 import rolling_ellipse as rl
-from oracles.curves import PICTURES, drifting
+from oracles.curves import PICTURES
 from oracles.pictures import ORDINARY_SCENES
 
 
@@ -31,7 +32,11 @@ def report() -> rl.Trajectory:
 
 @pytest.fixture
 def several(report: rl.Trajectory) -> list[rl.Trajectory]:
-    return [report, drifting(report, 1e-3), drifting(report, -2e-2)]
+    """Rolling, and two of its simulations in coordinates that go astray."""
+    how: dict[str, Any] = {"model": "multipliers", "method": "rk4", "stabilization": "none"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rl.StabilityWarning)
+        return [report, *(rl.simulate(report.scene, 6.0, step=h, **how) for h in (0.05, 0.1))]
 
 
 @pytest.fixture(autouse=True)

@@ -17,7 +17,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 from numpy.typing import NDArray
+from oracles.curves import seen
 from oracles.pictures import figure_of, legend_in, outline, support
+from rolling_ellipse._pictures import sampling
 
 Array = NDArray[np.float64]
 SCENES = {
@@ -205,6 +207,7 @@ def test_forces_are_zero_in_flight_and_at_the_limit_while_sliding(motion: rl.Tra
     normal, friction = (
         np.asarray(line.get_ydata()) for line in (shown.normal[0], shown.friction[0])
     )
+    motion = seen(motion, shown.normal[0])
     flying, sliding = motion.mode == rl.Mode.FLIGHT, motion.mode == rl.Mode.SLIDING
     assert np.all(normal[flying] == 0) and np.all(friction[flying] == 0)
     assert np.all(normal[~flying] > 0)
@@ -219,6 +222,7 @@ def test_constraints_show_only_what_the_ground_holds(motion: rl.Trajectory) -> N
         str(line.get_label()).removesuffix(" = 0"): np.asarray(line.get_ydata())
         for line in (*upper, *lower)
     }
+    motion = seen(motion, upper[0])
     flying, sliding = motion.mode == rl.Mode.FLIGHT, motion.mode == rl.Mode.SLIDING
     for name in ("gap", "f2", "df2/dt"):
         assert np.array_equal(np.isnan(values[name]), flying)
@@ -266,7 +270,7 @@ def test_strobe_marks_the_contact_only_where_there_is_one(motion: rl.Trajectory)
         else:
             assert np.all(np.isnan(slides[i]))
     assert shown.slides.get_marker() != shown.contacts.get_marker()
-    path = motion.sol(np.linspace(0.0, 3.0, len(np.asarray(shown.skid_path.get_xdata()))))
+    path = sampling.between(motion, 0.0, 3.0, 6.0)
     skid, contact = (
         np.asarray(shown.skid_path.get_xdata()),
         np.asarray(shown.contact_path.get_xdata()),
@@ -304,7 +308,8 @@ def test_paths_mark_events_where_the_body_touches(motion: rl.Trajectory) -> None
     assert legend_of(shown.ax)[3:] == list(expected)
     assert len({line.get_marker() for line in lines}) == len(lines)
     touching = np.isfinite(np.asarray(shown.contacts[0].get_xdata()))
-    assert np.array_equal(touching, motion.mode != rl.Mode.FLIGHT)
+    drawn = sampling.between(motion, 0.0, float(motion.t[-1]), 6.0)
+    assert np.array_equal(touching, drawn.mode != rl.Mode.FLIGHT)
 
 
 def test_paths_of_several_motions_have_events_in_their_colours(jump: rl.Trajectory) -> None:

@@ -11,7 +11,7 @@ matplotlib.use("Agg")
 
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
-from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
+from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, seen, two_axes
 from oracles.pictures import figure_of, points_of
 
 
@@ -21,16 +21,17 @@ def test_forces_are_the_trajectory(trajectory: rl.Trajectory) -> None:
     for motion, normal, friction, needed in zip(
         (trajectory, limited), shown.normal, shown.friction, shown.needed, strict=True
     ):
+        at = seen(motion, normal)
         for line, values in (
-            (normal, motion.normal_force),
-            (friction, motion.friction_force),
-            (needed, motion.friction_needed),
+            (normal, at.normal_force),
+            (friction, at.friction_force),
+            (needed, at.friction_needed),
         ):
-            assert np.array_equal(data(line)[0], motion.t)
+            assert np.array_equal(data(line)[0], at.t)
             assert np.array_equal(data(line)[1], values)
     assert shown.limits[0] is None and shown.available[0] is None
     corners = points_of(shown.limits[1])[:, 1]
-    bound = 0.7 * trajectory.normal_force.max()
+    bound = 0.7 * data(shown.normal[1])[1].max()
     assert (corners.min(), corners.max()) == (-bound, bound)
     available = shown.available[1]
     assert available is not None and list(np.asarray(available.get_ydata())) == [0.7, 0.7]
@@ -54,8 +55,10 @@ def test_needed_friction_is_shown_up_to_a_bound_where_n_vanishes() -> None:
 
 
 def test_needed_friction_fills_its_panel(report: rl.Trajectory) -> None:
-    _, lower = rl.plot_forces(report, ax=two_axes()).axes
-    assert lower.get_ylim()[1] == pytest.approx(1.15 * report.friction_needed.max())
+    shown = rl.plot_forces(report, ax=two_axes())
+    largest = data(shown.needed[0])[1].max()
+    assert largest == pytest.approx(report.friction_needed.max(), rel=1e-3)
+    assert shown.axes[1].get_ylim()[1] == pytest.approx(1.15 * largest)
     _, lower = rl.plot_forces(rough(report, 0.9), ax=two_axes()).axes
     assert lower.get_ylim()[1] == pytest.approx(1.15 * 0.9)
 

@@ -8,6 +8,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib import rcParams, rcParamsDefault
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
@@ -36,7 +37,7 @@ def leaving_no_figure(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn
 def axes_of(ax: Axes | None, size: tuple[float, float]) -> Axes:
     """Return the Axes given, or those of a new pyplot figure of a size [inch]."""
     if ax is None:
-        return plt.figure(figsize=size, layout="constrained").add_subplot()
+        return _new_figure(size).add_subplot()
     return require_axes(ax)
 
 
@@ -50,7 +51,7 @@ def require_axes(ax: Any) -> Axes:
 def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
     """Return the one or two Axes given, or two of a new pyplot figure over one time axis."""
     if ax is None:
-        figure = plt.figure(figsize=(7, 5), layout="constrained")
+        figure = _new_figure((7, 5))
         upper, lower = figure.subplots(2, sharex=True)
         return [upper, lower]
     panels = [ax] if isinstance(ax, Axes) else list(np.ravel(np.asarray(ax, dtype=object)))
@@ -62,7 +63,16 @@ def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
 def figure_of(figure: Any, size: tuple[float, float]) -> Figure:
     """Return the figure given, or a new pyplot figure of a size [inch]."""
     if figure is None:
-        return plt.figure(figsize=size, layout="constrained")
+        return _new_figure(size)
     if not isinstance(figure, FigureBase):  # a SubFigure will do
         raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
+    whole = figure.get_figure(root=True)
+    if whole is not None and whole.get_layout_engine() is None:
+        whole.set_layout_engine("constrained")
     return figure  # type: ignore[return-value]
+
+
+def _new_figure(size: tuple[float, float]) -> Figure:
+    """Open a pyplot figure of a size [inch], or of the one that the style asks for."""
+    asked = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
+    return plt.figure(figsize=None if asked else size, layout="constrained")

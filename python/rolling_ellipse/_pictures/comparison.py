@@ -11,19 +11,22 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.colors import to_hex
+from matplotlib.axes import Axes
+from matplotlib.colors import is_color_like, to_hex
 from matplotlib.lines import Line2D
 
 from .._check import shown
 from .._trajectory import Trajectory
+from . import sampling
 from .labels import labels_of
 from .legends import quantity_handles, some_of
-from .palette import BLUE, INK, ORANGE, PLUM, SKY, TIMES
+from .palette import palette_of
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    from matplotlib.artist import Artist
 
-_COLOURS = (INK, ORANGE, BLUE, SKY, PLUM)
+    from .palette import Palette
+
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5)), (0, (9, 3)))
 _MARKERS = (".", "x", "+", "1", "2")
 
@@ -41,8 +44,8 @@ class Style:
 class Comparison:
     """One motion or several of one picture, in the order given.
 
-    Iteration gives each motion with its style. A motion that is alone has None instead: then
-    colours are free to tell its quantities apart.
+    Iteration gives each motion with its style. A motion that is alone, and has no colour given, has
+    None instead: then colours are free to tell its quantities apart.
 
     Attributes
     ----------
@@ -52,43 +55,69 @@ class Comparison:
         The look and the name of each motion among the others.
     alone : bool
         Whether there is a single motion.
+    palette : Palette
+        The colours of what is drawn in.
+    options : dict
+        Properties of Line2D that the curves of all motions are to have.
 
     Raises
     ------
     TypeError
         If something is no Trajectory.
     ValueError
-        If there is none, one has no samples, or there are not as many labels as trajectories.
+        If there is none, one has no samples, or there are not as many labels or colours as
+        trajectories.
     """
 
     def __init__(
         self,
         trajectories: Trajectory | Sequence[Trajectory],
         labels: Sequence[str] | None = None,
+        colors: Sequence[Any] | None = None,
+        *,
+        ax: Any = None,
+        options: dict[str, Any] | None = None,
     ) -> None:
         self.motions = _motions(trajectories)
-        self.styles = _styles(labels_of(self.motions, labels))
+        self.palette = palette_of(_first_axes(ax))
+        self.options = options or {}
+        names = labels_of(self.motions, labels)
+        self.styles = _styles(names, self.palette, colors_of(colors, len(names)))
         self.alone = len(self.motions) == 1
+        self._plain = self.alone and colors is None
 
     def __iter__(self) -> Iterator[tuple[Trajectory, Style | None]]:
-        styles = [None] if self.alone else self.styles
+        styles = [None] if self._plain else self.styles
         return zip(self.motions, styles, strict=True)
+
+    def over_time(self) -> Comparison:
+        """Sample the motions as finely as curves over time are drawn, and return itself."""
+        self.motions = tuple(map(sampling.over_time, self.motions))
+        return self
+
+    def restyle(self, *artists: Artist | None) -> None:
+        """Give artists the properties that all curves are to have."""
+        for artist in artists:
+            if artist is not None and self.options:
+                artist.set(**self.options)
 
     def handles(self, ax: Axes, quantities: Sequence[tuple[str, str]]) -> list[Any]:
         """Entries of a legend: the curves of one motion, else motions and (name, dash) of each."""
         if self.alone:
             return list(ax.get_legend_handles_labels()[0])
-        return [*self.motion_handles(solid=True), *quantity_handles(quantities)]
+        return [*self.motion_handles(solid=True), *quantity_handles(quantities, self.palette)]
 
     def motion_handles(self, *, solid: bool) -> list[Line2D]:
         """Entries of a legend for the motions: their dashes, or `solid` lines with markers."""
-        return [
+        found = [
             Line2D(
                 [], [], color=style.colour, label=style.label, ms=3, mew=0.8,
                 ls="-" if solid else style.dash, marker=style.marker if solid else "",
             )
             for style in some_of(self.styles)
         ]  # fmt: skip
+        self.restyle(*found)
+        return found
 
 
 def require_motion(trajectory: object) -> None:
@@ -118,12 +147,40 @@ def _motions(trajectories: Trajectory | Sequence[Trajectory]) -> tuple[Trajector
     return motions
 
 
-def _styles(labels: Sequence[str]) -> tuple[Style, ...]:
+def colors_of(colors: Any, count: int) -> tuple[Any, ...] | None:
+    """Return the colours given for so many motions.
+
+    Raises
+    ------
+    ValueError
+        If they are not as many, or one is no colour that matplotlib knows.
+    """
+    if colors is None:
+        return None
+    wanted = f"colors must be a sequence of {count} matplotlib colours, one for each trajectory"
+    try:
+        found = () if isinstance(colors, str) else tuple(colors)
+    except TypeError:
+        found = ()
+    if len(found) != count or not all(map(is_color_like, found)):
+        raise ValueError(f"{wanted}, got {shown(colors)}")
+    return found
+
+
+def _first_axes(ax: Any) -> Axes | None:
+    first = ax if isinstance(ax, Axes) or ax is None else next(iter(np.ravel(ax)), None)
+    return first if isinstance(first, Axes) else None
+
+
+def _styles(
+    labels: Sequence[str], palette: Palette, colors: tuple[Any, ...] | None
+) -> tuple[Style, ...]:
     count = len(labels)
-    colours = _COLOURS[:count]
-    if count > len(_COLOURS):  # from light to dark
-        colours = tuple(to_hex(TIMES(share)) for share in np.linspace(0, 1, count))
+    colours = colors or palette.curves[:count]
+    if count > len(colours):  # from light to dark
+        colours = tuple(to_hex(palette.times(share)) for share in np.linspace(0, 1, count))
+    markers = _MARKERS if count > 1 else ("",)
     return tuple(
-        Style(label, colours[i], _DASHES[i % len(_DASHES)], _MARKERS[i % len(_MARKERS)])
+        Style(label, colours[i], _DASHES[i % len(_DASHES)], markers[i % len(markers)])
         for i, label in enumerate(labels)
     )

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .._errors import constraint_errors, worst
 from .axes import leaving_no_figure, panels_of
 from .comparison import Comparison, Style
-from .legends import name_curves, some_of
+from .legends import name_curves, some_of, title_beside_legend
 from .modes import mode_handles
-from .panels import draw_dots, dress_errors, dress_panels
+from .panels import draw_dots, dress_errors, dress_panels, note_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +38,8 @@ def plot_constraints(
     *,
     ax: Axes | Sequence[Axes] | None = None,
     labels: Sequence[str] | None = None,
+    colors: Sequence[Any] | None = None,
+    **options: Any,
 ) -> Constraints:
     """Draw by how much motions miss their constraints, without units, on a logarithmic scale.
 
@@ -46,7 +48,7 @@ def plot_constraints(
     f3, f4 and the gap, the lower one f1, the rates of the others and the slip (see
     `ConstraintResiduals`); of several motions each panel shows the worst. An exact zero has no
     place on the scale, nor has what the ground does not hold: the slip while sliding, the gap in
-    flight. Modes, events and lost validity are marked as in `plot_forces`.
+    flight. Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
     Parameters
     ----------
@@ -56,6 +58,10 @@ def plot_constraints(
         in a new pyplot figure.
     labels : sequence of str, optional
         Names of the motions; without it, what they differ in.
+    colors : sequence of matplotlib colours, optional
+        One for each motion.
+    **options
+        Properties of `matplotlib.lines.Line2D` for all dots.
 
     Returns
     -------
@@ -65,11 +71,12 @@ def plot_constraints(
     Raises
     ------
     ValueError
-        If there is no trajectory, one has no samples, or the numbers of labels or Axes are wrong.
+        If there is no trajectory, one has no samples, or the numbers of labels, colours or Axes are
+        wrong.
     TypeError
         If something is no trajectory.
     """
-    shown = Comparison(trajectories, labels)
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).over_time()
     panels = panels_of(ax)
     lines: list[list[Line2D]] = [[] for _ in panels]
     for motion, style in shown:
@@ -77,12 +84,14 @@ def plot_constraints(
         for panel, drawn, errors in zip(panels, lines, of_panels, strict=True):
             for rank, (name, values) in enumerate(errors.items()):
                 drawn.append(draw_dots(panel, motion, values, name, rank, style))
+                shown.restyle(drawn[-1])
     names = ("positions", "velocities") if len(panels) == 2 else ("constraint error",)
     for panel, drawn, name in zip(panels, lines, names, strict=True):
         dress_errors(panel, drawn, name)
         if shown.alone or panel is panels[0]:
-            modes = mode_handles(shown.motions) if panel is panels[0] else []
+            modes = mode_handles(shown.motions, shown.palette) if panel is panels[0] else []
             name_curves(panel, [*some_of(drawn), *modes])
+    title_beside_legend(panels[0], note_of(shown))
     marks = dress_panels(panels, shown)
     return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
 
@@ -90,9 +99,10 @@ def plot_constraints(
 def _errors_of(motion: Trajectory, panels: int, style: Style | None) -> list[Errors]:
     """For each panel the errors to draw by name: all of one motion, the worst of one of several."""
     positions, velocities = constraint_errors(motion)
-    if style is None and panels == 2:
+    alone = style is None or not style.label
+    if alone and panels == 2:
         return [positions, velocities]
-    if style is None:
+    if style is None or alone:
         return [{"positions": worst(positions), "velocities": worst(velocities)}]
     if panels == 2:
         return [{style.label: worst(positions)}, {style.label: worst(velocities)}]

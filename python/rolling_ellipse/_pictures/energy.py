@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
 
 from .._check import choice
 from .._errors import energy_error
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
-from .legends import name_curves, some_of
+from .legends import name_curves, some_of, title_beside_legend
 from .modes import mode_handles
-from .panels import DASHES, draw_dots, draw_energies, dress_errors, dress_over_time
+from .panels import DASHES, draw_dots, draw_energies, dress_errors, dress_over_time, note_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,13 +46,16 @@ def plot_energy(
     *,
     ax: Axes | None = None,
     labels: Sequence[str] | None = None,
-    kind: str | None = None,
+    colors: Sequence[Any] | None = None,
+    kind: Literal["energies", "error"] | None = None,
+    **options: Any,
 ) -> Energy:
     """Draw the energies of a motion [J], or by how much the energy of several motions is off.
 
     The error is |E - E0| over the largest |kinetic| + |potential| energy of its motion, on a
-    logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. Modes,
-    events and lost validity are marked as in `plot_forces`.
+    logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. What
+    friction and impacts take is no error: with them it is called a change. Modes, events, lost
+    validity and long spans are drawn as in `plot_forces`.
 
     Parameters
     ----------
@@ -61,8 +64,12 @@ def plot_energy(
         Where to draw; without it, in a new pyplot figure.
     labels : sequence of str, optional
         Names of the motions; without it, what they differ in.
+    colors : sequence of matplotlib colours, optional
+        One for each motion.
     kind : {"energies", "error"}, optional
         What to draw: without it the energies of one motion, the errors of several.
+    **options
+        Properties of `matplotlib.lines.Line2D` for all curves.
 
     Returns
     -------
@@ -72,24 +79,26 @@ def plot_energy(
     Raises
     ------
     ValueError
-        If there is no trajectory, one has no samples, the number of labels is wrong or the kind is
-        unknown.
+        If there is no trajectory, one has no samples, the number of labels or colours is wrong or
+        the kind is unknown.
     TypeError
         If something is no trajectory.
     """
-    shown = Comparison(trajectories, labels)
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).over_time()
     default = "energies" if shown.alone else "error"
-    kind = choice("kind", default if kind is None else kind, KINDS)
+    wanted = choice("kind", default if kind is None else kind, KINDS)
     ax = axes_of(ax, (7, 3.4))
     energies: list[tuple[Line2D, Line2D, Line2D]] = []
     errors: list[Line2D] = []
     for motion, style in shown:
-        if kind == "energies":
+        if wanted == "energies":
             energies.append(draw_energies(ax, motion, style))
         else:
-            label = "energy error" if style is None else style.label
+            label = style.label if style is not None and style.label else "energy error"
             errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, style))
-    if kind == "error":
+    for lines in (*energies, errors):
+        shown.restyle(*lines)
+    if wanted == "error":
         # what friction and impacts take is no error
         word = "change" if any(motion.events for motion in shown.motions) else "error"
         dress_errors(ax, errors, f"relative energy {word}")
@@ -97,7 +106,8 @@ def plot_energy(
     else:
         quantities = list(zip(("total", "kinetic", "potential"), DASHES, strict=True))
         handles = shown.handles(ax, quantities)
-    name_curves(ax, [*handles, *mode_handles(shown.motions)])
+    name_curves(ax, [*handles, *mode_handles(shown.motions, shown.palette)])
+    title_beside_legend(ax, note_of(shown))
     marks = dress_over_time(ax, shown)
     total, kinetic, potential = zip(*energies, strict=True) if energies else ((), (), ())
     return Energy(ax, total, kinetic, potential, tuple(errors), marks)

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .axes import leaving_no_figure, panels_of
 from .comparison import Comparison, Style
-from .legends import name_curves, quantity_handles
+from .legends import name_curves, quantity_handles, title_beside_legend
 from .modes import mode_handles
-from .palette import GREY, INK
-from .panels import DASHES, draw_forces, dress_forces, dress_panels
+from .palette import palette_of
+from .panels import DASHES, RANGE, draw_forces, dress_forces, dress_panels, note_of
+from .sampling import are_ranges, curve
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,6 +53,8 @@ def plot_forces(
     *,
     ax: Axes | Sequence[Axes] | None = None,
     labels: Sequence[str] | None = None,
+    colors: Sequence[Any] | None = None,
+    **options: Any,
 ) -> Forces:
     """Draw the normal force and friction of one motion or of several, and the friction needed.
 
@@ -62,6 +65,10 @@ def plot_forces(
     (of several motions, each has a row at the top); dotted lines mark events, those of a single
     motion with their names where there is room. Where the model is not valid, all ground is grey.
 
+    The curves are those of the motion itself, whatever samples the trajectory has. More half turns
+    than can be told apart are drawn as ranges: from the least to the largest value in each of 800
+    parts of the time; the title then says how many there are.
+
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
@@ -70,6 +77,10 @@ def plot_forces(
         pyplot figure.
     labels : sequence of str, optional
         Names of the motions; without it, what they differ in.
+    colors : sequence of matplotlib colours, optional
+        One for each motion.
+    **options
+        Properties of `matplotlib.lines.Line2D` for all curves.
 
     Returns
     -------
@@ -79,11 +90,12 @@ def plot_forces(
     Raises
     ------
     ValueError
-        If there is no trajectory, one has no samples, or the numbers of labels or Axes are wrong.
+        If there is no trajectory, one has no samples, or the numbers of labels, colours or Axes are
+        wrong.
     TypeError
         If something is no trajectory.
     """
-    shown = Comparison(trajectories, labels)
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).over_time()
     panels = panels_of(ax)
     drawn = [draw_forces(panels[0], motion, style) for motion, style in shown]
     dress_forces(panels[0], shown.motions)
@@ -93,34 +105,39 @@ def plot_forces(
         for motion, style in shown:
             needed.append(_draw_needed(panels[1], motion, style))
             available.append(_draw_available(panels[1], motion, style))
-        _dress_needed(panels[1], shown.motions, any(available))
+        _dress_needed(panels[1], shown, any(available))
     marks = dress_panels(panels, shown)
     quantities = [("normal", DASHES[0]), ("friction", DASHES[1])]
-    handles = shown.handles(panels[0], quantities)
-    name_curves(panels[0], [*handles, *mode_handles(shown.motions)])
     normal, friction, limits = zip(*drawn, strict=True)
+    shown.restyle(*normal, *friction, *needed)
+    handles = shown.handles(panels[0], quantities)
+    name_curves(panels[0], [*handles, *mode_handles(shown.motions, shown.palette)])
+    title_beside_legend(panels[0], note_of(shown))
     return Forces(tuple(panels), normal, friction, limits, tuple(needed), tuple(available), marks)
 
 
 def _draw_needed(ax: Axes, motion: Trajectory, style: Style | None) -> Line2D:
-    colour, dash = (INK, "-") if style is None else (style.colour, style.dash)
+    ink = palette_of(ax).ink
+    colour, dash = (ink, "-") if style is None else (style.colour, style.dash)
     label = "needed" if style is None else style.label
-    return ax.plot(motion.t, motion.friction_needed, color=colour, ls=dash, label=label)[0]
+    look: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
+    t, needed = curve(motion.t, motion.friction_needed)
+    return ax.plot(t, needed, color=colour, ls=dash, label=label, **look)[0]
 
 
 def _draw_available(ax: Axes, motion: Trajectory, style: Style | None) -> Line2D | None:
     friction = motion.scene.friction
     if not math.isfinite(friction):
         return None
-    colour = GREY if style is None else style.colour
+    colour = palette_of(ax).grey if style is None else style.colour
     return ax.axhline(friction, color=colour, lw=1.2, ls=_LIMIT, label="available")
 
 
-def _dress_needed(ax: Axes, motions: Sequence[Trajectory], limited: bool) -> None:
-    values = [motion.friction_needed for motion in motions]
-    values.append(np.array([motion.scene.friction for motion in motions]))
+def _dress_needed(ax: Axes, shown: Comparison, limited: bool) -> None:
+    values = [motion.friction_needed for motion in shown.motions]
+    values.append(np.array([motion.scene.friction for motion in shown.motions]))
     finite = np.concatenate([v[np.isfinite(v)] for v in values])
     reach = min(float(np.max(finite, initial=0.0)), _STEEP)
     ax.set_ylim(0, 1.15 * reach or 1.0)
     ax.set_ylabel("|F|/N")
-    name_curves(ax, quantity_handles([("μ", _LIMIT)]) if limited else [])
+    name_curves(ax, quantity_handles([("μ", _LIMIT)], shown.palette) if limited else [])

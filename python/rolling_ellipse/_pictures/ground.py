@@ -16,7 +16,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D
 
 from .._core import Mode
-from .palette import EARTH, GREY, PLUM
+from .palette import PLUM, palette_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
 SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be a thin stripe
+HALF_TURNS = 2 * SHOWN_TURNS
 
 
 def tilted(scene: Scene) -> Affine2D:
@@ -99,9 +100,11 @@ def fill_earth(ax: Axes, scene: Scene, left: float, right: float) -> Polygon:
     """Fill the earth below z = 0 between two places [m], and well past both."""
     reach = right - left + 100 * max(scene.a, scene.b)
     left, right = left - reach, right + reach
+    palette = palette_of(ax)
     earth = Polygon(
         [(left, -reach), (left, 0.0), (right, 0.0), (right, -reach)],
-        facecolor=EARTH, edgecolor=GREY, lw=1, zorder=1, transform=tilted(scene) + ax.transData,
+        facecolor=palette.earth, edgecolor=palette.grey, lw=1, zorder=1,
+        transform=tilted(scene) + ax.transData,
     )  # fmt: skip
     ax.add_artist(earth)  # add_patch would make room for all of it
     return earth
@@ -119,11 +122,12 @@ class Ruler:
         steps = MaxNLocator(24, steps=[1, 2, 5, 10]).tick_values(0, span)
         self.step, self._depth = float(steps[1] - steps[0]), 0.016 * span
         self._fifths = math.ceil(span / (5 * self.step))
-        self.ticks = LineCollection([], colors=GREY, lw=1, transform=on_slope, zorder=2)
+        grey = palette_of(ax).grey
+        self.ticks = LineCollection([], colors=grey, lw=1, transform=on_slope, zorder=2)
         ax.add_artist(self.ticks)
         self.labels = [
             ax.text(
-                0, 0, "", color=GREY, fontsize="small", ha="center", va="top", zorder=2,
+                0, 0, "", color=grey, fontsize="small", ha="center", va="top", zorder=2,
                 rotation=-math.degrees(scene.slope), clip_on=True, transform=on_slope,
             )
             for _ in range(2 * self._fifths + 1)

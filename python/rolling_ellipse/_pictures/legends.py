@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 
-from .palette import GREY
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from .palette import Palette
 
 _Entry = TypeVar("_Entry")
 
@@ -25,9 +25,9 @@ def some_of(entries: Sequence[_Entry]) -> list[_Entry]:
     return [entries[int(i)] for i in places]
 
 
-def quantity_handles(quantities: Sequence[tuple[str, str]]) -> list[Line2D]:
+def quantity_handles(quantities: Sequence[tuple[str, str]], palette: Palette) -> list[Line2D]:
     """Entries of a legend for (name, dash) of what is drawn of every motion."""
-    return [Line2D([], [], color=GREY, ls=dash, label=name) for name, dash in quantities]
+    return [Line2D([], [], color=palette.grey, ls=dash, label=name) for name, dash in quantities]
 
 
 def name_curves(ax: Axes, handles: Sequence[Any] | None = None) -> None:
@@ -39,6 +39,17 @@ def name_curves(ax: Axes, handles: Sequence[Any] | None = None) -> None:
             frameon=False, fontsize="small", borderaxespad=0.1, handlelength=1.8,
             columnspacing=1.2, markerscale=2,
         )  # fmt: skip
+
+
+def title_beside_legend(ax: Axes, text: str) -> None:
+    """Set a title on the left, beside the legend, or above it where there is no room."""
+    title, legend = ax.set_title(text, loc="left", fontsize="medium"), ax.get_legend()
+    if legend is None or not text:
+        return
+    taken = legend.get_window_extent()
+    if title.get_window_extent().width + taken.width > ax.get_window_extent().width:
+        above = taken.height * 72 / ax.figure.dpi + 4  # and the descent of its letters
+        ax.set_title(text, loc="left", fontsize="medium", pad=above)
 
 
 def _columns(ax: Axes, entries: Sequence[Any]) -> int:

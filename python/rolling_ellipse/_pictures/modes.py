@@ -12,7 +12,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
 
 from .._core import EventKind, Mode
-from .palette import GREY, INK
+from .palette import palette_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,12 +24,13 @@ if TYPE_CHECKING:
     from .._check import FloatArray
     from .._events import Event
     from .._trajectory import Trajectory
+    from .palette import Palette
 
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
-_SHADES: dict[Mode, dict[str, Any]] = {
-    Mode.SLIDING: {"facecolor": "0.95", "edgecolor": "0.72", "hatch": "////"},
-    Mode.FLIGHT: {"facecolor": "0.9", "edgecolor": "0.9"},
-    Mode.REST: {"facecolor": "0.98", "edgecolor": "0.72", "hatch": "..."},
+_SHADES: dict[Mode, tuple[float, float, str]] = {  # of face and edge, and the hatch
+    Mode.SLIDING: (0.05, 0.28, "////"),
+    Mode.FLIGHT: (0.1, 0.1, ""),
+    Mode.REST: (0.02, 0.28, "..."),
 }
 _ROW = 0.05  # height of one of several motions, over that of the axes
 _NAME_SIZE = "x-small"
@@ -62,7 +63,7 @@ def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
 
 
 def shade_modes(
-    ax: Axes, motion: Trajectory, row: int | None = None, colour: str = INK
+    ax: Axes, motion: Trajectory, row: int | None = None, colour: str = ""
 ) -> list[Artist]:
     """Shade the time that a motion slides, flies or rests: all of the ground, or a row at the top.
 
@@ -72,7 +73,7 @@ def shade_modes(
     shades: list[Artist] = []
     for mode, spans in mode_spans(motion).items():
         if spans:
-            look = _SHADES[mode] if row is None else _SHADES[mode] | {"edgecolor": colour}
+            look = _look(mode, palette_of(ax)) | ({} if row is None else {"edgecolor": colour})
             shades.append(
                 ax.broken_barh(
                     spans, (bottom, height), transform=ax.get_xaxis_transform(),
@@ -82,12 +83,17 @@ def shade_modes(
     return shades
 
 
-def mode_handles(motions: Sequence[Trajectory]) -> list[Patch]:
+def _look(mode: Mode, palette: Palette) -> dict[str, Any]:
+    face, edge, hatch = _SHADES[mode]
+    return {"facecolor": palette.shade(face), "edgecolor": palette.shade(edge), "hatch": hatch}
+
+
+def mode_handles(motions: Sequence[Trajectory], palette: Palette) -> list[Patch]:
     """Entries of a legend for the modes that are shaded."""
     found = [mode_spans(motion) for motion in motions]
     return [
-        Patch(label=mode.name.lower(), lw=0, **look)
-        for mode, look in _SHADES.items()
+        Patch(label=mode.name.lower(), lw=0, **_look(mode, palette))
+        for mode in _SHADES
         if any(spans[mode] for spans in found)
     ]
 
@@ -115,11 +121,13 @@ def name_events(ax: Axes, motion: Trajectory) -> list[Artist]:
     if max(map(abs, shifts)) > 2 * points or height > _MOST_NAMES_HEIGHT:
         return []
     _raise_top(ax, height)
+    palette = palette_of(ax)
     return [
         ax.annotate(
             name, (event.t, 1), (shift, -2), xycoords=ax.get_xaxis_transform(),
-            textcoords="offset points", rotation=90, ha="center", va="top", color=INK,
-            fontsize=_NAME_SIZE, bbox={"fc": "white", "ec": "none", "alpha": 0.75, "pad": 0.5},
+            textcoords="offset points", rotation=90, ha="center", va="top", color=palette.ink,
+            fontsize=_NAME_SIZE,
+            bbox={"fc": palette.background, "ec": "none", "alpha": 0.75, "pad": 0.5},
         )
         for name, event, shift in zip(names, events, shifts, strict=True)
     ]  # fmt: skip
@@ -136,15 +144,17 @@ def shade_invalid(
     start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
     if not start < end:
         return []
-    ground: list[Artist] = [ax.axvspan(start, end, color=GREY, alpha=0.15 * share, lw=0, zorder=0)]
+    grey = palette_of(ax).grey
+    ground: list[Artist] = [ax.axvspan(start, end, color=grey, alpha=0.15 * share, lw=0, zorder=0)]
     return ground if colour is None else [*ground, ax.axvline(start, color=colour, lw=1.2)]
 
 
 def draw_invalid_ground(ax: Axes, x: FloatArray, y: FloatArray, **options: Any) -> Line2D:
     """Draw grey ground along a curve, where a model is not valid; NaN where it is."""
     (ground,) = ax.plot(
-        x, y, color="0.87", lw=8, solid_capstyle="round", zorder=1.7, label="_invalid", **options
-    )
+        x, y, color=palette_of(ax).shade(0.13), lw=8, solid_capstyle="round", zorder=1.7,
+        label="_invalid", **options,
+    )  # fmt: skip
     return ground
 
 

@@ -13,14 +13,15 @@ from .axes import figure_of, leaving_no_figure
 from .comparison import Comparison
 from .legends import name_curves
 from .modes import mode_handles
-from .palette import INK
 from .panels import (
+    draw_curve,
     draw_dots,
     draw_energies,
     draw_forces,
     dress_errors,
     dress_forces,
     dress_over_time,
+    note_of,
 )
 from .strobe import Strobe, check_strobe, plot_strobe
 
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Overview:
-    """Artists of `plot`: curves over `trajectory.t`, and `marks` of what happens when."""
+    """Artists of `plot`: curves over time, and `marks` of what happens when."""
 
     figure: Figure
     strobe: Strobe
@@ -69,15 +70,17 @@ def plot(
     """Draw one figure of a motion: positions, angle, speed, height, forces, energies and errors.
 
     Under the curves, sliding is hatched, flight grey and rest dotted; dotted lines mark events.
-    Where the model is not valid, all ground is grey.
+    Where the model is not valid, all ground is grey. Curves are as fine as they are drawn, or show
+    ranges, as in `plot_forces`; the title then says so.
 
     Parameters
     ----------
     trajectory : Trajectory
-    figure : matplotlib Figure, optional
-        Where to draw; without it, in a new pyplot figure.
+    figure : matplotlib Figure or SubFigure, optional
+        Where to draw; one without a layout engine gets the constrained one. Without it, in a new
+        pyplot figure.
     count, t_end
-        For the positions, as in `plot_strobe`; the curves show all samples.
+        For the positions, as in `plot_strobe`; the curves show the whole motion.
 
     Returns
     -------
@@ -85,34 +88,36 @@ def plot(
         The artists.
     """
     check_strobe(trajectory, count, t_end)  # before anything is drawn
-    figure = figure_of(figure, (10, 8.5))
+    shown = Comparison(trajectory).over_time()
+    (motion,) = shown.motions
+    figure = figure_of(figure, (8.6, 8.0))
     grid = figure.add_gridspec(4, 2, height_ratios=[1.35, 1, 1, 1])
     strobe = plot_strobe(trajectory, ax=figure.add_subplot(grid[0, :]), count=count, t_end=t_end)
     panels = [figure.add_subplot(grid[i, j]) for j in (0, 1) for i in (1, 2, 3)]
-    theta = _draw_state(panels[0], trajectory.t, trajectory.theta, "θ [rad]")
-    omega = _draw_state(panels[1], trajectory.t, trajectory.omega, "ω [rad/s]")
-    height = _draw_state(panels[2], trajectory.t, trajectory.z, "z of centre [m]")
-    forces = draw_forces(panels[3], trajectory)
-    dress_forces(panels[3], [trajectory])
-    energies = draw_energies(panels[4], trajectory)
-    errors = _draw_errors(panels[5], trajectory)
-    marks = _dress_panels(panels, trajectory)
-    figure.suptitle(_headline(trajectory), fontsize="medium")
+    theta = _draw_state(panels[0], motion, motion.theta, "θ [rad]")
+    omega = _draw_state(panels[1], motion, motion.omega, "ω [rad/s]")
+    height = _draw_state(panels[2], motion, motion.z, "z of centre [m]")
+    forces = draw_forces(panels[3], motion)
+    dress_forces(panels[3], [motion])
+    energies = draw_energies(panels[4], motion)
+    errors = _draw_errors(panels[5], motion)
+    marks = _dress_panels(panels, shown)
+    figure.suptitle(_headline(trajectory, note_of(shown)), fontsize="medium")
     return Overview(figure, strobe, theta, omega, height, *forces, *energies, *errors, marks)
 
 
-def _headline(trajectory: Trajectory) -> str:
+def _headline(trajectory: Trajectory, note: str) -> str:
     scene = trajectory.scene
     text = f"a = {scene.a:g} m, b = {scene.b:g} m, mass {scene.mass:g} kg"
     text += f"  (model {trajectory.model}, method {trajectory.method})"
     if trajectory.valid_until < trajectory.t[-1]:
         text += f", not valid from {trajectory.valid_until:.3g} s on (grey)"
-    return text
+    return f"{text}; {note}" if note else text
 
 
-def _draw_state(ax: Axes, t: FloatArray, values: FloatArray, label: str) -> Line2D:
+def _draw_state(ax: Axes, motion: Trajectory, values: FloatArray, label: str) -> Line2D:
     ax.set_ylabel(label)
-    return ax.plot(t, values, color=INK)[0]
+    return draw_curve(ax, motion, values, f"_{label}", 0, None)
 
 
 def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line2D]:
@@ -120,19 +125,20 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
     errors = {
         "positions": worst(positions),
         "velocities": worst(velocities),
+        # what friction and impacts take is no error
         "energy change" if trajectory.events else "energy": energy_error(trajectory),
     }
     position, velocity, energy = (
         draw_dots(ax, trajectory, values, name, rank, None)
         for rank, (name, values) in enumerate(errors.items())
     )
-    dress_errors(ax, (position, velocity, energy), "relative error")
+    word = "error, change" if trajectory.events else "relative error"
+    dress_errors(ax, (position, velocity, energy), word)
     return position, velocity, energy
 
 
-def _dress_panels(panels: Sequence[Axes], trajectory: Trajectory) -> tuple[Artist, ...]:
+def _dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
     """Give two columns of three panels one time axis, and legends where there are several lines."""
-    shown = Comparison(trajectory)
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=False)
@@ -141,7 +147,7 @@ def _dress_panels(panels: Sequence[Axes], trajectory: Trajectory) -> tuple[Artis
         if panel not in (panels[2], panels[5]):
             panel.set_xlabel("")
             panel.tick_params(labelbottom=False)
-    modes = mode_handles(shown.motions)
+    modes = mode_handles(shown.motions, shown.palette)
     name_curves(panels[3], [*panels[3].get_legend_handles_labels()[0], *modes])
     for panel in panels[4:]:
         name_curves(panel)

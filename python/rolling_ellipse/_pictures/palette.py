@@ -1,11 +1,106 @@
-"""The colours of all pictures.
+"""The colours of all pictures: they follow the style in force.
 
-They differ in lightness as well as in hue: they read in grey and for colour-blind eyes.
+They differ in lightness as well as in hue: they read in grey and for colour-blind eyes. A style
+with colours of its own, as "dark_background" or "grayscale", gives them instead.
 """
 
-from matplotlib.colors import LinearSegmentedColormap, to_rgb
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib import rcParams, rcParamsDefault
+from matplotlib.colors import LinearSegmentedColormap, is_color_like, to_hex, to_rgb, to_rgba
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Colormap
+    from matplotlib.figure import FigureBase
 
 INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
 SKY, PLUM = "#8fc3e0", "#7a2e4d"
 FILL = to_rgb(BLUE)
-TIMES = LinearSegmentedColormap.from_list("times", ["#bcd9ea", BLUE, INK])  # early to late
+_DARK = "#e8ecf4", "#6fb3d9", "#ffa033", "#8d99a6", "#36332e", "#3f6f8c", "#d58aa8"
+_APART = 0.25  # of two colours, the largest difference of a component
+
+
+@dataclass(frozen=True)
+class Palette:
+    """Colours before one background: ink for what comes first, then those of further things."""
+
+    background: str
+    ink: str
+    blue: str
+    orange: str
+    grey: str
+    earth: str
+    sky: str
+    plum: str
+
+    def shade(self, share: float) -> str:
+        """Return the background with a share of ink."""
+        paper, ink = np.array(to_rgb(self.background)), np.array(to_rgb(self.text))
+        return to_hex((*((1 - share) * paper + share * ink).tolist(), 1.0))
+
+    @property
+    def text(self) -> str:
+        """Black or white, whatever the background is farther from."""
+        return "black" if _lightness(self.background) > 0.5 else "white"
+
+    @cached_property
+    def times(self) -> Colormap:
+        """Early to late."""
+        pale = "#bcd9ea" if self.blue == BLUE else self.shade(0.3)
+        return LinearSegmentedColormap.from_list("times", [pale, self.blue, self.ink])
+
+    @property
+    def curves(self) -> tuple[str, ...]:
+        """Colours of several motions."""
+        return self.ink, self.orange, self.blue, self.sky, self.plum
+
+
+def palette_of(where: Axes | FigureBase | None = None) -> Palette:
+    """Return the colours of the style in force before the background of what is drawn in."""
+    background = _background(where)
+    if rcParams["axes.prop_cycle"] != rcParamsDefault["axes.prop_cycle"]:
+        return _styled(background)
+    if _lightness(background) > 0.5:
+        return Palette(background, INK, BLUE, ORANGE, GREY, EARTH, SKY, PLUM)
+    return Palette(background, *_DARK)
+
+
+def _styled(background: str) -> Palette:
+    """Take the colours of a style that has its own, as far as they are seen and told apart."""
+    plain = Palette(background, "", "", "", "", "", "", "")
+    found: list[str] = [plain.text]
+    for look in rcParams["axes.prop_cycle"]:
+        if is_color_like(colour := look.get("color")) and all(
+            _difference(colour, other) > _APART for other in (*found[:1], background)
+        ):
+            found.append(to_hex(colour))
+    others = found[1:] or [plain.shade(0.5)]
+    blue, orange, sky, plum = (others[i % len(others)] for i in range(4))
+    return Palette(
+        background, found[0], blue, orange, plain.shade(0.5), plain.shade(0.12), sky, plum
+    )
+
+
+def _background(where: Any) -> str:
+    colours = [rcParams["axes.facecolor"], rcParams["figure.facecolor"], "white"]
+    while where is not None:  # axes, their figure, the figure of that
+        colours.insert(len(colours) - 3, where.get_facecolor())
+        parent = getattr(where, "figure", None)
+        where = None if parent is where else parent
+    return next(to_hex(c) for c in colours if to_rgba(c)[3] > 0.5)
+
+
+def _lightness(colour: str) -> float:
+    """How light a colour is: the luma of ITU-R BT.601."""
+    red, green, blue = to_rgb(colour)
+    return 0.299 * red + 0.587 * green + 0.114 * blue
+
+
+def _difference(colour: Any, other: Any) -> float:
+    return max(abs(a - b) for a, b in zip(to_rgb(colour), to_rgb(other), strict=True))

@@ -13,7 +13,8 @@ import numpy as np
 from matplotlib.ticker import SymmetricalLogLocator
 
 from .modes import mark_events, name_events, shade_invalid, shade_modes
-from .palette import BLUE, GREY, INK, ORANGE, PLUM
+from .palette import palette_of
+from .sampling import are_ranges, curve, half_turns, ranges
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
     from .comparison import Comparison, Style
 
 DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
-_COLOURS = (INK, ORANGE, BLUE)
-_DOTS = ((".", INK), ("x", ORANGE), ("+", BLUE), ("1", PLUM), ("2", GREY))
+RANGE = 0.6  # how opaque a range is: there may be one over another
+_DOTS = (".", "x", "+", "1", "2")
 _ROUNDING = 1e-13  # errors below it are shown as what they are: small
 _SPIKE = 20.0  # times the weight: what is higher leaves nothing to see of ordinary forces
 
@@ -38,31 +39,37 @@ def draw_curve(
     ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style | None
 ) -> Line2D:
     """Draw the quantity of the given rank (0, 1, 2) of a motion over its times."""
+    t, values = curve(motion.t, values)
     if style is None:
-        (line,) = ax.plot(motion.t, values, color=_COLOURS[rank], ls=DASHES[rank], label=label)
-        return line
-    (line,) = ax.plot(
-        motion.t, values, color=style.colour, ls=DASHES[rank], label=f"{style.label}, {label}",
-        **sparse_markers(motion, style),
-    )  # fmt: skip
-    return line
+        colour, name, look = palette_of(ax).curves[rank], label, {}
+    else:
+        name = ", ".join(filter(None, (style.label, label)))
+        colour, look = style.colour, sparse_markers(style)
+    dash = DASHES[rank]
+    if are_ranges(motion):
+        dash, look = "-", look | {"alpha": RANGE}
+    return ax.plot(t, values, color=colour, ls=dash, label=name, **look)[0]
 
 
-def sparse_markers(motion: Trajectory, style: Style) -> dict[str, Any]:
-    """Options of a line: a few markers that tell whose it is."""
-    every = max(motion.t.size // 12, 1)
-    return {"marker": style.marker, "ms": 6, "mew": 0.8, "markevery": every}
+def sparse_markers(style: Style) -> dict[str, Any]:
+    """Options of a line: a few markers, evenly along it, that tell whose it is."""
+    return {"marker": style.marker, "ms": 6, "mew": 0.8, "markevery": 0.1}
 
 
 def draw_dots(
     ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style | None
 ) -> Line2D:
     """Draw an error as dots, because rounding jumps; exact zeros have no place on a log scale."""
-    marker, colour = _DOTS[rank] if style is None else (style.marker, style.colour)
+    palette = palette_of(ax)
+    colour = (*palette.curves[:3], palette.plum, palette.grey)[rank]
+    marker = _DOTS[rank]
+    if style is not None:
+        colour, marker = style.colour, style.marker or marker
     label = label if np.nan_to_num(values).any() else f"{label} = 0"
-    (line,) = ax.plot(
-        motion.t, values, ls="none", marker=marker, ms=3, mew=0.7, color=colour, label=label
-    )
+    t = motion.t
+    if are_ranges(motion):
+        t, _, values = ranges(t, values)
+    (line,) = ax.plot(t, values, ls="none", marker=marker, ms=3, mew=0.7, color=colour, label=label)
     return line
 
 
@@ -72,10 +79,12 @@ def draw_forces(
     """Draw N and F over the band +-friction N that F must stay in (none if it has no limit)."""
     limit = None
     if math.isfinite(motion.scene.friction):
-        bound = motion.scene.friction * motion.normal_force
-        colour, alpha = ("0.75", 1.0) if style is None else (style.colour, 0.15)
+        t, bound = motion.t, motion.scene.friction * motion.normal_force
+        if are_ranges(motion):
+            t, _, bound = ranges(t, bound)
+        colour, alpha = (palette_of(ax).shade(0.25), 1.0) if style is None else (style.colour, 0.15)
         limit = ax.fill_between(
-            motion.t, -bound, bound, color=colour, alpha=alpha, lw=0, label="friction ≤ μN"
+            t, -bound, bound, color=colour, alpha=alpha, lw=0, label="friction ≤ μN"
         )
     normal = draw_curve(ax, motion, motion.normal_force, "normal", 0, style)
     friction = draw_curve(ax, motion, motion.friction_force, "friction", 1, style)
@@ -84,7 +93,7 @@ def draw_forces(
 
 def dress_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
     """Scale the force axis: linear, or beyond the weight logarithmic, where spikes tower."""
-    ax.axhline(0, color=GREY, lw=0.8, zorder=1.5)
+    ax.axhline(0, color=palette_of(ax).grey, lw=0.8, zorder=1.5)
     ax.set_ylabel("force [N]")
     weight = max(m.scene.mass * m.scene.gravity * math.cos(m.scene.slope) for m in motions)
     largest = max(float(np.max(np.abs(m.normal_force))) for m in motions)
@@ -96,6 +105,17 @@ def dress_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
         ticks = SymmetricalLogLocator(base=10, linthresh=decade)
         ticks.set_params(numticks=ax.yaxis.get_tick_space())
         ax.yaxis.set_major_locator(ticks)
+        ax.set_ylabel(f"force [N]\nlog beyond {decade:g}")
+        _fit_forces(ax, motions)
+
+
+def _fit_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
+    """Make room for the forces alone: below them, a limit of friction may go on and on."""
+    forces = [values for m in motions for values in (m.normal_force, m.friction_force)]
+    scale = ax.yaxis.get_transform()
+    low, high = scale.transform([min(map(np.min, forces)), max(map(np.max, forces))])
+    air = 0.05 * (high - low)
+    ax.set_ylim(*scale.inverted().transform([low - air, high + air]))
 
 
 def draw_energies(
@@ -125,14 +145,15 @@ def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple
     """
     ax.set_xlabel("t [s]")
     ax.margins(x=0.01)
-    ax.grid(color="0.92", lw=0.8)
+    palette = palette_of(ax)
+    ax.grid(color=palette.shade(0.08), lw=0.8)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
     marks: list[Artist] = []
     for row, (motion, style) in enumerate(shown):
-        if style is None:
+        if style is None or shown.alone:
             marks += shade_modes(ax, motion)
-            marks += mark_events(ax, motion, GREY)
+            marks += mark_events(ax, motion, palette.grey)
             marks += shade_invalid(ax, motion)
         else:
             marks += shade_modes(ax, motion, row, style.colour)
@@ -141,6 +162,14 @@ def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple
     if shown.alone and named:
         marks += name_events(ax, shown.motions[0])
     return tuple(marks)
+
+
+def note_of(shown: Comparison) -> str:
+    """Return what a title has to say of curves that do not show every half turn."""
+    long = [motion for motion in shown.motions if are_ranges(motion)]
+    if not long:
+        return ""
+    return f"{max(map(half_turns, long)):_.0f} half turns: ranges".replace("_", "\u202f")
 
 
 def dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:

@@ -9,14 +9,17 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from .._core import EventKind
+from ..geometry import support_slope
 from . import ground as drawing
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison, Style
-from .legends import name_curves
+from .ground import HALF_TURNS, SHOWN_TURNS
+from .legends import name_curves, title_beside_legend
 from .modes import EVENT_NAMES, draw_invalid_ground, events_shown
-from .palette import BLUE, INK, ORANGE
+from .palette import palette_of
 from .panels import sparse_markers
-from .strobe import dress_ground_axes, figure_size, turned_until
+from .sampling import between, span_of, turned_until
+from .strobe import dress_ground_axes, figure_size
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.patches import Polygon
 
     from .._trajectory import Trajectory
+    from .palette import Palette
 
 _CENTRE, _TIP = "-", "--"
 _EVENTS = {
@@ -61,13 +65,15 @@ def plot_paths(
     *,
     ax: Axes | None = None,
     labels: Sequence[str] | None = None,
+    colors: Sequence[Any] | None = None,
+    **options: Any,
 ) -> Paths:
     """Draw the paths of the centre, of the contact and of the end of axis a over the ground.
 
     That end is the one on the right at theta = 0. On a slope the picture is tilted, so that down
     is down. The path of the contact ends where the body leaves the ground and goes on where it hits
-    it; markers on it are events. A long path is shown over its first three turns (the title then
-    says so); the lines hold all of it. Where the model is not valid, the path of the centre has
+    it; markers on it are events. Of a long path the first three turns are shown, or the first swing
+    to and fro (the title then says so). Where the model is not valid, the path of the centre has
     grey ground.
 
     Parameters
@@ -78,6 +84,10 @@ def plot_paths(
         Where to draw; without it, in a new pyplot figure.
     labels : sequence of str, optional
         Names of the motions; without it, what they differ in.
+    colors : sequence of matplotlib colours, optional
+        One for each motion.
+    **options
+        Properties of `matplotlib.lines.Line2D` for all paths.
 
     Returns
     -------
@@ -88,16 +98,18 @@ def plot_paths(
     ------
     ValueError
         If there is no trajectory, one has no samples, their slopes differ or the number of labels
-        is wrong.
+        or colours is wrong.
     TypeError
         If something is no trajectory.
     """
-    shown = Comparison(trajectories, labels)
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
     motions = shown.motions
     slopes = sorted({motion.scene.slope for motion in motions})
     if len(slopes) > 1:
         raise ValueError(f"trajectories must be on one slope, got {slopes!r}")
-    end = max(turned_until(motion) for motion in motions)
+    last = max(span_of(motion)[1] for motion in motions)
+    end = max(turned_until(motion, SHOWN_TURNS, "x_dot") for motion in motions)
+    shown.motions = motions = tuple(_until(motion, end) for motion in motions)
     view = _view(motions, end)
     ax = axes_of(ax, figure_size(view))
     places = np.concatenate([motion.x for motion in motions])
@@ -106,14 +118,16 @@ def plot_paths(
         _draw_paths(ax, motion, style, rank / len(motions))
         for rank, (motion, style) in enumerate(shown)
     ]
-    dress_ground_axes(ax, motions[0].scene, view)
-    _title(ax, end, max(float(motion.t[-1]) for motion in motions))
     quantities = [("centre", _CENTRE), ("end of axis a", _TIP)]
     handles = shown.handles(ax, quantities)
-    events = [_draw_events(ax, m, INK if style is None else style.colour) for m, style in shown]
-    name_curves(ax, [*handles, *_event_handles(motions)])
+    ink = shown.palette.ink
+    events = [_draw_events(ax, m, ink if style is None else style.colour) for m, style in shown]
     centres, tips, contacts = zip(*drawn, strict=True)
+    shown.restyle(*centres, *tips, *contacts)
     marks = tuple(_draw_invalid(ax, m) for m in motions if m.valid_until < m.t[-1])
+    dress_ground_axes(ax, motions[0].scene, view)  # last: what is drawn may widen the view
+    name_curves(ax, [*handles, *_event_handles(motions, shown.palette)])
+    title_beside_legend(ax, f"the first {end:.3g} s of {last:.4g} s" if end < last else "")
     return Paths(ax, centres, tips, contacts, tuple(events), ground, marks)
 
 
@@ -133,9 +147,11 @@ def _draw_paths(
 ) -> tuple[Line2D, Line2D, Line2D]:
     """Draw the three paths of a motion; `share` of the motions are drawn before it."""
     on_slope = drawing.tilted(motion.scene) + ax.transData
-    colours = (ORANGE, BLUE, INK) if style is None else (style.colour,) * 3
-    name = "" if style is None else f"{style.label}, "
-    marks: dict[str, Any] = {} if style is None else sparse_markers(motion, style)
+    palette = palette_of(ax)
+    colours = (palette.orange, palette.blue, palette.ink)
+    colours = colours if style is None else (style.colour,) * 3
+    name = "" if style is None or not style.label else f"{style.label}, "
+    marks: dict[str, Any] = {} if style is None else sparse_markers(style)
     (centre,) = ax.plot(
         motion.x, motion.z, color=colours[0], ls=_CENTRE, lw=1.8, label=f"{name}centre",
         transform=on_slope, zorder=5, **marks,
@@ -155,23 +171,27 @@ def _draw_events(ax: Axes, motion: Trajectory, colour: str) -> tuple[Line2D, ...
     """Mark where the body touches the ground at its events, a line for each kind."""
     on_slope = drawing.tilted(motion.scene) + ax.transData
     events = events_shown(motion)
-    places = motion.sol([event.t for event in events]).contact_x if events else np.empty(0)
+    states = (event.state_after for event in events)
+    reach = {"a": motion.scene.a, "b": motion.scene.b}
+    places = np.array([state.x + support_slope(state.theta, **reach) for state in states])
     kinds = np.array([event.kind.value for event in events])
     lines: list[Line2D] = []
     for kind in dict.fromkeys(event.kind for event in events):
         x = places[kinds == kind.value]
         lines += ax.plot(
-            x, np.zeros_like(x), ls="none", marker=_EVENTS[kind], ms=6, mfc="white", mec=colour,
-            mew=1.2, label=f"_{EVENT_NAMES[kind]}", transform=on_slope, zorder=6,
+            x, np.zeros_like(x), ls="none", marker=_EVENTS[kind], ms=6, mec=colour, mew=1.2,
+            mfc=palette_of(ax).background, label=f"_{EVENT_NAMES[kind]}", transform=on_slope,
+            zorder=6,
         )  # fmt: skip
     return tuple(lines)
 
 
-def _event_handles(motions: Sequence[Trajectory]) -> list[Line2D]:
+def _event_handles(motions: Sequence[Trajectory], palette: Palette) -> list[Line2D]:
     kinds = dict.fromkeys(event.kind for motion in motions for event in events_shown(motion))
     return [
         Line2D(
-            [], [], ls="none", marker=_EVENTS[kind], ms=3, mfc="white", mec=INK, mew=1.0,
+            [], [], ls="none", marker=_EVENTS[kind], ms=3, mfc=palette.background, mec=palette.ink,
+            mew=1.0,
             label=EVENT_NAMES[kind],
         )
         for kind in kinds
@@ -185,6 +205,7 @@ def _draw_invalid(ax: Axes, motion: Trajectory) -> Line2D:
     )
 
 
-def _title(ax: Axes, end: float, last: float) -> None:
-    if end < last:
-        ax.set_title(f"the first {end:.3g} s of {last:.4g} s", loc="left", fontsize="medium")
+def _until(motion: Trajectory, end: float) -> Trajectory:
+    """The motion up to a time, or its first sample if it begins later."""
+    begin, last = span_of(motion)
+    return between(motion, begin, max(begin, min(end, last)), HALF_TURNS)

@@ -12,9 +12,10 @@ from matplotlib.ticker import MaxNLocator
 from .._check import flag
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
-from .legends import name_curves
+from .legends import name_curves, title_beside_legend
 from .modes import draw_invalid_ground
-from .palette import GREY
+from .palette import palette_of
+from .sampling import FEW, between, half_turns, is_at_hand, span_of
 from .separatrix import QUARTER, flat_angle, flat_angles, separatrix, separatrix_speed
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from .._trajectory import Trajectory
 
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
+_MOST = 1000.0  # half turns or swings in one picture
 _SMALL = 0.1  # of the separatrix's speed: a slower motion would be a dot in a whole eye
 
 
@@ -54,13 +56,19 @@ def plot_phase(
     *,
     ax: Axes | None = None,
     labels: Sequence[str] | None = None,
+    colors: Sequence[Any] | None = None,
     fold: bool | None = None,
+    **options: Any,
 ) -> Phase:
     """Draw omega over theta for one motion or several; a dot marks where each starts.
 
     On level ground a dotted line shows the separatrix of rolling: inside its eyes the body rocks,
     outside it turns over and over. Circles mark the flat positions, where the body can rest, and
     crosses the tips, where it can balance. Where the model is not valid, the line has grey ground.
+
+    The lines are those of the motions themselves, whatever samples the trajectories have. Of many
+    turns of exact rolling, which are all alike, one is drawn, of other motions the first 1000 half
+    turns; the title then says so.
 
     Parameters
     ----------
@@ -69,9 +77,13 @@ def plot_phase(
         Where to draw; without it, in a new pyplot figure.
     labels : sequence of str, optional
         Names of the motions; without it, what they differ in.
+    colors : sequence of matplotlib colours, optional
+        One for each motion.
     fold : bool, optional
         Whether to show theta within one half turn around the flat position, after which an
         ellipse is the same again; without it, where a motion goes through more than two turns.
+    **options
+        Properties of `matplotlib.lines.Line2D` for the lines of all motions.
 
     Returns
     -------
@@ -81,14 +93,16 @@ def plot_phase(
     Raises
     ------
     ValueError
-        If there is no trajectory, one has no samples or the number of labels is wrong.
+        If there is no trajectory, one has no samples or the number of labels or
+        colours is wrong.
     TypeError
         If something is no trajectory.
     """
-    shown = Comparison(trajectories, labels)
-    motions = shown.motions
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
     if fold is None:
-        fold = any(np.ptp(motion.theta) > _FEW_TURNS * 2 * math.pi for motion in motions)
+        fold = any(np.ptp(each.theta) > _FEW_TURNS * 2 * math.pi for each in shown.motions)
+    parts, notes = zip(*map(_part, shown.motions), strict=True)
+    motions = shown.motions = parts
     fold = flag("fold", fold)
     ax = axes_of(ax, (6.4, 4.2))
     flat = flat_angle(motions[0].scene)
@@ -102,6 +116,7 @@ def plot_phase(
         if motion.valid_until < motion.t[-1]:
             late = np.where(motion.t >= motion.valid_until, motion.omega, np.nan)
             marks.append(draw_invalid_ground(ax, *_path(motion.theta, late, flat, fold)))
+    shown.restyle(*lines)
     bodies = _bodies(shown)
     if bodies:
         _choose_view(ax, motions, bodies[0][0], fold)
@@ -109,7 +124,26 @@ def plot_phase(
     _dress_phase(ax)
     handles = [] if shown.alone else shown.motion_handles(solid=False)
     name_curves(ax, [*handles, *(line for line in separatrices[:1] if _is_in_view(ax, line))])
+    title_beside_legend(ax, next(filter(None, notes), ""))
     return Phase(ax, tuple(lines), tuple(starts), separatrices, equilibria, tuple(marks))
+
+
+def _part(motion: Trajectory) -> tuple[Trajectory, str]:
+    """What is drawn of a motion, finely sampled, and what is to be said of that."""
+    if not is_at_hand(motion):
+        return motion, ""
+    begin, end = span_of(motion)
+    count, drawn = half_turns(motion), end
+    if count > FEW and motion.method == "exact" and motion.model == "rolling":
+        drawn = begin + 2 * (end - begin) / count
+        kind = "turn" if np.all(motion.omega * motion.omega[0] > 0) else "swing"
+        note = f"one {kind} of {count / 2:_.0f}, all alike".replace("_", "\u202f")
+    elif count > _MOST:
+        drawn = begin + _MOST / count * (end - begin)
+        note = f"the first {drawn - begin:.3g} s of {end - begin:.4g} s"
+    else:
+        note = ""
+    return between(motion, begin, drawn, min(count, _MOST)), note
 
 
 def _path(
@@ -147,7 +181,7 @@ def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
             key = (scene.a, scene.b, scene.gravity, scene.gyration2)
             bodies.setdefault(key, (scene, style.colour))
     found = list(bodies.values())
-    return [(found[0][0], GREY)] if len(found) == 1 else found
+    return [(found[0][0], shown.palette.grey)] if len(found) == 1 else found
 
 
 def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: bool) -> None:
@@ -183,7 +217,10 @@ def _draw_portrait(
             color=colour, lw=1.1, ls=":", label="separatrix", zorder=1.9,
         )  # fmt: skip
     flats = flat_angles(*view, bodies[0][0])
-    rest: dict[str, Any] = {"color": GREY, "ls": "none", "mfc": "white", "ms": 5, "zorder": 1.9}
+    palette = palette_of(ax)
+    rest: dict[str, Any] = {
+        "color": palette.grey, "ls": "none", "mfc": palette.background, "ms": 5, "zorder": 1.9,
+    }  # fmt: skip
     centres = ax.plot(flats, np.zeros_like(flats), marker="o", **rest)
     saddles = ax.plot(flats + QUARTER, np.zeros_like(flats), marker="x", **rest)
     ax.set_xlim(view)
@@ -197,10 +234,11 @@ def _is_in_view(ax: Axes, line: Line2D) -> bool:
 
 
 def _dress_phase(ax: Axes) -> None:
-    ax.axhline(0, color=GREY, lw=0.8, zorder=1.5)
+    palette = palette_of(ax)
+    ax.axhline(0, color=palette.grey, lw=0.8, zorder=1.5)
     ax.set_xlabel("θ [rad]")
     ax.set_ylabel("ω [rad/s]")
-    ax.grid(color="0.92", lw=0.8)
+    ax.grid(color=palette.shade(0.08), lw=0.8)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
     left, right = ax.get_xlim()

@@ -1,0 +1,192 @@
+"""Pictures show the motion itself, whatever samples there are, and say what they leave out."""
+
+import dataclasses
+import math
+from collections.abc import Callable
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+
+matplotlib.use("Agg")
+
+import rolling_ellipse as rl
+from matplotlib.figure import Figure
+from oracles.curves import Array, data, new_axes
+from oracles.pictures import figure_of
+from rolling_ellipse._pictures import sampling
+
+FULL_TURNS = 1000
+ROLLING = rl.simulate(rl.scenes.rolling, FULL_TURNS * rl.period(rl.scenes.rolling))
+WIDTH = 1.5 / 72  # of a line [inch]
+
+
+def few(scene: rl.Scene, end: float, **how: Any) -> rl.Trajectory:
+    return rl.simulate(scene, [0.0, 0.3 * end, end], **how)
+
+
+MOTIONS: dict[str, rl.Trajectory] = {
+    "report": few(rl.scenes.report, 6.0),
+    "rocking": few(rl.scenes.rocking, 10.0),
+    "thin": few(rl.Scene(2.0, 0.1, theta=0.3), 6.0),
+    "very thin": few(rl.Scene(1.0, 1e-3, theta=0.3), 3.0),
+    "slope": few(rl.scenes.slope, 30.0),
+    "slip": few(rl.scenes.slip, 3.0),
+    "bounce": few(rl.scenes.bounce, 6.0),
+    "rk4": few(rl.scenes.rolling, 6.0, model="rolling", method="rk4", step=0.01),
+}
+
+
+@pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+def test_curves_of_three_samples_are_those_of_the_motion(motion: rl.Trajectory) -> None:
+    """Between the points of a curve the motion is no farther than a line is wide, or 0.3 %."""
+    shown = rl.plot(motion, figure=Figure())
+    for line, name in (
+        (shown.theta, "theta"), (shown.omega, "omega"), (shown.height, "z"),
+        (shown.normal_force, "normal_force"), (shown.friction_force, "friction_force"),
+    ):  # fmt: skip
+        t, values = data(line)
+        assert (t[0], t[-1]) == (0.0, motion.t[-1])
+        places = np.setdiff1d(0.5 * (t[1:] + t[:-1]) + 0.23 * np.diff(t), t)
+        truth = getattr(motion.sol(places), name)
+        off = np.abs(np.interp(places, t, values) - truth)
+        assert np.max(off) <= 3e-3 * np.ptp(values), name
+
+
+def test_an_even_grid_of_as_many_points_would_miss_it() -> None:
+    """What the check above is worth: the spikes of a thin body between even samples."""
+    motion = MOTIONS["very thin"]
+    values = data(rl.plot_forces(motion, ax=new_axes()).normal[0])[1]
+    even = motion.sol(np.linspace(0.0, float(motion.t[-1]), 1001)).normal_force
+    assert np.max(even) < 0.7 * np.max(values)
+
+
+def test_the_phase_curve_of_1000_turns_is_that_of_its_energy() -> None:
+    ax = new_axes()
+    shown = rl.plot_phase(ROLLING, ax=ax)
+    theta, omega = data(shown.motions[0])
+    keep = np.isfinite(theta)
+    start = ROLLING.scene
+    height = lambda angle: np.sqrt((2 * np.sin(angle)) ** 2 + np.cos(angle) ** 2)  # noqa: E731
+    lever = 3 * np.sin(theta) * np.cos(theta) / height(theta)
+    inertia = 1.25 + height(theta) ** 2 + lever**2
+    energy = 2.25 * start.omega**2 / 2 + start.gravity
+    expected = np.sqrt(2 * (energy - start.gravity * height(theta)) / inertia)
+    off = np.abs(omega - expected)[keep] * inches(ax, 1)
+    assert np.max(off) < 0.1 * WIDTH
+    steps = np.hypot(np.diff(theta) * inches(ax, 0), np.diff(omega) * inches(ax, 1))
+    assert np.nanmax(steps) < 10 * WIDTH  # and the line between its points is the curve as well
+    assert ax.get_title(loc="left") == "one turn of 1\u202f000, all alike"
+
+
+def inches(ax: Any, axis: int) -> float:
+    """Length of a unit of an axis."""
+    corners = ax.transData.transform([(0, 0), (1, 1)])
+    return float(np.diff(corners[:, axis])[0] / ax.figure.dpi)
+
+
+def test_the_path_and_the_forces_of_1000_turns_are_no_straight_lines() -> None:
+    """At whole turns the samples of the trajectory are all alike."""
+    assert np.ptp(ROLLING.z) < 1e-6
+    x, z = data(rl.plot_paths(ROLLING, ax=new_axes()).centres[0])
+    assert (z.min(), z.max()) == pytest.approx((1.0, 2.0), abs=1e-4) and x.max() < 35
+    ax = new_axes()
+    t, normal = data(rl.plot_forces(ROLLING, ax=ax).normal[0])
+    one = ROLLING.sol(np.linspace(0.0, 5.0, 20_001)).normal_force
+    assert (normal.min(), normal.max()) == pytest.approx((one.min(), one.max()), rel=2e-3)
+    assert ax.get_title(loc="left") == "2\u202f000 half turns: ranges"
+    assert t.size == 2 * sampling.PARTS
+    in_each = normal.reshape(-1, 2)
+    assert np.all(in_each.max(axis=1) > 0.95 * one.max())
+    assert np.all(in_each.min(axis=1) < 1.05 * one.min())
+
+
+@pytest.mark.parametrize(
+    ("motion", "expected"),
+    [
+        (MOTIONS["report"], 2 * 6.0 / rl.period(rl.scenes.report)),
+        (ROLLING, 2.0 * FULL_TURNS),
+        (few(rl.Scene(2.0, 1.0, theta=0.5, friction=0.45), 1e4, model="contact"), 1e4 / 1.2225),
+        (few(rl.Scene(1.0, 1.0, omega=3.0, slope=0.1), 10.0, model="rolling"), None),
+        (rl.simulate(rl.Scene(2.0, 1.0), 10.0), 1.0),
+    ],
+)
+def test_half_turns_and_swings_are_counted(motion: rl.Trajectory, expected: float | None) -> None:
+    if expected is None:
+        expected = float(motion.theta[-1] - motion.theta[0]) / math.pi
+    assert sampling.half_turns(motion) == pytest.approx(expected, rel=0.1)
+
+
+@pytest.mark.parametrize("span", [1.0, 1e2, 1e4, 1e6, 1e9])
+@pytest.mark.parametrize("scene", [rl.scenes.rolling, rl.scenes.rocking, rl.scenes.thin])
+def test_any_span_is_drawn(scene: rl.Scene, span: float) -> None:
+    motion = rl.simulate(scene, [0.0, span])
+    for draw in (rl.plot_phase, rl.plot_forces, rl.plot_energy, rl.plot_paths, rl.plot_strobe):
+        ax = new_axes()
+        draw(motion, ax=ax)
+        points = max(len(np.asarray(line.get_xdata())) for line in ax.lines)
+        assert points < 200_000
+        if span >= 1e4:
+            assert ax.get_title(loc="left")
+
+
+def test_a_long_way_down_a_slope_is_shown_as_far_as_its_title_says() -> None:
+    motion = MOTIONS["slope"]
+    ax = new_axes(10.0, 3.0)
+    shown = rl.plot_paths(motion, ax=ax)
+    title = ax.get_title(loc="left")
+    assert title.startswith("the first 7.9") and title.endswith("of 30 s")
+    end = float(title.split()[2])
+    last = data(shown.centres[0])[0][-1]
+    assert last == pytest.approx(motion.sol(end).x[0], rel=1e-2)
+    figure_of(ax).draw_without_rendering()
+    assert ax.get_xlim()[1] < 1.4 * last
+
+
+@pytest.mark.parametrize("draw", [rl.plot_phase, rl.plot_forces, rl.plot_paths, rl.plot_strobe])
+def test_samples_of_ones_own_are_drawn_as_they_are_with_a_warning(
+    draw: Callable[..., Any],
+) -> None:
+    motion = rl.simulate(rl.scenes.report, 6.0)
+    own = dataclasses.replace(motion, theta=motion.theta + 0.01 * motion.t)
+    with pytest.warns(UserWarning, match="are not those of its scene: they are drawn as they are"):
+        shown = draw(own, ax=new_axes())
+    if draw is rl.plot_phase:
+        assert np.array_equal(data(shown.motions[0])[0], own.theta)
+    if draw is rl.plot_forces:
+        assert np.array_equal(data(shown.normal[0])[0], own.t)
+
+
+def test_unsorted_samples_are_drawn_in_the_order_of_time() -> None:
+    motion = rl.simulate(rl.scenes.report, 6.0)
+    mixed = motion.sol([5.0, 0.0, 6.0, 2.0])
+    for one, other in (
+        (rl.plot_forces(mixed, ax=new_axes()).normal, rl.plot_forces(motion, ax=new_axes()).normal),
+        (rl.plot_phase(mixed, ax=new_axes()).motions, rl.plot_phase(motion, ax=new_axes()).motions),
+    ):
+        assert np.array_equal(np.asarray(one[0].get_xydata()), np.asarray(other[0].get_xydata()))
+
+
+def test_the_axis_of_forces_says_that_it_is_logarithmic_beyond_and_wastes_no_space() -> None:
+    motion = rl.simulate(rl.Scene(2.0, 0.02, theta=0.3, friction=0.9), 2.0)
+    ax = rl.plot_forces(motion, ax=new_axes()).axes[0]
+    assert ax.get_ylabel() == "force [N]\nlog beyond 10"
+    scale = ax.yaxis.get_transform()
+    bottom, top = scale.transform(ax.get_ylim())
+    low, high = (
+        scale.transform(value) for value in (motion.friction_force.min(), motion.normal_force.max())
+    )
+    assert high - low > 0.75 * (top - bottom)
+
+
+def pile(shown: Any) -> Array:
+    return np.array([body.get_facecolor()[3] for body in shown.bodies])
+
+
+def test_bodies_in_one_place_do_not_pile_up_to_an_opaque_heap() -> None:
+    for motion in (MOTIONS["rocking"], MOTIONS["bounce"], MOTIONS["slip"]):
+        for count in (13, 60):
+            alphas = pile(rl.plot_strobe(motion, ax=new_axes(4.0, 4.0), count=count))
+            assert 1 - np.prod(1 - alphas) < 0.5
+    assert np.all(pile(rl.plot_strobe(MOTIONS["report"], ax=new_axes())) > 0.09)
