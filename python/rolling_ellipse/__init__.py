@@ -28,6 +28,7 @@ if _TYPE_CHECKING:
         plot,
         plot_constraints,
         plot_energy,
+        plot_error,
         plot_forces,
         plot_paths,
         plot_phase,
@@ -43,8 +44,8 @@ __all__ = [
     "IntegrationError", "Mode", "Outcome", "Scene", "StabilityWarning", "Status", "Thresholds",
     "Trajectory", "Validity", "ValidityWarning", "WorkPrecision", "__version__", "animate",
     "certify", "classify", "constraints", "flow", "geometry", "impacts", "kinematics", "load",
-    "period", "plot", "plot_constraints", "plot_energy", "plot_forces", "plot_paths", "plot_phase",
-    "plot_phase_map", "plot_strobe", "report", "scenes", "simulate", "thresholds",
+    "period", "plot", "plot_constraints", "plot_energy", "plot_error", "plot_forces", "plot_paths",
+    "plot_phase", "plot_phase_map", "plot_strobe", "report", "scenes", "simulate", "thresholds",
     "work_precision",
 ]  # fmt: skip
 

@@ -36,7 +36,14 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from ._pictures.animation import RollingAnimation
+    from ._pictures.constraints import Constraints
+    from ._pictures.energy import Energy
+    from ._pictures.error import Error
+    from ._pictures.forces import Forces
     from ._pictures.overview import Overview
+    from ._pictures.paths import Paths
+    from ._pictures.phase import Phase
+    from ._pictures.strobe import Strobe
 
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
@@ -329,15 +336,57 @@ class Trajectory(FieldsOnly):
 
     def plot(self, **options: Any) -> Overview:
         """Draw the overview figure; see `rolling_ellipse.plot`."""
-        from ._pictures.overview import plot
+        from ._pictures import plot
 
         return plot(self, **options)
+
+    def plot_strobe(self, **options: Any) -> Strobe:
+        """Draw the body at even times; see `rolling_ellipse.plot_strobe`."""
+        from ._pictures import plot_strobe
+
+        return plot_strobe(self, **options)
+
+    def plot_paths(self, **options: Any) -> Paths:
+        """Draw the paths over the ground; see `rolling_ellipse.plot_paths`."""
+        from ._pictures import plot_paths
+
+        return plot_paths(self, **options)
+
+    def plot_phase(self, **options: Any) -> Phase:
+        """Draw omega over theta; see `rolling_ellipse.plot_phase`."""
+        from ._pictures import plot_phase
+
+        return plot_phase(self, **options)
+
+    def plot_forces(self, **options: Any) -> Forces:
+        """Draw the contact forces over time; see `rolling_ellipse.plot_forces`."""
+        from ._pictures import plot_forces
+
+        return plot_forces(self, **options)
+
+    def plot_energy(self, **options: Any) -> Energy:
+        """Draw the energies over time; see `rolling_ellipse.plot_energy`."""
+        from ._pictures import plot_energy
+
+        return plot_energy(self, **options)
+
+    def plot_constraints(self, **options: Any) -> Constraints:
+        """Draw by how much the constraints are missed; see `rolling_ellipse.plot_constraints`."""
+        from ._pictures import plot_constraints
+
+        return plot_constraints(self, **options)
+
+    def plot_error(self, quantity: str = "theta", **options: Any) -> Error:
+        """Draw the error over time beside the exact motion; see `rolling_ellipse.plot_error`."""
+        from ._pictures import plot_error
+
+        return plot_error(self, quantity, **options)
 
     def animate(
         self, path: str | os.PathLike[str] | None = None, **options: Any
     ) -> RollingAnimation:
         """Animate the motion; see `rolling_ellipse.animate`."""
-        from ._pictures.animation import animate
+        from ._pictures import animate
 
         return animate(self, path, **options)
 

@@ -27,7 +27,10 @@ from rolling_ellipse._pictures.animation import movies as movies
 MOTION = rl.simulate(rl.scenes.report, np.linspace(0.0, 1.0, 26))
 Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
 BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 1.0, "gravity": 9.81}
-CURVES = [rl.plot_paths, rl.plot_phase, rl.plot_forces, rl.plot_energy, rl.plot_constraints]
+CURVES = [
+    rl.plot_paths, rl.plot_phase, rl.plot_forces, rl.plot_energy, rl.plot_constraints,
+    rl.plot_error,
+]  # fmt: skip
 SMALL: dict[str, Any] = {"t_end": 0.2, "width": 160, "dpi": 50}
 
 ANYTHING: list[Any] = [
@@ -76,6 +79,9 @@ def test_where_nothing_can_be_drawn(value: Any) -> None:
 @pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
 def test_choices_and_switches(value: Any) -> None:
     refused("kind", lambda kind: rl.plot_energy(MOTION, kind=kind), value)
+    refused("quantity", lambda quantity: rl.plot_error(MOTION, quantity), value)
+    refused("reference", lambda reference: rl.plot_error(MOTION, reference=reference), value)
+    refused("colors", lambda colors: rl.plot_phase(MOTION, colors=colors), value)
     refused("fold", lambda fold: rl.plot_phase(MOTION, fold=fold), value)
     refused("labels", lambda labels: rl.plot_forces(MOTION, labels=labels), value)
     refused("progress", lambda progress: rl.animate(MOTION, progress=progress), value)

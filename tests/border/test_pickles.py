@@ -204,7 +204,7 @@ def test_pools_return_motions(how: str, tmp_path: Path) -> None:
 
 PICTURES = (
     rl.plot, rl.plot_strobe, rl.plot_phase, rl.plot_energy, rl.plot_constraints, rl.plot_forces,
-    rl.plot_paths,
+    rl.plot_paths, rl.plot_error,
 )  # fmt: skip
 
 

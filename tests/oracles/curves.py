@@ -20,6 +20,7 @@ PICTURES = {
     "energy": rl.plot_energy,
     "constraints": rl.plot_constraints,
     "paths": rl.plot_paths,
+    "error": rl.plot_error,
 }
 TWO_PANELS = (rl.plot_forces, rl.plot_constraints)
 
@@ -51,7 +52,9 @@ def two_axes(width: float = 6.0, height: float = 5.0) -> list[Axes]:
 
 def legend_of(ax: Axes) -> list[str]:
     legend = ax.get_legend()
-    return [] if legend is None else [text.get_text() for text in legend.get_texts()]
+    if legend is None:
+        return []
+    return [text.get_text().removesuffix(" = 0") for text in legend.get_texts()]
 
 
 def data(line: Line2D) -> tuple[Array, Array]:

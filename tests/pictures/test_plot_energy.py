@@ -49,4 +49,6 @@ def test_the_kind_of_energy_picture_is_a_choice(several: list[rl.Trajectory]) ->
 def test_an_energy_without_any_error_is_said_to_be_0() -> None:
     still = rl.simulate(rl.Scene(2.0, 1.0), 1.0)
     ax = rl.plot_energy([still, still], ax=new_axes(), labels=["one", "two"]).ax
-    assert legend_of(ax) == ["one = 0", "two = 0"]
+    legend = ax.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["one = 0", "two = 0"]

@@ -54,7 +54,7 @@ def test_set_up_is_a_hollow_mark_above_the_most_accurate_run(chart: Any) -> None
     line, hollow = chart.lines["flow"], chart.setups["flow"]
     run = next(run for run in FOUND.of() if run.name == "flow")
     assert hollow.get_xydata()[0].tolist() == [line.get_xdata()[0], run.time + run.setup]
-    assert hollow.get_markerfacecolor() == "white"
+    assert hollow.get_markerfacecolor() == "#ffffff"
 
 
 def test_names_stand_apart_in_the_margin() -> None:

@@ -15,7 +15,7 @@ from .._work_precision.results import require_quantity
 from .._work_precision.run import ERRORS
 from .axes import axes_of, leaving_no_figure
 from .margin import label_ends
-from .palette import BLUE, GREY, INK, ORANGE, PLUM
+from .palette import palette_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from .._work_precision.results import WorkPrecision
     from .._work_precision.run import Run
+    from .palette import Palette
 
 _OF_STATES = ("final", "l2", "linf")
 _NAMES = {
@@ -107,7 +108,7 @@ def draw(
     own_figure = ax is None
     ax = axes_of(ax, (9.5, 5.4))
     ax.set(xscale="log", yscale="log", xlabel=_NAMES[x], ylabel=_NAMES[y])
-    looks = _looks(found)
+    looks = _looks(found, palette_of(ax))
     floors = {each.t_end: each.floor for each in found.references}
     groups: dict[Any, list[Run]] = {}
     for run in runs:
@@ -162,26 +163,26 @@ def _tagged(runs: Sequence[Run], tags: Sequence[str] | None) -> list[Run]:
     return chosen
 
 
-def _looks(found: WorkPrecision) -> dict[str, _Look]:
+def _looks(found: WorkPrecision, palette: Palette) -> dict[str, _Look]:
     """Return a colour for each kind of way, and within a kind a marker for each way."""
     looks: dict[str, _Look] = {}
     counts: dict[str, int] = {}
     for run in found.runs:
         if run.name in looks:
             continue
-        colour, width = _kind(run)
+        colour, width = _kind(run, palette)
         count = counts[colour] = counts.get(colour, -1) + 1
         mark, dash = _MARKERS[count % len(_MARKERS)], _DASHES[count % len(_DASHES)]
         looks[run.name] = _Look(colour, mark, dash, width)
     return looks
 
 
-def _kind(run: Run) -> tuple[str, float]:
+def _kind(run: Run, palette: Palette) -> tuple[str, float]:
     if "peer" in run.tags:
-        return ORANGE, 1.0
+        return palette.orange, 1.0
     if run.method == "exact" or run.model == "contact":
-        return INK, 1.8
-    return (PLUM, 1.0) if run.model == "multipliers" else (BLUE, 1.2)
+        return palette.ink, 1.8
+    return (palette.plum, 1.0) if run.model == "multipliers" else (palette.blue, 1.2)
 
 
 def _place(run: Run, quantity: str, floors: dict[float, float]) -> float:
@@ -198,10 +199,11 @@ def _setup(ax: Axes, points: list[tuple[float, float, Run]], look: _Look) -> Lin
     x, time, run = min(points, key=lambda point: point[0])
     if not run.setup > 0.1 * time:
         return None
+    paper = palette_of(ax).background
     how: dict[str, Any] = {"color": look.colour, "scalex": False, "scaley": False}
     ax.plot([x, x], [time, time + run.setup], lw=0.6, ls=":", zorder=2, **how)
     return ax.plot(
-        [x], [time + run.setup], ls="", marker=look.marker, ms=4.5, mfc="white", mew=0.8,
+        [x], [time + run.setup], ls="", marker=look.marker, ms=4.5, mfc=paper, mew=0.8,
         zorder=2.5, **how,
     )[0]  # fmt: skip
 
@@ -218,18 +220,19 @@ def _show_all(axis: Axis, values: list[float]) -> None:
 def _mark_limits(ax: Axes, reference: Any) -> tuple[Artist | None, Line2D | None]:
     words: dict[float, tuple[str, int, str]] = {}
     line = floor = None
+    grey = palette_of(ax).grey
     if reference.attainable > 0:
-        line = ax.axvline(reference.attainable, color=GREY, lw=1, ls=(0, (4, 2)), zorder=1)
+        line = ax.axvline(reference.attainable, color=grey, lw=1, ls=(0, (4, 2)), zorder=1)
         words[reference.attainable] = ("attainable", -2, "right")
     if reference.floor > 0:
         least = ax.get_xlim()[0]
-        floor = ax.axvspan(least, reference.floor, color=GREY, alpha=0.18, lw=0, zorder=0)
+        floor = ax.axvspan(least, reference.floor, color=grey, alpha=0.18, lw=0, zorder=0)
         words[reference.floor] = ("reference's own error", 2, "left")
     for place, (word, off, side) in words.items():
         ax.annotate(
             word, (place, 1), xycoords=("data", "axes fraction"), xytext=(off, -3),
             textcoords="offset points", rotation=90, ha=side, va="top", fontsize="xx-small",
-            color=GREY,
+            color=grey,
         )  # fmt: skip
     return floor, line
 
@@ -293,7 +296,7 @@ def _title(key: Any) -> str:
 
 def _dress(ax: Axes) -> None:
     ax.spines[["top", "right"]].set_visible(False)
-    ax.grid(True, which="major", color=GREY, alpha=0.25, lw=0.5)
+    ax.grid(True, which="major", color=palette_of(ax).grey, alpha=0.25, lw=0.5)
     for axis in (ax.xaxis, ax.yaxis):
         decades = _decades(axis)
         if decades < _FEW:
@@ -346,10 +349,11 @@ def _below(ax: Axes, lines: list[str], after: int) -> Text | None:
     """Write lines under the axes, after so many others."""
     if not lines:
         return None
+    palette = palette_of(ax)
     return ax.annotate(
         "\n".join(lines), (0, 0), xycoords="axes fraction", xytext=(0, -38 - 7.8 * after),
         textcoords="offset points", ha="left", va="top", fontsize=6, linespacing=1.1,
-        color=GREY if after else INK, annotation_clip=False,
+        color=palette.grey if after else palette.ink, annotation_clip=False,
     )  # fmt: skip
 
 

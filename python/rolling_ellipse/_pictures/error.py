@@ -1,0 +1,160 @@
+"""The error of a motion over time, beside the exact one."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._check import choice, shown
+from .._simulate import simulate
+from .._trajectory import Trajectory
+from .axes import axes_of, leaving_no_figure
+from .comparison import Comparison
+from .legends import name_curves, some_of, title_beside_legend
+from .palette import palette_of
+from .panels import DASHES, dress_errors, dress_over_time, note_of
+from .sampling import are_ranges, ranges
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+    from .._check import FloatArray
+    from .comparison import Style
+
+QUANTITIES = {
+    "theta": ("θ", "rad"), "omega": ("ω", "rad/s"), "x": ("x", "m"), "z": ("z", "m"),
+    "x_dot": ("x_dot", "m/s"), "z_dot": ("z_dot", "m/s"), "contact_x": ("contact", "m"),
+    "turns": ("turns", ""), "normal_force": ("N", "N"), "friction_force": ("F", "N"),
+    "energy": ("energy", "J"), "kinetic_energy": ("kinetic energy", "J"),
+    "potential_energy": ("potential energy", "J"),
+}  # fmt: skip
+_TIGHT = {"rtol": 1e-13, "atol": 1e-15}  # on slopes, where rolling is integrated
+
+
+@dataclass(frozen=True, repr=False)
+class Error:
+    """Artists of `plot_error`; item i of `errors` and of `references` belongs to motion i."""
+
+    ax: Axes
+    errors: tuple[Line2D, ...]
+    references: tuple[Trajectory, ...]
+    marks: tuple[Artist, ...]
+
+
+@leaving_no_figure
+def plot_error(
+    trajectories: Trajectory | Sequence[Trajectory],
+    quantity: str = "theta",
+    reference: Trajectory | None = None,
+    *,
+    ax: Axes | None = None,
+    labels: Sequence[str] | None = None,
+    colors: Sequence[Any] | None = None,
+    **options: Any,
+) -> Error:
+    """Draw by how much one quantity of motions is off over time, on a logarithmic scale.
+
+    Each motion is held against the exact one from the same scene: exact rolling where the motion
+    is of a model that rolls on level ground, rolling integrated at the level of rounding on slopes,
+    else the contact motion. An exact zero has no place on the scale. Modes, events, lost validity
+    and long spans are drawn as in `plot_forces`.
+
+    Parameters
+    ----------
+    trajectories : Trajectory or sequence of Trajectory
+    quantity : str
+        "theta", "omega", "x", "z", "x_dot", "z_dot", "contact_x", "turns", "normal_force",
+        "friction_force", "energy", "kinetic_energy" or "potential_energy".
+    reference : Trajectory, optional
+        What all motions are held against, at the times of each: it must reach as far.
+    ax : matplotlib Axes, optional
+        Where to draw; without it, in a new pyplot figure.
+    labels : sequence of str, optional
+        Names of the motions; without it, what they differ in.
+    colors : sequence of matplotlib colours, optional
+        One for each motion.
+    **options
+        Properties of `matplotlib.lines.Line2D` for all curves.
+
+    Returns
+    -------
+    Error
+        The artists, and the motions that were taken for right.
+
+    Raises
+    ------
+    ValueError
+        If there is no trajectory, one has no samples, the quantity is unknown, the number of labels
+        or colours is wrong, the reference ends too early, or none is given for a motion that
+        started from coordinates of its own.
+    TypeError
+        If something is no trajectory.
+    """
+    quantity = choice("quantity", quantity, tuple(QUANTITIES))
+    shown_motions = Comparison(trajectories, labels, colors, ax=ax, options=options)
+    references = tuple(_reference_of(motion, reference) for motion in shown_motions.motions)
+    shown_motions.over_time()
+    ax = axes_of(ax, (7, 3.4))
+    errors = [
+        _draw_error(ax, motion, style, _error(motion, right, quantity))
+        for (motion, style), right in zip(shown_motions, references, strict=True)
+    ]
+    shown_motions.restyle(*errors)
+    symbol, unit = QUANTITIES[quantity]
+    dress_errors(ax, errors, f"error of {symbol} [{unit}]" if unit else f"error of {symbol}")
+    name_curves(ax, [] if shown_motions.alone else some_of(errors))
+    title_beside_legend(ax, note_of(shown_motions))
+    marks = dress_over_time(ax, shown_motions)
+    return Error(ax, tuple(errors), references, marks)
+
+
+def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajectory:
+    last = float(np.max(motion.t))
+    if reference is not None:
+        if not isinstance(reference, Trajectory):
+            raise TypeError(f"reference must be a Trajectory or None, got {shown(reference)}")
+        if reference.t_end < last:
+            raise ValueError(
+                f"reference must reach the last time of every trajectory, {last:g} s, got one to "
+                f"{reference.t_end:g} s"
+            )
+        return reference
+    if motion.start is not None:
+        raise ValueError(
+            "reference must be given for a trajectory that starts from coordinates of its own"
+        )
+    how: dict[str, Any] = {"model": "contact"}
+    if motion.model != "contact":
+        how = {"model": "rolling", "method": "exact"}
+        if motion.scene.slope:
+            how = {"model": "rolling", "method": "dop853", **_TIGHT}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the model: the motion itself has been warned of
+        return simulate(motion.scene, [last], raise_on_failure=False, **how)
+
+
+def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:
+    """|error| at the times of a motion; NaN where the right one has ended."""
+    known = motion.t <= right.t_end
+    error = np.full(motion.t.shape, np.nan)
+    there = getattr(right.sol(motion.t[known]), quantity)
+    error[known] = np.abs(getattr(motion, quantity)[known] - there)
+    return error
+
+
+def _draw_error(ax: Axes, motion: Trajectory, style: Style | None, error: FloatArray) -> Line2D:
+    colour, dash, label = palette_of(ax).ink, DASHES[0], "error"
+    if style is not None:
+        colour, dash, label = style.colour, style.dash, style.label or label
+    label = label if np.nan_to_num(error).any() else f"{label} = 0"
+    t = motion.t
+    if are_ranges(motion):
+        t, _, error = ranges(t, error)
+    return ax.plot(t, error, color=colour, ls=dash, label=label)[0]

@@ -1,0 +1,230 @@
+"""Pictures follow the style in force, and take what matplotlib's users expect to give."""
+
+import itertools
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import rolling_ellipse as rl
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from oracles.curves import new_axes
+from rolling_ellipse._pictures.palette import palette_of
+
+STYLES = ["default", "dark_background", "grayscale", "ggplot", "Solarize_Light2", "seaborn-v0_8"]
+
+
+@pytest.fixture(autouse=True)
+def defaults() -> Iterator[None]:
+    with plt.style.context("default"):
+        yield
+    assert plt.get_fignums() == []
+
+
+def contrast(one: Any, other: Any) -> float:
+    """Ratio of luminances, 1 to 21 (WCAG 2.1, relative luminance)."""
+    levels = []
+    for colour in (one, other):
+        linear = [
+            c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)
+        ]
+        levels.append(float(np.dot(linear, (0.2126, 0.7152, 0.0722))))
+    return (max(levels) + 0.05) / (min(levels) + 0.05)
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_curves_are_seen_before_the_background(
+    picture: Callable[..., Any], several: list[rl.Trajectory], style: str
+) -> None:
+    with plt.style.context(style):
+        ax = new_axes()
+        picture(several, ax=ax)
+        paper = ax.get_facecolor()
+        named = [line for line in ax.lines if not str(line.get_label()).startswith("_")]
+        assert len(named) >= 3
+        for line in named:
+            assert contrast(line.get_color(), paper) > 1.5, style
+        legend = ax.get_legend()
+        assert legend is not None
+        for text in legend.get_texts():
+            assert contrast(text.get_color(), paper) > 3
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_the_first_two_colours_of_a_style_are_told_apart(style: str) -> None:
+    with plt.style.context(style):
+        palette = palette_of()
+        ink, second = palette.curves[:2]
+        assert contrast(ink, palette.background) > 4.5
+        assert max(abs(np.subtract(to_rgb(ink), to_rgb(second)))) > 0.25
+
+
+def test_a_style_with_colours_of_its_own_gives_them() -> None:
+    with plt.style.context("dark_background"):
+        own = [look["color"] for look in plt.rcParams["axes.prop_cycle"]]
+        drawn = {palette_of().blue, palette_of().orange}
+        assert drawn <= {matplotlib.colors.to_hex(colour) for colour in own}
+    with plt.style.context({"axes.facecolor": "black", "figure.facecolor": "black"}):
+        assert contrast(palette_of().blue, "black") > 4.5
+
+
+def test_axes_made_in_another_style_are_drawn_in_by_their_own_background() -> None:
+    with plt.style.context("dark_background"):
+        dark = Figure().add_subplot()
+    motion = rl.simulate(rl.scenes.report, 2.0)
+    shown = rl.plot_phase(motion, ax=dark)
+    assert contrast(shown.motions[0].get_color(), "black") > 4.5
+    clear = Figure(facecolor="black").add_subplot(facecolor="none")
+    assert contrast(rl.plot_phase(motion, ax=clear).motions[0].get_color(), "black") > 4.5
+
+
+# ---------------------------------------------------------------------------- what users may give
+
+
+def curves_of(shown: Any) -> list[Line2D]:
+    names = (
+        "motions",
+        "normal",
+        "friction",
+        "total",
+        "error",
+        "errors",
+        "lines",
+        "centres",
+        "tips",
+    )
+    found = [getattr(shown, name, ()) for name in names]
+    return [line for lines in found for line in np.ravel(np.array(lines, dtype=object)).tolist()]
+
+
+def test_colors_are_those_of_the_motions(
+    picture: Callable[..., Any], several: list[rl.Trajectory]
+) -> None:
+    colours: list[Any] = ["red", (0.0, 0.5, 0.0), "C4"]
+    ax = new_axes()
+    shown = picture(several, ax=ax, colors=colours, labels=["a", "b", "c"])
+    wanted = {to_rgb(colour) for colour in colours}
+    assert {to_rgb(line.get_color()) for line in curves_of(shown)} == wanted
+    legend = ax.get_legend()
+    assert legend is not None
+    handles = [handle for handle in legend.legend_handles[:3] if isinstance(handle, Line2D)]
+    assert [to_hex(line.get_color()) for line in handles] == [to_hex(c) for c in colours]
+    one = picture(several[0], ax=new_axes(), colors=["red"])
+    assert {to_rgb(line.get_color()) for line in curves_of(one)} == {to_rgb("red")}
+
+
+@pytest.mark.parametrize("wrong", ["red", ["red"], ["red", "blue", "no colour"], 3, [1, 2, 3]])
+def test_colors_must_be_one_for_each(
+    picture: Callable[..., Any], several: list[rl.Trajectory], wrong: Any
+) -> None:
+    with pytest.raises(ValueError, match="colors must be a sequence of 3 matplotlib colours"):
+        picture(several, ax=new_axes(), colors=wrong)
+
+
+def test_properties_of_lines_are_taken(
+    picture: Callable[..., Any], several: list[rl.Trajectory]
+) -> None:
+    for motions in (several, several[0]):
+        shown = picture(motions, ax=new_axes(), alpha=0.4, lw=3.3)
+        for line in curves_of(shown):
+            assert (line.get_alpha(), line.get_linewidth()) == (0.4, 3.3)
+    with pytest.raises(AttributeError, match="nonsense"):
+        picture(several[0], ax=new_axes(), nonsense=1)
+
+
+def test_properties_of_bodies_are_taken() -> None:
+    motion = rl.simulate(rl.scenes.report, 2.0)
+    shown = rl.plot_strobe(motion, ax=new_axes(), facecolor="red", lw=0.5)
+    for body in shown.bodies:
+        assert to_rgb(body.get_facecolor()) == to_rgb("red") and body.get_linewidth() == 0.5
+
+
+def test_a_legend_made_anew_follows_restyled_artists(several: list[rl.Trajectory]) -> None:
+    ax = new_axes()
+    shown = rl.plot_phase(several, ax=ax, labels=["a", "b", "c"])
+    shown.motions[1].set_color("lime")
+    legend = ax.legend()
+    texts = [text.get_text() for text in legend.get_texts()]
+    handle = legend.legend_handles[texts.index("b")]
+    assert isinstance(handle, Line2D) and handle.get_color() == "lime"
+
+
+def test_the_size_of_the_style_is_taken_where_none_is_given() -> None:
+    motion = rl.simulate(rl.scenes.report, 2.0)
+    for draw in (rl.plot, rl.plot_forces, rl.plot_phase, rl.plot_strobe, rl.plot_error):
+        sizes = []
+        for style in ({}, {"figure.figsize": (5.0, 2.5)}):
+            with plt.style.context(style):
+                draw(motion)
+                sizes.append(tuple(plt.gcf().get_size_inches()))
+                plt.close("all")
+        assert sizes[1] == (5.0, 2.5) != sizes[0]
+
+
+def test_a_figure_or_a_part_of_one_is_laid_out() -> None:
+    motion = rl.simulate(rl.scenes.report, 2.0)
+    bare = Figure(figsize=(9, 8))
+    whole = Figure(figsize=(14, 8), layout="constrained")
+    part: Any = np.ravel(np.array(whole.subfigures(1, 2)))[0]
+    for figure, given in ((bare, bare), (whole, part)):
+        shown = rl.plot(motion, figure=given)
+        figure.draw_without_rendering()
+        boxes = [ax.get_tightbbox() for ax in shown.figure.axes]
+        for one, other in itertools.combinations([b.padded(-1.0) for b in boxes if b], 2):
+            assert not one.overlaps(other)
+    assert all(ax.get_window_extent().x1 < 0.51 * whole.bbox.width for ax in part.axes)
+
+
+# ------------------------------------------------------------------------------------- plot_error
+
+
+def test_the_error_is_that_beside_the_exact_motion() -> None:
+    scene = rl.scenes.rolling
+    rough = rl.simulate(scene, 6.0, method="rk4", step=0.02)
+    exact = rl.simulate(scene, 6.0, method="exact")
+    shown = rl.plot_error([rough, exact], ax=new_axes())
+    t, error = np.asarray(shown.errors[0].get_data())
+    theta, _, _ = rl.flow(t, a=2.0, b=1.0, theta=0.0, omega=3.2)
+    # what remains between two exact ways: some units of an angle of 10
+    assert error == pytest.approx(np.abs(rough.sol(t).theta - theta), abs=1e-14)
+    assert 1e-7 < error.max() < 1e-2 and shown.ax.get_yscale() == "log"
+    assert shown.ax.get_ylabel() == "error of θ [rad]"
+    assert shown.errors[1].get_label() == "exact = 0"
+
+
+def test_the_error_has_a_reference_for_every_model() -> None:
+    slope = rl.simulate(rl.Scene(2.0, 1.0, slope=0.1, omega=1.0), 1.0, rtol=1e-6, model="rolling")
+    ours = rl.simulate(rl.scenes.rolling, 3.0, model="multipliers", rtol=1e-7)
+    jump = rl.simulate(rl.scenes.jump, 2.0)
+    for motion, least, most in ((slope, 1e-12, 1e-4), (ours, 1e-12, 1e-5), (jump, 0.0, 1e-9)):
+        line = rl.plot_error(motion, "omega", ax=new_axes()).errors[0]
+        assert least <= np.asarray(line.get_ydata()).max() <= most
+
+
+def test_a_reference_may_be_given() -> None:
+    one = rl.simulate(rl.scenes.rolling, 2.0)
+    other = rl.simulate(rl.Scene(2.0, 1.0, omega=3.3), 2.0)
+    shown = rl.plot_error(one, "x", other, ax=new_axes())
+    t, error = np.asarray(shown.errors[0].get_data())
+    assert error == pytest.approx(np.abs(one.sol(t).x - other.sol(t).x), abs=1e-15)
+    with pytest.raises(ValueError, match="reference must reach the last time"):
+        rl.plot_error(one, reference=rl.simulate(one.scene, 1.0), ax=new_axes())
+    with pytest.raises(TypeError, match="reference must be a Trajectory or None, got 3"):
+        rl.plot_error(one, reference=3, ax=new_axes())  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="quantity must be one of 'theta'"):
+        rl.plot_error(one, "q", ax=new_axes())
+
+
+def test_pictures_are_methods_too() -> None:
+    motion = rl.simulate(rl.scenes.report, 2.0)
+    for name in ("strobe", "paths", "phase", "forces", "energy", "constraints", "error"):
+        ax = new_axes()
+        getattr(motion, f"plot_{name}")(ax=ax)
+        assert ax.lines
