@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import Any
 
@@ -11,48 +11,12 @@ from . import _core
 from ._check import number, optional_number
 from ._core import Mode
 from ._fields import FieldsOnly
+from ._impulse import Impulse as Impulse
 
 _NUMBERS = (
     "a", "b", "mass", "gravity", "slope", "friction", "restitution", "theta", "omega", "x",
 )  # fmt: skip
 _OPTIONAL = ("inertia", "z", "x_dot", "z_dot")
-
-
-@dataclass(frozen=True)
-class Impulse:
-    """An impulse applied to a point of the body.
-
-    Parameters
-    ----------
-    jx, jz : float
-        Components along the ground and away from it [N s].
-    dx, dz : float
-        Where it acts, seen from the centre in ground axes [m].
-    """
-
-    jx: float = 0.0
-    jz: float = 0.0
-    _: KW_ONLY
-    dx: float = 0.0
-    dz: float = 0.0
-
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            object.__setattr__(self, field.name, number(field.name, getattr(self, field.name)))
-        _ = self.core  # the core validates
-
-    @property
-    def core(self) -> _core.Impulse:
-        """The same for the core."""
-        return _core.Impulse(self.jx, self.jz, self.dx, self.dz)
-
-    @classmethod
-    def press(cls, F: float, d: float) -> Impulse:
-        """Return the downward blow of the report's Figure 9: F [N s] at distance d [m] from G."""
-        for name, value in (("F", F), ("d", d)):
-            if not math.isfinite(number(name, value)):
-                raise ValueError(f"{name} must be finite, got {value!r}")
-        return cls(0.0, -float(F), dx=float(d))
 
 
 @dataclass(frozen=True)
@@ -152,6 +116,11 @@ class Scene(FieldsOnly):
             object.__setattr__(self, name, optional_number(name, getattr(self, name)))
         if self.impulse is not None and not isinstance(self.impulse, Impulse):
             raise TypeError(f"impulse must be an Impulse or None, got {self.impulse!r}")
+        if self.impulse is not None and self.impulse.shape != ():
+            raise ValueError(
+                f"impulse must be one blow, got an Impulse of shape {self.impulse.shape}: "
+                "use outcome(scene, impulse)"
+            )
         _ = self.core  # the core validates
 
     @cached_property

@@ -72,6 +72,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "scene": lambda: rl.scenes.report,
     "scene of its own": lambda: rl.Scene(0.7, 1.9, z=3.0, x_dot=1.0, friction=0.3, slope=0.1),
     "impulse": lambda: rl.Impulse(1.0, -2.0, dx=0.1),
+    "impulses": lambda: rl.Impulse([1.0, 2.0], -2.0, dx=[[0.1], [0.2]]),
     "initial state": lambda: rl.scenes.jump.initial_state,
     "event": lambda: MOTIONS["contact"]().events[0],
     "certificate": lambda: rl.certify(rl.scenes.report),

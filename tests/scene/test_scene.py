@@ -122,9 +122,51 @@ def test_impulse_refuses_wrong_values(name: str, value: float) -> None:
 
 
 @pytest.mark.parametrize("name", ["jx", "jz", "dx", "dz"])
-@pytest.mark.parametrize("value", ["1", None, [1.0]], ids=str)
+@pytest.mark.parametrize("value", ["1", None, ["1"], [[1.0], [1.0, 2.0]]], ids=str)
 def test_impulse_refuses_what_is_no_number(name: str, value: object) -> None:
     assert_refused(TypeError, name, "got", Impulse, **{name: value})
+
+
+@pytest.mark.parametrize("name", ["jx", "jz", "dx", "dz"])
+@pytest.mark.parametrize("value", FINITE)
+def test_impulse_refuses_wrong_values_of_arrays_with_their_index(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value} at index 2$"):
+        Impulse(**{name: [1.0, -2.0, value]})
+    with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value} at index \(1, 0\)$"):
+        Impulse(**{name: [[1.0], [value]]})
+
+
+def test_an_impulse_of_arrays() -> None:
+    jx = np.array([[1.0], [2.0]])
+    many = Impulse(jx, -3, dx=[0.0, 0.5, 1.0])
+    jx[:] = 7.0
+    assert many.shape == (2, 3) and many.jz == -3.0 and type(many.jz) is float
+    assert np.array_equal(many.jx, [[1.0], [2.0]])
+    assert not many.jx.flags.writeable and not many.dx.flags.writeable
+    assert Impulse(1.0).shape == () and Impulse([1.0]).shape == (1,) and Impulse([]).shape == (0,)
+    assert type(Impulse(np.array(1.0)).jx) is float
+    with pytest.raises(ValueError, match=r"broadcast.*jx \(2,\), dz \(3,\)"):
+        Impulse([1.0, 2.0], dz=[1.0, 2.0, 3.0])
+    with pytest.raises(
+        ValueError, match=r"one blow, got an Impulse of shape \(2, 3\): use outcome"
+    ):
+        scene(impulse=many)
+
+
+def test_impulses_of_arrays_are_equal_by_value() -> None:
+    one, other = Impulse([1.0, 0.0], dx=2.0), Impulse(np.array([1.0, -0.0]), dx=2.0)
+    assert one == other and hash(one) == hash(other) and one != "one"
+    for different in (Impulse([1.0, 2.0], dx=2.0), Impulse([[1.0, 0.0]], dx=2.0), Impulse(1.0)):
+        assert one != different
+    assert Impulse(1.0) != Impulse([1.0])
+
+
+def test_presses_of_arrays() -> None:
+    found = Impulse.press([[1.0], [2.0]], [0.5, -0.5])
+    assert found == Impulse(0.0, [[-1.0], [-2.0]], dx=[0.5, -0.5]) and found.shape == (2, 2)
+    for name, given in (("F", ([1.0, NAN], 0.5)), ("d", (1.0, [0.5, INF]))):
+        with pytest.raises(ValueError, match=rf"^{name} must be finite, got (nan|inf) at index 1$"):
+            Impulse.press(*given)
 
 
 @pytest.mark.parametrize("position", [0, 1])
