@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
 from . import geometry, scenes
+from ._blows import blow_to, outcome, required_friction
 from ._certify import Certificate, certify
 from ._constraints import ConstraintResiduals, constraints, kinematics
 from ._core import EventKind, Mode, Outcome, Validity
 from ._events import Event
 from ._flow import flow, period
+from ._impulse import Impulse
 from ._outcome import Thresholds, classify, thresholds
-from ._scene import Impulse, InitialState, Scene
+from ._scene import InitialState, Scene
 from ._simulate import simulate
 from ._status import IntegrationError, StabilityWarning, Status, ValidityWarning
 from ._trajectory import Trajectory, load
@@ -43,10 +45,10 @@ __all__ = [
     "Certificate", "ConstraintResiduals", "Event", "EventKind", "Impulse", "InitialState",
     "IntegrationError", "Mode", "Outcome", "Scene", "StabilityWarning", "Status", "Thresholds",
     "Trajectory", "Validity", "ValidityWarning", "WorkPrecision", "__version__", "animate",
-    "certify", "classify", "constraints", "flow", "geometry", "impacts", "kinematics", "load",
-    "period", "plot", "plot_constraints", "plot_energy", "plot_error", "plot_forces", "plot_paths",
-    "plot_phase", "plot_phase_map", "plot_strobe", "report", "scenes", "simulate", "thresholds",
-    "work_precision",
+    "blow_to", "certify", "classify", "constraints", "flow", "geometry", "impacts", "kinematics",
+    "load", "outcome", "period", "plot", "plot_constraints", "plot_energy", "plot_error",
+    "plot_forces", "plot_paths", "plot_phase", "plot_phase_map", "plot_strobe", "report",
+    "required_friction", "scenes", "simulate", "thresholds", "work_precision",
 ]  # fmt: skip
 
 

@@ -1,6 +1,11 @@
+#include <stdexcept>
+
 #include "bindings/bindings.hpp"
+#include "outcome/blow.hpp"
 #include "outcome/classify.hpp"
+#include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
+#include "scene/impact.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -24,6 +29,33 @@ py::array_t<std::int8_t> classify_array(py::ssize_t n, const std::array<Array, 7
         }
     });
     return out;
+}
+
+// What becomes of a scene by each of n blows instead of its own: jx, jz, dx, dz.
+py::array_t<std::int8_t> outcome_array(const Scene& scene, py::ssize_t n,
+                                       const std::array<Array, 4>& impulses) {
+    py::array_t<std::int8_t> out(n);
+    std::int8_t* const outcomes = out.mutable_data();
+    const std::array<Argument, 4> of = arguments_of<4>({"jx", "jz", "dx", "dz"}, impulses, n);
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        const auto& [jx, jz, dx, dz] = of;
+        Scene struck = scene;
+        for (py::ssize_t i = begin; i < end; ++i) {
+            struck.impulse = Impulse{jx[i], jz[i], dx[i], dz[i]};
+            try {
+                validate(*struck.impulse);
+                outcomes[i] = static_cast<std::int8_t>(outcome(struck, [] {}));
+            } catch (const std::invalid_argument& error) {
+                throw std::invalid_argument(error.what() + (", by blow " + std::to_string(i)));
+            }
+        }
+    });
+    return out;
+}
+
+Outcome outcome_interruptible(const Scene& scene) {
+    const py::gil_scoped_release release;
+    return outcome(scene, SignalWatch());
 }
 
 py::dict certificate(const Scene& scene) {
@@ -59,6 +91,12 @@ void bind_certificate(py::module_& m) {
         .value("EDGE", Outcome::edge)
         .finalize();
     m.def("classify_array", classify_array, "n"_a, "arguments"_a, "workers"_a);
+    m.def("outcome_array", outcome_array, "scene"_a, "n"_a, "impulses"_a);
+    m.def("outcome", outcome_interruptible, "scene"_a);
+    m.def("required_friction", required_friction, "scene"_a);
+    m.def("sticking_friction", sticking_friction, "scene"_a);
+    m.def("press_to", press_to, "scene"_a, "distance"_a, "omega"_a);
+    m.def("speed_to_the_tip", speed_to_the_tip, "scene"_a);
     m.def("certify", certificate, "scene"_a);
     m.def(
         "roll_over_speed", [](const Scene& scene) { return roll_over_speed(scene.body()); },

@@ -142,6 +142,17 @@ Reaction reaction_to(const Scene& scene, const Contact& c, double restitution) {
                                                  : coulomb_friction(c, scene.friction, restitution);
 }
 
+bool is_struck(const Scene& scene) {
+    return scene.impulse && (scene.impulse->jx != 0 || scene.impulse->jz != 0);
+}
+
+// What the impulse makes of a body that nothing holds: physics (38).
+void strike(const Scene& scene, const Impulse& j, State& state) {
+    state.x_dot += j.jx / scene.mass;
+    state.z_dot += j.jz / scene.mass;
+    state.omega += (j.jx * j.dz - j.jz * j.dx) / scene.inertia;
+}
+
 }  // namespace
 
 InitialState initial_state(const Scene& scene) {
@@ -150,15 +161,11 @@ InitialState initial_state(const Scene& scene) {
     const Geometry at = geometry(scene.axes(), state.theta);
     const bool touching = state.z == at.h;
     if (scene.impulse) {
-        const Impulse& j = *scene.impulse;  // physics (38)
-        state.x_dot += j.jx / scene.mass;
-        state.z_dot += j.jz / scene.mass;
-        state.omega += (j.jx * j.dz - j.jz * j.dx) / scene.inertia;
+        strike(scene, *scene.impulse, state);
         result.free_omega = state.omega;
     }
-    const bool kicked = scene.impulse && (scene.impulse->jx != 0 || scene.impulse->jz != 0);
     const bool slip_removed = state.mode == Mode::sliding && std::isinf(scene.friction);
-    if (!touching || !(kicked || slip_removed)) return result;
+    if (!touching || !(is_struck(scene) || slip_removed)) return result;
 
     const Contact c = contact(scene, at, state);
     if (c.u > 0) {
@@ -176,6 +183,25 @@ InitialState initial_state(const Scene& scene) {
         state.mode = Mode::rest;
     }
     return result;
+}
+
+// The slip stops before the compression ends where |v| (Gnn - mu s Gtn) <= |u| (mu Gtt - s Gtn),
+// and does not start again where |Gtn| <= mu Gtt: physics (41).
+double sticking_friction(const Scene& scene) {
+    State state = state_before_impulse(scene);
+    const Geometry at = geometry(scene.axes(), state.theta);
+    if (state.z != at.h) return infinity;
+    if (!is_struck(scene)) return rolls(state) ? 0.0 : infinity;
+    strike(scene, *scene.impulse, state);
+    const Contact c = contact(scene, at, state);
+    if (c.u > 0) return infinity;
+    if (c.u == 0) return c.v == 0 ? 0.0 : infinity;  // no pressure, no friction
+    const double to_stay = std::abs(c.gtn) / c.gtt;
+    const double towards = c.v == 0 ? 0.0 : std::copysign(c.gtn, c.gtn * c.v);  // s Gtn
+    const double normal = std::abs(c.u) * c.gtt + std::abs(c.v) * towards;
+    const double tangential = std::abs(c.v) * c.gnn + std::abs(c.u) * towards;
+    if (normal <= 0) return infinity;
+    return std::fmax(c.v == 0 ? 0.0 : tangential / normal, to_stay);
 }
 
 State after_collision(const Scene& scene, const State& before) {

@@ -18,6 +18,11 @@ struct InitialState {
 
 InitialState initial_state(const Scene& scene);
 
+// The least coefficient of friction with which the contact does not slip after the applied impulse,
+// whatever the scene's own; infinite where no finite one does that. With any larger one it does not
+// either, and the state then is the same.
+double sticking_friction(const Scene& scene);
+
 // A body that touches the ground and moves into it, just after the collision; its mode is left.
 State after_collision(const Scene& scene, const State& before);
 

@@ -53,6 +53,22 @@ def make_impulse(draw: Draw) -> Iterator[Line]:
     yield Line(call("rl.Impulse.press", **draw.mutated(numbers)), does="Impulse.press")
 
 
+def blows(draw: Draw) -> Iterator[Line]:
+    """What becomes of blows, the friction that is needed, and the blow that does something."""
+    drawn = scenes.scene(draw)
+    yield Line(drawn.code, "scene", "Scene")
+    yield Line("rl.required_friction(scene)", does="required_friction")
+    strength = drawn.body.a / drawn.body.clock * draw.power(-2, 2)
+    reach = drawn.body.a * draw.between(-1, 1)
+    numbers = _columns(draw, {"F": lambda: strength * draw.between(-1, 1), "d": lambda: reach})
+    yield Line(call("rl.Impulse.press", **draw.mutated(numbers)), "blow", "Impulse.press")
+    yield Line(draw.pick("rl.outcome(scene, blow)", "rl.outcome(scene)"), does="outcome")
+    wanted = {"scene": "scene", "distance": text(reach)}
+    if draw.chance(0.5):
+        wanted["omega"] = text(draw.between(-3, 3) / drawn.body.clock)
+    yield Line(call("rl.blow_to", **draw.mutated(wanted)), does="blow_to")
+
+
 def certify(draw: Draw) -> Iterator[Line]:
     yield Line(_scene_or_not(draw), "scene", "Scene")
     yield Line("rl.certify(scene)", does="certify")
@@ -442,6 +458,7 @@ CALLS = (
     Call("stopped", 0.2, stopped),
     Call("scene", 8, make_scene),
     Call("impulse", 1, make_impulse),
+    Call("blows", 4, blows),
     Call("certify", 6, certify),
     Call("period", 4, period),
     Call("flow", 8, flow),

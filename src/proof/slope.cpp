@@ -1,0 +1,153 @@
+#include "proof/slope.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "numerics/bisect.hpp"
+#include "numerics/quadrature.hpp"
+#include "proof/law.hpp"
+#include "rolling/equation.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// A body on a slope that falls to the side of growing angles, its long axis along the ground at 0.
+Scene downhill(Scene scene) {
+    if (scene.a < scene.b) std::swap(scene.a, scene.b);
+    scene.slope = std::abs(scene.slope);
+    return scene;
+}
+
+// Between two upright equilibria, half a turn apart, W = D omega^2/2 rises to the lying equilibrium
+// and falls from there: dW = (g sin(alpha) h - g cos(alpha) h') dtheta, from physics (18).
+class Well {
+  public:
+    Well(const Scene& scene, double angle, double omega)
+        : axes_(scene.axes()),
+          gravity_(scene.ground_gravity()),
+          gyration2_(scene.body().gyration2),
+          dynamics_(scene) {
+        const auto [a, b] = axes_;
+        const double c2 = (a - b) * (a + b);
+        const double incline = std::tan(scene.slope);
+        // h' = h tan(alpha) is a quadratic equation in tan(theta).
+        const double root = (c2 - 2 * a * b * incline) * (c2 + 2 * a * b * incline);
+        if (root <= 0) return;
+        const double sum = c2 + std::sqrt(root);
+        upright_ = std::atan2(sum, 2 * a * a * incline);
+        lying_ = std::atan2(2 * b * b * incline, sum);
+        start_ = angle < upright_ ? angle : angle - pi;
+        energy_ = 0.5 * inertia(geometry(axes_, start_)) * square(omega);
+        holds_ = energy(upright_) < 0;
+    }
+
+    // Whether the body cannot get out of it.
+    bool holds() const { return holds_; }
+
+    double most_friction() const {
+        const double first = bisect(upright_ - pi, std::min(start_, lying_), [&](double at) {
+                                 return energy(at) >= 0;
+                             }).high;
+        const double last = bisect(std::max(start_, lying_), upright_, [&](double at) {
+                                return energy(at) < 0;
+                            }).low;
+        return highest(places(first, last));
+    }
+
+  private:
+    double inertia(const Geometry& at) const { return gyration2_ + at.h * at.h + at.dh * at.dh; }
+
+    double energy(double angle) const { return energy_ + gained(angle); }
+
+    // W at an angle less that of the start: short ways by quadrature, as the difference of two
+    // heights, or of two paths, would have lost its digits.
+    double gained(double angle) const {
+        const double way = angle - start_;
+        const Geometry from = geometry(axes_, start_);
+        const auto [a, b] = axes_;
+        if (std::abs(way) < 0.1 * b / a) {
+            const auto rate = [&](double at) {
+                const Geometry here = geometry(axes_, at);
+                return gravity_.along * here.h - gravity_.into * here.dh;
+            };
+            return double(integrate(gauss_rule(20), start_, angle, rate));
+        }
+        const double path = centre_path(axes_, angle) - centre_path(axes_, start_);
+        const double rise = (a - b) * (a + b) * std::sin(angle + start_) * std::sin(way) /
+                            (geometry(axes_, angle).h + from.h);
+        return gravity_.along * path - gravity_.into * rise;
+    }
+
+    double needed(double angle) const {
+        const Geometry at = geometry(axes_, angle);
+        const double omega2 = 2 * std::max(energy(angle), 0.0) / inertia(at);
+        return friction_needed(dynamics_.force(at, std::sqrt(omega2)));
+    }
+
+    // Even, and denser where the forces of a thin body change within b/a and its square.
+    std::vector<double> places(double first, double last) const {
+        constexpr int count = 512;
+        std::vector<double> found{first, last};
+        const double thin = axes_.b / axes_.a;
+        const double reach = std::asinh(half_pi / (thin * thin));
+        for (int i = 1; i < count; ++i) {
+            found.push_back(first + (last - first) * i / count);
+            const double offset = thin * thin * std::sinh(reach * (2.0 * i / count - 1));
+            for (const double axis : {-pi, -half_pi, 0.0, half_pi}) found.push_back(axis + offset);
+        }
+        const auto outside = [&](double at) { return !(at >= first && at <= last); };
+        found.erase(std::remove_if(found.begin(), found.end(), outside), found.end());
+        std::sort(found.begin(), found.end());
+        return found;
+    }
+
+    // Golden section around every place that needs more than its neighbours.
+    double highest(const std::vector<double>& at) const {
+        constexpr double golden = 0.6180339887498949;
+        constexpr int sections = 40;  // to 1e-8 of the interval: it is flat there
+        double most = 0.0;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            const double here = needed(at[i]);
+            most = std::max(most, here);
+            double low = at[i == 0 ? 0 : i - 1];
+            double high = at[i + 1 == at.size() ? i : i + 1];
+            if (needed(low) > here || needed(high) > here) continue;
+            for (int j = 0; j < sections; ++j) {
+                const double left = high - golden * (high - low);
+                const double right = low + golden * (high - low);
+                const bool falls = needed(left) > needed(right);
+                (falls ? high : low) = falls ? right : left;
+            }
+            most = std::max(most, needed(0.5 * (low + high)));
+        }
+        return most;
+    }
+
+    const Axes axes_;
+    const GroundGravity gravity_;
+    const double gyration2_;
+    const RollingDynamics dynamics_;
+    double upright_ = 0.0;
+    double lying_ = 0.0;
+    double start_ = 0.0;
+    double energy_ = 0.0;  // W at the start
+    bool holds_ = false;
+};
+
+}  // namespace
+
+double friction_needed_on_slope(const Scene& scene, const State& start) {
+    const double incline = std::tan(scene.slope);
+    const FlatView at = flat_view(scene.axes(), start.theta);
+    const Geometry here = geometry(scene.axes(), start.theta);
+    if (start.omega == 0 && is_equilibrium(here, incline)) return std::abs(incline);
+    const double k2 = scene.body().gyration2;
+    if (at.c2 == 0) return std::abs(incline) * k2 / (k2 + square(scene.a));
+    const double angle = std::atan2(at.sin, at.cos);
+    const Well well(downhill(scene), scene.slope > 0 ? angle : -angle, start.omega);
+    return well.holds() ? well.most_friction() : infinity;
+}
+
+}  // namespace rolling_ellipse

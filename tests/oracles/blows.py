@@ -1,0 +1,82 @@
+"""Random blows, and what the computed motion comes to first after each."""
+
+import math
+
+import numpy as np
+from rolling_ellipse import EventKind, Impulse, Mode, Outcome, Scene, Status, simulate
+
+SPANS = 24  # each twice as long as the one before
+SAMPLES = 300
+
+
+def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
+    """Any shape up to 30:1, at rest or rolling, and a blow about as strong as what rolls it over,
+    mostly a press."""
+    b = 10 ** rng.uniform(-1, 1)
+    a = b * 10 ** rng.uniform(-1.5, 1.5) if rng.random() < 0.8 else b
+    mass, gravity = 10 ** rng.uniform(-1, 1, 2)
+    speed = math.sqrt(gravity * max(a, b))
+    strength = mass * speed * 10 ** rng.uniform(-1.5, 0.7)
+    push = rng.choice([0.0, rng.normal()])
+    return Scene(
+        a,
+        b,
+        mass=mass,
+        gravity=gravity,
+        friction=rng.choice([math.inf, 10 ** rng.uniform(-1.5, 0.8)]),
+        slope=rng.uniform(-0.7, 0.7) if slope else 0.0,
+        theta=rng.choice([0.0, rng.uniform(-4, 4)]),
+        omega=rng.choice([0.0, speed / max(a, b) * rng.normal()]),
+        impulse=Impulse(
+            strength * push,
+            strength * rng.choice([-1.0, -1.0, 1.0]),
+            dx=a * rng.uniform(-1.0, 1.0),
+            dz=b * rng.uniform(-1.0, 1.0),
+        ),
+    )
+
+
+def tips_passed(scene: Scene, theta: float) -> int:
+    """Half turns begun at a tip, for a circle at its start."""
+    first = math.pi / 2 if scene.a > scene.b else 0.0 if scene.a < scene.b else scene.theta
+    return math.floor((theta - first) / math.pi)
+
+
+def met_first(scene: Scene) -> Outcome | None:
+    """Read off samples of the motion of the model "contact"; None if nothing is met."""
+    span = 4 * math.sqrt(max(scene.a, scene.b) / scene.gravity)
+    broken = Outcome.LOSES_CONTACT if math.isinf(scene.friction) else Outcome.SLIPS
+    for _ in range(SPANS):
+        times = np.linspace(0, span, SAMPLES)
+        motion = simulate(scene, times, model="contact", max_events=1, raise_on_failure=False)
+        if motion.status is Status.JAMMED and motion.t_end == 0:
+            return Outcome.JAMS
+        start = Mode(int(motion.mode[0]))
+        if start is Mode.SLIDING:
+            height = motion.z[0] * motion.omega[0]
+            slips = abs(motion.x_dot[0] - height) > 1e-12 * abs(height)
+            return Outcome.SLIPS if slips else broken
+        if start is not Mode.ROLLING:
+            return Outcome.RESTS if start is Mode.REST else Outcome.LOSES_CONTACT
+        event = motion.events[0] if motion.events else None
+        rolled = motion.t < (event.t if event else math.inf)
+        theta, omega = motion.theta[rolled], motion.omega[rolled]
+        if event:
+            theta = np.append(theta, event.state_before.theta)
+            omega = np.append(omega, event.state_before.omega)
+        moving = omega[omega != 0]
+        forwards = moving.size > 0 and moving[0] > 0
+        first = scene.theta if forwards else -scene.theta
+        mirrored = scene if forwards else Scene(scene.a, scene.b, theta=-scene.theta)
+        ahead = theta if forwards else -theta
+        over = [tips_passed(mirrored, each) > tips_passed(mirrored, first) for each in ahead]
+        back = omega < 0 if forwards else omega > 0
+        if any(over) and (not back.any() or np.argmax(over) < np.argmax(back)):
+            return Outcome.ROLLS_OVER
+        if back.any():
+            return Outcome.ROCKS
+        if event:
+            assert event.kind in (EventKind.SLIP, EventKind.LIFT_OFF), event.kind
+            return broken
+        span *= 2
+    return None

@@ -1,0 +1,301 @@
+"""`outcome`, `required_friction` and `blow_to` against motions, formulas and bisection."""
+
+import math
+from collections import Counter
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import oracles.rolling
+import pytest
+import rolling_ellipse as rl
+from oracles.blows import met_first, random_scene
+from rolling_ellipse import (
+    Impulse,
+    Mode,
+    Outcome,
+    Scene,
+    Validity,
+    blow_to,
+    certify,
+    outcome,
+    required_friction,
+    simulate,
+)
+
+REPORT = rl.scenes.report
+
+# ----------------------------------------------------------------------------------------- outcome
+
+
+@pytest.mark.parametrize(("slope", "count"), [(False, 1000), (True, 300)])
+def test_what_the_motion_meets_first(slope: bool, count: int) -> None:
+    """Random blows are hardly ever on an edge."""
+    rng = np.random.default_rng(7)
+    met: Counter[Outcome] = Counter()
+    for _ in range(count):
+        scene = random_scene(rng, slope)
+        found = outcome(scene)
+        assert found is met_first(scene), scene
+        met[found] += 1
+    for each in (Outcome.SLIPS, Outcome.LOSES_CONTACT, Outcome.ROCKS, Outcome.ROLLS_OVER):
+        assert met[each] > count / 20, met
+
+
+def test_the_reports_blow() -> None:
+    """Pressed 1.5 m beside the centre it rolls over from F = m (k^2 + b^2) omega_R/d = 44.3 N s on,
+    needs 2/3 of friction for the blow, and lifts off from 4.8432 rad/s, 72.65 N s, on."""
+    assert outcome(REPORT) is Outcome.ROLLS_OVER
+    assert outcome(replace(REPORT, impulse=None)) is Outcome.RESTS
+    F = np.array([10.0, 44.0, 44.4, 72.6, 72.7, -1.0])
+    rocks, over, lost = Outcome.ROCKS, Outcome.ROLLS_OVER, Outcome.LOSES_CONTACT
+    expected = [rocks, rocks, over, over, lost, lost]
+    assert np.array_equal(outcome(REPORT, Impulse.press(F, 1.5)), expected)
+    rough = replace(REPORT, friction=0.66)
+    assert set(np.asarray(outcome(rough, Impulse.press(F[:5], 1.5))).tolist()) == {Outcome.SLIPS}
+
+
+def test_starts_without_rolling() -> None:
+    """At 56.6 degrees a slide to the front jams if the friction is more than 1.3527."""
+    jams: dict[str, Any] = {"theta": math.radians(56.636), "x_dot": 5.0}
+    for scene, expected in (
+        (rl.scenes.drop, Outcome.LOSES_CONTACT),
+        (rl.scenes.slip, Outcome.SLIPS),
+        (Scene(2.0, 1.0, friction=1.36, **jams), Outcome.JAMS),
+        (Scene(2.0, 1.0, friction=1.34, **jams), Outcome.SLIPS),
+        (Scene(2.0, 1.0, friction=0.0, x_dot=1.0), Outcome.SLIPS),
+        (Scene(1.0, 1.0, friction=0.0, omega=1.0), Outcome.ROLLS_OVER),
+        (Scene(1.0, 1.0, friction=0.0, omega=1.0, slope=0.1), Outcome.SLIPS),
+        (Scene(2.0, 1.0, theta=math.pi / 2), Outcome.RESTS),
+        (Scene(2.0, 1.0, theta=math.pi / 2, omega=50.0), Outcome.LOSES_CONTACT),
+    ):
+        assert outcome(scene) is expected, scene
+        many = outcome(scene, Impulse([0.0, 0.0]))
+        assert np.array_equal(many, [expected] * 2), scene
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_on_a_slope(side: int) -> None:
+    """A circle runs down or, against it, turns back after omega^2 (a^2 + k^2)/(2 g sin(slope)) of
+    path: more than half a turn or not. Equilibrium at h' = h tan(slope) rests with the friction
+    tan(slope). 2:1 on 0.1 rocks in its well and rolls over from flat at 3 rad/s downhill."""
+    round_one = Scene(1.0, 1.0, slope=0.1 * side)
+    assert outcome(round_one) is Outcome.ROLLS_OVER
+    half_turn = math.sqrt(2 * 9.81 * math.sin(0.1) * math.pi / 1.5)
+    for share, expected in ((0.99, Outcome.ROCKS), (1.01, Outcome.ROLLS_OVER)):
+        uphill = replace(round_one, omega=-side * share * half_turn)
+        assert outcome(uphill) is expected
+    lying = Scene(2.0, 1.0, slope=0.1 * side)
+    incline = math.tan(0.1)
+    tangent = 2 * incline / (3 + math.sqrt(9 - 16 * incline**2))
+    resting = replace(lying, theta=side * math.atan(tangent))
+    assert outcome(resting) is Outcome.RESTS
+    assert outcome(replace(resting, friction=incline * (1 - 1e-12))) is Outcome.SLIPS
+    assert outcome(lying) is Outcome.ROCKS
+    assert outcome(replace(lying, omega=3.0 * side)) is Outcome.ROLLS_OVER
+    assert outcome(replace(lying, omega=-3.0 * side)) is Outcome.ROCKS
+
+
+def test_on_a_hardly_sloping_ground_it_is_given_up() -> None:
+    """Beside its tip, 1e-15 off equilibrium, it would take 21 growth times, of 0.6 s, to fall."""
+    slope = 1e-3
+    incline = math.tan(slope)
+    tangent = (3 + math.sqrt(9 - 16 * incline**2)) / (8 * incline)
+    falling = Scene(2.0, 1.0, slope=slope, theta=math.atan(tangent) + 4e-15)
+    assert outcome(falling) is Outcome.ROLLS_OVER
+    unmoved = Scene(1.0, 1.0, slope=1e-300, omega=1e-99)
+    assert outcome(unmoved) in (Outcome.EDGE, Outcome.ROLLS_OVER)
+
+
+def test_impulses_broadcast_and_replace_that_of_the_scene() -> None:
+    F, d = np.array([[20.0], [48.0], [70.0]]), np.array([-1.5, 0.3, 1.2, 1.5])
+    for scene in (REPORT, replace(REPORT, slope=0.05, friction=2.0)):
+        found = outcome(scene, Impulse.press(F, d))
+        assert isinstance(found, np.ndarray) and found.dtype == np.int8 and found.shape == (3, 4)
+        for i in range(3):
+            for j in range(4):
+                one = Impulse.press(F[i, 0], d[j])
+                assert found[i, j] == outcome(scene, one) == outcome(replace(scene, impulse=one))
+        empty = outcome(scene, Impulse([]))
+        assert isinstance(empty, np.ndarray) and empty.shape == (0,) and empty.dtype == np.int8
+
+
+def test_outcome_refuses() -> None:
+    with pytest.raises(TypeError, match=r"^scene must be a Scene, got 'flat'"):
+        outcome("flat")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"^impulse must be an Impulse or None, got 3"):
+        outcome(REPORT, 3)  # type: ignore[arg-type]
+    light = Scene(2.0, 1.0, mass=1e-20)
+    with pytest.raises(ValueError, match=r"^(omega|x_dot|z_dot) must be .* at most .*, by blow 1$"):
+        outcome(light, Impulse([0.0, 1e40], dz=1.0))
+
+
+# ------------------------------------------------------------------------------- required friction
+
+
+def test_required_friction_is_what_blow_and_motion_need() -> None:
+    """The largest |F|/N of the rolling after it, from a walk in long double (1e-12 of the forces);
+    below it the certificate knows that rolling ends, with a little more it is proved: its squared
+    polynomials leave some 1e-6 undecided between these."""
+    rng = np.random.default_rng(11)
+    by_the_blow = by_the_motion = never = 0
+    for _ in range(400):
+        scene = random_scene(rng)
+        found = required_friction(scene)
+        assert found == required_friction(replace(scene, friction=0.123))
+        if math.isinf(found):
+            never += 1
+            assert certify(replace(scene, friction=1e19)).validity is not Validity.VALID, scene
+            continue
+        rolls = replace(scene, friction=math.inf).initial_state
+        motion = oracles.rolling.motion(
+            [scene.a], [scene.b], [scene.gyration2], [scene.gravity], [rolls.theta], [rolls.omega]
+        )
+        needed = float(oracles.rolling.extremes(motion).needed[0]) if rolls.omega else 0.0
+        assert found >= needed * (1 - 1e-11)
+        if found > needed * (1 + 1e-11):
+            by_the_blow += 1
+            assert replace(scene, friction=found * (1 + 1e-12)).initial_state.mode is Mode.ROLLING
+            slips = replace(scene, friction=found * (1 - 1e-12)).initial_state
+            assert slips.mode is Mode.SLIDING, scene
+        elif found > 0:
+            by_the_motion += 1
+            for change, worst in ((-1e-5, Validity.INVALID), (1e-5, Validity.VALID)):
+                changed = replace(scene, friction=found * (1 + change))
+                assert certify(changed).validity is worst, scene
+    assert min(by_the_blow, by_the_motion, never) > 20
+
+
+def test_required_friction_where_it_is_known() -> None:
+    incline, disc = math.tan(0.3), 1 / 3  # k^2/(k^2 + a^2)
+    tangent = 2 * incline / (3 + math.sqrt(9 - 16 * incline**2))
+    for scene, expected in (
+        (REPORT, 2 / 3),
+        (replace(REPORT, impulse=Impulse.press(48.0, -1.5)), 2 / 3),
+        (Scene(2.0, 1.0), 0.0),
+        (rl.scenes.circle, 0.0),
+        (Scene(1.0, 1.0, slope=-0.3, omega=2.0), disc * incline),
+        (Scene(2.0, 1.0, slope=0.3, theta=math.atan(tangent)), incline),
+        (rl.scenes.drop, math.inf),
+        (rl.scenes.slip, math.inf),
+        (rl.scenes.slope, math.inf),
+        (replace(REPORT, impulse=Impulse(0.0, 1.0)), math.inf),
+        (replace(REPORT, impulse=Impulse(1.0, 0.0)), math.inf),
+    ):
+        assert required_friction(scene) == pytest.approx(expected, rel=4e-15), scene
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_required_friction_in_a_well(seed: int) -> None:
+    """Rocking on a slope: with it the computed motion rolls on, with 1e-8 less it slips; what
+    needs infinitely much runs down and away."""
+    rng = np.random.default_rng(seed)
+    finite = 0
+    while finite < 5:
+        b = 10 ** rng.uniform(-0.5, 0.5)
+        a = b * 10 ** rng.uniform(-1.0, 1.0)
+        rate = math.sqrt(9.81 / max(a, b))
+        scene = Scene(a, b, slope=rng.uniform(-0.4, 0.4), theta=rng.uniform(-4, 4))
+        scene = replace(scene, omega=0.4 * rate * rng.normal())
+        found, span = required_friction(scene), 40 / rate
+        if math.isinf(found):
+            motion = simulate(replace(scene, friction=1e6), span, model="contact")
+            assert motion.events or abs(motion.theta[-1] - scene.theta) > math.pi
+            continue
+        finite += 1
+        held = simulate(replace(scene, friction=found * (1 + 1e-10)), span, model="contact")
+        assert held.mode[0] == Mode.ROLLING and not held.events, scene
+        slips = simulate(replace(scene, friction=found * (1 - 1e-8)), span, model="contact")
+        assert slips.mode[0] == Mode.SLIDING or slips.events, scene
+
+
+# ----------------------------------------------------------------------------------------- blow to
+
+
+@pytest.mark.parametrize("before", [0.0, -1.0, 0.7])
+@pytest.mark.parametrize("distance", [1.5, -0.4])
+@pytest.mark.parametrize("theta", [0.0, 0.3, -2.0])
+def test_the_speed_that_was_asked_for(theta: float, distance: float, before: float) -> None:
+    """The blow law turns F back into omega within its own rounding: of the gain, and of both."""
+    scene = replace(REPORT, theta=theta, omega=before, impulse=Impulse(3.0))
+    lead = float(rl.geometry.support_slope(theta, a=2.0, b=1.0))
+    wanted = before + math.copysign(0.9, distance - lead)
+    blow = blow_to(scene, distance, omega=wanted)
+    assert blow.jz < 0 and (blow.jx, blow.dx, blow.dz) == (0.0, distance, 0.0)
+    after = replace(scene, impulse=blow).initial_state
+    assert after.mode is Mode.ROLLING
+    assert after.omega == pytest.approx(wanted, abs=1e-14)
+
+
+def test_to_stop_a_body() -> None:
+    blow = blow_to(Scene(2.0, 1.0, mass=10.0, omega=-1.0), 1.5, omega=0.0)
+    assert -blow.jz == pytest.approx(10.0 * 2.25 / 1.5, rel=1e-15)
+    assert replace(REPORT, omega=-1.0, impulse=blow).initial_state.mode is Mode.REST
+
+
+@pytest.mark.parametrize("distance", [1.5, -1.5, 0.6])
+@pytest.mark.parametrize("theta", [0.0, 0.25])
+def test_the_least_that_rolls_over(theta: float, distance: float) -> None:
+    """At rest it takes F = m D omega/(d - h') with D omega^2 = 2 g (a - h). The motion itself: with
+    1e-12 more it passes the tip, with 1e-12 less it turns back."""
+    scene = replace(REPORT, theta=theta)
+    blow = blow_to(scene, distance)
+    h = math.hypot(2.0 * math.sin(theta), math.cos(theta))
+    slope = 3.0 * math.sin(theta) * math.cos(theta) / h
+    inertia = 1.25 + h * h + slope * slope
+    least = 10.0 * math.sqrt(2 * 9.81 * (2.0 - h) * inertia) / abs(distance - slope)
+    assert -blow.jz == pytest.approx(least, rel=1e-14)
+    assert outcome(scene, blow) is Outcome.ROLLS_OVER
+    side = math.copysign(1.0, distance - slope)
+    for share, over in ((1 + 1e-12, True), (1 - 1e-12, False)):
+        struck = replace(scene, impulse=Impulse.press(-blow.jz * share, distance))
+        motion = simulate(struck, 40.0, model="contact")
+        assert bool((side * motion.theta > math.pi / 2).any()) is over
+    weaker = Impulse.press(math.nextafter(-blow.jz, 0.0), distance)
+    assert outcome(scene, weaker) is not Outcome.ROLLS_OVER
+
+
+def test_a_harder_press_may_need_less_friction() -> None:
+    """1.1:1 needs 0.0614 at the speed of the separatrix, 0.0492 at twice that: with 0.055 it is a
+    speed between them, at which the motion needs just that."""
+    scene = Scene(1.1, 1.0, friction=0.055)
+    blow = blow_to(scene, 0.02)
+    after = replace(scene, impulse=blow)
+    assert outcome(after) is Outcome.ROLLS_OVER
+    assert required_friction(after) == pytest.approx(0.055, rel=1e-5)
+    assert 1.1 < after.initial_state.omega / rl.thresholds(1.1, 1.0).roll_over_speed < 2
+
+
+@pytest.mark.parametrize(
+    ("scene", "distance", "omega", "reason"),
+    [
+        (replace(REPORT, friction=0.3), 1.5, None, "slip.*needs? 0.666667|would need 0.666667"),
+        (replace(REPORT, friction=0.3), 1.5, 1.0, "omega must be one.*would need 0.666667"),
+        (REPORT, 0.0, None, "distance must not be right over the contact"),
+        (REPORT, 0.0, 1.0, "distance must not be right over the contact"),
+        (REPORT, 1.5, -1.0, "distance must be on the other side.*pull"),
+        (REPORT, 1.5, 0.0, "omega must differ"),
+        (REPORT, math.nan, None, "distance must be a finite"),
+        (REPORT, 1.5, math.nan, "omega must be a finite"),
+        (rl.scenes.drop, 1.0, None, "scene must touch the ground"),
+        (rl.scenes.rolling, 1.0, None, "scene must not roll over without"),
+        (Scene(20.0, 1.0), 5.0, None, "distance must be one.*N would have to pull"),
+        (Scene(2.0, 1.0, slope=0.1), 1.0, None, "omega must be given on a slope"),
+        (Scene(1.0, 1.0), 0.5, None, "omega must be given for a circle"),
+        (Scene(2.0, 1.0, theta=1.2), 2.0, 40.0, "omega must be one.*flies"),
+    ],
+)
+def test_blow_to_says_why_not(
+    scene: Scene, distance: float, omega: float | None, reason: str
+) -> None:
+    with pytest.raises(ValueError, match=reason):
+        blow_to(scene, distance, omega=omega)
+
+
+def test_blow_to_refuses_what_is_no_number() -> None:
+    with pytest.raises(TypeError, match=r"^distance must be a number"):
+        blow_to(REPORT, "1")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"^omega must be a number"):
+        blow_to(REPORT, 1.0, omega="1")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"^scene must be a Scene"):
+        blow_to(None, 1.0)  # type: ignore[arg-type]
