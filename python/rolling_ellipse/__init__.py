@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
 from . import geometry, scenes
+from ._at import Sample
 from ._blows import blow_to, outcome, required_friction
 from ._certify import Certificate, certify
 from ._constraints import ConstraintResiduals, constraints, kinematics
@@ -20,7 +21,13 @@ from ._impulse import Impulse
 from ._outcome import Thresholds, classify, thresholds
 from ._scene import InitialState, Scene
 from ._simulate import simulate
-from ._status import IntegrationError, StabilityWarning, Status, ValidityWarning
+from ._status import (
+    CompletenessWarning,
+    IntegrationError,
+    StabilityWarning,
+    Status,
+    ValidityWarning,
+)
 from ._trajectory import Trajectory, load
 
 if _TYPE_CHECKING:
@@ -42,13 +49,13 @@ if _TYPE_CHECKING:
     __version__: str
 
 __all__ = [
-    "Certificate", "ConstraintResiduals", "Event", "EventKind", "Impulse", "InitialState",
-    "IntegrationError", "Mode", "Outcome", "Scene", "StabilityWarning", "Status", "Thresholds",
-    "Trajectory", "Validity", "ValidityWarning", "WorkPrecision", "__version__", "animate",
-    "blow_to", "certify", "classify", "constraints", "flow", "geometry", "impacts", "kinematics",
-    "load", "outcome", "period", "plot", "plot_constraints", "plot_energy", "plot_error",
-    "plot_forces", "plot_paths", "plot_phase", "plot_phase_map", "plot_strobe", "report",
-    "required_friction", "scenes", "simulate", "thresholds", "work_precision",
+    "Certificate", "CompletenessWarning", "ConstraintResiduals", "Event", "EventKind", "Impulse",
+    "InitialState", "IntegrationError", "Mode", "Outcome", "Sample", "Scene", "StabilityWarning",
+    "Status", "Thresholds", "Trajectory", "Validity", "ValidityWarning", "WorkPrecision",
+    "__version__", "animate", "blow_to", "certify", "classify", "constraints", "flow", "geometry",
+    "impacts", "kinematics", "load", "outcome", "period", "plot", "plot_constraints", "plot_energy",
+    "plot_error", "plot_forces", "plot_paths", "plot_phase", "plot_phase_map", "plot_strobe",
+    "report", "required_friction", "scenes", "simulate", "thresholds", "work_precision",
 ]  # fmt: skip
 
 

@@ -85,6 +85,19 @@ class Ending(enum.Enum):
     UNDETERMINED = 7
     VALIDITY_LOST = 8
 
+class ArcKind(enum.Enum):
+    """What a motion does between two events."""
+
+    STILL = 0
+    UNIFORM = 1
+    TURNING = 2
+    SWINGING = 3
+    ROLLING_STEPS = 4
+    COORDINATE_STEPS = 5
+    SLIDING_STEPS = 6
+    SETTLING = 7
+    FLIGHT = 8
+
 class Settings:
     def __init__(
         self,
@@ -202,6 +215,18 @@ class Event:
     @property
     def after(self) -> State: ...
 
+class Arc:
+    @property
+    def kind(self) -> ArcKind: ...
+    @property
+    def begin(self) -> float: ...
+    @property
+    def end(self) -> float: ...
+    @property
+    def period(self) -> float: ...
+    @property
+    def marks(self) -> FloatArray: ...
+
 class Solution:
     @property
     def ending(self) -> Ending: ...
@@ -222,6 +247,7 @@ class Solution:
     @property
     def stats(self) -> dict[str, int]: ...
     def losses(self) -> dict[str, float]: ...
+    def arcs(self) -> list[Arc]: ...
     def sample_rolling(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]: ...
     def sample_coordinates(self, t: FloatArray) -> tuple[FloatArray, FloatArray]: ...
     def sample_contact(self, t: FloatArray) -> dict[str, Any]: ...

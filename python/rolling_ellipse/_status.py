@@ -47,6 +47,10 @@ class StabilityWarning(UserWarning):
     """What was asked for is known to lose what the motion keeps: constraints, energy or both."""
 
 
+class CompletenessWarning(UserWarning):
+    """What was asked for was found by looking closely, and not proved to be all there is."""
+
+
 class IntegrationError(RuntimeError):
     """An integration stopped before its last time; `trajectory` holds what there is."""
 

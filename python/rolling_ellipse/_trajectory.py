@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._at import Sample, sample_at
 from ._check import FloatArray, array, number
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
 from ._events import Event, event
@@ -29,6 +30,7 @@ from ._samples import (
 from ._scene import Scene
 from ._settings import Settings
 from ._status import Status, status_of
+from ._when import passages
 from .geometry import support_slope
 
 if TYPE_CHECKING:
@@ -331,6 +333,67 @@ class Trajectory(FieldsOnly):
             impulse=None,
             **_placement(at),
         )
+
+    def at(self, t: float) -> Sample:
+        """Return the state at time t [s] in plain floats.
+
+        Raises
+        ------
+        ValueError
+            If t is outside of [0, t_end].
+        """
+        return sample_at(self, t)
+
+    def when(
+        self,
+        *,
+        theta: float | None = None,
+        x: float | None = None,
+        z: float | None = None,
+        omega: float | None = None,
+        contact_x: float | None = None,
+        function: Callable[[Trajectory], Any] | None = None,
+        direction: int = 0,
+    ) -> FloatArray:
+        """Return all times in [0, t_end] at which the motion passes a value.
+
+        They are those of the motion, to the last bits, and not of its samples. Where a quantity is
+        monotone between known instants none is missed: all five of exact rolling (between its
+        passages of the flat position and of the tip, or the turning points) and of steps, where
+        their dense output, a polynomial, is shown to rise or fall by its Bernstein coefficients;
+        of flight all but ``contact_x``. The rest is looked at 16 times a step and 64 times a
+        quarter turn, with a `CompletenessWarning`.
+
+        An event may take omega over the value at once: its time counts. A value that is only
+        touched, as at a turning point, or that the motion starts or ends with, counts once; one
+        that is kept for a while counts where that begins. Touching is told to 8 ulp of the
+        quantity in exact motions, to 1000 ulp in steps.
+
+        Parameters
+        ----------
+        theta, x, z, omega, contact_x : float, optional
+            The value of this quantity [rad, m, rad/s]; exactly one is given, or `function`.
+        function : callable, optional
+            Takes a Trajectory and returns one number a sample; its zeros are looked for.
+        direction : {0, 1, -1}
+            1: where it rises through the value; -1: where it falls; 0: either, and touches.
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            Times, ascending [s]; empty if it never does.
+
+        Raises
+        ------
+        ValueError
+            If there would be more than a million times, if none or several quantities are given,
+            or one is not finite.
+        """
+        given = {
+            "theta": theta, "x": x, "z": z, "omega": omega, "contact_x": contact_x,
+            "function": function,
+        }  # fmt: skip
+        return passages(self, given, direction)
 
     # -- pictures --------------------------------------------------------------------------------
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "arcs.hpp"
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
 #include "losses.hpp"
@@ -123,6 +124,11 @@ py::dict losses_by_name(const Solution& solution) {
     return py::dict("energy"_a = found.energy, "constraints"_a = found.constraints);
 }
 
+// The marks as an array.
+py::array_t<double> marks(const Arc& arc) {
+    return py::array_t<double>(static_cast<py::ssize_t>(arc.marks.size()), arc.marks.data());
+}
+
 py::dict stats(const Solution& solution) {
     const auto& [steps, rejected, evaluations] = solution.counts;
     return py::dict("segments"_a = solution.motion.segments.size(), "steps"_a = steps,
@@ -156,6 +162,23 @@ void bind_solution(py::module_& m) {
         .def_readonly("kind", &Event::kind)
         .def_readonly("before", &Event::before)
         .def_readonly("after", &Event::after);
+    py::native_enum<ArcKind>(m, "ArcKind", "enum.Enum", "What a motion does between two events.")
+        .value("STILL", ArcKind::still)
+        .value("UNIFORM", ArcKind::uniform)
+        .value("TURNING", ArcKind::turning)
+        .value("SWINGING", ArcKind::swinging)
+        .value("ROLLING_STEPS", ArcKind::rolling_steps)
+        .value("COORDINATE_STEPS", ArcKind::coordinate_steps)
+        .value("SLIDING_STEPS", ArcKind::sliding_steps)
+        .value("SETTLING", ArcKind::settling)
+        .value("FLIGHT", ArcKind::flight)
+        .finalize();
+    bind_class<Arc>(m, "Arc")
+        .def_readonly("kind", &Arc::kind)
+        .def_readonly("begin", &Arc::begin)
+        .def_readonly("end", &Arc::end)
+        .def_readonly("period", &Arc::period)
+        .def_property_readonly("marks", marks);
     bind_class<Solution>(m, "Solution")
         .def_readonly("ending", &Solution::ending)
         .def_readonly("followed_until", &Solution::followed_until)
@@ -167,6 +190,7 @@ void bind_solution(py::module_& m) {
         .def_property_readonly("stats", stats)
         .def_property_readonly("events", [](const Solution& s) { return s.motion.events; })
         .def("losses", losses_by_name)
+        .def("arcs", arcs)
         .def("sample_rolling", sample_rolling, "t"_a)
         .def("sample_coordinates", sample_coordinates, "t"_a)
         .def("sample_contact", sample_contact, "t"_a);

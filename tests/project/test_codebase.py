@@ -37,7 +37,8 @@ FOLDERS = (
 # slow to load, pictures above all, may be imported where it is needed.
 MODULES = (
     "_core", "_fields", "_check", "geometry", "_constraints", "_impulse", "_scene", "scenes",
-    "_settings", "_events", "_status", "_samples", "_when", "_trajectory", "_stability",
+    "_settings", "_events", "_status", "_samples", "_looks", "_when",
+    "_at", "_trajectory", "_stability",
     "_simulate", "_flow", "_certify", "_outcome", "_blows", "_errors", "_export",
     "_work_precision", "impacts", "report", "_pictures", "", "__main__",
 )  # fmt: skip

@@ -1,0 +1,83 @@
+#include "arcs.hpp"
+
+#include <algorithm>
+
+namespace rolling_ellipse {
+namespace {
+
+// Kind, period and marks of each law, in its own units and since its begin.
+
+Arc arc(const RollingFlow& flow) {
+    if (flow.kind == MotionKind::rest) return {ArcKind::still, 0.0, 0.0, infinity, {}};
+    if (flow.kind == MotionKind::uniform) return {ArcKind::uniform, 0.0, 0.0, infinity, {}};
+    const bool turns = flow.kind == MotionKind::rotation;
+    const PhaseTime& phase = flow.phase;
+    Arc found{turns ? ArcKind::turning : ArcKind::swinging, 0.0, 0.0, infinity, {}};
+    found.marks.push_back(double(-flow.start_time));
+    if (std::isinf(phase.half_turn.high)) return found;
+    const int half_turns = turns ? 1 : 2;
+    found.period = half_turns * double(phase.half_turn);
+    found.marks.push_back(double(phase.quarter_turn - flow.start_time));
+    for (int i = 1; i <= half_turns; ++i) {
+        const DoubleDouble flat = phase.half_turn * double(i) - flow.start_time;
+        found.marks.push_back(double(flat));
+        found.marks.push_back(double(flat + phase.quarter_turn));
+    }
+    return found;
+}
+
+template <class Steps>
+Arc arc_of_steps(ArcKind kind, const Steps& steps) {
+    Arc found{kind, 0.0, 0.0, infinity, {}};
+    for (const auto& knot : steps.knots) found.marks.push_back(knot.t);
+    return found;
+}
+
+Arc arc(const SteppedRolling& motion) { return arc_of_steps(ArcKind::rolling_steps, motion.steps); }
+
+Arc arc(const SteppedMultipliers& motion) {
+    return std::visit(
+        [](const auto& steps) { return arc_of_steps(ArcKind::coordinate_steps, steps); },
+        motion.steps);
+}
+
+Arc arc(const SteppedSliding& motion) { return arc_of_steps(ArcKind::sliding_steps, motion.steps); }
+
+Arc arc(const Flight& flight) {
+    const auto [into, along] = flight.gravity;
+    std::vector<double> vertices{flight.start.z_dot / into};
+    if (along != 0) vertices.push_back(-flight.start.x_dot / along);
+    return {ArcKind::flight, 0.0, 0.0, infinity, vertices};
+}
+
+Arc arc(const Settling&) { return {ArcKind::settling, 0.0, 0.0, infinity, {}}; }
+Arc arc(const Resting&) { return {ArcKind::still, 0.0, 0.0, infinity, {}}; }
+Arc arc(const Jam&) { return {ArcKind::still, 0.0, 0.0, infinity, {}}; }
+
+}  // namespace
+
+std::vector<Arc> arcs(const Solution& solution) {
+    const auto& [units, scene, segments, events] = solution.motion;
+    const double last = solution.followed_until;
+    std::vector<Arc> found;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        const double begin = segments[i].begin * units.time;
+        const double next =
+            i + 1 == segments.size() ? infinity : segments[i + 1].begin * units.time;
+        if (begin > last) break;
+        Arc here = std::visit([](const auto& law) { return arc(law); }, segments[i].law);
+        here.begin = begin;
+        here.end = std::min(next, last);
+        here.period *= units.time;
+        for (double& mark : here.marks) mark = begin + mark * units.time;
+        std::sort(here.marks.begin(), here.marks.end());
+        const auto outside = [&](double t) { return !(t > here.begin && t < here.end); };
+        here.marks.erase(std::remove_if(here.marks.begin(), here.marks.end(), outside),
+                         here.marks.end());
+        here.marks.erase(std::unique(here.marks.begin(), here.marks.end()), here.marks.end());
+        found.push_back(std::move(here));
+    }
+    return found;
+}
+
+}  // namespace rolling_ellipse

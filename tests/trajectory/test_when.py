@@ -1,0 +1,260 @@
+"""`Trajectory.at` and `Trajectory.when` against dense samples, formulas and known cases."""
+
+import math
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.numbers import EPS
+from oracles.passages import NAMES, Floats, dense_looks, random_motion, some_value, times_of_events
+from rolling_ellipse import CompletenessWarning, Mode, Scene, Status, Trajectory, simulate
+
+# ---------------------------------------------------------------------------- against dense samples
+
+
+def all_times(motion: Trajectory, name: str, value: float, direction: int = 0) -> Floats:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CompletenessWarning)
+        return motion.when(**{name: value}, direction=direction)  # type: ignore[arg-type]
+
+
+def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Floats:
+    """How far the quantity may be from its value at a time found: what it changes by in 8 ulp of
+    the time, and its own rounding; touches in steps are told to 1000 ulp."""
+    near = np.maximum(times, 1e-3)
+    aside = np.clip(np.stack([times - 1e-6 * near, times + 1e-6 * near]), 0, motion.t_end)
+    before, after = (getattr(motion.sol(t), name) for t in aside)
+    rate = np.abs(after - before) / np.maximum(aside[1] - aside[0], 1e-300)
+    size = abs(value) + np.abs(getattr(motion, name)).max() + max(motion.scene.a, motion.scene.b)
+    return 8 * EPS * near * rate + 2000 * EPS * size
+
+
+def check(motion: Trajectory, name: str, value: float) -> int:
+    """None missed, none invented; returns how many there are."""
+    found = all_times(motion, name, value)
+    assert np.all(np.diff(found) > 0) and np.all((found >= 0) & (found <= motion.t_end))
+    times = dense_looks(motion)
+    less = getattr(motion.sol(times), name) - value
+    noise = 2000 * EPS * (abs(value) + np.abs(less).max() + max(motion.scene.a, motion.scene.b))
+    clear = np.abs(less) > noise
+    times, sign = times[clear], np.sign(less[clear])
+    change = np.diff(sign) / 2
+    sensed = {direction: all_times(motion, name, value, direction) for direction in (1, -1)}
+    rises, falls = (np.searchsorted(sensed[d], times, side="right") for d in (1, -1))
+    assert np.array_equal(np.diff(rises) - np.diff(falls), change), (name, value)
+    assert np.isin(np.concatenate([sensed[1], sensed[-1]]), found).all()
+    jumps = np.isin(found, times_of_events(motion)) if name == "omega" else np.zeros(found.size)
+    smooth = found[~jumps.astype(bool)]
+    missed = np.abs(getattr(motion.sol(smooth), name) - value) if smooth.size else smooth
+    assert np.all(missed <= allowed(motion, name, value, smooth)), (name, value, missed.max())
+    return int(found.size)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_none_is_missed_and_none_invented(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    motion = random_motion(rng)
+    for name in NAMES:
+        check(motion, name, some_value(rng, motion, name))
+
+
+# --------------------------------------------------------------------------------- known motions
+
+
+def test_rocking_by_its_period() -> None:
+    """From rest at 0.5 rad: at rest every half period, upright a quarter later; the lowest point of
+    the centre, z = b, is only touched. Times of 1e5 s are known to their own rounding."""
+    motion = simulate(rl.scenes.rocking, 1e5)
+    period = rl.period(motion.scene)
+    stops = np.arange(0, 1e5, period / 2)
+    exact = 4 * EPS * 1e5
+    assert motion.when(omega=0.0) == pytest.approx(stops, abs=exact)
+    assert motion.when(omega=0.0, direction=-1) == pytest.approx(stops[::2], abs=exact)
+    assert motion.when(omega=0.0, direction=1) == pytest.approx(stops[1::2], abs=exact)
+    assert motion.when(theta=0.5) == pytest.approx(stops[::2], abs=exact)
+    flat = np.arange(period / 4, 1e5, period / 2)
+    assert motion.when(theta=0.0) == pytest.approx(flat, abs=exact)
+    assert motion.when(z=1.0) == pytest.approx(flat, abs=exact)
+    assert motion.when(z=1.0, direction=1).size == motion.when(z=0.999).size == 0
+    assert motion.when(theta=0.5 + 1e-12).size == 0
+
+
+def test_turns_of_the_reports_ellipse() -> None:
+    """3.2 rad/s from flat: upright a quarter of the period after the start, once a half turn. The
+    contact has then gone a quarter of the perimeter, the centre as far, both of known lengths."""
+    motion = simulate(rl.scenes.report, 30.0)
+    half = rl.period(motion.scene) / 2
+    tips = np.arange(half / 2, 30.0, half)
+    for i, expected in enumerate(tips):
+        upright = motion.when(theta=(i + 0.5) * math.pi)
+        assert upright == pytest.approx([expected], rel=1e-15)
+    with pytest.warns(CompletenessWarning):
+        found = motion.when(function=lambda m: np.cos(m.theta))
+    assert found == pytest.approx(tips, rel=1e-14)
+    assert motion.when(contact_x=9.6884482205476762) == pytest.approx([2 * half], rel=2e-15)
+    assert motion.when(x=9.6884482205476762) == pytest.approx([2 * half], rel=2e-15)
+
+
+def test_far_away_and_too_often() -> None:
+    """1e9 half turns: one angle is one time, found in no time; a height is too many of them."""
+    motion = simulate(rl.scenes.rolling, [0.0, 1e9])
+    angle = 4e8 * math.pi
+    (t,) = motion.when(theta=angle)
+    assert abs(motion.at(t).theta - angle) <= 4 * EPS * angle
+    assert motion.when(z=0.9).size == 0
+    with pytest.raises(ValueError, match=r"^z must pass its value no more than 1000000 times"):
+        motion.when(z=1.2)
+    with pytest.raises(ValueError, match=r"^function must not be looked at over more than 100000"):
+        motion.when(function=lambda m: np.sin(m.theta))
+
+
+def test_events_count() -> None:
+    """A hit takes omega over values at once; the end of the fall is where z meets the ground."""
+    motion = simulate(rl.scenes.bounce, 5.0)
+    hits = [event for event in motion.events if event.kind is rl.EventKind.IMPACT]
+    for hit in hits:
+        before, after = hit.state_before.omega, hit.state_after.omega
+        times = motion.when(omega=0.5 * (before + after), direction=int(np.sign(after - before)))
+        assert hit.t in times.tolist()
+    for hit in hits[1:]:  # it falls without turning
+        assert np.isclose(motion.when(theta=hit.state_after.theta), hit.t, rtol=1e-12).any()
+    falling = simulate(rl.scenes.drop, 2.0)
+    z = rl.scenes.drop.z
+    assert z is not None
+    assert falling.when(z=z - 0.3)[0] == pytest.approx(math.sqrt(0.6 / 9.81), rel=4 * EPS)
+
+
+def test_what_is_kept_counts_where_it_begins() -> None:
+    still = simulate(Scene(2.0, 1.0, x=3.0), 5.0)
+    for given in ({"theta": 0.0}, {"omega": 0.0}, {"x": 3.0}, {"z": 1.0}, {"contact_x": 3.0}):
+        assert still.when(**given).tolist() == [0.0]  # type: ignore[arg-type]
+        for direction in (1, -1):
+            assert still.when(**given, direction=direction).size == 0  # type: ignore[arg-type]
+    dropped = simulate(Scene(1.0, 1.0, z=2.0), 3.0)
+    (rest,) = (event.t for event in dropped.events if event.state_after.mode is Mode.REST)
+    assert dropped.at(2.0).mode is Mode.REST
+    assert dropped.when(z=1.0) == pytest.approx([rest], rel=1e-14)
+    circle = simulate(rl.scenes.circle, 10.0)
+    assert circle.when(omega=2.0).tolist() == [0.0] and circle.when(z=1.0).tolist() == [0.0]
+    assert circle.when(x=5.0) == pytest.approx([2.5], rel=2 * EPS)
+
+
+def test_a_turning_point_on_a_slope() -> None:
+    """A circle that runs up is at rest after omega (a + k^2/a)/(g sin(slope)), where it has gone
+    omega^2 (a^2 + k^2)/(2 g sin(slope)): touched there, and passed on both ways below."""
+    scene = Scene(1.0, 1.0, slope=0.2, omega=-3.0)
+    motion = simulate(scene, 6.0)
+    pull = 9.81 * math.sin(0.2) / 1.5
+    assert motion.when(omega=0.0) == pytest.approx([3.0 / pull], rel=1e-9)
+    height = 4.5 / pull
+    assert motion.when(theta=-height + 1e-8).size == 2
+    assert motion.when(theta=-height - 1e-8).size == 0
+    both = motion.when(theta=-1.0)
+    root = math.sqrt(9.0 - 2 * pull)
+    assert both == pytest.approx([(3.0 - root) / pull, (3.0 + root) / pull], rel=1e-9)
+
+
+@pytest.mark.parametrize(("a", "b", "theta"), [(1e3, 1.0, 0.3), (1.0, 1e3, 1.3), (1.0, 1e-3, 0.3)])
+def test_the_thinnest(a: float, b: float, theta: float) -> None:
+    scene = Scene(a, b, theta=theta)
+    motion = simulate(scene, 20.51 * rl.period(scene))
+    assert motion.when(omega=0.0).size == 42
+    assert motion.when(z=min(a, b)).size == 41
+    middle = 0.5 * (min(a, b) + motion.at(0.0).z)
+    assert motion.when(z=middle).size == 82
+
+
+def test_touches_between_two_looks_of_a_function() -> None:
+    """(theta - 1)^2, less 1e-9 and less nothing: two zeros 6e-5 rad apart, and one."""
+    motion = simulate(rl.scenes.report, 1.0)
+    (once,) = motion.when(theta=1.0)
+    with pytest.warns(CompletenessWarning, match=r"function passes .* while it rolls"):
+        pair = motion.when(function=lambda m: (m.theta - 1) ** 2 - 1e-9)
+    with pytest.warns(CompletenessWarning):
+        touch = motion.when(function=lambda m: (m.theta - 1) ** 2)
+    rate = motion.at(once).omega
+    apart = math.sqrt(1e-9) / rate
+    assert pair == pytest.approx([once - apart, once + apart], abs=1e-8)
+    assert touch == pytest.approx([once], abs=1e-7)
+
+
+def test_it_warns_only_where_nothing_is_proved() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for scene in (rl.scenes.report, rl.scenes.rocking, rl.scenes.slope, rl.scenes.slip):
+            motion = simulate(scene, 3.0)
+            for given in ({"theta": 0.3}, {"x": 0.3}, {"omega": 0.3}, {"z": 1.1}):
+                motion.when(**given)  # type: ignore[arg-type]
+    with pytest.warns(CompletenessWarning, match=r"contact_x passes .* in flight"):
+        simulate(rl.scenes.bounce, 3.0).when(contact_x=0.5)
+
+
+def test_a_loaded_motion_knows_its_times(tmp_path: Any) -> None:
+    for scene in (rl.scenes.report, rl.scenes.jump):
+        motion = simulate(scene, 4.0)
+        motion.save(tmp_path / "motion.npz")
+        loaded = Trajectory.load(tmp_path / "motion.npz")
+        assert np.array_equal(loaded.when(z=1.3), motion.when(z=1.3))
+        assert loaded.at(1.7) == motion.at(1.7)
+
+
+def test_a_motion_that_stopped_early() -> None:
+    motion = simulate(rl.scenes.bounce, 5.0, max_events=1, raise_on_failure=False)
+    assert motion.status is Status.MAX_EVENTS and motion.t_end < 1.0
+    assert motion.when(theta=rl.scenes.bounce.theta)[0] == 0.0
+    assert np.all(motion.when(omega=0.0) <= motion.t_end)
+
+
+# ----------------------------------------------------------------------------------------- refusals
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "words"),
+    [
+        ({}, ValueError, "exactly one of theta, x, z, omega, contact_x, function .* got none"),
+        ({"theta": 1.0, "x": 2.0}, ValueError, "exactly one of .* got theta and x"),
+        ({"theta": math.nan}, ValueError, "theta must be finite, got nan"),
+        ({"x": math.inf}, ValueError, "x must be finite, got inf"),
+        ({"omega": "1"}, TypeError, "omega must be a number, got '1'"),
+        ({"z": [1.0]}, TypeError, "z must be a number"),
+        ({"theta": 1.0, "direction": 2}, ValueError, "direction must be 1, -1 or 0, got 2"),
+        ({"theta": 1.0, "direction": True}, TypeError, "direction must be a whole number"),
+        ({"function": 1.0}, TypeError, "function must be a function of a Trajectory, got 1.0"),
+        ({"function": lambda m: 1.0}, ValueError, "function must return one number a sample"),
+        ({"function": lambda m: m.q}, ValueError, "function must return one number a sample"),
+        ({"function": lambda m: m.t * math.nan}, ValueError, "function must return .* t = 0.0"),
+        ({"function": lambda m: "x"}, TypeError, "function's result must be a number"),
+    ],
+)
+def test_when_refuses(given: dict[str, Any], error: type[Exception], words: str) -> None:
+    motion = simulate(rl.scenes.report, 1.0)
+    with pytest.raises(error, match=f"^{words}"):
+        motion.when(**given)
+
+
+# ----------------------------------------------------------------------------------------------- at
+
+
+@pytest.mark.parametrize("name", ["report", "slope", "jump", "bounce"])
+def test_one_state_is_a_row_of_the_samples(name: str) -> None:
+    """In plain floats: the same bits as `sol` has."""
+    motion = simulate(getattr(rl.scenes, name), 3.0)
+    for t in (0.0, 1.234, 3.0):
+        found, row = motion.at(t), motion.sol(t)
+        for field in (
+            "t", "x", "z", "theta", "psi", "r", "omega", "x_dot", "z_dot", "contact_x", "turns",
+            "normal_force", "friction_force", "energy",
+        ):  # fmt: skip
+            value = getattr(found, field)
+            assert type(value) is float and value == getattr(row, field)[0], field
+        assert found.mode is Mode(int(row.mode[0]))
+
+
+@pytest.mark.parametrize("t", [-1e-9, 3.1, math.nan])
+def test_at_refuses_times_outside(t: float) -> None:
+    with pytest.raises(ValueError, match=rf"^t must lie in \[0, 3.0\], got {t}"):
+        simulate(rl.scenes.report, 3.0).at(t)
+    with pytest.raises(TypeError, match=r"^t must be a number, got 'now'"):
+        simulate(rl.scenes.report, 3.0).at("now")  # type: ignore[arg-type]
