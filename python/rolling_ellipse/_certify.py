@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from . import _core
 from ._core import Validity
+from ._faces import Listed
 from ._scene import Scene, require_scene
 
 
-@dataclass(frozen=True)
-class Certificate:
+@dataclass(frozen=True, repr=False)
+class Certificate(Listed):
     """Proof that rolling without slip is valid for the whole motion, or where it ends.
 
     Attributes
@@ -32,6 +34,11 @@ class Certificate:
         One sentence with the numbers.
     """
 
+    _units: ClassVar[dict[str, str]] = {
+        "smallest_normal_force": "N", "smallest_normal_force_angle": "rad",
+        "largest_friction_needed_angle": "rad", "ends_at": "rad",
+    }  # fmt: skip
+
     validity: Validity
     smallest_normal_force: float | None
     smallest_normal_force_angle: float | None
@@ -39,6 +46,9 @@ class Certificate:
     largest_friction_needed_angle: float | None
     ends_at: float | None
     reason: str
+
+    def __repr__(self) -> str:
+        return f"<Certificate {self.validity.name}: {self.reason}>"
 
 
 def certify(scene: Scene) -> Certificate:

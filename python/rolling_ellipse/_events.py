@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 from ._core import EventKind, Mode
-from ._scene import InitialState
+from ._faces import Row, brief, html_table, text_table
+from ._scene import InitialState, Scene
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 _STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot", "mode")
 _SENTENCES = {
@@ -19,9 +24,12 @@ _SENTENCES = {
     EventKind.REST: "the body has come to rest",
     EventKind.JAM: "the sliding body jams: no motion of a rigid body goes on, or more than one",
 }
+_SLIP_WITHOUT_LIMIT = "the ground would have to pull; the body slides, not pressed, and leaves it"
+_HEAD = ("t [s]", "kind", "theta [rad]", "x [m]", "what changes")
+_FIRST, _LAST = 12, 4  # of many events, those shown
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Event:
     """A change of mode, or an impact.
 
@@ -40,11 +48,81 @@ class Event:
     state_before: InitialState
     state_after: InitialState
 
+    def _row(self) -> Row:
+        """The cells under `_HEAD`."""
+        after = self.state_after
+        numbers = (f"{self.t:.9g}", self.kind.name, brief(after.theta), brief(after.x))
+        return (*numbers, self._change())
 
-def event(mass: float, found: Any) -> Event:
+    def _change(self) -> str:
+        before, after = self.state_before, self.state_after
+        change = f"{before.mode.name} → {after.mode.name}"
+        if self.kind is EventKind.IMPACT:
+            change += f", {after.reaction_x:.4g} N s along, {after.reaction_z:.4g} N s up"
+        return change
+
+    def __repr__(self) -> str:
+        after = self.state_after
+        return (
+            f"<Event {self.kind.name} at t = {self.t:.9g} s, theta = {brief(after.theta)} rad, "
+            f"x = {brief(after.x)} m: {self._change()}>"
+        )
+
+
+class Events(tuple[Event, ...]):
+    """A tuple of events in the order of time that prints as a table; slices are the same.
+
+    Of many events it shows the first and the last ones.
+    """
+
+    __slots__ = ()
+
+    @overload
+    def __getitem__(self, place: SupportsIndex) -> Event: ...
+    @overload
+    def __getitem__(self, place: slice) -> Events: ...
+    def __getitem__(self, place: Any) -> Any:
+        found = super().__getitem__(place)
+        return Events(found) if isinstance(place, slice) else found
+
+    def _shown(self) -> list[Row]:
+        hidden = len(self) - _FIRST - _LAST
+        if hidden <= 1:  # the row that says so takes as much room
+            return [each._row() for each in self]
+        first, last = self[:_FIRST], self[-_LAST:]
+        gap = ("…", f"and {hidden} more", "", "", "")
+        return [*(each._row() for each in first), gap, *(each._row() for each in last)]
+
+    def _caption(self) -> str:
+        return "1 event" if len(self) == 1 else f"{len(self)} events"
+
+    def __repr__(self) -> str:
+        return f"{self._caption()}\n{text_table([_HEAD, *self._shown()])}" if self else "no events"
+
+    def _repr_html_(self) -> str:
+        return html_table(self._caption(), self._shown(), _HEAD)
+
+    def to_dataframe(self) -> DataFrame:
+        """Return a pandas DataFrame with a row for each event.
+
+        Columns are t, kind, the states as ``theta_before``, ``theta_after`` and so on, the
+        reaction impulses and the reason. ``attrs["units"]`` has the units by column.
+
+        Raises
+        ------
+        ImportError
+            Without pandas: it comes with ``rolling_ellipse[data]``.
+        """
+        from ._export.tables import events_dataframe
+
+        return events_dataframe(self)
+
+
+def event(scene: Scene, found: Any) -> Event:
     """Make an event of what the core, or a file, says: t, kind, and the states before and after."""
-    before, after = found.before, found.after
+    before, after, mass = found.before, found.after, scene.mass
     hit = found.kind is EventKind.IMPACT
+    pulled = found.kind is EventKind.SLIP and math.isinf(scene.friction)
     return Event(
         found.t,
         found.kind,
@@ -52,7 +130,7 @@ def event(mass: float, found: Any) -> Event:
         state_after=_state(
             after,
             before.omega,
-            _SENTENCES[found.kind],
+            _SLIP_WITHOUT_LIMIT if pulled else _SENTENCES[found.kind],
             reaction_x=mass * (after.x_dot - before.x_dot) if hit else 0.0,
             reaction_z=mass * (after.z_dot - before.z_dot) if hit else 0.0,
         ),
@@ -80,11 +158,11 @@ def as_numbers(found: Event) -> list[Any]:
     return [found.t, found.kind.name, before, after]
 
 
-def from_numbers(mass: float, numbers: list[Any]) -> Event:
+def from_numbers(scene: Scene, numbers: list[Any]) -> Event:
     """Make an event of what `as_numbers` returned."""
     t, kind, *states = numbers
     before, after = (
         SimpleNamespace(**dict(zip(_STATE, (*state[:-1], Mode(state[-1])), strict=True)))
         for state in states
     )
-    return event(mass, SimpleNamespace(t=t, kind=EventKind[kind], before=before, after=after))
+    return event(scene, SimpleNamespace(t=t, kind=EventKind[kind], before=before, after=after))

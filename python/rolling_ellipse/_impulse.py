@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import KW_ONLY, dataclass, fields
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from . import _core
 from ._check import FloatArray, array, common_shape
+from ._status import ValidityWarning
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +71,9 @@ class Impulse:
     def press(cls, F: Any, d: Any) -> Impulse:
         """Return the downward blow of the report's Figure 9: F [N s] at distance d [m] from G.
 
+        A negative F is no press but a pull, which takes more than a touch: a ValidityWarning says
+        so.
+
         Parameters
         ----------
         F, d : float or array_like
@@ -79,6 +84,10 @@ class Impulse:
             if not np.isfinite(values).all():
                 index = _worst(values)
                 raise ValueError(f"{name} must be finite, got {values[index]!s}{_at(index)}")
+        pull = float(np.min(array("F", F), initial=0.0))
+        if pull < 0:
+            said = f"F = {pull!r} N s pulls the body upwards: a press has a positive F"
+            warnings.warn(said, ValidityWarning, stacklevel=2)
         return cls(0.0, -numbers("F", F), dx=d)
 
     def _values(self) -> tuple[Any, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -12,10 +12,11 @@ import numpy.typing as npt
 from . import _core
 from ._check import evaluate, number, optional_number, worker_count
 from ._core import Outcome
+from ._faces import Listed, with_unit
 
 
-@dataclass(frozen=True)
-class Thresholds:
+@dataclass(frozen=True, repr=False)
+class Thresholds(Listed):
     """Where the motion on level ground changes its kind.
 
     Speeds are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2] [rad],
@@ -50,6 +51,13 @@ class Thresholds:
         Growth rate of the fall from the tip [1/s].
     """
 
+    _units: ClassVar[dict[str, str]] = {
+        "roll_over_speed": "rad/s", "contact_loss_speed": "rad/s", "contact_loss_angle": "rad",
+        "slip_speed": "rad/s", "slip_angle": "rad", "lift_off_speed": "rad/s",
+        "jam_speeds": "rad/s", "painleve_angle": "rad", "rocking_rate": "rad/s",
+        "tip_rate": "1/s",
+    }  # fmt: skip
+
     roll_over_speed: float
     contact_loss_speed: float
     contact_loss_angle: float | None
@@ -62,6 +70,13 @@ class Thresholds:
     painleve_angle: float | None
     rocking_rate: float
     tip_rate: float
+
+    def __repr__(self) -> str:
+        speeds = ", ".join(
+            f"{name} = {with_unit(getattr(self, name), 'rad/s')}"
+            for name in ("roll_over_speed", "slip_speed", "contact_loss_speed", "lift_off_speed")
+        )
+        return f"<Thresholds: {speeds}>"
 
 
 def classify(

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, fields
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 from . import _core
 from ._check import number, optional_number
 from ._core import Mode
+from ._faces import Listed, Row, brief, with_unit
 from ._fields import FieldsOnly
 from ._impulse import Impulse as Impulse
 
@@ -17,10 +19,17 @@ _NUMBERS = (
     "a", "b", "mass", "gravity", "slope", "friction", "restitution", "theta", "omega", "x",
 )  # fmt: skip
 _OPTIONAL = ("inertia", "z", "x_dot", "z_dot")
+STATE_UNITS = {
+    "theta": "rad", "omega": "rad/s", "x": "m", "z": "m", "x_dot": "m/s", "z_dot": "m/s",
+}  # fmt: skip
+SCENE_UNITS = {
+    "a": "m", "b": "m", "mass": "kg", "gravity": "m/s²", "inertia": "kg m²", "slope": "rad",
+    "friction": "", "restitution": "", **STATE_UNITS,
+}  # fmt: skip
 
 
-@dataclass(frozen=True)
-class InitialState:
+@dataclass(frozen=True, repr=False)
+class InitialState(Listed):
     """The state just after the applied impulse.
 
     Attributes
@@ -38,6 +47,10 @@ class InitialState:
         One sentence on what the blow did, what the body then does, and why.
     """
 
+    _units: ClassVar[dict[str, str]] = {
+        **STATE_UNITS, "reaction_x": "N s", "reaction_z": "N s", "free_omega": "rad/s",
+    }  # fmt: skip
+
     theta: float
     omega: float
     x: float
@@ -50,13 +63,20 @@ class InitialState:
     free_omega: float
     reason: str
 
+    def __repr__(self) -> str:
+        numbers = ", ".join(
+            f"{name} = {brief(getattr(self, name))} {unit}" for name, unit in STATE_UNITS.items()
+        )
+        return f"<InitialState {self.mode.name}: {numbers}>"
 
-@dataclass(frozen=True)
-class Scene(FieldsOnly):
+
+@dataclass(frozen=True, repr=False)
+class Scene(FieldsOnly, Listed):
     """An ellipse, its ground, its state at t = 0 and, if any, the impulse it then receives.
 
     SI units, radians; theta is clockwise positive, so that rolling forwards increases x. At
-    theta = 0 the axis ``a`` is parallel to the ground.
+    theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all that they were made
+    of is, number by number; `repr` is the call that makes an equal one.
 
     Parameters
     ----------
@@ -82,15 +102,19 @@ class Scene(FieldsOnly):
         Velocity of the centre [m/s]. On the ground the default is that of rolling, and values
         within 8 ulp of it count as rolling; in the air the default is 0.
     impulse : Impulse, optional
-        Blow received at t = 0.
+        Blow received at t = 0, along a line that meets the body: what passes beside it cannot be
+        given by touching it.
 
     Raises
     ------
     ValueError
-        If a number is out of its range, the body starts below the ground or moves into it.
+        If a number is out of its range, the body starts below the ground or moves into it, or the
+        blow misses it.
     TypeError
         If something is no number at all.
     """
+
+    _units: ClassVar[dict[str, str]] = SCENE_UNITS
 
     a: float
     b: float
@@ -130,6 +154,22 @@ class Scene(FieldsOnly):
         impulse = None if self.impulse is None else self.impulse.core
         return _core.Scene(**values, impulse=impulse)
 
+    def replace(self, **changes: Any) -> Scene:
+        """Return the scene with some of its arguments changed.
+
+        Raises
+        ------
+        TypeError
+            If a scene has no such argument.
+        ValueError
+            As of the constructor: what is kept must go with what is changed.
+        """
+        names = [field.name for field in fields(self)]
+        for name in changes:
+            if name not in names:
+                raise TypeError(f"changes must be of {', '.join(names)}, got {name}")
+        return dataclasses.replace(self, **changes)
+
     @property
     def gyration2(self) -> float:
         """Square of the radius of gyration, k^2 = I/m [m^2]."""
@@ -155,6 +195,43 @@ class Scene(FieldsOnly):
             free_omega=start.free_omega,
             reason=reason,
         )
+
+    def _changed(self) -> dict[str, Any]:
+        """What is not as it is by default; the semi-axes have no default."""
+        found = ((field, getattr(self, field.name)) for field in fields(self))
+        return {field.name: value for field, value in found if value != field.default}
+
+    def __repr__(self) -> str:
+        given = (f"{name}={value!r}" for name, value in self._changed().items())
+        return f"Scene({', '.join(given)})"
+
+    def _rows(self) -> list[Row]:
+        """What is not as it is by default, and what follows of it."""
+        told = self._changed()
+        impulse = told.pop("impulse", None)
+        rows: list[Row] = [
+            (name, with_unit(value, SCENE_UNITS[name])) for name, value in told.items()
+        ]
+        start, after = self.initial_state, ""
+        if impulse is not None:
+            rows.append(("impulse", _blow(impulse)))
+            after = f", omega = {brief(start.omega)} rad/s after the blow"
+        return [*rows, ("start", _WHERE[start.mode] + after)]
+
+
+def _blow(impulse: Impulse) -> str:
+    return (
+        f"({impulse.jx:g}, {impulse.jz:g}) N s at ({impulse.dx:g}, {impulse.dz:g}) m from the "
+        "centre"
+    )
+
+
+_WHERE = {
+    Mode.ROLLING: "on the ground, rolling",
+    Mode.SLIDING: "on the ground, sliding",
+    Mode.FLIGHT: "in the air",
+    Mode.REST: "on the ground, at rest",
+}
 
 
 def require_scene(scene: object) -> Scene:
@@ -201,6 +278,8 @@ def _what_follows(scene: Scene, start: _core.InitialState, follows: _core.Contin
         )
     if mode is start.state.mode or mode is Mode.REST:
         return f"the body {_DOES[mode]}"
+    if mode is Mode.SLIDING and math.isinf(scene.friction):
+        return "the ground would have to pull: the body slides, not pressed (infinite friction)"
     if mode is Mode.SLIDING:
         return f"friction {scene.friction:g} cannot hold the contact: the body slides"
     return "the ground would have to pull: the body flies"

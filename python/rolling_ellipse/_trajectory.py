@@ -16,7 +16,7 @@ from . import _core
 from ._at import Sample, sample_at
 from ._check import FloatArray, array, number
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
-from ._events import Event, event
+from ._events import Event, Events, event
 from ._fields import FieldsOnly
 from ._samples import (
     ContactSamples,
@@ -114,7 +114,8 @@ class Trajectory(FieldsOnly):
     contact : ContactSamples or None
         Of the model "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the samples.
     events : tuple of Event
-        Changes of mode and impacts of the model "contact", in the order of time.
+        Changes of mode and impacts of the model "contact", in the order of time; it prints as a
+        table and has `to_dataframe`.
     kept_events : tuple of Event, or None
         Those that a file brought along.
     stats : dict
@@ -286,10 +287,10 @@ class Trajectory(FieldsOnly):
         return np.full(self.t.shape, mode, dtype=np.int8)
 
     @cached_property
-    def events(self) -> tuple[Event, ...]:
+    def events(self) -> Events:
         if self.kept_events is not None:
-            return self.kept_events
-        return tuple(event(self.scene.mass, found) for found in self._solution.events)
+            return Events(self.kept_events)
+        return Events(event(self.scene, found) for found in self._solution.events)
 
     @property
     def success(self) -> bool:

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double energy_limit = 1e100;  // of a kinetic energy beside m g times the long semi-axis
 constexpr double aspect_limit = 1e3;
+constexpr double blow_margin = 1e-12;  // of the long semi-axis, for the rounding of a point on it
 
 // The inertia of a body, in either form, beside that of its mass at the end of the long semi-axis:
 // below the least share k^2 is lost beside h^2 in D.
@@ -23,6 +24,25 @@ void require_inertia(const std::string& name, const std::string& kind, double va
     if (!(share >= least && share <= most)) {
         refuse(name, "between 1e-15 and 1e30 times " + unit_name, value);
     }
+}
+
+// A blow touches the body where its line of action enters it: the line must not pass it by. Its
+// distance from the centre is that of two parallel tangents at most, physics (1) across the line.
+void require_reach(const Scene& scene, const Impulse& blow) {
+    const double size = std::hypot(blow.jx, blow.jz);
+    if (size == 0) return;
+    const double across_x = -blow.jz / size;
+    const double across_z = blow.jx / size;
+    const double s = std::sin(scene.theta);
+    const double c = std::cos(scene.theta);
+    const double reach = std::hypot(scene.a * (across_x * c - across_z * s),
+                                    scene.b * (across_x * s + across_z * c));
+    const double distance = std::abs(blow.dx * across_x + blow.dz * across_z);
+    if (distance <= reach + blow_margin * std::max(scene.a, scene.b)) return;
+    refuse("impulse",
+           "along a line that meets the body, at most " + text(reach) +
+               " [m] from its centre at this angle and direction",
+           distance);
 }
 
 }  // namespace
@@ -87,7 +107,11 @@ void validate(const Scene& scene) {
                     scene.mass * square(std::max(scene.a, scene.b)), "mass max(a, b)^2");
     validate(scene.body());
     if (!(std::abs(scene.slope) < half_pi)) {
-        refuse("slope", "an angle [rad] strictly between -pi/2 and pi/2", scene.slope);
+        const bool degrees = std::abs(scene.slope) <= 90;
+        refuse("slope",
+               std::string("an angle [rad] strictly between -pi/2 and pi/2") +
+                   (degrees ? " (degrees? times pi/180)" : ""),
+               scene.slope);
     }
     validate_friction(scene.friction);
     if (!(scene.restitution >= 0 && scene.restitution <= 1)) {
@@ -99,7 +123,10 @@ void validate(const Scene& scene) {
     if (scene.x_dot) require_finite("x_dot", " [m/s]", *scene.x_dot);
     if (scene.z_dot) require_finite("z_dot", " [m/s]", *scene.z_dot);
     validate_velocity(scene.body(), scene.x_dot.value_or(0.0), scene.z_dot.value_or(0.0));
-    if (scene.impulse) validate(*scene.impulse);
+    if (scene.impulse) {
+        validate(*scene.impulse);
+        require_reach(scene, *scene.impulse);
+    }
     state_before_impulse(scene);
 }
 

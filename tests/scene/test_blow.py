@@ -9,7 +9,7 @@ import numpy as np
 import oracles.geometry
 import pytest
 from oracles.numbers import DIGITS, EPS
-from rolling_ellipse import Impulse, Mode, Scene
+from rolling_ellipse import Impulse, Mode, Scene, ValidityWarning
 
 MASS = 3.0
 FRICTIONS = [0.0, 0.05, 0.2, 0.6, 1.0, 5.0, math.inf]
@@ -82,14 +82,18 @@ def reaction_in_small_steps(contact: Contact, friction: float, steps: int) -> tu
 
 
 def random_scenes(count: int, seed: int = 5) -> list[Scene]:
-    """Rolling or resting bodies of many shapes, struck anywhere."""
+    """Rolling or resting bodies of many shapes, struck at any point of them, any way."""
     rng = np.random.default_rng(seed)
     scenes = []
     for friction in itertools.islice(itertools.cycle(FRICTIONS), count):
         a, b = (10 ** rng.uniform(-0.7, 0.7, 2)).tolist()
-        jx, jz, dx, dz = rng.normal(size=4).tolist()
-        impulse = Impulse(6 * jx, 6 * jz, dx=a * dx, dz=b * dz)
+        jx, jz = rng.normal(size=2).tolist()
         theta, omega = rng.uniform(-7, 7), rng.choice([0.0, 1.0]) * rng.normal()
+        place, share = rng.uniform(-math.pi, math.pi), math.sqrt(rng.uniform())
+        along_a, along_b = a * share * math.cos(place), b * share * math.sin(place)
+        dx = along_a * math.cos(theta) + along_b * math.sin(theta)
+        dz = along_b * math.cos(theta) - along_a * math.sin(theta)
+        impulse = Impulse(6 * jx, 6 * jz, dx=dx, dz=dz)
         inertia = MASS * max(a, b) ** 2 * rng.uniform(0.05, 0.6)
         scenes.append(
             Scene(
@@ -291,6 +295,49 @@ def test_unlimited_friction_takes_a_given_slip_at_once() -> None:
     assert found.x_dot == found.omega * 1.0
     assert found.reaction_x == pytest.approx(2 * (2.0 - 4.5), rel=8 * EPS)
     assert found.reaction_z == 0
+
+
+def test_a_press_that_pulls_is_said_so() -> None:
+    with pytest.warns(ValidityWarning, match=r"^F = -48\.0 N s pulls"):
+        assert Impulse.press(-48.0, 1.5) == Impulse(0.0, 48.0, dx=1.5)
+    assert Impulse.press(0.0, 1.5).jz == Impulse.press(48.0, -1.5).dz == 0  # and these are not
+
+
+# a rounding of the point, or of the angle that it was computed from, and a millionth beyond
+MARGINS = ((1 - 1e-6, True), (1.0, True), (1 + 1e-6, False))
+
+
+@pytest.mark.parametrize(("share", "meets"), MARGINS)
+@pytest.mark.parametrize("axes", [(2.0, 1.0), (1.0, 1.0), (1e-3, 1.0), (1.0, 1e-3), (3e-20, 1e-20)])
+@pytest.mark.parametrize("theta", [0.0, 0.5, -2.1, math.pi / 2, 40.0])
+def test_a_blow_beside_the_body_is_refused(
+    axes: tuple[float, float], theta: float, share: float, meets: bool
+) -> None:
+    """The line of action through an end of the body as seen along the blow: by brute force, the
+    farthest of the points of the boundary. They are 3.1e-4 apart in the angle t of (a cos t,
+    b sin t), over which the extent goes as a cosine: short by (1.6e-4)^2/2 = 1.2e-8 at most."""
+    a, b = axes
+    rim = np.linspace(0.0, 2 * math.pi, 20_001)
+    u, v = a * np.cos(rim), b * np.sin(rim)
+    x, z = u * math.cos(theta) + v * math.sin(theta), v * math.cos(theta) - u * math.sin(theta)
+    for along in (0.0, 0.3, math.pi / 2, -2.0):
+        jx, jz = math.sin(along), math.cos(along)
+        end = int(np.argmax(x * jz - z * jx))
+        dx, dz = (share * float(each[end]) for each in (x, z))
+        for size in (1e-3, -1e3):  # either way along the line, and anywhere on it
+            blow = Impulse(size * jx, size * jz, dx=dx + 0.7 * a * jx, dz=dz + 0.7 * a * jz)
+            if meets:
+                assert Scene(a, b, theta=theta, impulse=blow).impulse == blow
+            else:
+                with pytest.raises(ValueError, match=r"^impulse must be along a line that meets"):
+                    Scene(a, b, theta=theta, impulse=blow)
+
+
+def test_no_blow_is_nowhere() -> None:
+    assert Scene(2.0, 1.0, impulse=Impulse(dx=5.0)).initial_state.omega == 0
+    for size in (5e-324, 1e50):  # of whatever size, it has a line
+        with pytest.raises(ValueError, match=r"at most 2\.0 \[m\] from its centre .*, got 5\.0$"):
+            Scene(2.0, 1.0, impulse=Impulse(0.0, size, dx=5.0))
 
 
 def test_pulled_up_it_leaves_the_ground() -> None:

@@ -223,6 +223,59 @@ def test_scene_can_be_changed_by_replacing_and_carried_by_pickling() -> None:
     assert pickle.loads(pickle.dumps(struck)).initial_state == struck.initial_state
 
 
+@pytest.mark.parametrize("name", ["initial_state", "core", "gyration2"])
+def test_what_a_scene_keeps_beside_its_numbers_does_not_matter(name: str) -> None:
+    """Nor does the sign of zero, as it does not for numbers; what is left out is not what it means.
+
+    A hash that does not go with `==` would lose scenes in sets.
+    """
+    one, other = scene(omega=3.0, x=0.0), scene(omega=3.0, x=-0.0)
+    getattr(one, name)
+    assert one == other and hash(one) == hash(other)
+    assert scene(inertia=1.25) != scene() and scene(z=1.0) != scene()
+    assert one.initial_state == other.initial_state
+
+
+def test_replace() -> None:
+    struck = scene(omega=1.0, friction=0.3, impulse=Impulse.press(48.0, 1.5))
+    changed = struck.replace(omega=2.0, impulse=None)
+    assert changed == scene(omega=2.0, friction=0.3) and struck.omega == 1.0
+    assert struck.replace() == struck
+    with pytest.raises(TypeError, match=r"^changes must be of a, b, mass, .*impulse, got omga$"):
+        struck.replace(omga=2.0)
+    assert_refused(ValueError, "omega", "nan", struck.replace, omega=NAN)
+    assert_refused(TypeError, "omega", "'2'", struck.replace, omega="2")
+
+
+def test_replace_refuses_what_no_longer_goes_together() -> None:
+    """A height for one angle or shape is under the ground for another; a blow may miss."""
+    touching = scene(z=1.0)
+    assert_refused(ValueError, "z", "1.0", touching.replace, theta=0.5)
+    assert_refused(ValueError, "z", "1.0", touching.replace, b=1.5)
+    assert touching.replace(a=3.0).initial_state.z == 1.0
+    struck = scene(impulse=Impulse.press(48.0, 1.5))
+    assert_refused(ValueError, "impulse", "1.5", struck.replace, a=1.4)
+
+
+@pytest.mark.parametrize(("slope", "asked"), [(30.0, True), (-90.0, True), (1000.0, False)])
+def test_a_slope_in_degrees_is_asked_about(slope: float, asked: bool) -> None:
+    with pytest.raises(ValueError, match=r"^slope must .*, got -?\d+\.0$") as caught:
+        scene(slope=slope)
+    assert ("degrees?" in str(caught.value)) == asked
+
+
+@pytest.mark.parametrize("impulse", [None, Impulse()])
+def test_infinite_friction_holds_whatever_can_be_held(impulse: Impulse | None) -> None:
+    """Flat side forwards at 0.9 rad the ground would have to pull, and the limit of slides begins;
+    with as little friction as 3 it is friction that ends rolling."""
+    given: dict[str, Any] = {"theta": 0.9, "omega": 3.0, "impulse": impulse}
+    limit = scene(**given).initial_state
+    assert limit.mode is Mode.SLIDING
+    assert "pull" in limit.reason and "cannot hold" not in limit.reason
+    held = scene(**given, friction=0.01).initial_state
+    assert held.mode is Mode.SLIDING and "friction 0.01 cannot hold" in held.reason
+
+
 def test_gyration2() -> None:
     assert scene().gyration2 == 1.25  # uniform disc, report eq 12
     assert scene(mass=4.0).gyration2 == 1.25

@@ -40,7 +40,11 @@ def make_scene(draw: Draw) -> Iterator[Line]:
     code = scenes.scene(draw, mutate=0.6).code
     yield Line(code, "scene", "Scene")
     yield Line("scene.initial_state", does="Scene.initial_state")
-    yield Line("(scene.gyration2, repr(scene), hash(scene))", does="Scene")
+    yield Line("(scene.gyration2, hash(scene), str(scene), scene._repr_html_())", does="Scene")
+    yield Line("eval('rl.' + repr(scene).replace('Impulse', 'rl.Impulse')) == scene", does="Scene")
+    name = draw.pick("a", "theta", "z", "friction", "omga")
+    value = text(draw.between(-3, 3))
+    yield Line(call("scene.replace", **draw.mutated({name: value})), does="Scene.replace")
     if draw.chance(0.2):
         protocol = draw.random.randrange(6)
         yield Line(f"pickle.loads(pickle.dumps(scene, {protocol})) == scene", does="pickle")

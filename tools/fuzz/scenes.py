@@ -154,9 +154,14 @@ def impulse(draw: Draw, of: Body) -> str:
     def component(unit: float) -> str:
         return text(unit * draw.pick(0.0, draw.between(-3, 3), draw.between(-1, 1) * 1e3))
 
+    def place() -> str:
+        """Mostly within the body, whatever its angle."""
+        inside = min(of.a, of.b) * draw.between(-0.7, 0.7)
+        return text(inside) if draw.chance(0.8) else component(of.length)
+
     if draw.chance(0.4):
-        return call("rl.Impulse.press", text(scale * draw.between(0, 5)), component(of.length))
-    offsets = {name: component(of.length) for name in ("dx", "dz") if draw.chance(0.6)}
+        return call("rl.Impulse.press", text(scale * draw.between(0, 5)), place())
+    offsets = {name: place() for name in ("dx", "dz") if draw.chance(0.6)}
     if not of.mild and draw.chance(0.3):
         offsets["dx"] = text(draw.power(-300, 300))
     return call("rl.Impulse", component(scale), component(scale), **offsets)

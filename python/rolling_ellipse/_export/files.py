@@ -15,8 +15,9 @@ import numpy.typing as npt
 
 from .._check import choice, file_name
 from .._core import EventKind
-from .._events import Event, as_numbers, from_numbers
+from .._events import Event, Events, as_numbers, from_numbers
 from .._samples import ContactSamples
+from .._scene import Scene
 from .._settings import METHODS, MODELS, Settings
 from .about import field_names, parsed, require_names, restored, scene_of
 from .atomic import replacing
@@ -117,7 +118,7 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
         scene=scene,
         settings=Settings(**settings),
         status=Status[choice("status", about["status"], tuple(Status.__members__))],
-        kept_events=tuple(_event(scene.mass, numbers) for numbers in about["events"]),
+        kept_events=Events(_event(scene, numbers) for numbers in about["events"]),
     )
     _require_consistent(trajectory)
     again = _about(trajectory)
@@ -145,13 +146,13 @@ def _require_values(name: str, values: npt.NDArray[Any]) -> None:
         raise ValueError(f"{name} must be finite, got {float(values[~np.isfinite(values)][0])!r}")
 
 
-def _event(mass: float, numbers: Any) -> Event:
+def _event(scene: Scene, numbers: Any) -> Event:
     t, kind, before, after = numbers
     choice("kind", kind, tuple(EventKind.__members__))
     for value in (t, *before[:-1], *after[:-1]):
         if not (isinstance(value, float) and math.isfinite(value)):
             raise ValueError(f"events must hold finite numbers, got {value!r}")
-    return from_numbers(mass, numbers)
+    return from_numbers(scene, numbers)
 
 
 def _require_consistent(trajectory: Trajectory) -> None:

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .._core import Mode
-from .._scene import Scene
+from .._scene import STATE_UNITS, Scene
 
 if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
+    from .._events import Events
     from .._trajectory import Trajectory
 
 
@@ -99,6 +100,29 @@ def dataset(trajectory: Trajectory) -> Dataset:
     }
     found: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
     return found
+
+
+def events_dataframe(events: Events) -> DataFrame:
+    """Return events as a pandas DataFrame (see `Events.to_dataframe`)."""
+    pandas = required("pandas", "to_dataframe")
+    units = {"t": "s"}
+    columns: dict[str, Any] = {
+        "t": np.array([found.t for found in events], float),
+        "kind": [found.kind.name for found in events],
+    }
+    for when in ("before", "after"):
+        states = [getattr(found, f"state_{when}") for found in events]
+        for name, unit in STATE_UNITS.items():
+            columns[f"{name}_{when}"] = np.array([getattr(each, name) for each in states], float)
+            units[f"{name}_{when}"] = unit
+        columns[f"mode_{when}"] = [each.mode.name for each in states]
+    for name in ("reaction_x", "reaction_z"):
+        columns[name] = np.array([getattr(found.state_after, name) for found in events], float)
+        units[name] = "N s"
+    columns["reason"] = [found.state_after.reason for found in events]
+    frame: DataFrame = pandas.DataFrame(columns)
+    frame.attrs = {"units": {name: units.get(name, "1") for name in columns}}
+    return frame
 
 
 def required(package: str, method: str) -> Any:

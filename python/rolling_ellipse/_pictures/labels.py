@@ -7,16 +7,11 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 from .._check import shown
-from .._scene import Impulse, Scene
+from .._scene import SCENE_UNITS, Impulse, Scene
 
 if TYPE_CHECKING:
     from .._trajectory import Trajectory
 
-SCENE_UNITS = {
-    "a": "m", "b": "m", "mass": "kg", "gravity": "m/s²", "inertia": "kg m²", "slope": "rad",
-    "friction": "", "restitution": "", "theta": "rad", "omega": "rad/s", "x": "m", "z": "m",
-    "x_dot": "m/s", "z_dot": "m/s",
-}  # fmt: skip
 MOST_FACTS = 3  # in one label; more would be longer than a small picture is wide
 
 

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from .._check import number, shown
+from .._faces import Row, html_table
 from .._scene import Scene
 from .run import ERRORS, FIGURES, Run
 from .truth import Reference
@@ -202,6 +203,17 @@ class WorkPrecision:
             f"<WorkPrecision: ways {len(self.names)}, runs {len(self.runs)}, answers {answers}, "
             f"to t = {ends} s>"
         )
+
+    def _repr_html_(self) -> str:
+        rows: list[Row] = []
+        for name in self.names:
+            answers = [run for run in self.of() if run.name == name and run.completed]
+            if answers:
+                error, time = (min(run.value(of) for run in answers) for of in ("final", "time"))
+                rows.append((name, f"{error:.2g}", f"{1e6 * time:.3g} µs"))
+            else:
+                rows.append((name, "no answer", ""))
+        return html_table(repr(self)[1:-1], rows, ("way", "least final error", "least time"))
 
     def _able(self, at: float, x: str, y: str, t_end: float | None) -> list[Run]:
         if require_quantity("x", x) not in ERRORS:

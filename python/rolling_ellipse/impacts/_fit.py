@@ -6,12 +6,13 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from .. import geometry
 from .._check import FloatArray, choice, finite, number, require, uniform_disc
+from .._faces import Listed, Row, brief, with_unit
 from ._collide import collide, kinetic_speed
 
 _MEASURES: dict[str, Callable[[FloatArray], float]] = {
@@ -22,8 +23,8 @@ _INTERVALS = 40  # of the first grid, over the whole range of either coefficient
 _REACH, _FINER, _REFINEMENTS = 2, 4, 4  # old steps to either side, in steps 1/4 as long, 4 times
 
 
-@dataclass(frozen=True)
-class FittedImpacts:
+@dataclass(frozen=True, repr=False, eq=False)
+class FittedImpacts(Listed):
     """One coefficient of restitution and one of friction for all impacts of a series.
 
     Attributes
@@ -38,6 +39,8 @@ class FittedImpacts:
         Median and root mean square of `errors` [m/s].
     """
 
+    _units: ClassVar[dict[str, str]] = {"errors": "m/s"}
+
     law: str
     restitution: float
     friction: float
@@ -50,6 +53,31 @@ class FittedImpacts:
     @property
     def rms_error(self) -> float:
         return _MEASURES["rms"](self.errors)
+
+    def _rows(self) -> list[Row]:
+        measures = ("median_error", "rms_error")
+        return [
+            *super()._rows(), *((name, with_unit(getattr(self, name), "m/s")) for name in measures)
+        ]  # fmt: skip
+
+    def __repr__(self) -> str:
+        return (
+            f"<FittedImpacts {self.law}: restitution = {brief(self.restitution)}, "
+            f"friction = {brief(self.friction)}, {self.errors.size} impacts, "
+            f"median error {brief(self.median_error)} m/s>"
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Whether everything is the same, the errors bit by bit."""
+        if not isinstance(other, FittedImpacts):
+            return NotImplemented
+        return self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> tuple[Any, ...]:
+        return self.law, self.restitution, self.friction, self.errors.tobytes()
 
 
 def fit(

@@ -1,0 +1,92 @@
+"""How values show themselves: as tables of text, and of HTML that any theme may colour."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterable, Sequence
+from dataclasses import fields
+from html import escape
+from typing import Any, ClassVar
+
+import numpy as np
+
+from .._core import EventKind, Mode, Outcome, Validity
+
+Row = tuple[str, ...]
+
+
+def _dotted(value: enum.Enum) -> str:
+    return f"{type(value).__name__}.{value.name}"
+
+
+def _formatted(value: enum.Enum, spec: str) -> str:
+    """A code where a format of numbers is given, ``f"{mode:d}"``; else the name."""
+    return format(value.value, spec) if spec[-1:] in tuple("bdoxX") else format(str(value), spec)
+
+
+# Codes (IntEnum) print as bare numbers by default, and all of them as <Kind.NAME: number> in lists.
+for _kind in (EventKind, Mode, Outcome, Validity):
+    for _name, _face in {"__repr__": _dotted, "__str__": _dotted, "__format__": _formatted}.items():
+        setattr(_kind, _name, _face)
+
+
+def brief(value: Any) -> str:
+    """Return a value in some six digits; enums by their names, arrays by their sizes."""
+    if isinstance(value, enum.Enum):
+        return value.name
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, np.ndarray):
+        return f"{value.size} values"
+    if isinstance(value, tuple):
+        return ", ".join(map(_range, value)) or "none"
+    return "none" if value is None else str(value)
+
+
+def _range(ends: Any) -> str:
+    return " to ".join(map(brief, ends)) if isinstance(ends, tuple) else brief(ends)
+
+
+def with_unit(value: Any, unit: str) -> str:
+    """Return `brief` of a value and its unit; what does not exist has none."""
+    missing = value is None or (isinstance(value, tuple) and not value)
+    return brief(value) if missing else f"{brief(value)} {unit}".rstrip()
+
+
+def text_table(rows: Sequence[Row]) -> str:
+    """Return rows of equal length with their columns aligned."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ("  ".join(map(str.ljust, row, widths)) for row in rows)
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def html_table(caption: str, rows: Iterable[Row], head: Row = ()) -> str:
+    """Return a table without colours of its own; the first cell of a row names it.
+
+    All text is escaped.
+    """
+    parts = ["<table>", f"<caption>{escape(caption)}</caption>"]
+    if head:
+        parts.append("<thead><tr>" + "".join(f"<th>{escape(cell)}</th>" for cell in head))
+        parts.append("</tr></thead>")
+    parts.append("<tbody>")
+    for name, *cells in rows:
+        body = "".join(f'<td style="text-align:left">{escape(cell)}</td>' for cell in cells)
+        parts.append(f'<tr><th style="text-align:left">{escape(name)}</th>{body}</tr>')
+    return "".join([*parts, "</tbody></table>"])
+
+
+class Listed:
+    """A dataclass that prints as a table of its fields: names, values and units."""
+
+    _units: ClassVar[dict[str, str]] = {}
+
+    def _rows(self) -> list[Row]:
+        found = ((field.name, getattr(self, field.name)) for field in fields(self))  # type: ignore[arg-type]
+        return [(name, with_unit(value, self._units.get(name, ""))) for name, value in found]
+
+    def __str__(self) -> str:
+        return f"{type(self).__name__}\n{text_table(self._rows())}"
+
+    def _repr_html_(self) -> str:
+        return html_table(type(self).__name__, self._rows())

@@ -1,0 +1,227 @@
+"""What objects print as: names for codes, tables with units, HTML without colours of its own."""
+
+import copy
+import pickle
+import re
+from collections.abc import Callable
+from html.parser import HTMLParser
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from rolling_ellipse._events import Events
+
+SCENES = {name: getattr(rl.scenes, name) for name in rl.scenes.__all__}
+WEIRD = rl.Scene(
+    3e-20, 2e-17, mass=1e30, gravity=1e-30, inertia=1e-5, slope=-1.5, friction=0.0, theta=1e50,
+    omega=-0.0, x=-1e50,
+)  # fmt: skip
+
+
+def fitted() -> rl.impacts.FittedImpacts:
+    before = [[0.3, 0.5], [1.0, 0.0], [-2.0, -1.0], [0.0, 0.5]]
+    after = rl.impacts.collide(*before, a=2.0, b=1.0, restitution=0.5, friction=0.1)
+    return rl.impacts.fit(before, after, a=2.0, b=1.0)
+
+
+def sliding() -> Events:
+    """54 events of half a minute downhill."""
+    return rl.simulate(rl.scenes.slope, 30.0).events
+
+
+LISTED: dict[str, Callable[[], Any]] = {
+    "scene": lambda: rl.scenes.report,
+    "weird scene": lambda: WEIRD,
+    "state": lambda: rl.scenes.report.initial_state,
+    "certificate": lambda: rl.certify(rl.scenes.jump),
+    "no proof": lambda: rl.certify(rl.scenes.slope),
+    "thresholds": lambda: rl.thresholds(2.0, 1.0, friction=3.0),
+    "thresholds of a circle": lambda: rl.thresholds(1.0, 1.0),
+    "fit": fitted,
+}
+each_listed = pytest.mark.parametrize("make", LISTED.values(), ids=LISTED)
+
+
+class Reader(HTMLParser):
+    """The cells of HTML whose elements are closed in order; no colours are set."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.cells: list[str] = []
+        self.feed(html)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.open.append(tag)
+        assert not any("color" in (value or "").replace("currentColor", "") for _, value in attrs)
+        if tag in ("td", "th"):
+            self.cells.append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open[-1] in ("td", "th"):
+            self.cells[-1] += data
+
+
+# --------------------------------------------------------------------------------------- codes
+
+
+@pytest.mark.parametrize("kind", [rl.Outcome, rl.Mode, rl.EventKind, rl.Validity])
+def test_codes_print_their_names(kind: Any) -> None:
+    for each in kind:
+        name = f"{kind.__name__}.{each.name}"
+        assert str(each) == repr(each) == f"{each}" == name and str([each]) == f"[{name}]"
+        assert f"{each:>30}" == name.rjust(30)
+        assert eval(repr(each), vars(rl)) is each
+    assert f"{rl.Outcome.ROLLS_OVER:d}" == "2" and int(rl.Outcome.ROLLS_OVER) == 2
+
+
+# -------------------------------------------------------------------------------------- tables
+
+
+@each_listed
+def test_text_and_html_say_the_same(make: Callable[[], Any]) -> None:
+    found = make()
+    html = Reader(found._repr_html_())
+    lines = str(found).splitlines()
+    assert lines[0] == type(found).__name__ and len(lines) == 1 + len(html.cells) // 2
+    for line, name, value in zip(lines[1:], html.cells[::2], html.cells[1::2], strict=True):
+        assert re.fullmatch(rf"{re.escape(name)} +{re.escape(value)}", line)
+
+
+@each_listed
+def test_a_repr_is_one_line(make: Callable[[], Any]) -> None:
+    text = repr(make())
+    assert "\n" not in text and len(text) < 420 and " object at 0x" not in text
+
+
+@pytest.mark.parametrize("scene", [*SCENES.values(), WEIRD])
+def test_the_repr_of_a_scene_makes_it(scene: rl.Scene) -> None:
+    assert eval(repr(scene), vars(rl)) == scene
+
+
+def test_a_scene_shows_what_was_said_of_it_and_what_follows() -> None:
+    assert repr(rl.scenes.circle) == "Scene(a=1.0, b=1.0, omega=2.0)"
+    assert str(rl.scenes.report).splitlines()[1:] == [
+        "a        2 m",
+        "b        1 m",
+        "mass     10 kg",
+        "impulse  (0, -48) N s at (1.5, 0) m from the centre",
+        "start    on the ground, rolling, omega = 3.2 rad/s after the blow",
+    ]
+    starts = {
+        "drop": "in the air", "slip": "on the ground, sliding", "rocking": "on the ground, rolling"
+    }  # fmt: skip
+    for name, start in starts.items():
+        assert str(SCENES[name]).endswith(f"  {start}")
+    assert str(rl.Scene(2.0, 1.0)).endswith("  on the ground, at rest")
+    assert "restitution  1\n" in str(rl.scenes.bounce)
+
+
+def test_values_come_with_their_units() -> None:
+    found = rl.thresholds(2.0, 1.0, gyration2=0.0435, friction=0.505)  # one that may jam
+    lines = dict(line.split(None, 1) for line in str(found).splitlines()[1:])
+    assert lines["roll_over_speed"] == f"{found.roll_over_speed:.6g} rad/s"
+    assert lines["tip_rate"] == f"{found.tip_rate:.6g} 1/s"
+    assert lines["friction_to_roll_over"] == f"{found.friction_to_roll_over:.6g}"
+    (low, high), *_ = found.jam_speeds
+    assert lines["jam_speeds"].startswith(f"{low:.6g} to {high:.6g}")
+    assert lines["jam_speeds"].endswith("rad/s")
+    circle = rl.thresholds(1.0, 1.0)
+    assert re.search(r"^contact_loss_angle +none$", str(circle), re.MULTILINE)
+    assert re.search(r"^jam_speeds +none$", str(circle), re.MULTILINE)
+
+
+def test_html_is_escaped() -> None:
+    found = rl.Certificate(rl.Validity.VALID, 1.0, 0.0, None, None, None, '<b>&"bold"</b>')
+    html = found._repr_html_()
+    assert "<b>" not in html and Reader(html).cells[-1] == '<b>&"bold"</b>'
+
+
+# -------------------------------------------------------------------------------------- events
+
+
+def test_events_are_a_tuple_that_prints_as_a_table() -> None:
+    events = sliding()
+    assert isinstance(events, tuple) and type(events) is Events and len(events) == 54
+    assert events == tuple(events) and hash(events) == hash(tuple(events))
+    lines = repr(events).splitlines()
+    assert lines[0] == "54 events"
+    assert lines[1].split("  ")[0] == "t [s]" and lines[1].endswith("what changes")
+    assert len(lines) == 2 + 12 + 1 + 4 and len(repr(events)) < 2500
+    assert lines[14].split() == ["…", "and", "38", "more"]
+    for line, event in zip(lines[2:14] + lines[15:], events[:12] + events[-4:], strict=True):
+        t, kind, theta, x, *_ = line.split()
+        assert kind == event.kind.name and float(t) == pytest.approx(event.t, rel=1e-8)
+        assert float(theta) == pytest.approx(event.state_after.theta, rel=1e-5)
+        assert float(x) == pytest.approx(event.state_after.x, rel=1e-5)
+        before, after = event.state_before.mode.name, event.state_after.mode.name
+        assert f"{before} → {after}" in line
+
+
+def test_a_row_says_what_an_impact_did() -> None:
+    hit = next(each for each in sliding() if each.kind is rl.EventKind.IMPACT)
+    row = repr(hit)
+    assert row.startswith(f"<Event IMPACT at t = {hit.t:.9g} s, theta = ")
+    after = hit.state_after
+    assert row.endswith(f", {after.reaction_x:.4g} N s along, {after.reaction_z:.4g} N s up>")
+
+
+@pytest.mark.parametrize(("count", "rows"), [(0, 0), (1, 1), (16, 16), (17, 17), (18, 17)])
+def test_rows_are_left_out_where_that_makes_it_shorter(count: int, rows: int) -> None:
+    events = sliding()[:count]
+    assert type(events) is Events
+    cells = Reader(events._repr_html_()).cells
+    assert len(cells) == 5 + 5 * rows
+    assert (f"and {count - 16} more" in cells) == (count == 18)
+    if count == 0:
+        assert repr(events) == "no events"
+    if count == 1:
+        assert repr(events).splitlines()[0] == "1 event"
+
+
+def test_parts_and_copies_of_events_are_events() -> None:
+    events = sliding()
+    assert type(events[3:9:2]) is Events and events[3:9:2] == tuple(events)[3:9:2]
+    assert events[-1] is tuple(events)[-1]
+    for again in (copy.copy(events), copy.deepcopy(events), pickle.loads(pickle.dumps(events))):
+        assert type(again) is Events and again == events
+
+
+def test_events_as_a_dataframe() -> None:
+    events = sliding()
+    frame = events.to_dataframe()
+    assert list(frame["kind"]) == [each.kind.name for each in events]
+    for name in ("theta", "omega", "x", "z", "x_dot", "z_dot"):
+        for when in ("before", "after"):
+            values = [getattr(getattr(each, f"state_{when}"), name) for each in events]
+            assert np.array_equal(frame[f"{name}_{when}"], values)
+    assert list(frame["mode_after"]) == [each.state_after.mode.name for each in events]
+    assert np.array_equal(frame["reaction_z"], [each.state_after.reaction_z for each in events])
+    units = frame.attrs["units"]
+    assert set(units) == set(frame.columns)
+    assert (units["t"], units["omega_before"], units["reaction_x"]) == ("s", "rad/s", "N s")
+    none = Events().to_dataframe()
+    assert list(none.columns) == list(frame.columns) and len(none) == 0
+    assert none["t"].dtype == frame["t"].dtype == float
+
+
+def test_without_pandas_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "pandas", None)
+    with pytest.raises(ImportError, match=r"to_dataframe needs pandas: pip install"):
+        Events().to_dataframe()
+
+
+def test_infinite_friction_is_not_said_to_fail() -> None:
+    """The slip before a lift-off is the limit of infinite friction."""
+    events = rl.simulate(rl.Scene(2.0, 1.0, omega=5.2), 1.0).events
+    kinds = [each.kind for each in events]
+    assert kinds[:2] == [rl.EventKind.SLIP, rl.EventKind.LIFT_OFF]
+    assert "pull" in events[0].state_after.reason
+    limited = rl.simulate(rl.scenes.jump, 1.0).events[0]
+    assert "friction cannot hold" in limited.state_after.reason
