@@ -17,6 +17,7 @@ from ._at import Sample, sample_at
 from ._check import FloatArray, array, number
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
 from ._events import Event, Events, event
+from ._faces.motion import motion_html
 from ._fields import FieldsOnly
 from ._samples import (
     ContactSamples,
@@ -71,6 +72,10 @@ def _touching(name: str) -> cached_property[FloatArray]:
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory(FieldsOnly):
     """A motion sampled at n times. Arrays are float64 and read-only, time is the first axis.
+
+    Two are equal if the same was asked for (scene, settings, start, times) and the same came of it,
+    the samples and events bit by bit: so are those that were saved and loaded, pickled or simulated
+    again. How long it took and what is computed when asked for does not matter.
 
     Attributes
     ----------
@@ -520,6 +525,34 @@ class Trajectory(FieldsOnly):
         from ._export.files import read
 
         return read(cls, path)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Trajectory):
+            return NotImplemented
+        return self is other or (
+            self._facts() == other._facts()
+            and self._bytes() == other._bytes()
+            and self.events == other.events
+        )
+
+    def __hash__(self) -> int:
+        return hash(self._facts())
+
+    def _facts(self) -> tuple[Any, ...]:
+        """What was asked for and how it ended, without arrays."""
+        return (
+            self.scene, self.settings, self.span, self.model, self.method, self.status,
+            self.message, self.reason, self.valid_until, self.t_end, self.t.shape,
+        )  # fmt: skip
+
+    def _bytes(self) -> list[bytes | None]:
+        """The samples and the start, bit by bit."""
+        groups = ((self.t, self.theta, self.omega, self.x), self.coordinates, self.start)
+        arrays = [group or (None,) for group in (*groups, self.contact)]
+        return [None if each is None else each.tobytes() for group in arrays for each in group]
+
+    def _repr_html_(self) -> str:
+        return motion_html(self)
 
     def __repr__(self) -> str:
         if self.t.size == 0:

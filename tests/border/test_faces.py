@@ -225,3 +225,79 @@ def test_infinite_friction_is_not_said_to_fail() -> None:
     assert "pull" in events[0].state_after.reason
     limited = rl.simulate(rl.scenes.jump, 1.0).events[0]
     assert "friction cannot hold" in limited.state_after.reason
+
+
+# ------------------------------------------------------------------------------------- motions
+
+MOTIONS = {
+    **SCENES,
+    "steep": rl.Scene(2.0, 1.0, slope=1.4, friction=0.8, omega=3.0),
+    "far": rl.Scene(2.0, 1.0, omega=3.2, x=1e9),
+    "high": rl.Scene(2.0, 1.0, z=1e5, omega=3.2, x_dot=5.0),
+    "a needle": rl.Scene(1e-3, 1.0, theta=1.0, omega=3.0),
+    "uphill": rl.Scene(1.0, 2.0, slope=-0.3, omega=3.0),
+}
+
+
+def drawn(motion: rl.Trajectory) -> tuple[list[float], list[tuple[float, ...]], list[float]]:
+    """Width and height, (x, y, turn in degrees) of the bodies, and their half-axes."""
+    html = motion._repr_html_()
+    Reader(html)
+    view = re.search(r'viewBox="0 0 (\S+) (\S+)"', html)
+    ellipse = re.search(r'<ellipse rx="(\S+)" ry="(\S+)"', html)
+    assert view and ellipse
+    places = re.findall(r'"translate\((\S+) (\S+)\) rotate\((\S+)\)"', html)
+    return (
+        [float(each) for each in view.groups()],
+        [tuple(map(float, each)) for each in places],
+        [float(each) for each in ellipse.groups()],
+    )
+
+
+@pytest.mark.parametrize("scene", MOTIONS.values(), ids=MOTIONS)
+def test_a_motion_shows_its_bodies(scene: rl.Scene) -> None:
+    motion = rl.simulate(scene, 3.0)
+    html = motion._repr_html_()
+    assert 2500 < len(html) < 6000 and repr(motion)[1:-1] in html
+    (width, height), places, axes = drawn(motion)
+    assert 30 < width <= 480 and 15 < height <= 180 and len(places) == 9
+    for x, y, _ in places:  # to 0.1 px, as written
+        assert max(axes) - 0.1 <= x <= width - max(axes) + 0.1
+        assert max(axes) - 0.1 <= y <= height - min(axes) + 0.1
+
+
+def test_the_bodies_are_where_the_motion_is() -> None:
+    """To the pixels' first decimal, over a long axis of `scale` pixels; clockwise is clockwise."""
+    motion = rl.simulate(rl.scenes.report, 3.0)
+    _, places, (rx, ry) = drawn(motion)
+    assert rx == pytest.approx(2 * ry, rel=0.01)  # a = 2 b
+    at = motion.sol(np.linspace(0.0, 3.0, 9))
+    scale = rx / 2.0  # pixels for a metre, to 0.05 / rx
+    for (x, y, turn), centre, z, theta in zip(places, at.x, at.z, at.theta, strict=True):
+        allowed = 0.1 + 0.05 / rx * scale * abs(centre)
+        assert abs((x - places[0][0]) - scale * centre) <= allowed
+        assert abs((places[0][1] - y) - scale * (z - 1.0)) <= allowed
+        assert turn == pytest.approx(np.degrees(theta), abs=0.06)
+
+
+def test_downhill_goes_down() -> None:
+    """The ground, the first line, is some 400 pixels long: its ends are known to 0.05 of them."""
+    html = rl.simulate(rl.scenes.slope, 3.0)._repr_html_()
+    ground = re.search(r'points="(\S+) (\S+) (\S+) (\S+)"', html)
+    assert ground
+    x0, y0, x1, y1 = map(float, ground.groups())
+    assert x1 > x0 + 300 and (y1 - y0) / (x1 - x0) == pytest.approx(np.tan(0.1), abs=0.1 / 300)
+
+
+@pytest.mark.parametrize("t", [[0.0, 1e9], [1e9], 0.0, [0.0, 1e-300]])
+def test_few_samples_are_shown_as_well(t: Any) -> None:
+    motion = rl.simulate(rl.scenes.rolling, t)
+    assert len(drawn(motion)[1]) in (1, 9)
+
+
+def test_a_motion_that_never_began_has_no_picture() -> None:
+    motion = rl.simulate(rl.scenes.bounce, [5.0], max_events=1, raise_on_failure=False)
+    assert motion.t.size == 0
+    html = motion._repr_html_()
+    Reader(html)
+    assert "<svg" not in html and "MAX_EVENTS" in html and "at the end" not in html

@@ -1,0 +1,90 @@
+"""Two motions are equal if the same was asked for and the same came of it, bit by bit."""
+
+import copy
+import dataclasses
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from rolling_ellipse import Trajectory, simulate
+
+TIMES = np.linspace(0.0, 2.0, 21)
+MOTIONS: dict[str, Callable[[], Trajectory]] = {
+    "rolling": lambda: simulate(rl.scenes.report, TIMES),
+    "gauss": lambda: simulate(rl.scenes.rocking, TIMES, method="gauss", step=0.01),
+    "multipliers": lambda: simulate(rl.scenes.rolling, TIMES, model="multipliers"),
+    "contact": lambda: simulate(rl.scenes.bounce, TIMES),
+    "stopped": lambda: simulate(rl.scenes.bounce, TIMES, max_events=1, raise_on_failure=False),
+    "none": lambda: simulate(rl.scenes.bounce, [2.0], max_events=1, raise_on_failure=False),
+    "from coordinates": lambda: rl.report.simulate(
+        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0
+    ),
+}
+each = pytest.mark.parametrize("make", MOTIONS.values(), ids=MOTIONS)
+
+
+@each
+def test_the_same_again(make: Callable[[], Trajectory], tmp_path: Path) -> None:
+    motion = make()
+    motion.save(tmp_path / "motion.npz")
+    again = [make(), rl.load(tmp_path / "motion.npz"), pickle.loads(pickle.dumps(motion))]
+    again += [copy.copy(motion), copy.deepcopy(motion), motion]
+    if motion.t.size:
+        _ = motion.energy, motion.q  # what it keeps does not matter
+        again.append(motion.sol(motion.t))
+    for other in again:
+        assert motion == other and other == motion and hash(motion) == hash(other)
+    assert len({motion, *again}) == 1
+
+
+@each
+def test_each_bit_counts(make: Callable[[], Trajectory]) -> None:
+    motion = make()
+    for name in ("t", "theta", "omega", "x") if motion.t.size else ():
+        values = np.array(getattr(motion, name))
+        values[-1] = np.nextafter(values[-1], np.inf)
+        assert dataclasses.replace(motion, **{name: values}) != motion, name
+    changes: dict[str, Any] = {
+        "scene": motion.scene.replace(friction=17.0),
+        "settings": dataclasses.replace(motion.settings, rtol=1e-9),
+        "span": motion.span + 1.0,
+        "status": rl.Status.STEP_TOO_LARGE,
+        "t_end": 0.5 * motion.t_end,
+        "kept_events": (*motion.events, rl.simulate(rl.scenes.drop, 1.0).events[0]),
+    }
+    for name, value in changes.items():
+        assert dataclasses.replace(motion, **{name: value}) != motion, name
+    if motion.coordinates is not None:
+        q = motion.coordinates[0].copy()
+        q[3, 4] = np.nextafter(q[3, 4], 0.0)
+        changed = dataclasses.replace(motion, coordinates=(q, motion.coordinates[1]))
+        assert changed != motion
+        assert dataclasses.replace(motion, start=(q[0], q[1])) != motion
+    if motion.contact is not None and motion.t.size:
+        z = motion.contact.z.copy()
+        z[0] = np.nextafter(z[0], 0.0)
+        assert dataclasses.replace(motion, contact=motion.contact._replace(z=z)) != motion
+
+
+def test_the_sign_of_zero_is_a_bit() -> None:
+    motion = MOTIONS["rolling"]()
+    assert motion.x[0] == 0
+    other = dataclasses.replace(motion, x=np.where(motion.x == 0, -0.0, motion.x))
+    assert other != motion and not np.any(other.x != motion.x)
+
+
+@pytest.mark.parametrize("thing", [None, 1.0, "motion", rl.scenes.report, np.zeros(3)[0]])
+def test_what_is_no_motion_is_not_equal(thing: Any) -> None:
+    assert MOTIONS["rolling"]() != thing
+    assert thing not in [MOTIONS["rolling"]()]
+
+
+def test_methods_that_agree_are_not_equal() -> None:
+    """Nor is a part of it: what was asked for differs."""
+    exact = MOTIONS["rolling"]()
+    assert exact != simulate(rl.scenes.report, TIMES, method="exact")
+    assert exact != simulate(rl.scenes.report, TIMES[:-1])
