@@ -4,28 +4,31 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal, get_args
 
 from . import _core
 from ._check import choice, number, optional_number, shown, whole
 from ._fields import FieldsOnly
 
-MODELS = tuple(name.lower() for name in _core.Model.__members__)
-METHODS = tuple(name.lower() for name in _core.Method.__members__)
-STABILIZATIONS = tuple(name.lower().replace("_", "+") for name in _core.Stabilization.__members__)
+Model = Literal["auto", "rolling", "multipliers", "contact"]
+Method = Literal["auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"]
+Stabilization = Literal["none", "baumgarte", "projection", "projection+energy", "ggl"]
+MODELS: tuple[Model, ...] = get_args(Model)
+METHODS: tuple[Method, ...] = get_args(Method)
+STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(FieldsOnly):
     """The arguments of `simulate` that say how, as they came; ranges are checked by the core."""
 
-    model: str
-    method: str
+    model: Model
+    method: Method
     rtol: float
     atol: float
     step: float | None
     stages: int | None
-    stabilization: str
+    stabilization: Stabilization
     baumgarte: tuple[float, float]
     max_steps: int
     max_events: int

@@ -9,7 +9,7 @@ import numpy as np
 
 from ._check import FloatArray, array, flag, shown
 from ._scene import Scene, require_scene
-from ._settings import DEFAULTS, Settings
+from ._settings import DEFAULTS, Method, Model, Settings, Stabilization
 from ._stability import advice
 from ._status import IntegrationError, StabilityWarning, Status, ValidityWarning
 from ._trajectory import Trajectory
@@ -21,13 +21,13 @@ def simulate(
     scene: Scene,
     t: Any,
     *,
-    model: str = DEFAULTS.model,
-    method: str = DEFAULTS.method,
+    model: Model = DEFAULTS.model,
+    method: Method = DEFAULTS.method,
     rtol: float = DEFAULTS.rtol,
     atol: float = DEFAULTS.atol,
     step: float | None = DEFAULTS.step,
     stages: int | None = DEFAULTS.stages,
-    stabilization: str = DEFAULTS.stabilization,
+    stabilization: Stabilization = DEFAULTS.stabilization,
     baumgarte: tuple[float, float] = DEFAULTS.baumgarte,
     max_steps: int = DEFAULTS.max_steps,
     max_events: int = DEFAULTS.max_events,
@@ -41,8 +41,10 @@ def simulate(
     scene : Scene
         Its state is that at t = 0; an impulse acts there first.
     t : float or array_like, shape (n,)
-        End time (then 1001 even samples), or strictly increasing sample times >= 0 [s]. Rolling
-        for more than 1e15 half turns or swings is refused: a double does not know its phase.
+        End time (then 1001 even samples), or strictly increasing sample times >= 0 [s]. A tuple
+        (0, end), the span of other programs, is refused: it would be two samples, as the list
+        [0, end] is. Rolling for more than 1e15 half turns or swings is refused: a double does not
+        know its phase.
     model : {"auto", "rolling", "multipliers", "contact"}
         "rolling" is rolling without slip; on level ground the certificate (see `certify`) says
         until when it is true, on a slope the forces along the computed motion. "contact" is the
@@ -157,6 +159,12 @@ def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel:
 def sample_times(t: Any) -> FloatArray:
     """Return the times to sample at: those given, or 1001 even ones up to an end time."""
     times = array("t", t)
+    if isinstance(t, tuple) and times.shape == (2,) and times[0] == 0:
+        end = shown(t[1])
+        raise ValueError(
+            f"t must be an end time, {end}, or an array of times, np.linspace(0, {end}, n) or, for "
+            f"just two samples, a list; got {shown(t)}"
+        )
     if not np.all(np.isfinite(times)):
         raise ValueError(f"t must be finite [s], got {shown(t)}")
     if times.size and times.min() < 0:

@@ -19,6 +19,7 @@ from ._constraints import COORDINATES, ConstraintResiduals, constraints
 from ._events import Event, Events, event
 from ._faces.motion import motion_html
 from ._fields import FieldsOnly
+from ._quantities import MODE, QUANTITIES
 from ._samples import (
     ContactSamples,
     contact_samples,
@@ -29,7 +30,7 @@ from ._samples import (
     vector,
 )
 from ._scene import Scene
-from ._settings import Settings
+from ._settings import Method, Model, Settings
 from ._status import Status, status_of
 from ._when import passages
 from .geometry import support_slope
@@ -134,8 +135,8 @@ class Trajectory(FieldsOnly):
     x: FloatArray
     _: KW_ONLY
     scene: Scene
-    model: str
-    method: str
+    model: Model
+    method: Method
     status: Status
     message: str
     reason: str
@@ -232,10 +233,12 @@ class Trajectory(FieldsOnly):
 
     @property
     def q(self) -> FloatArray:
+        """Coordinates x, z, theta, psi, r [m, m, rad, rad, m], shape (n, 5)."""
         return self._details["q"]
 
     @property
     def q_dot(self) -> FloatArray:
+        """Rates of `q` [m/s, m/s, rad/s, rad/s, m/s], shape (n, 5)."""
         return self._details["q_dot"]
 
     psi, r = _column("q", 3), _column("q", 4)
@@ -252,6 +255,7 @@ class Trajectory(FieldsOnly):
 
     @property
     def multipliers(self) -> FloatArray:
+        """Multipliers of the constraints f1 to f4 [N, N, N, N m], shape (n, 4): F and N first."""
         return self._details["multipliers"]
 
     @_derived
@@ -293,12 +297,14 @@ class Trajectory(FieldsOnly):
 
     @cached_property
     def events(self) -> Events:
+        """Changes of mode and impacts in the order of time, a tuple that prints as a table."""
         if self.kept_events is not None:
             return Events(self.kept_events)
         return Events(event(self.scene, found) for found in self._solution.events)
 
     @property
     def success(self) -> bool:
+        """Whether the motion was followed to the end, or to where none goes on."""
         return self.status in (Status.COMPLETED, Status.JAMMED)
 
     def constraint_residuals(self) -> ConstraintResiduals:
@@ -562,6 +568,11 @@ class Trajectory(FieldsOnly):
             f"t = {self.t[0]:g} ... {self.t[-1]:g} s, {self.turns[-1]:.3g} turns, "
             f"{self.status.name}>"
         )
+
+
+for _each in (*QUANTITIES, MODE):
+    if _each.name in vars(Trajectory):  # fields have no place for a docstring
+        vars(Trajectory)[_each.name].__doc__ = _each.sentence
 
 
 def _placement(at: Trajectory) -> dict[str, Any]:

@@ -23,6 +23,10 @@ __all__ = [
 ]  # fmt: skip
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 def _evaluate(function: Callable[..., FloatArray], theta: Any, a: Any, b: Any) -> Any:
     shape, columns = broadcast(theta=theta, a=a, b=b)
     require("theta", "finite", columns[0], np.isfinite(columns[0]))

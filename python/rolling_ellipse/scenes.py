@@ -1,4 +1,20 @@
-"""Named scenes: a = 2 m, b = 1 m unless said otherwise."""
+"""Named scenes: a = 2 m, b = 1 m, 1 kg, infinite friction and level ground unless said otherwise.
+
+==============  ====================================================================================
+``report``      10 kg, pressed by 48 N s at 1.5 m from the centre as in the report's Figure 9: it
+                rolls over
+``rocking``     released from 0.5 rad: it rocks
+``rolling``     3.2 rad/s lying flat: it rolls over and over
+``separatrix``  2.952967565 rad/s lying flat, a millionth faster than just over the tip
+``circle``      a = b = 1 m, 2 rad/s: uniform rolling
+``thin``        b = 0.02 m, released from 0.3 rad
+``slope``       3 rad/s down a slope of 0.1 rad, friction 0.8
+``slip``        pushed along at 3 m/s without rotation, friction 0.2: it slides first
+``jump``        5.2 rad/s lying flat, friction 1: too fast to stay on the ground
+``drop``        dropped from 1 m above touching at 0.5 rad, friction 1
+``bounce``      the same, elastic and without friction
+==============  ====================================================================================
+"""
 
 from __future__ import annotations
 
@@ -44,3 +60,7 @@ __all__ = [
     "bounce", "circle", "drop", "jump", "report", "rocking", "rolling", "separatrix", "slip",
     "slope", "thin",
 ]  # fmt: skip
+
+
+def __dir__() -> list[str]:
+    return __all__

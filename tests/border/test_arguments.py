@@ -1,7 +1,11 @@
 """Pictures, films and the report's functions name the argument that they cannot use, and a picture
 that fails leaves nothing behind."""
 
+import functools
+import inspect
+import itertools
 import math
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -21,7 +25,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from oracles.pictures import frames_of
 from PIL import Image
-from rolling_ellipse import report
+from rolling_ellipse import _core, report
+from rolling_ellipse import _settings as settings
 from rolling_ellipse._pictures.animation import movies as movies
 
 MOTION = rl.simulate(rl.scenes.report, np.linspace(0.0, 1.0, 26))
@@ -74,6 +79,86 @@ def test_where_nothing_can_be_drawn(value: Any) -> None:
     refused("ax", lambda ax: rl.plot_phase_map(resolution=2, ax=ax), value)
     for draw in CURVES:
         refused("ax", lambda ax, draw=draw: draw(MOTION, ax=ax), value)
+
+
+def test_one_place_is_wanted_or_one_motion() -> None:
+    """What lies near: a figure for its axes, an array of axes for one, motions where one is drawn,
+    a scene where its motion is."""
+    figure = Figure()
+    draw: Any
+    several: Any = figure.subplots(3)
+    drawn = [len(panel.get_children()) for panel in several]
+    one: list[Any] = [rl.plot_strobe, *CURVES]
+    two: list[Any] = [rl.plot_forces, rl.plot_constraints]
+    single: list[Any] = [rl.plot, rl.plot_strobe]
+    for draw in one:
+        with pytest.raises(TypeError, match=r"^ax must be .*Axes.*, got <Figure size"):
+            draw(MOTION, ax=figure)
+    for draw in (draw for draw in one if draw not in two):
+        for given in (several, several.tolist()):
+            with pytest.raises(TypeError, match=r"^ax must be a matplotlib Axes .*, got .*<Axes"):
+                draw(MOTION, ax=given)
+    for draw in two:
+        with pytest.raises(ValueError, match=r"^ax must be one .* or two, got 3 of them$"):
+            draw(MOTION, ax=several)
+    for draw, given in itertools.product(single, (rl.scenes.report, [MOTION, MOTION])):
+        said = re.escape(repr(given)[:12])
+        with pytest.raises(TypeError, match=rf"^trajectory must be a Trajectory, got {said}"):
+            draw(given)
+    for draw in CURVES:
+        with pytest.raises(TypeError, match=r"^trajectories must be .*, got Scene\(a=2.0"):
+            draw(rl.scenes.report)
+    assert [len(panel.get_children()) for panel in several] == drawn
+
+
+SPANS = [((0, 6), "6"), ((0.0, 2.5), "2.5"), ((-0.0, 1e9), "1000000000.0")]
+TIMES = [[0.0, 6.0], np.array([0.0, 6.0]), (1.0, 6.0), (0.0, 3.0, 6.0), (6.0,)]
+
+
+@pytest.mark.parametrize(("t", "end"), SPANS)
+def test_a_span_is_no_array_of_times(t: tuple[float, float], end: str) -> None:
+    said = rf"^t must be an end time, {end}, or .* a list; got \("
+    with pytest.raises(ValueError, match=said):
+        rl.simulate(rl.scenes.report, t)
+    with pytest.raises(ValueError, match=said):
+        report.simulate(Q, Q_DOT, t, a=2.0, b=1.0)
+
+
+@pytest.mark.parametrize("t", TIMES)
+def test_times_of_other_kinds_are(t: Any) -> None:
+    assert rl.simulate(rl.scenes.report, t).t.tolist() == list(t)
+
+
+def test_choices_are_those_of_the_core() -> None:
+    for choices, kind in (
+        (settings.MODELS, _core.Model), (settings.METHODS, _core.Method),
+        (settings.STABILIZATIONS, _core.Stabilization),
+    ):  # fmt: skip
+        names = [name.lower().replace("_", "+") for name in kind.__members__]
+        assert list(choices) == names
+
+
+def test_only_what_is_public_is_offered() -> None:
+    assert dir(rl) == sorted(rl.__all__)
+    for module in (rl.scenes, rl.geometry):
+        assert dir(module) == sorted(module.__all__)
+
+
+def test_help_tells_units() -> None:
+    properties = {
+        name: inspect.getdoc(each)
+        for name, each in vars(rl.Trajectory).items()
+        if not name.startswith("_") and isinstance(each, (property, functools.cached_property))
+    }
+    assert len(properties) > 25
+    for name, text in properties.items():
+        assert text, name
+        assert re.search(r"\[.+\]", text) or name in ("events", "success"), (name, text)
+    assert properties["normal_force"] == (
+        "Contact force on the body away from the ground [N], shape (n,)."
+    )
+    for name in rl.scenes.__all__:
+        assert f"``{name}``" in (rl.scenes.__doc__ or ""), name
 
 
 @pytest.mark.parametrize("value", ANYTHING, ids=lambda value: repr(value)[:20])
@@ -257,7 +342,7 @@ def test_arguments_of_the_report(value: Any) -> None:
     refused("complete", lambda complete: report.eq_41(Q, Q_DOT, **BODY, complete=complete), value)
     for equations in ("corrected", "printed"):
 
-        def run(q: Any = Q, q_dot: Any = Q_DOT, equations: str = equations, **given: Any) -> Any:
+        def run(q: Any = Q, q_dot: Any = Q_DOT, equations: Any = equations, **given: Any) -> Any:
             return report.simulate(q, q_dot, 0.1, **BODY, equations=equations, **given)
 
         for name in ("q", "q_dot", "equations", "consistent", "method", "stabilization"):
@@ -294,7 +379,7 @@ def test_as_many_states_everywhere() -> None:
 
 
 @pytest.mark.parametrize("method", ["dopri5", "rk4"])
-def test_a_step_that_cannot_change_the_time(method: str) -> None:
+def test_a_step_that_cannot_change_the_time(method: Any) -> None:
     for step, t in ((1e-300, 1.0), (2e-15, 1.0), (1e-10, 1e6)):
         with pytest.raises(ValueError, match=rf"^step must be at least .* s, .*, got {step!r}"):
             report.simulate(

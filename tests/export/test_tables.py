@@ -12,7 +12,7 @@ import pandas
 import pytest
 import rolling_ellipse as rl
 import xarray
-from rolling_ellipse._export.tables import MODE, MULTIPLIERS, QUANTITIES, TIME
+from rolling_ellipse._quantities import MODE, MULTIPLIERS, QUANTITIES, TIME
 from rolling_ellipse._scene import SCENE_UNITS
 
 BLOWN = rl.Scene(

@@ -12,7 +12,7 @@ from oracles.numbers import EPS
 from rolling_ellipse import EventKind, Scene, geometry, impacts, simulate
 
 LAWS = impacts.LAWS
-ENERGY_KEEPING = ("stronge", "poisson")
+ENERGY_KEEPING: tuple[Any, ...] = ("stronge", "poisson")
 BODY: dict[str, Any] = {"a": 0.7, "b": 0.3}
 K2 = (0.7**2 + 0.3**2) / 4
 
@@ -49,7 +49,7 @@ def speed(velocities: np.ndarray, k2: float = K2) -> np.ndarray:
 PUSHES = 5000  # each as large as this part of the approach
 
 
-def walked(law: str, state: np.ndarray, friction: float, restitution: float) -> np.ndarray:
+def walked(law: Any, state: np.ndarray, friction: float, restitution: float) -> np.ndarray:
     """One small push after another; after each, the friction that stops the slip, cut off at
     the cone, and a look at whether restitution has done its share. No case is told from another.
     The body is a column of Cartesian velocities, moved by Newton's and Euler's laws per kilogram.
@@ -82,7 +82,7 @@ def walked(law: str, state: np.ndarray, friction: float, restitution: float) -> 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("friction", "restitution"), [(0.1, 0.9), (0.4, 0.6), (1.1, 0.3), (0, 1)])
 def test_laws_against_the_path_in_small_steps(
-    law: str, friction: float, restitution: float
+    law: Any, friction: float, restitution: float
 ) -> None:
     """The walk is late by a push at the end of compression, which restitution at most doubles,
     and by one at its own end. A push with its friction, sqrt(1 + mu^2) < 1.5 of it, moves the body
@@ -113,7 +113,7 @@ def test_the_laws_are_told_apart() -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("friction", [0.0, 0.15, 0.8, math.inf])
-def test_an_impulse_at_the_contact_within_the_cone(law: str, friction: float) -> None:
+def test_an_impulse_at_the_contact_within_the_cone(law: Any, friction: float) -> None:
     """Velocities of up to 10 m/s, and some tens of roundings each."""
     state = approaching(400)
     after = np.stack(impacts.collide(*state, **BODY, friction=friction, restitution=0.7, law=law))
@@ -129,7 +129,7 @@ def test_an_impulse_at_the_contact_within_the_cone(law: str, friction: float) ->
 
 
 @pytest.mark.parametrize("law", ENERGY_KEEPING)
-def test_stronge_and_poisson_create_no_energy(law: str, shape: tuple[float, float]) -> None:
+def test_stronge_and_poisson_create_no_energy(law: Any, shape: tuple[float, float]) -> None:
     a, b = shape
     state = approaching(1000, seed=4, a=a, b=b)
     k2 = (a * a + b * b) / 4
@@ -187,7 +187,7 @@ def test_without_friction_or_restitution_the_laws_are_one() -> None:
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_unlimited_friction_is_the_limit_of_much(law: str) -> None:
+def test_unlimited_friction_is_the_limit_of_much(law: Any) -> None:
     """What is left goes like 1/mu: a hundredth of it for a hundred times the friction."""
     state = approaching(300)
     limit, much, more = (
@@ -199,7 +199,7 @@ def test_unlimited_friction_is_the_limit_of_much(law: str) -> None:
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_a_contact_that_leaves_is_left_alone(law: str) -> None:
+def test_a_contact_that_leaves_is_left_alone(law: Any) -> None:
     found = impacts.collide(0.4, 1.0, 2.0, 0.5, **BODY, friction=0.3, restitution=0.5, law=law)
     assert found == (1.0, 2.0, 0.5)
 
@@ -230,7 +230,7 @@ def test_stronge_is_what_a_simulated_body_does() -> None:
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_arrays_are_what_single_impacts_are(law: str) -> None:
+def test_arrays_are_what_single_impacts_are(law: Any) -> None:
     """Every argument may be an array; shapes broadcast; scalars give floats."""
     state = approaching(6).reshape(4, 2, 3)
     friction, restitution = np.array([0.1, 0.5, 2.0]), np.array([[0.2], [0.8]])
@@ -266,7 +266,7 @@ def test_kinetic_speed_is_the_energy() -> None:
 E, MU = 0.61, 0.25  # on no point of a first grid
 
 
-def series(law: str, noise: float, count: int = 1000) -> tuple[Any, Any]:
+def series(law: Any, noise: float, count: int = 1000) -> tuple[Any, Any]:
     """Impacts with these coefficients and normal noise, the same in each kinetic direction."""
     before = approaching(count, seed=7)
     after = impacts.collide(*before, **BODY, friction=MU, restitution=E, law=law)
@@ -276,7 +276,7 @@ def series(law: str, noise: float, count: int = 1000) -> tuple[Any, Any]:
 
 @pytest.mark.parametrize("minimise", ["median", "rms"])
 @pytest.mark.parametrize("law", LAWS)
-def test_fit_finds_the_coefficients_without_noise(law: str, minimise: str) -> None:
+def test_fit_finds_the_coefficients_without_noise(law: Any, minimise: Any) -> None:
     """To its last step, 1/10240 of the range of either coefficient."""
     fitted = impacts.fit(*series(law, 0.0, 60), **BODY, law=law, minimise=minimise)
     assert fitted.restitution == pytest.approx(E, abs=1 / 10240)
@@ -285,7 +285,7 @@ def test_fit_finds_the_coefficients_without_noise(law: str, minimise: str) -> No
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_fit_finds_the_coefficients_through_noise(law: str) -> None:
+def test_fit_finds_the_coefficients_through_noise(law: Any) -> None:
     """Four standard deviations each. The impacts move by 0.96 m/s (root mean square) for one of e
     and by 1.83 m/s for one of mu, so noise of 0.2 m/s in 1000 impacts leaves 0.2/sqrt(1000) over
     that. The length of three normal numbers has the mean square 3, known to 2/sqrt(6000) of it,
@@ -371,7 +371,7 @@ GOOD: dict[str, Any] = {
         ("restitution", -0.1, "restitution must be between 0 and 1, got -0.1"),
     ],
 )
-def test_numbers_out_of_range(law: str, name: str, value: float, message: str) -> None:
+def test_numbers_out_of_range(law: Any, name: str, value: float, message: str) -> None:
     for wrong in (value, [GOOD[name], value]):  # alone, and as one of several
         with pytest.raises(ValueError, match=f"^{message}"):
             impacts.collide(**GOOD | {name: wrong}, law=law)
@@ -379,7 +379,7 @@ def test_numbers_out_of_range(law: str, name: str, value: float, message: str) -
 
 def test_names_and_kinds() -> None:
     with pytest.raises(ValueError, match="law must be one of 'stronge', 'poisson', 'newton', got"):
-        impacts.collide(**GOOD, law="kane")
+        impacts.collide(**GOOD, law="kane")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="omega must be a number or an array of numbers, got 'x'"):
         impacts.collide(**GOOD | {"omega": "x"})
     with pytest.raises(
@@ -420,9 +420,9 @@ def test_series_that_cannot_be_fitted(
 def test_fit_names_its_options() -> None:
     good = series("stronge", 0.0, 8)
     with pytest.raises(ValueError, match="minimise must be one of 'median', 'rms', got 'mean'"):
-        impacts.fit(*good, **BODY, minimise="mean")
+        impacts.fit(*good, **BODY, minimise="mean")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"law must be one of .*, got 'kane'"):
-        impacts.fit(*good, **BODY, law="kane")
+        impacts.fit(*good, **BODY, law="kane")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"b must be a positive finite length \[m\], got -0.3"):
         impacts.fit(*good, a=0.7, b=-0.3)
     with pytest.raises(ValueError, match=r"gyration2 must be a positive finite area .*, got 0.0"):

@@ -58,7 +58,7 @@ def test_every_motion_has_its_name(
 def test_without_labels_the_name_is_what_differs(
     picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:
-    several[1] = dataclasses.replace(several[1], method="another")
+    several[1] = dataclasses.replace(several[1], method="another")  # type: ignore[arg-type]
     ax = new_axes()
     picture(several, ax=ax)
     assert legend_of(ax)[:3] == labels_of(several, None)

@@ -133,7 +133,7 @@ def test_what_becomes_of_an_inconsistent_start(
 
 
 @pytest.mark.parametrize(("method", "stabilization"), WAYS)
-def test_corrected_follows_the_exact_motion(method: str, stabilization: str) -> None:
+def test_corrected_follows_the_exact_motion(method: Any, stabilization: Any) -> None:
     """The same bits as the model "multipliers" from the scene, and what the equations mean."""
     times = np.linspace(0, 3, 31)
     step = FIXED.get(method)

@@ -80,7 +80,7 @@ DRIFTS = {
 
 
 @pytest.mark.parametrize(("scene", "method", "step", "last"), DRIFTS.values(), ids=DRIFTS)
-def test_drift_grows_like_t_squared(scene: Scene, method: str, step: float, last: int) -> None:
+def test_drift_grows_like_t_squared(scene: Scene, method: Any, step: float, last: int) -> None:
     """Each step leaves the constraints by its truncation error, in position and in velocity, and
     the equations keep second rates 0: velocities are missed like t, positions like t^2.
 

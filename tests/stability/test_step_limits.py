@@ -33,7 +33,7 @@ EXPLICIT = ["rk4", "dopri5", "dop853"]
 ignored = pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 
 
-def rocked(method: str, y: float, steps: int = 2000, **how: Any) -> Trajectory:
+def rocked(method: Any, y: float, steps: int = 2000, **how: Any) -> Trajectory:
     """So many steps of y/Omega of small rocking, a sample after each."""
     times = np.arange(steps + 1) * (y / OMEGA)
     how = how if method == "exact" else how | {"step": y / OMEGA}
@@ -185,7 +185,7 @@ def lost(scene: Scene, found: Trajectory) -> float:
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
-def test_a_loss_of_energy_is_told(method: str) -> None:
+def test_a_loss_of_energy_is_told(method: Any) -> None:
     """A rocking motion, 60 s, ever larger steps: a warning that names the loss where it is more
     than a hundredth, none where it is less; where the motion is given up, the status says so."""
     said, unsaid = 0, 0

@@ -48,7 +48,7 @@ def test_controlled_steps_grow_with_the_logarithm_only(method: str) -> None:
     assert thousand > 2 * counts[0]
 
 
-def needed(scene: Scene, method: str) -> float:
+def needed(scene: Scene, method: Any) -> float:
     """Fewest steps of one size in a swing, by factors of 2^(1/4), that are accurate, as twice as
     many are."""
     once = period(scene)

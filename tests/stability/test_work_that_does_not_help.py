@@ -7,6 +7,7 @@ sums, as all steps of this package have, it falls and stays.
 
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -88,7 +89,7 @@ FINE = {"rk4": (14, 18), "dopri5": (11, 17), "radau": (11, 15), "dop853": (8, 16
 FEW = 8  # starts
 
 
-def stepped(method: str, power: int) -> float:
+def stepped(method: Any, power: int) -> float:
     """Rms error of the angle of some starts, with steps of 2^-power."""
     ends = [
         simulate(
@@ -136,7 +137,7 @@ ROTATION = Scene(2.0, 1.0, theta=0.2, omega=3.2)
 
 
 @cache
-def ladder(method: str, powers: range) -> tuple[np.ndarray, np.ndarray]:
+def ladder(method: Any, powers: range) -> tuple[np.ndarray, np.ndarray]:
     """Errors of theta after some ten half turns, and evaluations, for tolerances of 10^-power."""
     end = 10.37 * period(ROTATION) / 2
     truth = flow(end, a=2.0, b=1.0, theta=0.2, omega=3.2)[0]

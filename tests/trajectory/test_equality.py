@@ -13,6 +13,14 @@ import rolling_ellipse as rl
 from rolling_ellipse import Trajectory, simulate
 
 TIMES = np.linspace(0.0, 2.0, 21)
+
+
+def of_coordinates() -> Trajectory:
+    found = rl.report.simulate(*rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0)
+    assert isinstance(found, Trajectory)
+    return found
+
+
 MOTIONS: dict[str, Callable[[], Trajectory]] = {
     "rolling": lambda: simulate(rl.scenes.report, TIMES),
     "gauss": lambda: simulate(rl.scenes.rocking, TIMES, method="gauss", step=0.01),
@@ -20,9 +28,7 @@ MOTIONS: dict[str, Callable[[], Trajectory]] = {
     "contact": lambda: simulate(rl.scenes.bounce, TIMES),
     "stopped": lambda: simulate(rl.scenes.bounce, TIMES, max_events=1, raise_on_failure=False),
     "none": lambda: simulate(rl.scenes.bounce, [2.0], max_events=1, raise_on_failure=False),
-    "from coordinates": lambda: rl.report.simulate(
-        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0
-    ),
+    "from coordinates": of_coordinates,
 }
 each = pytest.mark.parametrize("make", MOTIONS.values(), ids=MOTIONS)
 
@@ -47,7 +53,8 @@ def test_each_bit_counts(make: Callable[[], Trajectory]) -> None:
     for name in ("t", "theta", "omega", "x") if motion.t.size else ():
         values = np.array(getattr(motion, name))
         values[-1] = np.nextafter(values[-1], np.inf)
-        assert dataclasses.replace(motion, **{name: values}) != motion, name
+        part: dict[str, Any] = {name: values}
+        assert dataclasses.replace(motion, **part) != motion, name
     changes: dict[str, Any] = {
         "scene": motion.scene.replace(friction=17.0),
         "settings": dataclasses.replace(motion.settings, rtol=1e-9),

@@ -55,8 +55,10 @@ def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
         upper, lower = figure.subplots(2, sharex=True)
         return [upper, lower]
     panels = [ax] if isinstance(ax, Axes) else list(np.ravel(np.asarray(ax, dtype=object)))
-    if len(panels) not in (1, 2) or not all(isinstance(panel, Axes) for panel in panels):
-        raise ValueError(f"ax must be one matplotlib Axes or two, got {shown(ax)}")
+    if not all(isinstance(panel, Axes) for panel in panels):
+        raise TypeError(f"ax must be one matplotlib Axes or two, got {shown(ax)}")
+    if len(panels) not in (1, 2):
+        raise ValueError(f"ax must be one matplotlib Axes or two, got {len(panels)} of them")
     return panels
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from .._errors import constraint_errors, worst
+from .artists import Artists
 from .axes import leaving_no_figure, panels_of
 from .comparison import Comparison, Style
 from .legends import name_curves, some_of, title_beside_legend
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Constraints:
+class Constraints(Artists):
     """Artists of `plot_constraints`: lines[i] are those in axes[i], each labelled."""
 
     axes: tuple[Axes, ...]

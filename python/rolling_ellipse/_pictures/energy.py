@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from .._check import choice
 from .._errors import energy_error
+from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
 from .legends import name_curves, some_of, title_beside_legend
@@ -26,7 +27,7 @@ KINDS = ("energies", "error")
 
 
 @dataclass(frozen=True, repr=False)
-class Energy:
+class Energy(Artists):
     """Artists of `plot_energy`; item i of each tuple belongs to motion i.
 
     Either `error` is empty, or `total`, `kinetic` and `potential` are.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .artists import Artists
 from .axes import leaving_no_figure, panels_of
 from .comparison import Comparison, Style
 from .legends import name_curves, quantity_handles, title_beside_legend
@@ -31,7 +32,7 @@ _STEEP = 3.0  # |F|/N beyond which the scale does not follow: it is infinite whe
 
 
 @dataclass(frozen=True, repr=False)
-class Forces:
+class Forces(Artists):
     """Artists of `plot_forces`; item i of each tuple belongs to motion i.
 
     `limits` are None where friction has no limit; `needed` and `available` (the coefficients of

@@ -52,7 +52,10 @@ def _given(labels: Sequence[str], count: int) -> list[str]:
 
 def _facts(trajectories: Sequence[Trajectory]) -> list[list[str]]:
     """What may differ, most telling first: for each fact, its text for each trajectory."""
-    facts = [[each.method for each in trajectories], [each.model for each in trajectories]]
+    facts: list[list[str]] = [
+        [each.method for each in trajectories],
+        [each.model for each in trajectories],
+    ]
     for field in fields(Scene):
         facts.append(_texts(field.name, [getattr(each.scene, field.name) for each in trajectories]))
     return facts

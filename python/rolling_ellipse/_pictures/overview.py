@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .._errors import constraint_errors, energy_error, worst
+from .artists import Artists
 from .axes import figure_of, leaving_no_figure
 from .comparison import Comparison
 from .legends import name_curves
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Overview:
+class Overview(Artists):
     """Artists of `plot`: curves over time, and `marks` of what happens when."""
 
     figure: Figure

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from .._core import EventKind
 from ..geometry import support_slope
 from . import ground as drawing
+from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison, Style
 from .ground import HALF_TURNS, SHOWN_TURNS
@@ -43,7 +44,7 @@ _EVENTS = {
 
 
 @dataclass(frozen=True, repr=False)
-class Paths:
+class Paths(Artists):
     """Artists of `plot_paths`; item i of each tuple but `marks` belongs to motion i.
 
     All data are in ground axes: x along the ground, z normal to it [m]. A line of `events` has

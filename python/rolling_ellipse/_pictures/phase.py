@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .._check import flag
+from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
 from .legends import name_curves, title_beside_legend
@@ -34,7 +35,7 @@ _SMALL = 0.1  # of the separatrix's speed: a slower motion would be a dot in a w
 
 
 @dataclass(frozen=True, repr=False)
-class Phase:
+class Phase(Artists):
     """Artists of `plot_phase`; item i of `motions` and `starts` belongs to motion i.
 
     `separatrices` has a line for each different body on level ground that is no circle, and

@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .._check import number, whole_within
 from . import ground as drawing
+from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .comparison import require_motion
 from .ground import HALF_TURNS, SHOWN_TURNS, SKID
@@ -32,7 +33,7 @@ _MOST = 10_000  # positions; each takes some milliseconds
 
 
 @dataclass(frozen=True, repr=False)
-class Strobe:
+class Strobe(Artists):
     """Artists of `plot_strobe`; bodies[i], hands[i] and point i of `contacts` belong together.
 
     All data are in ground axes: x along the ground, z normal to it [m]. Points of `contacts` and

@@ -13,6 +13,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from .._check import shown
 from .._work_precision.results import require_quantity
 from .._work_precision.run import ERRORS
+from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .margin import label_ends
 from .palette import palette_of
@@ -62,7 +63,7 @@ _ROOM = 0.18  # of the axes, on the rim
 
 
 @dataclass(frozen=True, repr=False)
-class WorkPrecisionChart:
+class WorkPrecisionChart(Artists):
     """Artists of `WorkPrecision.plot`.
 
     By name of the way, or (name, setting) over "t_end": `lines` through the runs, `setups` (hollow,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -10,7 +10,8 @@ from .. import _core
 from .._check import FloatArray, broadcast, choice, evaluate, require, shaped
 from . import _restitution
 
-LAWS = ("stronge", "poisson", "newton")
+Law = Literal["stronge", "poisson", "newton"]
+LAWS: tuple[Law, ...] = get_args(Law)
 
 
 def collide(
@@ -24,7 +25,7 @@ def collide(
     friction: Any,
     restitution: Any,
     gyration2: Any = None,
-    law: str = "stronge",
+    law: Law = "stronge",
 ) -> tuple[Any, Any, Any]:
     """Return the velocities just after the collision of a body that touches the ground.
 
@@ -43,7 +44,7 @@ def collide(
         Coefficients: at least 0 (inf allowed), and between 0 and 1.
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
-    law : str
+    law : {"stronge", "poisson", "newton"}
         What the coefficient e of restitution means. "stronge": the normal force gives back e^2 of
         the work that it took. "poisson": e times the impulse that it needed to stop the approach.
         "newton": the contact leaves e times as fast as it came, which can create energy.

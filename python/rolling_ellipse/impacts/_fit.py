@@ -6,16 +6,17 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
 from .. import geometry
 from .._check import FloatArray, choice, finite, number, require, uniform_disc
 from .._faces import Listed, Row, brief, with_unit
-from ._collide import collide, kinetic_speed
+from ._collide import Law, collide, kinetic_speed
 
-_MEASURES: dict[str, Callable[[FloatArray], float]] = {
+Measure = Literal["median", "rms"]
+_MEASURES: dict[Measure, Callable[[FloatArray], float]] = {
     "median": lambda errors: float(np.median(errors)),
     "rms": lambda errors: float(np.sqrt(np.mean(errors**2))),
 }
@@ -41,7 +42,7 @@ class FittedImpacts(Listed):
 
     _units: ClassVar[dict[str, str]] = {"errors": "m/s"}
 
-    law: str
+    law: Law
     restitution: float
     friction: float
     errors: FloatArray
@@ -87,8 +88,8 @@ def fit(
     a: float,
     b: float,
     gyration2: float | None = None,
-    law: str = "stronge",
-    minimise: str = "median",
+    law: Law = "stronge",
+    minimise: Measure = "median",
 ) -> FittedImpacts:
     """Find the one pair of coefficients that predicts a series of measured impacts best.
 
@@ -109,10 +110,10 @@ def fit(
         Semi-axes [m].
     gyration2 : float, optional
         k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
-    law : str
-        "stronge", "poisson" or "newton", see `collide`.
-    minimise : str
-        "median", which a few wild measurements do not move, or "rms".
+    law : {"stronge", "poisson", "newton"}
+        See `collide`.
+    minimise : {"median", "rms"}
+        A few wild measurements do not move the median.
 
     Returns
     -------
@@ -123,7 +124,8 @@ def fit(
     ValueError
         If a number is out of its range, there is no impact or one does not move into the ground.
     """
-    measure = _MEASURES[choice("minimise", minimise, tuple(_MEASURES))]
+    choice("minimise", minimise, get_args(Measure))
+    measure = _MEASURES[minimise]
     start, end = _series("before", before, 4), _series("after", after, 3)
     if start.shape[1] != end.shape[1]:
         raise ValueError(

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal, get_args
 
 from .._check import FloatArray, choice, finite, optional_number, positive, shown, whole_within
 from .._constraints import COORDINATES
 from .._scene import Scene
-from .._settings import DEFAULTS, Settings
+from .._settings import DEFAULTS, Method, Settings, Stabilization
 from .._simulate import report_status, sample_times
 from .._trajectory import Trajectory
 from ._motion import PrintedMotion, follow
 from ._rows import CODE, misprints
 from ._runge_kutta import Steps, smallest_step
 from ._start import InconsistentStartWarning, Start, project, violations
+
+Equations = Literal["corrected", "printed"]
+Consistent = Literal["refuse", "project", "as_given"]
 
 
 def simulate(
@@ -27,11 +30,11 @@ def simulate(
     b: float,
     mass: float = 1.0,
     gravity: float = 9.81,
-    equations: str = "corrected",
-    consistent: str = "refuse",
+    equations: Equations = "corrected",
+    consistent: Consistent = "refuse",
     printed: Any = None,
-    method: str | None = None,
-    stabilization: str | None = None,
+    method: Method | None = None,
+    stabilization: Stabilization | None = None,
     baumgarte: tuple[float, float] | None = None,
     rtol: float = 1e-8,
     atol: float = 1e-10,
@@ -87,8 +90,8 @@ def simulate(
     IntegrationError
         If the integration of the corrected equations stops before the last time.
     """
-    choice("equations", equations, ("corrected", "printed"))
-    choice("consistent", consistent, ("refuse", "project", "as_given"))
+    choice("equations", equations, get_args(Equations))
+    choice("consistent", consistent, get_args(Consistent))
     body = Scene(a, b, mass=mass, gravity=gravity)
     times = sample_times(t)
     state = _vector("q", q), _vector("q_dot", q_dot)
@@ -110,8 +113,8 @@ def simulate(
 
 
 def _settings_of(
-    method: str | None,
-    stabilization: str | None,
+    method: Method | None,
+    stabilization: Stabilization | None,
     baumgarte: tuple[float, float] | None,
     rtol: float,
     atol: float,

@@ -14,6 +14,7 @@ from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 from ..._check import whole
 from ..._core import Outcome
 from ..._outcome import classify
+from ..artists import Artists
 from ..axes import axes_of, leaving_no_figure, require_axes
 from ..legends import name_curves
 from ..palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
@@ -49,7 +50,7 @@ _FINEST = 10_000  # cells along an axis
 
 
 @dataclass(frozen=True, repr=False)
-class PhaseMap:
+class PhaseMap(Artists):
     """Artists of `plot_phase_map`.
 
     The array of `cells` has the `Outcome` codes, a row for each y. `marks` has the lines in view

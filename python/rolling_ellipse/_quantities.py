@@ -1,0 +1,53 @@
+"""The arrays of a trajectory: their units, and what they are."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Quantity(NamedTuple):
+    """An array of a trajectory: the attribute's name, its unit, and what it is."""
+
+    name: str
+    unit: str
+    meaning: str
+
+    @property
+    def sentence(self) -> str:
+        """For a docstring."""
+        return f"{self.meaning[0].upper()}{self.meaning[1:]} [{self.unit}], shape (n,)."
+
+
+TIME = Quantity("t", "s", "time")
+QUANTITIES = (
+    Quantity("x", "m", "position of the centre along the ground"),
+    Quantity("z", "m", "height of the centre over the ground"),
+    Quantity("theta", "rad", "angle of the body, clockwise positive"),
+    Quantity("psi", "rad", "angle in the body from its axis b to the contact"),
+    Quantity("r", "m", "distance from the centre to the contact"),
+    Quantity("x_dot", "m/s", "velocity of the centre along the ground"),
+    Quantity("z_dot", "m/s", "velocity of the centre away from the ground"),
+    Quantity("omega", "rad/s", "angular velocity, clockwise positive"),
+    Quantity("psi_dot", "rad/s", "rate of psi"),
+    Quantity("r_dot", "m/s", "rate of r"),
+    Quantity("x_ddot", "m/s^2", "acceleration of the centre along the ground"),
+    Quantity("z_ddot", "m/s^2", "acceleration of the centre away from the ground"),
+    Quantity("omega_dot", "rad/s^2", "angular acceleration, clockwise positive"),
+    Quantity("psi_ddot", "rad/s^2", "second rate of psi"),
+    Quantity("r_ddot", "m/s^2", "second rate of r"),
+    Quantity("contact_x", "m", "place of the contact along the ground"),
+    Quantity("turns", "1", "turns made since the start of the scene"),
+    Quantity("normal_force", "N", "contact force on the body away from the ground"),
+    Quantity("friction_force", "N", "contact force on the body along the ground"),
+    Quantity("friction_needed", "1", "friction force over normal force"),
+    Quantity("energy", "J", "kinetic and potential energy"),
+    Quantity("kinetic_energy", "J", "kinetic energy"),
+    Quantity("potential_energy", "J", "potential energy"),
+)
+MULTIPLIERS = (
+    Quantity("lambda1", "N", "multiplier of the constraint f1: the friction force"),
+    Quantity("lambda2", "N", "multiplier of the constraint f2: the normal force"),
+    Quantity("lambda3", "N", "multiplier of the constraint f3"),
+    Quantity("lambda4", "N m", "multiplier of the constraint f4"),
+)
+MODE = Quantity("mode", "1", "what the body does")
