@@ -335,7 +335,7 @@ class Trajectory(FieldsOnly):
         return self._sampled(self._solution, times, self.__getstate__())
 
     def scene_at(self, t: float) -> Scene:
-        """Return a Scene that goes on from time t [s]; give it an impulse with `replace`."""
+        """Return a Scene that goes on from time t [s]; give it an impulse with `Scene.replace`."""
         at = self.sol(number("t", t))
         return replace(
             self.scene,

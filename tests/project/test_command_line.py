@@ -6,6 +6,8 @@ import os
 import shlex
 import subprocess
 import sys
+import types
+import webbrowser
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,9 +27,10 @@ from rolling_ellipse.__main__ import main
 from rolling_ellipse._pictures.animation.movies import GifWriter
 
 KEYS = {
-    "status", "message", "reason", "valid_until", "smallest_normal_force",
-    "largest_friction_needed", "period", "distance", "turns", "largest_position_residual",
-    "largest_velocity_residual", "largest_gap", "largest_slip", "events",
+    "scene", "start", "model", "method", "status", "message", "reason", "valid_until",
+    "smallest_normal_force", "largest_friction_needed", "events", "files", "outcome", "period",
+    "distance", "turns", "largest_position_residual", "largest_velocity_residual", "largest_gap",
+    "largest_slip",
 }  # fmt: skip
 
 
@@ -79,21 +82,31 @@ def strict_json(text: str) -> dict[str, Any]:
     return found
 
 
+def named(text: str) -> dict[str, str]:
+    """The lines of a summary: a name, and what is said of it from column 18 on."""
+    return {line[:17].rstrip(): line[18:] for line in text.splitlines()}
+
+
 # -------------------------------------------------------------------------------- summaries
 
 
 def test_without_options_it_is_the_report_scene(tmp_path: Path) -> None:
     code, out, err = typed(tmp_path)
     assert (code, err) == (0, "")
-    lines = out.splitlines()
-    assert lines[0] == rl.certify(rl.scenes.report).reason
-    assert lines[1].split()[:2] == ["status", "COMPLETED:"]
-    starts = ["swing or turn", "distance", "smallest N", "largest |F|/N", "residuals"]
-    assert [line[: len(start)] for line, start in zip(lines[2:], starts, strict=True)] == starts
-    trajectory = rl.simulate(rl.scenes.report, 6.0)
-    assert f"{rl.period(rl.scenes.report):.12g} s" in lines[2]
-    assert f"{trajectory.x[-1]:.12g} m in 6 s, {trajectory.turns[-1]:.6g} turns" in lines[3]
-    assert f"{rl.certify(rl.scenes.report).smallest_normal_force:.6g} N" in lines[4]
+    lines = named(out)
+    assert list(lines) == [
+        "scene", "blow", "start", "reason", "status", "full turn", "distance", "smallest N",
+        "largest |F|/N", "residuals",
+    ]  # fmt: skip
+    trajectory, certificate = rl.simulate(rl.scenes.report, 6.0), rl.certify(rl.scenes.report)
+    assert lines["scene"] == "a = 2 m, b = 1 m, mass = 10 kg"
+    assert lines["blow"] == "(0, -48) N s at (1.5, 0) m from the centre"
+    assert lines["start"] == "on the ground, rolling, omega = 3.2 rad/s after the blow"
+    assert lines["reason"] == certificate.reason and lines["status"].startswith("COMPLETED: ")
+    assert lines["full turn"] == f"{rl.period(rl.scenes.report):.12g} s"
+    assert lines["distance"].startswith(f"{trajectory.x[-1]:.12g} m in 6 s, ")
+    assert lines["distance"].endswith(f", {trajectory.turns[-1]:.6g} turns")
+    assert lines["smallest N"] == f"{certificate.smallest_normal_force:.6g} N"
     assert list(tmp_path.iterdir()) == []  # nothing is written unless asked
 
 
@@ -114,7 +127,8 @@ def test_json_on_stdout(tmp_path: Path) -> None:
     assert found["largest_slip"] == np.max(np.abs(residuals.slip))
 
 
-def test_options_make_another_scene_without_impulse(command: Any) -> None:
+def test_options_change_the_scene_of_the_report(command: Any) -> None:
+    """With a speed of its own it has no blow."""
     options: dict[str, Any] = {
         "a": 3.0,
         "b": 1.5,
@@ -127,20 +141,153 @@ def test_options_make_another_scene_without_impulse(command: Any) -> None:
     code, out, _ = command(*text, "--restitution", "0.5", "--slope", "0", "--time", "2.5", "--json")
     assert code == 0
     found = strict_json(out)
+    assert found["scene"] == {**options, "restitution": 0.5, "impulse": None}
     scene = rl.Scene(options.pop("a"), options.pop("b"), **options)
     trajectory = rl.simulate(scene, 2.5)
     assert found["distance"] == trajectory.x[-1]
     assert found["smallest_normal_force"] == rl.certify(scene).smallest_normal_force
 
 
-def test_one_option_is_enough(command: Any) -> None:
-    """The report's axes, but not its blow: without a speed it lies where it is."""
-    found = strict_json(command("--mass", "10", "--json").out)
-    assert found["distance"] == 0 and found["period"] is None and found["turns"] == 0
+def test_the_blow_stays_unless_the_start_is_given(command: Any) -> None:
+    """A lighter body is struck as hard; a speed replaces the blow, and so does another one."""
+    lighter = rl.scenes.report.replace(mass=8.0)
+    found = strict_json(command("--mass", "8", "--json").out)
+    assert found["scene"]["impulse"] == {"jx": 0.0, "jz": -48.0, "dx": 1.5, "dz": 0.0}
+    assert found["start"]["omega"] == lighter.initial_state.omega == pytest.approx(4.0, rel=1e-15)
+    assert found["distance"] == rl.simulate(lighter, 6.0).x[-1]
+    same = strict_json(command("--mass", "10", "--json").out)
+    assert same == strict_json(command("--json").out)
     turning = strict_json(command("--omega", "3.2", "--json").out)
-    report = strict_json(command("--json").out)
-    assert turning["distance"] == pytest.approx(report["distance"], rel=1e-13)
-    assert "never" in command("--mass", "10").out
+    assert turning["scene"] == {"a": 2.0, "b": 1.0, "mass": 10.0, "omega": 3.2, "impulse": None}
+    assert turning["distance"] == pytest.approx(same["distance"], rel=1e-13)
+    assert named(command("--omega", "3.2").out)["blow"] == "none"
+    pressed = rl.scenes.report.replace(impulse=rl.Impulse.press(20.0, -1.5), omega=0.5)
+    both = strict_json(command("--press", "20", "-1.5", "--omega", ".5", "--json").out)
+    assert both["start"]["omega"] == pressed.initial_state.omega
+    assert both["distance"] == rl.simulate(pressed, 6.0).x[-1]
+
+
+@pytest.mark.parametrize("place", ["-1.5", "-15e-1", "-.15E1", "-1.5e0"])
+def test_places_of_a_press_as_they_are_written(command: Any, place: str) -> None:
+    code, out, err = command("--press", "20", place, "--time", "1", "--json")
+    assert (code, err) == (0, "") and strict_json(out)["scene"]["impulse"]["dx"] == -1.5
+
+
+def test_a_blow_beside_the_body_says_what_to_do(command: Any) -> None:
+    for options in (["--a", "1"], ["--theta", "1.5"]):
+        code, out, err = command(*options)
+        assert (code, out) == (2, "") and len(err.splitlines()) == 1
+        assert "impulse must be along a line that meets the body" in err
+        assert err.endswith("got 1.5: give --press F D, or --omega for no blow\n")
+    assert command("--a", "1", "--omega", "0").code == 0
+    assert "--omega for" not in command("--press", "20", "2.5").err
+
+
+def test_model_and_method(command: Any) -> None:
+    options = ["--model", "multipliers", "--method", "rk4", "--step", "0.01", "--time", "1"]
+    found = strict_json(command(*options, "--json").out)
+    assert (found["model"], found["method"]) == ("multipliers", "rk4")
+    motion = rl.simulate(rl.scenes.report, 1.0, model="multipliers", method="rk4", step=0.01)
+    assert found["distance"] == motion.x[-1]
+    assert found["largest_velocity_residual"] > 0
+    found = strict_json(command("--model", "contact", "--time", "1", "--json").out)
+    assert (found["model"], found["period"]) == ("contact", rl.period(rl.scenes.report))
+    assert "step must be given" in command("--method", "rk4").err
+
+
+def test_how_long_until_it_repeats(command: Any) -> None:
+    speed = rl.thresholds(2.0, 1.0).roll_over_speed
+    for options, name, said in (
+        (["--omega", "3.2"], "full turn", f"{rl.period(rl.scenes.rolling):.12g} s"),
+        (["--theta", ".5", "--omega", "0"], "full swing", f"{rl.period(rl.scenes.rocking):.12g} s"),
+        (["--a", "1", "--omega", "2"], "full turn", f"{math.pi:.12g} s"),
+        (["--omega", "0"], "swing or turn", "none: it rests"),
+        (["--omega", repr(speed)], "swing or turn", "none: it comes to the tip in infinite time"),
+        (["--omega", "5.2"], "swing or turn", "none: it slides, leaves the ground or hits it"),
+        (["--omega", ".1", "--slope", ".1"], "swing or turn", "not known in advance on a slope"),
+    ):
+        lines = named(command(*options, "--time", "1").out)
+        assert lines[name] == said
+        assert len({"full turn", "full swing", "swing or turn"} & set(lines)) == 1
+
+
+def test_what_is_written_is_said(command: Any) -> None:
+    options = ["--plot", "overview", "--save", "roll.gif", "--time", "0.1"]
+    lines = command(*options).out.splitlines()
+    assert [line[18:] for line in lines if line.startswith("written")] == [
+        "overview.png", "roll.gif"
+    ]  # fmt: skip
+    assert strict_json(command(*options, "--json").out)["files"] == ["overview.png", "roll.gif"]
+
+
+# ------------------------------------------------------------------------------------- explore
+
+
+@pytest.fixture
+def pages(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """The scenes of the pages written, and the addresses opened."""
+    found: list[Any] = []
+
+    def write_explorer(scene: rl.Scene, path: str) -> None:
+        Path(path).write_text("<html>")
+        found.append(scene)
+
+    player = types.SimpleNamespace(write_explorer=write_explorer)
+    monkeypatch.setitem(sys.modules, "rolling_ellipse._player", player)
+
+    def opened(address: str) -> bool:
+        found.append(address)
+        return True
+
+    monkeypatch.setattr(webbrowser, "open", opened)
+    return found
+
+
+def test_explore_writes_a_page_and_opens_it(
+    command: Any, pages: list[Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    code, out, err = command("explore", "--b", "1.5", "--save", "a page.html")
+    assert (code, out, err) == (0, f"{'written':<17} a page.html\n", "")
+    address = (tmp_path / "a page.html").as_uri()
+    assert pages == [rl.scenes.report.replace(b=1.5), address] and "%20" in address
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "new"))
+    (tmp_path / "new").mkdir()
+    code, out, err = command("explore", "--omega", "3", "--no-open")
+    assert (code, err) == (0, "") and len(pages) == 3
+    assert pages[2] == rl.scenes.report.replace(omega=3.0, impulse=None)
+    (page,) = (tmp_path / "new").iterdir()
+    assert out == f"{'written':<17} {page}\n" and page.suffix == ".html"
+
+
+def test_explore_without_a_browser_says_so(
+    command: Any, pages: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(webbrowser, "open", lambda address: False)
+    code, out, err = command("explore", "--save", "page.html")
+    assert (code, err) == (0, "") and out.splitlines()[1].startswith("no browser was found")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["--a", "-1"], "a must"), (["--bogus"], "--bogus"), (["--time", "3"], "--time"),
+        (["--press", "20"], "--press"), (["--save", "no/such/page.html"], "page.html"),
+        (["--save", "."], "'.'"),
+    ],
+)  # fmt: skip
+def test_explore_refuses_in_one_line(
+    command: Any, pages: list[Any], arguments: list[str], named: str
+) -> None:
+    code, out, err = command("explore", *arguments)
+    assert (code, out, pages) == (2, "", []) and named in err and len(err.splitlines()) == 1
+
+
+def test_help_of_explore(tmp_path: Path) -> None:
+    code, out, err = typed(tmp_path, "explore", "--help")
+    assert (code, err) == (0, "") and out.startswith("usage: python -m rolling_ellipse explore")
+    for option in ("--a", "--press", "--omega", "--save", "--no-open"):
+        assert option in out
+    assert "explore" in typed(tmp_path, "--help").out
 
 
 def test_time_is_the_end_time(command: Any) -> None:
@@ -155,7 +302,9 @@ def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
     """The motion is followed beyond it: it slips, jumps and lands."""
     code, out, err = command("--omega", "5.2", "--friction", "1")
     assert (code, err) == (0, "")
-    assert "COMPLETED" in out and out.startswith("contact") and "ends at theta" in out
+    assert (
+        "COMPLETED" in out and named(out)["reason"].startswith("contact") and "ends at theta" in out
+    )
     found = strict_json(command("--omega", "5.2", "--friction", "1", "--json").out)
     assert found["status"] == "COMPLETED" and found["valid_until"] is None
     assert [kind for _, kind in found["events"]][:3] == ["slip", "lift_off", "impact"]
@@ -164,10 +313,10 @@ def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
 
 
 def test_a_slope_has_a_summary_too(command: Any) -> None:
-    """Nothing is periodic there, and nothing is proved in advance."""
+    """Nothing is proved in advance there."""
     code, out, err = command("--slope", "0.1", "--omega", "3", "--time", "2")
     assert (code, err) == (0, "")
-    assert "COMPLETED" in out and "slope" in out and "never" in out
+    assert "COMPLETED" in out and "slope = 0.1 rad" in out
     found = strict_json(command("--slope", "0.1", "--time", "2", "--json").out)
     assert found["period"] is None and found["smallest_normal_force"] is None
     assert found["distance"] > 0
@@ -178,7 +327,7 @@ def test_extreme_motions_are_still_json(command: Any) -> None:
     speed = rl.thresholds(2.0, 1.0).roll_over_speed
     for options in (
         ["--omega", "50"],
-        ["--theta", str(math.pi / 2)],
+        ["--theta", str(math.pi / 2), "--omega", "0"],
         ["--omega", "5.2", "--friction", "0"],
         ["--omega", repr(speed)],
         ["--a", "1", "--b", "1", "--omega", "2"],
@@ -259,6 +408,15 @@ def test_json_goes_with_files(command: Any, tmp_path: Path) -> None:
         (["--a", "two"], "--a"),
         (["--time"], "--time"),
         (["--bogus"], "--bogus"),
+        (["--press", "20"], "--press"),
+        (["--press", "-20", "1"], "--press must have F >= 0, got -20.0"),
+        (["--press", "nan", "1"], "F must"),
+        (["--press", "20", "1e400"], "d must"),
+        (["--press", "20", "2.5"], "impulse must"),
+        (["--model", "falling"], "falling"),
+        (["--method", "euler"], "euler"),
+        (["--step", "-1"], "step must"),
+        (["--slope", "30"], "degrees?"),
         (["--save", "roll.xyz"], "roll.xyz"),
         (["--plot", "picture.xyz"], "xyz"),
         (["--plot", "no/such/folder/picture.png"], "no/such/folder/picture.png"),
@@ -286,6 +444,7 @@ def test_help(tmp_path: Path) -> None:
     code, out, err = typed(tmp_path, "--help")
     assert (code, err) == (0, "")
     options = ["a", "b", "mass", "theta", "omega", "friction", "restitution", "slope", "time"]
+    options += ["press", "model", "method", "step"]
     for option in [*options, "save", "plot", "json"]:
         assert f"--{option}" in out
     assert out.startswith("usage: python -m rolling_ellipse")
@@ -298,7 +457,7 @@ def test_help(tmp_path: Path) -> None:
 def test_negative_numbers_as_they_are_written(command: Any, speed: str) -> None:
     code, out, err = command("--omega", speed, "--time", "1", "--json")
     assert (code, err) == (0, "")
-    scene = rl.Scene(2.0, 1.0, omega=float(speed))
+    scene = rl.Scene(2.0, 1.0, mass=10.0, omega=float(speed))
     assert strict_json(out)["distance"] == rl.simulate(scene, 1.0).x[-1]
 
 
@@ -317,7 +476,9 @@ def test_a_motion_that_stops_early_has_a_summary_and_exit_code_1(tmp_path: Path)
     assert (code, err) == (1, "")
     assert "MAX_EVENTS: max_events = 10000 events ended at t = " in out
     reached = rl.simulate(
-        rl.Scene(2.0, 1.0, omega=3.0, friction=0.2, restitution=1.0), 1e5, raise_on_failure=False
+        rl.Scene(2.0, 1.0, mass=10.0, omega=3.0, friction=0.2, restitution=1.0),
+        1e5,
+        raise_on_failure=False,
     )
     assert f"{reached.x[-1]:.12g} m in {reached.t[-1]:g} s, " in out
     code, out, err = typed(tmp_path, *options, "--time", "100000", "--json")
