@@ -39,7 +39,8 @@ class Call:
 def make_scene(draw: Draw) -> Iterator[Line]:
     code = scenes.scene(draw, mutate=0.6).code
     yield Line(code, "scene", "Scene")
-    yield Line("scene.initial_state", does="Scene.initial_state")
+    yield Line("scene.initial_state", "state", does="Scene.initial_state")
+    yield Line("(repr(state), str(state), state._repr_html_())", does="InitialState")
     yield Line("(scene.gyration2, hash(scene), str(scene), scene._repr_html_())", does="Scene")
     yield Line("eval('rl.' + repr(scene).replace('Impulse', 'rl.Impulse')) == scene", does="Scene")
     name = draw.pick("a", "theta", "z", "friction", "omga")
@@ -75,7 +76,8 @@ def blows(draw: Draw) -> Iterator[Line]:
 
 def certify(draw: Draw) -> Iterator[Line]:
     yield Line(_scene_or_not(draw), "scene", "Scene")
-    yield Line("rl.certify(scene)", does="certify")
+    yield Line("rl.certify(scene)", "proof", does="certify")
+    yield Line("(repr(proof), str(proof), proof._repr_html_())", does="Certificate")
 
 
 def period(draw: Draw) -> Iterator[Line]:
@@ -192,7 +194,8 @@ def thresholds(draw: Draw) -> Iterator[Line]:
         arguments["gyration2"] = text(scenes.gyration2(draw, of))
     if draw.chance(0.7):
         arguments["friction"] = text(scenes.friction(draw))
-    yield Line(call("rl.thresholds", **draw.mutated(arguments)), does="thresholds")
+    yield Line(call("rl.thresholds", **draw.mutated(arguments)), "found", "thresholds")
+    yield Line("(repr(found), str(found), found._repr_html_())", does="Thresholds")
 
 
 def kinematics(draw: Draw) -> Iterator[Line]:
@@ -451,6 +454,10 @@ def command(draw: Draw) -> Iterator[Line]:
         value = draw.pick("1", "0.5", "2", "-1", "x", "nan", "inf", "1e300", "1e-300", "", "1e9")
         if name != "time" or "1e" not in value:  # work that would be asked for
             arguments.append(f"--{name}={value}")
+    if draw.chance(0.3):
+        arguments += ["--press", draw.pick("20", "-1e-3", "nan"), draw.pick("1", "-1.5", "1e9")]
+    if draw.chance(0.2):
+        arguments.append(draw.pick("--model=contact", "--model=multipliers", "--method=dop853"))
     arguments += ["--json"] if draw.chance(0.3) else []
     yield Line(f"command({arguments})", does="python -m rolling_ellipse", patience=2)
 

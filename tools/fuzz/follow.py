@@ -35,7 +35,9 @@ def arrays(draw: Draw, _: Body) -> Iterator[Line]:
     for name in draw.random.sample((*ARRAYS, *FACTS), 3):
         yield Line(f"trajectory.{name}", does=f"Trajectory.{name}")
     if draw.chance(0.2):
-        yield Line("repr(trajectory)", does="Trajectory.__repr__")
+        yield Line("(repr(trajectory), hash(trajectory))", does="Trajectory.__repr__")
+        yield Line("trajectory._repr_html_()", does="Trajectory._repr_html_")
+        yield Line("trajectory == copy.deepcopy(trajectory) or 1 / 0", does="Trajectory.__eq__")
 
 
 def sol(draw: Draw, of: Body) -> Iterator[Line]:
@@ -162,6 +164,9 @@ def event(draw: Draw, _: Body) -> Iterator[Line]:
     yield Line("[(e.t, e.kind, e.state_before, e.state_after) for e in trajectory.events]", "",
                "Trajectory.events")  # fmt: skip
     yield Line("pickle.loads(pickle.dumps(trajectory.events)) == trajectory.events", does="pickle")
+    yield Line("(repr(trajectory.events), trajectory.events._repr_html_())", does="Events")
+    if draw.chance(0.1):
+        yield Line("trajectory.events.to_dataframe()", does="Events.to_dataframe", patience=2)
 
 
 def picture(draw: Draw, of: Body) -> Iterator[Line]:
