@@ -1,12 +1,13 @@
 """The moving picture, read back from its artists and from the files it writes."""
 
-import base64
-import dataclasses
+import gc
 import importlib.util
 import io
+import json
 import math
 import re
 import warnings
+import weakref
 from pathlib import Path
 from typing import Any
 
@@ -18,14 +19,14 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 import rolling_ellipse as rl
-from matplotlib.animation import FFMpegWriter
+from matplotlib.animation import FFMpegWriter, HTMLWriter
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from oracles.geometry import support as outline_support
 from oracles.pictures import ORDINARY_SCENES, centre_of, frames_of, outline, support
 from PIL import Image
-from rolling_ellipse._pictures import animation as animation_module
 from rolling_ellipse._pictures.animation import RollingAnimation
+from rolling_ellipse._pictures.animation.pace import pace
 from rolling_ellipse._pictures.animation.strip import Strip
 
 SCENES = {
@@ -48,7 +49,7 @@ def report() -> rl.Trajectory:
 @pytest.fixture
 def short(report: rl.Trajectory) -> RollingAnimation:
     """Eleven frames, 0.4 s."""
-    return rl.animate(report, t_end=0.4, width=160, dpi=50)
+    return rl.animate(report, t_end=0.4, fps=25, width=160, dpi=50)
 
 
 def frames(animation: RollingAnimation) -> range:
@@ -81,7 +82,7 @@ def rolled(body: tuple[float, float], theta: float, other: float) -> float:
 def test_in_every_frame_the_body_touches_the_ground_at_the_contact(
     trajectory: rl.Trajectory,
 ) -> None:
-    animation = rl.animate(trajectory, width=160)
+    animation = rl.animate(trajectory, fps=25, width=160)
     strip = only(animation)
     scene = trajectory.scene
     size = max(scene.a, scene.b)
@@ -99,7 +100,7 @@ def test_in_every_frame_the_body_touches_the_ground_at_the_contact(
 
 
 def test_from_frame_to_frame_the_body_moves_as_far_as_it_rolls(trajectory: rl.Trajectory) -> None:
-    animation = rl.animate(trajectory, width=160)
+    animation = rl.animate(trajectory, fps=25, width=160)
     body, scene = only(animation).body, trajectory.scene
     place, angle = centre_of(body)[0], body.angle
     for i in frames(animation):
@@ -148,13 +149,13 @@ def test_frames_are_the_trajectory_in_true_time(report: rl.Trajectory) -> None:
 def test_the_clock_has_the_digits_that_tell_frames_apart(
     report: rl.Trajectory, fps: float, speed: float, second: str
 ) -> None:
-    animation = rl.animate(report, fps=fps, speed=speed, max_frames=2)
+    animation = rl.animate(report, fps=fps, speed=speed, t_end=1.5 * speed / fps)
     animation.draw(1)
     assert animation.clock.get_text() == second
 
 
 def test_axes_tip_and_traces_belong_to_the_body(report: rl.Trajectory) -> None:
-    animation = rl.animate(report, width=160)
+    animation = rl.animate(report, fps=25, width=160)
     strip = only(animation)
     ends: list[np.ndarray] = []
     for i in frames(animation):
@@ -185,20 +186,16 @@ def test_frames_may_be_drawn_in_any_order(short: RollingAnimation) -> None:
     ] == first
 
 
-def test_no_contact_is_drawn_in_flight(report: rl.Trajectory) -> None:
-    at = report.sol([0.0, 0.1, 0.2])
-    flying = dataclasses.replace(at)
-    flying.__dict__["mode"] = np.array([rl.Mode.ROLLING, rl.Mode.FLIGHT, rl.Mode.ROLLING], np.int8)
-    flying.__dict__["_solution"] = at.__dict__["_solution"]
-    animation = RollingAnimation(
-        [flying], flying.t, [""], fps=10, speed=1, width=160, dpi=50, figure=None
-    )
+def test_no_contact_is_drawn_in_flight() -> None:
+    dropped = rl.simulate(rl.scenes.drop, 1.0)
+    animation = rl.animate(dropped, fps=10, width=160)
     contact = only(animation).contact
     seen = []
-    for i in range(3):
+    for i in frames(animation):
         animation.draw(i)
         seen.append(bool(np.isfinite(np.asarray(contact.get_xdata())[0])))
-    assert seen == [True, False, True]
+    # it falls for sqrt(2 · 1 m / 9.81 m/s²) = 0.45 s
+    assert seen == [False] * 5 + [True] * 6
 
 
 def test_the_caption_says_when_rolling_is_no_longer_valid() -> None:
@@ -243,7 +240,7 @@ def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
 
 
 def test_the_body_is_always_seen_whole(trajectory: rl.Trajectory) -> None:
-    animation = rl.animate(trajectory, width=160)
+    animation = rl.animate(trajectory, fps=25, width=160)
     for i in frames(animation):
         animation.draw(i)
         (left, right), (_, top) = view_of(animation)
@@ -253,7 +250,7 @@ def test_the_body_is_always_seen_whole(trajectory: rl.Trajectory) -> None:
 
 
 def test_the_ground_is_ruled_where_the_body_is() -> None:
-    animation = rl.animate(rl.simulate(rl.Scene(1.0, 1.0, omega=1e6), 9.0), width=160)
+    animation = rl.animate(rl.simulate(rl.Scene(1.0, 1.0, omega=1e6), 9.0), fps=25, width=160)
     strip = only(animation)
     for i in (0, 100, 200):  # 4e6 m on
         animation.draw(i)
@@ -310,28 +307,28 @@ def test_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path) 
 
 def test_gif_of_ten_seconds_is_small(tmp_path: Path) -> None:
     path = tmp_path / "roll.gif"
-    rl.animate(rl.simulate(rl.scenes.report, 60.0), path)
+    rl.animate(rl.simulate(rl.scenes.report, 60.0), path, t_end=9.96, fps=25)
     with Image.open(path) as gif:
         assert frames_of(gif) == 250
         assert gif.size[0] == 640
     assert path.stat().st_size < 1.5e6
 
 
-def test_html_is_a_player_with_every_frame(short: RollingAnimation, tmp_path: Path) -> None:
+def test_html_is_a_page_with_a_player(short: RollingAnimation, tmp_path: Path) -> None:
     path = tmp_path / "roll.html"
     short.save(path)
     text = path.read_text(encoding="utf-8")
-    embedded = re.findall(r'frames\[(\d+)\] = "data:image/png;base64,', text)
-    assert embedded == [str(i) for i in frames(short)]
+    assert text.startswith("<!DOCTYPE html>") and short._repr_html_() in text
     assert list(tmp_path.iterdir()) == [path]  # nothing beside it
+    with pytest.raises(TypeError, match=r"^options must be none for an \.html .*, got bitrate"):
+        short.save(path, bitrate=1)
 
 
-def test_html_holds_more_than_matplotlib_embeds_by_default(
-    short: RollingAnimation, tmp_path: Path
-) -> None:
-    with matplotlib.rc_context({"animation.embed_limit": 0.001}):
-        short.save(tmp_path / "roll.html")
-    assert (tmp_path / "roll.html").read_text(encoding="utf-8").count("data:image/png") == 11
+def test_html_by_matplotlib_has_every_frame(short: RollingAnimation, tmp_path: Path) -> None:
+    path = tmp_path / "roll.html"
+    short.save(path, writer=HTMLWriter(fps=25, embed_frames=True))
+    embedded = re.findall(r'frames\[(\d+)\] = "data:image/png;base64,', path.read_text("utf-8"))
+    assert embedded == [str(i) for i in frames(short)]
 
 
 def test_mp4_keeps_the_time(short: RollingAnimation, tmp_path: Path) -> None:
@@ -404,52 +401,133 @@ def test_matplotlibs_own_writers_stay_open(short: RollingAnimation, tmp_path: Pa
 # ---------------------------------------------------------------- notebooks, options, leftovers
 
 
-def test_a_notebook_shows_a_gif(short: RollingAnimation) -> None:
+def player_data(html: str) -> dict[str, Any]:
+    """What the player of a fragment or a page is given."""
+    found = re.search(r"new Player\(document\.querySelector\(free\), (.+)\);\n</script>", html)
+    assert found is not None
+    data: dict[str, Any] = json.loads(found[1])
+    return data
+
+
+def test_a_notebook_shows_the_player(short: RollingAnimation) -> None:
     assert repr(short) == "<RollingAnimation: 11 frames, 0.4 s>"
     html = short._repr_html_()
-    data = re.fullmatch(r'<img alt="[^"]+" src="data:image/gif;base64,([^"]+)">', html)
-    assert data is not None
-    pictures, _ = gif_frames(base64.b64decode(data[1]))
-    assert len(pictures) == 11
+    assert html.startswith('<div class="rolling-ellipse"') and html == short._repr_html_()
+    assert len(html) < 50_000
+    data = player_data(html)
+    assert (data["end"], data["fps"], data["speed"]) == (0.4, 25, 1)
+    assert len(data["strips"]) == 1
 
 
-def test_a_notebook_shows_a_player_where_a_gif_could_not_keep_the_time(
-    report: rl.Trajectory,
+@pytest.mark.parametrize(
+    ("wanted", "marks"), [("jshtml", "data:image/png;base64,"), ("html5", "<video")]
+)
+def test_a_notebook_shows_what_matplotlib_is_told_to(
+    short: RollingAnimation, wanted: str, marks: str
 ) -> None:
-    html = rl.animate(report, t_end=0.2, fps=30, width=160)._repr_html_()
-    assert html.count("data:image/png;base64,") == 7
-    assert "setInterval" in html
+    with matplotlib.rc_context({"animation.html": wanted}):
+        html = short._repr_html_()
+    assert marks in html and "rolling-ellipse" not in html
 
 
-def test_a_notebook_is_not_flooded(report: rl.Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(animation_module, "NOTEBOOK_FRAMES", 10)
-    html = rl.animate(report, t_end=0.4)._repr_html_()
-    assert "11 frames are too many" in html and len(html) < 300
+def test_a_notebook_is_not_flooded() -> None:
+    film = rl.animate(rl.simulate(rl.scenes.rolling, 1e4), speed=10.0, width=64)  # 5e4 frames
+    with pytest.raises(ValueError, match=r"^t_end must be shown by a player in at most 20000 "):
+        film._repr_html_()
+
+
+MINUTE = rl.simulate(rl.scenes.report, 100.0)
 
 
 @pytest.mark.parametrize(
     ("options", "count", "last"),
     [
-        ({}, 250, 9.96),
-        ({"max_frames": 100}, 100, 3.96),
-        ({"speed": 4.0}, 250, 39.84),
-        ({"t_end": 20.0}, 501, 20.0),
+        ({"t_end": 20.0, "fps": 25}, 501, 20.0),  # no more than a quarter of it was shown once
+        ({"t_end": 20.0}, 1001, 20.0),
+        ({"t_end": 60.0, "fps": 10}, 601, 60.0),
+        ({"fps": 10}, 501, 100.0),  # a minute is enough: twice as fast
+        ({"fps": 10, "speed": 1.0}, 1001, 100.0),
+        ({"speed": 4.0, "fps": 25}, 626, 100.0),
         ({"t_end": 0.58, "fps": 50}, 30, 0.58),
-        ({"t_end": 0.59}, 15, 0.56),
+        ({"t_end": 0.59, "fps": 25}, 15, 0.56),
         ({"t_end": 0.0}, 1, 0.0),
     ],
 )
-def test_how_much_is_shown(options: dict[str, Any], count: int, last: float) -> None:
-    trajectory = rl.simulate(rl.scenes.report, 40.0)
-    animation = rl.animate(trajectory, width=160, **options)
+def test_the_whole_motion_is_shown(options: dict[str, Any], count: int, last: float) -> None:
+    animation = rl.animate(MINUTE, width=160, **options)
     assert animation.t.size == count
     assert animation.t[-1] == pytest.approx(last, abs=1e-14)
+
+
+@pytest.mark.parametrize("speed", [0.25, 1.0, 4.0])
+@pytest.mark.parametrize("fps", [25, 50, 60])
+@pytest.mark.parametrize("suffix", [".gif", ".mp4", ".html"])
+def test_a_film_is_as_long_as_its_motion(
+    report: rl.Trajectory, tmp_path: Path, suffix: str, fps: float, speed: float
+) -> None:
+    path, seconds = tmp_path / f"roll{suffix}", 0.48 / speed
+    if (suffix, fps) == (".gif", 60):
+        with pytest.raises(ValueError, match=r"near it is 100 / 2 = 50$"):
+            rl.animate(report, path, fps=fps)
+        return
+    rl.animate(report, path, t_end=0.48, fps=fps, speed=speed, width=64, dpi=20)
+    if suffix == ".html":
+        data = player_data(path.read_text(encoding="utf-8"))
+        assert data["end"] / data["speed"] == pytest.approx(seconds, abs=1 / fps)
+        return
+    if suffix == ".gif":
+        found = sum(gif_frames(path.read_bytes())[1]) / 1000
+    else:
+        found = count_frames(path) / fps
+    # the last time that a frame has is shown for a frame, too
+    assert 0 < found - seconds < 1 / fps + 1e-9
+
+
+def count_frames(path: Path) -> int:
+    import imageio_ffmpeg
+
+    count, _ = imageio_ffmpeg.count_frames_and_secs(str(path))
+    return int(count)
+
+
+@pytest.mark.parametrize(
+    ("path", "fps"), [(None, 50), ("roll.gif", 50), ("roll.mp4", 60), ("ROLL.HTML", 60)]
+)
+def test_frames_a_second_are_what_a_format_can_hold(
+    report: rl.Trajectory, tmp_path: Path, path: str | None, fps: float
+) -> None:
+    where = None if path is None else tmp_path / path
+    animation = rl.animate(report, where, t_end=0.1, width=64, dpi=20)
+    assert animation.fps == fps and animation.t.size == 1 + 0.1 * fps
+
+
+@pytest.mark.parametrize(
+    ("span", "suffix", "speed"),
+    [(60.0, "", 1), (60.1, "", 2), (30.1, ".gif", 2), (30.0, ".gif", 1), (1e6, ".mp4", 2e4),
+     (1e9, ".html", 2e7)],
+)  # fmt: skip
+def test_long_motions_are_shown_faster_and_the_clock_says_so(
+    span: float, suffix: str, speed: float
+) -> None:
+    found = pace(f"roll{suffix}" if suffix else None, span, fps=None, speed=None, max_frames=None)
+    assert found.speed == speed
+    assert found.t.size <= 3601 and span - found.t[-1] <= speed / found.fps
+
+
+def test_a_motion_of_eleven_days(tmp_path: Path) -> None:
+    path = tmp_path / "roll.html"
+    animation = rl.animate(rl.simulate(rl.scenes.rolling, 1e6), path)
+    assert animation.clock.get_text() == "t = 0 s   speed × 20000"
+    (strip,) = player_data(path.read_text(encoding="utf-8"))["strips"]
+    assert strip["track"]["stepped"]  # half a million turns: no time between frames
+    assert path.stat().st_size < 300_000
 
 
 def test_the_last_frame_never_leaves_the_trajectory() -> None:
     for k in range(1, 60):
         end = k * 0.04  # may be an ulp below k / 25
-        assert rl.animate(rl.simulate(rl.scenes.report, end)).t[-1] <= end
+        animation = rl.animate(rl.simulate(rl.scenes.report, end), fps=25, width=64)
+        assert animation.t[-1] <= end and animation.t.size == k + 1
 
 
 @pytest.mark.parametrize(
@@ -461,6 +539,8 @@ def test_the_last_frame_never_leaves_the_trajectory() -> None:
         ({"width": 0}, "width must be positive and finite, got 0"),
         ({"dpi": math.inf}, "dpi must be positive and finite, got inf"),
         ({"max_frames": 0}, "max_frames must be at least 1, got 0"),
+        ({"max_frames": 250}, "max_frames must hold the whole film, 301 frames .*, got 250: .*"),
+        ({"speed": 1e-6}, "t_end must be shown in at most 1000000 frames, got 6.0, which is 3e"),
         ({"t_end": 6.1}, r"t_end must be within \[0, 6\] s, got 6.1"),
         ({"t_end": math.nan}, r"t_end must be within \[0, 6\] s, got nan"),
     ],
@@ -497,4 +577,63 @@ def test_nothing_is_written_and_nothing_left_open(
     animation.draw(3)
     del animation  # matplotlib would warn here, and a warning is an error
     assert list(tmp_path.iterdir()) == []
+    assert plt.get_fignums() == []
+
+
+def test_it_draws_into_a_part_of_a_figure(report: rl.Trajectory) -> None:
+    parts: Any = Figure(figsize=(8, 3)).subfigures(1, 2, width_ratios=[3, 1])
+    left, right = parts
+    animation = rl.animate(report, t_end=0.2, figure=left)
+    assert animation.figure is left and left.axes == [only(animation).ax] and right.axes == []
+    width, height = left.bbox.width, left.bbox.height
+    (x0, x1), (y0, y1) = view_of(animation)
+    assert (x1 - x0) / width == pytest.approx((y1 - y0) / height, rel=1e-12)
+
+
+def test_it_draws_into_axes_it_is_given(report: rl.Trajectory, tmp_path: Path) -> None:
+    figure = Figure(figsize=(8, 3), dpi=40)
+    ax, other = figure.subplots(1, 2)
+    animation = rl.animate(report, tmp_path / "roll.gif", t_end=0.2, ax=ax)
+    assert animation.figure is figure and only(animation).ax is ax and not other.patches
+    (x0, x1), (y0, y1) = view_of(animation)
+    box = ax.get_window_extent()
+    assert (x1 - x0) / box.width == pytest.approx((y1 - y0) / box.height, rel=1e-12)
+    with Image.open(tmp_path / "roll.gif") as gif:
+        assert gif.size == (320, 120)
+    with pytest.raises(ValueError, match="ax must be None for 2 motions"):
+        rl.animate([report, report], ax=ax)
+    with pytest.raises(ValueError, match="ax must be None where a figure is given"):
+        rl.animate(report, ax=ax, figure=figure)
+    for wrong in (figure, 42, "ax", [ax]):
+        with pytest.raises(TypeError, match="ax must be a matplotlib Axes or None"):
+            rl.animate(report, ax=wrong)  # type: ignore[arg-type]
+
+
+def test_the_figure_keeps_the_animation_alive(report: rl.Trajectory) -> None:
+    figure = Figure(figsize=(4, 2))
+    alive = weakref.ref(rl.animate(report, t_end=0.2, figure=figure))
+    gc.collect()
+    assert alive() is not None
+    del figure
+    gc.collect()
+    assert alive() is None
+
+
+@pytest.mark.parametrize(
+    ("framework", "windows"), [("tk", 1), ("qt", 1), ("nbagg", 0), ("webagg", 0), (None, 0)]
+)
+def test_a_window_shows_it_and_a_notebook_does_not_show_it_twice(
+    report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    framework: str | None, windows: int,
+) -> None:  # fmt: skip
+    resolved = ("agg", framework)
+    registry = "matplotlib.backends.registry.backend_registry"
+    monkeypatch.setattr(f"{registry}.resolve_backend", lambda backend: resolved)
+    animation = rl.animate(report, t_end=0.2)
+    assert len(plt.get_fignums()) == windows
+    assert plt.fignum_exists(animation.figure.number) if windows else True
+    plt.close("all")
+    rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=64, dpi=20)  # a file, no window
+    with pytest.raises(ValueError, match="labels must be 1"):
+        rl.animate(report, labels=["one", "two"])
     assert plt.get_fignums() == []

@@ -178,7 +178,7 @@ def test_it_draws_into_a_figure_it_is_given() -> None:
 
 def test_a_file_of_several_motions(tmp_path: Path) -> None:
     path = tmp_path / "race.gif"
-    rl.animate(REPORT_AND_ROCKING, path, t_end=0.2, width=160, dpi=50)
+    rl.animate(REPORT_AND_ROCKING, path, t_end=0.2, fps=25, width=160, dpi=50)
     with Image.open(path) as gif:
         assert frames_of(gif) == 6
         assert gif.size[0] == 160 and gif.size[1] % 2 == 0

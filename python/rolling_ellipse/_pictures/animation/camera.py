@@ -31,12 +31,18 @@ class Cameras:
         Height of the picture over its width.
     together : bool
         Whether all strips show the same stretch of ground.
+    windows : tuple of tuple of float
+        For each strip the view relative to what its camera follows.
+    follows : str
+        "nothing", the "middle" of all motions, or each strip its "own".
     """
 
     views: tuple[FloatArray, ...]
     heights: tuple[float, ...]
     shape: float
     together: bool
+    windows: tuple[tuple[float, float, float, float], ...]
+    follows: str
 
 
 def cameras(
@@ -57,19 +63,20 @@ def cameras(
     left, right = min(each[0] for each in seen), max(each[1] for each in seen)
     depths = [(bottom, top) for _, _, bottom, top in seen]
     targets = [np.zeros((motion.t.size, 2)) for motion in motions]
-    together = True
+    follows = "nothing"
     if right - left > widest:
         targets = [_feet(motion) for motion in motions]
         places = np.array([target[:, 0] for target in targets])
         parted = float(np.max(np.ptp(places, axis=0)))
         together = parted + (BEHIND + AHEAD) * size <= widest
+        follows = "middle" if together else "own"
         if together:
             middle = (places.min(axis=0) + places.max(axis=0)) / 2
             targets = [np.column_stack([middle, target[:, 1]]) for target in targets]
         room = parted / 2 if together else 0.0
         left, right = -BEHIND * size - room, AHEAD * size + room
         depths = [_depth(motion) for motion in motions]
-    return _framed((left, right), depths, targets, shape, head, foot, together)
+    return _framed((left, right), depths, targets, shape, head, foot, follows)
 
 
 def _framed(
@@ -79,7 +86,7 @@ def _framed(
     shape: float | None,
     head: float,
     foot: float,
-    together: bool,
+    follows: str,
 ) -> Cameras:
     """Views of one scale that fill the picture; what is seen lies relative to the targets."""
     length, strips = ends[1] - ends[0], len(depths)
@@ -91,14 +98,17 @@ def _framed(
     air, sky = (wide - length) / 2, wide * (shape / strips - foot) - needed / strips
     depths = [(bottom - foot * wide, top + sky) for bottom, top in depths]
     left, right = ends[0] - air, ends[1] + air
+    windows = tuple((left, right, bottom, top) for bottom, top in depths)
     return Cameras(
         tuple(
-            np.array([left, right, bottom, top]) + target[:, [0, 0, 1, 1]]
-            for (bottom, top), target in zip(depths, targets, strict=True)
+            np.array(window) + target[:, [0, 0, 1, 1]]
+            for window, target in zip(windows, targets, strict=True)
         ),
         tuple((top - bottom) / (wide * shape) for bottom, top in depths),
         shape,
-        together,
+        follows != "own",
+        windows,
+        follows,
     )
 
 

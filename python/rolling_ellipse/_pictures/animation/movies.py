@@ -14,7 +14,8 @@ from pathlib import Path
 from subprocess import CalledProcessError
 from typing import TYPE_CHECKING, Any
 
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, HTMLWriter, PillowWriter
+from matplotlib import rc_context
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from PIL import Image
 
 from ..._check import file_name
@@ -22,21 +23,36 @@ from ..._check import file_name
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from matplotlib.figure import Figure
+
 SUFFIXES = (".gif", ".mp4", ".html")
 
 
 class GifWriter(PillowWriter):
-    """Exact delays, and one palette for all frames: much smaller than matplotlib's GIF."""
+    """Exact delays, and one palette for all frames: much smaller than matplotlib's GIF.
+
+    The palette is that of what the figure shows before the first frame is drawn: the last frame
+    has every colour.
+    """
+
+    _frames: list[Image.Image]
+
+    def setup(self, fig: Figure, outfile: Any, dpi: float | None = None) -> None:
+        super().setup(fig, outfile, dpi)
+        with rc_context({"savefig.bbox": None}):  # as matplotlib has it for the frames
+            super().grab_frame()
+        # this choice spares the colours of thin lines
+        self._palette = self._frames.pop().convert("RGB").quantize(64, Image.Quantize.MAXCOVERAGE)
+
+    def grab_frame(self, **options: Any) -> None:
+        super().grab_frame(**options)
+        frame = self._frames.pop().convert("RGB")  # in RGB they would fill the memory
+        self._frames.append(frame.quantize(palette=self._palette, dither=Image.Dither.NONE))
 
     def finish(self) -> None:
-        frames = [frame.convert("RGB") for frame in self._frames]  # type: ignore[attr-defined]
-        if not frames:  # interrupted before the first: matplotlib finishes all the same
+        if not self._frames:  # interrupted before the first: matplotlib finishes all the same
             return
-        # the last frame has every colour, and this choice spares those of thin lines
-        palette = frames[-1].quantize(64, Image.Quantize.MAXCOVERAGE)
-        first, *rest = (
-            frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames
-        )
+        first, *rest = self._frames
         delay = gif_delay(self.fps)
         assert delay is not None
         first.save(self.outfile, save_all=True, append_images=rest, duration=10 * delay, loop=0)
@@ -53,8 +69,10 @@ def gif_delay(fps: float) -> int | None:
 
 def movie_writer(
     path: str | PathLike[str], fps: float, argument: str = "path"
-) -> tuple[AbstractMovieWriter, Any]:
+) -> tuple[AbstractMovieWriter | None, Any]:
     """Return what writes the file, and the matplotlib settings to do so under.
+
+    An .html holds a player, which needs no writer of frames: there it is None.
 
     Raises
     ------
@@ -84,8 +102,7 @@ def movie_writer(
     if suffix == ".mp4":
         return FFMpegWriter(fps=fps), {"animation.ffmpeg_path": ffmpeg()}  # type: ignore[arg-type]
     if suffix == ".html":
-        html = {"embed_frames": True, "embed_limit": math.inf, "default_mode": "loop"}
-        return HTMLWriter(fps=fps, **html), {}  # type: ignore[arg-type]
+        return None, {}
     raise ValueError(f"{argument} must end in one of {', '.join(SUFFIXES)}, got {str(target)!r}")
 
 

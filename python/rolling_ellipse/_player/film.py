@@ -1,0 +1,95 @@
+"""What the player shows of an animation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._pictures.animation.camera import cameras
+from .._pictures.strobe import turned_until
+from ..geometry import support_slope
+from .page import document, fragment
+from .poster import positions, poster
+from .tracks import track
+
+if TYPE_CHECKING:
+    from .._events import Event
+    from .._pictures.animation import RollingAnimation
+    from .._scene import Scene
+    from .._trajectory import Trajectory
+
+_PIXEL = 2.5e-5  # of the width of the view: a twentieth of a pixel where it is 2000 pixels wide
+_HEAD, _FOOT = 0.035, 0.035  # room for a line of text above, and for the ruler, over the width
+
+
+def film_page(animation: RollingAnimation) -> str:
+    """Return a page with the player of an animation, which works without a network."""
+    return document("An ellipse in motion", film_html(animation))
+
+
+def film_html(animation: RollingAnimation) -> str:
+    """Return the player of an animation as a fragment of HTML."""
+    motions = [strip.motion for strip in animation.strips]
+    last = float(animation.t[-1])
+    ends = [min(last, float(motion.t[-1])) for motion in motions]
+    seen = cameras(motions, None, _HEAD, _FOOT)
+    wide = seen.windows[0][1] - seen.windows[0][0]
+    strips = [
+        {
+            **body(motion.scene),
+            "label": label,
+            "share": share,
+            "window": window,
+            "track": track(motion, end, _PIXEL * wide, animation.t),
+            "events": events(motion, end),
+            "valid": None if np.isinf(motion.valid_until) else motion.valid_until,
+        }
+        for motion, label, share, window, end in zip(
+            motions, animation.labels, seen.heights, seen.windows, ends, strict=True
+        )
+    ]
+    data = {
+        "end": last,
+        "fps": animation.fps,
+        "speed": animation.speed,
+        "decimals": animation.decimals,
+        "shape": seen.shape,
+        "follows": seen.follows,
+        "strips": strips,
+    }
+    told = f"{len(motions)} ellipses" if len(motions) > 1 else "An ellipse"
+    told += f" on the ground in motion for {last:g} s, at even times"
+    return fragment(data, still(motions, animation.labels, seen.shape), told)
+
+
+def still(motions: list[Trajectory], labels: tuple[str, ...], shape: float) -> str:
+    """Return the poster: even times of the whole motion, or of its first three turns."""
+    end = min(turned_until(motion) for motion in motions)
+    at = [positions(motion, end) for motion in motions]
+    seen = cameras(at, shape, _HEAD, _FOOT)
+    windows = [tuple(map(float, views[0])) for views in seen.views]
+    return poster(at, windows, labels, shape)  # type: ignore[arg-type]
+
+
+def body(scene: Scene) -> dict[str, Any]:
+    """Return the body, its ground and the blow it was given."""
+    blow = scene.impulse
+    return {
+        "a": scene.a,
+        "b": scene.b,
+        "slope": scene.slope,
+        "weight": scene.mass * scene.gravity,
+        "blow": blow and [blow.jx, blow.jz, blow.dx, blow.dz],
+    }
+
+
+def events(motion: Trajectory, end: float) -> list[list[Any]]:
+    """Return time [s], kind and place on the ground [m] of each event."""
+    return [_event(motion.scene, each) for each in motion.events if each.t <= end]
+
+
+def _event(scene: Scene, event: Event) -> list[Any]:
+    state = event.state_after
+    place = state.x + float(support_slope(state.theta, a=scene.a, b=scene.b))
+    return [event.t, event.kind.name.lower().replace("_", " "), place]

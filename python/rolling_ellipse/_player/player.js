@@ -1,0 +1,290 @@
+// The player: motions on one clock, drawn on a canvas from samples and their rates.
+// It needs track.js and strip.js.
+
+const NUDGES = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -10, ArrowUp: 10 };
+const RATES = [0.1, 0.25, 0.5, 1, 2, 4];
+const ICONS = {
+  play: "M5 3l9 6-9 6z", pause: "M5 3h3v12H5zM11 3h3v12h-3z",
+  back: "M5 3h2v12H5zM15 3v12l-7-6z", forth: "M13 3h-2v12h2zM3 3v12l7-6z",
+};
+const STYLE = `
+  :host { display: block; max-width: 1100px; margin: .3em 0 }
+  .player { position: relative; border-radius: 8px; overflow: hidden; background: var(--panel);
+    color: var(--ink); font: 13px/1.4 system-ui, sans-serif; outline-offset: 2px }
+  .player:focus-visible, :focus-visible { outline: 2px solid var(--blue) }
+  canvas { display: block; width: 100%; touch-action: none }
+  .bar { display: flex; flex-wrap: wrap; align-items: center; gap: 4px 8px; padding: 6px 10px }
+  button, select { font: inherit; color: inherit; background: none; border: 1px solid transparent;
+    border-radius: 6px; padding: 3px 6px; min-height: 28px; cursor: pointer }
+  select option { background: var(--panel) }
+  button:hover, select:hover { border-color: var(--faint) }
+  button[aria-pressed=true] { background: var(--sky) }
+  button svg { display: block; fill: currentColor }
+  .seek { position: relative; flex: 1 1 160px; height: 28px }
+  .seek input { width: 100%; height: 28px; margin: 0; accent-color: var(--blue) }
+  .mark { position: absolute; bottom: 0; width: 2px; height: 7px; margin-left: -1px;
+    background: var(--plum) }
+  .time { font-variant-numeric: tabular-nums; min-width: 6.5em; text-align: right }`;
+
+/** Where the page, or else the reader's system, wants dark paper. */
+export function isDark(host) {
+  const marked = (words) => host.closest(words);
+  const dark = ".dark, .vscode-dark, [data-theme=dark], [data-jp-theme-light=false]";
+  const light = ".light, .vscode-light, [data-theme=light], [data-jp-theme-light=true]";
+  const [night, day] = [marked(dark), marked(light)];
+  if (night && day) return day.contains(night);
+  return night ? true : day ? false : matchMedia("(prefers-color-scheme: dark)").matches;
+}
+
+export class Player {
+  constructor(host, film) {
+    Object.assign(this, { host, film, t: 0, rate: 1, playing: false, forces: false, paused: 0 });
+    host.dataset.ready = "";
+    host.player = this;
+    for (const strip of film.strips) this.take(strip, strip.track, strip.events);
+    this.build(host.attachShadow({ mode: "open" }));
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    new ResizeObserver(() => this.draw()).observe(this.box);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+    const themes = new MutationObserver(() => this.draw());
+    for (const node of [host, document.body, document.documentElement])
+      themes.observe(node, { attributes: true, attributeFilter: ["class", "data-theme",
+        "data-jp-theme-light"] });
+    new IntersectionObserver(([entry]) => { this.seen = entry.isIntersecting; this.run(); })
+      .observe(this.box);
+    if (!still && film.end > 0 && !film.waits) this.play();
+    this.draw();
+  }
+
+  /** Let a strip show another motion. */
+  take(strip, packed, events) {
+    strip.motion = new Track(packed, strip.a);
+    strip.points = strip.motion.trace();
+    strip.events = events;
+  }
+
+  build(shadow) {
+    shadow.innerHTML = `<style>${STYLE}</style><div class="player" tabindex="0" role="group"
+      aria-label="Film of a rolling ellipse: space plays, arrows step" data-lm-suppress-shortcuts>
+      <canvas role="img"></canvas><div class="bar">${this.button("play", "Play")}
+      ${this.button("back", "Step back")}${this.button("forth", "Step forward")}<div class="seek">
+      <input type="range" min="0" max="1" step="any" value="0" aria-label="Time"></div>
+      <span class="time"></span><select aria-label="Speed"></select><button class="forces"
+      aria-pressed="false" title="Force of the ground">N, F</button></div></div>`;
+    const find = (words) => shadow.querySelector(words);
+    this.box = find(".player");
+    this.canvas = find("canvas");
+    this.slider = find("input");
+    this.clock = find(".time");
+    this.select = find("select");
+    for (const rate of RATES)
+      this.select.add(new Option(`× ${+(rate * this.film.speed).toPrecision(3)}`, rate, rate === 1,
+        rate === 1));
+    this.toggle = find(".play");
+    this.toggle.onclick = () => (this.playing ? this.pause() : this.play());
+    find(".back").onclick = () => this.step(-1);
+    find(".forth").onclick = () => this.step(1);
+    find(".forces").onclick = ({ currentTarget }) => {
+      this.forces = !this.forces;
+      currentTarget.setAttribute("aria-pressed", this.forces);
+      this.draw();
+    };
+    this.slider.oninput = () => { this.pause(); this.seek(this.slider.value * this.film.end); };
+    this.select.onchange = () => { this.rate = Number(this.select.value); };
+    this.box.onkeydown = (event) => this.key(event);
+    this.marks();
+  }
+
+  button(name, label) {
+    return `<button class="${name}" aria-label="${label}" title="${label}"><svg width="18"
+      height="18" aria-hidden="true"><path d="${ICONS[name]}"/></svg></button>`;
+  }
+
+  /** A mark at the slider for every event, up to what can be told apart. */
+  marks() {
+    const seek = this.slider.parentNode;
+    seek.querySelectorAll(".mark").forEach((mark) => mark.remove());
+    const seen = new Set();
+    for (const [t, kind] of this.film.strips.flatMap((strip) => strip.events)) {
+      const part = t / this.film.end, place = Math.round(500 * part);
+      if (!(part <= 1) || seen.has(place)) continue;
+      seen.add(place);
+      const mark = document.createElement("span");
+      mark.className = "mark";
+      mark.title = `${kind} at ${t.toPrecision(4)} s`;
+      mark.style.left = `calc(8px + (100% - 16px) * ${part})`;
+      seek.append(mark);
+    }
+  }
+
+  key(event) {
+    const { key, target } = event;
+    if (event.ctrlKey || event.altKey || event.metaKey || target === this.select) return;
+    if (key === " " && target.tagName === "BUTTON") return event.stopPropagation();
+    if (key === " ") this.toggle.click();
+    else if (key in NUDGES) this.step(NUDGES[key]);
+    else if (key === "Home") this.stepTo(0);
+    else if (key === "End") this.stepTo(this.film.end);
+    else if (key === "+" || key === "=") this.faster(1);
+    else if (key === "-") this.faster(-1);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  faster(by) {
+    const last = this.select.options.length - 1;
+    this.select.selectedIndex = Math.min(last, Math.max(0, this.select.selectedIndex + by));
+    this.rate = Number(this.select.value);
+  }
+
+  step(frames) {
+    const frame = this.film.speed / this.film.fps;
+    this.stepTo((Math.round(this.t / frame) + frames) * frame);
+  }
+
+  stepTo(t) {
+    this.pause();
+    this.seek(t);
+  }
+
+  seek(t) {
+    this.t = Math.min(this.film.end, Math.max(0, t));
+    this.draw();
+  }
+
+  play() {
+    if (this.t >= this.film.end) this.t = 0;
+    this.show(true);
+    this.run();
+  }
+
+  pause() {
+    this.show(false);
+  }
+
+  show(playing) {
+    this.playing = playing;
+    const [name, label] = playing ? ["pause", "Pause"] : ["play", "Play"];
+    this.toggle.querySelector("path").setAttribute("d", ICONS[name]);
+    this.toggle.setAttribute("aria-label", label);
+    this.toggle.title = label;
+  }
+
+  /** One loop of frames at a time, while it is played and seen; a second's rest at the end. */
+  run() {
+    if (this.running || !this.playing || this.seen === false) return;
+    this.running = true;
+    let before = performance.now(), rested = 0;
+    const frame = (now) => {
+      this.running = this.playing && this.seen !== false;
+      if (!this.running) return;
+      const passed = Math.max(0, now - before) / 1000;
+      before = now;
+      rested = this.t >= this.film.end ? rested + passed : 0;
+      if (rested > 1) this.t = 0;
+      this.seek(this.t + passed * this.rate * this.film.speed);
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  }
+
+  /** What is shown now, for those who read it: the states, and their centres in pixels. */
+  state() {
+    const bodies = this.film.strips.map((strip, i) => {
+      const at = strip.motion.at(this.t);
+      const [px, py] = this.views[i].at(at.x, at.z);
+      return { ...at, px, py };
+    });
+    return { t: this.t, playing: this.playing, bodies };
+  }
+
+  /** Pictures are drawn at most once a frame. */
+  draw() {
+    this.slider.value = this.film.end > 0 ? this.t / this.film.end : 0;
+    this.clock.textContent = `${this.t.toFixed(this.film.decimals)} s`;
+    this.slider.setAttribute("aria-valuetext", this.clock.textContent);
+    this.waiting ||= requestAnimationFrame(() => { this.waiting = 0; this.paint(); });
+  }
+
+  paint() {
+    const { film, canvas, box } = this;
+    const width = box.clientWidth, height = Math.round(width * film.shape);
+    if (!width) return;
+    const dots = window.devicePixelRatio || 1;
+    const across = Math.round(width * dots), down = Math.round(height * dots);
+    if (canvas.width !== across || canvas.height !== down) {
+      Object.assign(canvas, { width: across, height: down });
+      canvas.style.height = `${height}px`;
+    }
+    this.look = film.look[isDark(this.host) ? "dark" : "light"];
+    for (const name in this.look) box.style.setProperty(`--${name}`, this.look[name]);
+    const ink = (this.ink = canvas.getContext("2d"));
+    ink.setTransform(across / width, 0, 0, down / height, 0, 0);
+    ink.fillStyle = this.look.paper;
+    ink.fillRect(0, 0, width, height);
+    const states = film.strips.map((strip) => strip.motion.at(this.t));
+    this.views = this.look_at(states, width);
+    let floor = 0;
+    film.strips.forEach((strip, i) => {
+      const tall = strip.share * height;
+      ink.save();
+      ink.beginPath();
+      ink.rect(0, floor, width, tall);
+      ink.clip();
+      paintStrip(ink, this.look, strip, states[i], this.views[i], {
+        floor, width, tall, forces: this.forces, lasting: this.t / film.speed,
+        caption: this.caption(strip, states[i]), clock: i ? "" : this.clockText(),
+      });
+      this.over?.(ink, i);
+      ink.restore();
+      floor += tall;
+    });
+    this.host.dataset.time = this.t;
+    canvas.setAttribute("aria-label", film.strips.map((strip, i) => this.caption(strip, states[i]))
+      .join("; ") || "An ellipse on the ground");
+  }
+
+  /** The views of all strips, of cameras that follow nothing, the middle or each its own body. */
+  look_at(states, width) {
+    const { strips, follows, shape } = this.film;
+    const feet = strips.map(({ slope }, i) =>
+      [states[i].x * Math.cos(slope), states[i].x * Math.sin(slope)]);
+    const places = feet.map(([x]) => x);
+    const middle = (Math.min(...places) + Math.max(...places)) / 2;
+    let floor = 0;
+    return strips.map((strip, i) => {
+      const [x, y] = feet[i], { edge } = strip;
+      let place = follows === "own" ? [x, -y] : follows === "middle" ? [middle, -y] : [0, 0];
+      if (follows === "edge") {
+        const part = Math.abs(x) > edge ? 1 - edge / Math.abs(x) : 0;
+        place = [x * part, -y * part];
+      }
+      const view = new View(strip, strip.window, place, floor, width);
+      floor += strip.share * shape * width;
+      return view;
+    });
+  }
+
+  /** What has to be said of one motion now. */
+  caption(strip, at) {
+    const parts = strip.label ? [strip.label] : [];
+    if (this.film.follows === "own") {
+      const digits = Math.max(0, 1 - Math.floor(Math.log10(Math.max(strip.a, strip.b))));
+      parts.push(`x = ${at.x.toFixed(digits).replace("-", "−")} m`);
+    }
+    if (at.mode === SLIDING) parts.push("slides");
+    if (at.mode === FLIGHT) parts.push("flies");
+    if (strip.valid !== null && this.t >= strip.valid) parts.push("rolling is no longer valid");
+    const frame = this.film.speed / this.film.fps;
+    const ended = strip.motion.end + frame < this.film.end && this.t > strip.motion.end;
+    if (ended) parts.push(`ended at ${+strip.motion.end.toPrecision(6)} s`);
+    return parts.join("   ");
+  }
+
+  clockText() {
+    const speed = this.film.speed * this.rate;
+    const text = `t = ${this.t.toFixed(this.film.decimals)} s`;
+    return speed === 1 ? text : `${text}   speed × ${+speed.toPrecision(3)}`;
+  }
+}

@@ -1,0 +1,215 @@
+// One strip of the picture: a body on its ruled ground, drawn where a state has it. It needs
+// track.js.
+
+export const [SLIDING, FLIGHT] = [1, 2]; // codes of Mode
+const SHOWN = 6000; // points of a trace; those before are out of sight
+const FADES = 1.2; // seconds of film that a blow or an event is seen for
+
+/** One strip of the picture: turns places on its ground to pixels. */
+export class View {
+  constructor(strip, window, place, floor, width) {
+    const [left, right, , top] = window;
+    this.scale = width / (right - left);
+    const c = this.scale * Math.cos(strip.slope), s = this.scale * Math.sin(strip.slope);
+    const [x, y] = place;
+    this.at = (px, pz) => [c * px + s * pz - this.scale * (left + x),
+      s * px - c * pz + this.scale * (top + y) + floor];
+    this.ground = (px, py) => {
+      const u = px + this.scale * (left + x), w = py - floor - this.scale * (top + y);
+      return [(c * u + s * w) / this.scale ** 2, (s * u - c * w) / this.scale ** 2];
+    };
+  }
+}
+
+/** Everything of one motion at one time. */
+export function paintStrip(ink, look, strip, at, view, shown) {
+  ink.lineJoin = "round";
+  paintGround(ink, look, strip, view, shown);
+  paintTrace(ink, look.blue, 1, strip.points, 3, at, view, 0.55);
+  paintBody(ink, look, strip, at, view);
+  paintTrace(ink, look.orange, 1.8, strip.points, 1, at, view, 1);
+  paintContact(ink, look, strip, at, view);
+  if (shown.forces) paintForces(ink, look, strip, at, view);
+  if (strip.blow) paintBlow(ink, look, strip, view, shown.lasting);
+  paintEvents(ink, look, strip, at, view, shown);
+  text(ink, look.ink, shown.caption, 12, shown.floor + 20, "left");
+  text(ink, look.ink, shown.clock, shown.width - 12, shown.floor + 20, "right");
+}
+
+export function text(ink, colour, words, x, y, align = "center", size = 13) {
+  ink.font = `${size}px system-ui, sans-serif`;
+  ink.textAlign = align;
+  ink.fillStyle = colour;
+  ink.fillText(words, x, y);
+}
+
+export function path(ink, points) {
+  ink.beginPath();
+  points.forEach(([x, y], i) => (i ? ink.lineTo(x, y) : ink.moveTo(x, y)));
+}
+
+/** An arrow from one pixel to another, with a head that a short one has, too. */
+export function arrow(ink, colour, [x, y], [u, v], width = 2.5) {
+  const length = Math.hypot(u - x, v - y);
+  if (length < 1) return;
+  const [c, s] = [(u - x) / length, (v - y) / length], head = Math.min(10, 0.7 * length);
+  const corner = (along, across) => [u - c * along - s * across, v - s * along + c * across];
+  Object.assign(ink, { strokeStyle: colour, fillStyle: colour, lineWidth: width, lineCap: "round" });
+  path(ink, [[x, y], corner(0.8 * head, 0)]);
+  ink.stroke();
+  path(ink, [[u, v], corner(head, head / 2.4), corner(head, -head / 2.4)]);
+  ink.closePath();
+  ink.fill();
+}
+
+export function disc(ink, fill, edge, [x, y], radius) {
+  ink.beginPath();
+  ink.arc(x, y, radius, 0, 2 * Math.PI);
+  ink.fillStyle = fill;
+  ink.fill();
+  if (!edge) return;
+  Object.assign(ink, { strokeStyle: edge, lineWidth: 1.5 });
+  ink.stroke();
+}
+
+/** The edge of a body, as a path. */
+export function outline(ink, strip, at, view) {
+  const [u, v] = view.at(at.x, at.z);
+  ink.beginPath();
+  ink.ellipse(u, v, strip.a * view.scale, strip.b * view.scale, at.theta + strip.slope, 0,
+    2 * Math.PI);
+}
+
+/** The earth, its ticks, longer and with their distance at every fifth. */
+function paintGround(ink, look, strip, view, { floor, width, tall }) {
+  const far = (2 * (width + tall)) / view.scale;
+  const [x] = view.ground(width / 2, floor + tall);
+  path(ink, [view.at(x - far, 0), view.at(x + far, 0), view.at(x + far, -far),
+    view.at(x - far, -far)]);
+  ink.fillStyle = look.earth;
+  ink.fill();
+  Object.assign(ink, { strokeStyle: look.grey, lineWidth: 1 });
+  path(ink, [view.at(x - far, 0), view.at(x + far, 0)]);
+  ink.stroke();
+  const span = width / view.scale / Math.cos(strip.slope), least = span / Math.min(24, width / 25);
+  const power = 10 ** Math.floor(Math.log10(least));
+  const step = power * [1, 2, 5, 10].find((n) => n * power >= least * (1 - 1e-12));
+  const first = Math.floor((x - span) / step), last = Math.ceil((x + span) / step);
+  const unit = 8 / view.scale;
+  ink.beginPath();
+  for (let i = first; i <= last; i++) {
+    ink.moveTo(...view.at(i * step, 0));
+    ink.lineTo(...view.at(i * step, -unit * (i % 5 ? 0.75 : 1.4)));
+  }
+  ink.stroke();
+  for (let i = Math.ceil(first / 5) * 5; i <= last; i += 5) {
+    ink.save();
+    ink.translate(...view.at(i * step, -unit * 3));
+    ink.rotate(strip.slope);
+    text(ink, look.grey, `${+(i * step).toPrecision(10)} m`.replace("-", "−"), 0, 0, "center", 11);
+    ink.restore();
+  }
+}
+
+/** The part of a trace up to now; it ends where the body is. */
+function paintTrace(ink, colour, width, points, column, at, view, alpha) {
+  let low = 0, end = points.length;
+  if (!end) return;
+  while (end - low > 1) {
+    const middle = (low + end) >> 1;
+    if (points[middle][0] <= at.t) low = middle;
+    else end = middle;
+  }
+  ink.beginPath();
+  for (let i = Math.max(0, end - SHOWN); i < end; i++)
+    ink.lineTo(...view.at(points[i][column], points[i][column + 1]));
+  ink.lineTo(...(column === 1 ? view.at(at.x, at.z) : view.at(...at.tip)));
+  Object.assign(ink, { strokeStyle: colour, lineWidth: width, globalAlpha: alpha });
+  ink.stroke();
+  ink.globalAlpha = 1;
+}
+
+function paintBody(ink, look, strip, at, view) {
+  const { a, b } = strip, sine = Math.sin(at.theta), cosine = Math.cos(at.theta);
+  if (at.mode === FLIGHT) {
+    const half = support(at.theta + Math.PI / 2, a, b)[0];
+    Object.assign(ink, { strokeStyle: look.grey, lineWidth: 5, lineCap: "round" });
+    path(ink, [view.at(at.x - half, 0), view.at(at.x + half, 0)]);
+    ink.stroke();
+  }
+  outline(ink, strip, at, view);
+  ink.fillStyle = look.body;
+  ink.fill();
+  Object.assign(ink, { strokeStyle: look.ink, lineWidth: 1.8 });
+  ink.stroke();
+  ink.lineWidth = 1.2;
+  path(ink, [-1, 1].map((n) => view.at(at.x + n * a * cosine, at.z - n * a * sine)));
+  ink.stroke();
+  ink.setLineDash([5, 4]);
+  path(ink, [-1, 1].map((n) => view.at(at.x + n * b * sine, at.z + n * b * cosine)));
+  ink.stroke();
+  ink.setLineDash([]);
+  disc(ink, look.blue, null, view.at(...at.tip), 4);
+}
+
+/** Where body and ground touch; a triangle points to where the contact slips. */
+function paintContact(ink, look, { a, b }, at, view) {
+  if (at.mode === FLIGHT) return;
+  const [height, lead] = support(at.theta, a, b), way = Math.sign(at.xDot - height * at.omega);
+  const place = at.x + lead, pixel = 1 / view.scale;
+  if (at.mode !== SLIDING) {
+    disc(ink, look.paper, look.ink, view.at(place, 0), 4);
+    return;
+  }
+  path(ink, [[9, 0], [-5.5, 6], [-5.5, -6]].map(([along, up]) =>
+    view.at(place + way * along * pixel, up * pixel)));
+  ink.closePath();
+  Object.assign(ink, { fillStyle: look.plum, strokeStyle: look.paper, lineWidth: 0.8 });
+  ink.fill();
+  ink.stroke();
+}
+
+/** The force of the ground; the body's weight is as long as its longer semi-axis. */
+function paintForces(ink, look, { a, b, weight }, at, view) {
+  if (at.mode === FLIGHT) return;
+  const place = at.x + support(at.theta, a, b)[1];
+  const length = (force) => Math.max(-3, Math.min(3, force / weight)) * Math.max(a, b);
+  const foot = view.at(place, 0), up = view.at(place, length(at.N));
+  const along = view.at(place + length(at.F), 0);
+  arrow(ink, look.plum, foot, up, 3);
+  arrow(ink, look.plum, foot, along, 3);
+  text(ink, look.plum, "N", up[0] + 13, up[1] + 8);
+  if (Math.abs(at.F) > 0.02 * weight) text(ink, look.plum, "F", along[0], along[1] - 8);
+}
+
+/** The blow at t = 0, where the hand hits the body as it lay then. */
+function paintBlow(ink, look, strip, view, lasting) {
+  const [jx, jz, dx, dz] = strip.blow, size = Math.hypot(jx, jz);
+  if (lasting > FADES || !size) return;
+  const { x, z } = strip.motion.at(0), long = 0.9 * Math.max(strip.a, strip.b);
+  const end = [x + dx, z + dz], start = [end[0] - (long * jx) / size, end[1] - (long * jz) / size];
+  const [u, v] = view.at(...start);
+  ink.globalAlpha = 1 - lasting / FADES;
+  arrow(ink, look.plum, [u, v], view.at(...end), 3.5);
+  text(ink, look.plum, `${+size.toPrecision(3)} N s`, u + 10, v + 12, "left");
+  ink.globalAlpha = 1;
+}
+
+/** A tick on the ground for every event that has been, and its name while it is new. */
+function paintEvents(ink, look, strip, at, view, { width, lasting }) {
+  let named = null;
+  ink.fillStyle = look.plum;
+  for (const [t, kind, x] of strip.events) {
+    if (t > at.t) break;
+    const [u, v] = view.at(x, 0);
+    if (u < -5 || u > width + 5) continue;
+    path(ink, [[u, v], [u - 3.5, v + 8], [u + 3.5, v + 8]]);
+    ink.fill();
+    const age = lasting * (1 - t / Math.max(at.t, 1e-300));
+    if (age < FADES) named = [kind, u, v + 19, 1 - age / FADES];
+  }
+  if (!named) return;
+  ink.globalAlpha = named[3];
+  text(ink, look.plum, named[0], named[1], named[2], "center", 11);
+  ink.globalAlpha = 1;
+}

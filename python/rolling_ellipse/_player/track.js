@@ -1,0 +1,64 @@
+// A motion: samples with their rates, and cubics between them. Lengths are metres in ground axes,
+// x along the ground and z normal to it, times seconds.
+
+const KINDS = { u2: Uint16Array, f4: Float32Array, f8: Float64Array };
+
+/** The numbers of a packed column. */
+export function unpacked({ kind, low, step, data }) {
+  const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+  return Float64Array.from(new KINDS[kind](bytes.buffer), (n) => low + step * n);
+}
+
+/** One motion: its state at any time, by cubics between samples of position and rate. */
+export class Track {
+  constructor({ columns, stepped }, a) {
+    for (const name in columns) this[name] = unpacked(columns[name]);
+    Object.assign(this, { a, stepped });
+    this.end = this.t.at(-1);
+  }
+
+  at(t) {
+    let i = 0, j = this.t.length;
+    while (j - i > 1) {
+      const middle = (i + j) >> 1;
+      if (this.t[middle] <= t) i = middle;
+      else j = middle;
+    }
+    const held = this.stepped || j === this.t.length;
+    const span = held ? 1 : this.t[j] - this.t[i], u = held ? 0 : Math.max(0, t - this.t[i]) / span;
+    if (held) j = i;
+    const v = 1 - u;
+    const line = (p) => v * p[i] + u * p[j];
+    const cubic = (p, rate) => v * v * (1 + 2 * u) * p[i] + u * u * (1 + 2 * v) * p[j]
+      + u * v * span * (v * rate[i] - u * rate[j]);
+    const x = cubic(this.x, this.x_dot), z = cubic(this.z, this.z_dot);
+    const theta = cubic(this.theta, this.omega);
+    return {
+      t: Math.min(t, this.end), x, z, theta, xDot: line(this.x_dot), omega: line(this.omega),
+      N: line(this.normal_force), F: line(this.friction_force), mode: this.mode[i],
+      tip: [x + this.a * Math.cos(theta), z - this.a * Math.sin(theta)],
+    };
+  }
+
+  /** Where the centre and the end of axis a have been, as [t, x, z, tip x, tip z]. */
+  trace() {
+    const points = [];
+    if (this.stepped) return points;
+    for (let i = 0; i < this.t.length; i++) {
+      for (let part = 0; part < 6; part++) {
+        const next = this.t[i + 1] ?? this.t[i];
+        const { t, x, z, tip } = this.at(this.t[i] + (part / 6) * (next - this.t[i]));
+        points.push([t, x, z, ...tip]);
+        if (next === this.t[i]) break;
+      }
+    }
+    return points;
+  }
+}
+
+/** Height of the centre over the ground, and how far the contact lies ahead of it. */
+export function support(theta, a, b) {
+  const sine = Math.sin(theta), cosine = Math.cos(theta);
+  const height = Math.hypot(a * sine, b * cosine);
+  return [height, ((a * a - b * b) * sine * cosine) / height];
+}

@@ -1,0 +1,115 @@
+"""A motion as the player knows it: samples with their rates, close enough for cubics between."""
+
+from __future__ import annotations
+
+import base64
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .._check import FloatArray
+    from .._trajectory import Trajectory
+
+MOST_SAMPLES = 20_000  # of one motion; 1 MB
+_RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}
+_FORCES = ("normal_force", "friction_force")
+# Where a cubic is compared with the motion, in parts of its interval: irregular, so that a motion
+# whose period divides the intervals does not look like a straight line.
+_WITHIN = np.array([0.2113, 0.5, 0.7887])
+_FIRST = 17  # intervals to begin with
+
+
+def track(motion: Trajectory, end: float, tolerance: float, frames: FloatArray) -> dict[str, Any]:
+    """Return the motion up to its time `end` [s], as JSON knows it.
+
+    Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m].
+    At an event the sample just before it is there as well as that just after. Where this would
+    take more than `MOST_SAMPLES`, the motion is there at the times of the `frames` alone, and
+    `stepped`: nothing is put between them.
+
+    Raises
+    ------
+    ValueError
+        If the frames are more than that, too.
+    """
+    times = _times(motion, end, tolerance)
+    stepped = times is None
+    if times is None:
+        times = np.unique(np.minimum(frames, end))
+        if times.size > MOST_SAMPLES:
+            raise ValueError(
+                f"t_end must be shown by a player in at most {MOST_SAMPLES} samples, got a motion "
+                f"that needs more and {times.size} frames: show less by t_end, or faster by speed"
+            )
+    at = motion.sol(times)
+    size = max(motion.scene.a, motion.scene.b)
+    longest = float(np.max(np.diff(times), initial=0.0))
+    fastest = float(np.max(np.hypot(at.x_dot, at.z_dot) + size * np.abs(at.omega)))
+    near = tolerance / max(fastest, 1e-300)  # [s]
+    allowed = {"t": near, "x": tolerance, "z": tolerance, "theta": tolerance / size}
+    for name, rate in _RATES.items():
+        allowed[rate] = 4 * allowed[name] / max(longest, near)
+    for name in _FORCES:
+        allowed[name] = 1e-3 * motion.scene.mass * motion.scene.gravity
+    columns = {name: packed(getattr(at, name), error) for name, error in allowed.items()}
+    columns["mode"] = packed(at.mode.astype(np.float64), 0.0)
+    return {"columns": columns, "stepped": stepped}
+
+
+def _times(motion: Trajectory, end: float, tolerance: float) -> FloatArray | None:
+    """Times of the samples, None if they are too many."""
+    jumps = [event.t for event in motion.events if 0 < event.t <= end]
+    just_before = np.nextafter(jumps, 0.0)
+    times = np.unique(np.concatenate([np.linspace(0.0, end, _FIRST + 1), jumps, just_before]))
+    open_ones = np.diff(times) > 1e-12 * end  # intervals that have to be looked at
+    while np.any(open_ones):
+        if times.size > MOST_SAMPLES:
+            return None
+        left, right = times[:-1][open_ones], times[1:][open_ones]
+        bad = _misses(motion, left, right) > tolerance
+        bad &= right - left > 1e-9 * end
+        middles = (left[bad] + right[bad]) / 2
+        times = np.sort(np.concatenate([times, middles]))
+        place = np.searchsorted(times, middles)
+        open_ones = np.zeros(times.size - 1, bool)
+        open_ones[place] = open_ones[place - 1] = True
+    return times if times.size <= MOST_SAMPLES else None
+
+
+def _misses(motion: Trajectory, left: FloatArray, right: FloatArray) -> FloatArray:
+    """By how much cubics over intervals of time miss centre and tip, at most [m]."""
+    size = max(motion.scene.a, motion.scene.b)
+    first, last = motion.sol(left), motion.sol(right)
+    span = (right - left)[:, None]
+    exact = motion.sol((left[:, None] + span * _WITHIN).ravel())
+    u, v = _WITHIN, 1 - _WITHIN
+    missed = np.zeros(left.size)
+    for name, rate in _RATES.items():
+        p, q = getattr(first, name)[:, None], getattr(last, name)[:, None]
+        m, n = getattr(first, rate)[:, None] * span, getattr(last, rate)[:, None] * span
+        cubic = v * v * (1 + 2 * u) * p + u * u * (1 + 2 * v) * q + u * v * (v * m - u * n)
+        error = np.abs(cubic - getattr(exact, name).reshape(cubic.shape)).max(axis=1)
+        missed += error * (size if name == "theta" else 1.0)
+    return missed
+
+
+def packed(values: FloatArray, error: float) -> dict[str, Any]:
+    """Return a column in as few bytes as keep it to an error: low + step · n, n in base64.
+
+    n are unsigned integers of two bytes where that is enough, else floats of four or eight.
+    """
+    low, high = float(np.min(values)), float(np.max(values))
+    step = (high - low) / 65535
+    if not np.isfinite(step):
+        raise ValueError(f"trajectory must have finite samples, got {low:g} to {high:g}")
+    if step <= 2 * error or step == 0:
+        numbers: Any = np.round((values - low) / step) if step > 0 else np.zeros(values.size)
+        kind = "<u2"
+    elif np.all(values == np.round(values)) and low >= 0 and high <= 65535:
+        low, step, numbers, kind = 0.0, 1.0, values, "<u2"
+    else:
+        exact = max(abs(low), abs(high)) * 2.0**-24 > error
+        low, step, numbers, kind = 0.0, 1.0, values, "<f8" if exact else "<f4"
+    data = base64.b64encode(numbers.astype(kind).tobytes()).decode()
+    return {"kind": kind[1:], "low": low, "step": step, "data": data}
