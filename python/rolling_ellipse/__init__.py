@@ -44,18 +44,20 @@ if _TYPE_CHECKING:
         plot_phase_map,
         plot_strobe,
     )
+    from ._player import Explorer, explore
     from ._work_precision import WorkPrecision, work_precision
 
     __version__: str
 
 __all__ = [
-    "Certificate", "CompletenessWarning", "ConstraintResiduals", "Event", "EventKind", "Impulse",
-    "InitialState", "IntegrationError", "Mode", "Outcome", "Sample", "Scene", "StabilityWarning",
-    "Status", "Thresholds", "Trajectory", "Validity", "ValidityWarning", "WorkPrecision",
-    "__version__", "animate", "blow_to", "certify", "classify", "constraints", "flow", "geometry",
-    "impacts", "kinematics", "load", "outcome", "period", "plot", "plot_constraints", "plot_energy",
-    "plot_error", "plot_forces", "plot_paths", "plot_phase", "plot_phase_map", "plot_strobe",
-    "report", "required_friction", "scenes", "simulate", "thresholds", "work_precision",
+    "Certificate", "CompletenessWarning", "ConstraintResiduals", "Event", "EventKind", "Explorer",
+    "Impulse", "InitialState", "IntegrationError", "Mode", "Outcome", "Sample", "Scene",
+    "StabilityWarning", "Status", "Thresholds", "Trajectory", "Validity", "ValidityWarning",
+    "WorkPrecision", "__version__", "animate", "blow_to", "certify", "classify", "constraints",
+    "explore", "flow", "geometry", "impacts", "kinematics", "load", "outcome", "period", "plot",
+    "plot_constraints", "plot_energy", "plot_error", "plot_forces", "plot_paths", "plot_phase",
+    "plot_phase_map", "plot_strobe", "report", "required_friction", "scenes", "simulate",
+    "thresholds", "work_precision",
 ]  # fmt: skip
 
 
@@ -67,6 +69,8 @@ def __getattr__(name: str) -> _Any:
         value: _Any = version("rolling-ellipse")
     elif name in ("impacts", "report"):
         value = _import_module(f".{name}", __name__)
+    elif name in ("Explorer", "explore"):
+        value = getattr(_import_module("._player", __name__), name)
     elif name in ("WorkPrecision", "work_precision"):
         value = getattr(_import_module("._work_precision", __name__), name)
     elif name in __all__:

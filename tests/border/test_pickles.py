@@ -92,6 +92,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "errata": rl.report.errata,
     "comparison": lambda: rl.report.errata()[0].evaluate(),
     "fitted impacts": fitted,
+    "explorer": lambda: rl.explore(rl.scenes.report),
     "mode": lambda: rl.Mode.SLIDING,
     "kind": lambda: rl.EventKind.JAM,
     "outcome": lambda: rl.Outcome.EDGE,

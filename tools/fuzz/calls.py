@@ -398,6 +398,15 @@ def phase_map(draw: Draw) -> Iterator[Line]:
     yield Line("plt.close('all')", does="close")
 
 
+def explore(draw: Draw) -> Iterator[Line]:
+    yield Line(_scene_or_not(draw), "scene", "Scene")
+    t_end = draw.pick("None", text(draw.between(0, 3)), text(draw.power(-30, 30)))
+    arguments = {"scene": "scene", "t_end": t_end}
+    yield Line(call("rl.explore", **draw.mutated(arguments)), "explorer", "explore")
+    if draw.chance(0.05):
+        yield Line("len(explorer._repr_html_()) > 20_000", does="Explorer", patience=20)
+
+
 def _of_map(draw: Draw, name: str) -> float:
     return draw.pick(1.5, draw.power(0, 3)) if name == "aspect" else draw.pick(
         0.0, draw.between(0, 3), draw.power(-10, 10)
@@ -483,6 +492,7 @@ CALLS = (
     Call("report", 1, report_simulate),
     Call("errata", 0.02, errata),
     Call("phase_map", 0.15, phase_map),
+    Call("explore", 0.3, explore),
     Call("race", 0.1, race),
     Call("load", 0.3, load),
     Call("command", 0.3, command),

@@ -1,5 +1,6 @@
 """The player of films in a browser, and the blows that a reader tries there."""
 
+from .explorer import Explorer, explore, write_explorer
 from .film import film_html, film_page
 
-__all__ = ["film_html", "film_page"]
+__all__ = ["Explorer", "explore", "film_html", "film_page", "write_explorer"]

@@ -41,7 +41,9 @@ export class Player {
     Object.assign(this, { host, film, t: 0, rate: 1, playing: false, forces: false, paused: 0 });
     host.dataset.ready = "";
     host.player = this;
-    for (const strip of film.strips) this.take(strip, strip.track, strip.events);
+    for (const strip of film.strips)
+      if (strip.track) this.take(strip, unpacked(strip.track.columns), strip.track.stepped);
+    this.begin?.();
     this.build(host.attachShadow({ mode: "open" }));
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
     new ResizeObserver(() => this.draw()).observe(this.box);
@@ -57,10 +59,9 @@ export class Player {
   }
 
   /** Let a strip show another motion. */
-  take(strip, packed, events) {
-    strip.motion = new Track(packed, strip.a);
+  take(strip, columns, stepped) {
+    strip.motion = new Track(columns, stepped, strip.a);
     strip.points = strip.motion.trace();
-    strip.events = events;
   }
 
   build(shadow) {
@@ -254,11 +255,12 @@ export class Player {
     const middle = (Math.min(...places) + Math.max(...places)) / 2;
     let floor = 0;
     return strips.map((strip, i) => {
-      const [x, y] = feet[i], { edge } = strip;
+      const [x, y] = feet[i];
       let place = follows === "own" ? [x, -y] : follows === "middle" ? [middle, -y] : [0, 0];
-      if (follows === "edge") {
-        const part = Math.abs(x) > edge ? 1 - edge / Math.abs(x) : 0;
-        place = [x * part, -y * part];
+      if (follows === "edge") { // the body stays within so much of where it began
+        const { start, edge, slope } = strip, way = states[i].x - start;
+        const along = start + way - Math.min(edge, Math.max(-edge, way));
+        place = [along * Math.cos(slope), -along * Math.sin(slope)];
       }
       const view = new View(strip, strip.window, place, floor, width);
       floor += strip.share * shape * width;

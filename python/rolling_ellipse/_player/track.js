@@ -3,17 +3,18 @@
 
 const KINDS = { u2: Uint16Array, f4: Float32Array, f8: Float64Array };
 
-/** The numbers of a packed column. */
-export function unpacked({ kind, low, step, data }) {
-  const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
-  return Float64Array.from(new KINDS[kind](bytes.buffer), (n) => low + step * n);
+/** The numbers of packed columns. */
+export function unpacked(columns) {
+  return Object.fromEntries(Object.entries(columns).map(([name, { kind, low, step, data }]) => {
+    const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+    return [name, Float64Array.from(new KINDS[kind](bytes.buffer), (n) => low + step * n)];
+  }));
 }
 
 /** One motion: its state at any time, by cubics between samples of position and rate. */
 export class Track {
-  constructor({ columns, stepped }, a) {
-    for (const name in columns) this[name] = unpacked(columns[name]);
-    Object.assign(this, { a, stepped });
+  constructor(columns, stepped, a) {
+    Object.assign(this, columns, { a, stepped });
     this.end = this.t.at(-1);
   }
 

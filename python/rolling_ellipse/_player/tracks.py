@@ -17,6 +17,7 @@ _FORCES = ("normal_force", "friction_force")
 # Where a cubic is compared with the motion, in parts of its interval: irregular, so that a motion
 # whose period divides the intervals does not look like a straight line.
 _WITHIN = np.array([0.2113, 0.5, 0.7887])
+_FORCE = 0.08  # what lines may miss of the forces and the weight together: a line's width in a plot
 _FIRST = 17  # intervals to begin with
 
 
@@ -24,16 +25,15 @@ def track(motion: Trajectory, end: float, tolerance: float, frames: FloatArray) 
     """Return the motion up to its time `end` [s], as JSON knows it.
 
     Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m].
-    At an event the sample just before it is there as well as that just after. Where this would
-    take more than `MOST_SAMPLES`, the motion is there at the times of the `frames` alone, and
-    `stepped`: nothing is put between them.
+    Where this would take more than `MOST_SAMPLES`, the motion is there at the times of the
+    `frames` alone, and `stepped`: nothing is put between them.
 
     Raises
     ------
     ValueError
         If the frames are more than that, too.
     """
-    times = _times(motion, end, tolerance)
+    times = sample_times(motion, end, tolerance)
     stepped = times is None
     if times is None:
         times = np.unique(np.minimum(frames, end))
@@ -42,43 +42,63 @@ def track(motion: Trajectory, end: float, tolerance: float, frames: FloatArray) 
                 f"t_end must be shown by a player in at most {MOST_SAMPLES} samples, got a motion "
                 f"that needs more and {times.size} frames: show less by t_end, or faster by speed"
             )
-    at = motion.sol(times)
-    size = max(motion.scene.a, motion.scene.b)
-    longest = float(np.max(np.diff(times), initial=0.0))
-    fastest = float(np.max(np.hypot(at.x_dot, at.z_dot) + size * np.abs(at.omega)))
-    near = tolerance / max(fastest, 1e-300)  # [s]
-    allowed = {"t": near, "x": tolerance, "z": tolerance, "theta": tolerance / size}
+    return {"columns": columns([motion.sol(times)], tolerance), "stepped": stepped}
+
+
+def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
+    """Return the samples of motions of one body, one after the other, packed."""
+    scene = motions[0].scene
+    size = max(scene.a, scene.b)
+    joined = {
+        name: np.concatenate([getattr(motion, name) for motion in motions])
+        for name in ("t", *_RATES, *_RATES.values(), *_FORCES, "mode")
+    }
+    speeds = np.hypot(joined["x_dot"], joined["z_dot"]) + size * np.abs(joined["omega"])
+    near = tolerance / max(float(np.max(speeds)), 1e-300)  # [s]
+    longest = max(float(np.max(np.diff(motion.t), initial=0.0)) for motion in motions)
+    allowed = {"t": near, "x": tolerance, "z": tolerance, "theta": tolerance / size, "mode": 0.0}
     for name, rate in _RATES.items():
         allowed[rate] = 4 * allowed[name] / max(longest, near)
     for name in _FORCES:
-        allowed[name] = 1e-3 * motion.scene.mass * motion.scene.gravity
-    columns = {name: packed(getattr(at, name), error) for name, error in allowed.items()}
-    columns["mode"] = packed(at.mode.astype(np.float64), 0.0)
-    return {"columns": columns, "stepped": stepped}
+        allowed[name] = 1e-3 * scene.mass * scene.gravity
+    return {name: packed(values.astype(float), allowed[name]) for name, values in joined.items()}
 
 
-def _times(motion: Trajectory, end: float, tolerance: float) -> FloatArray | None:
-    """Times of the samples, None if they are too many."""
+def sample_times(
+    motion: Trajectory,
+    end: float,
+    tolerance: float,
+    *,
+    force: float = _FORCE,
+    most: int = MOST_SAMPLES,
+) -> FloatArray | None:
+    """Return times for cubics that miss by no more than `tolerance` [m], None if too many.
+
+    Lines between the forces miss no more than `force` of them and the weight together. At an event
+    the time just before it is there as well.
+    """
     jumps = [event.t for event in motion.events if 0 < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
     times = np.unique(np.concatenate([np.linspace(0.0, end, _FIRST + 1), jumps, just_before]))
     open_ones = np.diff(times) > 1e-12 * end  # intervals that have to be looked at
     while np.any(open_ones):
-        if times.size > MOST_SAMPLES:
+        if times.size > most:
             return None
         left, right = times[:-1][open_ones], times[1:][open_ones]
-        bad = _misses(motion, left, right) > tolerance
+        bad = _misses(motion, left, right, tolerance, force) > 1
         bad &= right - left > 1e-9 * end
         middles = (left[bad] + right[bad]) / 2
         times = np.sort(np.concatenate([times, middles]))
         place = np.searchsorted(times, middles)
         open_ones = np.zeros(times.size - 1, bool)
         open_ones[place] = open_ones[place - 1] = True
-    return times if times.size <= MOST_SAMPLES else None
+    return times if times.size <= most else None
 
 
-def _misses(motion: Trajectory, left: FloatArray, right: FloatArray) -> FloatArray:
-    """By how much cubics over intervals of time miss centre and tip, at most [m]."""
+def _misses(
+    motion: Trajectory, left: FloatArray, right: FloatArray, tolerance: float, force: float
+) -> FloatArray:
+    """By how much cubics over intervals of time miss, and lines the forces, 1 if just allowed."""
     size = max(motion.scene.a, motion.scene.b)
     first, last = motion.sol(left), motion.sol(right)
     span = (right - left)[:, None]
@@ -90,7 +110,13 @@ def _misses(motion: Trajectory, left: FloatArray, right: FloatArray) -> FloatArr
         m, n = getattr(first, rate)[:, None] * span, getattr(last, rate)[:, None] * span
         cubic = v * v * (1 + 2 * u) * p + u * u * (1 + 2 * v) * q + u * v * (v * m - u * n)
         error = np.abs(cubic - getattr(exact, name).reshape(cubic.shape)).max(axis=1)
-        missed += error * (size if name == "theta" else 1.0)
+        missed += error * (size if name == "theta" else 1.0) / tolerance
+    weight = motion.scene.mass * motion.scene.gravity
+    for name in _FORCES:
+        p, q = getattr(first, name)[:, None], getattr(last, name)[:, None]
+        true = getattr(exact, name).reshape(left.size, u.size)
+        error = np.abs(v * p + u * q - true) / (force * (weight + np.abs(true)))
+        missed = np.maximum(missed, error.max(axis=1))
     return missed
 
 

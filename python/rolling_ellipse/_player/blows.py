@@ -1,0 +1,131 @@
+"""A table of blows: what each makes of one scene, small enough for a page to carry."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import _core
+from .._outcome import thresholds
+from .._pictures.phase_map import COLOURS
+from .._scene import Impulse, Scene
+from .._simulate import simulate
+from .._status import Status
+from ..geometry import support
+from .film import body, events
+from .outcomes import NAMES, outcome_of
+from .tracks import columns, sample_times
+
+if TYPE_CHECKING:
+    from .._check import FloatArray
+    from .._trajectory import Trajectory
+
+PLACES, STRENGTHS = 25, 16
+WIDE = 14.0  # the view, in longer semi-axes
+_PIXEL = 2.5e-4  # of the width of the view
+_SAMPLES = 100  # of a motion; more only where its places need them
+_STEPS, _EVENTS = 20_000, 200  # a motion that takes more ends there, and says so
+
+
+def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """Return the places d [m] and strengths F [N s] of the blows.
+
+    Places are all over the body as it lies. The strongest blow, at the rim, gives some three times
+    the speed that carries the body over its tip.
+    """
+    reach = float(support(scene.theta + math.pi / 2, a=scene.a, b=scene.b))
+    longer, shorter = max(scene.a, scene.b), min(scene.a, scene.b)
+    over = thresholds(scene.a, scene.b, gravity=scene.gravity, gyration2=scene.gyration2)
+    speed = max(over.roll_over_speed, math.sqrt(scene.gravity / longer))
+    strongest = 3 * speed * scene.mass * (scene.gyration2 + shorter**2) / reach
+    digits = 2 - math.floor(math.log10(strongest / STRENGTHS))
+    step = round(strongest / STRENGTHS, digits)
+    strengths = [round(step * i, digits) for i in range(1, STRENGTHS + 1)]
+    return np.linspace(-reach, reach, PLACES), np.array(strengths)
+
+
+def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str, Any]:
+    """Return all blows as JSON knows them, those of one place after the other."""
+    wide = WIDE * max(scene.a, scene.b)
+    blows = [Impulse.press(force, place) for place in d for force in F]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the sentences say it
+        motions = [struck(scene, blow, t_end) for blow in blows]
+        sampled = [_sampled(motion, _PIXEL * wide) for motion in motions]
+    return {
+        "columns": columns(sampled, _PIXEL * wide),
+        "ends": np.cumsum([each.t.size for each in sampled]).tolist(),
+        "d": d.tolist(),
+        "F": F.tolist(),
+        "outcomes": [int(outcome_of(motion)) for motion in motions],
+        "reasons": [_reason(motion) for motion in motions],
+        "events": [events(motion, motion.t_end) for motion in motions],
+        "names": [NAMES[outcome] for outcome in _core.Outcome],
+        "colours": [COLOURS[outcome] for outcome in _core.Outcome],
+        "code": code(scene, t_end),
+    }
+
+
+def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
+    """Return the motion that a blow makes of a scene."""
+    scene = replace(scene, impulse=blow)
+    return simulate(
+        scene, [0.0, t_end], max_steps=_STEPS, max_events=_EVENTS, raise_on_failure=False
+    )
+
+
+def _sampled(motion: Trajectory, tolerance: float) -> Trajectory:
+    """The motion where it is drawn from, with good forces if that does not take too many."""
+    end = motion.t_end
+    times = sample_times(motion, end, tolerance, most=_SAMPLES)
+    if times is None:
+        times = sample_times(motion, end, tolerance, force=math.inf)
+    return motion.sol(np.linspace(0.0, end, _STEPS) if times is None else times)
+
+
+def _reason(motion: Trajectory) -> str:
+    said = f"{motion.scene.initial_state.reason}\n{motion.reason}"
+    return said if motion.status is Status.COMPLETED else f"{said}\n{motion.message}"
+
+
+def code(scene: Scene, t_end: float) -> str:
+    """Return the lines that simulate it, with {F} and {d} for the blow."""
+    given = [repr(scene.a), repr(scene.b)]
+    given += [
+        f"{field.name}={getattr(scene, field.name)!r}"
+        for field in fields(Scene)
+        if field.name not in ("a", "b", "impulse") and getattr(scene, field.name) != field.default
+    ]
+    return (
+        "import rolling_ellipse\n\n"
+        "blow = rolling_ellipse.Impulse.press({F}, {d})\n"
+        f"scene = rolling_ellipse.Scene({', '.join(given)}, impulse=blow)\n"
+        f"trajectory = rolling_ellipse.simulate(scene, {t_end!r})\n"
+    )
+
+
+def view(scene: Scene) -> dict[str, Any]:
+    """Return the body where the blow finds it, and the window that it is seen through."""
+    longer, start = max(scene.a, scene.b), scene.initial_state
+    high = max(2.3 * longer, start.z + 2.4 * longer)
+    wide = max(WIDE * longer, (high + longer) / 0.45)
+    sine = abs(math.sin(scene.slope))
+    edge = min(0.35 * wide, longer / sine) if sine else 0.35 * wide
+    foot = scene.x * math.cos(scene.slope), -scene.x * math.sin(scene.slope)
+    low = -0.35 * longer - 0.035 * wide
+    window = (foot[0] - wide / 2, foot[0] + wide / 2, foot[1] + low, foot[1] + high)
+    return {
+        **body(scene),
+        "blow": None,
+        "label": "",
+        "share": 1.0,
+        "window": window,
+        "start": scene.x,
+        "edge": edge,
+        "events": [],
+        "valid": None,
+    }

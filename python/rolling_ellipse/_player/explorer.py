@@ -1,0 +1,144 @@
+"""A blow that the reader moves: what it makes of a scene, at once and without a kernel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from .._check import FloatArray, file_name, positive
+from .._export.atomic import replacing
+from .._fields import FieldsOnly
+from .._scene import Impulse, Scene, require_scene
+from . import blows
+from .page import document, fragment
+from .poster import positions, poster
+
+LONGEST = 40.0  # of what is shown, in units of sqrt(longer semi-axis / gravity)
+
+
+def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
+    """Let the reader strike the body: where and how hard, by dragging a hand over it.
+
+    The page shows the motion with its forces, what it comes to first and why, its events, and a
+    map of the outcomes of all blows. It carries a table of them, 25 places by 16 strengths, so that
+    it works without a kernel and without a network; the nearest one is shown. A button copies the
+    lines of Python that simulate it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The body before the blow, on the ground or in the air; if it has an impulse, that is only
+        where the hand begins.
+    t_end : float, optional
+        How long each motion is followed [s], up to 40 sqrt(longer semi-axis / gravity); without
+        it 12 times that root.
+
+    Returns
+    -------
+    Explorer
+        Shows itself in a notebook; `to_html(path)` writes a page.
+
+    Raises
+    ------
+    TypeError
+        If `scene` is no Scene, or `t_end` no number.
+    ValueError
+        If `t_end` is out of range.
+    """
+    require_scene(scene)
+    unit = math.sqrt(max(scene.a, scene.b) / scene.gravity)
+    longest = LONGEST * unit
+    chosen = float(f"{12 * unit:.2g}") if t_end is None else positive("t_end", t_end)
+    if chosen > longest:
+        raise ValueError(f"t_end must be at most {longest:.6g} s for this body, got {t_end!r}")
+    return Explorer(scene, chosen)
+
+
+def write_explorer(scene: Scene, path: str | PathLike[str]) -> None:
+    """Write the page that `explore` makes of a scene; it raises what `Explorer.to_html` does."""
+    explore(scene).to_html(path)
+
+
+@dataclass(frozen=True)
+class Explorer(FieldsOnly):
+    """What `explore` returns; a notebook shows it by itself.
+
+    Attributes
+    ----------
+    scene : Scene
+        The body before the blow.
+    t_end : float
+        How long each motion is followed [s].
+    """
+
+    scene: Scene
+    t_end: float
+
+    @cached_property
+    def distances(self) -> FloatArray:
+        """Where the blows of the table act, seen from the centre along the ground, (25,) [m]."""
+        return blows.ranges(self.scene)[0]
+
+    @cached_property
+    def strengths(self) -> FloatArray:
+        """How hard they are, downwards, (16,) [N s]."""
+        return blows.ranges(self.scene)[1]
+
+    def to_html(self, path: str | PathLike[str]) -> None:
+        """Write a page that needs nothing but itself.
+
+        Raises
+        ------
+        ValueError
+            If the path does not end in .html.
+        TypeError
+            If it is no path.
+        OSError
+            If it cannot be written; what was there then stays.
+        """
+        name = file_name("path", path)
+        if not name.lower().endswith((".html", ".htm")):
+            raise ValueError(f"path must end in .html, got {name!r}")
+        page = document("Strike an ellipse", self._repr_html_())
+        with replacing(name) as new:
+            new.write_text(page, encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        return self._html
+
+    @cached_property
+    def _html(self) -> str:
+        strip = blows.view(self.scene)
+        left, right, bottom, top = strip["window"]
+        shape = (top - bottom) / (right - left)
+        at = self._first_blow()
+        data = {
+            "end": self.t_end,
+            "fps": 60,
+            "speed": 1,
+            "decimals": 2,
+            "shape": shape,
+            "follows": "edge",
+            "waits": True,
+            "strips": [strip],
+            "first": at,
+            "table": blows.table(self.scene, self.t_end, self.distances, self.strengths),
+        }
+        blow = Impulse.press(float(self.strengths[at[1]]), float(self.distances[at[0]]))
+        motion = blows.struck(self.scene, blow, self.t_end)
+        still = poster([positions(motion, self.t_end)], [strip["window"]], [""], shape)
+        told = f"An ellipse struck by {blow.jz:.3g} N s at {blow.dx:.3g} m, at even times"
+        return fragment(data, still, told, explorer=True)
+
+    def _first_blow(self) -> tuple[int, int]:
+        """Place and strength of the blow shown first: the scene's own, or one that does much."""
+        own: Any = self.scene.impulse
+        d, F = (own.dx, -own.jz) if own is not None else (0.75 * self.distances[-1], 0.0)
+        if F <= 0:
+            F = self.strengths[self.strengths.size // 2]
+        return int(np.argmin(abs(self.distances - d))), int(np.argmin(abs(self.strengths - F)))
