@@ -29,6 +29,7 @@ QUICK = (
     "pictures/test_labels.py",
     "pictures/test_plot_forces.py",
     "pictures/test_plot_phase.py",
+    "player/test_tracks.py",
     "project/test_formulas.py",
     "project/test_physics_numbers.py",
 )

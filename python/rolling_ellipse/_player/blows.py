@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 PLACES, STRENGTHS = 25, 16
 WIDE = 14.0  # the view, in longer semi-axes
 _PIXEL = 2.5e-4  # of the width of the view
-_SAMPLES = 100  # of a motion; more only where its places need them
+_SAMPLES = 100  # of a motion; up to ten times as many where its places need them
 _STEPS, _EVENTS = 20_000, 200  # a motion that takes more ends there, and says so
 
 
@@ -79,12 +79,10 @@ def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
 
 
 def _sampled(motion: Trajectory, tolerance: float) -> Trajectory:
-    """The motion where it is drawn from, with good forces if that does not take too many."""
+    """The motion where it is drawn from; even times where it trembles too fast for that."""
     end = motion.t_end
-    times = sample_times(motion, end, tolerance, most=_SAMPLES)
-    if times is None:
-        times = sample_times(motion, end, tolerance, force=math.inf)
-    return motion.sol(np.linspace(0.0, end, _STEPS) if times is None else times)
+    times = sample_times(motion, end, tolerance, most=10 * _SAMPLES, for_forces=_SAMPLES)
+    return motion.sol(np.linspace(0.0, end, _SAMPLES) if times is None else times)
 
 
 def _reason(motion: Trajectory) -> str:

@@ -69,13 +69,13 @@ def sample_times(
     end: float,
     tolerance: float,
     *,
-    force: float = _FORCE,
     most: int = MOST_SAMPLES,
+    for_forces: int = MOST_SAMPLES,
 ) -> FloatArray | None:
-    """Return times for cubics that miss by no more than `tolerance` [m], None if too many.
+    """Return times for cubics that miss by no more than `tolerance` [m], None if over `most`.
 
-    Lines between the forces miss no more than `force` of them and the weight together. At an event
-    the time just before it is there as well.
+    Lines between the forces are near them, too, unless that takes more than `for_forces` samples.
+    At an event the time just before it is there as well.
     """
     jumps = [event.t for event in motion.events if 0 < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
@@ -85,6 +85,7 @@ def sample_times(
         if times.size > most:
             return None
         left, right = times[:-1][open_ones], times[1:][open_ones]
+        force = _FORCE if times.size <= for_forces else np.inf
         bad = _misses(motion, left, right, tolerance, force) > 1
         bad &= right - left > 1e-9 * end
         middles = (left[bad] + right[bad]) / 2
@@ -110,6 +111,7 @@ def _misses(
         m, n = getattr(first, rate)[:, None] * span, getattr(last, rate)[:, None] * span
         cubic = v * v * (1 + 2 * u) * p + u * u * (1 + 2 * v) * q + u * v * (v * m - u * n)
         error = np.abs(cubic - getattr(exact, name).reshape(cubic.shape)).max(axis=1)
+        error -= np.minimum(error, 4 * np.spacing(np.abs(p) + np.abs(q)).max(axis=1))  # rounding
         missed += error * (size if name == "theta" else 1.0) / tolerance
     weight = motion.scene.mass * motion.scene.gravity
     for name in _FORCES:

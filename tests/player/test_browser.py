@@ -1,0 +1,367 @@
+"""The player and the explorer in a real browser: what they draw, and what they answer to."""
+
+import base64
+import io
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import nbformat
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from PIL import Image
+from rolling_ellipse._player import film_page
+from rolling_ellipse._player.look import DARK, LIGHT
+from rolling_ellipse._player.page import document
+
+Page = Any
+Opened = Callable[..., Page]
+
+HOST = "document.querySelector('.rolling-ellipse')"
+SCENES = {
+    "report": rl.scenes.report,
+    "drop": rl.scenes.drop,
+    "jump": rl.scenes.jump,
+    "slip": rl.scenes.slip,
+    "slope": rl.scenes.slope,
+    "standing": rl.Scene(0.7, 1.9, omega=2.0),
+    "followed": rl.Scene(2.0, 1.0, omega=4.0, x=1e7),
+}
+
+
+def film(*scenes: rl.Scene, seconds: float = 4.0, **options: Any) -> str:
+    motions = [rl.simulate(scene, seconds) for scene in scenes]
+    return film_page(rl.animate(motions, width=64, **options))
+
+
+def told(page: Page, words: str) -> Any:
+    """What the player of the first film says, once it has drawn."""
+    return page.evaluate(
+        f"new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() =>"
+        f" done(({words})({HOST}.player)))))"
+    )
+
+
+def drawn(page: Page) -> np.ndarray:
+    """The pixels of the canvas, (height, width, 3)."""
+    data = told(page, "player => player.canvas.toDataURL()").partition(",")[2]
+    with Image.open(io.BytesIO(base64.b64decode(data))) as picture:
+        return np.asarray(picture.convert("RGB"), float)
+
+
+def expected_centre(page: Page, motion: rl.Trajectory, t: float) -> tuple[float, float]:
+    """Where the window of a camera that stands still has the exact centre [pixels]."""
+    (left, right, _, top), width = told(
+        page, "player => [player.film.strips[0].window, player.box.clientWidth]"
+    )
+    at, slope = motion.sol(t), motion.scene.slope
+    x, z = float(at.x[0]), float(at.z[0])
+    across = x * math.cos(slope) + z * math.sin(slope)
+    up = -x * math.sin(slope) + z * math.cos(slope)
+    scale = width / (right - left)
+    if told(page, "player => player.film.follows") == "middle":
+        across -= x * math.cos(slope)
+        up += x * math.sin(slope)
+    return scale * (across - left), scale * (top - up)
+
+
+def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
+    """The middle of the body's edge: of the ink met from either side of a place, in many ways.
+
+    What else is drawn on the edge, the tip and the contact, is met in few of the directions.
+    """
+    picture, ink = drawn(page), LIGHT["ink"]
+    reach = told(page, "p => 1.05 * p.views[0].scale * Math.max(p.film.strips[0].a, "
+                 "p.film.strips[0].b) + 4")  # fmt: skip
+    colour = np.array([int(ink[i : i + 2], 16) for i in (1, 3, 5)])
+    dark = np.abs(picture - colour).sum(axis=2) < 120
+    offsets, directions = [], []
+    for angle in np.linspace(0.0, math.pi, 180, endpoint=False):
+        way = np.array([math.cos(angle), math.sin(angle)])
+        ends = [edge_distance(dark, near, side * way, reach) for side in (1, -1)]
+        if None not in ends:
+            offsets.append((ends[0] - ends[1]) / 2)  # type: ignore[operator]
+            directions.append(way)
+    # each offset is the component of the centre's along its direction, roughly: by least squares
+    # without the worst tenth
+    offsets_, ways = np.array(offsets), np.array(directions)
+    for _ in range(3):
+        shift, *_ = np.linalg.lstsq(ways, offsets_, rcond=None)
+        missed = np.abs(ways @ shift - offsets_)
+        keep = missed <= np.quantile(missed, 0.9)
+        offsets_, ways = offsets_[keep], ways[keep]
+    assert len(offsets_) > 60
+    return near[0] + float(shift[0]), near[1] + float(shift[1])
+
+
+def edge_distance(
+    dark: np.ndarray, near: tuple[float, float], way: np.ndarray, reach: float
+) -> float | None:
+    """How far the outermost dark pixel within reach is, along a direction."""
+    steps = np.arange(0.0, reach, 0.5)
+    columns, rows = (near[i] + steps * way[i] - 0.5 for i in (0, 1))
+    columns, rows = np.round(columns).astype(int), np.round(rows).astype(int)
+    inside = (columns >= 0) & (rows >= 24) & (columns < dark.shape[1]) & (rows < dark.shape[0])
+    met = np.flatnonzero(dark[rows[inside], columns[inside]])
+    return float(steps[inside][met[-1]]) if met.size else None
+
+
+# -------------------------------------------------------------------------------------- films
+
+
+def test_it_plays_by_itself_from_a_file(opened: Opened) -> None:
+    page = opened(film(rl.scenes.report))
+    page.wait_for_function(f"{HOST}.player.t > 0.3")
+    told(page, "player => player.pause()")
+    before = told(page, "player => player.t")
+    assert told(page, "player => player.t") == before
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function(f"{HOST}.player.t > {before} + 0.1")
+    page.get_by_role("button", name="Pause").click()
+
+
+def test_it_waits_for_those_who_want_less_motion(opened: Opened) -> None:
+    page = opened(film(rl.scenes.report), reduced_motion="reduce")
+    page.wait_for_function(f"{HOST}.dataset.time === '0'")
+    assert told(page, "player => [player.playing, player.t]") == [False, 0]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_body_is_drawn_where_the_motion_has_it(opened: Opened, name: str) -> None:
+    motion = rl.simulate(SCENES[name], 4.0)
+    page = opened(film(SCENES[name]), reduced_motion="reduce")
+    times = [0.0, 0.123, 1.0, 2.345, 4.0]
+    times += [event.t + 0.01 for event in motion.events if event.t < 3.9][:4]
+    for t in times:
+        told(page, f"player => player.seek({t})")
+        body = told(page, "player => player.state().bodies[0]")
+        where = expected_centre(page, motion, t)
+        assert math.dist((body["px"], body["py"]), where) < 0.5
+        assert body["theta"] == pytest.approx(float(motion.sol(t).theta[0]), abs=2e-3)
+        seen = seen_centre(page, where)
+        assert math.dist(seen, where) < 1, f"{t} s: {seen}, not {where}"
+
+
+def test_the_check_of_pixels_sees_two_pixels(opened: Opened) -> None:
+    motion = rl.simulate(rl.scenes.report, 4.0)
+    page = opened(film(rl.scenes.report), reduced_motion="reduce")
+    told(page, "player => player.seek(1.0)")
+    x, y = expected_centre(page, motion, 1.0)
+    seen = seen_centre(page, (x + 2, y))
+    assert seen[0] - (x + 2) == pytest.approx(-2, abs=1)
+
+
+def test_several_motions_run_on_one_clock(opened: Opened) -> None:
+    page = opened(film(rl.scenes.report, rl.scenes.rocking, rl.scenes.drop))
+    page.wait_for_function(f"{HOST}.player.t > 0.1")
+    told(page, "player => player.stepTo(2.5)")
+    bodies = told(page, "player => player.state().bodies")
+    for body, scene in zip(bodies, (rl.scenes.report, rl.scenes.rocking, rl.scenes.drop),
+                           strict=True):  # fmt: skip
+        at = rl.simulate(scene, 4.0).sol(2.5)
+        assert (body["t"], body["x"]) == pytest.approx((2.5, float(at.x[0])), abs=3e-3)
+    heights = [body["py"] for body in bodies]
+    assert heights == sorted(heights)
+
+
+def test_players_on_one_page_do_not_meddle(opened: Opened) -> None:
+    fragment = rl.animate(rl.simulate(rl.scenes.report, 4.0))._repr_html_()
+    other = rl.explore(rl.scenes.report, t_end=2.0)._repr_html_()
+    page = opened(document("three", fragment + fragment + other), reduced_motion="reduce")
+    page.wait_for_function("document.querySelectorAll('[data-ready]').length === 3")
+    times = page.evaluate(
+        "(() => { const all = [...document.querySelectorAll('.rolling-ellipse')];"
+        "all[1].player.seek(1.5); return all.map(each => each.player.t) })()"
+    )
+    assert times == [0, 1.5, 0]
+
+
+def test_keys_are_answered_where_the_player_has_the_focus(opened: Opened) -> None:
+    page = opened(film(rl.scenes.report), reduced_motion="reduce")
+    page.wait_for_function(f"{HOST}.dataset.time === '0'")
+    page.keyboard.press("End")
+    assert told(page, "player => player.t") == 0
+    page.locator(".player").focus()
+    frame = 1 / 50
+    for key, t in (("End", 4.0), ("ArrowLeft", 4 - frame), ("Home", 0.0), ("ArrowRight", frame),
+                   ("ArrowUp", 11 * frame), ("ArrowDown", frame)):  # fmt: skip
+        page.keyboard.press(key)
+        assert told(page, "player => player.t") == pytest.approx(t, abs=1e-12)
+    page.keyboard.press("+")
+    page.keyboard.press("+")
+    page.keyboard.press("-")
+    assert told(page, "player => player.rate") == 2
+    page.keyboard.press("Space")
+    page.wait_for_function(f"{HOST}.player.t > 0.1")
+    page.keyboard.press("Space")
+    assert not told(page, "player => player.playing")
+
+
+def test_the_slider_seeks_and_events_are_marked_on_it(opened: Opened) -> None:
+    page = opened(film(rl.scenes.drop), reduced_motion="reduce")
+    page.locator("input[type=range]").fill("0.5")
+    assert told(page, "player => player.t") == pytest.approx(2.0)
+    titles = page.locator(".mark").evaluate_all("marks => marks.map(mark => mark.title)")
+    assert titles[0] == "impact at 0.4515 s"  # sqrt(2 · 1 m / 9.81 m/s²)
+
+
+def test_forces_are_shown_when_asked_for(opened: Opened) -> None:
+    page = opened(film(rl.scenes.report), reduced_motion="reduce")
+    told(page, "player => player.seek(2.0)")
+    without = drawn(page)
+    page.get_by_role("button", name="N, F").click()
+    assert page.get_by_role("button", name="N, F").get_attribute("aria-pressed") == "true"
+    plum = np.array([int(LIGHT["plum"][i : i + 2], 16) for i in (1, 3, 5)])
+    shafts = [int((np.abs(p - plum).sum(axis=2) < 12).sum()) for p in (without, drawn(page))]
+    assert shafts[0] < 20 and shafts[1] > 100
+
+
+@pytest.mark.parametrize(
+    ("options", "dark"),
+    [({}, False), ({"color_scheme": "dark"}, True), ({"class": "dark"}, True),
+     ({"color_scheme": "dark", "class": "light"}, False)],
+    ids=["light", "dark system", "dark page", "light page"],
+)  # fmt: skip
+def test_paper_is_as_dark_as_the_page(opened: Opened, options: dict[str, Any], dark: bool) -> None:
+    marked = options.pop("class", "")
+    page = opened(film(rl.scenes.report).replace("<body>", f'<body class="{marked}">'), **options)
+    page.wait_for_function(f"{HOST}.player.t > 0.1")
+    paper = (DARK if dark else LIGHT)["paper"]
+    corner = drawn(page)[2, 2]
+    assert corner.tolist() == [int(paper[i : i + 2], 16) for i in (1, 3, 5)]
+    page.evaluate(f"document.body.className = '{'light' if dark else 'dark'}'")
+    assert (drawn(page)[2, 2].sum() < 200) == (not dark)
+
+
+@pytest.mark.parametrize("dots", [1, 2, 3])
+def test_it_is_sharp_and_takes_the_width_it_is_given(opened: Opened, dots: int) -> None:
+    page = opened(film(rl.scenes.report), device_scale_factor=dots, reduced_motion="reduce")
+    widths = []
+    for width in (1000, 500):
+        page.set_viewport_size({"width": width, "height": 700})
+        page.wait_for_function(f"{HOST}.player.canvas.width === {dots} * {HOST}.clientWidth")
+        widths.append(told(page, "player => player.box.clientWidth"))
+    assert widths == [968, 468]
+
+
+def test_without_scripts_a_picture_stays(opened: Opened) -> None:
+    page = opened(film(rl.scenes.report), java_script_enabled=False)
+    image = page.locator("img")
+    assert image.is_visible() and image.bounding_box()["width"] > 900
+    assert "ellipse" in image.get_attribute("alt")
+    picture = np.asarray(Image.open(io.BytesIO(image.screenshot())).convert("RGB"), float)
+    orange = np.array([int(LIGHT["orange"][i : i + 2], 16) for i in (1, 3, 5)])
+    assert (np.abs(picture - orange).sum(axis=2) < 30).sum() > 100  # the path of the centre
+
+
+# ----------------------------------------------------------------------------------- explorer
+
+
+def hand(page: Page) -> tuple[float, float]:
+    """Where the hand is on the page [pixels]."""
+    x, y = told(
+        page,
+        "player => { const box = player.canvas.getBoundingClientRect();"
+        "const { top } = player.hand(player.views[0]); return [box.x + top[0], box.y + top[1]] }",
+    )
+    return x, y
+
+
+def blow(page: Page) -> tuple[float, float]:
+    d, F = page.evaluate(f"{HOST}.dataset.blow").split()
+    return float(d), float(F)
+
+
+def drag(page: Page, by: tuple[float, float], steps: int) -> None:
+    x, y = hand(page)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + by[0], y + by[1], steps=steps)
+
+
+@pytest.mark.parametrize("name", ["report", "slope", "drop"])
+def test_a_drag_moves_the_blow_and_shows_what_it_does(opened: Opened, name: str) -> None:
+    scene = SCENES[name]
+    explorer = rl.explore(scene)
+    page = opened(document("", explorer._repr_html_()), reduced_motion="reduce")
+    before, picture = blow(page), drawn(page)
+    drag(page, (-90, 25), steps=6)
+    page.mouse.up()
+    d, F = blow(page)
+    assert d < before[0] and before[1] > F
+    assert d in explorer.distances and F in explorer.strengths
+    assert np.abs(drawn(page) - picture).max() > 50
+    motion = rl.simulate(replace(scene, impulse=rl.Impulse.press(F, d)), explorer.t_end)
+    for t in (0.0, 0.7, 2.0, 5.0):
+        told(page, f"player => player.seek({t})")
+        body = told(page, "player => player.state().bodies[0]")
+        scale = told(page, "player => player.views[0].scale")
+        at = motion.sol(t)
+        missed = math.dist((body["x"], body["z"]), (float(at.x[0]), float(at.z[0])))
+        assert missed * scale < 1  # a pixel
+        turned = abs(body["theta"] - float(at.theta[0])) * max(scene.a, scene.b)
+        assert turned * scale < 1
+
+
+def test_the_blow_follows_the_pointer_to_the_nearest_that_was_computed(opened: Opened) -> None:
+    explorer = rl.explore(rl.scenes.report)
+    page = opened(document("", explorer._repr_html_()), reduced_motion="reduce")
+    scale = told(page, "player => player.views[0].scale")
+    d = blow(page)[0]
+    drag(page, (-scale, 0.0), steps=4)  # a metre
+    page.mouse.up()
+    nearest = explorer.distances[np.argmin(np.abs(explorer.distances - (d - 1.0)))]
+    assert blow(page)[0] == pytest.approx(nearest, abs=1e-12)
+
+
+def test_map_sliders_and_words_go_with_the_blow(opened: Opened) -> None:
+    page = opened(document("", rl.explore(rl.scenes.report)._repr_html_()))
+    box = page.locator(".map canvas").bounding_box()
+    page.mouse.click(box["x"] + 52 + 3, box["y"] + 10 + 3)  # the corner: far left, strongest
+    page.wait_for_function(f"{HOST}.player.t > 0.1")  # let go, it plays
+    explorer = rl.explore(rl.scenes.report)
+    assert blow(page) == (explorer.distances[0], explorer.strengths[-1])
+    assert "leaves the ground" in page.locator(".said").inner_text()
+    assert page.locator(".where").input_value() == "0"
+    page.locator(".where").fill("12")
+    assert blow(page)[0] == pytest.approx(0.0, abs=1e-15)
+    assert "First it rests." in page.locator(".said").inner_text()
+    page.get_by_role("button", name="copy as code").click()
+    page.wait_for_function(f"{HOST}.dataset.code")
+    made: dict[str, Any] = {}
+    exec(page.evaluate(f"{HOST}.dataset.code"), made)
+    assert made["blow"] == rl.Impulse.press(explorer.strengths[-1], 0.0)
+
+
+def test_how_long_a_frame_of_a_drag_takes(opened: Opened) -> None:
+    """A figure, printed; only that every move was drawn is asked for."""
+    page = opened(document("", rl.explore(rl.scenes.slope)._repr_html_()), reduced_motion="reduce")
+    told(page, "player => { window.drawn = []; const paint = player.paint.bind(player);"
+         "player.paint = () => { paint(); window.drawn.push(performance.now()) } }")  # fmt: skip
+    drag(page, (-200, 30), steps=60)
+    page.mouse.up()
+    times = np.array(told(page, "player => window.drawn"))
+    assert times.size >= 10
+    print(f"median frame of a drag: {np.median(np.diff(times)):.1f} ms")
+
+
+def test_an_exported_notebook_without_a_kernel_still_drags(opened: Opened) -> None:
+    exporters = pytest.importorskip("nbconvert.exporters", reason="there is no nbconvert")
+    output = nbformat.v4.new_output(
+        "execute_result",
+        {"text/html": rl.explore(rl.scenes.report)._repr_html_()},
+        execution_count=1,
+    )
+    film = rl.animate(rl.simulate(rl.scenes.report, 3.0))._repr_html_()
+    shown = nbformat.v4.new_output("display_data", {"text/html": film})
+    cell = nbformat.v4.new_code_cell("explore(scene)", outputs=[output, shown], execution_count=1)
+    html, _ = exporters.HTMLExporter().from_notebook_node(nbformat.v4.new_notebook(cells=[cell]))
+    page = opened(html, strict=False, viewport={"width": 1000, "height": 1400})  # asks for MathJax
+    page.wait_for_function("document.querySelectorAll('[data-ready]').length === 2")
+    before = blow(page)
+    drag(page, (-60, 20), steps=4)
+    page.mouse.up()
+    assert blow(page) != before
+    page.wait_for_function("document.querySelectorAll('.rolling-ellipse')[1].player.t > 0.2")

@@ -1,0 +1,141 @@
+"""The table of blows: what it holds is what simulate makes of them."""
+
+import itertools
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from rolling_ellipse import Outcome
+from rolling_ellipse._player import blows, write_explorer
+from rolling_ellipse._player.outcomes import NAMES, outcome_of
+
+SCENES = {
+    "report": rl.scenes.report,
+    "slope": rl.scenes.slope,
+    "drop": rl.scenes.drop,
+    "rocking": rl.scenes.rocking,
+    "tall": rl.Scene(1.0, 2.0, friction=0.4),
+    "flat limit": rl.Scene(1.0, 1e-3, friction=0.3),
+    "tiny": rl.Scene(2e-9, 1e-9, mass=1e-20),
+    "huge": rl.Scene(2e9, 1e9, mass=1e30, gravity=1e-3),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_blows_are_on_the_body_and_carry_it_well_past_its_tip(name: str) -> None:
+    scene = SCENES[name]
+    explorer = rl.explore(scene)
+    d, F = explorer.distances, explorer.strengths
+    reach = rl.geometry.support(scene.theta + math.pi / 2, a=scene.a, b=scene.b)
+    assert d.shape == (25,) and F.shape == (16,)
+    assert (d[0], d[12], d[-1]) == pytest.approx((-reach, 0.0, reach), abs=1e-15 * reach)
+    assert np.all(np.diff(F) > 0) and F[0] == pytest.approx(F[-1] / 16, rel=1e-2)
+
+
+def test_the_strongest_blow_on_the_report_goes_three_times_beyond() -> None:
+    F = rl.explore(rl.scenes.report).strengths[-1]
+    speed = replace(rl.scenes.report, impulse=rl.Impulse.press(F, 2.0)).initial_state.omega
+    # F is rounded to three digits
+    assert speed == pytest.approx(3 * rl.thresholds(2.0, 1.0).roll_over_speed, rel=1e-2)
+
+
+def test_the_table_is_in_the_order_of_its_places_and_strengths() -> None:
+    scene, d, F = rl.scenes.report, np.array([-1.5, 0.0, 1.5]), np.array([20.0, 48.0, 90.0])
+    found = blows.table(scene, 2.0, d, F)
+    ends = [0, *found["ends"]]
+    assert len(ends) == 10 and all(b > a for a, b in itertools.pairwise(ends))
+    expected = {
+        (0, 0): Outcome.ROCKS, (1, 1): Outcome.RESTS, (2, 0): Outcome.ROCKS,
+        (2, 1): Outcome.ROLLS_OVER, (2, 2): Outcome.LOSES_CONTACT,
+    }  # fmt: skip
+    for (i, j), outcome in expected.items():
+        assert found["outcomes"][3 * i + j] == outcome
+    assert "rolling: proved" in found["reasons"][7]
+
+
+def rolled(**options: Any) -> rl.Trajectory:
+    scene = rl.Scene(2.0, 1.0, **options)
+    return rl.simulate(scene, 3.0, raise_on_failure=False)
+
+
+@pytest.mark.parametrize(
+    ("motion", "outcome"),
+    [
+        (rolled(), Outcome.RESTS),
+        (rolled(omega=2.0), Outcome.ROCKS),
+        (rolled(omega=3.2), Outcome.ROLLS_OVER),
+        (rolled(omega=3.2, friction=0.1), Outcome.SLIPS),
+        (rolled(omega=4.9), Outcome.LOSES_CONTACT),
+        (rolled(x_dot=3.0, omega=0.0, friction=0.2), Outcome.SLIPS),
+        (rolled(z=3.0), Outcome.LOSES_CONTACT),
+        (rolled(slope=0.05, omega=1.0), Outcome.ROCKS),
+        (rolled(slope=0.05, omega=3.2), Outcome.ROLLS_OVER),
+        (rolled(slope=0.05, omega=3.2, friction=0.1), Outcome.SLIPS),
+    ],
+)
+def test_what_comes_first(motion: rl.Trajectory, outcome: Outcome) -> None:
+    assert outcome_of(motion) is outcome
+    assert NAMES[outcome]
+
+
+def test_every_outcome_has_a_name_and_a_colour() -> None:
+    found = blows.table(rl.scenes.report, 1.0, np.array([1.0]), np.array([1.0]))
+    assert len(found["names"]) == len(found["colours"]) == len(Outcome) == len(NAMES)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_code_that_is_copied_makes_the_same_motion(name: str) -> None:
+    scene = SCENES[name]
+    explorer = rl.explore(scene)
+    F, d = float(explorer.strengths[4]), float(explorer.distances[20])
+    lines = blows.code(scene, explorer.t_end).replace("{F}", repr(F)).replace("{d}", repr(d))
+    made: dict[str, Any] = {}
+    exec(lines, made)
+    expected = replace(scene, impulse=rl.Impulse.press(F, d))
+    assert made["scene"] == expected
+    assert made["trajectory"].t[-1] == explorer.t_end
+
+
+def test_it_begins_with_the_blow_of_the_scene() -> None:
+    i, j = rl.explore(rl.scenes.report)._first_blow()
+    explorer = rl.explore(rl.scenes.report)
+    assert explorer.distances[i] == pytest.approx(1.5) and explorer.strengths[j] == 49.84
+
+
+def test_pages(tmp_path: Path) -> None:
+    explorer = rl.explore(rl.scenes.report, t_end=1.0)
+    explorer.to_html(tmp_path / "one.html")
+    text = (tmp_path / "one.html").read_text(encoding="utf-8")
+    assert text.startswith("<!DOCTYPE html>") and explorer._repr_html_() in text
+    assert len(text) < 600_000
+    write_explorer(rl.scenes.circle, tmp_path / "two.html")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["one.html", "two.html"]
+    with pytest.raises(ValueError, match=r"^path must end in \.html, got '.*x\.gif'$"):
+        explorer.to_html(tmp_path / "x.gif")
+    with pytest.raises(TypeError, match=r"^path must be a path"):
+        explorer.to_html(42)  # type: ignore[arg-type]
+    with pytest.raises(FileNotFoundError):
+        explorer.to_html(tmp_path / "no" / "x.html")
+
+
+@pytest.mark.parametrize("scene", [None, 42, "report", rl.scenes, rl.simulate(rl.scenes.circle, 1)])
+def test_what_is_no_scene(scene: Any) -> None:
+    with pytest.raises(TypeError, match=r"^scene must be a Scene, got "):
+        rl.explore(scene)
+
+
+@pytest.mark.parametrize("t_end", [0.0, -1.0, math.nan, math.inf, 18.1, 1e9])
+def test_times_that_are_no_time_to_look_at(t_end: float) -> None:
+    """40 sqrt(2 m / 9.81 m/s²) = 18.06 s."""
+    with pytest.raises(ValueError, match=r"^t_end must be (positive and finite|at most 18\.06)"):
+        rl.explore(rl.scenes.report, t_end=t_end)
+
+
+@pytest.mark.parametrize("t_end", ["1", [1.0], object()])
+def test_times_that_are_no_numbers(t_end: Any) -> None:
+    with pytest.raises(TypeError, match=r"^t_end must be a number"):
+        rl.explore(rl.scenes.report, t_end=t_end)

@@ -1,0 +1,143 @@
+"""What the player is given, unpacked again: as near to the motion as it says."""
+
+import base64
+import json
+import math
+import re
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.pictures import ORDINARY_SCENES
+from rolling_ellipse._player.page import fragment
+from rolling_ellipse._player.tracks import columns, packed, sample_times, track
+
+SCENES = {
+    **ORDINARY_SCENES,
+    "bounce": rl.scenes.bounce,
+    "drop": rl.scenes.drop,
+    "jump": rl.scenes.jump,
+    "slip": rl.scenes.slip,
+    "slope": rl.scenes.slope,
+    "flat limit": rl.Scene(1.0, 1e-3, theta=0.3, omega=2.0),
+    "kilometres": rl.Scene(2.3e3, 1.1e3, omega=0.04, x=-500.0),
+}
+NOWHERE = np.array([0.0])  # frames that are not needed
+
+
+def unpacked(column: dict[str, Any]) -> np.ndarray:
+    numbers = np.frombuffer(base64.b64decode(column["data"]), f"<{column['kind']}")
+    return column["low"] + column["step"] * numbers.astype(float)
+
+
+def read_back(found: dict[str, Any], times: np.ndarray) -> dict[str, np.ndarray]:
+    """The cubics of Hermite at some times, by their divided differences."""
+    known = {name: unpacked(column) for name, column in found["columns"].items()}
+    t, values = known["t"], {}
+    i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, t.size - 2)
+    span = t[i + 1] - t[i]
+    for name, rate in (("x", "x_dot"), ("z", "z_dot"), ("theta", "omega")):
+        p, m = known[name], known[rate]
+        slope = (p[i + 1] - p[i]) / span
+        first, last = (slope - m[i]) / span, (m[i + 1] - slope) / span
+        u, v = times - t[i], times - t[i + 1]
+        values[name] = p[i] + u * (m[i] + u * (first + v * (last - first) / span))
+    return values
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_between_the_samples_the_motion_is_as_near_as_promised(name: str) -> None:
+    scene = SCENES[name]
+    motion = rl.simulate(scene, 4.0 if name != "kilometres" else 200.0)
+    size, end = max(scene.a, scene.b), motion.t_end
+    tolerance = 2e-3 * size
+    found = track(motion, end, tolerance, NOWHERE)
+    assert not found["stepped"]
+    times = np.random.default_rng(1).uniform(0.0, end, 4000)
+    # an impact keeps its place in time to the rounding of t: nothing is said within that
+    near = 4 * tolerance / max(1e-9, float(np.max(np.hypot(motion.x_dot, motion.z_dot))))
+    for event in motion.events:
+        times = times[np.abs(times - event.t) > near]
+    at, drawn = motion.sol(np.sort(times)), read_back(found, np.sort(times))
+    # cubic and packing of x, z, theta, t and the rates: each takes up to the tolerance once
+    for column, unit in (("x", 1.0), ("z", 1.0), ("theta", size)):
+        missed = np.max(np.abs(drawn[column] - getattr(at, column))) * unit
+        assert missed <= 4 * tolerance, column
+
+
+def test_an_impact_stays_a_jump() -> None:
+    motion = rl.simulate(rl.scenes.drop, 1.0)
+    (impact,) = [event for event in motion.events if event.kind is rl.EventKind.IMPACT]
+    times = sample_times(motion, 1.0, 1e-4)
+    assert times is not None
+    after = int(np.searchsorted(times, impact.t))
+    assert times[after] == impact.t and times[after - 1] == np.nextafter(impact.t, 0)
+    at = motion.sol(times[[after - 1, after]])
+    # sqrt(2 g · 1 m) down; then it rolls on, much slower
+    assert at.z_dot[0] == pytest.approx(-math.sqrt(2 * 9.81), rel=1e-9)
+    assert abs(at.z_dot[1]) < 0.5 * abs(at.z_dot[0])
+
+
+def test_a_motion_whose_period_divides_the_samples_is_still_seen() -> None:
+    """At 17 or 34 even times it always stands at the same angle, modulo half turns."""
+    turn = rl.period(rl.scenes.rolling)
+    motion = rl.simulate(rl.scenes.rolling, 34 * turn)
+    found = track(motion, motion.t_end, 1e-3, NOWHERE)
+    times = np.linspace(0.0, motion.t_end, 5001)[1:-1]
+    assert np.max(np.abs(read_back(found, times)["z"] - motion.sol(times).z)) < 4e-3
+
+
+def test_too_fast_a_motion_is_shown_frame_by_frame() -> None:
+    motion = rl.simulate(rl.Scene(2.0, 1.0, omega=3.2), 1e5)
+    frames = np.linspace(0.0, 1e5, 301)
+    found = track(motion, 1e5, 1e-3, frames)
+    assert found["stepped"]
+    times = unpacked(found["columns"]["t"])
+    assert times == pytest.approx(frames, abs=1e-3)
+    assert unpacked(found["columns"]["x"]) == pytest.approx(motion.sol(frames).x, abs=1e-3)
+
+
+@pytest.mark.parametrize("error", [0.0, 1e-12, 1e-6, 1e-3])
+@pytest.mark.parametrize(
+    "values", [[0.0], [3.0, 3.0], [-1e9, 1e9], [0.1, 0.2, 0.3], [1e-30, 2e-30], [0.0, 1.0, 3.0]]
+)
+def test_packing_keeps_to_its_error(values: list[float], error: float) -> None:
+    column = packed(np.array(values), error)
+    # "error" of the numbers, and two roundings of a double on the way back
+    allowed = error + 4e-16 * np.max(np.abs(values))
+    assert np.max(np.abs(unpacked(column) - values)) <= allowed
+    assert column == json.loads(json.dumps(column))
+
+
+def test_packing_takes_few_bytes_where_that_is_enough() -> None:
+    values = np.linspace(-3.0, 5.0, 100)
+    sizes = [len(packed(values, error)["data"]) for error in (1e-3, 1e-6, 0.0)]
+    assert sizes == [268, 536, 1068]  # two, four and eight bytes of three quarters each
+
+
+def test_columns_of_several_motions_follow_each_other() -> None:
+    one, other = (rl.simulate(scene, 1.0) for scene in (rl.scenes.report, rl.scenes.report))
+    parts = [one.sol([0.0, 0.5]), other.sol([0.0, 0.2, 1.0])]
+    assert unpacked(columns(parts, 1e-3)["t"]) == pytest.approx([0, 0.5, 0, 0.2, 1.0], abs=1e-3)
+
+
+def test_forces_that_are_not_finite_are_refused() -> None:
+    with pytest.raises(ValueError, match="trajectory must have finite samples"):
+        packed(np.array([0.0, np.nan]), 1.0)
+
+
+def test_no_text_ends_the_script() -> None:
+    html = fragment({"label": "</script><b> & \u2028"}, "<svg/>", 'a "quoted" <text>')
+    assert html.count("</script>") == 1 and "</script></div>" in html
+    assert 'alt="a &quot;quoted&quot; &lt;text&gt;"' in html
+
+
+def test_the_page_asks_for_nothing_else() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        html = rl.simulate(rl.scenes.report, 2.0).animate()._repr_html_()
+    html += rl.explore(rl.scenes.report, t_end=1.0)._repr_html_()
+    assert set(re.findall(r"https?://[^\"' )]+", html)) == set()
+    assert not re.search(r"\bimport\s*[({\"']|\bfetch\(|XMLHttp|<link", html)
