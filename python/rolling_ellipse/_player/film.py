@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._pictures.animation.camera import cameras
-from .._pictures.strobe import turned_until
+from .._pictures.ground import SHOWN_TURNS
+from .._pictures.sampling import turned_until
 from ..geometry import support_slope
 from .page import document, fragment
 from .poster import positions, poster
@@ -65,7 +66,7 @@ def film_html(animation: RollingAnimation) -> str:
 
 def still(motions: list[Trajectory], labels: tuple[str, ...], shape: float) -> str:
     """Return the poster: even times of the whole motion, or of its first three turns."""
-    end = min(turned_until(motion) for motion in motions)
+    end = min(turned_until(motion, SHOWN_TURNS, "omega") for motion in motions)
     at = [positions(motion, end) for motion in motions]
     seen = cameras(at, shape, _HEAD, _FOOT)
     windows = [tuple(map(float, views[0])) for views in seen.views]
