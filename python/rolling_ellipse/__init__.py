@@ -11,7 +11,8 @@ from typing import Any as _Any
 
 from . import geometry, scenes
 from ._at import Sample
-from ._blows import blow_to, outcome, required_friction
+from ._blow_to import blow_to
+from ._blows import outcome, required_friction
 from ._certify import Certificate, certify
 from ._constraints import ConstraintResiduals, constraints, kinematics
 from ._core import EventKind, Mode, Outcome, Validity

@@ -1,4 +1,4 @@
-"""What a blow makes of a body, the friction that it asks for, and the blow that does something."""
+"""What a body comes to after a blow, and the friction that its rolling asks for."""
 
 from __future__ import annotations
 
@@ -9,14 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._certify import certify
-from ._check import broadcast, number
-from ._core import Mode, Outcome
+from ._check import broadcast
+from ._core import Outcome
 from ._impulse import Impulse
 from ._scene import Scene, require_scene
-
-_SPEEDS = 2048  # looked at on the way up from the speed that just reaches the tip
-_FASTEST = 1e3  # of them, beside that
 
 
 def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArray[np.int8]:
@@ -67,14 +63,14 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     if not isinstance(impulse, Impulse):
         raise TypeError(f"impulse must be an Impulse or None, got {impulse!r}")
     if impulse.shape == ():
-        return _core.outcome(_struck(scene, impulse).core)
+        return _core.outcome(struck(scene, impulse).core)
     names = ("jx", "jz", "dx", "dz")
     shape, columns = broadcast(**{name: getattr(impulse, name) for name in names})
     if scene.slope == 0:
         return _core.outcome_array(scene.core, math.prod(shape), columns).reshape(shape)
     rows = np.broadcast_arrays(*columns)
     codes = [
-        _core.outcome(_struck(scene, Impulse(jx, jz, dx=dx, dz=dz)).core)
+        _core.outcome(struck(scene, Impulse(jx, jz, dx=dx, dz=dz)).core)
         for jx, jz, dx, dz in zip(*rows, strict=True)
     ]
     return np.array(codes, dtype=np.int8).reshape(shape)
@@ -106,122 +102,6 @@ def required_friction(scene: Scene) -> float:
     return _core.required_friction(require_scene(scene).core)
 
 
-def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Impulse:
-    """Return the press at a distance from the centre after which the body rolls as asked.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its own impulse is replaced.
-    distance : float
-        Horizontal distance of the press from the centre [m], as of `Impulse.press`.
-    omega : float, optional
-        Angular velocity just after the blow [rad/s], met within rounding. Default: the least
-        press after which the body rolls over, on level ground: the least double for which
-        `outcome` proves it. Where a harder press needs less friction, as that of a nearly round
-        body may, it is searched for at 2048 speeds, up to 1000 times that which just reaches the
-        tip, and refined by bisection.
-
-    Returns
-    -------
-    Impulse
-        A press: straight down, F > 0.
-
-    Raises
-    ------
-    ValueError
-        If no press there does it, with the reason: it has no lever, would have to pull, slips for
-        want of friction, the ground cannot keep the body so fast, the body is in the air, rolls
-        over anyhow, or, without omega, is on a slope or a circle.
-    """
-    struck = replace(require_scene(scene), impulse=None)
-    distance = number("distance", distance)
-    if struck.initial_state.mode is Mode.FLIGHT:
-        raise ValueError("scene must touch the ground: no contact holds a body in the air")
-    if omega is None:
-        return _least_to_roll_over(struck, distance)
-    wanted = number("omega", omega)
-    blow = _press_to(struck, distance, wanted)
-    after = _struck(struck, blow).initial_state
-    if after.mode not in (Mode.ROLLING, Mode.REST):
-        raise ValueError(
-            f"omega must be one that the ground can keep, got {wanted!r}: {after.reason}"
-            f"{_asked_for(_struck(struck, blow))}"
-        )
-    return blow
-
-
-def _struck(scene: Scene, impulse: Impulse) -> Scene:
+def struck(scene: Scene, impulse: Impulse) -> Scene:
+    """Return the scene with another blow."""
     return replace(scene, impulse=impulse)
-
-
-def _asked_for(scene: Scene) -> str:
-    needed = _core.sticking_friction(scene.core)
-    if not scene.friction < needed:
-        return ""
-    return f" (it would need {needed:.6g})" if needed < math.inf else " (no finite one would hold)"
-
-
-def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
-    """The press that gives an angular velocity to a contact that sticks."""
-    F = _core.press_to(scene.core, distance, omega)
-    _require_lever(F, distance)
-    if F == 0:
-        raise ValueError(f"omega must differ from what the body has anyhow, got {omega!r}")
-    if F < 0:
-        raise ValueError(
-            f"distance must be on the other side of the contact, got {distance!r}: for omega = "
-            f"{omega!r} it would have to be a pull"
-        )
-    return Impulse.press(F, distance)
-
-
-def _require_lever(F: float, distance: float) -> None:
-    if not math.isfinite(F):
-        raise ValueError(
-            "distance must not be right over the contact, where a press has no lever, "
-            f"got {distance!r}"
-        )
-
-
-def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
-    """Search upwards from the speed that just reaches the tip, and refine to the last bit."""
-    if scene.slope != 0:
-        raise ValueError(f"omega must be given on a slope, got None with slope {scene.slope!r}")
-    if outcome(scene) is Outcome.ROLLS_OVER:
-        raise ValueError("scene must not roll over without a blow")
-    least = _core.speed_to_the_tip(scene.core)
-    if least == 0:
-        raise ValueError("omega must be given for a circle and on the tip: the least press is none")
-    backwards, forwards = (_core.press_to(scene.core, distance, s * least) for s in (-1, 1))
-    _require_lever(forwards, distance)
-    side = 1 if forwards > backwards else -1
-    beyond = np.concatenate([[0.0], np.geomspace(1e-13, _FASTEST, _SPEEDS)])
-    forces = np.array(
-        [_core.press_to(scene.core, distance, side * least * (1 + s)) for s in beyond]
-    )
-    forces = forces[forces > 0]
-    codes = outcome(scene, Impulse.press(forces, distance))
-    over = np.flatnonzero(np.asarray(codes) == Outcome.ROLLS_OVER)
-    if over.size == 0:
-        raise _never_over(scene, distance, side * least)
-    first = int(over[0])
-    high, low = float(forces[first]), float(forces[first - 1]) if first else 0.0
-    while low < (middle := low + 0.5 * (high - low)) < high:
-        if outcome(scene, Impulse.press(middle, distance)) is Outcome.ROLLS_OVER:
-            high = middle
-        else:
-            low = middle
-    return Impulse.press(high, distance)
-
-
-def _never_over(scene: Scene, distance: float, least: float) -> ValueError:
-    """Say what becomes of a press that is just strong enough."""
-    struck = _struck(scene, _press_to(scene, distance, least * (1 + 1e-6)))
-    start = struck.initial_state
-    why = f"{start.reason}{_asked_for(struck)}"
-    if start.mode is Mode.ROLLING:
-        why = certify(struck).reason
-    return ValueError(
-        f"distance must be one at which a press rolls the body over, got {distance!r}: {why}"
-    )

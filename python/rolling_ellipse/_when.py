@@ -110,8 +110,8 @@ class _Search:
             times, measures = self._with_minima(times, measures)
         # What only touches the value is rounded to one side of it or the other.
         step = np.diff(measures)
-        turns = np.zeros(times.size, bool) | at.constant
-        turns[1:-1] = step[1:] * step[:-1] <= 0
+        turns = np.full(times.size, at.constant or bool((np.abs(measures) <= rounding).all()))
+        turns[1:-1] |= step[1:] * step[:-1] <= 0
         measures = np.where(turns & (np.abs(measures) <= rounding), 0.0, measures)
         joined = np.ones(times.size, bool)
         joined[-1] = False

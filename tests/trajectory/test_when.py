@@ -44,7 +44,8 @@ def check(motion: Trajectory, name: str, value: float) -> int:
     sensed = {direction: all_times(motion, name, value, direction) for direction in (1, -1)}
     rises, falls = (np.searchsorted(sensed[d], times, side="right") for d in (1, -1))
     assert np.array_equal(np.diff(rises) - np.diff(falls), change), (name, value)
-    assert np.isin(np.concatenate([sensed[1], sensed[-1]]), found).all()
+    for t in np.concatenate([sensed[1], sensed[-1]]):  # those 4 ulp apart are one
+        assert np.abs(found - t).min() <= 8 * EPS * t
     jumps = np.isin(found, times_of_events(motion)) if name == "omega" else np.zeros(found.size)
     smooth = found[~jumps.astype(bool)]
     missed = np.abs(getattr(motion.sol(smooth), name) - value) if smooth.size else smooth
@@ -136,6 +137,8 @@ def test_what_is_kept_counts_where_it_begins() -> None:
     (rest,) = (event.t for event in dropped.events if event.state_after.mode is Mode.REST)
     assert dropped.at(2.0).mode is Mode.REST
     assert dropped.when(z=1.0) == pytest.approx([rest], rel=1e-14)
+    sliding = simulate(Scene(1.5, 1.5, friction=0.0, x_dot=1.0, slope=0.1, omega=0.7), 3.0)
+    assert sliding.when(z=1.5).tolist() == sliding.when(omega=0.7).tolist() == [0.0]
     circle = simulate(rl.scenes.circle, 10.0)
     assert circle.when(omega=2.0).tolist() == [0.0] and circle.when(z=1.0).tolist() == [0.0]
     assert circle.when(x=5.0) == pytest.approx([2.5], rel=2 * EPS)

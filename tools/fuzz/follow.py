@@ -70,6 +70,21 @@ def scene_at(draw: Draw, _: Body) -> Iterator[Line]:
         yield Line(call("rl.simulate", "scene", "trajectory.t_end", **options), "on", "simulate")
 
 
+def when(draw: Draw, _: Body) -> Iterator[Line]:
+    """At a value that one of the samples has, in a sense or both."""
+    name = draw.pick("theta", "x", "z", "omega", "contact_x")
+    sample = f"trajectory.{name}[{draw.random.randrange(100)} % trajectory.t.size]"
+    given = {name: sample if draw.chance(0.7) else text(draw.between(-3, 3))}
+    if draw.chance(0.2):
+        given = {"function": draw.pick("lambda m: m.normal_force - 1", "lambda m: m.t", "len", "3")}
+    if draw.chance(0.4):
+        given["direction"] = draw.pick("1", "-1", "0", "2", "None")
+    code = call("trajectory.when", **draw.mutated(given) if draw.chance(0.1) else given)
+    yield Line(f"trajectory.t.size and {code}", "times", "Trajectory.when")
+    share = draw.pick("0.0", "1.0", repr(draw.random.random()), "2.0")
+    yield Line(f"trajectory.at({share} * trajectory.t_end)", does="Trajectory.at")
+
+
 def residuals(_draw: Draw, _: Body) -> Iterator[Line]:
     yield Line("trajectory.constraint_residuals()", does="Trajectory.constraint_residuals")
 
@@ -213,6 +228,7 @@ FOLLOWS: tuple[tuple[Follow, float], ...] = (
     (sol, 5),
     (sol_at_samples, 2),
     (scene_at, 3),
+    (when, 3),
     (residuals, 2),
     (save_and_load, 1.0),
     (saved_elsewhere, 0.3),
