@@ -59,6 +59,7 @@ def core_objects() -> dict[str, Any]:
         "Impulse": rl.Impulse(1.0).core,
         "Settings": motion.settings.core,
         "Solution": motion._solution,
+        "Arc": motion._solution.arcs()[0],
         "Event": motion._solution.events[0],
         "State": motion._solution.events[0].before,
         "InitialState": _core.initial_state(motion.scene.core),

@@ -76,11 +76,16 @@ def when(draw: Draw, _: Body) -> Iterator[Line]:
     sample = f"trajectory.{name}[{draw.random.randrange(100)} % trajectory.t.size]"
     given = {name: sample if draw.chance(0.7) else text(draw.between(-3, 3))}
     if draw.chance(0.2):
-        given = {"function": draw.pick("lambda m: m.normal_force - 1", "lambda m: m.t", "len", "3")}
+        given = {
+            "function": draw.pick(
+                "lambda m: m.normal_force - 1", "lambda m: m.t", "lambda m: 1.0", "3"
+            )
+        }
     if draw.chance(0.4):
         given["direction"] = draw.pick("1", "-1", "0", "2", "None")
-    code = call("trajectory.when", **draw.mutated(given) if draw.chance(0.1) else given)
-    yield Line(f"trajectory.t.size and {code}", "times", "Trajectory.when")
+    given = draw.mutated(given) if draw.chance(0.1) else given
+    code = ", ".join(f"{key}={value}" for key, value in given.items())
+    yield Line(f"trajectory.t.size and trajectory.when({code})", "times", "Trajectory.when")
     share = draw.pick("0.0", "1.0", repr(draw.random.random()), "2.0")
     yield Line(f"trajectory.at({share} * trajectory.t_end)", does="Trajectory.at")
 
