@@ -9,7 +9,8 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 from . import _core
-from ._check import number, optional_number
+from . import _start_words as words
+from ._check import number, optional_number, shown
 from ._core import Mode
 from ._faces import Listed, Row, brief, with_unit
 from ._fields import FieldsOnly
@@ -139,7 +140,7 @@ class Scene(FieldsOnly, Listed):
         for name in _OPTIONAL:
             object.__setattr__(self, name, optional_number(name, getattr(self, name)))
         if self.impulse is not None and not isinstance(self.impulse, Impulse):
-            raise TypeError(f"impulse must be an Impulse or None, got {self.impulse!r}")
+            raise TypeError(f"impulse must be an Impulse or None, got {shown(self.impulse)}")
         if self.impulse is not None and self.impulse.shape != ():
             raise ValueError(
                 f"impulse must be one blow, got an Impulse of shape {self.impulse.shape}: "
@@ -180,7 +181,9 @@ class Scene(FieldsOnly, Listed):
         """State just after the impulse: the collision law without restitution (InitialState)."""
         start = _core.initial_state(self.core)
         follows = _core.first_continuation(self.core, start.state)
-        reason = f"{_what_the_blow_did(self, start)}; {_what_follows(self, start, follows)}"
+        reason = (
+            f"{words.what_the_blow_did(self, start)}; {words.what_follows(self, start, follows)}"
+        )
         state = start.state
         return InitialState(
             theta=state.theta,
@@ -214,72 +217,13 @@ class Scene(FieldsOnly, Listed):
         ]
         start, after = self.initial_state, ""
         if impulse is not None:
-            rows.append(("impulse", _blow(impulse)))
+            rows.append(("impulse", words.blow(impulse)))
             after = f", omega = {brief(start.omega)} rad/s after the blow"
-        return [*rows, ("start", _WHERE[start.mode] + after)]
-
-
-def _blow(impulse: Impulse) -> str:
-    return (
-        f"({impulse.jx:g}, {impulse.jz:g}) N s at ({impulse.dx:g}, {impulse.dz:g}) m from the "
-        "centre"
-    )
-
-
-_WHERE = {
-    Mode.ROLLING: "on the ground, rolling",
-    Mode.SLIDING: "on the ground, sliding",
-    Mode.FLIGHT: "in the air",
-    Mode.REST: "on the ground, at rest",
-}
+        return [*rows, ("start", words.WHERE[start.mode] + after)]
 
 
 def require_scene(scene: object) -> Scene:
     """Return the scene, or raise TypeError."""
     if not isinstance(scene, Scene):
-        raise TypeError(f"scene must be a Scene, got {scene!r}")
+        raise TypeError(f"scene must be a Scene, got {shown(scene)}")
     return scene
-
-
-def _what_the_blow_did(scene: Scene, start: _core.InitialState) -> str:
-    if scene.impulse is None:
-        return "no impulse"
-    if start.state.mode is Mode.FLIGHT:
-        return "the blow lifts the body off the ground"
-    if start.state.mode is Mode.SLIDING:
-        return (
-            f"the blow makes the contact slip: friction {scene.friction:g} gives an impulse of "
-            f"{start.reaction_x:.6g} N s against {start.reaction_z:.6g} N s of pressure"
-        )
-    return (
-        f"the contact sticks: the ground gives {start.reaction_x:.6g} N s along and "
-        f"{start.reaction_z:.6g} N s away from it; without it omega would be "
-        f"{start.free_omega:.6g} rad/s"
-    )
-
-
-_DOES = {
-    Mode.ROLLING: "rolls",
-    Mode.SLIDING: "slides",
-    Mode.FLIGHT: "flies",
-    Mode.REST: "rests",
-}
-
-
-def _what_follows(scene: Scene, start: _core.InitialState, follows: _core.Continuation) -> str:
-    """Say what the body does, and why where its velocities alone look like something else."""
-    mode, paradox = follows.mode, follows.paradox
-    if paradox is _core.Painleve.NO_MOTION:
-        return "the contact slides and jams: no motion of a rigid body goes on (Painleve)"
-    if paradox is _core.Painleve.TWO_MOTIONS:
-        return (
-            "the contact slides and two motions go on (Painleve), in flight and pressed against "
-            "the ground: rigid mechanics does not choose"
-        )
-    if mode is start.state.mode or mode is Mode.REST:
-        return f"the body {_DOES[mode]}"
-    if mode is Mode.SLIDING and math.isinf(scene.friction):
-        return "the ground would have to pull: the body slides, not pressed (infinite friction)"
-    if mode is Mode.SLIDING:
-        return f"friction {scene.friction:g} cannot hold the contact: the body slides"
-    return "the ground would have to pull: the body flies"

@@ -439,6 +439,16 @@ def test_a_scene_is_wanted(call: Callable[..., Any], value: object) -> None:
         call(value)
 
 
+def test_what_is_no_scene_is_shown_briefly() -> None:
+    for thing in (np.arange(1e5).tolist(), "x" * 10**5):
+        with pytest.raises(TypeError, match=r"^scene must be a Scene, got ") as caught:
+            certify(thing)  # type: ignore[arg-type]
+        assert len(str(caught.value)) < 400
+        with pytest.raises(TypeError, match=r"^impulse must be an Impulse or None") as caught:
+            scene(impulse=thing)
+        assert len(str(caught.value)) < 400
+
+
 def test_simulate_leaves_the_times_alone() -> None:
     t = np.array([0.5, 1.0, 3.0])
     t.flags.writeable = False

@@ -71,6 +71,17 @@ def test_unbeaten_are_those_within_the_margin() -> None:
         FOUND.unbeaten(0.9)
 
 
+def test_a_notebook_shows_the_least_of_each_way() -> None:
+    html = FOUND._repr_html_()
+    assert repr(FOUND)[1:-1] in html
+    for name, *cells in (
+        ("sure", "1e-13", "10 µs"), ("fast", "1e-09", "4 µs"), ("slow", "0.0005", "100 µs"),
+        ("lost", "no answer", ""),
+    ):  # fmt: skip
+        row = "".join(f'<td style="text-align:left">{cell}</td>' for cell in cells)
+        assert f">{name}</th>{row}</tr>" in html
+
+
 def test_the_verdict_says_what_the_table_says() -> None:
     lines = FOUND.verdict().splitlines()
     assert lines[0].startswith("To t = 2 s, judged by exact rolling (its own error 4.0e-13;")
