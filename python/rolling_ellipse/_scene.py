@@ -181,9 +181,7 @@ class Scene(FieldsOnly, Listed):
         """State just after the impulse: the collision law without restitution (InitialState)."""
         start = _core.initial_state(self.core)
         follows = _core.first_continuation(self.core, start.state)
-        reason = (
-            f"{words.what_the_blow_did(self, start)}; {words.what_follows(self, start, follows)}"
-        )
+        did, then = words.what_the_blow_did(self, start), words.what_follows(self, start, follows)
         state = start.state
         return InitialState(
             theta=state.theta,
@@ -196,7 +194,7 @@ class Scene(FieldsOnly, Listed):
             reaction_x=start.reaction_x,
             reaction_z=start.reaction_z,
             free_omega=start.free_omega,
-            reason=reason,
+            reason=f"{did}; {then}",
         )
 
     def _changed(self) -> dict[str, Any]:

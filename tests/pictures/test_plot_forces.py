@@ -76,6 +76,7 @@ def test_spikes_leave_room_for_ordinary_forces(report: rl.Trajectory) -> None:
 @pytest.mark.parametrize("picture", TWO_PANELS)
 def test_axes_are_one_or_two(picture: Callable[..., Any], report: rl.Trajectory) -> None:
     three = list(Figure().subplots(3))
-    for wrong in (three, [], "here", [three[0], None]):
-        with pytest.raises(ValueError, match="ax must be one matplotlib Axes or two, got"):
-            picture(report, ax=wrong)
+    for kind, wrongs in ((ValueError, (three, [])), (TypeError, ("here", [three[0], None]))):
+        for wrong in wrongs:
+            with pytest.raises(kind, match="ax must be one matplotlib Axes or two, got"):
+                picture(report, ax=wrong)
