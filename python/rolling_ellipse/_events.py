@@ -24,7 +24,9 @@ _SENTENCES = {
     EventKind.REST: "the body has come to rest",
     EventKind.JAM: "the sliding body jams: no motion of a rigid body goes on, or more than one",
 }
-_SLIP_WITHOUT_LIMIT = "the ground would have to pull; the body slides, not pressed, and leaves it"
+_SLIP_WITHOUT_LIMIT = (
+    "the ground would have to pull: the body slides, not pressed (infinite friction)"
+)
 _HEAD = ("t [s]", "kind", "theta [rad]", "x [m]", "what changes")
 _FIRST, _LAST = 12, 4  # of many events, those shown
 

@@ -1,6 +1,7 @@
 """What objects print as: names for codes, tables with units, HTML without colours of its own."""
 
 import copy
+import dataclasses
 import pickle
 import re
 from collections.abc import Callable
@@ -98,6 +99,30 @@ def test_text_and_html_say_the_same(make: Callable[[], Any]) -> None:
 def test_a_repr_is_one_line(make: Callable[[], Any]) -> None:
     text = repr(make())
     assert "\n" not in text and len(text) < 420 and " object at 0x" not in text
+
+
+@each_listed
+def test_values_are_equal_by_what_they_say(make: Callable[[], Any]) -> None:
+    one, other = make(), make()
+    _ = one._repr_html_()  # what it keeps does not matter
+    for same in (other, copy.deepcopy(one), pickle.loads(pickle.dumps(one))):
+        assert one == same and hash(one) == hash(same)
+    for thing in (None, repr(one), rl.thresholds(3.0, 1.0), rl.Scene(1.0, 1.0)):
+        assert one != thing
+
+
+def test_a_changed_value_is_another() -> None:
+    things: list[Any] = [
+        rl.certify(rl.scenes.jump),
+        rl.thresholds(2.0, 1.0),
+        sliding()[3],
+        fitted(),
+    ]
+    for made in things:
+        for field in dataclasses.fields(made):
+            value = np.zeros(2) if field.name == "errors" else -7.0
+            assert dataclasses.replace(made, **{field.name: value}) != made, field.name
+    assert sliding() == sliding() and sliding()[:3] != sliding()[:4]
 
 
 @pytest.mark.parametrize("scene", [*SCENES.values(), WEIRD])
