@@ -6,6 +6,7 @@ other people's integrators are installed.
 """
 
 import warnings
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
@@ -32,12 +33,20 @@ STEP = 2.0**-7
 
 
 def main() -> None:
-    rl.animate(rl.simulate(rl.scenes.report, 6.0), HERE / "roll.gif")
+    rl.animate(rl.simulate(rl.scenes.report, 6.0), HERE / "roll.gif", fps=25)
+    friction()
     save(methods(), "methods.png")
     save(speed(), "speed.png")
     save(stability(), "stability.png")
     save(phase_map(), "phase_map.png")
     save(strobe(), "strobe.png")
+
+
+def friction() -> None:
+    """The same blow on three floors: the film of several motions."""
+    motions = [rl.simulate(replace(rl.scenes.report, friction=mu), 4.0) for mu in (1.0, 0.1, 0.0)]
+    labels = ["friction 1", "friction 0.1", "no friction"]
+    rl.animate(motions, HERE / "friction.gif", labels=labels, fps=25, width=560)
 
 
 def methods() -> Figure:

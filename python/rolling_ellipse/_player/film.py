@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _PIXEL = 2.5e-5  # of the width of the view: a twentieth of a pixel where it is 2000 pixels wide
 _HEAD, _FOOT = 0.035, 0.035  # room for a line of text above, and for the ruler, over the width
+_TALLEST = 0.42  # height of a film over its width; half as much for each of several motions
 
 
 def film_page(animation: RollingAnimation) -> str:
@@ -35,6 +36,8 @@ def film_html(animation: RollingAnimation) -> str:
     last = float(animation.t[-1])
     ends = [min(last, float(motion.t[-1])) for motion in motions]
     seen = cameras(motions, None, _HEAD, _FOOT)
+    if seen.shape > (most := max(_TALLEST, _TALLEST * len(motions) / 2)):
+        seen = cameras(motions, most, _HEAD, _FOOT)  # a cell is wide
     wide = seen.windows[0][1] - seen.windows[0][0]
     strips = [
         {

@@ -25,6 +25,7 @@ export class View {
 export function paintStrip(ink, look, strip, at, view, shown) {
   ink.lineJoin = "round";
   paintGround(ink, look, strip, view, shown);
+  paintSkids(ink, look, strip, at, view);
   paintTrace(ink, look.blue, 1, strip.points, 3, at, view, 0.55);
   paintBody(ink, look, strip, at, view);
   paintTrace(ink, look.orange, 1.8, strip.points, 1, at, view, 1);
@@ -111,18 +112,38 @@ function paintGround(ink, look, strip, view, { floor, width, tall }) {
   }
 }
 
-/** The part of a trace up to now; it ends where the body is. */
-function paintTrace(ink, colour, width, points, column, at, view, alpha) {
+/** The points of a trace up to now, as far as they may be in sight. */
+function past(points, t) {
   let low = 0, end = points.length;
-  if (!end) return;
   while (end - low > 1) {
     const middle = (low + end) >> 1;
-    if (points[middle][0] <= at.t) low = middle;
+    if (points[middle][0] <= t) low = middle;
     else end = middle;
   }
+  return points.slice(Math.max(0, end - SHOWN), end);
+}
+
+/** Where the contact has slid. */
+function paintSkids(ink, look, { a, b, points }, at, view) {
+  Object.assign(ink, { strokeStyle: look.plum, lineWidth: 6, lineCap: "butt", globalAlpha: 0.5 });
   ink.beginPath();
-  for (let i = Math.max(0, end - SHOWN); i < end; i++)
-    ink.lineTo(...view.at(points[i][column], points[i][column + 1]));
+  let slid = false;
+  for (const [, x, , , , mode, theta] of past(points, at.t)) {
+    const place = mode === SLIDING || slid ? view.at(x + support(theta, a, b)[1], 0) : null;
+    if (slid) ink.lineTo(...place);
+    else if (place) ink.moveTo(...place);
+    slid = mode === SLIDING;
+  }
+  if (slid) ink.lineTo(...view.at(at.x + support(at.theta, a, b)[1], 0));
+  ink.stroke();
+  ink.globalAlpha = 1;
+}
+
+/** The part of a trace up to now; it ends where the body is. */
+function paintTrace(ink, colour, width, points, column, at, view, alpha) {
+  if (!points.length) return;
+  ink.beginPath();
+  for (const point of past(points, at.t)) ink.lineTo(...view.at(point[column], point[column + 1]));
   ink.lineTo(...(column === 1 ? view.at(at.x, at.z) : view.at(...at.tip)));
   Object.assign(ink, { strokeStyle: colour, lineWidth: width, globalAlpha: alpha });
   ink.stroke();
@@ -206,7 +227,7 @@ function paintEvents(ink, look, strip, at, view, { width, lasting }) {
     path(ink, [[u, v], [u - 3.5, v + 8], [u + 3.5, v + 8]]);
     ink.fill();
     const age = lasting * (1 - t / Math.max(at.t, 1e-300));
-    if (age < FADES) named = [kind, u, v + 19, 1 - age / FADES];
+    if (age < FADES) named = [kind, u, v + 38, 1 - age / FADES];
   }
   if (!named) return;
   ink.globalAlpha = named[3];

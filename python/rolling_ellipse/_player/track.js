@@ -41,15 +41,15 @@ export class Track {
     };
   }
 
-  /** Where the centre and the end of axis a have been, as [t, x, z, tip x, tip z]. */
+  /** Where the body has been: [t, x, z, tip x, tip z, mode, theta] at times near each other. */
   trace() {
     const points = [];
     if (this.stepped) return points;
     for (let i = 0; i < this.t.length; i++) {
       for (let part = 0; part < 6; part++) {
         const next = this.t[i + 1] ?? this.t[i];
-        const { t, x, z, tip } = this.at(this.t[i] + (part / 6) * (next - this.t[i]));
-        points.push([t, x, z, ...tip]);
+        const at = this.at(this.t[i] + (part / 6) * (next - this.t[i]));
+        points.push([at.t, at.x, at.z, ...at.tip, at.mode, at.theta]);
         if (next === this.t[i]) break;
       }
     }
