@@ -3,6 +3,7 @@
 
 const STROBES = 8;
 const BESIDE = `
+  canvas { touch-action: none }
   .hands, .beside { display: flex; flex-wrap: wrap; gap: 6px 16px; padding: 6px 12px }
   .hands label { display: flex; flex: 1 1 220px; align-items: center; gap: 8px }
   .hands input { flex: 1; accent-color: var(--plum) }

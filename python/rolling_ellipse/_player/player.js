@@ -12,7 +12,7 @@ const STYLE = `
   .player { position: relative; border-radius: 8px; overflow: hidden; background: var(--panel);
     color: var(--ink); font: 13px/1.4 system-ui, sans-serif; outline-offset: 2px }
   .player:focus-visible, :focus-visible { outline: 2px solid var(--blue) }
-  canvas { display: block; width: 100%; touch-action: none }
+  canvas { display: block; width: 100% }
   .bar { display: flex; flex-wrap: wrap; align-items: center; gap: 4px 8px; padding: 6px 10px }
   button, select { font: inherit; color: inherit; background: none; border: 1px solid transparent;
     border-radius: 6px; padding: 3px 6px; min-height: 28px; cursor: pointer }

@@ -1,0 +1,32 @@
+"""What a kernel hands to a notebook: one output for each film, whatever pyplot would add."""
+
+import nbclient
+import nbformat
+import pytest
+
+CELLS = (
+    "%matplotlib inline\nimport rolling_ellipse as rl\nmotion = rl.simulate(rl.scenes.report, 2.0)",
+    "rl.animate(motion)",
+    "film = rl.animate([motion, motion])\nfilm",
+    "rl.explore(rl.scenes.report, t_end=1.0)",
+    "import matplotlib.pyplot as plt\nplt.get_fignums()",
+)
+
+
+@pytest.fixture(scope="module")
+def executed() -> nbformat.NotebookNode:
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c) for c in CELLS])
+    nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
+    return notebook
+
+
+@pytest.mark.parametrize("cell", [1, 2, 3])
+def test_a_cell_shows_it_once(executed: nbformat.NotebookNode, cell: int) -> None:
+    (output,) = executed.cells[cell].outputs
+    assert output.output_type == "execute_result"
+    assert set(output.data) == {"text/html", "text/plain"}
+    assert output.data["text/html"].count('class="rolling-ellipse"') == 1
+
+
+def test_no_figure_is_left(executed: nbformat.NotebookNode) -> None:
+    assert executed.cells[4].outputs[0].data["text/plain"] == "[]"
