@@ -430,10 +430,13 @@ def test_a_notebook_shows_what_matplotlib_is_told_to(
     assert marks in html and "rolling-ellipse" not in html
 
 
-def test_a_notebook_is_not_flooded() -> None:
+def test_a_notebook_is_not_flooded(tmp_path: Path) -> None:
     film = rl.animate(rl.simulate(rl.scenes.rolling, 1e4), speed=10.0, width=64)  # 5e4 frames
-    with pytest.raises(ValueError, match=r"^t_end must be shown by a player in at most 20000 "):
-        film._repr_html_()
+    said = "t_end must be shown by a player in at most 20000 samples, got "
+    assert film._repr_html_().startswith(f"<p>{said}") and len(film._repr_html_()) < 300
+    with pytest.raises(ValueError, match=f"^{said}"):
+        film.save(tmp_path / "roll.html")
+    assert list(tmp_path.iterdir()) == []
 
 
 MINUTE = rl.simulate(rl.scenes.report, 100.0)

@@ -141,3 +141,39 @@ def test_the_page_asks_for_nothing_else() -> None:
     html += rl.explore(rl.scenes.report, t_end=1.0)._repr_html_()
     assert set(re.findall(r"https?://[^\"' )]+", html)) == set()
     assert not re.search(r"\bimport\s*[({\"']|\bfetch\(|XMLHttp|<link", html)
+
+
+@pytest.mark.parametrize(
+    ("scene", "seconds"),
+    [
+        (rl.scenes.report, 0.0),  # one sample
+        (rl.Scene(2.0, 1.0), 5.0),  # at rest
+        (rl.scenes.rolling, 2e9),  # 1e9 turns
+        (rl.Scene(1.0, 1e-3, theta=0.3, omega=20.0), 3.0),
+        (rl.Scene(1e-3, 1.0, omega=20.0, friction=0.3), 1.0),
+        (rl.Scene(2e-9, 1e-9, mass=1e-20, omega=1e3), 1e-2),
+        (rl.Scene(2e9, 1e9, mass=1e30, gravity=1e-3, omega=1e-6), 1e7),
+        (rl.scenes.bounce, 60.0),
+    ],
+    ids=["instant", "rest", "turns", "flat", "tall", "tiny", "huge", "bounces"],
+)
+def test_films_at_the_limits(scene: rl.Scene, seconds: float) -> None:
+    html = rl.animate(rl.simulate(scene, seconds), width=64)._repr_html_()
+    assert html.startswith('<div class="rolling-ellipse"') and len(html) < 1_500_000
+    known = html[html.index("(document.querySelector(free), ") + 31 : html.rindex(");")]
+    data = json.loads(known, parse_constant=pytest.fail)  # no NaN, which JSON does not know
+    (strip,) = data["strips"]
+    assert strip["a"] == scene.a and data["end"] <= seconds
+    for column in strip["track"]["columns"].values():
+        assert np.all(np.isfinite(unpacked(column)))
+
+
+def test_labels_of_any_letters() -> None:
+    labels = ["<b>&", "a\u2028ä"]
+    motion = rl.simulate(rl.scenes.report, 1.0)
+    html = rl.animate([motion, motion], labels=labels, width=64)._repr_html_()
+    found = re.search(r"base64,([^\"]+)\"", html)
+    assert found
+    svg = base64.b64decode(found[1]).decode("utf-8")
+    assert "&lt;b>&amp;</text>" in svg and ">a ä</text>" in svg
+    html.encode("utf-8")

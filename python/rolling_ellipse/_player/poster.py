@@ -93,4 +93,6 @@ def _style(look: dict[str, str]) -> str:
 
 
 def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;")
+    """As XML knows it: without control characters and half surrogates, which end it."""
+    known = "".join(letter if letter.isprintable() else " " for letter in text)
+    return known.replace("&", "&amp;").replace("<", "&lt;")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from html import escape
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -181,12 +182,18 @@ class RollingAnimation(FuncAnimation):
         return f"<RollingAnimation: {self.t.size} frames, {self.t[-1]:g} s>"
 
     def _repr_html_(self) -> str:
-        """The player, or what matplotlib's `rcParams["animation.html"]` asks for."""
+        """The player, or what matplotlib's `rcParams["animation.html"]` asks for.
+
+        A film that is too long for a player is a sentence that says so.
+        """
         wanted = rcParams["animation.html"]
         if wanted == "none":
             from ..._player import film_html
 
-            return film_html(self)
+            try:
+                return film_html(self)
+            except ValueError as error:
+                return f"<p>{escape(str(error))}</p>"
         settings = {"animation.ffmpeg_path": ffmpeg()} if wanted == "html5" else {}
         with rc_context(settings):  # type: ignore[arg-type]
             return str(super()._repr_html_())
