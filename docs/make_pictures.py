@@ -14,8 +14,9 @@ import numpy as np
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Arc, Ellipse
 from PIL import Image
-from rolling_ellipse._pictures.palette import BLUE, ORANGE, PLUM
+from rolling_ellipse._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM
 
 HERE = Path(__file__).parent
 METHODS = {
@@ -40,6 +41,7 @@ def main() -> None:
     save(stability(), "stability.png")
     save(phase_map(), "phase_map.png")
     save(strobe(), "strobe.png")
+    save(frame(), "frame.png")
 
 
 def friction() -> None:
@@ -113,6 +115,43 @@ def strobe() -> Figure:
     figure = Figure(figsize=(7, 2.4), layout="constrained")
     rl.plot_strobe(rl.simulate(rl.scenes.report, 3.2), ax=figure.add_subplot())
     return figure
+
+
+def frame() -> Figure:
+    """The axes, the angle, the contact and its forces, of one state of the body."""
+    figure = Figure(figsize=(7, 3.0), layout="constrained")
+    ax = figure.add_subplot()
+    at = rl.simulate(rl.Scene(2.0, 1.0, theta=0.5, omega=1.0), 0.0)
+    x, z, theta, touch = (float(v[0]) for v in (at.x, at.z, at.theta, at.contact_x))
+    tip = x + 2 * np.cos(theta), z - 2 * np.sin(theta)
+    ax.add_patch(Ellipse((x, z), 4, 2, angle=-np.degrees(theta), fc="#2a6f9722", ec=INK, lw=1.6))
+    ax.axhspan(-0.6, 0, color=EARTH, zorder=0)
+    ax.axhline(0, color=GREY, lw=1)
+    ax.plot([x, x + 2.3], [z, z], color=GREY, lw=1, ls=":")
+    ax.plot([x, tip[0]], [z, tip[1]], color=INK, lw=1.2)
+    ax.plot([x, touch], [z, 0], color=PLUM, lw=1.2, ls="--")
+    ax.add_patch(Arc((x, z), 2.2, 2.2, theta1=-np.degrees(theta), theta2=0, color=BLUE, lw=1.4))
+    spokes = {"start": (-4.2, 0.0), "x": (-3.0, 0.0), "z": (-4.2, 1.2)}
+    for name, (to_x, to_z) in list(spokes.items())[1:]:
+        arrow(ax, spokes["start"], (to_x, to_z), INK)
+        ax.text(to_x + 0.12, to_z + 0.08, name, color=INK, style="italic")
+    arrow(ax, (touch, 0.0), (touch, 0.75), ORANGE)
+    arrow(ax, (touch, 0.0), (touch + 0.7, 0.0), ORANGE)
+    for text, place, colour in (
+        ("θ", (x + 1.16, z - 0.34), BLUE), ("G", (x - 0.28, z + 0.08), INK),
+        ("a", (x + 1.35, z - 1.02), INK), ("r", (x + 0.02, 0.62), PLUM),
+        ("N", (touch + 0.08, 0.5), ORANGE), ("F", (touch + 0.78, 0.06), ORANGE),
+        ("contact_x", (touch - 0.45, -0.32), INK),
+    ):  # fmt: skip
+        ax.text(*place, text, color=colour)
+    ax.plot([x, touch], [z, 0], ls="", marker="o", ms=4, color=INK)
+    ax.set(xlim=(-4.6, 3.6), ylim=(-0.5, 2.75), aspect="equal")
+    ax.axis("off")
+    return figure
+
+
+def arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], colour: str) -> None:
+    ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.6})
 
 
 def save(figure: Figure, name: str) -> None:

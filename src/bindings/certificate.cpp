@@ -43,7 +43,7 @@ py::array_t<std::int8_t> outcome_array(const Scene& scene, py::ssize_t n,
         for (py::ssize_t i = begin; i < end; ++i) {
             struck.impulse = Impulse{jx[i], jz[i], dx[i], dz[i]};
             try {
-                validate(*struck.impulse);
+                validate_blow(struck);
                 outcomes[i] = static_cast<std::int8_t>(outcome(struck, [] {}));
             } catch (const std::invalid_argument& error) {
                 throw std::invalid_argument(error.what() + (", by blow " + std::to_string(i)));

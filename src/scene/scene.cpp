@@ -123,11 +123,14 @@ void validate(const Scene& scene) {
     if (scene.x_dot) require_finite("x_dot", " [m/s]", *scene.x_dot);
     if (scene.z_dot) require_finite("z_dot", " [m/s]", *scene.z_dot);
     validate_velocity(scene.body(), scene.x_dot.value_or(0.0), scene.z_dot.value_or(0.0));
-    if (scene.impulse) {
-        validate(*scene.impulse);
-        require_reach(scene, *scene.impulse);
-    }
+    validate_blow(scene);
     state_before_impulse(scene);
+}
+
+void validate_blow(const Scene& scene) {
+    if (!scene.impulse) return;
+    validate(*scene.impulse);
+    require_reach(scene, *scene.impulse);
 }
 
 State state_before_impulse(const Scene& scene) {

@@ -77,6 +77,7 @@ void validate_velocity(const Body& body, double x_dot, double z_dot);
 void validate_friction(double friction);
 void validate(const Impulse& impulse);
 void validate(const Scene& scene);
+void validate_blow(const Scene& scene);  // what it is, and that it meets the body
 
 // A height at which the ellipse does not touch the ground, whatever its angle.
 inline double above_ground(const Axes& axes) { return axes.a + axes.b; }
