@@ -24,7 +24,7 @@ _TURNS = ("theta", "x", "contact_x")  # of rolling: one grows with the other
 _EXACT = (*_TURNS, "z", "omega")
 _STEPS = (ArcKind.ROLLING_STEPS, ArcKind.COORDINATE_STEPS, ArcKind.SLIDING_STEPS)
 _PERIODIC = (ArcKind.TURNING, ArcKind.SWINGING)
-# What stays as it is in an arc; and what is a polynomial between two marks, or grows with one.
+# What stays as it is in an arc; and what a polynomial meets between two marks, or grows with one.
 # Elsewhere the height follows from theta, and nothing is known of other quantities.
 _CONSTANT = {
     ArcKind.STILL: _EXACT,
@@ -33,8 +33,8 @@ _CONSTANT = {
 }
 _POLYNOMIAL = {
     ArcKind.ROLLING_STEPS: {**dict.fromkeys(_TURNS, "theta"), "omega": "omega"},
-    ArcKind.COORDINATE_STEPS: {name: name for name in ("theta", "x", "z", "omega")},
-    ArcKind.SLIDING_STEPS: {name: name for name in ("theta", "x", "omega")},
+    ArcKind.COORDINATE_STEPS: {name: name for name in _EXACT},
+    ArcKind.SLIDING_STEPS: {name: name for name in (*_TURNS, "omega")},
     ArcKind.SETTLING: {name: name for name in ("theta", "x", "omega")},
     ArcKind.FLIGHT: {name: name for name in ("theta", "x", "z")},
 }

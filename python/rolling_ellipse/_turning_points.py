@@ -11,9 +11,10 @@ from ._check import FloatArray
 
 At = Callable[[str, FloatArray], FloatArray]  # a named quantity of the motion at times
 
-_DEGREE = 8  # the dense output of "dop853" has 7, all others less
+_DEGREE = 8  # the dense output of "dop853" has 7; that of "gauss" is no polynomial
 _ROUNDINGS = 1000  # in a Bernstein coefficient: the matrix that makes it has a norm of 300
 _MOST_HALVINGS = 60
+_MOST_REFINEMENTS = 6
 
 
 def _bernstein() -> tuple[FloatArray, FloatArray]:
@@ -30,35 +31,51 @@ def _basis(places: FloatArray) -> FloatArray:
 
 
 def turning_points(times: FloatArray, name: str, at: At) -> tuple[FloatArray, bool]:
-    """Add the times at which a polynomial between each two of the times turns round.
+    """Add the times at which a quantity between each two of the times turns round.
 
-    Where the Bernstein coefficients rise, or fall, so does the polynomial; a part where they do
-    neither is halved, until what it varies by is rounding. False if it is no such polynomial.
+    It is a polynomial there, or one through nine places meets it to rounding at a tenth: what is
+    halved until it does so. Where the Bernstein coefficients rise, or fall, so does the polynomial;
+    a part where they do neither is halved, until what it varies by is rounding. False if the
+    quantity is no such polynomial on a 64th of a step either.
     """
+    rows, noise, missed = _interpolated(times, name, at)
+    for _ in range(_MOST_REFINEMENTS):
+        coarse = np.flatnonzero(missed > noise)
+        if coarse.size == 0:
+            break
+        middle = times[coarse] + 0.5 * (times[coarse + 1] - times[coarse])
+        times = np.unique(np.concatenate([times, middle]))
+        rows, noise, missed = _interpolated(times, name, at)
+    return _with_turns(times, rows, noise), bool((missed <= noise).all())
+
+
+def _interpolated(times: FloatArray, name: str, at: At) -> tuple[FloatArray, float, FloatArray]:
+    """Bernstein coefficients between each two times, their rounding, and what the check misses."""
     nodes, to_coefficients = _bernstein()
     check = 0.41  # none of the nodes
-    begin, size = times[:-1], np.diff(times)
-    places = np.append(nodes, check)
-    inside = np.minimum(begin[:, None] + size[:, None] * places, times[1:, None])
+    inside = times[:-1, None] + np.diff(times)[:, None] * np.append(nodes, check)
+    inside = np.minimum(inside, times[1:, None])
     values = at(name, inside.ravel()).reshape(inside.shape)
-    rows = values[:, :-1] @ to_coefficients.T
-    noise = _ROUNDINGS * np.finfo(float).eps * np.abs(values).max(axis=1, initial=0.0)
-    missed = np.abs(rows @ _basis(np.array([check]))[0] - values[:, -1])
-    proved = bool((missed <= noise).all())
+    rows: FloatArray = values[:, :-1] @ to_coefficients.T
+    noise = _ROUNDINGS * float(np.finfo(float).eps * np.abs(values).max(initial=0.0))
+    missed: FloatArray = np.abs(rows @ _basis(np.array([check]))[0] - values[:, -1])
+    return rows, noise, missed
+
+
+def _with_turns(times: FloatArray, rows: FloatArray, noise: float) -> FloatArray:
+    begin, size = times[:-1], np.diff(times)
     found = [times]
     for _ in range(_MOST_HALVINGS):
         steps = np.diff(rows, axis=1)
-        rises, falls = (steps >= -noise[:, None]).all(1), (steps <= noise[:, None]).all(1)
+        rises, falls = (steps >= -noise).all(1), (steps <= noise).all(1)
         turns = ~(rises | falls)
-        rows, noise = rows[turns], noise[turns]
-        begin, size = begin[turns], size[turns] / 2
+        rows, begin, size = rows[turns], begin[turns], size[turns] / 2
         if rows.size == 0:
             break
         found.append(begin + size)
-        left, right = _halves(rows)
-        rows, noise = np.concatenate([left, right]), np.tile(noise, 2)
+        rows = np.concatenate(_halves(rows))
         begin, size = np.concatenate([begin, begin + size]), np.tile(size, 2)
-    return np.unique(np.concatenate(found)), proved
+    return np.unique(np.concatenate(found))
 
 
 def _halves(rows: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -10,7 +10,7 @@ from rolling_ellipse import Scene, StabilityWarning, Trajectory, ValidityWarning
 
 Floats = NDArray[np.float64]
 NAMES = ("theta", "x", "z", "omega", "contact_x")
-DENSE = 4001
+DENSE = 2001
 SETTINGS: tuple[dict[str, Any], ...] = (
     {"model": "rolling", "method": "exact"},
     {"model": "rolling", "method": "dop853", "rtol": 1e-8},
@@ -49,7 +49,8 @@ def random_motion(rng: np.random.Generator) -> Trajectory:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ValidityWarning)
         warnings.simplefilter("ignore", StabilityWarning)
-        return simulate(Scene(a, b, **scene), 6.0, **settings, raise_on_failure=False)
+        span = 2.0 if settings.get("method") == "radau" else 6.0  # whose samples take long
+        return simulate(Scene(a, b, **scene), span, **settings, raise_on_failure=False)
 
 
 def some_value(rng: np.random.Generator, motion: Trajectory, name: str) -> float:
