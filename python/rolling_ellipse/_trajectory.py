@@ -373,8 +373,8 @@ class Trajectory(FieldsOnly):
         monotone between known instants none is missed: all five of exact rolling (between its
         passages of the flat position and of the tip, or the turning points); of steps, where the
         polynomials of their dense output, or those of degree 8 that meet it to 1000 ulp, are shown
-        to rise or fall by their Bernstein coefficients; of flight all but ``contact_x``. The rest is looked at 16 times a step and 64 times a
-        quarter turn, with a `CompletenessWarning`.
+        to rise or fall by their Bernstein coefficients; of flight all but ``contact_x``. The rest
+        is looked at 16 times a step and 64 times a quarter turn, with a `CompletenessWarning`.
 
         An event may take omega over the value at once: its time counts. A value that is only
         touched, as at a turning point, or that the motion starts or ends with, counts once; one
