@@ -10,8 +10,11 @@ import pytest
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
+    """A browser for one file of tests: its driver keeps an event loop running, which kernels of
+    notebooks, in other files, would not share.
+    """
     if CHROMIUM is None:
         pytest.skip("there is no chromium (apt-get install chromium)")
     driver = pytest.importorskip("playwright.sync_api", reason="there is no playwright")
