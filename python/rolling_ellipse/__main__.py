@@ -29,7 +29,7 @@ from ._export.atomic import replacing
 from ._pictures.animation import animate
 from ._pictures.animation.movies import movie_writer
 
-_FPS = 25.0  # of the animation
+_FPS = 25.0  # which every kind of film can hold
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
 _INTERRUPTED, _BROKEN_PIPE = 130, 141  # as shells say it of programs ended by SIGINT and SIGPIPE
 
@@ -72,7 +72,7 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
     if options.plot is not None:
         files.append(_write_figure(trajectory, options.plot))
     if options.save is not None:
-        animate(trajectory, options.save, fps=_FPS)
+        animate(trajectory, options.save)
         files.append(options.save)
     found = summary(trajectory, files)
     said = json.dumps(found, indent=2) if options.json else "\n".join(lines(found, trajectory))

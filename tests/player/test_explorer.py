@@ -11,7 +11,6 @@ import pytest
 import rolling_ellipse as rl
 from rolling_ellipse import Outcome
 from rolling_ellipse._player import blows, write_explorer
-from rolling_ellipse._player.outcomes import NAMES, outcome_of
 
 SCENES = {
     "report": rl.scenes.report,
@@ -57,34 +56,18 @@ def test_the_table_is_in_the_order_of_its_places_and_strengths() -> None:
     assert "rolling: proved" in found["reasons"][7]
 
 
-def rolled(**options: Any) -> rl.Trajectory:
-    scene = rl.Scene(2.0, 1.0, **options)
-    return rl.simulate(scene, 3.0, raise_on_failure=False)
-
-
-@pytest.mark.parametrize(
-    ("motion", "outcome"),
-    [
-        (rolled(), Outcome.RESTS),
-        (rolled(omega=2.0), Outcome.ROCKS),
-        (rolled(omega=3.2), Outcome.ROLLS_OVER),
-        (rolled(omega=3.2, friction=0.1), Outcome.SLIPS),
-        (rolled(omega=4.9), Outcome.LOSES_CONTACT),
-        (rolled(x_dot=3.0, omega=0.0, friction=0.2), Outcome.SLIPS),
-        (rolled(z=3.0), Outcome.LOSES_CONTACT),
-        (rolled(slope=0.05, omega=1.0), Outcome.ROCKS),
-        (rolled(slope=0.05, omega=3.2), Outcome.ROLLS_OVER),
-        (rolled(slope=0.05, omega=3.2, friction=0.1), Outcome.SLIPS),
-    ],
-)
-def test_what_comes_first(motion: rl.Trajectory, outcome: Outcome) -> None:
-    assert outcome_of(motion) is outcome
-    assert NAMES[outcome]
+@pytest.mark.parametrize("slope", [0.0, 0.05])
+def test_the_table_says_what_comes_first(slope: float) -> None:
+    scene, d, F = rl.Scene(2.0, 1.0, slope=slope, friction=0.5), [-1.0, 0.5, 1.9], [2.0, 6.0]
+    found = blows.table(scene, 1.0, np.array(d), np.array(F))["outcomes"]
+    struck = [scene.replace(impulse=rl.Impulse.press(force, place)) for place in d for force in F]
+    assert found == [rl.outcome(each) for each in struck]
+    assert len(set(found)) > 1
 
 
 def test_every_outcome_has_a_name_and_a_colour() -> None:
     found = blows.table(rl.scenes.report, 1.0, np.array([1.0]), np.array([1.0]))
-    assert len(found["names"]) == len(found["colours"]) == len(Outcome) == len(NAMES)
+    assert len(found["names"]) == len(found["colours"]) == len(Outcome)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -103,7 +86,8 @@ def test_the_code_that_is_copied_makes_the_same_motion(name: str) -> None:
 def test_it_begins_with_the_blow_of_the_scene() -> None:
     i, j = rl.explore(rl.scenes.report)._first_blow()
     explorer = rl.explore(rl.scenes.report)
-    assert explorer.distances[i] == pytest.approx(1.5) and explorer.strengths[j] == 49.84
+    assert (explorer.distances[i], explorer.strengths[j]) == (1.5, 48.0)
+    assert np.all(np.diff(explorer.distances) > 0) and np.all(np.diff(explorer.strengths) > 0)
 
 
 def test_pages(tmp_path: Path) -> None:

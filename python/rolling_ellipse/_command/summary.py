@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import Mode, Scene, Trajectory, Validity, certify, classify, period
+from .. import Mode, Scene, Trajectory, Validity, certify, outcome, period
 
 _SHOWN_EVENTS = 10
 _REPEATS = {"rocks": "full swing", "rolls_over": "full turn"}
@@ -40,7 +40,7 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
         residuals = trajectory.constraint_residuals()
         touching, rolling = trajectory.mode != Mode.FLIGHT, trajectory.mode == Mode.ROLLING
         found |= {
-            "outcome": _outcome(scene) if level else None,
+            "outcome": _lower(outcome(scene)),
             "period": _finite(period(scene)) if level else None,
             "distance": float(trajectory.x[-1] - trajectory.x[0]),
             "turns": float(trajectory.turns[-1]),
@@ -58,12 +58,7 @@ def _scene_facts(scene: Scene) -> dict[str, Any]:
     return facts | {"impulse": facts.get("impulse")}
 
 
-def _outcome(scene: Scene) -> str:
-    start = scene.initial_state
-    found: Any = classify(
-        a=scene.a, b=scene.b, gravity=scene.gravity, gyration2=scene.gyration2,
-        friction=scene.friction, theta=start.theta, omega=start.omega,
-    )  # fmt: skip
+def _lower(found: Any) -> str:
     return str(found.name).lower()
 
 
@@ -119,7 +114,7 @@ def _repeat(found: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
         return name, f"{found['period']:.12g} s"
     if trajectory.scene.slope != 0:
         return name, "not known in advance on a slope"
-    if found["outcome"] is None:
+    if trajectory.model == "contact":
         return name, "none: it slides, leaves the ground or hits it"
     if found["outcome"] == "rests":
         return name, "none: it rests"

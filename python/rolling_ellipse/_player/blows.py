@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import _core
+from .._blows import outcome
+from .._core import Outcome
 from .._outcome import thresholds
 from .._pictures.phase_map import COLOURS
 from .._scene import Impulse, Scene
@@ -17,13 +18,21 @@ from .._simulate import simulate
 from .._status import Status
 from ..geometry import support
 from .film import body, events
-from .outcomes import NAMES, outcome_of
 from .tracks import columns, sample_times
 
 if TYPE_CHECKING:
     from .._check import FloatArray
     from .._trajectory import Trajectory
 
+NAMES = {
+    Outcome.RESTS: "rests",
+    Outcome.ROCKS: "rocks",
+    Outcome.ROLLS_OVER: "rolls over",
+    Outcome.SLIPS: "slips",
+    Outcome.LOSES_CONTACT: "leaves the ground",
+    Outcome.JAMS: "jams",
+    Outcome.EDGE: "is too near a threshold to tell",
+}
 PLACES, STRENGTHS = 25, 16
 WIDE = 14.0  # the view, in longer semi-axes
 _PIXEL = 2.5e-4  # of the width of the view
@@ -35,7 +44,8 @@ def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
     """Return the places d [m] and strengths F [N s] of the blows.
 
     Places are all over the body as it lies. The strongest blow, at the rim, gives some three times
-    the speed that carries the body over its tip.
+    the speed that carries the body over its tip. A press of the scene's own takes the place of the
+    nearest of them.
     """
     reach = float(support(scene.theta + math.pi / 2, a=scene.a, b=scene.b))
     longer, shorter = max(scene.a, scene.b), min(scene.a, scene.b)
@@ -45,7 +55,12 @@ def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
     digits = 2 - math.floor(math.log10(strongest / STRENGTHS))
     step = round(strongest / STRENGTHS, digits)
     strengths = [round(step * i, digits) for i in range(1, STRENGTHS + 1)]
-    return np.linspace(-reach, reach, PLACES), np.array(strengths)
+    places, strong = np.linspace(-reach, reach, PLACES), np.array(strengths)
+    own = scene.impulse
+    if own is not None and own.jx == 0 and strong[0] / 2 < -own.jz < strong[-1] + strong[0] / 2:
+        places[np.argmin(np.abs(places - own.dx))] = own.dx
+        strong[np.argmin(np.abs(strong + own.jz))] = -own.jz
+    return places, strong
 
 
 def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str, Any]:
@@ -61,11 +76,11 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
         "ends": np.cumsum([each.t.size for each in sampled]).tolist(),
         "d": d.tolist(),
         "F": F.tolist(),
-        "outcomes": [int(outcome_of(motion)) for motion in motions],
+        "outcomes": np.ravel(outcome(scene, Impulse.press(F, d[:, np.newaxis]))).tolist(),
         "reasons": [_reason(motion) for motion in motions],
         "events": [events(motion, motion.t_end) for motion in motions],
-        "names": [NAMES[outcome] for outcome in _core.Outcome],
-        "colours": [COLOURS[outcome] for outcome in _core.Outcome],
+        "names": [NAMES[outcome] for outcome in Outcome],
+        "colours": [COLOURS[outcome] for outcome in Outcome],
         "code": code(scene, t_end),
     }
 
