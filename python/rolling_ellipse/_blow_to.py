@@ -14,6 +14,7 @@ from ._check import number
 from ._core import Mode, Outcome
 from ._impulse import Impulse
 from ._scene import Scene, require_scene
+from .geometry import support
 
 _SPEEDS = 2048  # looked at on the way up from the speed that just reaches the tip
 _FASTEST = 1e3  # of them, beside that
@@ -43,14 +44,20 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     Raises
     ------
     ValueError
-        If no press there does it, with the reason: it has no lever, would have to pull, slips for
-        want of friction, the ground cannot keep the body so fast, the body is in the air, rolls
-        over anyhow, or, without omega, is on a slope or a circle.
+        If no press there does it, with the reason: it is beside the body, has no lever, would have
+        to pull, slips for want of friction, the ground cannot keep the body so fast, the body is in
+        the air, rolls over anyhow, or, without omega, is on a slope or a circle.
     """
     bare = replace(require_scene(scene), impulse=None)
     distance = number("distance", distance)
     if bare.initial_state.mode is Mode.FLIGHT:
         raise ValueError("scene must touch the ground: no contact holds a body in the air")
+    reach = float(support(bare.theta + math.pi / 2, a=bare.a, b=bare.b))
+    if not abs(distance) <= reach:
+        raise ValueError(
+            f"distance must be over the body, at most {reach!r} [m] from its centre, got "
+            f"{distance!r}"
+        )
     if omega is None:
         return _least_to_roll_over(bare, distance)
     wanted = number("omega", omega)

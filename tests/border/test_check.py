@@ -26,8 +26,6 @@ SCALAR_DOORS: list[tuple[str, Door]] = [
     ("a", lambda v: rl.Scene(v, 1.0)),
     ("z", lambda v: rl.Scene(2.0, 1.0, z=v)),
     ("inertia", lambda v: rl.Scene(2.0, 1.0, inertia=v)),
-    ("jx", lambda v: rl.Impulse(v)),
-    ("F", lambda v: rl.Impulse.press(v, 1.0)),
     ("a", lambda v: rl.thresholds(v, 1.0)),
     ("friction", lambda v: rl.thresholds(2.0, 1.0, friction=v)),
     ("rtol", lambda v: rl.simulate(SCENE, 1.0, rtol=v)),
@@ -46,6 +44,8 @@ SCALAR_DOORS: list[tuple[str, Door]] = [
 
 #: What takes one number or many.
 ARRAY_DOORS: list[tuple[str, Door]] = [
+    ("jx", lambda v: rl.Impulse(v)),
+    ("F", lambda v: rl.Impulse.press(v, 1.0)),
     *((name, lambda v, name=name: rl.flow(**{**FLOW, name: v})) for name in FLOW),
     ("gravity", lambda v: rl.classify(**AXES, omega=1.0, gravity=v)),
     ("t", lambda v: rl.simulate(SCENE, v)),

@@ -18,6 +18,9 @@ def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
     speed = math.sqrt(gravity * max(a, b))
     strength = mass * speed * 10 ** rng.uniform(-1.5, 0.7)
     push = rng.choice([0.0, rng.normal()])
+    theta = rng.choice([0.0, rng.uniform(-4, 4)])
+    share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
+    along, across = a * share * math.cos(at), b * share * math.sin(at)  # a point of the body
     return Scene(
         a,
         b,
@@ -25,13 +28,13 @@ def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
         gravity=gravity,
         friction=rng.choice([math.inf, 10 ** rng.uniform(-1.5, 0.8)]),
         slope=rng.uniform(-0.7, 0.7) if slope else 0.0,
-        theta=rng.choice([0.0, rng.uniform(-4, 4)]),
+        theta=theta,
         omega=rng.choice([0.0, speed / max(a, b) * rng.normal()]),
         impulse=Impulse(
             strength * push,
             strength * rng.choice([-1.0, -1.0, 1.0]),
-            dx=a * rng.uniform(-1.0, 1.0),
-            dz=b * rng.uniform(-1.0, 1.0),
+            dx=along * math.cos(theta) + across * math.sin(theta),
+            dz=across * math.cos(theta) - along * math.sin(theta),
         ),
     )
 

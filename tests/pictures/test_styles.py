@@ -85,6 +85,21 @@ def test_axes_made_in_another_style_are_drawn_in_by_their_own_background() -> No
     assert contrast(rl.plot_phase(motion, ax=clear).motions[0].get_color(), "black") > 4.5
 
 
+def test_films_follow_the_style() -> None:
+    motion = rl.simulate(rl.scenes.report, 1.0)
+    for style in STYLES:
+        with plt.style.context(style):
+            film = rl.animate(motion)
+        strip = film.strips[0]
+        paper = film.figure.get_facecolor()
+        for colour in (
+            strip.body.get_edgecolor(),
+            strip.axis_a.get_color(),
+            film.clock.get_color(),
+        ):
+            assert contrast(colour, paper) > 3, style
+
+
 # ---------------------------------------------------------------------------- what users may give
 
 

@@ -31,7 +31,9 @@ def test_zero_is_one_sample() -> None:
         assert getattr(trajectory, name)[0] == getattr(start, name)
 
 
-@pytest.mark.parametrize("times", [[0.5, 1.0, 7.0], (0.0, 2.0), np.array([3, 4]), [2.0]])
+@pytest.mark.parametrize(
+    "times", [[0.5, 1.0, 7.0], (0.5, 2.0), [0.0, 2.0], np.array([3, 4]), [2.0]]
+)
 def test_an_array_is_taken_as_it_is(times: Any) -> None:
     trajectory = simulate(rl.scenes.rocking, times)
     assert np.array_equal(trajectory.t, np.asarray(times, float))

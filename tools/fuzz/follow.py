@@ -194,7 +194,7 @@ def picture(draw: Draw, of: Body) -> Iterator[Line]:
     motions = draw.pick("trajectory", "trajectory", "[trajectory, rl.simulate(rl.scenes.drop, 2)]")
     name = draw.pick(
         "plot", "plot_strobe", "plot_phase", "plot_forces", "plot_energy", "plot_constraints",
-        "plot_paths", "animate",
+        "plot_paths", "plot_error", "animate",
     )  # fmt: skip
     options: dict[str, str] = {}
     if name in ("plot", "plot_strobe"):

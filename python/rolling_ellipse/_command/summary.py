@@ -109,9 +109,9 @@ def _motion_rows(found: dict[str, Any], trajectory: Trajectory) -> list[tuple[st
 
 def _repeat(found: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
     """The time after which a motion repeats, or why there is none."""
-    name = _REPEATS.get(found["outcome"], "swing or turn")
     if found["period"] is not None:
-        return name, f"{found['period']:.12g} s"
+        return _REPEATS.get(found["outcome"], "swing or turn"), f"{found['period']:.12g} s"
+    name = "swing or turn"
     if trajectory.scene.slope != 0:
         return name, "not known in advance on a slope"
     if trajectory.model == "contact":

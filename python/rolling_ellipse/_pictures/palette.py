@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
 SKY, PLUM = "#8fc3e0", "#7a2e4d"
-FILL = to_rgb(BLUE)
 _DARK = "#e8ecf4", "#6fb3d9", "#ffa033", "#8d99a6", "#36332e", "#3f6f8c", "#d58aa8"
 _APART = 0.25  # of two colours, the largest difference of a component
 

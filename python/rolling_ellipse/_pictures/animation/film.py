@@ -17,7 +17,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from ..._check import choice, file_name, flag, shown, whole
 from ..._export.atomic import replacing
-from ..palette import INK
+from ..palette import palette_of
 from .camera import cameras
 from .movies import ffmpeg, movie_writer, progress_bar, told
 from .strip import Strip
@@ -88,7 +88,13 @@ class RollingAnimation(FuncAnimation):
         )
         top = self.strips[0].ax
         self.clock = top.text(
-            0.985, 0.95, "", transform=top.transAxes, ha="right", va="top", color=INK
+            0.985,
+            0.95,
+            "",
+            transform=top.transAxes,
+            ha="right",
+            va="top",
+            color=palette_of(top).ink,
         )
         self._fit_captions()
         self.draw(0)

@@ -6,13 +6,14 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.colors import to_rgb
 from matplotlib.markers import MarkerStyle
 
 from ..._core import Mode
 from ...geometry import support
 from .. import ground as drawing
 from ..ground import SKID
-from ..palette import BLUE, FILL, GREY, INK, ORANGE, PLUM
+from ..palette import palette_of
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -20,22 +21,7 @@ if TYPE_CHECKING:
 
     from ..._check import FloatArray
     from ..._trajectory import Trajectory
-
-# How what moves looks; what has a greater zorder lies over the rest.
-_BODY: dict[str, Any] = {"facecolor": (*FILL, 0.25), "edgecolor": INK, "lw": 1.8, "zorder": 4}
-_LINES: dict[str, dict[str, Any]] = {
-    "shadow": {"zorder": 2, "color": GREY, "lw": 5, "solid_capstyle": "round"},
-    "skid_trace": {"zorder": 2, **SKID},
-    "tip_trace": {"zorder": 3, "color": BLUE, "lw": 1, "alpha": 0.6},
-    "centre_trace": {"zorder": 5, "color": ORANGE, "lw": 1.8},
-    "axis_a": {"zorder": 5, "color": INK, "lw": 1.2},
-    "axis_b": {"zorder": 5, "color": INK, "lw": 1.2, "ls": (0, (4, 3))},
-    "tip": {"zorder": 6, "color": BLUE, "marker": "o", "ms": 6},
-    "contact": {
-        "zorder": 7, "ls": "none", "marker": "o", "ms": 6, "mfc": "white", "mec": INK, "mew": 1.5,
-    },
-    "slip": {"zorder": 8, "ls": "none", "ms": 11, "mfc": PLUM, "mec": "white", "mew": 0.8},
-}  # fmt: skip
+    from ..palette import Palette
 
 
 class Strip:
@@ -96,17 +82,21 @@ class Strip:
         drawing.draw_ground(ax, motion, span)
         self.ruler = drawing.Ruler(ax, motion.scene, span)
 
-        self.body = drawing.body_patch(motion, 0, **_BODY)
+        palette = palette_of(ax)
+        self.body = drawing.body_patch(
+            motion, 0, fc=(*to_rgb(palette.blue), 0.25), ec=palette.ink, lw=1.8, zorder=4
+        )
         self.body.set_transform(on_slope)
         ax.add_patch(self.body)
         lines = {
-            name: ax.plot([], [], transform=on_slope, **look)[0] for name, look in _LINES.items()
+            name: ax.plot([], [], transform=on_slope, **look)[0]
+            for name, look in _looks(palette).items()
         }
         self.shadow, self.skid_trace = lines["shadow"], lines["skid_trace"]
         self.tip_trace, self.centre_trace = lines["tip_trace"], lines["centre_trace"]
         self.axis_a, self.axis_b = lines["axis_a"], lines["axis_b"]
         self.tip, self.contact, self.slip = lines["tip"], lines["contact"], lines["slip"]
-        self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=INK)
+        self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=palette.ink)
 
     def draw(self, i: int) -> list[Artist]:
         """Put every artist where frame i has it, and return the moving ones."""
@@ -167,3 +157,23 @@ class Strip:
         if motion.t[i] < self._times[i]:
             parts.append(f"ended at {motion.t[i]:g} s")
         return "   ".join(parts)
+
+
+def _looks(palette: Palette) -> dict[str, dict[str, Any]]:
+    """How what moves looks; what has a greater zorder lies over the rest."""
+    ink, paper = palette.ink, palette.background
+    return {
+        "shadow": {"zorder": 2, "color": palette.grey, "lw": 5, "solid_capstyle": "round"},
+        "skid_trace": {"zorder": 2, **SKID, "color": palette.plum},
+        "tip_trace": {"zorder": 3, "color": palette.blue, "lw": 1, "alpha": 0.6},
+        "centre_trace": {"zorder": 5, "color": palette.orange, "lw": 1.8},
+        "axis_a": {"zorder": 5, "color": ink, "lw": 1.2},
+        "axis_b": {"zorder": 5, "color": ink, "lw": 1.2, "ls": (0, (4, 3))},
+        "tip": {"zorder": 6, "color": palette.blue, "marker": "o", "ms": 6},
+        "contact": {
+            "zorder": 7, "ls": "none", "marker": "o", "ms": 6, "mfc": paper, "mec": ink, "mew": 1.5,
+        },
+        "slip": {
+            "zorder": 8, "ls": "none", "ms": 11, "mfc": palette.plum, "mec": paper, "mew": 0.8,
+        },
+    }  # fmt: skip
