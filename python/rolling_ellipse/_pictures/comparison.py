@@ -95,6 +95,11 @@ class Comparison:
         self.motions = tuple(map(sampling.over_time, self.motions))
         return self
 
+    def for_dots(self) -> Comparison:
+        """Take the motions at what dots are drawn at, and return itself."""
+        self.motions = tuple(map(sampling.for_dots, self.motions))
+        return self
+
     def restyle(self, *artists: Artist | None) -> None:
         """Give artists the properties that all curves are to have."""
         for artist in artists:

@@ -49,7 +49,8 @@ def plot_constraints(
     f3, f4 and the gap, the lower one f1, the rates of the others and the slip (see
     `ConstraintResiduals`); of several motions each panel shows the worst. An exact zero has no
     place on the scale, nor has what the ground does not hold: the slip while sliding, the gap in
-    flight. Modes, events, lost validity and long spans are drawn as in `plot_forces`.
+    flight. Dots are at the samples, or, of fewer than 100, as fine as curves. Modes, events, lost
+    validity and long spans are drawn as in `plot_forces`.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ def plot_constraints(
     TypeError
         If something is no trajectory.
     """
-    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).over_time()
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).for_dots()
     panels = panels_of(ax)
     lines: list[list[Line2D]] = [[] for _ in panels]
     for motion, style in shown:

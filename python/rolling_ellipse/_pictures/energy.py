@@ -55,7 +55,8 @@ def plot_energy(
 
     The error is |E - E0| over the largest |kinetic| + |potential| energy of its motion, on a
     logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. What
-    friction and impacts take is no error: with them it is called a change. Modes, events, lost
+    friction and impacts take is no error: with them it is called a change. Its dots are at the
+    samples, or, of fewer than 100, as fine as curves. Modes, events, lost
     validity and long spans are drawn as in `plot_forces`.
 
     Parameters
@@ -85,9 +86,10 @@ def plot_energy(
     TypeError
         If something is no trajectory.
     """
-    shown = Comparison(trajectories, labels, colors, ax=ax, options=options).over_time()
+    shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
     default = "energies" if shown.alone else "error"
     wanted = choice("kind", default if kind is None else kind, KINDS)
+    shown = shown.over_time() if wanted == "energies" else shown.for_dots()
     ax = axes_of(ax, (7, 3.4))
     energies: list[tuple[Line2D, Line2D, Line2D]] = []
     errors: list[Line2D] = []

@@ -24,6 +24,7 @@ from .panels import (
     dress_over_time,
     note_of,
 )
+from .sampling import for_dots
 from .strobe import Strobe, check_strobe, plot_strobe
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def plot(
     forces = draw_forces(panels[3], motion)
     dress_forces(panels[3], [motion])
     energies = draw_energies(panels[4], motion)
-    errors = _draw_errors(panels[5], motion)
+    errors = _draw_errors(panels[5], for_dots(trajectory))
     marks = _dress_panels(panels, shown)
     figure.suptitle(_headline(trajectory, note_of(shown)), fontsize="medium")
     return Overview(figure, strobe, theta, omega, height, *forces, *energies, *errors, marks)

@@ -27,6 +27,7 @@ PARTS = 800  # of a longer time
 _IN_A_PART = 96
 _POINTS = 400, 32  # to begin with: in all, and in a half turn
 _MOST_POINTS = 30_000
+_FEWEST_DOTS = 100
 _ROUNDS = 16  # of halving an interval
 _BEND = 1e-3  # of the range of a quantity: more is seen
 _COUNTS = 1024, 4096, 16_384, 65_536
@@ -56,6 +57,15 @@ def over_time(motion: Trajectory) -> Trajectory:
     times = np.add.outer(starts, inside).ravel()
     times[[0, -1]] = begin, end
     return motion.sol(np.clip(times, begin, end))
+
+
+def for_dots(motion: Trajectory) -> Trajectory:
+    """Return a motion at its own samples, of which dots say no more than they know.
+
+    Of few samples, or of mixed ones, it is at the times of curves.
+    """
+    own = motion.t.size >= _FEWEST_DOTS and bool(np.all(np.diff(motion.t) > 0))
+    return motion if own else over_time(motion)
 
 
 def between(motion: Trajectory, begin: float, end: float, count: float) -> Trajectory:
