@@ -10,6 +10,7 @@ from oracles.paths import ROOT
 
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("**/*.ipynb"))
 LIMIT = 1_500_000  # bytes: more is slow to open on the web
+WIDTH = 105  # characters: what a cell of JupyterLab holds in a window of 1280 pixels
 
 
 def code_cells(path: Path) -> list[nbformat.NotebookNode]:
@@ -38,6 +39,8 @@ def test_notebook_is_plain(path: Path) -> None:
     nbformat.validate(notebook)
     assert notebook["metadata"]["kernelspec"]["name"] == "python3"
     assert not any(cell["metadata"] for cell in notebook["cells"])
+    lines = [line for cell in code_cells(path) for line in cell.source.splitlines()]
+    assert max(map(len, lines)) <= WIDTH
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
