@@ -1,0 +1,33 @@
+"""The lines of Python in the README run as they stand, one after the other."""
+
+import re
+from pathlib import Path
+
+import matplotlib
+import pytest
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+from oracles.paths import ROOT
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
+
+
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")  # which it speaks of
+def test_the_lines_of_the_readme_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert len(BLOCKS) >= 4
+    names: dict[str, object] = {}
+    for block in BLOCKS:
+        exec(block.replace("max_seconds=10", "max_seconds=2"), names)
+    plt.close("all")
+    assert {path.name for path in tmp_path.iterdir()} == {"roll.gif", "friction.gif", "strike.html"}
+
+
+def test_its_pictures_are_there() -> None:
+    shown = re.findall(r"!\[.+?\]\((.+?)\)", README)
+    assert len(shown) >= 6 and all((ROOT / path).is_file() for path in shown)
+    linked = re.findall(r"\]\(((?:notebooks|tests|docs)/.+?)\)", README)
+    assert all((ROOT / path).is_file() for path in linked)
