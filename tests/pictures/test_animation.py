@@ -3,7 +3,6 @@
 import gc
 import importlib.util
 import io
-import json
 import math
 import re
 import warnings
@@ -23,6 +22,7 @@ from matplotlib.animation import FFMpegWriter, HTMLWriter
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from oracles.geometry import support as outline_support
+from oracles.pages import carried
 from oracles.pictures import ORDINARY_SCENES, centre_of, frames_of, outline, support
 from PIL import Image
 from rolling_ellipse._pictures.animation import RollingAnimation
@@ -401,20 +401,12 @@ def test_matplotlibs_own_writers_stay_open(short: RollingAnimation, tmp_path: Pa
 # ---------------------------------------------------------------- notebooks, options, leftovers
 
 
-def player_data(html: str) -> dict[str, Any]:
-    """What the player of a fragment or a page is given."""
-    found = re.search(r"new Player\(document\.querySelector\(free\), (.+)\);\n</script>", html)
-    assert found is not None
-    data: dict[str, Any] = json.loads(found[1])
-    return data
-
-
 def test_a_notebook_shows_the_player(short: RollingAnimation) -> None:
     assert repr(short) == "<RollingAnimation: 11 frames, 0.4 s>"
     html = short._repr_html_()
     assert html.startswith('<div class="rolling-ellipse"') and html == short._repr_html_()
     assert len(html) < 50_000
-    data = player_data(html)
+    data = carried(html)
     assert (data["end"], data["fps"], data["speed"]) == (0.4, 25, 1)
     assert len(data["strips"]) == 1
 
@@ -475,7 +467,7 @@ def test_a_film_is_as_long_as_its_motion(
         return
     rl.animate(report, path, t_end=0.48, fps=fps, speed=speed, width=64, dpi=20)
     if suffix == ".html":
-        data = player_data(path.read_text(encoding="utf-8"))
+        data = carried(path.read_text(encoding="utf-8"))
         assert data["end"] / data["speed"] == pytest.approx(seconds, abs=1 / fps)
         return
     if suffix == ".gif":
@@ -521,7 +513,7 @@ def test_a_motion_of_eleven_days(tmp_path: Path) -> None:
     path = tmp_path / "roll.html"
     animation = rl.animate(rl.simulate(rl.scenes.rolling, 1e6), path)
     assert animation.clock.get_text() == "t = 0 s   speed × 20000"
-    (strip,) = player_data(path.read_text(encoding="utf-8"))["strips"]
+    (strip,) = carried(path.read_text(encoding="utf-8"))["strips"]
     assert strip["track"]["stepped"]  # half a million turns: no time between frames
     assert path.stat().st_size < 300_000
 

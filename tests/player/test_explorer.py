@@ -95,7 +95,7 @@ def test_pages(tmp_path: Path) -> None:
     explorer.to_html(tmp_path / "one.html")
     text = (tmp_path / "one.html").read_text(encoding="utf-8")
     assert text.startswith("<!DOCTYPE html>") and explorer._repr_html_() in text
-    assert len(text) < 600_000
+    assert len(text) < 400_000
     write_explorer(rl.scenes.circle, tmp_path / "two.html")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one.html", "two.html"]
     with pytest.raises(ValueError, match=r"^path must end in \.html, got '.*x\.gif'$"):

@@ -3,12 +3,18 @@
 
 const KINDS = { u2: Uint16Array, f4: Float32Array, f8: Float64Array };
 
+const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+
+/** What a page carries as gzipped JSON. */
+export async function unzipped(text) {
+  const unzip = new DecompressionStream("gzip");
+  return new Response(new Blob([bytesOf(text)]).stream().pipeThrough(unzip)).json();
+}
+
 /** The numbers of packed columns. */
 export function unpacked(columns) {
-  return Object.fromEntries(Object.entries(columns).map(([name, { kind, low, step, data }]) => {
-    const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
-    return [name, Float64Array.from(new KINDS[kind](bytes.buffer), (n) => low + step * n)];
-  }));
+  return Object.fromEntries(Object.entries(columns).map(([name, { kind, low, step, data }]) =>
+    [name, Float64Array.from(new KINDS[kind](bytesOf(data).buffer), (n) => low + step * n)]));
 }
 
 /** One motion: its state at any time, by cubics between samples of position and rate. */

@@ -17,7 +17,7 @@ _FORCES = ("normal_force", "friction_force")
 # Where a cubic is compared with the motion, in parts of its interval: irregular, so that a motion
 # whose period divides the intervals does not look like a straight line.
 _WITHIN = np.array([0.2113, 0.5, 0.7887])
-_FORCE = 0.08  # what lines may miss of the forces and the weight together: a line's width in a plot
+_FORCE = 0.04  # what lines may miss of the forces and the weight together: a line's width in a plot
 _FIRST = 17  # intervals to begin with
 
 
