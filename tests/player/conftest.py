@@ -43,6 +43,10 @@ def opened(chromium: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
             page.on("request", lambda request: complaints.append(request.url)
                     if not request.url.startswith(("file:", "data:")) else None)  # fmt: skip
         page.goto(path.as_uri())
+        if options.get("java_script_enabled", True):  # pages unzip what they carry, and go on then
+            page.wait_for_function(
+                "[...document.querySelectorAll('.rolling-ellipse')].every((host) => host.player)"
+            )
         return page
 
     yield show
