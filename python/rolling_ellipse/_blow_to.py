@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from . import _core
-from ._blows import outcome, struck
+from ._blows import outcome
 from ._certify import certify
 from ._check import number
 from ._core import Mode, Outcome
@@ -48,7 +47,7 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
         to pull, slips for want of friction, the ground cannot keep the body so fast, the body is in
         the air, rolls over anyhow, or, without omega, is on a slope or a circle.
     """
-    bare = replace(require_scene(scene), impulse=None)
+    bare = require_scene(scene).replace(impulse=None)
     distance = number("distance", distance)
     if bare.initial_state.mode is Mode.FLIGHT:
         raise ValueError("scene must touch the ground: no contact holds a body in the air")
@@ -62,7 +61,7 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
         return _least_to_roll_over(bare, distance)
     wanted = number("omega", omega)
     blow = _press_to(bare, distance, wanted)
-    after = struck(bare, blow)
+    after = bare.replace(impulse=blow)
     start = after.initial_state
     if start.mode not in (Mode.ROLLING, Mode.REST):
         raise ValueError(
@@ -134,7 +133,7 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
 
 def _never_over(scene: Scene, distance: float, least: float) -> ValueError:
     """Say what becomes of a press that is just strong enough."""
-    after = struck(scene, _press_to(scene, distance, least * (1 + 1e-6)))
+    after = scene.replace(impulse=_press_to(scene, distance, least * (1 + 1e-6)))
     start = after.initial_state
     why = f"{start.reason}{_asked_for(after)}"
     if start.mode is Mode.ROLLING:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -63,14 +62,14 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     if not isinstance(impulse, Impulse):
         raise TypeError(f"impulse must be an Impulse or None, got {impulse!r}")
     if impulse.shape == ():
-        return _core.outcome(struck(scene, impulse).core)
+        return _core.outcome(scene.replace(impulse=impulse).core)
     names = ("jx", "jz", "dx", "dz")
     shape, columns = broadcast(**{name: getattr(impulse, name) for name in names})
     if scene.slope == 0:
         return _core.outcome_array(scene.core, math.prod(shape), columns).reshape(shape)
     rows = np.broadcast_arrays(*columns)
     codes = [
-        _core.outcome(struck(scene, Impulse(jx, jz, dx=dx, dz=dz)).core)
+        _core.outcome(scene.replace(impulse=Impulse(jx, jz, dx=dx, dz=dz)).core)
         for jx, jz, dx, dz in zip(*rows, strict=True)
     ]
     return np.array(codes, dtype=np.int8).reshape(shape)
@@ -100,8 +99,3 @@ def required_friction(scene: Scene) -> float:
         If the blow makes the body faster than 1e50 times its weight allows.
     """
     return _core.required_friction(require_scene(scene).core)
-
-
-def struck(scene: Scene, impulse: Impulse) -> Scene:
-    """Return the scene with another blow."""
-    return replace(scene, impulse=impulse)

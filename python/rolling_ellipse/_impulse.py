@@ -79,16 +79,12 @@ class Impulse:
         F, d : float or array_like
             Arrays that broadcast make many blows.
         """
-        for name, value in (("F", F), ("d", d)):
-            values = array(name, value)
-            if not np.isfinite(values).all():
-                index = _worst(values)
-                raise ValueError(f"{name} must be finite, got {values[index]!s}{_at(index)}")
-        pull = float(np.min(array("F", F), initial=0.0))
+        force, distance = _finite("F", F), _finite("d", d)
+        pull = float(np.min(force, initial=0.0))
         if pull < 0:
             said = f"F = {pull!r} N s pulls the body upwards: a press has a positive F"
             warnings.warn(said, ValidityWarning, stacklevel=2)
-        return cls(0.0, -numbers("F", F), dx=d)
+        return cls(0.0, -force, dx=distance)
 
     def _values(self) -> tuple[Any, ...]:
         """What two impulses are compared by: floats, and the shape and bits of arrays."""
@@ -109,6 +105,14 @@ class Impulse:
         self.__dict__.update(state)
         for values in self._arrays.values():
             values.flags.writeable = False
+
+
+def _finite(name: str, value: Any) -> FloatArray:
+    found = array(name, value)
+    if not np.isfinite(found).all():
+        index = _worst(found)
+        raise ValueError(f"{name} must be finite, got {found[index]!s}{_at(index)}")
+    return found
 
 
 def numbers(name: str, value: Any) -> Any:

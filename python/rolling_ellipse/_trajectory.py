@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import KW_ONLY, dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -337,8 +337,7 @@ class Trajectory(FieldsOnly):
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that goes on from time t [s]; give it an impulse with `Scene.replace`."""
         at = self.sol(number("t", t))
-        return replace(
-            self.scene,
+        return self.scene.replace(
             theta=float(at.theta[0]),
             omega=float(at.omega[0]),
             x=float(at.x[0]),

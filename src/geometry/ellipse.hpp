@@ -25,6 +25,11 @@ struct Geometry {
     double rho;  // h + h'', radius of curvature at the contact [m]
 };
 
+// D = k^2 + h^2 + h'^2, moment of inertia about the contact per mass [m^2].
+inline double inertia_about_contact(double gyration2, const Geometry& at) {
+    return gyration2 + at.h * at.h + at.dh * at.dh;
+}
+
 inline Geometry geometry(const Axes& axes, double s, double c) {
     const auto [a, b] = axes;
     const double c2 = (a - b) * (a + b);

@@ -97,7 +97,7 @@ double press_to(const Scene& scene, double distance, double omega) {
     const State state = state_before_impulse(scene);
     const Geometry at = geometry(scene.axes(), state.theta);
     const double k2 = scene.body().gyration2;
-    const double wanted = (k2 + at.h * at.h + at.dh * at.dh) * omega;
+    const double wanted = inertia_about_contact(k2, at) * omega;
     const double there = k2 * state.omega + at.h * state.x_dot + at.dh * state.z_dot;
     return scene.mass * (wanted - there) / (distance - at.dh);
 }
@@ -106,7 +106,7 @@ double speed_to_the_tip(const Scene& scene) {
     const Body body = scene.body();
     const RollingStart at_rest = rolling_start(body, scene.theta, 0.0);
     const Geometry at = geometry(body.axes(), scene.theta);
-    const double inertia = body.gyration2 + at.h * at.h + at.dh * at.dh;
+    const double inertia = inertia_about_contact(body.gyration2, at);
     return std::sqrt(std::max(-at_rest.height.over_tip, 0.0) * 2 * body.gravity / inertia);
 }
 

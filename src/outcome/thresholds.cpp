@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/golden_section.hpp"
 #include "proof/forces.hpp"
 
 namespace rolling_ellipse {
@@ -105,8 +106,6 @@ Onset slip_at_rest(const Shape& shape, double friction) {
 Onset slip(const Shape& shape, double friction) {
     if (std::isinf(friction)) return contact_loss(shape);
     constexpr int scan = 512;
-    constexpr int sections = 40;  // to 1e-8 of two scan intervals: the energy is flat there
-    constexpr double golden = 0.6180339887498949;
     constexpr double first = -24.0;  // of ln tan phi: the forces change over angles of (b/a)^2
     constexpr double last = 20.0;    // near the flat, and over 1/friction near the tip
     const auto energy_at = [&](double log_tan) {
@@ -120,15 +119,10 @@ Onset slip(const Shape& shape, double friction) {
         const double here = first + step * i;
         if (energy_at(here).value < energy_at(best).value) best = here;
     }
-    double low = best - step;
-    double high = best + step;
-    for (int i = 0; i < sections; ++i) {
-        const double left = high - golden * (high - low);
-        const double right = low + golden * (high - low);
-        const bool falls = energy_at(left).value > energy_at(right).value;
-        (falls ? low : high) = falls ? left : right;
-    }
-    const Onset moving = energy_at(0.5 * (low + high));
+    const auto is_below_upper = [&](double left, double right) {
+        return !(energy_at(left).value > energy_at(right).value);
+    };
+    const Onset moving = energy_at(golden_section(best - step, best + step, is_below_upper));
     const Onset at_rest = slip_at_rest(shape, friction);
     return at_rest.value < moving.value ? at_rest : moving;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "numerics/bisect.hpp"
+#include "numerics/golden_section.hpp"
 #include "numerics/quadrature.hpp"
 #include "proof/law.hpp"
 #include "rolling/equation.hpp"
@@ -57,7 +58,7 @@ class Well {
     }
 
   private:
-    double inertia(const Geometry& at) const { return gyration2_ + at.h * at.h + at.dh * at.dh; }
+    double inertia(const Geometry& at) const { return inertia_about_contact(gyration2_, at); }
 
     double energy(double angle) const { return energy_ + gained(angle); }
 
@@ -105,22 +106,17 @@ class Well {
 
     // Golden section around every place that needs more than its neighbours.
     double highest(const std::vector<double>& at) const {
-        constexpr double golden = 0.6180339887498949;
-        constexpr int sections = 40;  // to 1e-8 of the interval: it is flat there
         double most = 0.0;
         for (std::size_t i = 0; i < at.size(); ++i) {
             const double here = needed(at[i]);
             most = std::max(most, here);
-            double low = at[i == 0 ? 0 : i - 1];
-            double high = at[i + 1 == at.size() ? i : i + 1];
+            const double low = at[i == 0 ? 0 : i - 1];
+            const double high = at[i + 1 == at.size() ? i : i + 1];
             if (needed(low) > here || needed(high) > here) continue;
-            for (int j = 0; j < sections; ++j) {
-                const double left = high - golden * (high - low);
-                const double right = low + golden * (high - low);
-                const bool falls = needed(left) > needed(right);
-                (falls ? high : low) = falls ? right : left;
-            }
-            most = std::max(most, needed(0.5 * (low + high)));
+            const auto is_below_upper = [&](double left, double right) {
+                return needed(left) > needed(right);
+            };
+            most = std::max(most, needed(golden_section(low, high, is_below_upper)));
         }
         return most;
     }

@@ -17,7 +17,7 @@ RollingEquation::RollingEquation(const Body& body, double slope)
 Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {
     const Geometry at = geometry(axes_, y[0]);
     const double omega = y[1];
-    const double inertia = gyration2_ + at.h * at.h + at.dh * at.dh;
+    const double inertia = inertia_about_contact(gyration2_, at);
     const double load = gravity_.into + at.rho * omega * omega;
     const double rho_derivative = -3 * at.rho * at.dh / at.h;
     const double by_theta = at.dh * gravity_.along - at.ddh * load -

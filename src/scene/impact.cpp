@@ -128,7 +128,7 @@ void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, Sta
         const double k2 = scene.inertia / scene.mass;
         state.omega =
             (k2 * state.omega + at.h * state.x_dot + at.dh * (state.z_dot - reaction.rebound)) /
-            (k2 + at.h * at.h + at.dh * at.dh);
+            inertia_about_contact(k2, at);
         state.x_dot = at.h * state.omega;
     } else {
         state.omega -= (at.h * reaction.tangential + at.dh * reaction.normal) / scene.inertia;

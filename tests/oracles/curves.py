@@ -25,12 +25,6 @@ PICTURES = {
 TWO_PANELS = (rl.plot_forces, rl.plot_constraints)
 
 
-def drifting(motion: rl.Trajectory, rate: float) -> rl.Trajectory:
-    """A motion that grows faster than it should."""
-    grown = 1 + rate * motion.t
-    return dataclasses.replace(motion, theta=motion.theta * grown, omega=motion.omega * grown)
-
-
 def seen(motion: rl.Trajectory, line: Line2D) -> rl.Trajectory:
     """The motion at the times of a curve over time, which are its own: all of the span."""
     times = data(line)[0]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._check import choice, shown
+from .._quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._simulate import simulate
 from .._trajectory import Trajectory
 from .axes import axes_of, leaving_no_figure
@@ -28,13 +29,12 @@ if TYPE_CHECKING:
     from .._check import FloatArray
     from .comparison import Style
 
-QUANTITIES = {
-    "theta": ("θ", "rad"), "omega": ("ω", "rad/s"), "x": ("x", "m"), "z": ("z", "m"),
-    "x_dot": ("x_dot", "m/s"), "z_dot": ("z_dot", "m/s"), "contact_x": ("contact", "m"),
-    "turns": ("turns", ""), "normal_force": ("N", "N"), "friction_force": ("F", "N"),
-    "energy": ("energy", "J"), "kinetic_energy": ("kinetic energy", "J"),
-    "potential_energy": ("potential energy", "J"),
+QUANTITIES = {  # with their symbols
+    "theta": "θ", "omega": "ω", "x": "x", "z": "z", "x_dot": "x_dot", "z_dot": "z_dot",
+    "contact_x": "contact", "turns": "turns", "normal_force": "N", "friction_force": "F",
+    "energy": "energy", "kinetic_energy": "kinetic energy", "potential_energy": "potential energy",
 }  # fmt: skip
+_UNITS = {each.name: "" if each.unit == "1" else f" [{each.unit}]" for each in UNITS_AND_MEANINGS}
 _TIGHT = {"rtol": 1e-13, "atol": 1e-15}  # on slopes, where rolling is integrated
 
 
@@ -98,20 +98,19 @@ def plot_error(
         If something is no trajectory.
     """
     quantity = choice("quantity", quantity, tuple(QUANTITIES))
-    shown_motions = Comparison(trajectories, labels, colors, ax=ax, options=options)
-    references = tuple(_reference_of(motion, reference) for motion in shown_motions.motions)
-    shown_motions.over_time()
+    compared = Comparison(trajectories, labels, colors, ax=ax, options=options)
+    references = tuple(_reference_of(motion, reference) for motion in compared.motions)
+    compared.over_time()
     ax = axes_of(ax, (7, 3.4))
     errors = [
         _draw_error(ax, motion, style, _error(motion, right, quantity))
-        for (motion, style), right in zip(shown_motions, references, strict=True)
+        for (motion, style), right in zip(compared, references, strict=True)
     ]
-    shown_motions.restyle(*errors)
-    symbol, unit = QUANTITIES[quantity]
-    dress_errors(ax, errors, f"error of {symbol} [{unit}]" if unit else f"error of {symbol}")
-    name_curves(ax, [] if shown_motions.alone else some_of(errors))
-    title_beside_legend(ax, note_of(shown_motions))
-    marks = dress_over_time(ax, shown_motions)
+    compared.restyle(*errors)
+    dress_errors(ax, errors, f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}")
+    name_curves(ax, [] if compared.alone else some_of(errors))
+    title_beside_legend(ax, note_of(compared))
+    marks = dress_over_time(ax, compared)
     return Error(ax, tuple(errors), references, marks)
 
 

@@ -16,13 +16,14 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D
 
 from .._core import Mode
+from ..geometry import support_slope
 from .palette import PLUM, palette_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .._check import FloatArray
-    from .._scene import Scene
+    from .._scene import InitialState, Scene
     from .._trajectory import Trajectory
 
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
@@ -52,6 +53,11 @@ def contact_points(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Return where body and ground touch: x and z, (n,) [m]; NaN in flight."""
     touching = trajectory.mode != Mode.FLIGHT
     return np.where(touching, trajectory.contact_x, np.nan), np.where(touching, 0.0, np.nan)
+
+
+def touching_x(scene: Scene, state: InitialState) -> float:
+    """Return where the body of an event touches the ground, or is above it [m]."""
+    return state.x + float(support_slope(state.theta, a=scene.a, b=scene.b))
 
 
 def skids(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:

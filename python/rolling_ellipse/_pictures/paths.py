@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from .._core import EventKind
-from ..geometry import support_slope
 from . import ground as drawing
 from .artists import Artists
 from .axes import axes_of, leaving_no_figure
@@ -172,9 +171,7 @@ def _draw_events(ax: Axes, motion: Trajectory, colour: str) -> tuple[Line2D, ...
     """Mark where the body touches the ground at its events, a line for each kind."""
     on_slope = drawing.tilted(motion.scene) + ax.transData
     events = events_shown(motion)
-    states = (event.state_after for event in events)
-    reach = {"a": motion.scene.a, "b": motion.scene.b}
-    places = np.array([state.x + support_slope(state.theta, **reach) for state in states])
+    places = np.array([drawing.touching_x(motion.scene, event.state_after) for event in events])
     kinds = np.array([event.kind.value for event in events])
     lines: list[Line2D] = []
     for kind in dict.fromkeys(event.kind for event in events):

@@ -49,7 +49,7 @@ def over_time(motion: Trajectory) -> Trajectory:
     begin, end = span_of(motion)
     count = half_turns(motion)
     if count <= FEW:
-        return between(motion, begin, end, count)
+        return _refined(motion, begin, end, count)
     part = (end - begin) / PARTS
     window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a half turn, as others near it
     inside = (np.arange(_IN_A_PART) + 0.5) / _IN_A_PART * window
@@ -70,8 +70,10 @@ def for_dots(motion: Trajectory) -> Trajectory:
 
 def between(motion: Trajectory, begin: float, end: float, count: float) -> Trajectory:
     """Return a motion from `begin` to `end` [s], about `count` half turns, finely sampled."""
-    if not is_at_hand(motion):
-        return motion
+    return _refined(motion, begin, end, count) if is_at_hand(motion) else motion
+
+
+def _refined(motion: Trajectory, begin: float, end: float, count: float) -> Trajectory:
     points = min(max(_POINTS[0], math.ceil(_POINTS[1] * count)), _MOST_POINTS)
     times = np.union1d(np.linspace(begin, end, points), _jumps(motion, begin, end))
     values = _bending(motion, times)
@@ -106,8 +108,8 @@ def curve(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     if t.size <= _MOST_POINTS:
         return t, values
     middles, low, high = ranges(t, values)
-    up_and_down = np.column_stack([low, high, high, low]).reshape(-1, 2, 2)
-    up_and_down = up_and_down[np.arange(low.size), np.arange(low.size) % 2]
+    up_and_down = np.column_stack([low, high])
+    up_and_down[1::2] = up_and_down[1::2, ::-1].copy()
     return np.repeat(middles, 2), up_and_down.ravel()
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -87,9 +86,12 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
     """Return the motion that a blow makes of a scene."""
-    scene = replace(scene, impulse=blow)
     return simulate(
-        scene, [0.0, t_end], max_steps=_STEPS, max_events=_EVENTS, raise_on_failure=False
+        scene.replace(impulse=blow),
+        [0.0, t_end],
+        max_steps=_STEPS,
+        max_events=_EVENTS,
+        raise_on_failure=False,
     )
 
 
@@ -109,9 +111,9 @@ def code(scene: Scene, t_end: float) -> str:
     """Return the lines that simulate it, with {F} and {d} for the blow."""
     given = [repr(scene.a), repr(scene.b)]
     given += [
-        f"{field.name}={getattr(scene, field.name)!r}"
-        for field in fields(Scene)
-        if field.name not in ("a", "b", "impulse") and getattr(scene, field.name) != field.default
+        f"{name}={value!r}"
+        for name, value in scene._changed().items()
+        if name not in ("a", "b", "impulse")
     ]
     return (
         "import rolling_ellipse\n\n"

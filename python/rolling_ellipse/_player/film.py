@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._pictures.animation.camera import cameras
-from .._pictures.ground import SHOWN_TURNS
+from .._pictures.ground import SHOWN_TURNS, touching_x
 from .._pictures.sampling import turned_until
-from ..geometry import support_slope
 from .page import document, fragment
 from .poster import positions, poster
 from .tracks import track
 
 if TYPE_CHECKING:
-    from .._events import Event
     from .._pictures.animation import RollingAnimation
     from .._scene import Scene
     from .._trajectory import Trajectory
@@ -90,10 +88,9 @@ def body(scene: Scene) -> dict[str, Any]:
 
 def events(motion: Trajectory, end: float) -> list[list[Any]]:
     """Return time [s], kind and place on the ground [m] of each event."""
-    return [_event(motion.scene, each) for each in motion.events if each.t <= end]
-
-
-def _event(scene: Scene, event: Event) -> list[Any]:
-    state = event.state_after
-    place = state.x + float(support_slope(state.theta, a=scene.a, b=scene.b))
-    return [event.t, event.kind.name.lower().replace("_", " "), place]
+    return [
+        [each.t, each.kind.name.lower().replace("_", " "),
+         touching_x(motion.scene, each.state_after)]
+        for each in motion.events
+        if each.t <= end
+    ]  # fmt: skip

@@ -88,14 +88,9 @@ class RollingAnimation(FuncAnimation):
         )
         top = self.strips[0].ax
         self.clock = top.text(
-            0.985,
-            0.95,
-            "",
-            transform=top.transAxes,
-            ha="right",
-            va="top",
+            0.985, 0.95, "", transform=top.transAxes, ha="right", va="top",
             color=palette_of(top).ink,
-        )
+        )  # fmt: skip
         self._fit_captions()
         self.draw(0)
         super().__init__(
