@@ -41,7 +41,11 @@ Arc arc(const SteppedMultipliers& motion) {
         motion.steps);
 }
 
-Arc arc(const SteppedSliding& motion) { return arc_of_steps(ArcKind::sliding_steps, motion.steps); }
+Arc arc(const Slide& slide) {
+    Arc found{ArcKind::sliding_steps, 0.0, 0.0, infinity, {}};
+    for (const SlidePiece& piece : slide.pieces) found.marks.push_back(double(piece.centre.time));
+    return found;
+}
 
 Arc arc(const Flight& flight) {
     const auto [into, along] = flight.gravity;

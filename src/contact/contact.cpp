@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "contact/continuation.hpp"
+#include "integrator/events.hpp"
 #include "integrator/runge_kutta.hpp"
 #include "proof/certificate.hpp"
 #include "proof/law.hpp"
@@ -130,26 +131,30 @@ class ContactRun {
     }
 
     void slide() {
-        SteppedSliding motion = sliding_from(scene_, state_, next_.side);
-        const Until until =
-            integrate_sliding(motion, tolerance(), steps_left(), t_end_ - t_, checkpoint_);
-        take_over(until, motion.steps);
-        const double t0 = t_;
-        add_segment(motion);
-        if (ending_ || t0 + until.time > t_end_) return finish();
-        ContactSample last{};
-        sample(motion, &until.time, 1, &last);
-        t_ += until.time;
+        Slide slide = slide_from(scene_, state_, next_.side);
+        const SlideStop stop = slide_on(slide, {t_end_ - t_, steps_left()}, checkpoint_);
+        const double lasts = double(slide.last.time);
+        const ContactSample last = end_of(slide);
+        counts_.steps += static_cast<long>(slide.pieces.size());
+        if (!slide.pieces.empty()) add_segment(std::move(slide));
+        if (stop == SlideStop::too_many_pieces || stop == SlideStop::no_progress) {
+            const bool too_many = stop == SlideStop::too_many_pieces;
+            ending_ = too_many ? Ending::max_steps : Ending::step_too_small;
+            t_end_ = t_ + lasts;  // all there is
+            return finish();
+        }
+        if (stop == SlideStop::time_is_over || t_ + lasts > t_end_) return finish();
+        t_ += lasts;
         state_ = last.state;
-        end_slide(until.which, last.state);
+        end_slide(stop, last.state);
     }
 
-    void end_slide(int which, const State& before) {
-        if (which == jams) {
+    void end_slide(SlideStop stop, const State& before) {
+        if (stop == SlideStop::jams) {
             next_.paradox = Painleve::no_motion;
             return note(EventKind::jam, before);
         }
-        if (which == pressure_vanishes) {
+        if (stop == SlideStop::pressure_vanishes) {
             return go_on_with({Mode::flight}, EventKind::lift_off, before);
         }
         const Geometry at = geometry(axes_, before.theta);

@@ -4,6 +4,7 @@
 
 #include "contact/sliding.hpp"
 #include "proof/law.hpp"
+#include "rolling/equation.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -18,7 +19,7 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
 
 // It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52).
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side) {
-    const auto [c, b] = SlidingEquation(scene, side).contact(at, omega);
+    const auto [c, b] = response(sliding_body(scene, side), at, omega);
     if (c <= 0) return {Mode::flight};
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
 }
@@ -28,7 +29,7 @@ Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega
 // starts to the side that this slide is for. A body may be put there, but no motion leads there: a
 // slide ends before, where c or B vanishes, and an impact goes on while B < 0 until the slip stops.
 Continuation sliding(const Scene& scene, const Geometry& at, double omega, double side) {
-    const auto [c, b] = SlidingEquation(scene, side).contact(at, omega);
+    const auto [c, b] = response(sliding_body(scene, side), at, omega);
     if (c < 0 && b < 0) return {Mode::sliding, side, Painleve::two_motions};
     return slide_or_leave(scene, at, omega, side);
 }
@@ -42,9 +43,8 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
     for (const double side : {1.0, -1.0}) {
         const Continuation next = to_side(side);
         if (next.mode == Mode::flight) return next;
-        const Vector<4> rate =
-            SlidingEquation(scene, side)(0.0, {state.theta, state.omega, 0.0, 0.0});
-        if (next.paradox == Painleve::determined && side * rate[3] > 0) return next;
+        const double rate = slip_rate(sliding_body(scene, side), at, state.omega);
+        if (next.paradox == Painleve::determined && side * rate > 0) return next;
     }
     return {Mode::sliding, 0.0, Painleve::no_motion};
 }

@@ -155,7 +155,9 @@ State state_at(const Flight& flight, double t) {
 double touch_down(const Flight& flight) {
     const Gap gap(flight);
     const Curvature curvature(flight);
-    const double tall = std::max(flight.axes.a, flight.axes.b);
+    // Above that it does not touch, however h is rounded.
+    const double tall =
+        std::max(flight.axes.a, flight.axes.b) * (1 + equal_ulps * epsilon);
     // By then it touches, however h is rounded.
     const double sure =
         gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - equal_ulps * epsilon));

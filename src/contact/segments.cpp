@@ -60,9 +60,9 @@ void look_at(const Scene&, const SteppedMultipliers& motion, const double* times
     }
 }
 
-void look_at(const Scene&, const SteppedSliding& motion, const double* times, std::size_t n,
+void look_at(const Scene&, const Slide& slide, const double* times, std::size_t n,
              ContactSample* samples) {
-    sample(motion, times, n, samples);
+    sample(slide, times, n, samples);
 }
 
 void look_at(const Scene&, const Flight& flight, const double* times, std::size_t n,

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "contact/flight.hpp"
-#include "contact/sliding_steps.hpp"
+#include "contact/slide.hpp"
 #include "contact/units.hpp"
 #include "multipliers/steps.hpp"
 #include "rolling/flow_table.hpp"
@@ -44,8 +44,8 @@ struct Resting {
 // What a body does from a time on, up to the next segment.
 struct Segment {
     double begin;
-    std::variant<RollingFlow, SteppedRolling, SteppedMultipliers, SteppedSliding, Flight, Settling,
-                 Resting, Jam>
+    std::variant<RollingFlow, SteppedRolling, SteppedMultipliers, Slide, Flight, Settling, Resting,
+                 Jam>
         law;
 };
 

@@ -4,49 +4,75 @@
 #include <cmath>
 
 namespace rolling_ellipse {
+namespace {
 
-SlidingEquation::SlidingEquation(const Scene& scene, double side)
-    : axes_(scene.axes()),
-      side_(side),
-      mass_(scene.mass),
-      gyration2_(scene.body().gyration2),
-      gravity_(scene.ground_gravity()),
-      normal_share_(std::isinf(scene.friction) ? 0.0 : 1.0),
-      friction_share_(std::isinf(scene.friction) ? -side : -scene.friction * side) {}
+// Angular acceleration by a unit of the contact force: physics (51).
+double spin(const SlidingBody& body, const Geometry& at) {
+    return -(at.h * body.friction_share + at.dh * body.normal_share) / body.gyration2;
+}
 
-ContactForce SlidingEquation::force(const Geometry& at, double omega) const {
-    const auto [c, b] = contact(at, omega);
-    const double force = mass_ * (c / b);
-    return {normal_share_ * force, friction_share_ * force};
+}  // namespace
+
+SlidingBody sliding_body(const Scene& scene, double side) {
+    const bool endless = std::isinf(scene.friction);
+    return {scene.axes(),
+            scene.mass,
+            scene.body().gyration2,
+            scene.ground_gravity(),
+            side,
+            endless ? 0.0 : 1.0,
+            endless ? -side : -scene.friction * side};
+}
+
+// Per mass N = c/B with B = Gnn - mu s Gtn, physics (50); with infinite friction F = c/Gtn and N =
+// 0, physics (52).
+Response response(const SlidingBody& body, const Geometry& at, double omega) {
+    const double c = free_acceleration(at, body.gravity.into, omega);
+    const double gnn = 1 + at.dh * at.dh / body.gyration2;
+    const double gtn = at.h * at.dh / body.gyration2;
+    return {c, body.normal_share * gnn + body.friction_share * gtn};
+}
+
+ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double omega) {
+    const auto [c, b] = response(body, at, omega);
+    const double force = body.mass * (c / b);
+    return {body.normal_share * force, body.friction_share * force};
+}
+
+double slip_rate(const SlidingBody& body, const Geometry& at, double omega) {
+    const auto [c, b] = response(body, at, omega);
+    const double by_force = (body.friction_share - at.h * spin(body, at)) * (c / b);
+    return by_force + body.gravity.along - at.dh * omega * omega;
 }
 
 // The impulse of N changes omega and slip in a fixed ratio, physics (54).
-SlidingEquation::LastMoment SlidingEquation::last_moment(const Vector<5>& y) const {
-    const Geometry at = geometry(axes_, y[0]);
-    const double b_derivative =
-        (2 * normal_share_ * at.dh * at.ddh + friction_share_ * (at.dh * at.dh + at.h * at.ddh)) /
-        gyration2_;
-    const auto [c, b] = contact(at, y[1]);
-    const double spin = -(at.h * friction_share_ + at.dh * normal_share_) / gyration2_;
-    const double slip_by_turning = friction_share_ / spin - at.h;
-    const double without_slip = y[1] - y[3] / slip_by_turning;
-    const double without_c = std::copysign(std::sqrt(-gravity_.into / at.ddh), y[1]);
-    const double impulse_to_stop = (without_slip - y[1]) / spin;
-    const double impulse_to_jam =
-        at.ddh < 0 && (without_c - y[1]) / spin >= 0 ? (without_c - y[1]) / spin : infinity;
+LastMoment last_moment(const SlidingBody& body, const SlideState& state) {
+    const auto [angle, omega, slip, path, time] = state;
+    const Geometry at = geometry(body.axes, angle);
+    const double b_derivative = (2 * body.normal_share * at.dh * at.ddh +
+                                 body.friction_share * (at.dh * at.dh + at.h * at.ddh)) /
+                                body.gyration2;
+    const auto [c, b] = response(body, at, omega);
+    const double turn_by_force = spin(body, at);
+    const double slip_by_turning = body.friction_share / turn_by_force - at.h;
+    const double without_slip = omega - slip / slip_by_turning;
+    const double without_c = std::copysign(std::sqrt(-body.gravity.into / at.ddh), omega);
+    const double impulse_to_stop = (without_slip - omega) / turn_by_force;
+    const double to_no_c = (without_c - omega) / turn_by_force;
+    const double impulse_to_jam = at.ddh < 0 && to_no_c >= 0 ? to_no_c : infinity;
     const bool stops = impulse_to_stop >= 0 && impulse_to_stop <= impulse_to_jam;
-    const double omega = stops ? without_slip : without_c;
-    const double slip = stops ? 0.0 : y[3] + slip_by_turning * (omega - y[1]);
+    const double omega_after = stops ? without_slip : without_c;
+    const double slip_after = stops ? 0.0 : slip + slip_by_turning * (omega_after - omega);
     // Until B = 0, or until N = c/B has made the impulse: a slide that starts with so small a B
     // need not turn towards B = 0, nor turn at all.
-    const double b_rate = b_derivative * y[1];
+    const double b_rate = b_derivative * omega;
     const double until_no_b = b_rate < 0 ? -b / b_rate : infinity;
     const double until_made = (stops ? impulse_to_stop : impulse_to_jam) * b / c;
     const double least = std::min(until_no_b, until_made >= 0 ? until_made : infinity);
     const double after = least < infinity ? least : 0.0;
-    const double turn = y[1] * after;
-    return {stops ? slip_vanishes : jams,
-            {y[0] + turn, omega, y[2] + (y[3] + at.h * y[1]) * after, slip, y[4] + after}};
+    return {stops ? SlideEnd::slip_vanishes : SlideEnd::jams,
+            {angle + omega * after, omega_after, slip_after,
+             path + (slip + at.h * omega) * after, time + after}};
 }
 
 }  // namespace rolling_ellipse

@@ -66,6 +66,10 @@ class EventRule {
     std::optional<View> now_;
 };
 
+// The tolerance of motions that have to be integrated; what lies between their steps is right to
+// about 1e-13.
+inline constexpr Tolerance finest = {1e-15, 1e-17};
+
 // How an integration ended, and where: the time since its start.
 struct Until {
     Ending ending;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "numerics/polynomial.hpp"
@@ -187,6 +188,32 @@ void collect_roots(const Bernstein<N>& p, double start, double width, int depth,
 template <int N>
 Sign sign_on_unit_interval(const Bernstein<N>& p) {
     return detail::sign_below(p, 0);
+}
+
+// The first place in [0, 1] from which on p is negative, provably: where it is so at once, or where
+// it changes its sign before it is. What rounding cannot tell from zero is not negative.
+template <int N>
+std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
+    const auto& all = p.coefficients;
+    const Sign first = sign(all.front());
+    if (first == Sign::negative) return 0.0;
+    int changes = 0;
+    Sign last = Sign::undecided;
+    for (const Tracked c : all) {
+        const Sign now = sign(c);
+        if (now == Sign::undecided) continue;
+        if (now != last && (last != Sign::undecided || now == Sign::negative)) ++changes;
+        last = now;
+    }
+    if (changes == 0) return std::nullopt;
+    if (changes == 1 && first == Sign::positive && sign(all.back()) == Sign::negative) {
+        return detail::single_root(p);
+    }
+    if (depth == detail::deepest) return 0.5;
+    const Parts<N> parts = divided(p);
+    if (const auto left = first_negative(parts.left, depth + 1)) return 0.5 * *left;
+    const auto right = first_negative(parts.right, depth + 1);
+    return right ? std::optional(0.5 + 0.5 * *right) : std::nullopt;
 }
 
 // All places in [0, 1] where p changes sign or may touch zero, ascending.

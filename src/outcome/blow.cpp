@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "contact/continuation.hpp"
-#include "contact/sliding_steps.hpp"
+#include "integrator/events.hpp"
 #include "contact/units.hpp"
 #include "integrator/events.hpp"
 #include "integrator/runge_kutta.hpp"

@@ -5,9 +5,8 @@
 #include <optional>
 
 #include "contact/continuation.hpp"
-#include "contact/sliding_steps.hpp"
+#include "contact/slide.hpp"
 #include "contact/units.hpp"
-#include "integrator/runge_kutta.hpp"
 #include "numerics/bisect.hpp"
 #include "proof/certificate.hpp"
 
@@ -47,8 +46,7 @@ struct EndOfSegment {
 };
 
 // Follows the body from the flat position to the tip at one speed after another, as long as all of
-// that takes no more than so many evaluations of the sliding equation: without inertia (k^2 -> 0)
-// it is stiff.
+// that takes no more than so many pieces of slides: without inertia (k^2 -> 0) they are short.
 class Follower {
   public:
     Follower(const Scene& scene, const Checkpoint& checkpoint)
@@ -58,7 +56,7 @@ class Follower {
           tip_(flat_ + half_pi),
           checkpoint_(checkpoint) {}
 
-    bool gave_up() const { return evaluations_left_ <= 0; }
+    bool gave_up() const { return pieces_left_ <= 0; }
 
     // Only on the way up can c vanish: where it does, its rate is h''' omega^3, physics (53), and
     // h'' falls from the flat to the tip.
@@ -84,11 +82,10 @@ class Follower {
 
   private:
     static constexpr double over_the_tip = 0.5;  // [rad], where c no longer falls
-    static constexpr long evaluations_a_segment =
-        100;  // what the rest of the work on a segment costs
+    static constexpr long pieces_a_segment = 5;   // what the rest of the work on one costs
 
     std::optional<EndOfSegment> end_of_rolling(const State& from) {
-        evaluations_left_ -= evaluations_a_segment;
+        pieces_left_ -= pieces_a_segment;
         const RollingStart start = rolling_start(scene_.body(), from.theta, from.omega);
         const EndOfRolling end = rolling_ellipse::end_of_rolling(start, scene_.friction);
         if (end.validity != Validity::invalid) return std::nullopt;
@@ -101,17 +98,24 @@ class Follower {
 
     std::optional<EndOfSegment> end_of_slide(const State& from, double side) {
         if (std::isinf(scene_.friction) && !reaches_the_tip(scene_, from)) return std::nullopt;
-        SteppedSliding motion = sliding_from(scene_, from, side);
-        const Until until = followed(motion);
-        evaluations_left_ -= until.counts.evaluations + evaluations_a_segment;
-        if (until.ending != Ending::event) return std::nullopt;
-        if (until.which == passes_the_tip || until.which == turns_back) return std::nullopt;
-        ContactSample last{};
-        sample(motion, &until.time, 1, &last);
+        constexpr long most_pieces = 2000;  // more only where N = F = 0 at the tip
+        Slide slide = slide_from(scene_, from, side);
+        const SlideStop stop =
+            slide_on(slide, {infinity, most_pieces, tip_ + over_the_tip, false}, checkpoint_);
+        pieces_left_ -= static_cast<long>(slide.pieces.size()) + pieces_a_segment;
+        switch (stop) {
+            case SlideStop::slip_vanishes:
+            case SlideStop::pressure_vanishes:
+            case SlideStop::jams:
+                break;
+            default:
+                return std::nullopt;
+        }
+        const ContactSample last = end_of(slide);
         State state = last.state;
         if (state.theta > tip_ + over_the_tip || state.omega < 0) return std::nullopt;
-        if (until.which == pressure_vanishes) return EndOfSegment{state, {Mode::flight}};
-        if (until.which == jams) {
+        if (stop == SlideStop::pressure_vanishes) return EndOfSegment{state, {Mode::flight}};
+        if (stop == SlideStop::jams) {
             return EndOfSegment{state, {Mode::sliding, side, Painleve::no_motion}};
         }
         state = in_contact(geometry(axes_, state.theta), state.theta, state.omega, state.x, 0.0,
@@ -119,34 +123,12 @@ class Follower {
         return EndOfSegment{state, continuation(scene_, state)};
     }
 
-    // The margins of a slide to the tip that follow those of SlideEnd.
-    enum EndAtTheTip { passes_the_tip = jams + 1, turns_back };
-
-    // Up to the end of the slide, over the tip or until it turns back.
-    Until followed(SteppedSliding& motion) {
-        // A half turn takes some 100; more only where N = F = 0 at the tip.
-        constexpr long most_steps = 2000;
-        const SlidingEquation& f = motion.equation;
-        const double to_go = tip_ + over_the_tip - static_cast<double>(motion.theta_base);
-        const auto margins = [&](const Vector<4>& y) -> std::array<double, 5> {
-            const auto [slip, c, b] = f.margins(y);
-            return {slip, c, f.may_jam() ? b - small_response : b, to_go - y[0], y[1]};
-        };
-        ExplicitMethod<DormandPrince853, SlidingEquation> integrator(f);
-        const Until until = integrate_until(integrator, motion.steps, finest, most_steps, infinity,
-                                            margins, checkpoint_);
-        if (until.ending != Ending::event || until.which != jams || !f.may_jam()) return until;
-        Until slow = integrate_sliding(motion, finest, most_steps, infinity, checkpoint_);
-        slow.counts += until.counts;
-        return slow;
-    }
-
     const Scene& scene_;
     const Axes axes_;
     const double flat_;
     const double tip_;
     const Checkpoint& checkpoint_;
-    long evaluations_left_ = 3'000'000;
+    long pieces_left_ = 150'000;
 };
 
 // At lift-off omega^2 >= g/|h''| >= g L/c^2, physics (53), with no more energy than at the start.

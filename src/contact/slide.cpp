@@ -1,0 +1,256 @@
+#include "contact/slide.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "geometry/half_turns.hpp"
+#include "numerics/bernstein.hpp"
+#include "numerics/bisect.hpp"
+#include "rolling/motion_series.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+constexpr int order = series_order;
+
+// The response B, physics (50), below which the slower clock is the better one, physics (54); and
+// that which is none.
+constexpr double small_response = 1e-2;
+constexpr double no_response = 1e-13;
+
+SlidePoint moved(const SlidePiece& piece, double clock) {
+    const auto& [centre, kind, reach, angle, omega, slip, path, time] = piece;
+    const auto change = [clock](const Series& series) { return value(series, clock); };
+    return {centre.angle + change(angle), centre.omega + change(omega), centre.slip + change(slip),
+            centre.path + change(path),
+            centre.time + (kind == SlideClock::time ? clock : change(time))};
+}
+
+// A series on [0, reach] as a polynomial on [0, 1]; each coefficient with the magnitude of what it
+// was made from.
+template <class Coefficient, class Magnitude>
+Polynomial<order> stretched(double reach, Coefficient coefficient, Magnitude magnitude) {
+    Polynomial<order> p;
+    double power = 1.0;
+    for (int k = 0; k <= order; ++k) {
+        p.coefficients[k] = {power * coefficient(k), power * magnitude(k)};
+        power *= reach;
+    }
+    return p;
+}
+
+// The first place at which what has to stay positive is negative, provably.
+std::optional<double> first_end(const Polynomial<order>& margin) {
+    double others = 0.0;
+    for (int k = 1; k <= order; ++k) others += margin.coefficients[k].magnitude;
+    if (margin.coefficients[0].value > others) return std::nullopt;
+    return first_negative(bernstein(margin));
+}
+
+// The sine and cosine of an angle that has more digits than a double.
+std::pair<double, double> sin_cos(const DoubleDouble& angle) {
+    const double sin = std::sin(angle.high);
+    const double cos = std::cos(angle.high);
+    return {sin + angle.low * cos, cos - angle.low * sin};
+}
+
+class Follower {
+  public:
+    Follower(Slide& slide, const SlideBounds& bounds)
+        : slide_(slide),
+          bounds_(bounds),
+          angle_bound_(bounds.theta - static_cast<double>(slide.theta_base)) {
+        const auto [sin, cos] = sin_cos(slide.last.angle);
+        const Geometry at = geometry(slide.body.axes, sin, cos);
+        const double b = response(slide.body, at, slide.last.omega.high).b;
+        if (slide.body.may_jam() && b < small_response) clock_ = SlideClock::slowed;
+    }
+
+    // Add a piece; what stops the slide, if anything does.
+    std::optional<SlideStop> step() {
+        const SlidePoint& from = slide_.last;
+        const auto [sin, cos] = sin_cos(from.angle);
+        const SlideState start{0.0, double(from.omega), double(from.slip), 0.0, 0.0};
+        SlideSeries series = slide_series(slide_.body, start, sin, cos, clock_);
+        // What reaches for ever may grow with what there is.
+        const double most = 1 + 15 * from.time.high;
+        reach_ = std::min({reach(series.angle), reach(series.omega), most});
+        if (!(reach_ > 0)) return SlideStop::no_progress;
+        examine(series);
+        series.omega[0] = series.slip[0] = 0.0;
+        slide_.pieces.push_back({from, clock_, reach_, series.angle, series.omega, series.slip,
+                                 series.path, series.time});
+        const SlidePoint next = moved(slide_.pieces.back(), reach_);
+        const bool stands_still = clock_ == SlideClock::time && next.time.high == from.time.high;
+        slide_.last = next;
+        if (!end_) return stands_still ? std::optional(SlideStop::no_progress) : std::nullopt;
+        return end();
+    }
+
+  private:
+    enum class End { slip, pressure, response, recovery, theta, turning_back };
+
+    // Ends the piece where something comes to an end.
+    void examine(const SlideSeries& series) {
+        end_.reset();
+        const SlidingBody& body = slide_.body;
+        const auto look = [&](End what, auto coefficient, auto magnitude) {
+            const auto place = first_end(stretched(reach_, coefficient, magnitude));
+            if (!place) return;
+            end_ = what;
+            reach_ *= *place;
+        };
+        const auto look_at_response = [&](End what, double sign, double least) {
+            const double least_v = least * body.gyration2;
+            look(
+                what,
+                [&](int k) { return sign * (series.response[k] - least_v * series.height2[k]); },
+                [&](int k) {
+                    return std::abs(series.response[k]) + least_v * std::abs(series.height2[k]);
+                });
+        };
+        if (body.side != 0) {
+            // Where the limit of friction is passed slip starts without a rate, and what rounding
+            // makes of that is none.
+            const bool starts = series.slip[0] == 0;
+            look(
+                End::slip,
+                [&](int k) {
+                    const double rate = body.side * series.slip[k];
+                    return k == 1 && starts ? std::max(rate, 0.0) : rate;
+                },
+                [&](int k) {
+                    return k == 0 ? std::abs(series.slip[0])
+                                  : std::abs(series.slip[k]) + 2 * std::abs(series.rolled[k]) +
+                                        2 * std::abs(body.gravity.along * series.time[k]);
+                });
+        }
+        look(
+            End::pressure, [&](int k) { return series.pressure[k]; },
+            [&](int k) { return 3 * std::abs(series.pressure[k]); });
+        if (clock_ == SlideClock::slowed) {
+            look_at_response(End::response, 1.0, no_response);
+            look_at_response(End::recovery, -1.0, 2 * small_response);
+        } else {
+            look_at_response(End::response, 1.0, body.may_jam() ? small_response : 0.0);
+        }
+        if (angle_bound_ < infinity) {
+            const double to_go = double(slide_.last.angle + -angle_bound_);
+            const auto left = [&](int k) { return k == 0 ? -to_go : -series.angle[k]; };
+            look(End::theta, left, [&](int k) { return std::abs(left(k)); });
+        }
+        if (!bounds_.may_turn_back) {
+            look(
+                End::turning_back, [&](int k) { return series.omega[k]; },
+                [&](int k) { return std::abs(series.omega[k]); });
+        }
+    }
+
+    std::optional<SlideStop> end() {
+        switch (*end_) {
+            case End::slip:
+                return SlideStop::slip_vanishes;
+            case End::pressure:
+                return SlideStop::pressure_vanishes;
+            case End::theta:
+                return SlideStop::passes_theta;
+            case End::turning_back:
+                return SlideStop::turns_back;
+            case End::recovery:
+                clock_ = SlideClock::time;
+                return std::nullopt;
+            case End::response:
+                break;
+        }
+        if (!slide_.body.may_jam()) return SlideStop::jams;
+        if (clock_ == SlideClock::slowed) return last_moment();
+        clock_ = SlideClock::slowed;
+        return std::nullopt;
+    }
+
+    // B = 0: in a moment, N = c/B ends it.
+    SlideStop last_moment() {
+        const auto& [angle, omega, slip, path, time] = slide_.last;
+        const auto [end, state] = rolling_ellipse::last_moment(
+            slide_.body,
+            {double(angle), double(omega), double(slip), double(path), double(time)});
+        slide_.last = {{state.angle, 0.0},
+                       {state.omega, 0.0},
+                       {state.slip, 0.0},
+                       {state.path, 0.0},
+                       {state.time, 0.0}};
+        slide_.pieces.push_back({slide_.last, SlideClock::time, 0.0, {}, {}, {}, {}, {}});
+        return end == SlideEnd::slip_vanishes ? SlideStop::slip_vanishes : SlideStop::jams;
+    }
+
+    Slide& slide_;
+    const SlideBounds& bounds_;
+    const double angle_bound_;
+    SlideClock clock_ = SlideClock::time;
+    double reach_ = 0.0;
+    std::optional<End> end_;
+};
+
+// The clock of a piece at a time since its centre.
+double clock_at(const SlidePiece& piece, double time) {
+    if (piece.clock == SlideClock::time) return time;
+    return bisect(0.0, piece.reach, [&](double clock) { return value(piece.time, clock) >= time; })
+        .high;
+}
+
+ContactSample sample_at(const Slide& slide, const SlidePoint& point) {
+    const double theta = double(slide.theta_base + point.angle);
+    const double omega = double(point.omega);
+    const Geometry at = geometry(slide.axes, theta);
+    return {in_contact(at, theta, omega, slide.x_base + double(point.path), double(point.slip),
+                       Mode::sliding),
+            sliding_force(slide.body, at, omega)};
+}
+
+}  // namespace
+
+Slide slide_from(const Scene& scene, const State& start, double side) {
+    const Axes axes = scene.axes();
+    const double slip = slip_velocity(start, geometry(axes, start.theta));
+    const double turn = resolved(start.theta);
+    const double quarters = std::nearbyint(turn / half_pi);
+    const DoubleDouble rest = DoubleDouble{turn, 0.0} - half_pi_exact * quarters;
+    Scene seen = scene;
+    if (std::fmod(quarters, 2.0) != 0.0) std::swap(seen.a, seen.b);
+    return {sliding_body(seen, side),
+            axes,
+            two_sum(start.theta, -turn) + half_pi_exact * quarters,
+            start.x,
+            {rest, {start.omega, 0.0}, {slip, 0.0}, {0.0, 0.0}, {0.0, 0.0}},
+            {}};
+}
+
+SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& checkpoint) {
+    Follower follower(slide, bounds);
+    do {
+        checkpoint();
+        if (static_cast<long>(slide.pieces.size()) >= bounds.most_pieces) {
+            return SlideStop::too_many_pieces;
+        }
+        if (const auto stop = follower.step()) return *stop;
+    } while (slide.last.time.high < bounds.t_end);
+    return SlideStop::time_is_over;
+}
+
+ContactSample end_of(const Slide& slide) { return sample_at(slide, slide.last); }
+
+void sample(const Slide& slide, const double* times, std::size_t n, ContactSample* samples) {
+    auto piece = slide.pieces.begin();
+    for (std::size_t i = 0; i < n; ++i) {
+        while (piece + 1 != slide.pieces.end() && times[i] >= (piece + 1)->centre.time.high) {
+            ++piece;
+        }
+        const double since = (times[i] - piece->centre.time.high) - piece->centre.time.low;
+        samples[i] = sample_at(slide, moved(*piece, clock_at(*piece, since)));
+    }
+}
+
+}  // namespace rolling_ellipse

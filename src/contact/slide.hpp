@@ -1,0 +1,78 @@
+// Sliding in one direction, solved by power series: a few to an arc, each as good as a double as
+// far as it reaches, from which samples are taken, too. Ends are first roots, proved by the signs
+// of Bernstein coefficients: nothing is looked for at places.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "contact/slide_series.hpp"
+#include "integrator/system.hpp"
+#include "numerics/double_double.hpp"
+#include "scene/settings.hpp"
+
+namespace rolling_ellipse {
+
+// The angle is counted from the quarter turn next to the start, where a thin body is the most
+// sensitive to it: there it keeps digits that the whole angle has no room for. Path and time are
+// those since the start.
+struct SlidePoint {
+    DoubleDouble angle;
+    DoubleDouble omega;
+    DoubleDouble slip;
+    DoubleDouble path;
+    DoubleDouble time;
+};
+
+// How the motion goes on from a point, by a clock that is 0 there; the series are of the changes.
+struct SlidePiece {
+    SlidePoint centre;
+    SlideClock clock;
+    double reach;  // of the clock
+    Series angle;
+    Series omega;
+    Series slip;
+    Series path;
+    Series time;
+};
+
+struct Slide {
+    SlidingBody body;  // after an odd number of quarter turns with its axes exchanged
+    Axes axes;
+    DoubleDouble theta_base;
+    double x_base;
+    SlidePoint last;  // where the pieces end
+    std::vector<SlidePiece> pieces;
+};
+
+// The start of sliding, with the slip to the given side (0: without friction there is none).
+Slide slide_from(const Scene& scene, const State& start, double side);
+
+struct SlideBounds {
+    double t_end = infinity;
+    long most_pieces = 0;
+    double theta = infinity;  // that it may pass,
+    bool may_turn_back = true;
+};
+
+enum class SlideStop {
+    slip_vanishes,
+    pressure_vanishes,
+    jams,
+    passes_theta,
+    turns_back,
+    time_is_over,
+    too_many_pieces,
+    no_progress
+};
+
+// Slide on from the start until something stops it, at the time of the last point.
+SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& checkpoint);
+
+// State and force at the last point.
+ContactSample end_of(const Slide& slide);
+
+// States and forces at n times since the start, ascending.
+void sample(const Slide& slide, const double* times, std::size_t n, ContactSample* samples);
+
+}  // namespace rolling_ellipse
