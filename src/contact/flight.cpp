@@ -12,8 +12,7 @@ namespace {
 // The root of f between two points at which it has different signs, to the last bit.
 template <class Function>
 double root_between(const Function& f, double low, double high) {
-    const bool rises = f(high) > 0;
-    return bisect(low, high, [&](double t) { return (f(t) > 0) == rises; }).high;
+    return bisect_root(low, high, f).high;
 }
 
 // Height of the body over the ground.
@@ -156,8 +155,7 @@ double touch_down(const Flight& flight) {
     const Gap gap(flight);
     const Curvature curvature(flight);
     // Above that it does not touch, however h is rounded.
-    const double tall =
-        std::max(flight.axes.a, flight.axes.b) * (1 + equal_ulps * epsilon);
+    const double tall = std::max(flight.axes.a, flight.axes.b) * (1 + equal_ulps * epsilon);
     // By then it touches, however h is rounded.
     const double sure =
         gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - equal_ulps * epsilon));

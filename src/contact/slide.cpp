@@ -9,21 +9,43 @@
 #include "geometry/half_turns.hpp"
 #include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
-#include "rolling/motion_series.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-constexpr int order = series_order;
+constexpr int order = slide_order;
 
 // The response B, physics (50), below which the slower clock is the better one, physics (54); and
 // that which is none.
 constexpr double small_response = 1e-2;
 constexpr double no_response = 1e-13;
 
+// How far a series is as good as a double, beside its own size there: its last two terms are one
+// rounding then, and what is left out, smaller by another tenth, is less. A fixed point, whose
+// logarithm is at a twentieth of the error after each step.
+double reach(const SlideCoefficients& series) {
+    constexpr double rest = 1e-16;  // half an ulp
+    static_assert(order == 24, "three square roots and a cube root");
+    double r = 0.1;
+    for (int i = 0; i < 3; ++i) {
+        const double size = std::max(
+            {std::abs(series[0]), std::abs(series[1]) * r, std::abs(series[2]) * square(r)});
+        const double last = std::max(std::abs(series[order - 1]), std::abs(series[order]) * r);
+        if (!(last > 0)) return infinity;
+        r = std::cbrt(std::sqrt(std::sqrt(std::sqrt(rest * size * r / last))));
+    }
+    return r;
+}
+
+double value(const SlideCoefficients& series, double clock) {
+    double sum = series[order];
+    for (int k = order - 1; k >= 0; --k) sum = sum * clock + series[k];
+    return sum;
+}
+
 SlidePoint moved(const SlidePiece& piece, double clock) {
     const auto& [centre, kind, reach, angle, omega, slip, path, time] = piece;
-    const auto change = [clock](const Series& series) { return value(series, clock); };
+    const auto change = [clock](const SlideCoefficients& series) { return value(series, clock); };
     return {centre.angle + change(angle), centre.omega + change(omega), centre.slip + change(slip),
             centre.path + change(path),
             centre.time + (kind == SlideClock::time ? clock : change(time))};
@@ -175,8 +197,7 @@ class Follower {
     SlideStop last_moment() {
         const auto& [angle, omega, slip, path, time] = slide_.last;
         const auto [end, state] = rolling_ellipse::last_moment(
-            slide_.body,
-            {double(angle), double(omega), double(slip), double(path), double(time)});
+            slide_.body, {double(angle), double(omega), double(slip), double(path), double(time)});
         slide_.last = {{state.angle, 0.0},
                        {state.omega, 0.0},
                        {state.slip, 0.0},
@@ -220,12 +241,15 @@ Slide slide_from(const Scene& scene, const State& start, double side) {
     const DoubleDouble rest = DoubleDouble{turn, 0.0} - half_pi_exact * quarters;
     Scene seen = scene;
     if (std::fmod(quarters, 2.0) != 0.0) std::swap(seen.a, seen.b);
-    return {sliding_body(seen, side),
-            axes,
-            two_sum(start.theta, -turn) + half_pi_exact * quarters,
-            start.x,
-            {rest, {start.omega, 0.0}, {slip, 0.0}, {0.0, 0.0}, {0.0, 0.0}},
-            {}};
+    constexpr std::size_t usual_pieces = 16;
+    Slide slide{sliding_body(seen, side),
+                axes,
+                two_sum(start.theta, -turn) + half_pi_exact * quarters,
+                start.x,
+                {rest, {start.omega, 0.0}, {slip, 0.0}, {0.0, 0.0}, {0.0, 0.0}},
+                {}};
+    slide.pieces.reserve(usual_pieces);
+    return slide;
 }
 
 SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& checkpoint) {

@@ -29,11 +29,11 @@ struct SlidePiece {
     SlidePoint centre;
     SlideClock clock;
     double reach;  // of the clock
-    Series angle;
-    Series omega;
-    Series slip;
-    Series path;
-    Series time;
+    SlideCoefficients angle;
+    SlideCoefficients omega;
+    SlideCoefficients slip;
+    SlideCoefficients path;
+    SlideCoefficients time;
 };
 
 struct Slide {

@@ -71,8 +71,8 @@ LastMoment last_moment(const SlidingBody& body, const SlideState& state) {
     const double least = std::min(until_no_b, until_made >= 0 ? until_made : infinity);
     const double after = least < infinity ? least : 0.0;
     return {stops ? SlideEnd::slip_vanishes : SlideEnd::jams,
-            {angle + omega * after, omega_after, slip_after,
-             path + (slip + at.h * omega) * after, time + after}};
+            {angle + omega * after, omega_after, slip_after, path + (slip + at.h * omega) * after,
+             time + after}};
 }
 
 }  // namespace rolling_ellipse

@@ -82,7 +82,7 @@ class Follower {
 
   private:
     static constexpr double over_the_tip = 0.5;  // [rad], where c no longer falls
-    static constexpr long pieces_a_segment = 5;   // what the rest of the work on one costs
+    static constexpr long pieces_a_segment = 5;  // what the rest of the work on one costs
 
     std::optional<EndOfSegment> end_of_rolling(const State& from) {
         pieces_left_ -= pieces_a_segment;

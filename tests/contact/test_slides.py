@@ -1,0 +1,155 @@
+"""Slides against what is known of them in closed form, which their series do not use.
+
+With s the sign of the slip, per unit mass: N = z'' + g cos(alpha) and F = -s mu N integrate to
+    x' = x0' - s mu (h' omega - h0' omega0 + g cos(alpha) t) + g sin(alpha) t,
+    x = x0 + x0' t - s mu (h - h0 - h0' omega0 t + g cos(alpha) t^2/2) + g sin(alpha) t^2/2,
+and omega^2 over theta is the solution of a linear equation,
+    d(omega^2)/dtheta = -2 l (g cos(alpha) + h'' omega^2)/(k^2 + h' l),   l = h' - s mu h.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.contact import random_scenes
+from oracles.geometry import support
+from rolling_ellipse import EventKind, Mode, Scene, Trajectory, scenes, simulate
+
+EPSILON = float(np.finfo(float).eps)
+
+
+def slides(count: int, seed: int, **given: Any) -> list[tuple[Scene, Trajectory]]:
+    """Motions that start with a slide, sampled from its start to its end."""
+    found = []
+    for scene in random_scenes(1000 * count, seed, **given):
+        if math.isinf(scene.friction) or scene.initial_state.mode is not Mode.SLIDING:
+            continue
+        rate = math.sqrt(scene.gravity / max(scene.a, scene.b))
+        whole = simulate(scene, 4 / rate, model="contact", raise_on_failure=False)
+        end = whole.events[0].t if whole.events else whole.t_end
+        if end > 0.01 / rate:
+            times = np.linspace(0.0, end * (1 - 1e-9), 41)
+            found.append((scene, simulate(scene, times, model="contact")))
+        if len(found) == count:
+            return found
+    raise AssertionError("too few scenes slide")
+
+
+def friction_share(scene: Scene, motion: Trajectory) -> float:
+    """-mu s: slip may start from nothing, so its sign is that in the middle."""
+    h = support(float(motion.theta[20]), scene.a, scene.b)[0]
+    return -math.copysign(scene.friction, motion.x_dot[20] - h * motion.omega[20])
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.2, -0.4])
+def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
+    """Each of the terms is rounded, and theta, of which they are made, to some ulp."""
+    for scene, motion in slides(20, seed=5, slope=slope):
+        assert set(motion.mode) == {Mode.SLIDING}
+        start = scene.initial_state
+        t, theta, omega = motion.t, motion.theta, motion.omega
+        h, dh, ddh = support(theta, scene.a, scene.b)
+        h0, dh0, _ = (float(each[0]) for each in support(theta[:1], scene.a, scene.b))
+        into, along = (scene.gravity * f(slope) for f in (math.cos, math.sin))
+        friction = friction_share(scene, motion)
+        pushed = dh * omega - dh0 * start.omega + into * t
+        lifted = h - h0 - dh0 * start.omega * t + into * t**2 / 2
+        x_dot = start.x_dot + friction * pushed + along * t
+        x = start.x + start.x_dot * t + friction * lifted + along * t**2 / 2
+        # a few ulp of theta and omega in h' omega, of h and h', and of the sums themselves
+        turn = np.abs(ddh * omega) * (1 + np.abs(theta)) + np.abs(dh * omega)
+        speeds = (
+            np.abs(start.x_dot) + (1 + scene.friction) * (turn.max() + into * t) + abs(along) * t
+        )
+        ways = abs(start.x) + h.max() * (1 + scene.friction) + speeds.max() * t
+        assert np.all(np.abs(motion.x_dot - x_dot) <= 16 * EPSILON * speeds), scene
+        ways = ways + (1 + scene.friction) * np.abs(dh) * (1 + np.abs(theta))
+        assert np.all(np.abs(motion.x - x) <= 16 * EPSILON * ways), scene
+
+
+def squared_speed(scene: Scene, motion: Trajectory) -> float:
+    """omega^2 at the last sample, by two quadratures over theta, one in the other."""
+    start = scene.initial_state
+    force = friction_share(scene, motion)
+    into = scene.gravity * math.cos(scene.slope)
+    nodes, weights = np.polynomial.legendre.leggauss(80)
+    nodes, weights = (nodes + 1) / 2, weights / 2
+
+    def rates(theta: Any) -> tuple[Any, Any]:
+        h, dh, ddh = support(theta, scene.a, scene.b)
+        lever = dh + force * h
+        share = 2 * lever / (scene.gyration2 + dh * lever)
+        return share * ddh, -share * into
+
+    def grown(turn: Any) -> Any:
+        turns = np.multiply.outer(turn, nodes)
+        return np.exp(turn * (rates(start.theta + turns)[0] @ weights))
+
+    end = float(motion.theta[-1]) - start.theta
+    turns = end * nodes
+    gained = end * ((rates(start.theta + turns)[1] * grown(turns)) @ weights)
+    return float((start.omega**2 + gained) / grown(np.float64(end)))
+
+
+def test_the_angular_velocity_is_that_of_the_quadratures() -> None:
+    """Where the body does not turn back; to the rounding of both and of theta."""
+    compared = 0
+    for scene, motion in slides(40, seed=11):
+        if np.any(motion.omega * motion.omega[0] <= 0) or compared == 8:
+            continue
+        expected = math.sqrt(squared_speed(scene, motion))
+        compared += 1
+        spin = np.abs(motion.omega)
+        accelerations = np.abs(motion.omega_dot).max() / spin[-1]  # of theta: d omega/d theta
+        allowed = 64 * EPSILON * (spin.max() + accelerations * (1 + np.abs(motion.theta).max()))
+        assert abs(spin[-1] - expected) <= allowed, scene
+    assert compared == 8
+
+
+def test_a_frictionless_slide_keeps_its_energy() -> None:
+    """(k^2 + h'^2) omega^2/2 + g h, over a thousand oscillations: rounding walks at random.
+
+    A slide over a period takes some dozen pieces, each of which rounds theta and omega once.
+    """
+    scene = Scene(2.0, 1.0, friction=0.0, theta=1.0)
+    motion = simulate(scene, np.linspace(0.0, 2e3, 4001), model="contact")
+    h, dh, _ = support(motion.theta, 2.0, 1.0)
+    energy = (scene.gyration2 + dh**2) * motion.omega**2 / 2 + scene.gravity * h
+    pieces = motion.stats["steps"]
+    assert np.abs(energy / energy[0] - 1).max() <= 4 * EPSILON * math.sqrt(pieces)
+    assert set(motion.mode) == {Mode.SLIDING} and not motion.events
+
+
+def test_few_pieces_make_a_slide() -> None:
+    """Their reach is some fifth of the distance to the nearest singularity in complex time."""
+    whole = simulate(scenes.slip, 3.0, model="contact")
+    assert [each.kind for each in whole.events] == [EventKind.STICK]
+    assert whole.stats["steps"] <= 20 and whole.stats["evaluations"] == 0
+
+
+def test_a_slide_is_as_smooth_where_pieces_meet() -> None:
+    """Samples next to each other, closer than any piece: second differences are those of a
+    smooth function, h^2 times the second derivative, and the rounding of three samples."""
+    step = 1e-5
+    times = np.arange(0.0, 1.4, step)
+    motion = simulate(scenes.slip, times, model="contact")
+    for name in ("theta", "omega", "x", "x_dot"):
+        values = getattr(motion, name)
+        second = np.abs(np.diff(values, 2))
+        size = np.abs(values).max()
+        bend = np.abs(np.diff(values[::1000], 2)).max() / (1000 * step) ** 2
+        assert second.max() <= 4 * bend * step**2 + 8 * EPSILON * size, name
+
+
+@pytest.mark.parametrize("b", [1e-3, 0.999999, 1.0, 1e3])
+def test_extreme_bodies_slide(b: float) -> None:
+    """Thin, long, nearly and quite round ones: energy falls, and the slip stops once."""
+    rate = math.sqrt(9.81 / max(1.0, b))
+    scene = Scene(1.0, b, theta=0.3, x_dot=0.5 * rate * max(1.0, b), friction=0.1)
+    motion = simulate(scene, np.linspace(0, 1 / rate, 101), model="contact")
+    assert motion.success
+    sliding = motion.mode == Mode.SLIDING
+    assert sliding[0]
+    energy = motion.energy[sliding]
+    assert np.all(np.diff(energy) <= 8 * EPSILON * np.abs(energy).max())
