@@ -190,26 +190,25 @@ Sign sign_on_unit_interval(const Bernstein<N>& p) {
     return detail::sign_below(p, 0);
 }
 
-// The first place in [0, 1] from which on p is negative, provably: where it is so at once, or where
-// it changes its sign before it is. What rounding cannot tell from zero is not negative.
+// The first place in [0, 1] from which on p is negative, provably. What rounding cannot tell from
+// zero is not negative; where only that comes before, it is so at once.
 template <int N>
 std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
-    const auto& all = p.coefficients;
-    const Sign first = sign(all.front());
-    if (first == Sign::negative) return 0.0;
     int changes = 0;
     Sign last = Sign::undecided;
-    for (const Tracked c : all) {
+    for (const Tracked c : p.coefficients) {
         const Sign now = sign(c);
-        if (now == Sign::undecided) continue;
-        if (now != last && (last != Sign::undecided || now == Sign::negative)) ++changes;
+        if (now == Sign::undecided || now == last) continue;
+        if (last == Sign::undecided && now == Sign::negative) return 0.0;
+        if (last != Sign::undecided) ++changes;
         last = now;
     }
     if (changes == 0) return std::nullopt;
-    if (changes == 1 && first == Sign::positive && sign(all.back()) == Sign::negative) {
+    const Sign first = sign(p.coefficients.front());
+    if (changes == 1 && first == Sign::positive && last == Sign::negative) {
         return detail::single_root(p);
     }
-    if (depth == detail::deepest) return 0.5;
+    if (depth == detail::deepest) return 0.0;
     const Parts<N> parts = divided(p);
     if (const auto left = first_negative(parts.left, depth + 1)) return 0.5 * *left;
     const auto right = first_negative(parts.right, depth + 1);

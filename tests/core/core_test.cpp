@@ -39,6 +39,31 @@ void bisection_ends_at_neighbours() {
     CHECK(root.low * root.low < 2 && root.high * root.high >= 2);
 }
 
+void bisection_by_secants_ends_at_the_same_neighbours() {
+    const auto f = [](double x) { return x * x * x - 2; };
+    const Bracket slow = bisect(0.0, 4.0, [&](double x) { return f(x) > 0; });
+    const Bracket quick = bisect_root(0.0, 4.0, f);
+    CHECK(slow.low == quick.low && slow.high == quick.high);
+    const Bracket falling = bisect_root(0.0, 4.0, [&](double x) { return -f(x); });
+    CHECK(falling.high == std::nextafter(falling.low, 4.0));
+    CHECK(f(falling.low) < 0 && f(falling.high) >= 0);
+}
+
+// From 0.25 to 0.75 it is negative; with a constant added it touches zero, or stays above.
+void the_first_place_where_a_polynomial_is_negative() {
+    const Polynomial<2> dips = polynomial(-0.25, 1.0) * polynomial(-0.75, 1.0);
+    const auto place = first_negative(bernstein(dips));
+    CHECK(place && std::abs(*place - 0.25) <= 2 * epsilon);
+    CHECK(!first_negative(bernstein(dips + polynomial(0.0625))));
+    const auto grazes = first_negative(bernstein(dips + polynomial(0.0625 - 1e-12)));
+    CHECK(grazes && std::abs(*grazes - (0.5 - 1e-6)) < 1e-9);
+    // What starts at zero and rises has not ended there; what starts below has.
+    const auto later = first_negative(bernstein(polynomial(0.0, 1.0, -2.0)));
+    CHECK(later && std::abs(*later - 0.5) <= 2 * epsilon);
+    CHECK(first_negative(bernstein(polynomial(-1.0, 3.0))) == 0.0);
+    CHECK(!first_negative(bernstein(polynomial(0.0, 0.0, 1.0))));
+}
+
 void a_polynomial_that_touches_zero_has_no_sign() {
     const Polynomial<1> x_minus_a_third = polynomial(-1.0 / 3, 1.0);
     const Polynomial<2> touches = x_minus_a_third * x_minus_a_third;
@@ -146,6 +171,8 @@ void wrong_numbers_are_refused() {
 int main() {
     a_double_double_keeps_what_rounding_takes();
     bisection_ends_at_neighbours();
+    bisection_by_secants_ends_at_the_same_neighbours();
+    the_first_place_where_a_polynomial_is_negative();
     a_polynomial_that_touches_zero_has_no_sign();
     a_dip_between_two_looks_is_found();
     every_segment_knows_every_kind_of_sample();
