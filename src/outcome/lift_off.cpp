@@ -98,7 +98,7 @@ class Follower {
 
     std::optional<EndOfSegment> end_of_slide(const State& from, double side) {
         if (std::isinf(scene_.friction) && !reaches_the_tip(scene_, from)) return std::nullopt;
-        constexpr long most_pieces = 2000;  // more only where N = F = 0 at the tip
+        constexpr long most_pieces = 2000;
         Slide slide = slide_from(scene_, from, side);
         const SlideStop stop =
             slide_on(slide, {infinity, most_pieces, tip_ + over_the_tip, false}, checkpoint_);
@@ -108,6 +108,10 @@ class Follower {
             case SlideStop::pressure_vanishes:
             case SlideStop::jams:
                 break;
+            case SlideStop::too_many_pieces:
+            case SlideStop::no_progress:
+                pieces_left_ = 0;
+                return std::nullopt;
             default:
                 return std::nullopt;
         }
