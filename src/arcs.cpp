@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "numerics/bisect.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
@@ -23,6 +25,69 @@ Arc arc(const RollingFlow& flow) {
         found.marks.push_back(double(flat));
         found.marks.push_back(double(flat + phase.quarter_turn));
     }
+    return found;
+}
+
+// The first times in a piece at which a quantity changes its sign, from one end to the other.
+template <class Quantity>
+void mark_change(const SlopePiece& piece, const Quantity& quantity, std::vector<double>& marks) {
+    const bool before = quantity(0.0) < 0;
+    if ((quantity(piece.lasts) < 0) == before) return;
+    const auto changed = [&](double since) { return (quantity(since) < 0) != before; };
+    marks.push_back(double(piece.from.time + bisect(0.0, piece.lasts, changed).high));
+}
+
+// Of a body that rocks on a slope: its turning points, the passages of the flat position and of the
+// tip, and the places without angular acceleration.
+Arc swing(const SlopeFlow& flow) {
+    const double first = double(flow.turnings[0]);
+    const double last = double(flow.turnings[1]);
+    const double period = 2 * (last - first);
+    std::vector<double> found{first, last};
+    for (const SlopePiece& piece : flow.pieces) {
+        mark_change(piece, [&](double t) { return acceleration_in(piece, t); }, found);
+        for (const double offset : {-half_pi, 0.0, half_pi}) {
+            const auto angle = [&](double t) { return angle_in(piece, t) - offset; };
+            mark_change(piece, angle, found);
+        }
+    }
+    Arc arc{ArcKind::swinging, 0.0, 0.0, period, {}};
+    for (const double mark : found) {
+        if (mark > last) continue;
+        for (const double time : {mark, 2 * last - mark, mark + period, 2 * last - mark - period}) {
+            if (time > 0 && time <= period) arc.marks.push_back(time);
+        }
+    }
+    return arc;
+}
+
+// On a slope: where its series meet, and parts of each half turn of a sum over many.
+Arc arc(const SlopeFlow& flow) {
+    if (flow.kind == MotionKind::rest) return {ArcKind::still, 0.0, 0.0, infinity, {}};
+    if (flow.kind == MotionKind::libration) {
+        Arc found = swing(flow);
+        found.period *= flow.body.time;
+        for (double& mark : found.marks) mark *= flow.body.time;
+        return found;
+    }
+    Arc found{ArcKind::rolling_steps, 0.0, 0.0, infinity, {}};
+    const auto mark_run = [&](const SlopeRun& run, double half_turns) {
+        constexpr double most_half_turns = 1e5;
+        constexpr int parts = 16;
+        double last = double(run.from.time);
+        for (double n = 1; n <= std::min(half_turns, most_half_turns); ++n) {
+            const double next = double(run.from.time + time_of(run, n));
+            for (int i = 1; i <= parts; ++i) found.marks.push_back(last + (next - last) * i / parts);
+            last = next;
+        }
+    };
+    if (flow.climb) mark_run(*flow.climb, flow.climbed);
+    for (const SlopePiece& piece : flow.pieces) found.marks.push_back(double(piece.from.time));
+    if (flow.run) {
+        const SlopePlace last = place_at(*flow.run, {flow.until, 0.0});
+        mark_run(*flow.run, (last.quarters - flow.run->from.quarters) / 2 + 1);
+    }
+    for (double& mark : found.marks) mark *= flow.body.time;
     return found;
 }
 

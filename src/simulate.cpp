@@ -10,17 +10,13 @@ namespace rolling_ellipse {
 namespace {
 
 // What "auto" stands for: no more model than the scene needs.
-Settings chosen(Settings settings, const Scene& scene, Validity validity) {
+Settings chosen(Settings settings, Validity validity) {
     if (settings.model == Model::automatic) {
         const bool fixed = settings.method != Method::automatic;  // asks for rolling, solved so
         settings.model = fixed || validity == Validity::valid ? Model::rolling : Model::contact;
     }
-    if (settings.method == Method::exact && scene.slope != 0) {
-        refuse("slope", "0 for method 'exact'", scene.slope);
-    }
     if (settings.method == Method::automatic) {
-        const bool exact = settings.model == Model::rolling && scene.slope == 0;
-        settings.method = exact ? Method::exact : Method::dop853;
+        settings.method = settings.model == Model::rolling ? Method::exact : Method::dop853;
     }
     return settings;
 }
@@ -63,7 +59,17 @@ void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoi
     end_validity(watch.holds_until, t_end, solution);
 }
 
+Solution exact_rolling_on_slope(const Scene& scene, const State& start, double t_end) {
+    SlopeFlow flow = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
+    prepare(flow, t_end);
+    validate_time(t_end, longest_time(flow));
+    Solution solution{single(scene, std::move(flow))};
+    solution.followed_until = t_end;
+    return solution;
+}
+
 Solution exact_rolling(const Scene& scene, const CertifiedScene& certified, double t_end) {
+    if (scene.slope != 0) return exact_rolling_on_slope(scene, certified.start.state, t_end);
     const RollingFlow flow = rolling_flow(*certified.rolling, certified.start.state.x);
     validate_time(t_end, longest_time(flow));
     Solution solution{single(scene, flow)};
@@ -129,12 +135,13 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
                   const Checkpoint& checkpoint) {
     validate(asked, t_end);
     const CertifiedScene certified = certify(scene);
-    const Settings settings = chosen(asked, scene, certified.certificate.end.validity);
+    const Settings settings = chosen(asked, certified.certificate.end.validity);
     Solution solution = solved(scene, certified, settings, t_end, checkpoint);
     if (settings.model == Model::contact) {
         solution.reason = in_contact(certified.reason);
         return solution;
     }
+    if (scene.slope != 0 && settings.method == Method::exact) return solution;
     if (certified.rolling) {
         judge_by_proof(certified, t_end, solution);
     } else {
@@ -147,7 +154,7 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& asked,
                   double t_end, const Checkpoint& checkpoint) {
     validate(asked, t_end);
-    const Settings settings = chosen(asked, scene, Validity::no_proof);
+    const Settings settings = chosen(asked, Validity::no_proof);
     const CoordinateStart from = coordinate_start(start);
     Solution solution = integrated(
         as_motion(scene, integrate_multipliers(scene, from, settings, t_end, checkpoint)), settings,

@@ -14,6 +14,11 @@ void look_at(const Scene&, const RollingFlow& flow, const double* times, std::si
     FlowSampler{flow, times[n - 1], n}(times, n, samples);
 }
 
+void look_at(const Scene&, const SlopeFlow& flow, const double* times, std::size_t n,
+             FlowSample* samples) {
+    for (std::size_t i = 0; i < n; ++i) samples[i] = sample(flow, times[i]);
+}
+
 void look_at(const Scene&, const SteppedRolling& motion, const double* times, std::size_t n,
              FlowSample* samples) {
     sample(motion, times, n, samples);
@@ -38,6 +43,11 @@ void look_at_rolling(const Scene& scene, const Rolling& rolling, const double* t
 }
 
 void look_at(const Scene& scene, const RollingFlow& flow, const double* times, std::size_t n,
+             ContactSample* samples) {
+    look_at_rolling(scene, flow, times, n, samples);
+}
+
+void look_at(const Scene& scene, const SlopeFlow& flow, const double* times, std::size_t n,
              ContactSample* samples) {
     look_at_rolling(scene, flow, times, n, samples);
 }

@@ -12,6 +12,7 @@
 #include "contact/units.hpp"
 #include "multipliers/steps.hpp"
 #include "rolling/flow_table.hpp"
+#include "rolling/slope_flow.hpp"
 #include "rolling/steps.hpp"
 
 namespace rolling_ellipse {
@@ -44,8 +45,8 @@ struct Resting {
 // What a body does from a time on, up to the next segment.
 struct Segment {
     double begin;
-    std::variant<RollingFlow, SteppedRolling, SteppedMultipliers, Slide, Flight, Settling, Resting,
-                 Jam>
+    std::variant<RollingFlow, SlopeFlow, SteppedRolling, SteppedMultipliers, Slide, Flight, Settling,
+                 Resting, Jam>
         law;
 };
 

@@ -5,20 +5,22 @@
 
 namespace rolling_ellipse {
 
-// The constants of the series, with lengths in units of the long semi-axis and time in a unit of
-// its own.
+// The constants of the series, with time in a unit of its own.
 struct SeriesConstants {
     double short_axis2;
     double c2;
-    double gravity;
-    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28)
+    double gravity;  // into the ground
+    double d0;       // D h^2 = d0 + d1 sin^2 phi, physics (28)
     double d1;
+    double along = 0.0;       // gravity along a slope that falls to growing angles
+    double long_axis2 = 1.0;  // other than 1 only where lengths are not in units of that axis
 };
 
 struct MotionSeries {
     Series angle;
     Series omega;
     Series path;
+    Series height;
 };
 
 // The series from the sine and cosine of the angle from the flat position and the angular velocity.

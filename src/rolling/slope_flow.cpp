@@ -1,0 +1,202 @@
+#include "rolling/slope_flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/bisect.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// A climb of fewer half turns is followed by series.
+constexpr double least_climb = 16;
+// Half turns downhill that are followed by series before a sum over them is worth its preparation.
+constexpr double half_turns_before_a_run = 1;
+
+SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega) {
+    const double s = body.side * view.sin;
+    SlopePlace place{};
+    place.omega = body.side * omega * body.time;
+    if (std::abs(s) <= view.cos) {
+        place.angle = {std::atan2(s, view.cos), 0.0};
+    } else {
+        place.quarters = std::copysign(1.0, s);
+        place.angle = {-std::copysign(std::atan2(view.cos, std::abs(s)), s), 0.0};
+    }
+    return place;
+}
+
+const SlopePlace& first_of_pieces(const SlopeFlow& flow) { return flow.pieces.front().from; }
+
+void note_turning(SlopeFlow& flow, const SlopePiece& piece, const SlopePlace& after) {
+    const double before = piece.from.omega;
+    if (std::isinf(piece.lasts)) return;
+    if (after.omega == 0) {
+        flow.turnings.push_back(after.time);
+    } else if (before != 0 && (before < 0) != (after.omega < 0)) {
+        const double since =
+            bisect(0.0, piece.lasts, [&](double t) {
+                return (value(piece.series.omega, t / piece.unit) < 0) != (before < 0);
+            }).high;
+        flow.turnings.push_back(piece.from.time + since);
+    }
+    if (flow.turnings.size() == 2) flow.kind = MotionKind::libration;
+}
+
+bool is_followed(const SlopeFlow& flow) { return flow.kind == MotionKind::libration || flow.run; }
+
+// Time at which the pieces end.
+double known_until(const SlopeFlow& flow) {
+    return flow.pieces.empty() ? 0.0 : flow.pieces.back().end();
+}
+
+// Where the series begin: at the start, or at the top of a climb.
+SlopePlace begin(SlopeFlow& flow) {
+    const SlopePlace& start = flow.start;
+    if (start.omega == 0) flow.turnings.push_back(start.time);
+    if (start.omega >= 0) return start;
+    const double n = may_run(flow.body, flow.energy.start, flow.energy.height, start.omega);
+    if (n < least_climb) return start;
+    flow.climb = slope_run(flow.body, start, flow.energy.start, n);
+    flow.climbed = n;
+    return place_after(*flow.climb, n);
+}
+
+SlopePlace circle_at(const SlopeFlow& flow, double t) {
+    SlopePlace place = flow.start;
+    const double way = t * (flow.start.omega + 0.5 * flow.acceleration * t);
+    place.time = {t, 0.0};
+    place.angle = place.angle + two_product(t, flow.start.omega) +
+                  two_product(0.5 * flow.acceleration * t, t);
+    place.omega += flow.acceleration * t;
+    place.path = {flow.body.long_axis * way, 0.0};
+    return place;
+}
+
+SlopePlace place_in_pieces(const SlopeFlow& flow, DoubleDouble time) {
+    const double t = double(time);
+    const auto later = std::upper_bound(
+        flow.pieces.begin(), flow.pieces.end(), t,
+        [](double at, const SlopePiece& piece) { return at < double(piece.from.time); });
+    const SlopePiece& piece = later == flow.pieces.begin() ? *later : later[-1];
+    return place_in(piece, double(time - piece.from.time));
+}
+
+// A swing is symmetric about its turning points.
+SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
+    const DoubleDouble first = flow.turnings[0];
+    const DoubleDouble last = flow.turnings[1];
+    const DoubleDouble half = last - first;
+    const DoubleDouble since = -last + t;
+    if (double(since) <= 0) return place_in_pieces(flow, {t, 0.0});
+    const double swings = std::floor(double(since) / double(half));
+    const DoubleDouble rest = since - half * swings;
+    const bool back = std::fmod(swings, 2.0) == 0;
+    SlopePlace place = place_in_pieces(flow, back ? last - rest : first + rest);
+    if (back) place.omega = -place.omega;
+    return place;
+}
+
+}  // namespace
+
+SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x) {
+    omega = zero_if_negligible(omega);
+    SlopeFlow flow{};
+    flow.theta = theta;
+    flow.omega = omega;
+    flow.x = x;
+    flow.body = slope_body(body, slope);
+    flow.start = first_place(flow.body, flat_view(body.axes(), theta), omega);
+    flow.energy = energy_of(flow.body, flow.start);
+    flow.kind = MotionKind::rotation;
+    const bool balanced = is_equilibrium(geometry(body.axes(), theta), std::tan(slope));
+    if (omega == 0 && balanced) flow.kind = MotionKind::rest;
+    if (flow.body.c2 == 0) {
+        flow.kind = MotionKind::uniform;
+        const double radius = flow.body.long_axis;
+        flow.acceleration =
+            flow.body.gravity.along * radius / (flow.body.gyration2 + square(radius));
+    }
+    return flow;
+}
+
+bool grow(SlopeFlow& flow) {
+    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return false;
+    if (is_followed(flow)) return false;
+    const SlopePlace from = flow.pieces.empty()
+                                ? begin(flow)
+                                : place_after(flow.body, flow.energy, flow.pieces.back());
+    if (!flow.downhill && from.omega > 0) {
+        const double w = energy_at(flow, from);
+        if (may_run(flow.body, w, geometry(flow.body, from).h, from.omega) > 0) flow.downhill = from;
+    }
+    if (flow.downhill &&
+        from.quarters - flow.downhill->quarters > 2 * half_turns_before_a_run) {
+        flow.run = slope_run(flow.body, *flow.downhill, energy_at(flow, *flow.downhill), 0.0);
+        return false;
+    }
+    flow.pieces.push_back(piece_from(flow.body, from));
+    if (!std::isinf(flow.pieces.back().lasts)) {
+        note_turning(flow, flow.pieces.back(), place_in(flow.pieces.back(), flow.pieces.back().lasts));
+    }
+    return true;
+}
+
+void prepare(SlopeFlow& flow, double t) {
+    flow.until = std::max(flow.until, t / flow.body.time);
+    if (flow.pieces.empty() && !grow(flow)) return;
+    while (known_until(flow) <= flow.until && grow(flow)) continue;
+}
+
+SlopePlace place_at(const SlopeFlow& flow, double t) {
+    const double time = t / flow.body.time;
+    if (flow.kind == MotionKind::rest || t == 0) return flow.start;
+    if (flow.kind == MotionKind::uniform) return circle_at(flow, time);
+    if (flow.kind == MotionKind::libration) return place_in_swing(flow, time);
+    if (flow.climb && time < double(first_of_pieces(flow).time)) {
+        return place_at(*flow.climb, {time, 0.0});
+    }
+    if (flow.run && time > known_until(flow)) return place_at(*flow.run, {time, 0.0});
+    return place_in_pieces(flow, {time, 0.0});
+}
+
+FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {
+    const SlopeBody& body = flow.body;
+    const DoubleDouble turned = half_pi_exact * (place.quarters - flow.start.quarters) +
+                                (place.angle - flow.start.angle);
+    return {double(turned * body.side + flow.theta), body.side * place.omega / body.time,
+            double(place.path * (body.side * body.length) + flow.x)};
+}
+
+FlowSample sample(const SlopeFlow& flow, double t) {
+    if (flow.kind == MotionKind::rest || t == 0) return {flow.theta, flow.omega, flow.x};
+    return sample_of(flow, place_at(flow, t));
+}
+
+double longest_time(const SlopeFlow& prepared) {
+    constexpr double most = 1e15;
+    const double unit = prepared.body.time;
+    if (prepared.kind == MotionKind::uniform) {
+        const double speed = std::abs(prepared.start.omega);
+        const double turned = most * pi;
+        const double last = std::sqrt(square(speed) + 2 * prepared.acceleration * turned);
+        return unit * (2 * turned / (speed + last));
+    }
+    if (prepared.kind == MotionKind::libration) {
+        return unit * most * double(prepared.turnings[1] - prepared.turnings[0]);
+    }
+    if (!prepared.run) return infinity;
+    return unit * double(prepared.run->from.time + time_of(*prepared.run, most));
+}
+
+double energy_at(const SlopeFlow& flow, const SlopePlace& at) {
+    return energy_at(flow.body, flow.energy, at, geometry(flow.body, at)).value;
+}
+
+std::optional<double> period(const SlopeFlow& prepared) {
+    if (prepared.kind == MotionKind::rest) return infinity;
+    if (prepared.kind != MotionKind::libration) return std::nullopt;
+    return prepared.body.time * double((prepared.turnings[1] - prepared.turnings[0]) * 2.0);
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,148 @@
+#include "rolling/slope_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rolling_ellipse {
+namespace {
+
+// How far a series is as good as a double beside its own size: as `reach`, for the last two terms
+// together, whose root is a square root four times over.
+double radius(const Series& series) {
+    static_assert(series_order == 16);
+    constexpr double rest = 1e-16;  // half an ulp
+    double found = 1.0;
+    for (int i = 0; i < 3; ++i) {
+        const double size = std::max({std::abs(series[0]), std::abs(series[1]) * found,
+                                      std::abs(series[2]) * square(found)});
+        const double last = std::abs(series[series_order]) + std::abs(series[series_order - 1]) / found;
+        if (last == 0) return infinity;
+        found = std::sqrt(std::sqrt(std::sqrt(std::sqrt(rest * size / last))));
+    }
+    return found;
+}
+
+// What a series adds to its first coefficient.
+double change(const Series& series, double z) {
+    double sum = series[series_order];
+    for (int k = series_order - 1; k > 0; --k) sum = sum * z + series[k];
+    return sum * z;
+}
+
+bool at_tip(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
+
+// The nearest flat position or tip.
+void normalize(SlopePlace& place) {
+    const double over = std::nearbyint(place.angle.high / half_pi);
+    if (over == 0) return;
+    place.quarters += over;
+    place.angle = place.angle - half_pi_exact * over;
+}
+
+}  // namespace
+
+SlopeBody slope_body(const Body& from, double slope) {
+    const Axes axes = from.axes();
+    const double long_axis = std::max(axes.a, axes.b);
+    SlopeBody body{};
+    body.length = std::ldexp(1.0, std::ilogb(long_axis));
+    body.time = std::ldexp(1.0, std::ilogb(long_axis / from.gravity) >> 1);
+    body.side = slope < 0 ? -1.0 : 1.0;
+    body.long_axis = long_axis / body.length;
+    body.short_axis = std::min(axes.a, axes.b) / body.length;
+    body.c2 = (body.long_axis - body.short_axis) * (body.long_axis + body.short_axis);
+    body.gyration2 = from.gyration2 / body.length / body.length;
+    const double gravity = from.gravity / body.length * body.time * body.time;
+    body.gravity = ground_gravity(gravity, std::abs(slope));
+    const double s2 = square(body.short_axis);
+    const double l2 = square(body.long_axis);
+    body.series = {s2,
+                   body.c2,
+                   body.gravity.into,
+                   s2 * (body.gyration2 + s2),
+                   body.c2 * (body.gyration2 + l2 + s2),
+                   body.gravity.along,
+                   l2};
+    body.slowest = std::sqrt(gravity * body.long_axis / (body.gyration2 + s2));
+    body.quarter_path = path_from_flat(body.long_axis, body.short_axis, 1.0, 0.0);
+    body.gain = body.gravity.along * 2 * body.quarter_path;
+    return body;
+}
+
+Geometry geometry(const SlopeBody& body, double quarters, double angle) {
+    const double s = std::sin(angle);
+    const double c = std::cos(angle);
+    const Axes axes{body.long_axis, body.short_axis};
+    return at_tip(quarters) ? geometry(axes, c, -s) : geometry(axes, s, c);
+}
+
+double path_at(const SlopeBody& body, double quarters, double angle) {
+    const double s = std::sin(std::abs(angle));
+    const double c = std::cos(angle);
+    const double over = at_tip(quarters) ? path_from_tip(body.long_axis, body.short_axis, s, c)
+                                         : path_from_flat(body.long_axis, body.short_axis, s, c);
+    return std::fma(quarters, body.quarter_path, std::copysign(over, angle));
+}
+
+SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start) {
+    const Geometry at = geometry(body, start);
+    return {0.5 * inertia_about_contact(body.gyration2, at) * square(start.omega), at.h};
+}
+
+Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
+                  const Geometry& here) {
+    const double gained = body.gravity.along * double(at.path);
+    return tracked(energy.start) + tracked(gained) + tracked(body.gravity.into) *
+           (tracked(energy.height) - tracked(here.h));
+}
+
+SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
+    const double s = std::sin(double(from.angle));
+    const double c = std::cos(double(from.angle));
+    SlopePiece piece{};
+    piece.from = from;
+    piece.unit = 1 / std::max(std::abs(from.omega), body.slowest);
+    SeriesConstants constants = body.series;
+    constants.gravity *= square(piece.unit);
+    constants.along *= square(piece.unit);
+    const bool tip = at_tip(from.quarters);
+    piece.series = motion_series(constants, tip ? c : s, tip ? -s : c, from.omega * piece.unit);
+    piece.lasts = piece.unit * std::min(radius(piece.series.omega), radius(piece.series.path));
+    return piece;
+}
+
+SlopePlace place_in(const SlopePiece& piece, double since) {
+    const double z = since / piece.unit;
+    SlopePlace place = piece.from;
+    place.time = place.time + since;
+    place.angle = place.angle + change(piece.series.angle, z);
+    place.path = place.path + change(piece.series.path, z);
+    place.omega = value(piece.series.omega, z) / piece.unit;
+    normalize(place);
+    return place;
+}
+
+double angle_in(const SlopePiece& piece, double since) {
+    return double(piece.from.angle) + change(piece.series.angle, since / piece.unit);
+}
+
+double acceleration_in(const SlopePiece& piece, double since) {
+    const double z = since / piece.unit;
+    double sum = 0.0;
+    for (int k = series_order; k > 0; --k) sum = sum * z + k * piece.series.omega[k];
+    return sum / square(piece.unit);
+}
+
+SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece) {
+    constexpr double well_known = 0.25;  // share of W in the terms it is the sum of
+    SlopePlace place = place_in(piece, piece.lasts);
+    const Geometry here = geometry(body, place);
+    const Tracked w = energy_at(body, energy, place, here);
+    if (w.value > well_known * w.magnitude) {
+        const double inertia = inertia_about_contact(body.gyration2, here);
+        place.omega = std::copysign(std::sqrt(2 * w.value / inertia), place.omega);
+    }
+    return place;
+}
+
+}  // namespace rolling_ellipse

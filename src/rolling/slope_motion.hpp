@@ -1,0 +1,84 @@
+// Rolling on a slope as power series in time, each about a place of the motion: they pass turning
+// points as any other place, and the next one begins where the last has lost its digits.
+#pragma once
+
+#include <vector>
+
+#include "numerics/double_double.hpp"
+#include "numerics/tracked.hpp"
+#include "rolling/motion_series.hpp"
+#include "scene/scene.hpp"
+
+namespace rolling_ellipse {
+
+// Body and ground in units of their own, powers of two. The slope falls to the side of growing
+// angles: one that falls to the other side is looked at from behind.
+struct SlopeBody {
+    double length;  // units [m], [s]
+    double time;
+    double side;  // +1, or -1 if seen from behind
+    double long_axis;
+    double short_axis;
+    double c2;
+    double gyration2;
+    GroundGravity gravity;   // along > 0
+    SeriesConstants series;  // for a time unit of 1
+    double slowest;          // rate of what gravity does from rest
+    double quarter_path;     // of the centre, in a quarter turn
+    double gain;             // of W = D omega^2/2 in half a turn downhill, physics (61)
+};
+
+SlopeBody slope_body(const Body& body, double slope);
+
+// The angle counts from the flat position (even quarters) or tip (odd quarters) nearby.
+struct SlopePlace {
+    DoubleDouble time;
+    double quarters;
+    DoubleDouble angle;
+    double omega;
+    DoubleDouble path;  // of the centre, since the start
+};
+
+// The geometry of a place; h'' and the radius of curvature as everywhere.
+Geometry geometry(const SlopeBody& body, double quarters, double angle);
+inline Geometry geometry(const SlopeBody& body, const SlopePlace& at) {
+    return geometry(body, at.quarters, double(at.angle));
+}
+
+// The path of the centre from the flat position of quarter 0.
+double path_at(const SlopeBody& body, double quarters, double angle);
+
+// The energy W = D omega^2/2 along the motion, from that of its start: physics (61).
+struct SlopeEnergy {
+    double start;   // W
+    double height;  // of the centre
+};
+
+SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start);
+
+struct SlopePiece {
+    SlopePlace from;
+    double unit;   // of time, in the series
+    double lasts;  // in units of the body
+    MotionSeries series;
+
+    double end() const { return double(from.time + lasts); }
+};
+
+SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from);
+
+// At a time since the begin of the piece, as the series has it.
+SlopePlace place_in(const SlopePiece& piece, double since);
+
+// The angle over the flat position or tip that the piece begins at, and the angular acceleration.
+double angle_in(const SlopePiece& piece, double since);
+double acceleration_in(const SlopePiece& piece, double since);
+
+// At its end, the angular velocity from the energy where that knows it better.
+SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece);
+
+// W at a place, and the sizes it was made from.
+Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
+                  const Geometry& here);
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,61 @@
+// Many half turns on a slope, down it or up it, at a cost that does not depend on their number.
+//
+// W = D omega^2/2 is the same function of the angle in every half turn, but for its gain w, so that
+// the time of n of them is physics (62),
+//     T(n) = int sqrt(D/2) sum_(j<n) (W + j w)^(-1/2) dphi   over one half turn,
+// and the sum is a difference of Hurwitz zeta functions, here by Euler and Maclaurin. The integrand
+// is singular beside the flat position, where D = 0, and beside the place of the least W: panels
+// are graded towards both, as those of physics (31).
+#pragma once
+
+#include <vector>
+
+#include "rolling/slope_motion.hpp"
+
+namespace rolling_ellipse {
+
+// tan((phi - centre)/scale) = grade sinh(v), first <= v <= last, by a Gauss rule.
+struct RunPanel {
+    double quarters;  // the centre, with the quarters of the run
+    double angle;
+    double scale;
+    double grade;
+    double first;
+    double last;
+    std::size_t begin;  // of its nodes
+    std::size_t size;
+};
+
+struct SlopeRun {
+    SlopeBody body;
+    SlopePlace from;
+    double turns;    // quarters of whole half turns before it, from which its own count
+    double heading;  // +1 downhill, -1 uphill
+    double path;     // at `from`, from the flat position that they end at
+    double height;
+    double energy;  // W there
+    std::vector<RunPanel> panels;
+    std::vector<double> place;   // of each node in its panel, -1 .. 1
+    std::vector<double> weight;  // of each node, with sqrt(D/2)
+    std::vector<double> level;   // W of each node in the first half turn
+    double mass;                 // the sum of all weights
+    double half_turn;            // time of the first one
+};
+
+// From a place, for as many half turns as W stays some times w above 0 everywhere: see
+// `may_run`.
+SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy, double half_turns);
+
+// Half turns from a place, the way it goes, in which W is large enough beside w for the sum.
+double may_run(const SlopeBody& body, double energy, double height, double omega);
+
+// The time of n half turns.
+DoubleDouble time_of(const SlopeRun& run, double half_turns);
+
+// The place at a time of the motion, after `from`.
+SlopePlace place_at(const SlopeRun& run, DoubleDouble time);
+
+// The place after n half turns.
+SlopePlace place_after(const SlopeRun& run, double half_turns);
+
+}  // namespace rolling_ellipse
