@@ -1,6 +1,7 @@
 #include "rolling/slope_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "numerics/quadrature.hpp"
@@ -56,6 +57,41 @@ double hill_angle(const SlopeBody& body) {
     return -std::atan2(2 * square(body.long_axis) * incline, body.c2 + std::sqrt(root));
 }
 
+// The nodes of a rule, ascending.
+struct Node {
+    double place;
+    double weight;
+};
+
+Node node_of(const GaussRule& rule, int i) {
+    const bool left = i < rule.size / 2;
+    const int from_middle = left ? (rule.size + 1) / 2 - 1 - i : i - rule.size / 2;
+    return {left ? -rule.nodes[from_middle] : rule.nodes[from_middle], rule.weights[from_middle]};
+}
+
+// The rule of the parts, whose integrand is met by a polynomial through its nodes: no singularity
+// is closer than pi/2, five times half of a part.
+const GaussRule& part_rule = gauss_rule(16);
+constexpr double widest_part = 0.6;
+
+// The angle from the centre of a panel at v, and its derivative.
+struct Offset {
+    double angle;
+    double rate;
+};
+
+Offset offset_at(const RunPanel& panel, double v) {
+    const double tan = panel.grade * std::sinh(v);
+    return {panel.scale * std::atan(tan),
+            panel.scale * std::sqrt(square(tan) + square(panel.grade)) / (1 + square(tan))};
+}
+
+// W less that at `from`.
+double gained(const SlopeRun& run, double quarters, double angle, double height) {
+    return run.body.gravity.along * (path_at(run.body, quarters, angle) - run.path) -
+           run.body.gravity.into * (height - run.height);
+}
+
 class RunMaker {
   public:
     RunMaker(const SlopeBody& body, const SlopePlace& from, double energy, double half_turns)
@@ -76,7 +112,7 @@ class RunMaker {
         const double flat = std::asinh(std::sqrt(body.series.d0 / body.series.d1));
         const double beside_hill =
             curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
-        for (int i = -2; i <= 4; i += 2) {
+        for (int i = -4; i <= 4; i += 2) {
             centres_.push_back({double(i), 0.0, flat});
             centres_.push_back({double(i + 1), hill, beside_hill});
         }
@@ -104,60 +140,50 @@ class RunMaker {
         const auto coordinate = [&](double at) {
             return std::asinh(std::tan((at - centre.at()) / scale) / grade);
         };
-        RunPanel panel{centre.quarters, centre.angle, scale,          grade, coordinate(low),
-                       coordinate(high), run_.place.size(), 0};
+        RunPanel panel{};
+        panel.quarters = centre.quarters;
+        panel.angle = centre.angle;
+        panel.scale = scale;
+        panel.grade = grade;
+        panel.first = coordinate(low);
+        panel.last = coordinate(high);
         const double width = panel.last - panel.first;
         const double whole = std::asinh(1 / grade);
         const auto mapped = [&](double v) { return (2 * v - panel.first - panel.last) / width; };
-        const GaussRule& rule =
-            gauss_rule(nodes_needed(pi / width, {mapped(0.0), mapped(whole), mapped(-whole)}));
-        panel.size = rule.size;
-        for (int i = 0; i < rule.size; ++i) {
-            const int from_middle = i < rule.size / 2 ? (rule.size + 1) / 2 - 1 - i
-                                                      : i - rule.size / 2;
-            const double node = std::copysign(rule.nodes[from_middle], i < rule.size / 2 ? -1 : 1);
-            add_node(panel, node, rule.weights[from_middle] * width / 2);
+        const int least = nodes_needed(pi / width, {mapped(0.0), mapped(whole), mapped(-whole)});
+        panel.begin = run_.nodes.weight.size();
+        add_nodes(panel, panel.first, panel.last, gauss_rule(least + least / 4), run_.nodes);
+        panel.end = run_.nodes.weight.size();
+        for (std::size_t i = panel.begin; i < panel.end; ++i) {
+            run_.mass += run_.nodes.weight[i];
+            run_.half_turn += run_.nodes.weight[i] / std::sqrt(run_.nodes.level[i]);
+        }
+        panel.part = run_.part_nodes.weight.size() / part_rule.size;
+        panel.parts = static_cast<int>(std::ceil(width / widest_part));
+        for (int i = 0; i < panel.parts; ++i) {
+            add_nodes(panel, panel.first + width * i / panel.parts,
+                      panel.first + width * (i + 1) / panel.parts, part_rule, run_.part_nodes);
         }
         run_.panels.push_back(panel);
     }
 
-    void add_node(const RunPanel& panel, double node, double weight);
+    void add_nodes(const RunPanel& panel, double first, double last, const GaussRule& rule,
+                   RunNodes& nodes) const {
+        const double half = (last - first) / 2;
+        for (int i = 0; i < rule.size; ++i) {
+            const auto [node, weight] = node_of(rule, i);
+            const auto [offset, rate] = offset_at(panel, first + half * (1 + node));
+            const double angle = panel.angle + offset;
+            const Geometry at = geometry(run_.body, panel.quarters, angle);
+            const double root = std::sqrt(0.5 * inertia_about_contact(run_.body.gyration2, at));
+            nodes.weight.push_back(weight * half * rate * root);
+            nodes.level.push_back(run_.energy + gained(run_, panel.quarters, angle, at.h));
+        }
+    }
 
     SlopeRun run_;
     std::vector<Centre> centres_;
 };
-
-// The angle from the centre of a panel at v, and its derivative.
-struct Offset {
-    double angle;
-    double rate;
-};
-
-Offset offset_at(const RunPanel& panel, double node) {
-    const double v = 0.5 * ((panel.first + panel.last) + node * (panel.last - panel.first));
-    const double tan = panel.grade * std::sinh(v);
-    return {panel.scale * std::atan(tan),
-            panel.scale * std::sqrt(square(tan) + square(panel.grade)) / (1 + square(tan))};
-}
-
-// W less that at `from`.
-double gained(const SlopeRun& run, double quarters, double angle, double height) {
-    return run.body.gravity.along * (path_at(run.body, quarters, angle) - run.path) -
-           run.body.gravity.into * (height - run.height);
-}
-
-void RunMaker::add_node(const RunPanel& panel, double node, double weight) {
-    const auto [offset, rate] = offset_at(panel, node);
-    const double angle = panel.angle + offset;
-    const Geometry at = geometry(run_.body, panel.quarters, angle);
-    const double root = std::sqrt(0.5 * inertia_about_contact(run_.body.gyration2, at));
-    const double level = run_.energy + gained(run_, panel.quarters, angle, at.h);
-    run_.place.push_back(node);
-    run_.weight.push_back(weight * rate * root);
-    run_.level.push_back(level);
-    run_.mass += run_.weight.back();
-    run_.half_turn += run_.weight.back() / std::sqrt(level);
-}
 
 // Half turns that take about so long: as if D and W were the same everywhere.
 double guess(const SlopeRun& run, double time) {
@@ -166,31 +192,39 @@ double guess(const SlopeRun& run, double time) {
     return std::max(std::floor(time / run.mass * (speed + change)), 0.0);
 }
 
-// The place in a panel, -1 .. 1, at a time after its begin: the integrand by Legendre polynomials,
+// The place in a part, -1 .. 1, at a time after its begin: the integrand by Legendre polynomials,
 // from the times that belong to the nodes.
-double place_in_panel(const double* nodes, const double* times, std::size_t n, double time) {
-    constexpr std::size_t most = 128;
-    double before[most], now[most], coefficients[most];
-    for (std::size_t i = 0; i < n; ++i) {
+double place_in_part(const double* times, double time) {
+    constexpr int n = 16;
+    std::array<double, n> nodes, before, now, coefficients;
+    for (int i = 0; i < n; ++i) {
+        nodes[i] = node_of(part_rule, i).place;
         before[i] = 1.0;
         now[i] = nodes[i];
     }
-    for (std::size_t k = 0; k < n; ++k) {
+    for (int k = 0; k < n; ++k) {
+        const double up = (2 * k + 3.0) / (k + 2);
+        const double down = (k + 1.0) / (k + 2);
         double sum = 0.0;
-        for (std::size_t i = 0; i < n; ++i) {
+        for (int i = 0; i < n; ++i) {
             sum += times[i] * before[i];
-            const double next = ((2 * k + 3) * nodes[i] * now[i] - (k + 1) * before[i]) / (k + 2);
+            const double next = up * nodes[i] * now[i] - down * before[i];
             before[i] = now[i];
             now[i] = next;
         }
         coefficients[k] = (k + 0.5) * sum;
     }
-    double x = std::min(2 * time / (2 * coefficients[0]) - 1, 1.0);
+    constexpr int most_tries = 60;
+    constexpr double converged = 1e-9;  // Newton's method squares it
+    double x = std::clamp(time / coefficients[0] - 1, -1.0, 1.0);
     double low = -1.0;
     double high = 1.0;
-    for (int i = 0; i < 40; ++i) {
-        double p0 = 1.0, p1 = x, rate = coefficients[0], sum = coefficients[0] * (x + 1);
-        for (std::size_t k = 1; k < n; ++k) {
+    for (int i = 0; i < most_tries; ++i) {
+        double p0 = 1.0;
+        double p1 = x;
+        double rate = coefficients[0];
+        double sum = coefficients[0] * (x + 1);
+        for (int k = 1; k < n; ++k) {
             const double p2 = ((2 * k + 1) * x * p1 - k * p0) / (k + 1);
             rate += coefficients[k] * p1;
             sum += coefficients[k] * (p2 - p0) / (2 * k + 1);
@@ -203,13 +237,26 @@ double place_in_panel(const double* nodes, const double* times, std::size_t n, d
         if (!(next >= low && next <= high)) next = 0.5 * (low + high);
         const double moved = std::abs(next - x);
         x = next;
-        if (moved < 1e-9) break;  // Newton's method squares it
+        if (moved < converged) break;
     }
     return x;
 }
 
-SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double node, double half_turns) {
-    const double angle = panel.angle + offset_at(panel, node).angle;
+// The times that belong to nodes, after so many half turns; returns their sum.
+double times_of(const SlopeRun& run, const RunNodes& nodes, std::size_t begin, std::size_t end,
+                double half_turns, double* times) {
+    const double change = run.heading * half_turns * run.body.gain;
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+        const double time = nodes.weight[i] / std::sqrt(nodes.level[i] + change);
+        if (times) *times++ = time;
+        sum += time;
+    }
+    return sum;
+}
+
+SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns) {
+    const double angle = panel.angle + offset_at(panel, v).angle;
     const Geometry at = geometry(run.body, panel.quarters, angle);
     const double w = run.energy + gained(run, panel.quarters, angle, at.h) +
                      run.heading * half_turns * run.body.gain;
@@ -222,6 +269,33 @@ SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double node, dou
     place.path = run.from.path + (path_at(run.body, panel.quarters, angle) - run.path) +
                  two_product(turned, run.body.quarter_path);
     return place;
+}
+
+// The place at a time after the upper end of the half turn that follows n of them.
+SlopePlace place_in_half_turn(const SlopeRun& run, double half_turns, double rest) {
+    for (const RunPanel& panel : run.panels) {
+        const double whole =
+            times_of(run, run.nodes, panel.begin, panel.end, half_turns, nullptr);
+        const bool is_last = &panel == &run.panels.back();
+        if (rest > whole && !is_last) {
+            rest -= whole;
+            continue;
+        }
+        for (int i = 0; i < panel.parts; ++i) {
+            std::array<double, 16> times;
+            const std::size_t begin = (panel.part + i) * times.size();
+            const double part = times_of(run, run.part_nodes, begin, begin + times.size(),
+                                         half_turns, times.data());
+            if (rest > part && i + 1 < panel.parts) {
+                rest -= part;
+                continue;
+            }
+            const double x = place_in_part(times.data(), std::clamp(rest, 0.0, part));
+            const double v = panel.first + (panel.last - panel.first) * (i + 0.5 * (x + 1)) / panel.parts;
+            return place_on(run, panel, v, half_turns);
+        }
+    }
+    return run.from;
 }
 
 }  // namespace
@@ -241,47 +315,31 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
 DoubleDouble time_of(const SlopeRun& run, double half_turns) {
     const double gain = run.body.gain;
     const double lowest = run.heading < 0 ? (half_turns - 1) * gain : 0.0;
+    const auto& [weight, level] = run.nodes;
     DoubleDouble sum{};
-    for (std::size_t i = 0; i < run.weight.size(); ++i) {
-        sum = sum + two_product(run.weight[i], sum_of_rates(run.level[i] - lowest, gain, half_turns));
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+        sum = sum + two_product(weight[i], sum_of_rates(level[i] - lowest, gain, half_turns));
     }
     return sum;
 }
 
 SlopePlace place_at(const SlopeRun& run, DoubleDouble time) {
     constexpr int most_tries = 20;
-    std::vector<double> times(run.weight.size());
     const DoubleDouble since = time - run.from.time;
     double half_turns = guess(run, double(since));
     double rest = 0.0;
     double lasts = 0.0;
     for (int i = 0; i < most_tries; ++i) {
         rest = double(since - time_of(run, half_turns));
-        lasts = 0.0;
-        for (std::size_t j = 0; j < times.size(); ++j) {
-            const double w = run.level[j] + run.heading * half_turns * run.body.gain;
-            times[j] = run.weight[j] / std::sqrt(w);
-            lasts += times[j];
-        }
+        lasts = times_of(run, run.nodes, 0, run.nodes.weight.size(), half_turns, nullptr);
         const double over = std::floor(rest / lasts);
         if (over == 0 || half_turns + over < 0) break;
         half_turns += over;
     }
-    if (run.heading < 0) rest = lasts - rest;
-    for (const RunPanel& panel : run.panels) {
-        double part = 0.0;
-        for (std::size_t j = 0; j < panel.size; ++j) part += times[panel.begin + j];
-        if (rest > part && &panel != &run.panels.back()) {
-            rest -= part;
-            continue;
-        }
-        const double node = place_in_panel(&run.place[panel.begin], &times[panel.begin], panel.size,
-                                           std::clamp(rest, 0.0, part));
-        SlopePlace place = place_on(run, panel, node, half_turns);
-        place.time = time;
-        return place;
-    }
-    return run.from;
+    SlopePlace place =
+        place_in_half_turn(run, half_turns, run.heading < 0 ? lasts - rest : rest);
+    place.time = time;
+    return place;
 }
 
 SlopePlace place_after(const SlopeRun& run, double half_turns) {

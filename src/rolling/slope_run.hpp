@@ -14,7 +14,14 @@
 
 namespace rolling_ellipse {
 
-// tan((phi - centre)/scale) = grade sinh(v), first <= v <= last, by a Gauss rule.
+// Nodes of Gauss rules, each with its weight times sqrt(D/2), and W in the first half turn.
+struct RunNodes {
+    std::vector<double> weight;
+    std::vector<double> level;
+};
+
+// tan((phi - centre)/scale) = grade sinh(v), first <= v <= last. The integral over all of it takes
+// the nodes of one rule, one up to a place in it the finer ones of its parts.
 struct RunPanel {
     double quarters;  // the centre, with the quarters of the run
     double angle;
@@ -23,7 +30,9 @@ struct RunPanel {
     double first;
     double last;
     std::size_t begin;  // of its nodes
-    std::size_t size;
+    std::size_t end;
+    std::size_t part;  // the first of its parts
+    int parts;
 };
 
 struct SlopeRun {
@@ -35,9 +44,8 @@ struct SlopeRun {
     double height;
     double energy;  // W there
     std::vector<RunPanel> panels;
-    std::vector<double> place;   // of each node in its panel, -1 .. 1
-    std::vector<double> weight;  // of each node, with sqrt(D/2)
-    std::vector<double> level;   // W of each node in the first half turn
+    RunNodes nodes;
+    RunNodes part_nodes;
     double mass;                 // the sum of all weights
     double half_turn;            // time of the first one
 };
