@@ -77,7 +77,8 @@ Arc arc(const SlopeFlow& flow) {
         double last = double(run.from.time);
         for (double n = 1; n <= std::min(half_turns, most_half_turns); ++n) {
             const double next = double(run.from.time + time_of(run, n));
-            for (int i = 1; i <= parts; ++i) found.marks.push_back(last + (next - last) * i / parts);
+            for (int i = 1; i <= parts; ++i)
+                found.marks.push_back(last + (next - last) * i / parts);
             last = next;
         }
     };

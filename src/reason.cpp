@@ -10,6 +10,14 @@ namespace {
 
 std::string in_degrees(double angle) { return brief(angle * 180 / pi) + " deg"; }
 
+std::string extremes_of(const Certificate& c) {
+    if (!c.smallest_normal_force_angle) return "downhill N and |F|/N would grow beyond all bounds";
+    return "the smallest N is " + brief(*c.smallest_normal_force) +
+           " N (theta = " + in_degrees(*c.smallest_normal_force_angle) + "), the largest |F|/N " +
+           brief(*c.largest_friction_needed) +
+           " (theta = " + in_degrees(*c.largest_friction_needed_angle) + ")";
+}
+
 }  // namespace
 
 std::string brief(double value) {
@@ -26,11 +34,6 @@ std::string why_not_rolling(const Scene& scene, const State& start) {
                " m/s at the contact";
     }
     return {};
-}
-
-std::string why_no_proof(const Scene& scene, const State& start) {
-    if (scene.slope != 0) return "the ground has a slope of " + brief(scene.slope) + " rad";
-    return why_not_rolling(scene, start);
 }
 
 std::string why_ended(Ending ending, const Settings& settings, double t, double t_end) {
@@ -67,10 +70,8 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
 }
 
 std::string reason(const Scene& scene, const ContactWatch& watch) {
-    const std::string start = scene.slope == 0 ? "of a start in coordinates"
-                                               : "on a slope of " + brief(scene.slope) + " rad";
-    return "rolling: " + start +
-           " nothing is proved in advance; along the motion computed the smallest N is " +
+    return "rolling: of a start in coordinates nothing is proved in advance; "
+           "along the motion computed the smallest N is " +
            brief(watch.smallest_normal_force) +
            " N (t = " + brief(watch.smallest_normal_force_time) + " s), the largest |F|/N " +
            brief(watch.largest_friction_needed) +
@@ -80,13 +81,10 @@ std::string reason(const Scene& scene, const ContactWatch& watch) {
 
 std::string reason(const Scene& scene, const State& start, const Certificate& c) {
     if (c.end.validity == Validity::no_proof) {
-        return "rolling: nothing to prove, " + why_no_proof(scene, start);
+        return "rolling: nothing to prove, " + why_not_rolling(scene, start);
     }
-    const std::string extremes = "the smallest N is " + brief(*c.smallest_normal_force) +
-                                 " N (theta = " + in_degrees(*c.smallest_normal_force_angle) +
-                                 "), the largest |F|/N " + brief(*c.largest_friction_needed) +
-                                 " (theta = " + in_degrees(*c.largest_friction_needed_angle) +
-                                 "), the friction coefficient " + brief(scene.friction);
+    const std::string extremes =
+        extremes_of(c) + ", the friction coefficient " + brief(scene.friction);
     if (c.end.validity != Validity::valid && !c.end.angle) {
         return "rolling: holds from the start on, towards the tip it never reaches; before the "
                "start the same motion would break it; on the whole motion " +

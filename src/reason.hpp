@@ -12,9 +12,8 @@ namespace rolling_ellipse {
 // A number with six digits.
 std::string brief(double value);
 
-// Why a start does not roll, and why nothing is proved of its motion.
+// Why a start does not roll, so that nothing is proved of its motion.
 std::string why_not_rolling(const Scene& scene, const State& start);
-std::string why_no_proof(const Scene& scene, const State& start);
 
 // What makes rolling the right model of a motion, or ends it: as proved, or as seen on the way.
 std::string reason(const Scene& scene, const State& start, const Certificate& certificate);

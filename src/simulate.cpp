@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "proof/slope.hpp"
 #include "proof/watch.hpp"
 #include "reason.hpp"
 #include "scene/refuse.hpp"
@@ -33,17 +34,18 @@ void end_validity(double t, double t_end, Solution& solution) {
     }
 }
 
-// On level ground the certificate knows for how long rolling is true.
+// The certificate knows for how long rolling is true.
 void judge_by_proof(const CertifiedScene& certified, double t_end, Solution& solution) {
     const EndOfRolling& end = certified.certificate.end;
     solution.reason = certified.reason;
     if (!end.angle) return;
+    if (certified.on_slope) return end_validity(certified.ends_after, t_end, solution);
     const auto* flow = std::get_if<RollingFlow>(&solution.motion.segments.front().law);
     const double ends = time_of_end(flow ? *flow : rolling_flow(*certified.rolling), end);
     end_validity(ends, t_end, solution);
 }
 
-// On a slope, and where the constraints may be broken, the motion has to be watched.
+// Where the constraints may be broken, the motion has to be watched.
 void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoint,
                     Solution& solution) {
     const std::vector<double> knots = knot_times(solution.motion);
@@ -59,20 +61,19 @@ void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoi
     end_validity(watch.holds_until, t_end, solution);
 }
 
-Solution exact_rolling_on_slope(const Scene& scene, const State& start, double t_end) {
-    SlopeFlow flow = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
-    prepare(flow, t_end);
-    validate_time(t_end, longest_time(flow));
-    Solution solution{single(scene, std::move(flow))};
-    solution.followed_until = t_end;
-    return solution;
-}
-
 Solution exact_rolling(const Scene& scene, const CertifiedScene& certified, double t_end) {
-    if (scene.slope != 0) return exact_rolling_on_slope(scene, certified.start.state, t_end);
-    const RollingFlow flow = rolling_flow(*certified.rolling, certified.start.state.x);
-    validate_time(t_end, longest_time(flow));
-    Solution solution{single(scene, flow)};
+    Solution solution{single(scene, Resting{certified.start.state})};
+    auto& law = solution.motion.segments.front().law;
+    if (certified.on_slope) {
+        SlopeFlow flow = *certified.on_slope;
+        prepare(flow, t_end);
+        validate_time(t_end, longest_time(flow));
+        law = std::move(flow);
+    } else {
+        const RollingFlow flow = rolling_flow(*certified.rolling, certified.start.state.x);
+        validate_time(t_end, longest_time(flow));
+        law = flow;
+    }
     solution.followed_until = t_end;
     return solution;
 }
@@ -119,11 +120,18 @@ Solution solved(const Scene& scene, const CertifiedScene& certified, const Setti
 }  // namespace
 
 CertifiedScene certify(const Scene& scene) {
-    CertifiedScene result{initial_state(scene), {}, {{Validity::no_proof}, {}, {}, {}, {}}, {}};
+    CertifiedScene result{
+        initial_state(scene), {}, {}, infinity, {{Validity::no_proof}, {}, {}, {}, {}}, {}};
     const State& start = result.start.state;
     validate_motion(scene.body(), start.theta, start.omega);
     validate_velocity(scene.body(), start.x_dot, start.z_dot);
-    if (rolls(start) && scene.slope == 0) {
+    if (rolls(start) && scene.slope != 0) {
+        SlopeFlow flow = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
+        const LawMeetings met = law_meetings(flow, scene.friction);
+        if (const auto& end = met.touched ? met.touched : met.broken) result.ends_after = end->time;
+        result.certificate = certify_on_slope(scene, start, met);
+        result.on_slope = std::move(flow);
+    } else if (rolls(start)) {
         result.rolling = rolling_start(scene.body(), start.theta, start.omega);
         result.certificate = certify_rolling(*result.rolling, scene.mass, scene.friction);
     }
@@ -141,8 +149,7 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
         solution.reason = in_contact(certified.reason);
         return solution;
     }
-    if (scene.slope != 0 && settings.method == Method::exact) return solution;
-    if (certified.rolling) {
+    if (certified.rolling || certified.on_slope) {
         judge_by_proof(certified, t_end, solution);
     } else {
         judge_by_watch(scene, t_end, checkpoint, solution);
@@ -165,10 +172,16 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
 }
 
 double period(const Scene& scene) {
-    const CertifiedScene certified = certify(scene);
+    CertifiedScene certified = certify(scene);
+    if (certified.on_slope) {
+        while (grow(*certified.on_slope)) continue;
+        if (const auto found = period(*certified.on_slope)) return *found;
+        throw std::invalid_argument("scene must repeat itself, but on a slope of " +
+                                    brief(scene.slope) + " rad the body runs downhill for ever");
+    }
     if (!certified.rolling) {
-        throw std::invalid_argument("scene must start rolling on level ground, but " +
-                                    why_no_proof(scene, certified.start.state));
+        throw std::invalid_argument("scene must start rolling, but " +
+                                    why_not_rolling(scene, certified.start.state));
     }
     return period(rolling_flow(*certified.rolling));
 }

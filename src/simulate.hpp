@@ -13,8 +13,9 @@ namespace rolling_ellipse {
 // The certificate of the motion that starts from the scene; its reason in one sentence.
 struct CertifiedScene {
     InitialState start;
-    std::optional<RollingStart>
-        rolling;  // of a body that rolls on level ground: others have no proof
+    std::optional<RollingStart> rolling;  // of a body that rolls on level ground
+    std::optional<SlopeFlow> on_slope;    // of one that rolls on a slope
+    double ends_after;                    // the time at which that ends [s]
     Certificate certificate;
     std::string reason;
 };
@@ -28,7 +29,8 @@ Solution simulate(const Scene& scene, const Settings& settings, double t_end,
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 
-// Time of a full swing or turn of the rolling motion that starts from the scene.
+// Time of a full swing or turn of the rolling motion that starts from the scene; throws
+// std::invalid_argument where it does not repeat.
 double period(const Scene& scene);
 
 }  // namespace rolling_ellipse

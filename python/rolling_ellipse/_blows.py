@@ -27,17 +27,15 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     ``RESTS``           it is in equilibrium and stays
     ``ROCKS``           it rolls until it turns back
     ``ROLLS_OVER``      it rolls until it passes the tip; a circle, which has none, rolls on
-    ``EDGE``            rounding cannot tell, or nothing of all that happens for long (on a slope)
+    ``EDGE``            rounding cannot tell
     ==================  ==========================================================================
 
-    On level ground nothing is integrated: the blow is the collision law of `Scene.initial_state`,
-    and what rolls after it is for the proofs of `classify`. On a slope the rolling motion is
-    followed by "dop853" at rounding level to the first of these events: ``ROCKS`` is the first
-    instant without rotation, ``ROLLS_OVER`` the first passage of a position with the long axis at
-    right angles to the ground (of a circle: half a turn), ``SLIPS`` or (with infinite friction)
-    ``LOSES_CONTACT`` the end of rolling. It is followed for 64 sqrt((L + k^2/L)/(g |sin(slope)|)),
-    L the long semi-axis, and at most 100 000 steps: in the first 64th a body at rest runs about its
-    own length downhill.
+    Nothing is stepped: the blow is the collision law of `Scene.initial_state`, and what rolls after
+    it is for the proofs of `classify`. On a slope the rolling motion is followed by the power
+    series of `certify` to the first of these events: ``ROCKS`` is the first instant without
+    rotation, ``ROLLS_OVER`` the first passage of a position with the long axis at right angles to
+    the ground (of a circle: half a turn), ``SLIPS`` or (with infinite friction) ``LOSES_CONTACT``
+    the end of rolling.
 
     Parameters
     ----------

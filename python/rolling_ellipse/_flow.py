@@ -93,12 +93,13 @@ def period(scene: Scene) -> float:
     """Return the time of a full swing, or of one full turn, of the rolling motion [s].
 
     Infinite for a body at rest. By the graded quadrature of the energy integral, with an error of
-    a few units in the last place.
+    a few units in the last place; on a slope, where only a swing repeats itself, from its turning
+    points, by power series in time.
 
     Parameters
     ----------
     scene : Scene
-        Must start rolling (after its impulse) on level ground.
+        Must start rolling (after its impulse), on a slope between two turning points.
 
     Raises
     ------

@@ -46,22 +46,23 @@ def simulate(
         [0, end] is. Rolling for more than 1e15 half turns or swings is refused: a double does not
         know its phase.
     model : {"auto", "rolling", "multipliers", "contact"}
-        "rolling" is rolling without slip; on level ground the certificate (see `certify`) says
-        until when it is true, on a slope the forces along the computed motion. "contact" is the
-        whole motion: it rolls, slides, flies, hits the ground and comes to rest, on segments joined
-        by ``events``; exact rolling and flight, "dop853" at rounding level for the rest. "auto" is
-        "rolling" where the certificate proves it, and "contact" elsewhere; with a method given it
+        "rolling" is rolling without slip; the certificate (see `certify`) says until when it is
+        true. "contact" is the whole motion: it rolls, slides, flies, hits the ground and comes to
+        rest, on segments joined by ``events``; exact rolling and flight, "dop853" at rounding level
+        for the rest. "auto" is "rolling" where the certificate proves it, and "contact" elsewhere; with a method given it
         is "rolling". "multipliers" is the same motion in the report's five coordinates
         with four constraints and their Lagrange multipliers, for study: "dop853" (also its
         "auto"), "dopri5", "rk4", or "radau" with the stabilization "ggl".
     method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
         "exact" inverts the energy integral at each time; nothing is stepped, and neither
-        tolerances nor the span matter. It needs level ground. The others integrate the equation
-        of motion: "dop853" and "dopri5" are explicit Runge-Kutta pairs of order 8 and 5 with
+        tolerances nor the span matter. On a slope power series in time at rounding level follow
+        one swing, or the first half turns; what repeats itself is not followed again, and many
+        half turns downhill or uphill are one sum, a difference of Hurwitz zeta functions [8]_. The
+        others integrate the equation of motion: "dop853" and "dopri5" are explicit Runge-Kutta pairs of order 8 and 5 with
         error control [1]_; "rk4" is the classical method; "gauss" is Gauss-Legendre collocation
         of order ``2 * stages``, symmetric and symplectic, whose energy error does not grow, with
         rounding errors that only walk at random [2]_ [3]_; "radau" is Radau IIA of order 5 [4]_.
-        "auto" is "exact" on level ground and "dop853" on a slope.
+        "auto" is "exact".
     rtol, atol : float
         Allowed local error of the pairs in each component of the state (theta and omega, or the
         five coordinates and their rates): atol + rtol times its size.
@@ -109,7 +110,7 @@ def simulate(
     ValueError
         If times are negative, not increasing or not finite, a name is unknown, an argument is out
         of range or of no use to the method, or the models "rolling" or "multipliers" are asked
-        for a scene that does not start rolling, or the method "exact" for a slope.
+        for a scene that does not start rolling.
     IntegrationError
         If the integration stops before the last time (MAX_EVENTS, MAX_STEPS, STEP_TOO_SMALL or
         STEP_TOO_LARGE); its ``trajectory`` holds what there is.
@@ -125,6 +126,7 @@ def simulate(
     .. [5] J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1.
     .. [6] Ch. Lubich, Ch. Engstler, U. Nowak, U. Poehle, Mech. Struct. Mach. 23 (1995) 473.
     .. [7] C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12-13 (1985) 77.
+    .. [8] NIST Digital Library of Mathematical Functions, 25.11.
     """
     require_scene(scene)
     raise_on_failure = flag("raise_on_failure", raise_on_failure)

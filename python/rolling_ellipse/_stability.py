@@ -48,7 +48,7 @@ def advice(motion: Trajectory) -> str | None:
 def _better(motion: Trajectory) -> str:
     if motion.model == "multipliers":
         return "or stabilization 'projection+energy'"
-    return "or method 'gauss'" if motion.scene.slope else "or method 'exact', which takes none"
+    return "or method 'exact', which takes none"
 
 
 def _too_stiff(settings: Settings, step: float, growth: float) -> str:

@@ -6,10 +6,8 @@
 #include <optional>
 
 #include "contact/continuation.hpp"
-#include "integrator/events.hpp"
-#include "integrator/runge_kutta.hpp"
 #include "proof/certificate.hpp"
-#include "proof/law.hpp"
+#include "proof/slope_end.hpp"
 #include "scene/impact.hpp"
 #include "scene/refuse.hpp"
 
@@ -67,7 +65,7 @@ class ContactRun {
             case Mode::rest:
                 return rest();
             case Mode::rolling:
-                return scene_.slope == 0 ? roll_exactly() : roll_by_steps();
+                return scene_.slope == 0 ? roll_exactly() : roll_on_slope();
             case Mode::sliding:
                 return slide();
             case Mode::flight:
@@ -102,22 +100,19 @@ class ContactRun {
         stop_rolling(lasts, last.theta, last.omega, last.x);
     }
 
-    void roll_by_steps() {
-        const RollingDynamics dynamics(scene_);
-        const auto margins = [&](const Vector<2>& y) -> std::array<double, 1> {
-            return {law_margin(dynamics.force(geometry(axes_, y[0]), y[1]), scene_.friction)};
-        };
-        SteppedRolling motion = rolling_from(scene_, state_, dop853());
-        ExplicitMethod<DormandPrince853, RollingEquation> integrator(motion.equation);
-        const Until until = integrate_until(integrator, motion.steps, tolerance(), steps_left(),
-                                            t_end_ - t_, margins, checkpoint_);
-        take_over(until, motion.steps);
-        const double lasts = until.time;
-        const double t0 = t_;
-        if (lasts > 0) add_segment(motion);
-        if (ending_ || t0 + lasts > t_end_) return finish();
-        FlowSample last{};
-        sample(motion, &lasts, 1, &last);
+    void roll_on_slope() {
+        SlopeFlow flow =
+            slope_flow(scene_.body(), scene_.slope, state_.theta, state_.omega, state_.x);
+        const double left = t_end_ - t_;
+        const LawMeetings met = law_meetings(flow, scene_.friction, left);
+        const double lasts = met.broken ? met.broken->time : infinity;
+        prepare(flow, std::min(lasts, left));
+        if (lasts == infinity) {
+            validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
+        }
+        const FlowSample last = lasts < infinity ? sample(flow, lasts) : FlowSample{};
+        if (lasts > 0) add_segment(std::move(flow));
+        if (t_ + lasts > t_end_) return finish();
         stop_rolling(lasts, last.theta, last.omega, last.x);
     }
 
@@ -254,13 +249,6 @@ class ContactRun {
     void finish() {
         t_ = t_end_;
         if (!ending_) ending_ = Ending::completed;
-    }
-
-    Settings dop853() const {
-        Settings settings = settings_;
-        settings.method = Method::dop853;
-        settings.step.reset();
-        return settings;
     }
 
     double rest_speed() const {

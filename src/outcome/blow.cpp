@@ -1,17 +1,11 @@
 #include "outcome/blow.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "contact/continuation.hpp"
-#include "integrator/events.hpp"
-#include "contact/units.hpp"
-#include "integrator/events.hpp"
-#include "integrator/runge_kutta.hpp"
-#include "proof/law.hpp"
-#include "rolling/steps.hpp"
+#include "integrator/system.hpp"
+#include "proof/slope_end.hpp"
 #include "scene/impact.hpp"
 #include "scene/refuse.hpp"
 
@@ -23,46 +17,43 @@ Outcome broken(double friction) {
     return std::isinf(friction) ? Outcome::loses_contact : Outcome::slips;
 }
 
-// From the angle, as the motion goes, to the next position in which the long axis stands upright.
-double turn_to_the_tip(const Axes& axes, double theta, double direction) {
-    const FlatView at = flat_view(axes, theta);
-    if (at.c2 == 0) return pi;
-    const double left = half_pi - direction * std::atan2(at.sin, at.cos);
-    return left > equal_ulps * epsilon ? left : pi;
+// Of a circle, which has no tip: what becomes of it in half a turn.
+Outcome of_circle(const SlopeFlow& flow) {
+    const double uphill = flow.start.omega;
+    if (uphill >= 0) return Outcome::rolls_over;
+    return square(uphill) < 2 * pi * flow.acceleration ? Outcome::rocks : Outcome::rolls_over;
 }
 
-// Of a body that rolls on a slope: its motion, in units of its own.
-Outcome followed(const Scene& in_si, const State& from, const Checkpoint& checkpoint) {
-    constexpr long most_steps = 100'000;
-    constexpr double most_falls = 64;  // times in which a body from rest gains its length downhill
-    const Units units = natural_units(in_si);
-    const Scene scene = body_in_units(in_si, units);
-    const State start = in_units(from, units);
-    const Axes axes = scene.axes();
-    const RollingDynamics dynamics(scene);
-    const double rate = dynamics.accelerations(geometry(axes, start.theta), start.omega).theta;
-    const double direction = std::copysign(1.0, start.omega != 0 ? start.omega : rate);
-
-    Settings settings{};
-    settings.method = Method::dop853;
-    SteppedRolling motion = rolling_from(scene, start, settings);
-    const double theta = motion.steps.knots.front().y[0];
-    const double to_tip = turn_to_the_tip(axes, theta, direction);
-    enum End { rolling_ends, turns_back, passes_the_tip };
-    const auto margins = [&](const Vector<2>& y) -> std::array<double, 3> {
-        return {law_margin(dynamics.force(geometry(axes, y[0]), y[1]), scene.friction),
-                direction * y[1], to_tip - direction * (y[0] - theta)};
-    };
-    const double length = std::max(scene.a, scene.b);
-    const double fall = std::sqrt((length + scene.body().gyration2 / length) /
-                                  std::abs(scene.ground_gravity().along));
-    const double longest = std::min(most_falls * fall, std::numeric_limits<double>::max());
-    ExplicitMethod<DormandPrince853, RollingEquation> integrator(motion.equation);
-    const Until until =
-        integrate_until(integrator, motion.steps, finest, most_steps, longest, margins, checkpoint);
-    if (until.ending != Ending::event) return Outcome::edge;
-    if (until.which == rolling_ends) return broken(scene.friction);
-    return until.which == turns_back ? Outcome::rocks : Outcome::rolls_over;
+// Of a body that rolls on a slope: the first that happens along its series.
+Outcome followed(const Scene& scene, const State& start, const Checkpoint& checkpoint) {
+    constexpr int most_pieces = 100'000;
+    SlopeFlow flow = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
+    if (flow.kind == MotionKind::uniform) {
+        const LawMeetings met = law_meetings(flow, scene.friction);
+        if (met.touched) return Outcome::edge;
+        return met.broken ? broken(scene.friction) : of_circle(flow);
+    }
+    LawWatch watch(flow, scene.friction);
+    SlopePlace place = flow.start;
+    for (int i = 0; i < most_pieces; ++i) {
+        if (i % steps_between_checks == 0) checkpoint();
+        const SlopePiece piece = piece_from(flow.body, place);
+        if (std::isinf(piece.lasts)) return Outcome::edge;
+        const SlopePlace next = place_after(flow.body, flow.energy, piece);
+        const double turns = double(time_of_turning(piece));
+        const double tips = time_of_tip(piece);
+        const bool breaks = watch.look(piece);
+        const LawMeetings met = watch.met();
+        const double first = std::min(turns, tips);
+        const auto before = [&](const std::optional<Meeting>& meeting) {
+            return meeting && meeting->time <= first * flow.body.time;
+        };
+        if (before(met.touched)) return Outcome::edge;
+        if (breaks && before(met.broken)) return broken(scene.friction);
+        if (first < infinity) return turns < tips ? Outcome::rocks : Outcome::rolls_over;
+        place = next;
+    }
+    return Outcome::edge;
 }
 
 Outcome outcome_on_slope(const Scene& scene, const State& start, Mode mode,

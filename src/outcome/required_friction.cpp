@@ -16,7 +16,10 @@ double required_friction(const Scene& scene) {
     const State start = initial_state(rough).state;
     const Body body = scene.body();
     validate_motion(body, start.theta, start.omega);
-    if (scene.slope != 0) return std::max(in_the_blow, friction_needed_on_slope(rough, start));
+    if (scene.slope != 0) {
+        const std::optional<SlopeExtremes> found = extremes_on_slope(rough, start);
+        return found ? std::max(in_the_blow, found->most_friction) : infinity;
+    }
     const RollingStart rolling = rolling_start(body, start.theta, start.omega);
     const Certificate found = certify_rolling(rolling, scene.mass, rough.friction);
     return std::max(in_the_blow, *found.largest_friction_needed);

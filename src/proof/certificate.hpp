@@ -8,7 +8,7 @@
 
 namespace rolling_ellipse {
 
-// edge: rounding cannot tell. no_proof: on a slope, or a start that does not roll.
+// edge: rounding cannot tell. no_proof: of a start that does not roll.
 enum class Validity { valid, invalid, edge, no_proof };
 
 // Where rolling ends, forwards in time: theta and the sign of omega there. No angle where it does
@@ -21,9 +21,10 @@ struct EndOfRolling {
 
 struct Certificate {
     EndOfRolling end;
-    // Over the whole motion, both directions of time; absent without a proof.
+    // Over the whole motion, both directions of time; absent without a proof. Downhill for ever
+    // they are infinite, and at no angle.
     std::optional<double> smallest_normal_force;        // [N]
-    std::optional<double> smallest_normal_force_angle;  // theta in [0, pi/2]
+    std::optional<double> smallest_normal_force_angle;  // theta, on level ground in [0, pi/2]
     std::optional<double> largest_friction_needed;      // max |F/N|
     std::optional<double> largest_friction_needed_angle;
 };

@@ -47,14 +47,17 @@ class Well {
     // Whether the body cannot get out of it.
     bool holds() const { return holds_; }
 
-    double most_friction() const {
+    SlopeExtremes extremes() const {
         const double first = bisect(upright_ - pi, std::min(start_, lying_), [&](double at) {
                                  return energy(at) >= 0;
                              }).high;
         const double last = bisect(std::max(start_, lying_), upright_, [&](double at) {
                                 return energy(at) < 0;
                             }).low;
-        return highest(places(first, last));
+        const std::vector<double> at = places(first, last);
+        const double light = highest(at, [&](double angle) { return -force(angle).normal; });
+        const double rough = highest(at, [&](double angle) { return needed(angle); });
+        return {force(light).normal, light - start_, needed(rough), rough - start_};
     }
 
   private:
@@ -81,11 +84,13 @@ class Well {
         return gravity_.along * path - gravity_.into * rise;
     }
 
-    double needed(double angle) const {
+    ContactForce force(double angle) const {
         const Geometry at = geometry(axes_, angle);
         const double omega2 = 2 * std::max(energy(angle), 0.0) / inertia(at);
-        return friction_needed(dynamics_.force(at, std::sqrt(omega2)));
+        return dynamics_.force(at, std::sqrt(omega2));
     }
+
+    double needed(double angle) const { return friction_needed(force(angle)); }
 
     // Even, and denser where the forces of a thin body change within b/a and its square.
     std::vector<double> places(double first, double last) const {
@@ -104,21 +109,30 @@ class Well {
         return found;
     }
 
-    // Golden section around every place that needs more than its neighbours.
-    double highest(const std::vector<double>& at) const {
-        double most = 0.0;
+    // Where a measure is largest: golden section around every place that has more than its
+    // neighbours.
+    template <class Measure>
+    static double highest(const std::vector<double>& at, const Measure& measure) {
+        double place = at.front();
+        double most = measure(place);
+        const auto take = [&](double here) {
+            const double found = measure(here);
+            if (!(found > most)) return;
+            most = found;
+            place = here;
+        };
         for (std::size_t i = 0; i < at.size(); ++i) {
-            const double here = needed(at[i]);
-            most = std::max(most, here);
+            take(at[i]);
+            const double here = measure(at[i]);
             const double low = at[i == 0 ? 0 : i - 1];
             const double high = at[i + 1 == at.size() ? i : i + 1];
-            if (needed(low) > here || needed(high) > here) continue;
+            if (measure(low) > here || measure(high) > here) continue;
             const auto is_below_upper = [&](double left, double right) {
-                return needed(left) > needed(right);
+                return measure(left) > measure(right);
             };
-            most = std::max(most, needed(golden_section(low, high, is_below_upper)));
+            take(golden_section(low, high, is_below_upper));
         }
-        return most;
+        return place;
     }
 
     const Axes axes_;
@@ -134,16 +148,32 @@ class Well {
 
 }  // namespace
 
-double friction_needed_on_slope(const Scene& scene, const State& start) {
+std::optional<SlopeExtremes> extremes_on_slope(const Scene& scene, const State& start) {
     const double incline = std::tan(scene.slope);
+    const double weight = scene.mass * scene.ground_gravity().into;
     const FlatView at = flat_view(scene.axes(), start.theta);
     const Geometry here = geometry(scene.axes(), start.theta);
-    if (start.omega == 0 && is_equilibrium(here, incline)) return std::abs(incline);
+    const auto constant = [&](double needed) {
+        return SlopeExtremes{weight, start.theta, needed, start.theta};
+    };
+    if (start.omega == 0 && is_equilibrium(here, incline)) return constant(std::abs(incline));
     const double k2 = scene.body().gyration2;
-    if (at.c2 == 0) return std::abs(incline) * k2 / (k2 + square(scene.a));
-    const double angle = std::atan2(at.sin, at.cos);
-    const Well well(downhill(scene), scene.slope > 0 ? angle : -angle, start.omega);
-    return well.holds() ? well.most_friction() : infinity;
+    if (at.c2 == 0) return constant(std::abs(incline) * k2 / (k2 + square(scene.a)));
+    const double side = std::copysign(1.0, scene.slope);
+    const Well well(downhill(scene), side * std::atan2(at.sin, at.cos), start.omega);
+    if (!well.holds()) return std::nullopt;
+    SlopeExtremes found = well.extremes();
+    found.least_normal_angle = start.theta + side * found.least_normal_angle;
+    found.most_friction_angle = start.theta + side * found.most_friction_angle;
+    return found;
+}
+
+Certificate certify_on_slope(const Scene& scene, const State& start, const LawMeetings& met) {
+    const EndOfRolling end = end_of_rolling(met);
+    const std::optional<SlopeExtremes> found = extremes_on_slope(scene, start);
+    if (!found) return {end, -infinity, std::nullopt, infinity, std::nullopt};
+    return {end, found->least_normal, found->least_normal_angle, found->most_friction,
+            found->most_friction_angle};
 }
 
 }  // namespace rolling_ellipse

@@ -1,13 +1,25 @@
-// The friction that rolling for ever needs on a slope.
+// Rolling on a slope: its certificate, and the forces of a body that cannot leave its place.
 #pragma once
 
-#include "scene/scene.hpp"
+#include <optional>
+
+#include "proof/slope_end.hpp"
 
 namespace rolling_ellipse {
 
-// The largest |F|/N of the rolling motion from a state on a slope, for all times. A circle and a
-// body in equilibrium need the same all the time; a body that rocks has turning points; all others
-// run downhill faster and faster until no ground holds them: infinite.
-double friction_needed_on_slope(const Scene& scene, const State& start);
+struct SlopeExtremes {
+    double least_normal;        // [N]
+    double least_normal_angle;  // theta
+    double most_friction;       // |F|/N
+    double most_friction_angle;
+};
+
+// Of the rolling motion from a state on a slope, for all times. A circle and a body in equilibrium
+// have the same forces all the time; a body that rocks has turning points; all others run downhill
+// faster and faster until no ground holds them: nothing.
+std::optional<SlopeExtremes> extremes_on_slope(const Scene& scene, const State& start);
+
+// The certificate of rolling that meets the law so.
+Certificate certify_on_slope(const Scene& scene, const State& start, const LawMeetings& met);
 
 }  // namespace rolling_ellipse

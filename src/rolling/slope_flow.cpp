@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numerics/bisect.hpp"
-
 namespace rolling_ellipse {
 namespace {
 
@@ -27,21 +25,6 @@ SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega
 }
 
 const SlopePlace& first_of_pieces(const SlopeFlow& flow) { return flow.pieces.front().from; }
-
-void note_turning(SlopeFlow& flow, const SlopePiece& piece, const SlopePlace& after) {
-    const double before = piece.from.omega;
-    if (std::isinf(piece.lasts)) return;
-    if (after.omega == 0) {
-        flow.turnings.push_back(after.time);
-    } else if (before != 0 && (before < 0) != (after.omega < 0)) {
-        const double since =
-            bisect(0.0, piece.lasts, [&](double t) {
-                return (value(piece.series.omega, t / piece.unit) < 0) != (before < 0);
-            }).high;
-        flow.turnings.push_back(piece.from.time + since);
-    }
-    if (flow.turnings.size() == 2) flow.kind = MotionKind::libration;
-}
 
 bool is_followed(const SlopeFlow& flow) { return flow.kind == MotionKind::libration || flow.run; }
 
@@ -123,22 +106,21 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
 bool grow(SlopeFlow& flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return false;
     if (is_followed(flow)) return false;
-    const SlopePlace from = flow.pieces.empty()
-                                ? begin(flow)
-                                : place_after(flow.body, flow.energy, flow.pieces.back());
+    const SlopePlace from =
+        flow.pieces.empty() ? begin(flow) : place_after(flow.body, flow.energy, flow.pieces.back());
     if (!flow.downhill && from.omega > 0) {
         const double w = energy_at(flow, from);
-        if (may_run(flow.body, w, geometry(flow.body, from).h, from.omega) > 0) flow.downhill = from;
+        if (may_run(flow.body, w, geometry(flow.body, from).h, from.omega) > 0)
+            flow.downhill = from;
     }
-    if (flow.downhill &&
-        from.quarters - flow.downhill->quarters > 2 * half_turns_before_a_run) {
+    if (flow.downhill && from.quarters - flow.downhill->quarters > 2 * half_turns_before_a_run) {
         flow.run = slope_run(flow.body, *flow.downhill, energy_at(flow, *flow.downhill), 0.0);
         return false;
     }
     flow.pieces.push_back(piece_from(flow.body, from));
-    if (!std::isinf(flow.pieces.back().lasts)) {
-        note_turning(flow, flow.pieces.back(), place_in(flow.pieces.back(), flow.pieces.back().lasts));
-    }
+    const DoubleDouble turning = time_of_turning(flow.pieces.back());
+    if (turning.high < infinity) flow.turnings.push_back(turning);
+    if (flow.turnings.size() == 2) flow.kind = MotionKind::libration;
     return true;
 }
 
@@ -162,8 +144,8 @@ SlopePlace place_at(const SlopeFlow& flow, double t) {
 
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {
     const SlopeBody& body = flow.body;
-    const DoubleDouble turned = half_pi_exact * (place.quarters - flow.start.quarters) +
-                                (place.angle - flow.start.angle);
+    const DoubleDouble turned =
+        half_pi_exact * (place.quarters - flow.start.quarters) + (place.angle - flow.start.angle);
     return {double(turned * body.side + flow.theta), body.side * place.omega / body.time,
             double(place.path * (body.side * body.length) + flow.x)};
 }

@@ -15,8 +15,8 @@
 namespace rolling_ellipse {
 
 struct SlopeFlow {
-    MotionKind kind;  // `uniform` for a circle, with its angular acceleration; else `rotation` until
-                      // it is known to rock
+    MotionKind kind;  // `uniform` for a circle, with its angular acceleration; else `rotation`
+                      // until it is known to rock
     double theta;
     double omega;
     double x;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/bisect.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
@@ -15,7 +17,8 @@ double radius(const Series& series) {
     for (int i = 0; i < 3; ++i) {
         const double size = std::max({std::abs(series[0]), std::abs(series[1]) * found,
                                       std::abs(series[2]) * square(found)});
-        const double last = std::abs(series[series_order]) + std::abs(series[series_order - 1]) / found;
+        const double last =
+            std::abs(series[series_order]) + std::abs(series[series_order - 1]) / found;
         if (last == 0) return infinity;
         found = std::sqrt(std::sqrt(std::sqrt(std::sqrt(rest * size / last))));
     }
@@ -92,8 +95,8 @@ SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start) {
 Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
                   const Geometry& here) {
     const double gained = body.gravity.along * double(at.path);
-    return tracked(energy.start) + tracked(gained) + tracked(body.gravity.into) *
-           (tracked(energy.height) - tracked(here.h));
+    return tracked(energy.start) + tracked(gained) +
+           tracked(body.gravity.into) * (tracked(energy.height) - tracked(here.h));
 }
 
 SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
@@ -133,6 +136,32 @@ double acceleration_in(const SlopePiece& piece, double since) {
     return sum / square(piece.unit);
 }
 
+DoubleDouble time_of_turning(const SlopePiece& piece) {
+    const double before = piece.from.omega;
+    const auto turned = [&](double since) {
+        return value(piece.series.omega, since / piece.unit) * before <= 0;
+    };
+    if (before == 0 || std::isinf(piece.lasts) || !turned(piece.lasts)) return {infinity, 0.0};
+    return piece.from.time + bisect(0.0, piece.lasts, turned).high;
+}
+
+double time_of_tip(const SlopePiece& piece) {
+    if (std::isinf(piece.lasts)) return infinity;
+    const double from = double(piece.from.angle);
+    const double to = angle_in(piece, piece.lasts);
+    double first = infinity;
+    for (const double tip : {-half_pi, 0.0, half_pi}) {
+        const bool is_tip = (tip == 0) == at_tip(piece.from.quarters);
+        if (!is_tip || std::abs(from - tip) <= equal_ulps * epsilon) continue;
+        if ((from < tip) == (to < tip)) continue;
+        const auto passed = [&](double since) {
+            return (angle_in(piece, since) < tip) != (from < tip);
+        };
+        first = std::min(first, double(piece.from.time + bisect(0.0, piece.lasts, passed).high));
+    }
+    return first;
+}
+
 SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece) {
     constexpr double well_known = 0.25;  // share of W in the terms it is the sum of
     SlopePlace place = place_in(piece, piece.lasts);
@@ -143,6 +172,16 @@ SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const S
         place.omega = std::copysign(std::sqrt(2 * w.value / inertia), place.omega);
     }
     return place;
+}
+
+// Physics (18, 20), as RollingDynamics has them for a scene.
+ContactForce contact_force(const SlopeBody& body, const SlopePlace& place) {
+    const Geometry at = geometry(body, place);
+    const double omega2 = square(place.omega);
+    const double drive = at.h * body.gravity.along - at.dh * (body.gravity.into + at.rho * omega2);
+    const double turning = drive / inertia_about_contact(body.gyration2, at);
+    return {body.gravity.into + at.dh * turning + at.ddh * omega2,
+            at.h * turning + at.dh * omega2 - body.gravity.along};
 }
 
 }  // namespace rolling_ellipse

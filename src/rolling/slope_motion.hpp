@@ -74,11 +74,20 @@ SlopePlace place_in(const SlopePiece& piece, double since);
 double angle_in(const SlopePiece& piece, double since);
 double acceleration_in(const SlopePiece& piece, double since);
 
+// Times of the motion at which it turns back in the piece, or passes the tip; infinite if it does
+// not. What it begins with does not count.
+DoubleDouble time_of_turning(const SlopePiece& piece);
+double time_of_tip(const SlopePiece& piece);
+
 // At its end, the angular velocity from the energy where that knows it better.
 SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece);
 
 // W at a place, and the sizes it was made from.
 Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
                   const Geometry& here);
+
+// The force of the ground on a body of unit mass, in units of the body, along x as seen with the
+// slope falling to growing angles.
+ContactForce contact_force(const SlopeBody& body, const SlopePlace& at);
 
 }  // namespace rolling_ellipse

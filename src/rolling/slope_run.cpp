@@ -9,8 +9,8 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr double least_levels = 4;       // W/w from which the sums below are used
-constexpr double asymptotic_from = 14;   // W/w from which R(W) is right to 2e-17
+constexpr double least_levels = 4;      // W/w from which the sums below are used
+constexpr double asymptotic_from = 14;  // W/w from which R(W) is right to 2e-17
 constexpr double most_half_turns = 1e15;
 
 // sqrt(w) R(W/w) of physics (63).
@@ -18,10 +18,9 @@ double remainder(double level, double gain) {
     const double ratio = gain / level;
     const double r2 = square(ratio);
     const double series =
-        1.0 / 24 +
-        r2 * (-1.0 / 384 +
-              r2 * (1.0 / 1024 +
-                    r2 * (-143.0 / 163840 + r2 * (0.00140508015951 - r2 * 0.00354755719503))));
+        1.0 / 24 + r2 * (-1.0 / 384 +
+                         r2 * (1.0 / 1024 + r2 * (-143.0 / 163840 + r2 * (0.00140508015951 -
+                                                                          r2 * 0.00354755719503))));
     return ratio / std::sqrt(level) * series;
 }
 
@@ -126,8 +125,7 @@ class RunMaker {
             const double gap = centres_[i + 1].at() - centres_[i].at();
             const double split = centres_[i].at() + gap / 2;
             add(centres_[i], gap, std::max(low, centres_[i].at()), std::min(high, split));
-            add(centres_[i + 1], gap, std::max(low, split),
-                std::min(high, centres_[i + 1].at()));
+            add(centres_[i + 1], gap, std::max(low, split), std::min(high, centres_[i + 1].at()));
         }
         return std::move(run_);
     }
@@ -274,8 +272,7 @@ SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double
 // The place at a time after the upper end of the half turn that follows n of them.
 SlopePlace place_in_half_turn(const SlopeRun& run, double half_turns, double rest) {
     for (const RunPanel& panel : run.panels) {
-        const double whole =
-            times_of(run, run.nodes, panel.begin, panel.end, half_turns, nullptr);
+        const double whole = times_of(run, run.nodes, panel.begin, panel.end, half_turns, nullptr);
         const bool is_last = &panel == &run.panels.back();
         if (rest > whole && !is_last) {
             rest -= whole;
@@ -291,7 +288,8 @@ SlopePlace place_in_half_turn(const SlopeRun& run, double half_turns, double res
                 continue;
             }
             const double x = place_in_part(times.data(), std::clamp(rest, 0.0, part));
-            const double v = panel.first + (panel.last - panel.first) * (i + 0.5 * (x + 1)) / panel.parts;
+            const double v =
+                panel.first + (panel.last - panel.first) * (i + 0.5 * (x + 1)) / panel.parts;
             return place_on(run, panel, v, half_turns);
         }
     }
@@ -336,8 +334,7 @@ SlopePlace place_at(const SlopeRun& run, DoubleDouble time) {
         if (over == 0 || half_turns + over < 0) break;
         half_turns += over;
     }
-    SlopePlace place =
-        place_in_half_turn(run, half_turns, run.heading < 0 ? lasts - rest : rest);
+    SlopePlace place = place_in_half_turn(run, half_turns, run.heading < 0 ? lasts - rest : rest);
     place.time = time;
     return place;
 }
@@ -350,8 +347,7 @@ SlopePlace place_after(const SlopeRun& run, double half_turns) {
     place.time = place.time + time_of(run, half_turns);
     place.quarters += turned;
     place.path = place.path + two_product(turned, run.body.quarter_path);
-    place.omega =
-        run.heading * std::sqrt(2 * w / inertia_about_contact(run.body.gyration2, at));
+    place.omega = run.heading * std::sqrt(2 * w / inertia_about_contact(run.body.gyration2, at));
     return place;
 }
 

@@ -46,8 +46,8 @@ struct SlopeRun {
     std::vector<RunPanel> panels;
     RunNodes nodes;
     RunNodes part_nodes;
-    double mass;                 // the sum of all weights
-    double half_turn;            // time of the first one
+    double mass;       // the sum of all weights
+    double half_turn;  // time of the first one
 };
 
 // From a place, for as many half turns as W stays some times w above 0 everywhere: see

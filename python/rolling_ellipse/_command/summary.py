@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from typing import Any
 
@@ -21,7 +22,6 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
     certificate, start = certify(scene), scene.initial_state
     # what the certificate says is said of rolling
     rolls = trajectory.model != "contact" or certificate.validity is Validity.VALID
-    level = rolls and scene.slope == 0
     found: dict[str, Any] = {
         "scene": _scene_facts(scene),
         "start": {"mode": start.mode.name.lower(), "omega": start.omega, "reason": start.reason},
@@ -41,7 +41,7 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
         touching, rolling = trajectory.mode != Mode.FLIGHT, trajectory.mode == Mode.ROLLING
         found |= {
             "outcome": _lower(outcome(scene)),
-            "period": _finite(period(scene)) if level else None,
+            "period": _period(scene) if rolls else None,
             "distance": float(trajectory.x[-1] - trajectory.x[0]),
             "turns": float(trajectory.turns[-1]),
             "largest_position_residual": _largest(residuals.position[touching]),
@@ -64,6 +64,12 @@ def _lower(found: Any) -> str:
 
 def _largest(values: np.ndarray[Any, Any]) -> float:
     return float(np.max(np.abs(values), initial=0.0))
+
+
+def _period(scene: Scene) -> float | None:
+    with suppress(ValueError):  # downhill for ever
+        return _finite(period(scene))
+    return None
 
 
 def _finite(value: float | None) -> float | None:
@@ -112,10 +118,10 @@ def _repeat(found: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
     if found["period"] is not None:
         return _REPEATS.get(found["outcome"], "swing or turn"), f"{found['period']:.12g} s"
     name = "swing or turn"
-    if trajectory.scene.slope != 0:
-        return name, "not known in advance on a slope"
     if trajectory.model == "contact":
         return name, "none: it slides, leaves the ground or hits it"
     if found["outcome"] == "rests":
         return name, "none: it rests"
+    if trajectory.scene.slope != 0:
+        return name, "none: it runs downhill for ever"
     return name, "none: it comes to the tip in infinite time"

@@ -35,7 +35,6 @@ QUANTITIES = {  # with their symbols
     "energy": "energy", "kinetic_energy": "kinetic energy", "potential_energy": "potential energy",
 }  # fmt: skip
 _UNITS = {each.name: "" if each.unit == "1" else f" [{each.unit}]" for each in UNITS_AND_MEANINGS}
-_TIGHT = {"rtol": 1e-13, "atol": 1e-15}  # on slopes, where rolling is integrated
 
 
 @dataclass(frozen=True, repr=False)
@@ -62,8 +61,7 @@ def plot_error(
     """Draw by how much one quantity of motions is off over time, on a logarithmic scale.
 
     Each motion is held against the exact one from the same scene: exact rolling where the motion
-    is of a model that rolls on level ground, rolling integrated at the level of rounding on slopes,
-    else the contact motion. An exact zero has no place on the scale. Modes, events, lost validity
+    is of a model that rolls, else the contact motion. An exact zero has no place on the scale. Modes, events, lost validity
     and long spans are drawn as in `plot_forces`.
 
     Parameters
@@ -132,8 +130,6 @@ def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajector
     how: dict[str, Any] = {"model": "contact"}
     if motion.model != "contact":
         how = {"model": "rolling", "method": "exact"}
-        if motion.scene.slope:
-            how = {"model": "rolling", "method": "dop853", **_TIGHT}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of the model: the motion itself has been warned of
         return simulate(motion.scene, [last], raise_on_failure=False, **how)

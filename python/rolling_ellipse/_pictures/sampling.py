@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -134,12 +135,15 @@ def span_of(motion: Trajectory) -> tuple[float, float]:
 def half_turns(motion: Trajectory) -> float:
     """Return about how many half turns and swings there are between the first and last sample.
 
-    On level ground the period tells. Elsewhere half turns and turnings back are counted, at more
+    The period tells, where there is one. Elsewhere half turns and turnings back are counted, at more
     and more times, which keep no beat that a swing could have.
     """
     begin, end = span_of(motion)
-    if motion.model != "contact" and motion.start is None and motion.scene.slope == 0:
-        swing = period(motion.scene)
+    swing = None
+    if motion.model != "contact" and motion.start is None:
+        with suppress(ValueError):  # downhill for ever
+            swing = period(motion.scene)
+    if swing is not None:
         return 2 * (end - begin) / swing if math.isfinite(swing) else 1.0
     found = 0.0
     for count in _COUNTS:

@@ -156,7 +156,7 @@ def _suitable(scene: Scene, rolls: bool) -> tuple[str, ...]:
     if scene.initial_state.mode.name not in _HELD:
         return ("contact",)
     if scene.slope:
-        return ("contact", *_OF_ROLLING, *_OF_MULTIPLIERS)
+        return ("contact", "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
     if not rolls:  # exact rolling shows what a poorer model says of such a scene
         return ("contact", "exact")
     return ("flow", "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
