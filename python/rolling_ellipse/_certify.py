@@ -67,7 +67,7 @@ def certify(scene: Scene) -> Certificate:
     the contact holds for an interval of energies there. The motion is followed by power series at
     rounding level, N and F with it, and their first root decides, by Bernstein coefficients again;
     of many half turns those are looked at that decide for all between them. A margin that comes
-    down to 1e-12 of its terms and not below is EDGE. What holds for 1e15 half turns is VALID.
+    down to rounding and not below is EDGE. What holds for 1e15 half turns is VALID.
 
     Parameters
     ----------

@@ -49,20 +49,20 @@ def simulate(
         "rolling" is rolling without slip; the certificate (see `certify`) says until when it is
         true. "contact" is the whole motion: it rolls, slides, flies, hits the ground and comes to
         rest, on segments joined by ``events``; exact rolling and flight, "dop853" at rounding level
-        for the rest. "auto" is "rolling" where the certificate proves it, and "contact" elsewhere; with a method given it
-        is "rolling". "multipliers" is the same motion in the report's five coordinates
-        with four constraints and their Lagrange multipliers, for study: "dop853" (also its
-        "auto"), "dopri5", "rk4", or "radau" with the stabilization "ggl".
+        for the rest. "auto" is "rolling" where the certificate proves it, and "contact" elsewhere;
+        with a method given it is "rolling". "multipliers" is the same motion in the report's five
+        coordinates with four constraints and their Lagrange multipliers, for study: "dop853" (also
+        its "auto"), "dopri5", "rk4", or "radau" with the stabilization "ggl".
     method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
         "exact" inverts the energy integral at each time; nothing is stepped, and neither
         tolerances nor the span matter. On a slope power series in time at rounding level follow
         one swing, or the first half turns; what repeats itself is not followed again, and many
         half turns downhill or uphill are one sum, a difference of Hurwitz zeta functions [8]_. The
-        others integrate the equation of motion: "dop853" and "dopri5" are explicit Runge-Kutta pairs of order 8 and 5 with
-        error control [1]_; "rk4" is the classical method; "gauss" is Gauss-Legendre collocation
-        of order ``2 * stages``, symmetric and symplectic, whose energy error does not grow, with
-        rounding errors that only walk at random [2]_ [3]_; "radau" is Radau IIA of order 5 [4]_.
-        "auto" is "exact".
+        others integrate the equation of motion: "dop853" and "dopri5" are explicit Runge-Kutta
+        pairs of order 8 and 5 with error control [1]_; "rk4" is the classical method; "gauss" is
+        Gauss-Legendre collocation of order ``2 * stages``, symmetric and symplectic, whose energy
+        error does not grow, with rounding errors that only walk at random [2]_ [3]_; "radau" is
+        Radau IIA of order 5 [4]_. "auto" is "exact".
     rtol, atol : float
         Allowed local error of the pairs in each component of the state (theta and omega, or the
         five coordinates and their rates): atol + rtol times its size.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "numerics/bisect.hpp"
+#include "numerics/golden_section.hpp"
 #include "proof/law.hpp"
 
 namespace rolling_ellipse {
@@ -14,6 +16,8 @@ constexpr int degree = series_order - 2;
 // Beside the sum of the sizes of all terms. The series end where their last terms are a rounding,
 // and the second derivative of what they leave out is up to some thousand of them.
 constexpr double rounding = 1e-12;
+// Of the operations from the angle on, as on level ground.
+constexpr double finest_rounding = 64 * epsilon;
 
 // A law on 0 <= x <= 1, with the parts it is weighed from.
 struct LawPolynomial {
@@ -188,8 +192,26 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, double tolerance
             if (near.is && !near.from_start && !met_.touched) met_.touched = near.since;
             near = {};
         } else if (here >= -tolerance) {
-            if (near.is) continue;
-            near = {true, first_ && i == 0, meeting(piece, places[i])};
+            // The forces themselves know it better than the series of their polynomials.
+            const double fine = finest_rounding * law.size;
+            const double low = places[i];
+            const auto at = [&](double share) { return margin(piece, share, side); };
+            double least = golden_section(low, places[i + 1],
+                                          [&](double x, double y) { return at(x) < at(y); });
+            for (const double end : {low, places[i + 1]}) least = at(end) < at(least) ? end : least;
+            if (at(least) < -fine) {
+                const double first =
+                    at(low) < 0 ? low
+                                : bisect(low, least, [&](double x) { return at(x) < 0; }).high;
+                const Meeting found = meeting(piece, first);
+                if (!met_.broken || found.time < met_.broken->time) met_.broken = found;
+                return;
+            }
+            if (at(least) > fine) {
+                near = {};
+            } else if (!near.is) {
+                near = {true, first_ && i == 0, meeting(piece, least)};
+            }
         } else {
             // The root itself, by Newton's method on the forces: the series knows it nearly.
             double share = places[i];

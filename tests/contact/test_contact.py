@@ -611,7 +611,7 @@ def test_max_steps_stops_where_the_steps_ended() -> None:
 
 
 def test_max_steps_counts_all_arcs() -> None:
-    """The slope scene takes several arcs of some dozens of steps each."""
+    """The slope scene takes several slides of some dozens of steps each."""
     whole = simulate(rl.scenes.slope, 5.0).stats["steps"]
     assert simulate(rl.scenes.slope, 5.0, max_steps=whole).success
     cut = simulate(rl.scenes.slope, 5.0, max_steps=whole - 1, raise_on_failure=False)

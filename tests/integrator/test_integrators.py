@@ -625,11 +625,6 @@ def test_what_is_no_number_is_refused_by_name(how: dict[str, Any], said: str) ->
         rl.simulate(rl.scenes.rolling, 2.0, model="rolling", **how)
 
 
-def test_the_exact_method_needs_level_ground() -> None:
-    with pytest.raises(ValueError, match=r"^slope must be 0 for method 'exact', got 0\.1"):
-        rl.simulate(Scene(2.0, 1.0, slope=0.1), 1.0, model="rolling", method="exact")
-
-
-def test_auto_steps_where_there_is_no_exact_motion() -> None:
+def test_auto_is_exact_on_level_ground_and_on_slopes() -> None:
     assert rl.simulate(rl.scenes.rolling, 1.0).method == "exact"
-    assert rl.simulate(Scene(2.0, 1.0, slope=0.1), 1.0).method == "dop853"
+    assert rl.simulate(Scene(2.0, 1.0, slope=0.1), 1.0).method == "exact"

@@ -598,16 +598,15 @@ def test_unlimited_friction_leaves_only_the_contact(omega: float) -> None:
 @pytest.mark.parametrize(
     "scene",
     [
-        Scene(2.0, 1.0, omega=3.0, slope=0.1),
-        Scene(2.0, 1.0, slope=-1e-6),
         Scene(2.0, 1.0, theta=0.5, z=2.5),
+        Scene(2.0, 1.0, theta=0.5, z=2.5, slope=0.1),
         Scene(2.0, 1.0, omega=1.0, z_dot=0.5),
         Scene(2.0, 1.0, omega=0.0, x_dot=3.0, friction=0.2),
         Scene(2.0, 1.0, friction=0.5, impulse=Impulse.press(5.0, 1.5)),
     ],
-    ids=["slope", "slight slope", "in the air", "leaving", "sliding", "sliding after the blow"],
+    ids=["in the air", "over a slope", "leaving", "sliding", "sliding after the blow"],
 )
-def test_no_proof_where_it_does_not_roll_on_level_ground(scene: Scene) -> None:
+def test_no_proof_where_it_does_not_roll(scene: Scene) -> None:
     found = certify(scene)
     assert found.validity is Validity.NO_PROOF
     assert found.reason

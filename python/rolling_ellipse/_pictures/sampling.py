@@ -135,8 +135,8 @@ def span_of(motion: Trajectory) -> tuple[float, float]:
 def half_turns(motion: Trajectory) -> float:
     """Return about how many half turns and swings there are between the first and last sample.
 
-    The period tells, where there is one. Elsewhere half turns and turnings back are counted, at more
-    and more times, which keep no beat that a swing could have.
+    The period tells, where there is one. Elsewhere half turns and turnings back are counted, at
+    more and more times, which keep no beat that a swing could have.
     """
     begin, end = span_of(motion)
     swing = None

@@ -1,0 +1,216 @@
+"""The certificate on slopes, judged by dense scans along the angle and by what it says of itself.
+
+A scan takes W = D omega^2/2 from the energy, half a turn after the other, with h integrated by
+Gauss-Legendre quadrature between its places: it shares no formula with the series of the package.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from numpy.typing import NDArray
+from rolling_ellipse import Scene, Validity, certify
+
+GRAVITY = 9.81
+PLACES = 3000  # a half turn, beside those next to flat sides and tips
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
+Floats = NDArray[np.float64]
+
+
+class Scan(NamedTuple):
+    """What is left of the law along the motion, of the size of its terms, and what it comes to."""
+
+    ends: str  # "broken", "turned back" for good, or "open" after many half turns
+    between: tuple[float, float]  # angles, of the first place where it is broken and that before
+    least: float
+
+
+def outline(angle: Floats, a: float, b: float) -> tuple[Floats, Floats, Floats]:
+    """h, h' and the radius of curvature."""
+    s, c = np.sin(angle), np.cos(angle)
+    h = np.hypot(a * s, b * c)
+    return h, (a - b) * (a + b) * s * c / h, (a * b) ** 2 / h**3
+
+
+def half_turn(start: float, direction: float, thinness: float) -> Floats:
+    """Places on the way, denser where a thin body lies flat or stands upright."""
+    even = start + direction * np.pi * np.linspace(0, 1, PLACES + 1)
+    low, high = min(even[0], even[-1]), max(even[0], even[-1])
+    axes = np.arange(math.floor(low / (np.pi / 2)), math.ceil(high / (np.pi / 2)) + 1) * np.pi / 2
+    offset = thinness**2 * np.sinh(np.linspace(-1, 1, 600) * math.asinh(0.8 / thinness**2))
+    dense = (axes[:, None] + offset).ravel()
+    places = np.unique(np.concatenate([even, dense[(dense > low) & (dense < high)]]))
+    return places if direction > 0 else places[::-1]
+
+
+def scan(scene: Scene, most: int = 30) -> Scan:
+    """Forwards in time."""
+    a, b, k2, mu = scene.a, scene.b, scene.gyration2, scene.friction
+    into, along = GRAVITY * math.cos(scene.slope), GRAVITY * math.sin(scene.slope)
+    angle, least = scene.theta, math.inf
+    h, dh, rho = outline(np.array(angle), a, b)
+    w = float((k2 + h**2 + dh**2) * scene.omega**2 / 2)
+    fall = h * along - dh * (into + rho * scene.omega**2)
+    direction = math.copysign(1, scene.omega or float(fall))
+    turns = int(scene.omega == 0)
+    for _ in range(most):
+        places = half_turn(angle, direction, min(a, b) / max(a, b))
+        step = np.diff(places)
+        inside = (places[1:] + places[:-1])[:, None] / 2 + step[:, None] / 2 * NODES
+        path = np.concatenate([[0.0], np.cumsum(outline(inside, a, b)[0] @ WEIGHTS * step / 2)])
+        h, dh, rho = outline(places, a, b)
+        energy = w + along * path - into * (h - h[0])
+        beyond = np.flatnonzero(energy[1:] < 0) + 1
+        until = int(beyond[0]) if beyond.size else places.size
+        h, dh, rho, energy = h[:until], dh[:until], rho[:until], np.maximum(energy[:until], 0)
+        inertia = k2 + h**2 + dh**2
+        omega2 = 2 * energy / inertia
+        turning = (h * along - dh * (into + rho * omega2)) / inertia
+        normal = into + dh * turning + (rho - h) * omega2
+        friction = h * turning + dh * omega2 - along
+        left = normal if math.isinf(mu) else (mu * normal - np.abs(friction)) / max(mu, 1)
+        left = left / (into + abs(along) + np.abs(normal) + np.abs(friction))
+        least = min(least, float(left.min()))
+        if (left < 0).any():
+            i = int(np.argmax(left < 0))
+            return Scan("broken", (float(places[max(i - 1, 0)]), float(places[i])), least)
+        angle, w = float(places[until - 1]), float(energy[-1])
+        if beyond.size:
+            turns += 1
+            direction = -direction
+            if turns == 2:
+                return Scan("turned back", (math.nan, math.nan), least)
+    return Scan("open", (math.nan, math.nan), least)
+
+
+def random_scene(rng: np.random.Generator) -> Scene:
+    """Thin to nearly round, both ways up, all slopes, at rest and fast."""
+    ratio = math.exp(rng.uniform(math.log(0.02), 0)) if rng.random() < 0.8 else 0.99
+    a, b = (1.0, ratio) if rng.random() < 0.5 else (ratio, 1.0)
+    inertia = (a * a + b * b) / 4 * (1 if rng.random() < 0.6 else math.exp(rng.uniform(-3, 2)))
+    return Scene(
+        a,
+        b,
+        inertia=inertia,
+        slope=float(rng.choice([-1, 1])) * math.exp(rng.uniform(math.log(1e-3), math.log(1.2))),
+        theta=rng.uniform(-4, 4),
+        omega=0.0
+        if rng.random() < 0.2
+        else float(rng.choice([-1, 1])) * 1.5 * math.exp(rng.uniform(-3, 2)),
+        friction=math.inf if rng.random() < 0.3 else math.exp(rng.uniform(-3, 1.5)),
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_verdict_is_false(seed: int) -> None:
+    """60 scenes a seed: VALID where the scan finds nothing, and where it does, the angle.
+
+    A scan misses what is narrower than its places, 1e-3 rad, and so less deep than 1e-5 of the
+    forces, which change within that much by their own size at most 0.01 rad off.
+    """
+    rng = np.random.default_rng(seed)
+    met = {"broken": 0, "turned back": 0}
+    for _ in range(60):
+        scene = random_scene(rng)
+        found, seen = certify(scene), scan(scene)
+        if seen.ends == "open":
+            continue
+        met[seen.ends] += 1
+        if found.validity is Validity.VALID:
+            assert seen.ends == "turned back", scene
+        elif found.validity is Validity.INVALID:
+            assert found.ends_at is not None
+            if seen.ends == "broken":
+                low, high = sorted(seen.between)
+                assert low - 2e-3 <= found.ends_at <= high + 2e-3, scene
+            else:
+                assert seen.least < 1e-5, scene
+        else:
+            assert abs(seen.least) < 1e-5, scene
+    assert met["broken"] > 20 and met["turned back"] > 5
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_nearly_round_body_rolls_far(direction: int) -> None:
+    """Half turns that are not followed: the last one by the minimum over the angle.
+
+    Downhill the law holds in half turn n as long as W + n w stays below W_plus at every angle,
+    both linear forces put in; so rolling ends in the half turn after the least (W_plus - W)/w.
+    """
+    scene = Scene(1.0, 1 - 1e-5, slope=0.05, omega=3.0 * direction, friction=0.5)
+    a, b, k2 = scene.a, scene.b, scene.gyration2
+    into, along = GRAVITY * math.cos(0.05), GRAVITY * math.sin(0.05)
+    angle = np.linspace(0, math.pi, 20001)
+    h, dh, rho = outline(angle, a, b)
+    inertia = k2 + h**2 + dh**2
+    path = rl.geometry.centre_path(angle, a=a, b=b)
+    w = (k2 + h[0] ** 2) * 4.5 + along * path - into * (h - h[0])
+    rest = (h * along - dh * into) / inertia  # theta'' for omega = 0, and what omega^2 adds
+    more = -dh * rho / inertia
+    limits = []
+    for side in (1, -1):
+        here = 0.5 * (into + dh * rest) - side * (h * rest - along)
+        rate = 0.5 * (dh * more + rho - h) - side * (h * more + dh)
+        limit = np.where(rate < 0, -here / np.where(rate < 0, rate, -1.0), np.inf)
+        limits.append(limit * inertia / 2)
+    half_turns = (np.minimum(*limits) - w) / (along * path[-1])
+    found = certify(scene)
+    assert found.validity is Validity.INVALID and found.ends_at is not None
+    last = math.floor(half_turns.min()) + 1
+    assert last > 1e4
+    assert math.floor(found.ends_at / math.pi) in (last, last - 1)
+    share = found.ends_at / math.pi - math.floor(found.ends_at / math.pi)
+    # where it ends the limit is met: between two of the places
+    there = np.interp(share * math.pi, angle, half_turns)
+    assert there == pytest.approx(math.floor(found.ends_at / math.pi), abs=0.5)
+
+
+def test_constant_forces() -> None:
+    """A circle needs tan(slope) k^2/(k^2 + a^2) = tan(slope)/3 of a disc, a body at rest
+    tan(slope): a hair more holds, a hair less does not, and rounding is told."""
+    incline = math.tan(0.2)
+    tangent = 2 * incline / (3.0 + math.sqrt(9.0 - 16.0 * incline**2))
+    circle = Scene(1.0, 1.0, slope=0.2, omega=1.0)
+    resting = Scene(2.0, 1.0, slope=-0.2, theta=-math.atan(tangent), omega=0.0)
+    for scene, needed in ((circle, incline / 3), (resting, incline)):
+        for factor, verdict in ((1 + 1e-12, "VALID"), (1.0, "EDGE"), (1 - 1e-12, "INVALID")):
+            found = certify(scene.replace(friction=needed * factor))
+            assert found.validity is Validity[verdict]
+            assert found.largest_friction_needed == pytest.approx(needed, rel=1e-14)
+            assert found.smallest_normal_force == pytest.approx(GRAVITY * math.cos(0.2), rel=1e-14)
+
+
+def test_a_swing_has_extremes_and_all_else_none() -> None:
+    scene = Scene(2.0, 1.0, slope=0.1, theta=0.4, omega=0.0)
+    found = certify(scene)
+    motion = rl.simulate(scene, np.linspace(0, rl.period(scene), 20001))
+    assert found.validity is Validity.VALID and motion.method == "exact"
+    # 20001 samples are within 1e-7 of the extremes, which are flat there
+    needed = motion.friction_needed
+    assert found.smallest_normal_force == pytest.approx(motion.normal_force.min(), rel=1e-7)
+    assert found.largest_friction_needed == pytest.approx(needed.max(), rel=1e-6)
+    assert found.largest_friction_needed_angle == pytest.approx(
+        motion.theta[np.argmax(needed)], abs=1e-3
+    )
+    downhill = certify(rl.scenes.slope)
+    assert downhill.smallest_normal_force == -math.inf
+    assert downhill.largest_friction_needed == math.inf
+    assert downhill.smallest_normal_force_angle is None is downhill.largest_friction_needed_angle
+
+
+@pytest.mark.parametrize("friction", [0.3, 0.8, math.inf])
+def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
+    """The contact motion leaves rolling at that angle, and the forced one is not valid from there.
+
+    Both are the same exact motion up to its time, which has a rounding: so has the angle.
+    """
+    scene = Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=-2.5, friction=friction)
+    found = certify(scene)
+    assert found.validity is Validity.INVALID
+    motion: Any = rl.simulate(scene, 5.0)
+    assert motion.events[0].state_before.theta == pytest.approx(found.ends_at, abs=1e-14)
+    with pytest.warns(rl.ValidityWarning):
+        forced = rl.simulate(scene, 50.0, model="rolling")
+    assert forced.valid_until == pytest.approx(motion.events[0].t, rel=1e-14)

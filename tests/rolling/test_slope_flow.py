@@ -1,0 +1,229 @@
+"""Exact rolling on slopes beyond the table: many half turns, long climbs, wells, circles, edges.
+
+The references share no formula with the package: mpmath's Hurwitz zeta function and its quadrature
+of the energy integral, which never takes one half turn after the other.
+"""
+
+import math
+import warnings
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.geometry import support
+from oracles.numbers import EPS
+
+DIGITS = 30
+
+
+def rolled(scene: rl.Scene, times: Any) -> Any:
+    """The exact rolling motion, whether or not the ground could hold it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rl.ValidityWarning)
+        return rl.simulate(scene, times, model="rolling", method="exact")
+
+
+class Energy:
+    """D and W = D omega^2/2 over the angle, from the scene's own numbers."""
+
+    def __init__(self, scene: rl.Scene) -> None:
+        self.a, self.b = mp.mpf(scene.a), mp.mpf(scene.b)
+        self.k2 = mp.mpf(scene.core.inertia) / mp.mpf(scene.mass)
+        self.into = mp.mpf(scene.gravity) * mp.cos(mp.mpf(scene.slope))
+        self.along = mp.mpf(scene.gravity) * mp.sin(mp.mpf(scene.slope))
+        self.start = mp.mpf(scene.theta)
+        self.first = self.inertia(self.start) * mp.mpf(scene.omega) ** 2 / 2
+
+    def inertia(self, angle: Any) -> Any:
+        at = support(angle, self.a, self.b)
+        return self.k2 + at.h**2 + at.slope**2
+
+    def path(self, angle: Any) -> Any:
+        """The integral of h from 0: b E(angle | 1 - a^2/b^2)."""
+        return self.b * mp.ellipe(angle, 1 - (self.a / self.b) ** 2)
+
+    def at(self, angle: Any) -> Any:
+        rise = support(angle, self.a, self.b).h - support(self.start, self.a, self.b).h
+        way = self.path(angle) - self.path(self.start)
+        return self.first + self.along * way - self.into * rise
+
+    def gain(self) -> Any:
+        return self.along * self.path(mp.pi)
+
+    def time_of(self, half_turns: Any) -> Any:
+        """Of so many half turns downhill: Hurwitz zeta functions over one."""
+        gain = self.gain()
+
+        def rate(angle: Any) -> Any:
+            q = self.at(angle) / gain
+            zeta = mp.zeta(mp.mpf(1) / 2, q) - mp.zeta(mp.mpf(1) / 2, q + half_turns)
+            return mp.sqrt(self.inertia(angle) / (2 * gain)) * zeta
+
+        places = [self.start + mp.pi * i / 12 for i in range(13)]
+        return mp.quad(rate, places)
+
+
+DOWNHILL = {
+    "the slope scene": rl.Scene(2.0, 1.0, slope=0.1, omega=3.0),
+    "standing, steep": rl.Scene(0.5, 0.8, slope=0.6, theta=0.3, omega=1.0, inertia=0.9),
+    "gentle": rl.Scene(1.0, 0.9, slope=1e-3, theta=-0.4, omega=2.0),
+}
+
+
+@pytest.mark.parametrize("name", DOWNHILL)
+@pytest.mark.parametrize("half_turns", [40, 1000, 10**6, 10**9])
+def test_many_half_turns_downhill(name: str, half_turns: int) -> None:
+    """After the time of n of them the body stands as it did, by n w richer.
+
+    The time of the simulation is rounded, half an ulp, and the quadrature has a few roundings of
+    its own, as if the inputs were changed by as much: 8 of them (found: 3 at most).
+    """
+    scene = DOWNHILL[name]
+    with mp.workdps(DIGITS):
+        energy = Energy(scene)
+        t = float(energy.time_of(half_turns))
+        expected = energy.start + half_turns * mp.pi
+        speed = mp.sqrt(
+            2 * (energy.first + half_turns * energy.gain()) / energy.inertia(scene.theta)
+        )
+        off = t - energy.time_of(half_turns)
+        found = rolled(scene, [t])
+        expected += speed * off
+        allowed = 8 * EPS * (float(speed) * t + float(expected))
+        assert abs(float(found.theta[0] - expected)) < allowed
+        # omega depends on the place: theta'' times what the time may be off
+        bend = max(scene.a, scene.b) / min(scene.a, scene.b)
+        assert abs(float(found.omega[0] / speed - 1)) < 8 * EPS * bend * float(speed) * t
+
+
+@pytest.mark.parametrize("slope", [1e-3, 1e-2, 0.05])
+@pytest.mark.parametrize("ratio", [0.9, 0.3, 1e-2])
+def test_a_climb_runs_back_the_way_it_came(slope: float, ratio: float) -> None:
+    """Uphill and back: mirrored in time the motion is the same, from any of its states.
+
+    The state at t, turned round, is at the start after as long, turned round. Three roads are
+    followed there: the sum uphill, the series over the top, the sum downhill. What is rounded in
+    the state in between is a change of energy, and moves the end by the time since over the time
+    scale of half a turn: 64 roundings of the way.
+    """
+    scene = rl.Scene(1.0, ratio, slope=slope, theta=0.4, omega=-8.0)
+    whole = rolled(scene, [0.0, 1e3])
+    assert whole.theta[1] > 0.4 and whole.omega[1] > 0
+    low = np.linspace(0.0, 40.0, 9)[1:]
+    there = rolled(scene, low)
+    for t, theta, omega in zip(low, there.theta, there.omega, strict=True):
+        back = rolled(scene.replace(theta=theta, omega=-omega), [t])
+        turned = abs(theta - 0.4) + 8.0 * t
+        assert abs(back.theta[0] - 0.4) < 64 * EPS * turned / ratio**2
+        assert abs(back.omega[0] - 8.0) < 64 * EPS * turned * 8.0 / ratio**3
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        rl.Scene(2.0, 1.0, slope=0.1, theta=0.4, omega=0.0),
+        rl.Scene(0.3, 1.0, slope=-0.3, theta=1.2, omega=0.5),
+        rl.Scene(1.0, 0.01, slope=0.2, theta=0.1, omega=0.1),
+    ],
+    ids=["2:1", "standing", "thin"],
+)
+def test_the_period_of_a_swing(scene: rl.Scene) -> None:
+    """The energy integral between two turning points, and a million swings on.
+
+    The period is rounded, the inputs are changed by a rounding: 8 of them.
+    """
+    with mp.workdps(DIGITS):
+        energy = Energy(scene)
+        flat = mp.mpf(0) if scene.a > scene.b else mp.pi / 2
+        low, high = (
+            mp.findroot(energy.at, (mp.mpf(x), mp.mpf(y)), solver="anderson", tol=1e-50)
+            for x, y in turning_brackets(energy, float(flat))
+        )
+        middle, half = (low + high) / 2, (high - low) / 2
+
+        def rate(u: Any) -> Any:
+            angle = middle + half * mp.sin(u)
+            return half * mp.cos(u) * mp.sqrt(energy.inertia(angle) / (2 * energy.at(angle)))
+
+        places = [mp.pi * i / 24 for i in range(-12, 13)]
+        exact = 2 * mp.quad(rate, places)
+    found = rl.period(scene)
+    assert abs(float(found - exact)) < 8 * EPS * found
+    times = np.array([0.0, 0.3, 0.7]) * found
+    now, later = rolled(scene, times), rolled(scene, times + 1e6 * found)
+    allowed = 8 * EPS * 1e6 * found * np.abs(now.omega).max() + 8 * EPS
+    assert np.abs(later.theta - now.theta).max() < allowed
+
+
+def turning_brackets(energy: Energy, flat: float) -> list[tuple[float, float]]:
+    """Two intervals in which W vanishes, on either side of the start's well."""
+    places = flat + np.linspace(-math.pi / 2, math.pi / 2, 2001)
+    signs = np.array([float(energy.at(mp.mpf(x))) > 0 for x in places])
+    changes = np.flatnonzero(signs[1:] != signs[:-1])
+    start = float(energy.start)
+    below = [i for i in changes if places[i] <= start + 1e-3 and signs[i + 1]]
+    above = [i for i in changes if places[i + 1] >= start - 1e-3 and signs[i]]
+    return [(places[i], places[i + 1]) for i in (below[-1], above[0])]
+
+
+def test_a_circle_is_uniformly_accelerated() -> None:
+    scene = rl.Scene(1.5, 1.5, slope=-0.2, theta=0.3, omega=2.0)
+    gain = -9.81 * math.sin(0.2) * 1.5 / (1.5**2 + 1.125)
+    times = np.array([0.0, 0.5, 3.0, 1e5])
+    found = rolled(scene, times)
+    assert np.allclose(found.omega, 2.0 + gain * times, rtol=4 * EPS, atol=8 * EPS)
+    assert np.allclose(found.theta, 0.3 + 2.0 * times + gain * times**2 / 2, rtol=8 * EPS)
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1 - 1e-12, 1e3])
+@pytest.mark.parametrize("slope", [1e-300, 1e-9, -0.5, 1.57])
+def test_all_shapes_keep_their_energy(ratio: float, slope: float) -> None:
+    """E/m = D omega^2/2 + g (h cos(slope) - x sin(slope)) over nine decades of time.
+
+    Each of its terms has a few roundings, 16 in all; x and theta move h by theirs over the
+    radius of the tip, which a thin body has 1/ratio times in its length, and squared as h''.
+    """
+    scene = rl.Scene(ratio, 1.0, slope=slope, theta=0.7, omega=0.4)
+    times = np.concatenate([[0.0], np.logspace(-2, 4, 60)])
+    found = rolled(scene, times)
+    size = found.kinetic_energy + np.abs(found.energy - found.kinetic_energy)
+    h = rl.geometry.support(found.theta, a=ratio, b=1.0)
+    h1 = rl.geometry.support_slope(found.theta, a=ratio, b=1.0)
+    h2 = rl.geometry.support_curvature(found.theta, a=ratio, b=1.0)
+    change = np.abs(h2 - h) + np.abs(h1)  # of the terms with an angle
+    turned = EPS * (1 + np.abs(found.theta)) * (9.81 + np.abs(found.omega) ** 2 * change) * change
+    assert np.all(np.abs(found.energy - found.energy[0]) < 16 * (EPS * size.max() + turned))
+
+
+def test_samples_do_not_depend_on_each_other() -> None:
+    """The same bits for a time alone as among many, before and behind it."""
+    scene = rl.Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=-5.0)
+    times = np.linspace(0.0, 40.0, 33)[1:]
+    together = rolled(scene, times).theta
+    assert [rolled(scene, [t]).theta[0] for t in times] == together.tolist()
+
+
+@pytest.mark.parametrize("t", [1e150, 1e300])
+def test_a_double_knows_no_phase_beyond_1e15_half_turns(t: float) -> None:
+    for scene in (rl.scenes.slope, rl.Scene(1.0, 1.0, slope=0.1), rl.Scene(2.0, 1.0, slope=0.1)):
+        with pytest.raises(ValueError, match="1e15 half turns"):
+            rolled(scene, [t])
+
+
+def test_what_does_not_repeat_itself_has_no_period() -> None:
+    with pytest.raises(ValueError, match=r"^scene must repeat itself, but on a slope of 0\.1"):
+        rl.period(rl.scenes.slope)
+    assert math.isinf(rl.period(rl.Scene(2.0, 1.0, slope=0.1, theta=lying(0.1), omega=0.0)))
+
+
+def lying(slope: float) -> float:
+    """The angle of the 2:1 ellipse in equilibrium: h' = h tan(slope)."""
+    return math.atan(equilibrium_tangent(slope))
+
+
+def equilibrium_tangent(slope: float) -> float:
+    """tan(theta) from (a^2 tan^2 + b^2) tan(slope) = (a^2 - b^2) tan, the smaller root."""
+    incline = math.tan(slope)
+    return 2 * incline / (3.0 + math.sqrt(9.0 - 16.0 * incline**2))
