@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "contact/continuation.hpp"
+#include "geometry/half_turns.hpp"
 #include "proof/certificate.hpp"
 #include "proof/slope_end.hpp"
 #include "scene/impact.hpp"
@@ -50,6 +51,7 @@ class ContactRun {
         while (!ending_) {
             checkpoint_();
             state_.mode = next_.mode;
+            take_half_turns_off();
             if (is_stuck()) {
                 stop_stuck();
             } else {
@@ -60,6 +62,22 @@ class ContactRun {
     }
 
   private:
+    // From an event on: the ellipse is the same after half a turn, and near a flat position its
+    // angle has more digits. What touches, or has no slip, goes on to do so.
+    void take_half_turns_off() {
+        const double half_turns = std::nearbyint(state_.theta / pi);
+        if (half_turns == 0 || motion_.segments.empty()) return;
+        const DoubleDouble rest = DoubleDouble{state_.theta, 0.0} - half_turn * half_turns;
+        turned_ = turned_ + half_turn * half_turns + rest.low;
+        const Geometry before = geometry(axes_, state_.theta);
+        const Geometry after = geometry(axes_, rest.high);
+        state_.theta = rest.high;
+        const double omega = state_.omega;
+        if (state_.z == before.h) state_.z = after.h;
+        if (state_.x_dot == before.h * omega) state_.x_dot = after.h * omega;
+        if (state_.z_dot == before.dh * omega) state_.z_dot = after.dh * omega;
+    }
+
     void follow() {
         switch (next_.mode) {
             case Mode::rest:
@@ -236,14 +254,18 @@ class ContactRun {
         if (static_cast<long>(motion_.events.size()) == settings_.max_events) {
             ending_ = Ending::max_events;
         } else {
-            motion_.events.push_back(
-                {t_ * units_.time, kind, in_si(before, units_), in_si(state_, units_)});
+            motion_.events.push_back({t_ * units_.time, kind, seen(before), seen(state_)});
         }
+    }
+
+    State seen(State state) const {
+        state.theta = static_cast<double>(turned_ + state.theta);
+        return in_si(state, units_);
     }
 
     template <class Law>
     void add_segment(Law law) {
-        motion_.segments.push_back({t_, std::move(law)});
+        motion_.segments.push_back({t_, std::move(law), turned_});
     }
 
     void finish() {
@@ -267,21 +289,7 @@ class ContactRun {
         return speed;
     }
 
-    Tolerance tolerance() const {
-        return {std::min(settings_.rtol, finest.relative),
-                std::min(settings_.atol, finest.absolute)};
-    }
-
     long steps_left() const { return settings_.max_steps - counts_.steps; }
-
-    template <int N>
-    void take_over(const Until& until, const Steps<N>& steps) {
-        counts_ += until.counts;
-        if (until.ending == Ending::max_steps || until.ending == Ending::step_too_small) {
-            ending_ = until.ending;
-        }
-        if (ending_) t_end_ = t_ + steps.knots.back().t;  // all there is
-    }
 
     // The ratio of a rebound to the last up to which bounces are summed: 1e5 of them at most.
     static constexpr double largest_ratio_that_settles = 0.9999;
@@ -294,6 +302,7 @@ class ContactRun {
     double t_end_;
     const Checkpoint& checkpoint_;
     State state_;
+    DoubleDouble turned_;  // beside the angle of the state
     const EndOfRolling first_end_;
     const double rest_speed_;
     Continuation next_{Mode::flight};

@@ -125,6 +125,20 @@ void look_at(const Scene& scene, const Law& law, const double* times, std::size_
     for (std::size_t i = 0; i < n; ++i) take(scene, found[i], samples[i]);
 }
 
+void turn(FlowSample& sample, const DoubleDouble& by) {
+    sample.theta = static_cast<double>(by + sample.theta);
+}
+
+void turn(ContactSample& sample, const DoubleDouble& by) {
+    sample.state.theta = static_cast<double>(by + sample.state.theta);
+}
+
+void turn(CoordinateState& state, const DoubleDouble& by) {
+    for (const int angle : {coordinate::theta, coordinate::psi}) {
+        state.q[angle] = static_cast<double>(by + state.q[angle]);
+    }
+}
+
 }  // namespace
 
 Motion single(const Scene& scene, decltype(Segment::law) law) {
@@ -163,6 +177,9 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
             [&](const auto& law) { look_at(scene, law, since.data(), since.size(), samples + i); },
             segment.law);
         const std::size_t last = i + since.size();
+        if (segment.turned.high != 0) {
+            for (std::size_t j = i; j < last; ++j) turn(samples[j], segment.turned);
+        }
         if (units.are_si()) i = last;
         for (; i < last; ++i) samples[i] = in_si(samples[i], units);
     }

@@ -45,9 +45,10 @@ struct Resting {
 // What a body does from a time on, up to the next segment.
 struct Segment {
     double begin;
-    std::variant<RollingFlow, SlopeFlow, SteppedRolling, SteppedMultipliers, Slide, Flight, Settling,
-                 Resting, Jam>
+    std::variant<RollingFlow, SlopeFlow, SteppedRolling, SteppedMultipliers, Slide, Flight,
+                 Settling, Resting, Jam>
         law;
+    DoubleDouble turned{};  // beside the angles of the law
 };
 
 struct Motion {
