@@ -121,7 +121,6 @@ class Impulse:
 class Scene:
     def __init__(
         self,
-        *,
         a: float,
         b: float,
         mass: float,

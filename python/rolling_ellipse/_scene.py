@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterable
 from dataclasses import KW_ONLY, dataclass, fields
 from functools import cached_property
 from typing import Any, ClassVar
 
 from . import _core
 from . import _start_words as words
-from ._check import number, optional_number, shown
+from ._check import number, shown
 from ._core import Mode
 from ._faces import Listed, Row, brief, with_unit
 from ._fields import FieldsOnly
 from ._impulse import Impulse as Impulse
 
-_NUMBERS = (
-    "a", "b", "mass", "gravity", "slope", "friction", "restitution", "theta", "omega", "x",
-)  # fmt: skip
 _OPTIONAL = ("inertia", "z", "x_dot", "z_dot")
 STATE_UNITS = {
     "theta": "rad", "omega": "rad/s", "x": "m", "z": "m", "x_dot": "m/s", "z_dot": "m/s",
@@ -71,7 +69,7 @@ class InitialState(Listed):
         return f"<InitialState {self.mode.name}: {numbers}>"
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, init=False, repr=False)
 class Scene(FieldsOnly, Listed):
     """An ellipse, its ground, its state at t = 0 and, if any, the impulse it then receives.
 
@@ -134,26 +132,48 @@ class Scene(FieldsOnly, Listed):
     z_dot: float | None = None
     impulse: Impulse | None = None
 
-    def __post_init__(self) -> None:
-        for name in _NUMBERS:
-            object.__setattr__(self, name, number(name, getattr(self, name)))
-        for name in _OPTIONAL:
-            object.__setattr__(self, name, optional_number(name, getattr(self, name)))
-        if self.impulse is not None and not isinstance(self.impulse, Impulse):
-            raise TypeError(f"impulse must be an Impulse or None, got {shown(self.impulse)}")
-        if self.impulse is not None and self.impulse.shape != ():
+    def __init__(  # that of a frozen dataclass takes as long as all of this together
+        self,
+        a: float,
+        b: float,
+        *,
+        mass: float = mass,
+        gravity: float = gravity,
+        inertia: float | None = inertia,
+        slope: float = slope,
+        friction: float = friction,
+        restitution: float = restitution,
+        theta: float = theta,
+        omega: float = omega,
+        x: float = x,
+        z: float | None = z,
+        x_dot: float | None = x_dot,
+        z_dot: float | None = z_dot,
+        impulse: Impulse | None = impulse,
+    ) -> None:
+        numbers: dict[str, Any] = {
+            "a": a, "b": b, "mass": mass, "gravity": gravity, "inertia": inertia, "slope": slope,
+            "friction": friction, "restitution": restitution, "theta": theta, "omega": omega,
+            "x": x, "z": z, "x_dot": x_dot, "z_dot": z_dot,
+        }  # fmt: skip
+        for name, value in numbers.items():
+            if type(value) is not float and not (value is None and name in _OPTIONAL):
+                numbers[name] = number(name, value)
+        if impulse is not None and not isinstance(impulse, Impulse):
+            raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
+        if impulse is not None and impulse.shape != ():
             raise ValueError(
-                f"impulse must be one blow, got an Impulse of shape {self.impulse.shape}: "
+                f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
                 "use outcome(scene, impulse)"
             )
-        _ = self.core  # the core validates
+        core = _for_core(numbers.values(), impulse)  # the core validates
+        object.__setattr__(self, "__dict__", numbers | {"impulse": impulse, "core": core})
 
     @cached_property
     def core(self) -> _core.Scene:
-        """The same for the core."""
-        values: dict[str, Any] = {name: getattr(self, name) for name in _NUMBERS + _OPTIONAL}
-        impulse = None if self.impulse is None else self.impulse.core
-        return _core.Scene(**values, impulse=impulse)
+        """The same for the core, which pickles do not hold."""
+        *numbers, impulse = self.__getstate__().values()
+        return _for_core(numbers, impulse)
 
     def replace(self, **changes: Any) -> Scene:
         """Return the scene with some of its arguments changed.
@@ -218,6 +238,10 @@ class Scene(FieldsOnly, Listed):
             rows.append(("impulse", words.blow(impulse)))
             after = f", omega = {brief(start.omega)} rad/s after the blow"
         return [*rows, ("start", words.WHERE[start.mode] + after)]
+
+
+def _for_core(numbers: Iterable[Any], impulse: Impulse | None) -> _core.Scene:
+    return _core.Scene(*(*numbers, None if impulse is None else impulse.core))
 
 
 def require_scene(scene: object) -> Scene:
