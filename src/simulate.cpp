@@ -3,8 +3,10 @@
 #include <stdexcept>
 
 #include "proof/slope.hpp"
+#include "proof/slope_end.hpp"
 #include "proof/watch.hpp"
 #include "reason.hpp"
+#include "scene/impact.hpp"
 #include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
@@ -17,14 +19,50 @@ Settings chosen(Settings settings, Validity validity) {
         settings.model = fixed || validity == Validity::valid ? Model::rolling : Model::contact;
     }
     if (settings.method == Method::automatic) {
-        settings.method = settings.model == Model::rolling ? Method::exact : Method::dop853;
+        const bool stepped = settings.model == Model::multipliers;
+        settings.method = stepped ? Method::dop853 : Method::exact;
     }
     return settings;
 }
 
-// What is said of rolling, for the model that has the same motion in more coordinates.
-std::string in_coordinates(const std::string& reason) { return "multipliers, " + reason; }
-std::string in_contact(const std::string& reason) { return "contact (" + reason + ")"; }
+// What a motion starts from, and its rolling, on level ground or on a slope.
+struct Beginning {
+    State state;
+    std::optional<RollingStart> rolling;
+    std::optional<SlopeFlow> on_slope;
+};
+
+Beginning beginning(const Scene& scene) {
+    Beginning found{initial_state(scene).state, {}, {}};
+    const State& start = found.state;
+    validate_motion(scene.body(), start.theta, start.omega);
+    validate_velocity(scene.body(), start.x_dot, start.z_dot);
+    if (!rolls(start)) return found;
+    if (scene.slope == 0) {
+        found.rolling = rolling_start(scene.body(), start.theta, start.omega);
+    } else {
+        found.on_slope =
+            slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
+    }
+    return found;
+}
+
+// For how long rolling is true: on level ground up to an angle, on a slope also a time [s].
+struct Proof {
+    EndOfRolling end;
+    double time = infinity;
+};
+
+Proof proof_on_slope(const LawMeetings& met) {
+    const auto& end = met.touched ? met.touched : met.broken;
+    return {end_of_rolling(met), end ? end->time : infinity};
+}
+
+Proof proof(const Scene& scene, Beginning& from) {
+    if (from.rolling) return {end_of_rolling(*from.rolling, scene.friction)};
+    if (from.on_slope) return proof_on_slope(law_meetings(*from.on_slope, scene.friction));
+    return {{Validity::no_proof}};
+}
 
 void end_validity(double t, double t_end, Solution& solution) {
     solution.valid_until = t;
@@ -34,14 +72,11 @@ void end_validity(double t, double t_end, Solution& solution) {
     }
 }
 
-// The certificate knows for how long rolling is true.
-void judge_by_proof(const CertifiedScene& certified, double t_end, Solution& solution) {
-    const EndOfRolling& end = certified.certificate.end;
-    solution.reason = certified.reason;
-    if (!end.angle) return;
-    if (certified.on_slope) return end_validity(certified.ends_after, t_end, solution);
+void judge_by_proof(const Beginning& from, const Proof& proof, double t_end, Solution& solution) {
+    if (!proof.end.angle) return;
+    if (from.on_slope) return end_validity(proof.time, t_end, solution);
     const auto* flow = std::get_if<RollingFlow>(&solution.motion.segments.front().law);
-    const double ends = time_of_end(flow ? *flow : rolling_flow(*certified.rolling), end);
+    const double ends = time_of_end(flow ? *flow : rolling_flow(*from.rolling), proof.end);
     end_validity(ends, t_end, solution);
 }
 
@@ -56,24 +91,24 @@ void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoi
         sampler(times, n, samples.data());
         for (std::size_t i = 0; i < n; ++i) found[i] = samples[i].force;
     };
-    const ContactWatch watch = watch_contact(scene.friction, knots, forces, checkpoint);
-    solution.reason = reason(scene, watch);
-    end_validity(watch.holds_until, t_end, solution);
+    solution.watch = watch_contact(scene.friction, knots, forces, checkpoint);
+    end_validity(solution.watch->holds_until, t_end, solution);
 }
 
-Solution exact_rolling(const Scene& scene, const CertifiedScene& certified, double t_end) {
-    Solution solution{single(scene, Resting{certified.start.state})};
-    auto& law = solution.motion.segments.front().law;
-    if (certified.on_slope) {
-        SlopeFlow flow = *certified.on_slope;
+Motion exact_motion(const Scene& scene, const Beginning& from, double t_end) {
+    if (from.on_slope) {
+        SlopeFlow flow = *from.on_slope;
         prepare(flow, t_end);
         validate_time(t_end, longest_time(flow));
-        law = std::move(flow);
-    } else {
-        const RollingFlow flow = rolling_flow(*certified.rolling, certified.start.state.x);
-        validate_time(t_end, longest_time(flow));
-        law = flow;
+        return single(scene, std::move(flow));
     }
+    const RollingFlow flow = rolling_flow(*from.rolling, from.state.x);
+    validate_time(t_end, longest_time(flow));
+    return single(scene, flow);
+}
+
+Solution exact_rolling(const Scene& scene, const Beginning& from, double t_end) {
+    Solution solution{exact_motion(scene, from, t_end)};
     solution.followed_until = t_end;
     return solution;
 }
@@ -93,24 +128,23 @@ Solution integrated(Integration<Motion> found, const Settings& settings, double 
     return solution;
 }
 
-Solution solved(const Scene& scene, const CertifiedScene& certified, const Settings& settings,
-                double t_end, const Checkpoint& checkpoint) {
-    const State& start = certified.start.state;
+Solution solved(const Scene& scene, const Beginning& from, const EndOfRolling& end,
+                const Settings& settings, double t_end, const Checkpoint& checkpoint) {
+    const State& start = from.state;
     if (settings.model == Model::contact) {
-        return integrated(
-            integrate_contact(scene, start, certified.certificate.end, settings, t_end, checkpoint),
-            settings, t_end);
+        return integrated(integrate_contact(scene, start, end, settings, t_end, checkpoint),
+                          settings, t_end);
     }
     if (!rolls(start)) {
         throw std::invalid_argument("model '" + name(settings.model) +
                                     "' must start rolling, but " + why_not_rolling(scene, start));
     }
-    if (settings.method == Method::exact) return exact_rolling(scene, certified, t_end);
+    if (settings.method == Method::exact) return exact_rolling(scene, from, t_end);
     if (settings.model == Model::multipliers) {
-        const CoordinateStart from = coordinate_start(scene, start);
-        return integrated(
-            as_motion(scene, integrate_multipliers(scene, from, settings, t_end, checkpoint)),
-            settings, t_end);
+        const CoordinateStart coordinates = coordinate_start(scene, start);
+        return integrated(as_motion(scene, integrate_multipliers(scene, coordinates, settings,
+                                                                 t_end, checkpoint)),
+                          settings, t_end);
     }
     return integrated(
         as_motion(scene, integrate_rolling(scene, start, settings, t_end, checkpoint)), settings,
@@ -120,41 +154,33 @@ Solution solved(const Scene& scene, const CertifiedScene& certified, const Setti
 }  // namespace
 
 CertifiedScene certify(const Scene& scene) {
-    CertifiedScene result{
-        initial_state(scene), {}, {}, infinity, {{Validity::no_proof}, {}, {}, {}, {}}, {}};
-    const State& start = result.start.state;
-    validate_motion(scene.body(), start.theta, start.omega);
-    validate_velocity(scene.body(), start.x_dot, start.z_dot);
-    if (rolls(start) && scene.slope != 0) {
-        SlopeFlow flow = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
-        const LawMeetings met = law_meetings(flow, scene.friction);
-        if (const auto& end = met.touched ? met.touched : met.broken) result.ends_after = end->time;
-        result.certificate = certify_on_slope(scene, start, met);
-        result.on_slope = std::move(flow);
-    } else if (rolls(start)) {
-        result.rolling = rolling_start(scene.body(), start.theta, start.omega);
-        result.certificate = certify_rolling(*result.rolling, scene.mass, scene.friction);
+    Beginning from = beginning(scene);
+    CertifiedScene result{{{Validity::no_proof}, {}, {}, {}, {}}, {}};
+    if (from.rolling) {
+        result.certificate = certify_rolling(*from.rolling, scene.mass, scene.friction);
+    } else if (from.on_slope) {
+        const LawMeetings met = law_meetings(*from.on_slope, scene.friction);
+        result.certificate = certify_on_slope(scene, from.state, met);
     }
-    result.reason = reason(scene, start, result.certificate);
+    result.reason = reason(scene, from.state, result.certificate);
     return result;
+}
+
+std::string reason(const Scene& scene, const Solution& solution) {
+    const std::string rolling =
+        solution.watch ? reason(scene, *solution.watch) : certify(scene).reason;
+    if (solution.model == Model::contact) return "contact (" + rolling + ")";
+    return solution.model == Model::multipliers ? "multipliers, " + rolling : rolling;
 }
 
 Solution simulate(const Scene& scene, const Settings& asked, double t_end,
                   const Checkpoint& checkpoint) {
     validate(asked, t_end);
-    const CertifiedScene certified = certify(scene);
-    const Settings settings = chosen(asked, certified.certificate.end.validity);
-    Solution solution = solved(scene, certified, settings, t_end, checkpoint);
-    if (settings.model == Model::contact) {
-        solution.reason = in_contact(certified.reason);
-        return solution;
-    }
-    if (certified.rolling || certified.on_slope) {
-        judge_by_proof(certified, t_end, solution);
-    } else {
-        judge_by_watch(scene, t_end, checkpoint, solution);
-    }
-    if (settings.model == Model::multipliers) solution.reason = in_coordinates(solution.reason);
+    Beginning from = beginning(scene);
+    const Proof proof = rolling_ellipse::proof(scene, from);
+    const Settings settings = chosen(asked, proof.end.validity);
+    Solution solution = solved(scene, from, proof.end, settings, t_end, checkpoint);
+    if (settings.model != Model::contact) judge_by_proof(from, proof, t_end, solution);
     return solution;
 }
 
@@ -167,23 +193,20 @@ Solution simulate(const Scene& scene, const CoordinateState& start, const Settin
         as_motion(scene, integrate_multipliers(scene, from, settings, t_end, checkpoint)), settings,
         t_end);
     judge_by_watch(scene, t_end, checkpoint, solution);
-    solution.reason = in_coordinates(solution.reason);
     return solution;
 }
 
 double period(const Scene& scene) {
-    CertifiedScene certified = certify(scene);
-    if (certified.on_slope) {
-        while (grow(*certified.on_slope)) continue;
-        if (const auto found = period(*certified.on_slope)) return *found;
-        throw std::invalid_argument("scene must repeat itself, but on a slope of " +
-                                    brief(scene.slope) + " rad the body runs downhill for ever");
-    }
-    if (!certified.rolling) {
+    Beginning from = beginning(scene);
+    if (from.rolling) return period(rolling_flow(*from.rolling));
+    if (!from.on_slope) {
         throw std::invalid_argument("scene must start rolling, but " +
-                                    why_not_rolling(scene, certified.start.state));
+                                    why_not_rolling(scene, from.state));
     }
-    return period(rolling_flow(*certified.rolling));
+    while (grow(*from.on_slope)) continue;
+    if (const auto found = period(*from.on_slope)) return *found;
+    throw std::invalid_argument("scene must repeat itself, but on a slope of " +
+                                brief(scene.slope) + " rad the body runs downhill for ever");
 }
 
 }  // namespace rolling_ellipse

@@ -5,17 +5,12 @@
 
 #include "contact/contact.hpp"
 #include "proof/certificate.hpp"
-#include "scene/impact.hpp"
 #include "solution.hpp"
 
 namespace rolling_ellipse {
 
 // The certificate of the motion that starts from the scene; its reason in one sentence.
 struct CertifiedScene {
-    InitialState start;
-    std::optional<RollingStart> rolling;  // of a body that rolls on level ground
-    std::optional<SlopeFlow> on_slope;    // of one that rolls on a slope
-    double ends_after;                    // the time at which that ends [s]
     Certificate certificate;
     std::string reason;
 };
@@ -28,6 +23,10 @@ Solution simulate(const Scene& scene, const Settings& settings, double t_end,
 // The multiplier model from any coordinates and velocities; the scene gives body and ground.
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
+
+// Why the model of a scene's solution is true, or until when, in one sentence. It is made when
+// asked for: a certificate with all its numbers costs as much as many a motion.
+std::string reason(const Scene& scene, const Solution& solution);
 
 // Time of a full swing or turn of the rolling motion that starts from the scene; throws
 // std::invalid_argument where it does not repeat.

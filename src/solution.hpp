@@ -1,9 +1,11 @@
 // A motion and what is known of it.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "contact/segments.hpp"
+#include "proof/watch.hpp"
 #include "scene/settings.hpp"
 
 namespace rolling_ellipse {
@@ -16,8 +18,8 @@ struct Solution {
     Ending ending = Ending::completed;
     double followed_until = 0.0;    // last time that the motion describes
     double valid_until = infinity;  // time at which the model stops being true
-    std::string reason = {};
     std::string message = {};
+    std::optional<ContactWatch> watch = {};  // what was seen where nothing could be proved
 };
 
 }  // namespace rolling_ellipse

@@ -99,7 +99,9 @@ def worker_count(workers: int) -> int:
 
 def flag(name: str, value: Any) -> bool:
     """Return ``value`` if it is True or False, or raise TypeError naming the argument."""
-    if isinstance(value, (bool, np.bool_)):
+    if value is True or value is False:
+        return value
+    if isinstance(value, np.bool_):
         return bool(value)
     raise TypeError(f"{name} must be True or False, got {shown(value)}")
 

@@ -38,24 +38,25 @@ def _frozen_contact(*arrays: Any) -> ContactSamples:
 
 def frozen(values: _Values) -> _Values:
     """Make an array read-only that nobody else has."""
-    values.flags.writeable = False
+    values.setflags(write=False)
     return values
 
 
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     """Return the arrays that a Trajectory holds, at so many times."""
     found: dict[str, Any] = {"t": frozen(np.array(times))}
-    if solution.model is _core.Model.CONTACT:
+    if solution.model == "rolling":
+        found["theta"], found["omega"], found["x"] = solution.sample_rolling(times)
+    elif solution.model == "contact":
         columns = solution.sample_contact(times)
-        theta, omega, x = (columns.pop(name) for name in ("theta", "omega", "x"))
-        found["contact"] = ContactSamples(**{k: frozen(column) for k, column in columns.items()})
-    elif solution.model is _core.Model.MULTIPLIERS:
-        q, q_dot = solution.sample_coordinates(times)
-        theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
-        found["coordinates"] = frozen(q), frozen(q_dot)
+        for name in ("theta", "omega", "x"):
+            found[name] = columns.pop(name)
+        found["contact"] = ContactSamples(**columns)
     else:
-        theta, omega, x = solution.sample_rolling(times)
-    return found | {"theta": frozen(theta), "omega": frozen(omega), "x": frozen(x)}
+        q, q_dot = found["coordinates"] = solution.sample_coordinates(times)
+        theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
+        found.update(theta=frozen(theta), omega=frozen(omega), x=frozen(x))
+    return found
 
 
 class _Rolling:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from operator import is_
 from typing import Any, Literal, get_args
 
 from . import _core
@@ -69,6 +70,13 @@ class Settings(FieldsOnly):
         )
 
 
+def settings(*given: Any) -> Settings:
+    """Return Settings of values in the order of their fields; nothing is checked twice."""
+    if all(map(is_, given, _GIVEN_BY_DEFAULT)):
+        return DEFAULTS
+    return Settings(**dict(zip(_NAMES, given, strict=True)))
+
+
 def _pair(name: str, value: Any) -> tuple[float, float]:
     try:
         first, second = value
@@ -98,3 +106,5 @@ DEFAULTS = Settings(
     max_events=10_000,
     rest_speed=None,
 )
+_NAMES = tuple(field.name for field in fields(Settings))
+_GIVEN_BY_DEFAULT = tuple(getattr(DEFAULTS, name) for name in _NAMES)

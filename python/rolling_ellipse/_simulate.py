@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from . import _core
 from ._check import FloatArray, array, flag, shown
 from ._scene import Scene, require_scene
-from ._settings import DEFAULTS, Method, Model, Settings, Stabilization
+from ._settings import DEFAULTS, Method, Model, Stabilization, settings
 from ._stability import advice
-from ._status import IntegrationError, StabilityWarning, Status, ValidityWarning
+from ._status import COMPLETED, IntegrationError, StabilityWarning, Status, ValidityWarning
 from ._trajectory import Trajectory
 
 _DEFAULT_SAMPLES = 1001
@@ -130,20 +131,11 @@ def simulate(
     """
     require_scene(scene)
     raise_on_failure = flag("raise_on_failure", raise_on_failure)
-    settings = Settings(
-        model=model,
-        method=method,
-        rtol=rtol,
-        atol=atol,
-        step=step,
-        stages=stages,
-        stabilization=stabilization,
-        baumgarte=baumgarte,
-        max_steps=max_steps,
-        max_events=max_events,
-        rest_speed=rest_speed,
-    )
-    trajectory = Trajectory.computed(scene, settings, sample_times(t))
+    how = settings(
+        model, method, rtol, atol, step, stages, stabilization, baumgarte, max_steps, max_events,
+        rest_speed,
+    )  # fmt: skip
+    trajectory = Trajectory.computed(scene, how, sample_times(t))
     report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=3)
     if told := advice(trajectory):
         warnings.warn(told, StabilityWarning, stacklevel=2)
@@ -152,6 +144,8 @@ def simulate(
 
 def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel: int) -> None:
     """Warn of lost validity; raise for an integration that stopped before its end."""
+    if trajectory.status is COMPLETED:
+        return
     if trajectory.status is Status.VALIDITY_LOST:
         warnings.warn(trajectory.message, ValidityWarning, stacklevel=stacklevel)
     elif not trajectory.success and raise_on_failure:
@@ -167,6 +161,8 @@ def sample_times(t: Any) -> FloatArray:
             f"t must be an end time, {end}, or an array of times, np.linspace(0, {end}, n) or, for "
             f"just two samples, a list; got {shown(t)}"
         )
+    if _core.are_sample_times(times):
+        return times
     if not np.all(np.isfinite(times)):
         raise ValueError(f"t must be finite [s], got {shown(t)}")
     if times.size and times.min() < 0:
@@ -175,11 +171,8 @@ def sample_times(t: Any) -> FloatArray:
         return np.linspace(0.0, float(times), _DEFAULT_SAMPLES) if times > 0 else np.zeros(1)
     if times.ndim != 1 or times.size == 0:
         raise ValueError(f"t must be an end time or a 1-D array of times, got shape {times.shape}")
-    falls = np.flatnonzero(np.diff(times) <= 0)
-    if falls.size:
-        i = int(falls[0])
-        raise ValueError(
-            f"t must be strictly increasing, got t[{i}] = {float(times[i])!r} "
-            f"and t[{i + 1}] = {float(times[i + 1])!r}"
-        )
-    return times
+    i = int(np.flatnonzero(np.diff(times) <= 0)[0])
+    raise ValueError(
+        f"t must be strictly increasing, got t[{i}] = {float(times[i])!r} "
+        f"and t[{i + 1}] = {float(times[i + 1])!r}"
+    )

@@ -31,7 +31,7 @@ from ._samples import (
 )
 from ._scene import Scene
 from ._settings import Method, Model, Settings
-from ._status import Status, status_of
+from ._status import COMPLETED, STATUSES, Status
 from ._when import passages
 from .geometry import support_slope
 
@@ -188,24 +188,15 @@ class Trajectory(FieldsOnly):
         """
         span = float(times[-1])
         solution = solve(scene, settings, span, start)
-        stats = solution.stats
-        ends = solution.followed_until if stats["segments"] else -math.inf
-        times = times[times <= ends]
-        status = status_of(solution.ending)
-        known = dict(
-            scene=scene,
-            model=solution.model.name.lower(),
-            method=solution.method.name.lower(),
-            status=status,
-            message=solution.message or status.value,
-            reason=solution.reason,
-            valid_until=solution.valid_until,
-            t_end=solution.followed_until,
-            span=span,
-            settings=settings,
-            start=start and coordinate_pair("start", start, (COORDINATES,)),
-            stats=stats,
-        )
+        status, t_end = STATUSES[solution.ending], solution.followed_until
+        if status is not COMPLETED:
+            times = times[times <= (t_end if solution.stats["segments"] else -math.inf)]
+        known: dict[str, Any] = {
+            "scene": scene, "model": solution.model, "method": solution.method, "status": status,
+            "message": solution.message or status.value, "valid_until": solution.valid_until,
+            "t_end": t_end, "span": span, "settings": settings,
+            "start": None if start is None else coordinate_pair("start", start, (COORDINATES,)),
+        }  # fmt: skip
         return cls._sampled(solution, times, known)
 
     @classmethod
@@ -214,7 +205,8 @@ class Trajectory(FieldsOnly):
     ) -> Trajectory:
         """Make one of the core's own arrays, which need no check, and keep the solution."""
         made = object.__new__(cls)
-        made.__dict__.update(known | sampled(solution, times), _solution=solution)
+        values = known | sampled(solution, times) | {"_solution": solution}
+        object.__setattr__(made, "__dict__", values)
         return made
 
     @cached_property
@@ -568,6 +560,22 @@ class Trajectory(FieldsOnly):
             f"{self.status.name}>"
         )
 
+
+def _reason(self: Trajectory) -> str:
+    """Why the model is valid, in one sentence."""
+    return self._solution.reason(self.scene.core)
+
+
+def _stats(self: Trajectory) -> dict[str, int]:
+    """Figures of the solver: segments, steps, rejected_steps, evaluations."""
+    return self._solution.stats
+
+
+for _name, _find in {"reason": _reason, "stats": _stats}.items():
+    # Fields that of a computed motion are found when first asked for.
+    _found: cached_property[Any] = cached_property(_find)
+    _found.__set_name__(Trajectory, _name)
+    setattr(Trajectory, _name, _found)
 
 for _each in (*QUANTITIES, MODE):
     if _each.name in vars(Trajectory):  # fields have no place for a docstring

@@ -71,6 +71,11 @@ std::vector<Array> empty_arrays(int count, py::ssize_t n) {
     return arrays;
 }
 
+py::array read_only(py::array array) {
+    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+    return array;
+}
+
 Array matrix(py::ssize_t rows, py::ssize_t columns) {
     return Array(std::vector<py::ssize_t>{rows, columns});
 }

@@ -37,6 +37,11 @@ inline constexpr py::ssize_t chunk = 1024;
 void run_interruptible(py::ssize_t n, int workers, const Range& body);
 
 std::vector<Array> empty_arrays(int count, py::ssize_t n);
+
+// The array, from now on never to be written to by Python: `flags.writeable` takes it as long as
+// all else about an array.
+py::array read_only(py::array array);
+
 Array matrix(py::ssize_t rows, py::ssize_t columns);
 void store(Array& array, py::ssize_t row, const double* values);
 

@@ -85,9 +85,8 @@ void bind_scene(py::module_& m) {
                  validate(scene);
                  return scene;
              }),
-             "a"_a, "b"_a, "mass"_a, "gravity"_a, "inertia"_a, "slope"_a,
-             "friction"_a, "restitution"_a, "theta"_a, "omega"_a, "x"_a, "z"_a, "x_dot"_a,
-             "z_dot"_a, "impulse"_a)
+             "a"_a, "b"_a, "mass"_a, "gravity"_a, "inertia"_a, "slope"_a, "friction"_a,
+             "restitution"_a, "theta"_a, "omega"_a, "x"_a, "z"_a, "x_dot"_a, "z_dot"_a, "impulse"_a)
         .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
     bind_class<State>(m, "State")
         .def_readonly("theta", &State::theta)

@@ -25,6 +25,17 @@ void validate_times(const Solution& solution, const double* times, py::ssize_t b
     }
 }
 
+// Whether times are such as a motion is sampled at: at least one, finite, not negative, and each
+// later than the one before.
+bool are_sample_times(const Array& t) {
+    if (t.ndim() != 1 || t.size() == 0) return false;
+    const double* const times = t.data();
+    for (py::ssize_t i = 1; i < t.size(); ++i) {
+        if (!(times[i] > times[i - 1])) return false;
+    }
+    return times[0] >= 0 && times[t.size() - 1] < infinity;
+}
+
 // Shows take(samples, begin, end) the samples of all times, in parts.
 template <class Sample, class Take>
 void look(const Solution& solution, const Array& t, Take take) {
@@ -48,7 +59,7 @@ py::tuple sample_rolling(const Solution& solution, const Array& t) {
                      [&](const FlowSample* samples, py::ssize_t begin, py::ssize_t end) {
                          store_samples(samples, begin, end, columns);
                      });
-    return py::make_tuple(out[0], out[1], out[2]);
+    return py::make_tuple(read_only(out[0]), read_only(out[1]), read_only(out[2]));
 }
 
 // q and q_dot, (n, 5), at each time.
@@ -62,7 +73,7 @@ py::tuple sample_coordinates(const Solution& solution, const Array& t) {
                                   store(q_dot, i, samples[i - begin].q_dot.data());
                               }
                           });
-    return py::make_tuple(q, q_dot);
+    return py::make_tuple(read_only(q), read_only(q_dot));
 }
 
 constexpr std::pair<const char*, double State::*> state_columns[] = {
@@ -78,7 +89,7 @@ py::dict sample_contact(const Solution& solution, const Array& t) {
     const auto add = [&](const char* name) {
         Array column(t.size());
         columns.push_back(column.mutable_data());
-        found[name] = std::move(column);
+        found[name] = read_only(column);
     };
     for (const auto& [name, number] : state_columns) add(name);
     for (const auto& [name, number] : force_columns) add(name);
@@ -103,7 +114,7 @@ py::dict sample_contact(const Solution& solution, const Array& t) {
                                 modes[i] = static_cast<std::int8_t>(samples[i - begin].state.mode);
                             }
                         });
-    found["mode"] = std::move(mode);
+    found["mode"] = read_only(mode);
     return found;
 }
 
@@ -180,20 +191,24 @@ void bind_solution(py::module_& m) {
         .def_readonly("period", &Arc::period)
         .def_property_readonly("marks", marks);
     bind_class<Solution>(m, "Solution")
-        .def_readonly("ending", &Solution::ending)
+        .def_property_readonly("ending",
+                               [](const Solution& s) { return static_cast<int>(s.ending); })
         .def_readonly("followed_until", &Solution::followed_until)
         .def_readonly("valid_until", &Solution::valid_until)
-        .def_readonly("reason", &Solution::reason)
         .def_readonly("message", &Solution::message)
-        .def_readonly("model", &Solution::model)
-        .def_readonly("method", &Solution::method)
+        .def_property_readonly("model", [](const Solution& s) { return name(s.model); })
+        .def_property_readonly("method", [](const Solution& s) { return name(s.method); })
         .def_property_readonly("stats", stats)
         .def_property_readonly("events", [](const Solution& s) { return s.motion.events; })
+        .def(
+            "reason", [](const Solution& s, const Scene& scene) { return reason(scene, s); },
+            "scene"_a)
         .def("losses", losses_by_name)
         .def("arcs", arcs)
         .def("sample_rolling", sample_rolling, "t"_a)
         .def("sample_coordinates", sample_coordinates, "t"_a)
         .def("sample_contact", sample_contact, "t"_a);
+    m.def("are_sample_times", are_sample_times, "t"_a);
     m.def("simulate", simulate_interruptible, "scene"_a, "settings"_a, "t_end"_a);
     m.def("simulate_coordinates", simulate_coordinates, "scene"_a, "q"_a, "q_dot"_a, "settings"_a,
           "t_end"_a);
