@@ -10,6 +10,8 @@ from ._core import Validity
 from ._faces import Listed
 from ._scene import Scene, require_scene
 
+_VALIDITIES = tuple(Validity)  # by their codes
+
 
 @dataclass(frozen=True, repr=False)
 class Certificate(Listed):
@@ -77,4 +79,5 @@ def certify(scene: Scene) -> Certificate:
     -------
     Certificate
     """
-    return Certificate(**_core.certify(require_scene(scene).core))
+    validity, *found = _core.certify(require_scene(scene).core)
+    return Certificate(_VALIDITIES[validity], *found)

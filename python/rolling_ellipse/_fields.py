@@ -1,9 +1,13 @@
-"""What pickles and copies of dataclasses hold."""
+"""What dataclasses hold: their pickles and copies, and fields that are found late."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields
-from typing import Any, Self
+from functools import cached_property
+from typing import Any, Self, TypeVar
+
+_Owner = TypeVar("_Owner")
 
 
 class FieldsOnly:
@@ -21,3 +25,14 @@ class FieldsOnly:
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         return other
+
+
+def find_late(of: type[_Owner], **finds: Callable[[_Owner], Any]) -> None:
+    """Make fields of objects that are made without them such as are found when first asked for.
+
+    A dataclass would take them for defaults, were they there when it is made.
+    """
+    for name, find in finds.items():
+        found: cached_property[Any] = cached_property(find)
+        found.__set_name__(of, name)
+        setattr(of, name, found)

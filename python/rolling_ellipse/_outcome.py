@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,11 +14,15 @@ from . import _core
 from ._check import evaluate, number, optional_number, worker_count
 from ._core import Outcome
 from ._faces import Listed, with_unit
+from ._fields import FieldsOnly, find_late
 
 
 @dataclass(frozen=True, repr=False)
-class Thresholds(Listed):
+class Thresholds(FieldsOnly, Listed):
     """Where the motion on level ground changes its kind.
+
+    `lift_off_speed` and `jam_speeds` take some milliseconds, of what `thresholds` returns when they
+    are first asked for.
 
     Speeds are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2] [rad],
     None where the speed or the coefficient beside it is infinite (it never happens).
@@ -71,12 +76,24 @@ class Thresholds(Listed):
     rocking_rate: float
     tip_rate: float
 
+    @cached_property
+    def _lift_off(self) -> tuple[float | None, tuple[tuple[float, float], ...]]:
+        known = *self.__dict__["_body"], self.slip_speed, self.painleve_friction
+        return _core.lift_off(*known)
+
     def __repr__(self) -> str:
         speeds = ", ".join(
             f"{name} = {with_unit(getattr(self, name), 'rad/s')}"
             for name in ("roll_over_speed", "slip_speed", "contact_loss_speed", "lift_off_speed")
         )
         return f"<Thresholds: {speeds}>"
+
+
+find_late(
+    Thresholds,
+    lift_off_speed=lambda found: found._lift_off[0],
+    jam_speeds=lambda found: found._lift_off[1],
+)
 
 
 def classify(
@@ -183,9 +200,10 @@ def thresholds(
     ValueError
         If a number is out of its range.
     """
-    a, b = number("a", a), number("b", b)
-    k2 = optional_number("gyration2", gyration2)
-    found = _core.thresholds(a, b, number("gravity", gravity), k2, number("friction", friction))
-    values = {field.name: getattr(found, field.name) for field in fields(Thresholds)}
-    values["jam_speeds"] = tuple((speeds.lower, speeds.upper) for speeds in found.jam_speeds)
-    return Thresholds(**values)
+    body = (
+        number("a", a), number("b", b), number("gravity", gravity),
+        optional_number("gyration2", gyration2), number("friction", friction),
+    )  # fmt: skip
+    found = object.__new__(Thresholds)
+    found.__dict__.update(_core.thresholds(*body), _body=body)
+    return found

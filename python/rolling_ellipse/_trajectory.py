@@ -18,7 +18,7 @@ from ._check import FloatArray, array, number
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
 from ._events import Event, Events, event
 from ._faces.motion import motion_html
-from ._fields import FieldsOnly
+from ._fields import FieldsOnly, find_late
 from ._quantities import MODE, QUANTITIES
 from ._samples import (
     ContactSamples,
@@ -571,12 +571,7 @@ def _stats(self: Trajectory) -> dict[str, int]:
     return self._solution.stats
 
 
-for _name, _find in {"reason": _reason, "stats": _stats}.items():
-    # Fields that of a computed motion are found when first asked for.
-    _found: cached_property[Any] = cached_property(_find)
-    _found.__set_name__(Trajectory, _name)
-    setattr(Trajectory, _name, _found)
-
+find_late(Trajectory, reason=_reason, stats=_stats)
 for _each in (*QUANTITIES, MODE):
     if _each.name in vars(Trajectory):  # fields have no place for a docstring
         vars(Trajectory)[_each.name].__doc__ = _each.sentence

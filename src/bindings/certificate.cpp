@@ -3,6 +3,7 @@
 #include "bindings/bindings.hpp"
 #include "outcome/blow.hpp"
 #include "outcome/classify.hpp"
+#include "outcome/lift_off.hpp"
 #include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
 #include "scene/impact.hpp"
@@ -58,18 +59,56 @@ Outcome outcome_interruptible(const Scene& scene) {
     return outcome(scene, SignalWatch());
 }
 
-py::dict certificate(const Scene& scene) {
+// The code of the validity, and the rest of a Certificate in the order of its fields.
+py::tuple certificate(const Scene& scene) {
     const CertifiedScene certified = certify(scene);
     const Certificate& c = certified.certificate;
-    py::dict found;
-    found["validity"] = c.end.validity;
-    found["smallest_normal_force"] = c.smallest_normal_force;
-    found["smallest_normal_force_angle"] = c.smallest_normal_force_angle;
-    found["largest_friction_needed"] = c.largest_friction_needed;
-    found["largest_friction_needed_angle"] = c.largest_friction_needed_angle;
-    found["ends_at"] = c.end.angle;
-    found["reason"] = certified.reason;
+    return py::make_tuple(static_cast<int>(c.end.validity), c.smallest_normal_force,
+                          c.smallest_normal_force_angle, c.largest_friction_needed,
+                          c.largest_friction_needed_angle, c.end.angle, certified.reason);
+}
+
+Body valid_body(double a, double b, double gravity, std::optional<double> gyration2) {
+    const Body found = body(a, b, gyration2, gravity);
+    validate(found);
     return found;
+}
+
+py::dict thresholds_by_name(double a, double b, double gravity, std::optional<double> gyration2,
+                            double friction) {
+    const Body of = valid_body(a, b, gravity, gyration2);
+    validate_friction(friction);
+    const Thresholds t = thresholds(of, friction);
+    py::dict found;
+    found["roll_over_speed"] = t.roll_over_speed;
+    found["contact_loss_speed"] = t.contact_loss_speed;
+    found["contact_loss_angle"] = t.contact_loss_angle;
+    found["slip_speed"] = t.slip_speed;
+    found["slip_angle"] = t.slip_angle;
+    found["friction_to_roll_over"] = t.friction_to_roll_over;
+    found["painleve_friction"] = t.painleve_friction;
+    found["painleve_angle"] = t.painleve_angle;
+    found["rocking_rate"] = t.rocking_rate;
+    found["tip_rate"] = t.tip_rate;
+    return found;
+}
+
+// The speed, or None, and the ranges of those that jam; the other thresholds of the body are given.
+py::tuple lift_off_interruptible(double a, double b, double gravity,
+                                 std::optional<double> gyration2, double friction,
+                                 double slip_speed, double painleve_friction) {
+    const Body of = valid_body(a, b, gravity, gyration2);
+    LiftOff found;
+    {
+        const py::gil_scoped_release release;
+        found = lift_off(of, friction, slip_speed, painleve_friction, SignalWatch());
+    }
+    py::tuple jams(found.jam_speeds.size());
+    for (std::size_t i = 0; i < jams.size(); ++i) {
+        const auto& [lower, upper] = found.jam_speeds[i];
+        jams[i] = py::make_tuple(lower, upper);
+    }
+    return py::make_tuple(found.speed, jams);
 }
 
 }  // namespace
@@ -101,34 +140,9 @@ void bind_certificate(py::module_& m) {
     m.def(
         "roll_over_speed", [](const Scene& scene) { return roll_over_speed(scene.body()); },
         "scene"_a);
-    bind_class<SpeedRange>(m, "SpeedRange")
-        .def_readonly("lower", &SpeedRange::lower)
-        .def_readonly("upper", &SpeedRange::upper);
-    bind_class<Thresholds>(m, "Thresholds")
-        .def_readonly("roll_over_speed", &Thresholds::roll_over_speed)
-        .def_readonly("contact_loss_speed", &Thresholds::contact_loss_speed)
-        .def_readonly("contact_loss_angle", &Thresholds::contact_loss_angle)
-        .def_readonly("slip_speed", &Thresholds::slip_speed)
-        .def_readonly("slip_angle", &Thresholds::slip_angle)
-        .def_property_readonly("lift_off_speed",
-                               [](const Thresholds& t) { return t.lift_off.speed; })
-        .def_property_readonly("jam_speeds",
-                               [](const Thresholds& t) { return t.lift_off.jam_speeds; })
-        .def_readonly("friction_to_roll_over", &Thresholds::friction_to_roll_over)
-        .def_readonly("painleve_friction", &Thresholds::painleve_friction)
-        .def_readonly("painleve_angle", &Thresholds::painleve_angle)
-        .def_readonly("rocking_rate", &Thresholds::rocking_rate)
-        .def_readonly("tip_rate", &Thresholds::tip_rate);
-    m.def(
-        "thresholds",
-        [](double a, double b, double gravity, std::optional<double> gyration2, double friction) {
-            const Body of = body(a, b, gyration2, gravity);
-            validate(of);
-            validate_friction(friction);
-            const py::gil_scoped_release release;
-            return thresholds(of, friction, SignalWatch());
-        },
-        "a"_a, "b"_a, "gravity"_a, "gyration2"_a, "friction"_a);
+    m.def("thresholds", thresholds_by_name, "a"_a, "b"_a, "gravity"_a, "gyration2"_a, "friction"_a);
+    m.def("lift_off", lift_off_interruptible, "a"_a, "b"_a, "gravity"_a, "gyration2"_a,
+          "friction"_a, "slip_speed"_a, "painleve_friction"_a);
 }
 
 }  // namespace rolling_ellipse::bindings

@@ -115,9 +115,13 @@ Onset slip(const Shape& shape, double friction) {
     };
     constexpr double step = (last - first) / scan;
     double best = first;
+    double least = energy_at(first).value;
     for (int i = 1; i <= scan; ++i) {
         const double here = first + step * i;
-        if (energy_at(here).value < energy_at(best).value) best = here;
+        const double value = energy_at(here).value;
+        if (!(value < least)) continue;
+        best = here;
+        least = value;
     }
     const auto is_below_upper = [&](double left, double right) {
         return !(energy_at(left).value > energy_at(right).value);
@@ -155,7 +159,7 @@ double roll_over_speed(const Body& body) {
     return std::sqrt(2 * body.gravity * (at.long_axis - at.short_axis) / flat_inertia);
 }
 
-Thresholds thresholds(const Body& body, double friction, const Checkpoint& checkpoint) {
+Thresholds thresholds(const Body& body, double friction) {
     const FlatView at = flat_view(body.axes(), 0.0);
     const double unit = at.long_axis;
     const Shape shape = rolling_ellipse::shape(body, at);
@@ -169,7 +173,6 @@ Thresholds thresholds(const Body& body, double friction, const Checkpoint& check
     result.tip_rate = std::sqrt(body.gravity * at.c2 / (at.long_axis * tip_inertia));
     result.contact_loss_speed = infinity;
     result.slip_speed = infinity;
-    result.lift_off = {infinity, {}};
     result.painleve_friction = infinity;
     if (at.c2 == 0) return result;
 
@@ -192,8 +195,6 @@ Thresholds thresholds(const Body& body, double friction, const Checkpoint& check
     const Onset jamming = painleve(shape);
     result.painleve_friction = jamming.value;
     result.painleve_angle = theta_of(jamming.angle);
-    result.lift_off =
-        lift_off(body, friction, result.slip_speed, result.painleve_friction, checkpoint);
     return result;
 }
 

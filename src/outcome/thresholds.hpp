@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "outcome/lift_off.hpp"
+#include "scene/scene.hpp"
 
 namespace rolling_ellipse {
 
@@ -15,7 +15,6 @@ struct Thresholds {
     std::optional<double> contact_loss_angle;
     double slip_speed;  // from it on rolling needs more than the friction
     std::optional<double> slip_angle;
-    LiftOff lift_off;              // where the body really leaves the ground
     double friction_to_roll_over;  // max |F|/N of rolling at the roll-over speed
     double painleve_friction;      // least mu for which sliding may jam
     std::optional<double> painleve_angle;
@@ -23,7 +22,7 @@ struct Thresholds {
     double tip_rate;      // growth rate of falling from the tip [1/s]
 };
 
-Thresholds thresholds(const Body& body, double friction, const Checkpoint& checkpoint);
+Thresholds thresholds(const Body& body, double friction);
 
 // The first of them alone: it needs no search.
 double roll_over_speed(const Body& body);

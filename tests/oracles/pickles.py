@@ -53,7 +53,6 @@ def require_same(one: Any, other: Any, where: str = "it") -> None:
 
 def core_objects() -> dict[str, Any]:
     motion = rl.simulate(rl.scenes.bounce, 1.5)
-    thresholds = _core.thresholds(2.0, 1.0, 9.81, 0.0435, 0.505)  # one that may jam
     return {
         "Scene": motion.scene.core,
         "Impulse": rl.Impulse(1.0).core,
@@ -66,6 +65,4 @@ def core_objects() -> dict[str, Any]:
         "Continuation": _core.first_continuation(
             motion.scene.core, _core.initial_state(motion.scene.core).state
         ),
-        "Thresholds": thresholds,
-        "SpeedRange": thresholds.jam_speeds[0],
     }
