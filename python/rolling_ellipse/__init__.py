@@ -11,7 +11,6 @@ from typing import Any as _Any
 
 from . import geometry, scenes
 from ._at import Sample
-from ._blow_to import blow_to
 from ._blows import outcome, required_friction
 from ._certify import Certificate, certify
 from ._constraints import ConstraintResiduals, constraints, kinematics
@@ -33,6 +32,7 @@ from ._trajectory import Trajectory, load
 
 if _TYPE_CHECKING:
     from . import impacts, report
+    from ._blow_to import blow_to
     from ._pictures import (
         animate,
         plot,
@@ -70,6 +70,8 @@ def __getattr__(name: str) -> _Any:
         value: _Any = version("rolling-ellipse")
     elif name in ("impacts", "report"):
         value = _import_module(f".{name}", __name__)
+    elif name == "blow_to":
+        value = _import_module("._blow_to", __name__).blow_to
     elif name in ("Explorer", "explore"):
         value = getattr(_import_module("._player", __name__), name)
     elif name in ("WorkPrecision", "work_precision"):

@@ -17,7 +17,6 @@ from ._at import Sample, sample_at
 from ._check import FloatArray, array, number
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
 from ._events import Event, Events, event
-from ._faces.motion import motion_html
 from ._fields import FieldsOnly, find_late
 from ._quantities import MODE, QUANTITIES
 from ._samples import (
@@ -32,7 +31,6 @@ from ._samples import (
 from ._scene import Scene
 from ._settings import Method, Model, Settings
 from ._status import COMPLETED, STATUSES, Status
-from ._when import passages
 from .geometry import support_slope
 
 if TYPE_CHECKING:
@@ -396,6 +394,8 @@ class Trajectory(FieldsOnly):
             "theta": theta, "x": x, "z": z, "omega": omega, "contact_x": contact_x,
             "function": function,
         }  # fmt: skip
+        from ._when import passages
+
         return passages(self, given, direction)
 
     # -- pictures --------------------------------------------------------------------------------
@@ -549,6 +549,8 @@ class Trajectory(FieldsOnly):
         return [None if each is None else each.tobytes() for group in arrays for each in group]
 
     def _repr_html_(self) -> str:
+        from ._faces.motion import motion_html
+
         return motion_html(self)
 
     def __repr__(self) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import enum
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
-from html import escape
 from typing import Any, ClassVar
 
 import numpy as np
@@ -65,6 +64,8 @@ def html_table(caption: str, rows: Iterable[Row], head: Row = ()) -> str:
 
     All text is escaped.
     """
+    from html import escape  # whose list of entities is slow to load
+
     parts = ["<table>", f"<caption>{escape(caption)}</caption>"]
     if head:
         parts.append("<thead><tr>" + "".join(f"<th>{escape(cell)}</th>" for cell in head))
