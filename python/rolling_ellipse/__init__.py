@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
 from . import geometry, scenes
-from ._at import Sample
 from ._blows import outcome, required_friction
 from ._certify import Certificate, certify
 from ._constraints import ConstraintResiduals, constraints, kinematics
@@ -32,6 +31,7 @@ from ._trajectory import Trajectory, load
 
 if _TYPE_CHECKING:
     from . import impacts, report
+    from ._at import Sample
     from ._blow_to import blow_to
     from ._pictures import (
         animate,
@@ -62,6 +62,12 @@ __all__ = [
 ]  # fmt: skip
 
 
+_PLACES = {
+    "Sample": "._at", "blow_to": "._blow_to", "Explorer": "._player", "explore": "._player",
+    "WorkPrecision": "._work_precision", "work_precision": "._work_precision",
+}  # fmt: skip
+
+
 def __getattr__(name: str) -> _Any:
     """Load what is slow to load when it is first asked for, above all matplotlib."""
     if name == "__version__":
@@ -70,12 +76,8 @@ def __getattr__(name: str) -> _Any:
         value: _Any = version("rolling-ellipse")
     elif name in ("impacts", "report"):
         value = _import_module(f".{name}", __name__)
-    elif name == "blow_to":
-        value = _import_module("._blow_to", __name__).blow_to
-    elif name in ("Explorer", "explore"):
-        value = getattr(_import_module("._player", __name__), name)
-    elif name in ("WorkPrecision", "work_precision"):
-        value = getattr(_import_module("._work_precision", __name__), name)
+    elif name in _PLACES:
+        value = getattr(_import_module(_PLACES[name], __name__), name)
     elif name in __all__:
         value = getattr(_import_module("._pictures", __name__), name)
     else:

@@ -8,6 +8,7 @@ from typing import ClassVar
 from . import _core
 from ._core import Validity
 from ._faces import Listed
+from ._fields import trusted
 from ._scene import Scene, require_scene
 
 _VALIDITIES = tuple(Validity)  # by their codes
@@ -79,5 +80,6 @@ def certify(scene: Scene) -> Certificate:
     -------
     Certificate
     """
-    validity, *found = _core.certify(require_scene(scene).core)
-    return Certificate(_VALIDITIES[validity], *found)
+    found = _core.certify(require_scene(scene).core)
+    found["validity"] = _VALIDITIES[found["validity"]]
+    return trusted(Certificate, found)

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 from ._core import EventKind, Mode
 from ._faces import Row, brief, html_table, text_table
+from ._fields import trusted
 from ._scene import InitialState, Scene
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 _STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot", "mode")
+_numbers = attrgetter(*_STATE)
 _SENTENCES = {
     EventKind.SLIP: "friction cannot hold the contact any more",
     EventKind.STICK: "the slip has come to an end; the body rolls",
@@ -122,33 +125,27 @@ class Events(tuple[Event, ...]):
 
 def event(scene: Scene, found: Any) -> Event:
     """Make an event of what the core, or a file, says: t, kind, and the states before and after."""
-    before, after, mass = found.before, found.after, scene.mass
-    hit = found.kind is EventKind.IMPACT
-    pulled = found.kind is EventKind.SLIP and math.isinf(scene.friction)
+    kind, before, after, mass = found.kind, found.before, found.after, scene.mass
+    hit = kind is EventKind.IMPACT
+    pulled = kind is EventKind.SLIP and math.isinf(scene.friction)
+    free_omega = before.omega
+    says = _SLIP_WITHOUT_LIMIT if pulled else _SENTENCES[kind]
+    reaction_x = mass * (after.x_dot - before.x_dot) if hit else 0.0
+    reaction_z = mass * (after.z_dot - before.z_dot) if hit else 0.0
     return Event(
         found.t,
-        found.kind,
-        state_before=_state(before, before.omega, "just before"),
-        state_after=_state(
-            after,
-            before.omega,
-            _SLIP_WITHOUT_LIMIT if pulled else _SENTENCES[found.kind],
-            reaction_x=mass * (after.x_dot - before.x_dot) if hit else 0.0,
-            reaction_z=mass * (after.z_dot - before.z_dot) if hit else 0.0,
-        ),
+        kind,
+        state_before=_state(before, free_omega, "just before", 0.0, 0.0),
+        state_after=_state(after, free_omega, says, reaction_x, reaction_z),
     )
 
 
 def _state(
-    state: Any, free_omega: float, reason: str, reaction_x: float = 0.0, reaction_z: float = 0.0
+    state: Any, free_omega: float, reason: str, reaction_x: float, reaction_z: float
 ) -> InitialState:
-    return InitialState(
-        **{name: getattr(state, name) for name in _STATE},
-        reaction_x=reaction_x,
-        reaction_z=reaction_z,
-        free_omega=free_omega,
-        reason=reason,
-    )
+    values = dict(zip(_STATE, _numbers(state), strict=True))
+    values |= {"reaction_x": reaction_x, "reaction_z": reaction_z}
+    return trusted(InitialState, values | {"free_omega": free_omega, "reason": reason})
 
 
 def as_numbers(found: Event) -> list[Any]:

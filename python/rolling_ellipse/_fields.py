@@ -27,6 +27,13 @@ class FieldsOnly:
         return other
 
 
+def trusted(kind: type[_Owner], values: dict[str, Any]) -> _Owner:
+    """Make a dataclass of what the core says, without checks, and three times as fast."""
+    made = object.__new__(kind)
+    object.__setattr__(made, "__dict__", values)
+    return made
+
+
 def find_late(of: type[_Owner], **finds: Callable[[_Owner], Any]) -> None:
     """Make fields of objects that are made without them such as are found when first asked for.
 

@@ -14,7 +14,7 @@ from . import _core
 from ._check import evaluate, number, optional_number, worker_count
 from ._core import Outcome
 from ._faces import Listed, with_unit
-from ._fields import FieldsOnly, find_late
+from ._fields import FieldsOnly, find_late, trusted
 
 
 @dataclass(frozen=True, repr=False)
@@ -204,6 +204,4 @@ def thresholds(
         number("a", a), number("b", b), number("gravity", gravity),
         optional_number("gyration2", gyration2), number("friction", friction),
     )  # fmt: skip
-    found = object.__new__(Thresholds)
-    found.__dict__.update(_core.thresholds(*body), _body=body)
-    return found
+    return trusted(Thresholds, _core.thresholds(*body) | {"_body": body})

@@ -13,11 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._at import Sample, sample_at
 from ._check import FloatArray, array, number
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
 from ._events import Event, Events, event
-from ._fields import FieldsOnly, find_late
+from ._fields import FieldsOnly, find_late, trusted
 from ._quantities import MODE, QUANTITIES
 from ._samples import (
     ContactSamples,
@@ -37,6 +36,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
+    from ._at import Sample
     from ._pictures.animation import RollingAnimation
     from ._pictures.constraints import Constraints
     from ._pictures.energy import Energy
@@ -202,10 +202,7 @@ class Trajectory(FieldsOnly):
         cls, solution: _core.Solution, times: FloatArray, known: dict[str, Any]
     ) -> Trajectory:
         """Make one of the core's own arrays, which need no check, and keep the solution."""
-        made = object.__new__(cls)
-        values = known | sampled(solution, times) | {"_solution": solution}
-        object.__setattr__(made, "__dict__", values)
-        return made
+        return trusted(cls, known | sampled(solution, times) | {"_solution": solution})
 
     @cached_property
     def _solution(self) -> _core.Solution:
@@ -343,6 +340,8 @@ class Trajectory(FieldsOnly):
         ValueError
             If t is outside of [0, t_end].
         """
+        from ._at import sample_at
+
         return sample_at(self, t)
 
     def when(

@@ -59,13 +59,19 @@ Outcome outcome_interruptible(const Scene& scene) {
     return outcome(scene, SignalWatch());
 }
 
-// The code of the validity, and the rest of a Certificate in the order of its fields.
-py::tuple certificate(const Scene& scene) {
+// A Certificate by the names of its fields; the validity by its code, as enums are slow to make.
+py::dict certificate(const Scene& scene) {
     const CertifiedScene certified = certify(scene);
     const Certificate& c = certified.certificate;
-    return py::make_tuple(static_cast<int>(c.end.validity), c.smallest_normal_force,
-                          c.smallest_normal_force_angle, c.largest_friction_needed,
-                          c.largest_friction_needed_angle, c.end.angle, certified.reason);
+    py::dict found;
+    found["validity"] = static_cast<int>(c.end.validity);
+    found["smallest_normal_force"] = c.smallest_normal_force;
+    found["smallest_normal_force_angle"] = c.smallest_normal_force_angle;
+    found["largest_friction_needed"] = c.largest_friction_needed;
+    found["largest_friction_needed_angle"] = c.largest_friction_needed_angle;
+    found["ends_at"] = c.end.angle;
+    found["reason"] = certified.reason;
+    return found;
 }
 
 Body valid_body(double a, double b, double gravity, std::optional<double> gyration2) {
