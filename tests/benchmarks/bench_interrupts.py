@@ -66,7 +66,8 @@ ENDLESS: dict[str, Callable[[], Any]] = {
     "contact, one endless slide": lambda: simulate(FREE, [1e7], model="contact", **LONG),
     "contact, bounces": lambda: simulate(BOUNCING, [1e8], **LONG),
     "thresholds": lambda: [
-        thresholds(2.0, 1.0, gyration2=0.0435, friction=0.25 + 1e-4 * i) for i in range(2000)
+        thresholds(2.0, 1.0, gyration2=0.0435, friction=0.25 + 1e-4 * i).lift_off_speed
+        for i in range(2000)
     ],
     "samples": lambda: [SLIDING.sol(TIMES / 100) for _ in range(20)],
 }  # fmt: skip
