@@ -192,7 +192,8 @@ LOOPS: dict[str, Callable[[], Any]] = {
         Scene(2.0, 1.0, theta=0.5, z=3.0, friction=0.0, restitution=1.0), [1e7], **LONG
     ),
     "lift-off above Painleve's friction": lambda: [
-        thresholds(2.0, 1.0, gyration2=0.0435, friction=0.25 + 1e-3 * i) for i in range(500)
+        thresholds(2.0, 1.0, gyration2=0.0435, friction=0.25 + 1e-3 * i).lift_off_speed
+        for i in range(500)
     ],
 }
 

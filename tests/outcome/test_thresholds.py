@@ -1,6 +1,7 @@
 """`thresholds`: closed forms, printed numbers, and each speed by what it is the threshold of."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise, takewhile
 from typing import Any, NamedTuple
 
@@ -594,3 +595,16 @@ def test_lift_off_of_nearly_circles_with_infinite_friction() -> None:
         # closed forms, and rolling that ends some 1e-7 beside the tip: c feels the square of that
         assert found.lift_off_speed == pytest.approx(math.sqrt(flat2), rel=1e-12)
         assert known(found.slip_speed) <= known(found.lift_off_speed)
+
+
+def test_what_takes_long_is_found_when_asked_for() -> None:
+    """And then it is a field as any other, in copies and comparisons as well."""
+    found, again = thresholds(2.0, 1.0, friction=0.5), thresholds(2.0, 1.0, friction=0.5)
+    assert "lift_off_speed" not in vars(found) and "jam_speeds" not in vars(found)
+    assert found.lift_off_speed is found.lift_off_speed is vars(found)["lift_off_speed"]
+    assert "lift_off_speed" not in vars(again)
+    assert found == again and hash(found) == hash(again)
+    assert (
+        replace(thresholds(2.0, 1.0), slip_speed=1.0).lift_off_speed
+        == thresholds(2.0, 1.0).lift_off_speed
+    )

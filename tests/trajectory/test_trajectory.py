@@ -295,3 +295,22 @@ def test_nothing_can_be_written_to(model: Any) -> None:
             assert not values.flags.writeable
             with pytest.raises(ValueError, match="read-only"):
                 values[...] = 0
+
+
+def test_the_default_settings_are_made_once() -> None:
+    """Whatever is given by name is checked, also where it equals the default."""
+    scene = Scene(2.0, 1.0, omega=3.2)
+    motion = simulate(scene, [1.0])
+    assert motion.settings is simulate(scene, [2.0]).settings
+    said = simulate(scene, [1.0], rtol=1e-10, baumgarte=(10, 10), max_steps=int("1000000"))
+    assert said.settings == motion.settings and said == motion
+    with pytest.raises(TypeError, match=r"max_steps must be a whole number, got 1000000\.0"):
+        simulate(scene, [1.0], max_steps=1e6)  # type: ignore[arg-type]
+
+
+def test_reason_and_stats_are_found_when_asked_for() -> None:
+    motion = simulate(Scene(2.0, 1.0, omega=3.2), [1.0])
+    assert not {"reason", "stats"} & vars(motion).keys()
+    assert motion.reason == rl.certify(motion.scene).reason
+    assert motion.stats == {"segments": 1, "steps": 0, "rejected_steps": 0, "evaluations": 0}
+    assert motion.sol(0.5).reason is motion.reason
