@@ -275,7 +275,6 @@ LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
     }
     take_first_touch(all, watch.met());
     if (all.broken || !flow.run || double(flow.run->from.time) > last) return all;
-    constexpr double most_half_turns = 1e15;
     take_first_touch(all, law_in_run(flow, *flow.run, friction, most_half_turns));
     return all;
 }

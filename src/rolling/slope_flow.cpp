@@ -26,7 +26,13 @@ SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega
 
 const SlopePlace& first_of_pieces(const SlopeFlow& flow) { return flow.pieces.front().from; }
 
-bool is_followed(const SlopeFlow& flow) { return flow.kind == MotionKind::libration || flow.run; }
+bool climbs_for_ever(const SlopeFlow& flow) {
+    return flow.climb && flow.climbed == most_half_turns && !flow.pieces.empty();
+}
+
+bool is_followed(const SlopeFlow& flow) {
+    return flow.kind == MotionKind::libration || flow.run || climbs_for_ever(flow);
+}
 
 // Time at which the pieces end.
 double known_until(const SlopeFlow& flow) {
@@ -156,7 +162,7 @@ FlowSample sample(const SlopeFlow& flow, double t) {
 }
 
 double longest_time(const SlopeFlow& prepared) {
-    constexpr double most = 1e15;
+    constexpr double most = most_half_turns;
     const double unit = prepared.body.time;
     if (prepared.kind == MotionKind::uniform) {
         const double speed = std::abs(prepared.start.omega);
@@ -167,6 +173,7 @@ double longest_time(const SlopeFlow& prepared) {
     if (prepared.kind == MotionKind::libration) {
         return unit * most * double(prepared.turnings[1] - prepared.turnings[0]);
     }
+    if (climbs_for_ever(prepared)) return unit * double(first_of_pieces(prepared).time);
     if (!prepared.run) return infinity;
     return unit * double(prepared.run->from.time + time_of(*prepared.run, most));
 }

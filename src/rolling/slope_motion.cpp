@@ -8,8 +8,9 @@
 namespace rolling_ellipse {
 namespace {
 
-// How far a series is as good as a double beside its own size: as `reach`, for the last two terms
-// together, whose root is a square root four times over.
+// How far a series is as good as a double beside its own size: as `reach`, for the last four terms
+// together, whose root is a square root four times over. By symmetries three of four may vanish;
+// those before the last two count as they would be at the end of a series that falls tenfold.
 double radius(const Series& series) {
     static_assert(series_order == 16);
     constexpr double rest = 1e-16;  // half an ulp
@@ -17,8 +18,8 @@ double radius(const Series& series) {
     for (int i = 0; i < 3; ++i) {
         const double size = std::max({std::abs(series[0]), std::abs(series[1]) * found,
                                       std::abs(series[2]) * square(found)});
-        const double last =
-            std::abs(series[series_order]) + std::abs(series[series_order - 1]) / found;
+        const double earlier = 1e-2 * std::abs(series[14]) + 1e-3 * std::abs(series[13]) / found;
+        const double last = std::abs(series[16]) + (std::abs(series[15]) + earlier / found) / found;
         if (last == 0) return infinity;
         found = std::sqrt(std::sqrt(std::sqrt(std::sqrt(rest * size / last))));
     }

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double least_levels = 4;      // W/w from which the sums below are used
 constexpr double asymptotic_from = 14;  // W/w from which R(W) is right to 2e-17
-constexpr double most_half_turns = 1e15;
 
 // sqrt(w) R(W/w) of physics (63).
 double remainder(double level, double gain) {

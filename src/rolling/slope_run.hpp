@@ -54,6 +54,9 @@ struct SlopeRun {
 // `may_run`.
 SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy, double half_turns);
 
+// Beyond, a double does not know the phase.
+inline constexpr double most_half_turns = 1e15;
+
 // Half turns from a place, the way it goes, in which W is large enough beside w for the sum.
 double may_run(const SlopeBody& body, double energy, double height, double omega);
 

@@ -61,8 +61,8 @@ def plot_error(
     """Draw by how much one quantity of motions is off over time, on a logarithmic scale.
 
     Each motion is held against the exact one from the same scene: exact rolling where the motion
-    is of a model that rolls, else the contact motion. An exact zero has no place on the scale. Modes, events, lost validity
-    and long spans are drawn as in `plot_forces`.
+    is of a model that rolls, else the contact motion. An exact zero has no place on the scale.
+    Modes, events, lost validity and long spans are drawn as in `plot_forces`.
 
     Parameters
     ----------
