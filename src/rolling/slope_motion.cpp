@@ -164,7 +164,7 @@ double time_of_tip(const SlopePiece& piece) {
 }
 
 SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece) {
-    constexpr double well_known = 0.25;  // share of W in the terms it is the sum of
+    constexpr double well_known = 0.1;  // share of W in the terms it is the sum of
     SlopePlace place = place_in(piece, piece.lasts);
     const Geometry here = geometry(body, place);
     const Tracked w = energy_at(body, energy, place, here);

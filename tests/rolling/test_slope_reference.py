@@ -173,8 +173,8 @@ def test_exact_is_right_to_a_few_roundings(motion: Motion) -> None:
     """Eight units, for theta, omega and x; the forces follow from the first two.
 
     A state is some hundred series, each with a rounding of its own, of which the energy keeps the
-    angular velocity; the sum over half turns has a few roundings of its time. Found: 3.9 at most,
-    0.08 in the median.
+    angular velocity; the sum over half turns has a few roundings of its time. Found: 1.1 at most,
+    0.1 in the median.
     """
     assert errors(motion, method="exact")[:, :3].max() < 8
 
