@@ -11,7 +11,7 @@ namespace {
 std::string in_degrees(double angle) { return brief(angle * 180 / pi) + " deg"; }
 
 std::string extremes_of(const Certificate& c) {
-    if (!c.smallest_normal_force_angle) return "downhill N and |F|/N would grow beyond all bounds";
+    if (!c.smallest_normal_force_angle) return "downhill its forces would grow beyond all bounds";
     return "the smallest N is " + brief(*c.smallest_normal_force) +
            " N (theta = " + in_degrees(*c.smallest_normal_force_angle) + "), the largest |F|/N " +
            brief(*c.largest_friction_needed) +

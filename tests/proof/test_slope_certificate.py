@@ -209,7 +209,7 @@ def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
     scene = Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=-2.5, friction=friction)
     found = certify(scene)
     assert found.validity is Validity.INVALID
-    motion: Any = rl.simulate(scene, 5.0)
+    motion: Any = rl.simulate(scene, 12.0)
     assert motion.events[0].state_before.theta == pytest.approx(found.ends_at, abs=1e-14)
     with pytest.warns(rl.ValidityWarning):
         forced = rl.simulate(scene, 50.0, model="rolling")

@@ -30,7 +30,7 @@ class Energy:
 
     def __init__(self, scene: rl.Scene) -> None:
         self.a, self.b = mp.mpf(scene.a), mp.mpf(scene.b)
-        self.k2 = mp.mpf(scene.core.inertia) / mp.mpf(scene.mass)
+        self.k2 = mp.mpf(scene.gyration2)
         self.into = mp.mpf(scene.gravity) * mp.cos(mp.mpf(scene.slope))
         self.along = mp.mpf(scene.gravity) * mp.sin(mp.mpf(scene.slope))
         self.start = mp.mpf(scene.theta)
