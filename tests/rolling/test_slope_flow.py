@@ -15,7 +15,7 @@ import rolling_ellipse as rl
 from oracles.geometry import support
 from oracles.numbers import EPS
 
-DIGITS = 30
+DIGITS = 20
 
 
 def rolled(scene: rl.Scene, times: Any) -> Any:
@@ -138,7 +138,7 @@ def test_the_period_of_a_swing(scene: rl.Scene) -> None:
         energy = Energy(scene)
         flat = mp.mpf(0) if scene.a > scene.b else mp.pi / 2
         low, high = (
-            mp.findroot(energy.at, (mp.mpf(x), mp.mpf(y)), solver="anderson", tol=1e-50)
+            mp.findroot(energy.at, (mp.mpf(x), mp.mpf(y)), solver="anderson", tol=1e-30)
             for x, y in turning_brackets(energy, float(flat))
         )
         middle, half = (low + high) / 2, (high - low) / 2
