@@ -9,7 +9,7 @@ Losses losses(const Solution& solution) {
     const Scene& scene = solution.motion.scene;
     const double times[] = {0.0, solution.followed_until};
     CoordinateState ends[2];
-    Sampler(solution.motion, times[1], 2)(times, 2, ends);
+    Sampler(solution.motion, 2)(times, 2, ends);
     const ConstrainedBody body(scene);
     const SpecificEnergy before = body.specific_energy(ends[0].q, ends[0].q_dot);
     const SpecificEnergy after = body.specific_energy(ends[1].q, ends[1].q_dot);

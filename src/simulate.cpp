@@ -84,7 +84,7 @@ void judge_by_proof(const Beginning& from, const Proof& proof, double t_end, Sol
 void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoint,
                     Solution& solution) {
     const std::vector<double> knots = knot_times(solution.motion);
-    const Sampler sampler(solution.motion, solution.followed_until, knots.size());
+    const Sampler sampler(solution.motion, knots.size());
     std::vector<ContactSample> samples;
     const auto forces = [&](const double* times, std::size_t n, ContactForce* found) {
         samples.resize(n);

@@ -30,7 +30,7 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     const py::ssize_t n = t.size();
     require_length("t", t, n);
     const RollingFlow flow = validated_flow(body(a, b, gyration2, gravity), theta, omega);
-    const FlowSampler sampler(flow, infinity, n);
+    const FlowSampler sampler(flow, n);
     const double longest = longest_time(flow);
     const double most = std::min(longest, std::numeric_limits<double>::max());
     std::vector<Array> out = empty_arrays(3, n);
@@ -40,9 +40,8 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
         for (py::ssize_t i = begin; i < end; ++i) {
             if (!(std::abs(times[i]) <= most)) validate_time(times[i], longest);
         }
-        std::array<FlowSample, chunk> samples;
-        sampler(times + begin, end - begin, samples.data());
-        store_samples(samples.data(), begin, end, columns);
+        sampler(times + begin, end - begin,
+                FlowColumns{columns[0] + begin, columns[1] + begin, columns[2] + begin});
     });
     return py::make_tuple(out[0], out[1], out[2]);
 }

@@ -42,7 +42,7 @@ void look(const Solution& solution, const Array& t, Take take) {
     const py::ssize_t n = t.size();
     require_length("t", t, n);
     const double* const times = t.data();
-    const Sampler sampler(solution.motion, solution.followed_until, n);
+    const Sampler sampler(solution.motion, n);
     std::vector<Sample> samples(std::min<std::size_t>(n, chunk));
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         validate_times(solution, times, begin, end);

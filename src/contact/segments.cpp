@@ -11,7 +11,7 @@ namespace {
 
 void look_at(const Scene&, const RollingFlow& flow, const double* times, std::size_t n,
              FlowSample* samples) {
-    FlowSampler{flow, times[n - 1], n}(times, n, samples);
+    FlowSampler{flow, n}(times, n, samples);
 }
 
 void look_at(const Scene&, const SlopeFlow& flow, const double* times, std::size_t n,
@@ -147,10 +147,10 @@ Motion single(const Scene& scene, decltype(Segment::law) law) {
     return motion;
 }
 
-Sampler::Sampler(const Motion& motion, double last, std::size_t expected) : motion_(motion) {
+Sampler::Sampler(const Motion& motion, std::size_t expected) : motion_(motion) {
     if (motion.segments.size() != 1 || !motion.units.are_si()) return;
     if (const auto* flow = std::get_if<RollingFlow>(&motion.segments.front().law)) {
-        flow_.emplace(*flow, last, expected);
+        flow_.emplace(*flow, expected);
     }
 }
 

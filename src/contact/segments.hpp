@@ -67,7 +67,7 @@ Motion single(const Scene& scene, decltype(Segment::law) law);
 // it. A motion without segments has no samples.
 class Sampler {
   public:
-    Sampler(const Motion& motion, double last, std::size_t expected);
+    Sampler(const Motion& motion, std::size_t expected);
 
     template <class Sample>
     void operator()(const double* times, std::size_t n, Sample* samples) const;

@@ -1,8 +1,9 @@
-// Power series in one variable, cut at a fixed order, and the rules for their coefficients
-// (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
+// Power series in one variable, cut at an order, and the rules for their coefficients (A. Jorba,
+// M. Zou, Experiment. Math. 14 (2005) 99), of numbers or of lanes of them.
 #pragma once
 
 #include <array>
+#include <type_traits>
 
 namespace rolling_ellipse {
 
@@ -10,9 +11,12 @@ inline constexpr int series_order = 16;
 using Series = std::array<double, series_order + 1>;
 
 // The terms first .. last of the coefficient k of a product; two sums need not wait for each other.
-inline double terms(const Series& p, const Series& q, int k, int first, int last) {
-    double even = 0.0;
-    double odd = 0.0;
+template <class Coefficients>
+[[gnu::always_inline]] inline auto terms(const Coefficients& p, const Coefficients& q, int k,
+                                         int first, int last) {
+    using Number = std::decay_t<decltype(p[0])>;
+    Number even{};
+    Number odd{};
     int i = first;
     for (; i < last; i += 2) {
         even += p[i] * q[k - i];
@@ -23,17 +27,22 @@ inline double terms(const Series& p, const Series& q, int k, int first, int last
 }
 
 // The coefficient k of a product.
-inline double product(const Series& p, const Series& q, int k) { return terms(p, q, k, 0, k); }
-
-// The coefficient k of a square, without the first `from` terms and as many of the last.
-inline double self_product(const Series& p, int k, int from = 0) {
-    const double pairs = terms(p, p, k, from, (k + 1) / 2 - 1);
-    return 2 * pairs + (k % 2 == 0 && k / 2 >= from ? p[k / 2] * p[k / 2] : 0.0);
+template <class Coefficients>
+[[gnu::always_inline]] inline auto product(const Coefficients& p, const Coefficients& q, int k) {
+    return terms(p, q, k, 0, k);
 }
 
-inline double value(const Series& series, double z) {
-    double sum = series[series_order];
-    for (int k = series_order - 1; k >= 0; --k) sum = sum * z + series[k];
+// The coefficient k of a square, without the first `from` terms and as many of the last.
+template <class Coefficients>
+[[gnu::always_inline]] inline auto self_product(const Coefficients& p, int k, int from = 0) {
+    const auto pairs = 2 * terms(p, p, k, from, (k + 1) / 2 - 1);
+    return k % 2 == 0 && k / 2 >= from ? pairs + p[k / 2] * p[k / 2] : pairs;
+}
+
+template <class Coefficients>
+double value(const Coefficients& series, double z) {
+    double sum = 0.0;
+    for (auto c = series.rbegin(); c != series.rend(); ++c) sum = sum * z + *c;
     return sum;
 }
 

@@ -2,250 +2,321 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
-
-#include "numerics/vector_levels.hpp"
-#include "rolling/motion_series.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-// Motions have 5 to 50 pieces a quarter turn; on the separatrix there is no end of them.
-constexpr std::size_t most_pieces = 400;
+// Motions have 10 to 60 pieces a quarter turn; on the separatrix there is no end of them.
+constexpr std::size_t most_pieces = 1000;
+
+// From here on, in the graded coordinate, a body on the separatrix is on the tip to rounding.
+constexpr double longest_rise = 38.0;
+
+// A place on the way from the flat position to the tip or the turning point, by the tangent of its
+// phase from the one or the other; both are 1 in the middle.
+struct Place {
+    bool at_tip;
+    double tangent;
+};
+
+struct Batches {
+    std::vector<StateBatch> states;
+    std::vector<SeriesBatch> series;
+    std::vector<ReachBatch> reach;
+};
 
 class TableMaker {
   public:
-    explicit TableMaker(const RollingFlow& flow) : flow_(flow), table_{flow, 0.0, {}, {}} {
+    explicit TableMaker(const RollingFlow& flow)
+        : flow_(flow), kernel_(flow_kernel()), table_{flow, {}, {}, {}, {}} {
         const PhaseRate& rate = flow.phase.rate;
-        const QuarterState flat = quarter_state(flow, PhasePoint{0.0, 1.0});
+        rotates_ = flow.kind == MotionKind::rotation;
         length_ = flow.start.long_axis;
-        unit_ = std::min(0.5 / flat.omega, 0.5 * double(flow.phase.quarter_turn));
-        table_.time_unit = unit_;
         const double area = square(length_);
+        const double fastest =
+            (rotates_ ? 1.0 : std::sqrt(rate.amplitude2)) / shape_factor(rate, 0.0);
+        unit_ = std::min(0.5 / fastest, 0.5 * double(flow.phase.quarter_turn));
         body_ = {square(rate.short_axis / length_), rate.c2 / area,
                  flow.gravity * square(unit_) / length_, rate.d0 / square(area),
                  rate.d1 / square(area)};
     }
 
-    FlowTable make(double span) {
-        const FlatView& at = flow_.start;
-        const MotionSeries start = motion_series(body_, at.sin, at.cos, flow_.omega * unit_);
-        table_.start = piece(start, {0.0, 0.0}, {0.0, 0.0, 0.0});
-        if (!(span <= table_.start.high)) {
-            const auto [low, high] = quarter_range(span);
-            fill(low, high);
+    FlowTable make() {
+        // Distances between places in the graded coordinate, in which all that is singular is
+        // half_pi away from the motion (physics 31): shorter ones if the series do not reach.
+        for (double spacing : {0.2, 0.14, 0.1, 0.07, 0.05}) {
+            place(spacing);
+            if (places_.size() > most_pieces) break;
+            expand();
+            if (!holds()) continue;
+            fill();
+            break;
         }
         return std::move(table_);
     }
 
   private:
-    FlowPiece piece(const MotionSeries& series, DoubleDouble centre,
-                    const QuarterPosition& position) const {
-        const double radius =
-            unit_ * std::min({reach(series.angle), reach(series.omega), reach(series.path)});
-        FlowPiece found{centre,
-                        double(centre) - radius,
-                        double(centre) + radius,
-                        position.quarters,
-                        series.angle,
-                        series.omega,
-                        series.path};
-        found.angle[0] = position.angle;
-        found.path[0] = position.path;
-        for (int k = 0; k <= series_order; ++k) found.omega[k] /= unit_;
-        for (int k = 1; k <= series_order; ++k) found.path[k] *= length_;
+    void place(double spacing) {
+        places_.clear();
+        const PhaseRate& rate = flow_.phase.rate;
+        const double flat = std::sqrt(rate.d0 / (rate.d1 * rate.amplitude2 + rate.d0));
+        const double tip = rate.kappa;
+        const double rise = std::asinh(1 / flat);
+        const int up = static_cast<int>(std::ceil(rise / spacing));
+        for (int i = 0; i < up; ++i) places_.push_back({false, flat * std::sinh(rise * i / up)});
+        const double fall = tip > 0 ? std::asinh(1 / tip) : longest_rise;
+        const int down = static_cast<int>(std::ceil(fall / spacing));
+        for (int i = 0; i <= down; ++i) {
+            const double v = fall * i / down;
+            places_.push_back({true, tip > 0 ? tip * std::sinh(fall - v) : std::exp(-v)});
+        }
+        places_[up].tangent = 1.0;
+    }
+
+    std::size_t count() const { return places_.size(); }
+
+    template <class Batch>
+    static double& at(std::vector<Batch>& batches, Eight Batch::*column, std::size_t i) {
+        return (batches[i / lanes].*column).of[i % lanes];
+    }
+
+    // The states of all places and, after them, of the start; and their series.
+    void expand() {
+        const std::size_t size = count() / lanes + 1;
+        std::vector<PlaceBatch> at_places(size);
+        for (std::size_t i = 0; i < size * lanes; ++i) {
+            const std::size_t j = std::min(i, count() - 1);
+            const bool at_tip = places_[j].at_tip;
+            const bool first_of_half = j == 0 || (at_tip && places_[j].tangent == 1.0);
+            at(at_places, &PlaceBatch::at_tip, i) = at_tip;
+            at(at_places, &PlaceBatch::tangent, i) = places_[j].tangent;
+            at(at_places, &PlaceBatch::from, i) = places_[j == 0 ? 0 : j - 1].tangent;
+            // The middle is a place of the upper half; the way there is one of the lower.
+            if (first_of_half) at(at_places, &PlaceBatch::at_tip, i) = false;
+        }
+        all_.states.resize(size);
+        all_.series.resize(size);
+        all_.reach.resize(size);
+        for (std::size_t i = 0; i < size; ++i) {
+            kernel_.states(flow_.phase.rate, rotates_, at_places[i], all_.states[i]);
+        }
+        at(all_.states, &StateBatch::sin, count()) = flow_.start.sin;
+        at(all_.states, &StateBatch::cos, count()) = flow_.start.cos;
+        at(all_.states, &StateBatch::omega, count()) = flow_.omega;
+        for (std::size_t i = 0; i < size; ++i) {
+            StateBatch states = all_.states[i];
+            for (double& omega : states.omega.of) omega *= unit_;
+            kernel_.series(body_, states, all_.series[i]);
+        }
+    }
+
+    double duration(std::size_t i) { return at(all_.states, &StateBatch::duration, i); }
+
+    // Do the series meet half way between their places?
+    bool holds() {
+        const double per_unit = 0.5 / unit_;
+        for (std::size_t i = 0; i < all_.reach.size() * lanes; ++i) {
+            const std::size_t j = std::min(i, count() - 1);
+            const double back = per_unit * duration(std::max<std::size_t>(j, 1));
+            at(all_.reach, &ReachBatch::back, i) = back;
+            at(all_.reach, &ReachBatch::forward, i) =
+                j + 1 < count() ? per_unit * duration(j + 1) : back;
+        }
+        bool all = true;
+        for (std::size_t i = 0; i < all_.reach.size(); ++i) {
+            kernel_.reach(all_.series[i], all_.reach[i]);
+        }
+        for (std::size_t i = 0; i < count(); ++i) {
+            all = all && at(all_.reach, &ReachBatch::holds, i) > 0;
+        }
+        return all;
+    }
+
+    void fill() {
+        std::vector<FlowPiece>& pieces = table_.pieces;
+        pieces.resize(count());
+        for (std::size_t i = 0; i < count(); ++i) {
+            const double sin = at(all_.states, &StateBatch::sin, i);
+            const double cos = at(all_.states, &StateBatch::cos, i);
+            const bool near_tip = sin > cos;
+            pieces[i].quarters = near_tip;
+            pieces[i].series = series(i, near_tip ? -std::atan2(cos, sin) : std::atan2(sin, cos));
+        }
+        add_times();
+        add_paths();
+        add_start();
+        describe();
+    }
+
+    MotionSeries series(std::size_t i, double angle) const {
+        const SeriesBatch& from = all_.series[i / lanes];
+        const std::size_t lane = i % lanes;
+        MotionSeries found;
+        for (int k = 0; k <= series_order; ++k) {
+            found.rows[k][0] = from.angle[k].of[lane];
+            found.rows[k][1] = from.omega[k].of[lane] / unit_;
+            found.rows[k][2] = from.path[k].of[lane] * length_;
+            found.rows[k][3] = 0.0;
+        }
+        found.rows[0][0] = angle;
         return found;
     }
 
-    FlowPiece piece_about(DoubleDouble centre, const PhasePoint& phase) const {
-        const QuarterState at = quarter_state(flow_, phase);
-        return piece(motion_series(body_, at.sin, at.cos, at.omega * unit_), centre, at.position);
-    }
-
-    FlowPiece first_piece(double centre) const {
-        return piece_about({centre, 0.0}, point_at_time(flow_.phase, {centre, 0.0}));
-    }
-
-    // About the time, or one next to it: that of the place where the piece before it ends.
-    FlowPiece piece_after(const FlowPiece& before, double time) const {
+    // From the end that is nearer: the flat position, or the tip or the turning point.
+    void add_times() {
+        std::vector<FlowPiece>& pieces = table_.pieces;
         const DoubleDouble quarter = flow_.phase.quarter_turn;
-        if (time >= quarter.high) return piece_about(quarter, {1.0, 0.0});
-        const double z = (time - double(before.centre)) / unit_;
-        const double angle = value(before.angle, z);
-        const bool at_tip = before.quarters != 0;
-        const double sin = at_tip ? std::cos(angle) : std::sin(angle);
-        const double cos = at_tip ? -std::sin(angle) : std::cos(angle);
-        if (!(cos > 0)) return piece_about(quarter, {1.0, 0.0});
-        const PhasePoint phase = phase_of(flow_, sin, cos, std::max(value(before.omega, z), 0.0));
-        return piece_about(time_since_flat(flow_.phase, phase), phase);
-    }
-
-    // Between which times since the flat position, both on the way up, is all of the motion?
-    std::pair<double, double> quarter_range(double span) const {
-        const double quarter = double(flow_.phase.quarter_turn);
-        const double from = double(flow_.start_time);
-        const double to = from + span;
-        if (std::isinf(quarter)) {
-            return {from < 0 && to > 0 ? 0.0 : std::min(std::abs(from), std::abs(to)),
-                    std::max(std::abs(from), std::abs(to))};
+        DoubleDouble time{};
+        for (std::size_t i = 0; i < count(); ++i) {
+            if (i > 0) time = time + duration(i);
+            pieces[i].centre = time;
         }
-        if (span >= 2 * quarter) return {0.0, quarter};
-        const auto folded = [&](double time) {
-            return std::abs(std::remainder(time, 2 * quarter));
-        };
-        const auto passes = [&](double offset) {  // a multiple of the half turn after it
-            return std::floor((to - offset) / (2 * quarter)) >
-                   std::floor((from - offset) / (2 * quarter));
-        };
-        return {passes(0.0) ? 0.0 : std::min(folded(from), folded(to)),
-                passes(quarter) ? quarter : std::max(folded(from), folded(to))};
-    }
-
-    void fill(double low, double high) {
-        constexpr int most_tries =
-            8;  // a piece that overlaps the last is one after its radius, shortened
-        constexpr double shortened = 0.8;
-        FlowPiece last = first_piece(low);
-        if (!(last.high > low)) return;
-        last.low = low;
-        table_.pieces.push_back(last);
-        while (last.high < high && table_.pieces.size() < most_pieces) {
-            double radius = last.high - double(last.centre);
-            FlowPiece next = piece_after(last, std::min(last.high + radius, high));
-            for (int i = 0; i < most_tries && next.low > last.high; ++i) {
-                radius = shortened * (next.high - double(next.centre));
-                next = piece_after(last, std::min(last.high + radius, high));
+        if (std::isfinite(quarter.high)) {
+            time = quarter;
+            for (std::size_t i = count() - 1; double(time) > 0.5 * double(quarter); --i) {
+                pieces[i].centre = time;
+                time = time - DoubleDouble{duration(i), 0.0};
             }
-            if (next.low > last.high || !(next.high > last.high)) return;
-            next.low = last.high;
-            last = next;
-            table_.pieces.push_back(last);
         }
+        double low = 0.0;
+        for (std::size_t i = 0; i < count(); ++i) {
+            const double forward = unit_ * at(all_.reach, &ReachBatch::forward, i);
+            pieces[i].low = low;
+            pieces[i].high = low = double(pieces[i].centre) + forward;
+        }
+    }
+
+    // The paths of neighbours meet half way; they are counted from the flat position or, near it,
+    // from the tip.
+    void add_paths() {
+        std::vector<FlowPiece>& pieces = table_.pieces;
+        const auto step = [&](std::size_t i) {  // from i - 1 to i
+            return length_ * (at(all_.reach, &ReachBatch::path_forward, i - 1) -
+                              at(all_.reach, &ReachBatch::path_back, i));
+        };
+        const auto path = [&](std::size_t i) -> double& { return pieces[i].series.rows[0][2]; };
+        for (std::size_t i = 1; i < count() && pieces[i].quarters == 0; ++i) {
+            path(i) = path(i - 1) + step(i);
+        }
+        const std::size_t last = count() - 1;
+        if (pieces[last].quarters == 0) return;
+        const double tangent = places_[last].tangent;
+        const double sin = 1 / std::hypot(1.0, tangent);
+        path(last) = quarter_state(flow_, {sin, tangent * sin}).position.path;
+        for (std::size_t i = last; pieces[i - 1].quarters != 0; --i) path(i - 1) = path(i) - step(i);
+    }
+
+    void add_start() {
+        table_.start = series(count(), 0.0);
+        // Its radius is somewhat like that of the piece about the same place.
+        const double since = std::abs(double(flow_.start_time));
+        const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
+                                        [&](const FlowPiece& p) { return since < p.high; });
+        SeriesBatch same{};
+        ReachBatch found{};
+        double radius = (piece->high - piece->low) / unit_;
+        const SeriesBatch& from = all_.series[count() / lanes];
+        for (int i = 0; i < lanes; ++i) {
+            for (int k = 0; k <= series_order; ++k) {
+                same.angle[k].of[i] = from.angle[k].of[count() % lanes];
+                same.omega[k].of[i] = from.omega[k].of[count() % lanes];
+                same.path[k].of[i] = from.path[k].of[count() % lanes];
+            }
+            found.back.of[i] = found.forward.of[i] = radius;
+            radius *= 0.75;
+        }
+        kernel_.reach(same, found);
+        const auto* const holds = std::find(found.holds.of, found.holds.of + lanes, 1.0);
+        table_.reader.start_radius =
+            holds == found.holds.of + lanes ? 0.0 : unit_ * found.back.of[holds - found.holds.of];
+    }
+
+    void describe() {
+        FlowReader& reader = table_.reader;
+        const std::vector<FlowPiece>& pieces = table_.pieces;
+        reader.count = pieces.size();
+        reader.buckets = table_.first.size();
+        reader.buckets_per_time = double(reader.buckets) / pieces.back().high;
+        std::size_t piece = 0;
+        for (std::size_t i = 0; i < reader.buckets; ++i) {
+            while (pieces[piece].high * reader.buckets_per_time <= double(i)) ++piece;
+            table_.first[i] = static_cast<unsigned short>(piece == 0 ? 0 : piece - 1);
+        }
+        reader.per_unit = 1 / unit_;
+        const DoubleDouble half_turn = flow_.phase.half_turn;
+        if (std::isfinite(half_turn.high)) {
+            reader.half_turn = half_turn;
+            reader.half_turns_per_time = 1 / half_turn.high;
+        }
+        reader.start_time = flow_.start_time;
+        reader.spin = heading_after(flow_, 0.0);
+        reader.alternates = !rotates_;
+        reader.quarters_per_half_turn = rotates_ ? 2 * flow_.direction : 0.0;
+        const QuarterPosition& from = flow_.start_position;
+        reader.quarters = from.quarters;
+        reader.angle = two_sum(flow_.theta, -from.angle);
+        reader.path = from.path;
+        reader.quarter_path = flow_.quarter_path;
+        reader.theta = flow_.theta;
+        reader.x = flow_.x;
     }
 
     const RollingFlow& flow_;
+    const FlowKernel& kernel_;
     FlowTable table_;
+    bool rotates_;
     double length_;
     double unit_;
     SeriesConstants body_;
+    std::vector<Place> places_;
+    Batches all_;
 };
-
-// Times for which a piece holds, and what it says of them: theta = theta + angle(t - t0) and so on.
-struct Stretch {
-    double first;
-    double last;
-    const FlowPiece* piece;
-    DoubleDouble zero;  // t0
-    double scale;       // of t - t0, to the unit of the series
-    double heading;     // of angle and path
-    double spin;        // of omega
-    DoubleDouble theta;
-    double x;
-};
-
-// Several times side by side: the sums of one wait for each other, those of several do not.
-constexpr std::size_t lanes = 8;
-using Lanes = std::array<double, lanes>;
-
-[[gnu::always_inline]] inline Lanes values(const Series& series, const Lanes& z) {
-    Lanes sum;
-    sum.fill(series[series_order]);
-    for (int k = series_order - 1; k >= 0; --k) {
-        for (std::size_t i = 0; i < lanes; ++i) sum[i] = sum[i] * z[i] + series[k];
-    }
-    return sum;
-}
-
-ROLLING_ELLIPSE_VECTOR_LEVELS
-void sample(const Stretch& on, const double* times, std::size_t n, FlowSample* samples) {
-    for (std::size_t begin = 0; begin < n; begin += lanes) {
-        const std::size_t count = std::min(lanes, n - begin);
-        Lanes z{};
-        for (std::size_t i = 0; i < count; ++i) {
-            z[i] = ((times[begin + i] - on.zero.high) - on.zero.low) * on.scale;
-        }
-        const Lanes angle = values(on.piece->angle, z);
-        const Lanes omega = values(on.piece->omega, z);
-        const Lanes path = values(on.piece->path, z);
-        for (std::size_t i = 0; i < count; ++i) {
-            samples[begin + i] = {on.theta.high + (on.theta.low + on.heading * angle[i]),
-                                  on.spin * omega[i], on.x + on.heading * path[i]};
-        }
-    }
-}
-
-// The stretch that holds t; none where the table does not reach.
-std::optional<Stretch> stretch_at(const FlowTable& table, double t) {
-    const RollingFlow& flow = table.flow;
-    const double per_unit = 1 / table.time_unit;
-    if (t >= table.start.low && t <= table.start.high) {
-        return Stretch{table.start.low,
-                       table.start.high,
-                       &table.start,
-                       {0.0, 0.0},
-                       per_unit,
-                       1.0,
-                       1.0,
-                       {flow.theta, 0.0},
-                       flow.x};
-    }
-    const auto [time, half_turns] = phase_instant(flow, t);
-    const double side = time.high < 0 ? -1.0 : 1.0;
-    const double since_flat = std::abs(double(time));
-    const auto after =
-        std::upper_bound(table.pieces.begin(), table.pieces.end(), since_flat,
-                         [](double at, const FlowPiece& piece) { return at < piece.low; });
-    if (after == table.pieces.begin() || since_flat > after[-1].high) return std::nullopt;
-    const FlowPiece& piece = after[-1];
-
-    const QuarterPosition& from = flow.start_position;
-    const double spin = heading_after(flow, half_turns);
-    const double heading = side * spin;
-    const double turns = flow.kind == MotionKind::rotation ? 2 * spin * half_turns : 0.0;
-    const double quarters = turns + (heading * piece.quarters - from.quarters);
-    const double to_low = side * (piece.low - since_flat);
-    const double to_high = side * (piece.high - since_flat);
-    return Stretch{t + std::min(to_low, to_high),
-                   t + std::max(to_low, to_high),
-                   &piece,
-                   (piece.centre * side - time) + t,
-                   side * per_unit,
-                   heading,
-                   spin,
-                   half_pi_exact * quarters + (-from.angle) + flow.theta,
-                   flow.x + std::fma(quarters, flow.quarter_path, -from.path)};
-}
 
 }  // namespace
 
-FlowTable flow_table(const RollingFlow& flow, double span) { return TableMaker(flow).make(span); }
+FlowTable flow_table(const RollingFlow& flow) { return TableMaker(flow).make(); }
 
-void sample(const FlowTable& table, const double* times, std::size_t n, FlowSample* samples) {
-    for (std::size_t i = 0; i < n;) {
-        const std::optional<Stretch> on = stretch_at(table, times[i]);
-        if (!on) {
-            samples[i] = sample(table.flow, times[i]);
-            ++i;
-            continue;
-        }
-        std::size_t end = i + 1;
-        while (end < n && times[end] >= on->first && times[end] <= on->last) ++end;
-        sample(*on, times + i, end - i, samples + i);
-        i = end;
+void sample(const FlowTable& table, const double* times, std::size_t n, const FlowColumns& out) {
+    FlowReader reader = table.reader;
+    reader.pieces = table.pieces.data();
+    reader.first = table.first.data();
+    reader.start = &table.start;
+    if (n == 0 || !flow_kernel().read(reader, times, n, out)) return;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!std::isnan(out.theta[i])) continue;
+        const FlowSample found = sample(table.flow, times[i]);
+        out.theta[i] = found.theta;
+        out.omega[i] = found.omega;
+        out.x[i] = found.x;
     }
 }
 
-FlowSampler::FlowSampler(const RollingFlow& flow, double span, std::size_t expected) : flow_(flow) {
+FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // Measured: a table costs as much as so many single times; that of a short move is small.
-    const std::size_t few = span < double(flow.phase.quarter_turn) ? 8 : 40;
-    if (expected >= few) table_ = flow_table(flow, span);
+    constexpr std::size_t few = 8;  // measured: a table costs as much as so many single times
+    if (expected < few) return;
+    table_ = flow_table(flow);
+    if (table_->pieces.empty()) table_.reset();
+}
+
+void FlowSampler::operator()(const double* times, std::size_t n, const FlowColumns& out) const {
+    if (table_) return sample(*table_, times, n, out);
+    for (std::size_t i = 0; i < n; ++i) {
+        const FlowSample found = sample(flow_, times[i]);
+        out.theta[i] = found.theta;
+        out.omega[i] = found.omega;
+        out.x[i] = found.x;
+    }
 }
 
 void FlowSampler::operator()(const double* times, std::size_t n, FlowSample* samples) const {
-    if (table_) return sample(*table_, times, n, samples);
-    for (std::size_t i = 0; i < n; ++i) samples[i] = sample(flow_, times[i]);
+    std::vector<double> columns(3 * n);
+    double* const theta = columns.data();
+    double* const omega = theta + n;
+    double* const x = omega + n;
+    (*this)(times, n, FlowColumns{theta, omega, x});
+    for (std::size_t i = 0; i < n; ++i) samples[i] = {theta[i], omega[i], x[i]};
 }
 
 }  // namespace rolling_ellipse

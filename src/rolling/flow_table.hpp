@@ -6,47 +6,37 @@
 // (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
-#include "numerics/series.hpp"
 #include "rolling/flow.hpp"
+#include "rolling/flow_kernel.hpp"
 
 namespace rolling_ellipse {
 
-// Angle, angular velocity and path over a stretch of time; angle and path are counted from the
-// nearest flat position or tip, which lies `quarters` quarter turns from the first flat one.
-struct FlowPiece {
-    DoubleDouble centre;  // times since the flat position
-    double low;
-    double high;
-    double quarters;
-    Series angle;
-    Series omega;
-    Series path;
-};
-
+// The table of a rotation or a libration, for any time; no pieces where no series holds.
 struct FlowTable {
     RollingFlow flow;
-    double time_unit;
-    FlowPiece start;  // about t = 0; its angle and path are those since then
     std::vector<FlowPiece> pieces;
+    MotionSeries start;  // about t = 0; its angle and path are those since then
+    std::array<unsigned short, 256> first;
+    FlowReader reader;  // but for what it points to
 };
 
-// The table of a rotation or a libration, for times from 0 to `span`; with an infinite span for
-// any.
-FlowTable flow_table(const RollingFlow& flow, double span);
+FlowTable flow_table(const RollingFlow& flow);
 
-// Quickest for times in order; outside of the table's span it is as slow as without.
-void sample(const FlowTable& table, const double* times, std::size_t n, FlowSample* samples);
+// The bits depend on the time alone, not on those beside it.
+void sample(const FlowTable& table, const double* times, std::size_t n, const FlowColumns& out);
 
 // A motion to be sampled at so many times in all: few of them are not worth a table, nor are rest
 // and uniform rotation.
 class FlowSampler {
   public:
-    FlowSampler(const RollingFlow& flow, double span, std::size_t expected);
+    FlowSampler(const RollingFlow& flow, std::size_t expected);
 
+    void operator()(const double* times, std::size_t n, const FlowColumns& out) const;
     void operator()(const double* times, std::size_t n, FlowSample* samples) const;
 
   private:

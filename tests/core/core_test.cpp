@@ -117,7 +117,7 @@ void every_segment_knows_every_kind_of_sample() {
     const Solution solution = simulate(scene, automatic(), 3.0, [] {});
     CHECK(solution.model == Model::contact && solution.ending == Ending::completed);
     CHECK(solution.motion.segments.size() > 3);
-    const Sampler look(solution.motion, 3.0, 301);
+    const Sampler look(solution.motion, 301);
     std::vector<double> times;
     for (int i = 0; i <= 300; ++i) times.push_back(0.01 * i);
     std::vector<ContactSample> states(times.size());

@@ -1,0 +1,123 @@
+// What a table of exact rolling is made of and read by, eight numbers side by side: the same code
+// for several vector levels (flow_kernel_*.cpp), of which the best one of the machine is taken. No
+// instruction but the plain ones, and so the same bits at every level.
+#pragma once
+
+#include <cstddef>
+
+#include "numerics/double_double.hpp"
+#include "numerics/series.hpp"
+#include "rolling/phase_time.hpp"
+
+namespace rolling_ellipse {
+
+inline constexpr int lanes = 8;
+inline constexpr int series_columns = 4;  // angle, omega, path; a row of a series fills a register
+
+// Angle, angular velocity and path as power series in time, from a place of the motion on.
+struct MotionSeries {
+    alignas(32) double rows[series_size][series_columns];
+};
+
+// The constants of the series, with lengths in units of the long semi-axis and time in a unit of
+// its own.
+struct SeriesConstants {
+    double short_axis2;
+    double c2;
+    double gravity;
+    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28)
+    double d1;
+};
+
+struct alignas(64) Eight {
+    double of[lanes];
+};
+
+// Phases by the tangent of their offset from the flat position, or from the tip.
+struct PlaceBatch {
+    Eight at_tip;  // 1 or 0
+    Eight tangent;
+    Eight from;  // the tangent of the place before it, in the same half
+};
+
+// The motion there, on the way up, and the time since the place before it.
+struct StateBatch {
+    Eight sin;  // of the angle from the flat position
+    Eight cos;
+    Eight omega;
+    Eight duration;
+};
+
+struct SeriesBatch {
+    Eight angle[series_size];
+    Eight omega[series_size];
+    Eight path[series_size];
+};
+
+// A series so far back and forward, in units of its variable.
+struct ReachBatch {
+    Eight back;
+    Eight forward;
+    Eight holds;  // 1 where it is as good as a double as far as that, else 0
+    Eight path_back;
+    Eight path_forward;
+};
+
+struct FlowPiece {
+    DoubleDouble centre;  // times since the flat position
+    double low;
+    double high;
+    double quarters;  // from the flat position to where angle and path are counted from
+    MotionSeries series;
+};
+
+// A motion as its pieces see it.
+struct FlowReader {
+    const FlowPiece* pieces;
+    std::size_t count;
+    const unsigned short* first;  // by buckets of time: the first piece that reaches into it
+    double buckets_per_time;
+    std::size_t buckets;
+    double per_unit;  // of time, to the variable of the series
+    // Half turns and the time since the flat position.
+    DoubleDouble half_turn;
+    double half_turns_per_time;
+    DoubleDouble start_time;
+    // Which way it goes: spin after an even number of half turns, and whether it changes with them.
+    double spin;
+    double alternates;
+    double quarters_per_half_turn;
+    // The start.
+    double quarters;
+    DoubleDouble angle;  // theta less that of the start from its quarter
+    double path;         // that of the start from its quarter
+    double quarter_path;
+    double theta;
+    double x;
+    double start_radius;  // of times for which its own series holds
+    const MotionSeries* start;
+};
+
+struct FlowColumns {
+    double* theta;
+    double* omega;
+    double* x;
+};
+
+struct FlowKernel {
+    void (*states)(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatch& found);
+    void (*series)(const SeriesConstants& body, const StateBatch& at, SeriesBatch& found);
+    void (*reach)(const SeriesBatch& series, ReachBatch& found);
+    // The motion at many times; theta is NaN where no piece reaches. Returns whether one is.
+    bool (*read)(const FlowReader& motion, const double* times, std::size_t n,
+                 const FlowColumns& out);
+};
+
+FlowKernel flow_kernel_baseline();
+FlowKernel flow_kernel_avx2();
+FlowKernel flow_kernel_avx512();
+
+// The best one of the machine.
+const FlowKernel& flow_kernel();
+
+}  // namespace rolling_ellipse

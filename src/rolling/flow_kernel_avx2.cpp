@@ -1,0 +1,7 @@
+#include "rolling/flow_lanes.hpp"
+
+namespace rolling_ellipse {
+
+FlowKernel flow_kernel_avx2() { return compiled; }
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,7 @@
+#include "rolling/flow_lanes.hpp"
+
+namespace rolling_ellipse {
+
+FlowKernel flow_kernel_baseline() { return compiled; }
+
+}  // namespace rolling_ellipse
