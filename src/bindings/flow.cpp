@@ -34,14 +34,13 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     const double longest = longest_time(flow);
     const double most = std::min(longest, std::numeric_limits<double>::max());
     std::vector<Array> out = empty_arrays(3, n);
-    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
+    const FlowColumns found = columns(out);
     const double* const times = t.data();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
-        for (py::ssize_t i = begin; i < end; ++i) {
-            if (!(std::abs(times[i]) <= most)) validate_time(times[i], longest);
-        }
-        sampler(times + begin, end - begin,
-                FlowColumns{columns[0] + begin, columns[1] + begin, columns[2] + begin});
+        const py::ssize_t wrong =
+            begin + flow_kernel().first_beyond(times + begin, end - begin, most);
+        if (wrong < end) validate_time(times[wrong], longest);
+        sampler(times + begin, end - begin, found.from(begin));
     });
     return py::make_tuple(out[0], out[1], out[2]);
 }

@@ -19,13 +19,8 @@ CoordinateState single_state(const Array& q, const Array& q_dot) {
     return state_at(q, q_dot, 0);
 }
 
-void store_samples(const FlowSample* samples, py::ssize_t begin, py::ssize_t end,
-                   double* const columns[3]) {
-    for (py::ssize_t i = begin; i < end; ++i) {
-        columns[0][i] = samples[i - begin].theta;
-        columns[1][i] = samples[i - begin].omega;
-        columns[2][i] = samples[i - begin].x;
-    }
+FlowColumns columns(std::vector<Array>& arrays) {
+    return {arrays[0].mutable_data(), arrays[1].mutable_data(), arrays[2].mutable_data()};
 }
 
 }  // namespace rolling_ellipse::bindings

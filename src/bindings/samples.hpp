@@ -3,7 +3,7 @@
 
 #include "bindings/arrays.hpp"
 #include "geometry/constraints.hpp"
-#include "rolling/flow.hpp"
+#include "rolling/flow_table.hpp"
 
 namespace rolling_ellipse::bindings {
 
@@ -14,8 +14,7 @@ py::ssize_t require_coordinates(const Array& q, const Array& q_dot);
 CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row);
 CoordinateState single_state(const Array& q, const Array& q_dot);
 
-// theta, omega, x as columns, at the places begin .. end.
-void store_samples(const FlowSample* samples, py::ssize_t begin, py::ssize_t end,
-                   double* const columns[3]);
+// theta, omega, x as arrays.
+FlowColumns columns(std::vector<Array>& arrays);
 
 }  // namespace rolling_ellipse::bindings

@@ -53,12 +53,16 @@ void look(const Solution& solution, const Array& t, Take take) {
 
 // theta, omega, x at each time.
 py::tuple sample_rolling(const Solution& solution, const Array& t) {
-    std::vector<Array> out = empty_arrays(3, t.size());
-    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
-    look<FlowSample>(solution, t,
-                     [&](const FlowSample* samples, py::ssize_t begin, py::ssize_t end) {
-                         store_samples(samples, begin, end, columns);
-                     });
+    const py::ssize_t n = t.size();
+    require_length("t", t, n);
+    std::vector<Array> out = empty_arrays(3, n);
+    const FlowColumns found = columns(out);
+    const double* const times = t.data();
+    const Sampler sampler(solution.motion, n);
+    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
+        validate_times(solution, times, begin, end);
+        sampler(times + begin, end - begin, found.from(begin));
+    });
     return py::make_tuple(read_only(out[0]), read_only(out[1]), read_only(out[2]));
 }
 

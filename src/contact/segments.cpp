@@ -185,6 +185,13 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
     }
 }
 
+void Sampler::operator()(const double* times, std::size_t n, const FlowColumns& out) const {
+    if (flow_) return (*flow_)(times, n, out);
+    std::vector<FlowSample> samples(n);
+    (*this)(times, n, samples.data());
+    for (std::size_t i = 0; i < n; ++i) store(samples[i], out, i);
+}
+
 template void Sampler::operator()(const double*, std::size_t, FlowSample*) const;
 template void Sampler::operator()(const double*, std::size_t, ContactSample*) const;
 template void Sampler::operator()(const double*, std::size_t, CoordinateState*) const;

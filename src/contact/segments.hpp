@@ -72,6 +72,9 @@ class Sampler {
     template <class Sample>
     void operator()(const double* times, std::size_t n, Sample* samples) const;
 
+    // theta, omega, x as columns.
+    void operator()(const double* times, std::size_t n, const FlowColumns& out) const;
+
   private:
     const Motion& motion_;
     std::optional<FlowSampler> flow_;  // of a motion that is nothing but exact rolling

@@ -54,10 +54,12 @@ struct SeriesBatch {
     Eight path[series_size];
 };
 
-// A series so far back and forward, in units of its variable.
+// A series so far back and forward, in units of its variable, as a part of an angle and a path.
 struct ReachBatch {
     Eight back;
     Eight forward;
+    Eight angle;
+    Eight path;
     Eight holds;  // 1 where it is as good as a double as far as that, else 0
     Eight path_back;
     Eight path_forward;
@@ -102,12 +104,16 @@ struct FlowColumns {
     double* theta;
     double* omega;
     double* x;
+
+    FlowColumns from(std::size_t begin) const { return {theta + begin, omega + begin, x + begin}; }
 };
 
 struct FlowKernel {
     void (*states)(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatch& found);
     void (*series)(const SeriesConstants& body, const StateBatch& at, SeriesBatch& found);
     void (*reach)(const SeriesBatch& series, ReachBatch& found);
+    // The first time that is not within most in size, NaN neither; n if there is none.
+    std::size_t (*first_beyond)(const double* times, std::size_t n, double most);
     // The motion at many times; theta is NaN where no piece reaches. Returns whether one is.
     bool (*read)(const FlowReader& motion, const double* times, std::size_t n,
                  const FlowColumns& out);

@@ -134,7 +134,7 @@ void series(const SeriesConstants& body, const StateBatch& at, SeriesBatch& foun
     LaneSeries u{}, h{}, inertia{}, mass{}, load_{}, turning{};
     store(Lanes{}, found.angle[0]);
     store(Lanes{}, found.path[0]);
-#pragma GCC unroll 13
+#pragma GCC unroll 16
     for (int k = 0; k < series_size; ++k) {
         u[k] = body.c2 * q[k];
         inertia[k] = body.d1 * q[k];
@@ -167,26 +167,27 @@ void series(const SeriesConstants& body, const StateBatch& at, SeriesBatch& foun
     return sum;
 }
 
-// The last two terms are one rounding at most, beside the size of the series there; what is left
-// out is smaller by another tenth.
-[[gnu::always_inline]] inline Mask holds(const Eight (&series)[series_size], const Lanes& radius) {
-    constexpr double rest = 1e-16;  // half an ulp
-    Lanes power = radius * radius;
-    const Lanes size = larger(absolute(load(series[0])),
-                              larger(absolute(load(series[1])) * radius,
-                                     absolute(load(series[2])) * power));
-    for (int k = 3; k < series_order; ++k) power *= radius;
-    const Lanes last = larger(absolute(load(series[series_order - 1])),
-                              absolute(load(series[series_order])) * radius);
-    return last * power <= rest * size;
+// The last terms, of which one may be small by chance, are some roundings beside what the series is
+// part of; what is left out is smaller by another twentieth.
+[[gnu::always_inline]] inline Mask holds(const Eight (&series)[series_size], const Lanes& whole,
+                                         const Lanes& radius) {
+    constexpr double rest = 1e-15;
+    constexpr double rest_before = 2e-14;
+    const Lanes size = larger(whole, larger(absolute(load(series[1])) * radius,
+                                            absolute(load(series[2])) * (radius * radius)));
+    Lanes power = radius;
+    for (int k = 2; k < series_order; ++k) power *= radius;
+    return (absolute(load(series[series_order - 1])) * power <= rest_before * size) &
+           (absolute(load(series[series_order])) * (power * radius) <= rest * size);
 }
 
 void reach(const SeriesBatch& series, ReachBatch& found) {
     const Lanes back = load(found.back);
     const Lanes forward = load(found.forward);
     const Lanes radius = larger(back, forward);
-    const Mask all = holds(series.angle, radius) & holds(series.omega, radius) &
-                     holds(series.path, radius);
+    const Mask all = holds(series.angle, load(found.angle), radius) &
+                     holds(series.omega, absolute(load(series.omega[0])), radius) &
+                     holds(series.path, load(found.path), radius);
     store(all ? 1 + Lanes{} : Lanes{}, found.holds);
     store(value(series.path, -back), found.path_back);
     store(value(series.path, forward), found.path_forward);
@@ -203,7 +204,7 @@ struct Motions {
     const auto& rows = series.rows;
     Motions sum{rows[series_order][0] + Lanes{}, rows[series_order][1] + Lanes{},
                 rows[series_order][2] + Lanes{}};
-#pragma GCC unroll 12
+#pragma GCC unroll 16
     for (int k = series_order - 1; k >= 0; --k) {
         sum.angle = sum.angle * z + rows[k][0];
         sum.omega = sum.omega * z + rows[k][1];
@@ -215,7 +216,7 @@ struct Motions {
 // A series at one time, its three columns side by side.
 [[gnu::always_inline]] inline Row alone(const MotionSeries& series, double z) {
     Row sum = row(series.rows[series_order]);
-#pragma GCC unroll 12
+#pragma GCC unroll 16
     for (int k = series_order - 1; k >= 0; --k) sum = sum * z + row(series.rows[k]);
     return sum;
 }
@@ -298,6 +299,15 @@ struct Motions {
     return true;
 }
 
+std::size_t first_beyond(const double* times, std::size_t n, double most) {
+    std::size_t i = 0;
+    Mask within = Lanes{} == Lanes{};
+    for (; i + lanes <= n; i += lanes) within &= absolute(load(times + i)) <= most;
+    if (any(!within)) i = 0;
+    while (i < n && times[i] <= most && -times[i] <= most) ++i;
+    return i;
+}
+
 bool read(const FlowReader& motion, const double* times, std::size_t n, const FlowColumns& out) {
     bool some_lost = false;
     Lanes theta, omega, x;
@@ -321,7 +331,7 @@ bool read(const FlowReader& motion, const double* times, std::size_t n, const Fl
     return some_lost;
 }
 
-constexpr FlowKernel compiled = {states, series, reach, read};
+constexpr FlowKernel compiled = {states, series, reach, first_beyond, read};
 
 }  // namespace
 }  // namespace rolling_ellipse

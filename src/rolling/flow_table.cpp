@@ -43,9 +43,9 @@ class TableMaker {
     }
 
     FlowTable make() {
-        // Distances between places in the graded coordinate, in which all that is singular is
-        // half_pi away from the motion (physics 31): shorter ones if the series do not reach.
-        for (double spacing : {0.2, 0.14, 0.1, 0.07, 0.05}) {
+        // Between places in the graded coordinate, in which all that is singular is half_pi away
+        // from the motion (physics 31): what series of this order reach in nearly all motions.
+        for (const double spacing : {0.128, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
             expand();
@@ -58,6 +58,7 @@ class TableMaker {
 
   private:
     void place(double spacing) {
+        constexpr double wider = 1.5;  // from the middle on
         places_.clear();
         const PhaseRate& rate = flow_.phase.rate;
         const double flat = std::sqrt(rate.d0 / (rate.d1 * rate.amplitude2 + rate.d0));
@@ -66,7 +67,7 @@ class TableMaker {
         const int up = static_cast<int>(std::ceil(rise / spacing));
         for (int i = 0; i < up; ++i) places_.push_back({false, flat * std::sinh(rise * i / up)});
         const double fall = tip > 0 ? std::asinh(1 / tip) : longest_rise;
-        const int down = static_cast<int>(std::ceil(fall / spacing));
+        const int down = static_cast<int>(std::ceil(fall / (wider * spacing)));
         for (int i = 0; i <= down; ++i) {
             const double v = fall * i / down;
             places_.push_back({true, tip > 0 ? tip * std::sinh(fall - v) : std::exp(-v)});
@@ -122,6 +123,9 @@ class TableMaker {
             at(all_.reach, &ReachBatch::back, i) = back;
             at(all_.reach, &ReachBatch::forward, i) =
                 j + 1 < count() ? per_unit * duration(j + 1) : back;
+            const double sin = at(all_.states, &StateBatch::sin, i);
+            at(all_.reach, &ReachBatch::angle, i) = sin;
+            at(all_.reach, &ReachBatch::path, i) = sin * std::sqrt(body_.short_axis2);
         }
         bool all = true;
         for (std::size_t i = 0; i < all_.reach.size(); ++i) {
@@ -284,11 +288,7 @@ void sample(const FlowTable& table, const double* times, std::size_t n, const Fl
     reader.start = &table.start;
     if (n == 0 || !flow_kernel().read(reader, times, n, out)) return;
     for (std::size_t i = 0; i < n; ++i) {
-        if (!std::isnan(out.theta[i])) continue;
-        const FlowSample found = sample(table.flow, times[i]);
-        out.theta[i] = found.theta;
-        out.omega[i] = found.omega;
-        out.x[i] = found.x;
+        if (std::isnan(out.theta[i])) store(sample(table.flow, times[i]), out, i);
     }
 }
 
@@ -302,12 +302,7 @@ FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(
 
 void FlowSampler::operator()(const double* times, std::size_t n, const FlowColumns& out) const {
     if (table_) return sample(*table_, times, n, out);
-    for (std::size_t i = 0; i < n; ++i) {
-        const FlowSample found = sample(flow_, times[i]);
-        out.theta[i] = found.theta;
-        out.omega[i] = found.omega;
-        out.x[i] = found.x;
-    }
+    for (std::size_t i = 0; i < n; ++i) store(sample(flow_, times[i]), out, i);
 }
 
 void FlowSampler::operator()(const double* times, std::size_t n, FlowSample* samples) const {

@@ -16,6 +16,12 @@
 
 namespace rolling_ellipse {
 
+inline void store(const FlowSample& sample, const FlowColumns& columns, std::size_t i) {
+    columns.theta[i] = sample.theta;
+    columns.omega[i] = sample.omega;
+    columns.x[i] = sample.x;
+}
+
 // The table of a rotation or a libration, for any time; no pieces where no series holds.
 struct FlowTable {
     RollingFlow flow;
