@@ -39,7 +39,9 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         const py::ssize_t wrong =
             begin + flow_kernel().first_beyond(times + begin, end - begin, most);
-        if (wrong < end) validate_time(times[wrong], longest);
+        if (wrong < end) {
+            validate_time(times[wrong], longest, "t[" + std::to_string(wrong) + "]");
+        }
         sampler(times + begin, end - begin, found.from(begin));
     });
     return py::make_tuple(out[0], out[1], out[2]);

@@ -186,10 +186,10 @@ double longest_time(const RollingFlow& flow) {
     return 1e15 * flow.phase.half_turn.high;
 }
 
-void validate_time(double t, double longest) {
-    if (!std::isfinite(t)) refuse("t", "finite [s]", t);
+void validate_time(double t, double longest, const std::string& name) {
+    if (!std::isfinite(t)) refuse(name, "finite [s]", t);
     if (std::abs(t) > longest) {
-        refuse("t", "at most 1e15 half turns or swings, " + text(longest) + " [s]", t);
+        refuse(name, "at most 1e15 half turns or swings, " + text(longest) + " [s]", t);
     }
 }
 

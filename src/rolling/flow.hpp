@@ -2,6 +2,8 @@
 // does not depend on how far it is from the start.
 #pragma once
 
+#include <string>
+
 #include "rolling/phase_time.hpp"
 #include "rolling/start.hpp"
 
@@ -51,7 +53,7 @@ FlowSample sample(const RollingFlow& flow, double t);
 double longest_time(const RollingFlow& flow);
 
 // Throws std::invalid_argument for a time that is not finite or longer, in either direction.
-void validate_time(double t, double longest);
+void validate_time(double t, double longest, const std::string& name = "t");
 
 // A time since the start as one since the flat position, half turns (or swings) made in between.
 struct PhaseInstant {

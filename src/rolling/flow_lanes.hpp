@@ -34,6 +34,8 @@ using LaneSeries = Lanes[series_size];
     return found;
 }
 
+[[gnu::always_inline]] inline Lanes all(double value) { return value + Lanes{}; }
+
 [[gnu::always_inline]] inline Lanes root(const Lanes& values) {
     Lanes found;
     for (int i = 0; i < lanes; ++i) found[i] = __builtin_sqrt(values[i]);
@@ -72,8 +74,7 @@ template <class Number>
     return scaled - (scaled - value);
 }
 
-[[gnu::always_inline]] inline Lanes product_missed(const Lanes& x, double y,
-                                                   const Lanes& product) {
+[[gnu::always_inline]] inline Lanes product_missed(const Lanes& x, double y, const Lanes& product) {
     const Lanes x1 = high_half(x);
     const Lanes x2 = x - x1;
     const double y1 = high_half(y);
@@ -92,7 +93,7 @@ template <class Number>
                                               const Lanes& tangent) {
     const double kappa2 = square(rate.kappa);
     const Lanes tan2 = tangent * tangent;
-    const Lanes sin2 = (at_tip ? 1 + 0 * tan2 : tan2) / (1 + tan2);
+    const Lanes sin2 = (at_tip ? all(1.0) : tan2) / (1 + tan2);
     const Lanes under = (1 + tan2) * (at_tip ? tan2 + kappa2 : 1 + kappa2 * tan2);
     return root(shape_factor2(rate, rate.amplitude2 * sin2) / under);
 }
@@ -108,8 +109,8 @@ void states(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatc
     Lanes sum{};
     for (int i = 0; i < nodes; ++i) {
         const Lanes offset = half * gauss_tables::nodes_8[i];
-        sum += gauss_tables::weights_8[i] *
-               (time_rate(rate, at_tip, middle - offset) + time_rate(rate, at_tip, middle + offset));
+        sum += gauss_tables::weights_8[i] * (time_rate(rate, at_tip, middle - offset) +
+                                             time_rate(rate, at_tip, middle + offset));
     }
     store(sum * half, found.duration);
 
@@ -131,9 +132,9 @@ void states(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatc
 void series(const SeriesConstants& body, const StateBatch& at, SeriesBatch& found) {
     const Lanes sin = load(at.sin);
     LaneSeries q{sin * sin}, p{sin * load(at.cos)}, w{load(at.omega)};
-    LaneSeries u{}, h{}, inertia{}, mass{}, load_{}, turning{};
-    store(Lanes{}, found.angle[0]);
-    store(Lanes{}, found.path[0]);
+    LaneSeries u{}, h{}, inertia{}, mass{}, push{}, turning{};
+    store(all(0.0), found.angle[0]);
+    store(all(0.0), found.path[0]);
 #pragma GCC unroll 16
     for (int k = 0; k < series_size; ++k) {
         u[k] = body.c2 * q[k];
@@ -148,8 +149,8 @@ void series(const SeriesConstants& body, const StateBatch& at, SeriesBatch& foun
         store(w[k], found.omega[k]);
         if (k == series_order) break;
         mass[k] = product(u, inertia, k);
-        load_[k] = body.gravity * product(u, h, k) + body.short_axis2 * self_product(w, k);
-        const Lanes force = -body.c2 * product(p, load_, k);
+        push[k] = body.gravity * product(u, h, k) + body.short_axis2 * self_product(w, k);
+        const Lanes force = -body.c2 * product(p, push, k);
         turning[k] = (force - terms(mass, turning, k, 1, k)) / mass[0];
         const Lanes qw = product(q, w, k);
         const double next = 1.0 / (k + 1);
@@ -185,10 +186,10 @@ void reach(const SeriesBatch& series, ReachBatch& found) {
     const Lanes back = load(found.back);
     const Lanes forward = load(found.forward);
     const Lanes radius = larger(back, forward);
-    const Mask all = holds(series.angle, load(found.angle), radius) &
-                     holds(series.omega, absolute(load(series.omega[0])), radius) &
-                     holds(series.path, load(found.path), radius);
-    store(all ? 1 + Lanes{} : Lanes{}, found.holds);
+    const Mask good = holds(series.angle, load(found.angle), radius) &
+                      holds(series.omega, absolute(load(series.omega[0])), radius) &
+                      holds(series.path, load(found.path), radius);
+    store(good ? all(1.0) : all(0.0), found.holds);
     store(value(series.path, -back), found.path_back);
     store(value(series.path, forward), found.path_forward);
 }
@@ -202,8 +203,7 @@ struct Motions {
 // One series at eight times.
 [[gnu::always_inline]] inline Motions together(const MotionSeries& series, const Lanes& z) {
     const auto& rows = series.rows;
-    Motions sum{rows[series_order][0] + Lanes{}, rows[series_order][1] + Lanes{},
-                rows[series_order][2] + Lanes{}};
+    Motions sum{all(rows[series_order][0]), all(rows[series_order][1]), all(rows[series_order][2])};
 #pragma GCC unroll 16
     for (int k = series_order - 1; k >= 0; --k) {
         sum.angle = sum.angle * z + rows[k][0];
@@ -238,9 +238,9 @@ struct Motions {
     const Lanes turned = n * period.high;
     const Lanes rest = t - turned;
     const Lanes time = rest + motion.start_time.high;
-    const Lanes low =
-        (missed(t, -turned, rest) + missed(rest, motion.start_time.high + Lanes{}, time)) -
-        (product_missed(n, period.high, turned) + n * period.low) + motion.start_time.low;
+    const Lanes low = (missed(t, -turned, rest) + missed(rest, all(motion.start_time.high), time)) -
+                      (product_missed(n, period.high, turned) + n * period.low) +
+                      motion.start_time.low;
     const Mask before = time < 0;
     const Lanes since = before ? -time : time;
     const Lanes since_low = before ? -low : low;
@@ -256,21 +256,21 @@ struct Motions {
     Motions at;
     Lanes quarters;
     if (!some_at_start && !any((since < first.low) | (since >= first.high))) {
-        const Lanes z = ((since - first.centre.high) + (since_low - first.centre.low)) *
-                        motion.per_unit;
+        const Lanes z =
+            ((since - first.centre.high) + (since_low - first.centre.low)) * motion.per_unit;
         at = together(first.series, z);
-        quarters = first.quarters + Lanes{};
+        quarters = all(first.quarters);
     } else if (some_at_start && !any(!at_start)) {
         at = together(*motion.start, t * motion.per_unit);
-        quarters = Lanes{};
+        quarters = all(0.0);
     } else {
         Eight of[3], to;
         for (int i = 0; i < lanes; ++i) {
             const FlowPiece& piece = piece_at(motion, since[i]);
             const double z = ((since[i] - piece.centre.high) + (since_low[i] - piece.centre.low)) *
                              motion.per_unit;
-            const Row found = at_start[i] ? alone(*motion.start, t[i] * motion.per_unit)
-                                          : alone(piece.series, z);
+            const Row found =
+                at_start[i] ? alone(*motion.start, t[i] * motion.per_unit) : alone(piece.series, z);
             for (int column = 0; column < 3; ++column) of[column].of[i] = found[column];
             to.of[i] = piece.quarters;
         }
@@ -282,7 +282,7 @@ struct Motions {
         motion.quarters_per_half_turn * n + (heading * quarters - motion.quarters);
     const Lanes turns = all_quarters * half_pi_exact.high;
     const Lanes angle = turns + motion.angle.high;
-    const Lanes angle_low = missed(turns, motion.angle.high + Lanes{}, angle) +
+    const Lanes angle_low = missed(turns, all(motion.angle.high), angle) +
                             product_missed(all_quarters, half_pi_exact.high, turns) +
                             all_quarters * half_pi_exact.low + motion.angle.low;
     theta = angle + (angle_low + heading * at.angle);
@@ -295,7 +295,7 @@ struct Motions {
     }
     const Mask lost = beyond & !at_start;
     if (!any(lost)) return false;
-    theta = lost ? __builtin_nan("") + Lanes{} : theta;
+    theta = lost ? all(__builtin_nan("")) : theta;
     return true;
 }
 
@@ -319,7 +319,7 @@ bool read(const FlowReader& motion, const double* times, std::size_t n, const Fl
         store(x, out.x + i);
     }
     if (i == n) return some_lost;
-    Lanes last = times[n - 1] + Lanes{};
+    Lanes last = all(times[n - 1]);
     const std::size_t left = n - i;
     for (std::size_t j = 0; j < left; ++j) last[j] = times[i + j];
     some_lost |= read_eight(motion, last, theta, omega, x);

@@ -78,7 +78,7 @@ class TableMaker {
     std::size_t count() const { return places_.size(); }
 
     template <class Batch>
-    static double& at(std::vector<Batch>& batches, Eight Batch::*column, std::size_t i) {
+    static double& at(std::vector<Batch>& batches, Eight Batch::* column, std::size_t i) {
         return (batches[i / lanes].*column).of[i % lanes];
     }
 
@@ -208,7 +208,8 @@ class TableMaker {
         const double tangent = places_[last].tangent;
         const double sin = 1 / std::hypot(1.0, tangent);
         path(last) = quarter_state(flow_, {sin, tangent * sin}).position.path;
-        for (std::size_t i = last; pieces[i - 1].quarters != 0; --i) path(i - 1) = path(i) - step(i);
+        for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
+            path(i - 1) = path(i) - step(i);
     }
 
     void add_start() {
@@ -244,8 +245,10 @@ class TableMaker {
         reader.buckets_per_time = double(reader.buckets) / pieces.back().high;
         std::size_t piece = 0;
         for (std::size_t i = 0; i < reader.buckets; ++i) {
-            while (pieces[piece].high * reader.buckets_per_time <= double(i)) ++piece;
-            table_.first[i] = static_cast<unsigned short>(piece == 0 ? 0 : piece - 1);
+            while (pieces[piece].high * reader.buckets_per_time * (1 + 4 * epsilon) < double(i)) {
+                ++piece;
+            }
+            table_.first[i] = static_cast<unsigned short>(piece);
         }
         reader.per_unit = 1 / unit_;
         const DoubleDouble half_turn = flow_.phase.half_turn;
@@ -281,12 +284,16 @@ class TableMaker {
 
 FlowTable flow_table(const RollingFlow& flow) { return TableMaker(flow).make(); }
 
+FlowReader reader(const FlowTable& table) {
+    FlowReader found = table.reader;
+    found.pieces = table.pieces.data();
+    found.first = table.first.data();
+    found.start = &table.start;
+    return found;
+}
+
 void sample(const FlowTable& table, const double* times, std::size_t n, const FlowColumns& out) {
-    FlowReader reader = table.reader;
-    reader.pieces = table.pieces.data();
-    reader.first = table.first.data();
-    reader.start = &table.start;
-    if (n == 0 || !flow_kernel().read(reader, times, n, out)) return;
+    if (!flow_kernel().read(reader(table), times, n, out)) return;
     for (std::size_t i = 0; i < n; ++i) {
         if (std::isnan(out.theta[i])) store(sample(table.flow, times[i]), out, i);
     }

@@ -33,6 +33,9 @@ struct FlowTable {
 
 FlowTable flow_table(const RollingFlow& flow);
 
+// The table as a kernel reads it, as long as it lives.
+FlowReader reader(const FlowTable& table);
+
 // The bits depend on the time alone, not on those beside it.
 void sample(const FlowTable& table, const double* times, std::size_t n, const FlowColumns& out);
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <stdexcept>
 #include <vector>
 
@@ -166,6 +167,59 @@ void wrong_numbers_are_refused() {
     CHECK(message.rfind("friction must be", 0) == 0);
 }
 
+std::vector<FlowKernel> kernels_of_this_machine() {
+    std::vector<FlowKernel> found = {flow_kernel_baseline()};
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx2")) found.push_back(flow_kernel_avx2());
+    if (__builtin_cpu_supports("avx512f")) found.push_back(flow_kernel_avx512());
+#endif
+    return found;
+}
+
+template <class Batch>
+bool same_bits(const Batch& one, const Batch& other) {
+    return std::memcmp(&one, &other, sizeof(Batch)) == 0;
+}
+
+// Places, series and times of one motion by each of them.
+void every_vector_level_has_the_same_bits() {
+    const Body body{2.0, 1.0, 1.25, 9.81};
+    for (const double omega : {1.0, 3.2}) {  // libration and rotation
+        const FlowTable table = flow_table(rolling_flow(rolling_start(body, 0.2, omega)));
+        const PhaseRate& rate = table.flow.phase.rate;
+        PlaceBatch places{};
+        for (int i = 0; i < lanes; ++i) {
+            places.at_tip.of[i] = i % 2;
+            places.tangent.of[i] = 0.12 * i + 0.11;
+            places.from.of[i] = 0.12 * i;
+        }
+        std::vector<double> times;
+        for (int i = 0; i < 4003; ++i)
+            times.push_back(std::sin(7.0 * i) * (i % 3 == 0 ? 1e9 : 5.0));
+        StateBatch first_states{};
+        SeriesBatch first_series{};
+        std::vector<double> first;
+        for (const FlowKernel& kernel : kernels_of_this_machine()) {
+            StateBatch states{};
+            SeriesBatch series{};
+            kernel.states(rate, omega > 3, places, states);
+            kernel.series({0.25, 0.75, 1.0, rate.d0 / 16, rate.d1 / 16}, states, series);
+            std::vector<double> read(3 * times.size());
+            double* const theta = read.data();
+            const FlowColumns out{theta, theta + times.size(), theta + 2 * times.size()};
+            CHECK(!kernel.read(reader(table), times.data(), times.size(), out));
+            if (first.empty()) {
+                first_states = states;
+                first_series = series;
+                first = read;
+            }
+            CHECK(states.omega.of[0] > 0 && series.path[2].of[3] != 0);
+            CHECK(same_bits(states, first_states) && same_bits(series, first_series));
+            CHECK(read == first);
+        }
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -178,6 +232,7 @@ int main() {
     every_segment_knows_every_kind_of_sample();
     a_checkpoint_that_throws_ends_the_work();
     wrong_numbers_are_refused();
+    every_vector_level_has_the_same_bits();
     std::printf(failures == 0 ? "all hold\n" : "%d do not hold\n", failures);
     return failures == 0 ? 0 : 1;
 }
