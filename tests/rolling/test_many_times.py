@@ -1,0 +1,122 @@
+"""`flow` at many times of one motion: read off a table, whatever their order and number.
+
+Bits may depend on whether there are enough times for a table (8), and on nothing else: what
+test_flow_reference.py asks of 151 times in 40 digits then holds for any number of them.
+"""
+
+import math
+import tracemalloc
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.flow import LARGEST_ERROR, arguments, grain
+from oracles.margins import told
+from rolling_ellipse import flow, thresholds
+
+ROLL_OVER = thresholds(2.0, 1.0).roll_over_speed
+# semi-axes, k^2, gravity, theta, omega
+MOTIONS = {
+    "libration": (2.0, 1.0, 1.25, 9.81, 0.2, 1.0),
+    "on the way back": (2.0, 1.0, 1.25, 9.81, 0.2, -1.0),
+    "rotation": (2.0, 1.0, 1.25, 9.81, 0.2, 3.2),
+    "backwards": (0.7, 1.9, 1.025, 9.81, 0.1, -2.5),
+    "from rest": (2.0, 1.0, 1.25, 9.81, 0.5, 0.0),
+    "tiny": (2.0, 1.0, 1.25, 9.81, 1e-9, 0.0),
+    "fast": (1.5, 1.0, 0.3, 3.7, 0.4, 1e6),
+    "flat as a plate": (1.0, 1.001e-3, 0.25, 9.81, 0.3, 0.0),
+    "a plate that turns": (1.001e-3, 1.0, 0.25, 9.81, 0.3, 30.0),
+    "over the tip": (2.0, 1.0, 1.25, 9.81, 0.0, ROLL_OVER * (1 + 1e-12)),
+    "not over the tip": (2.0, 1.0, 1.25, 9.81, 0.0, ROLL_OVER * (1 - 1e-12)),
+    "nearly a circle": (1.0 + 1e-8, 1.0, 0.5, 9.81, 0.3, 1e-3),
+    "a mountain": (1e20, 3e19, 1e39, 9.81, 0.3, 1e-12),
+    "dust": (1e-20, 3e-21, 1e-41, 9.81, 0.3, 1e11),
+}
+each_motion = pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+
+
+def swing(motion: tuple[float, ...]) -> float:
+    """About the time of a half turn or swing: from the speed, or that of a rocking plate."""
+    a, b, gyration2, gravity, _, omega = motion
+    low, high = min(a, b), max(a, b)
+    rocking = math.sqrt(gravity * (high**2 - low**2) / (low * (gyration2 + low**2)))
+    return math.pi / max(abs(omega), rocking)
+
+
+def times_of(motion: tuple[float, ...]) -> np.ndarray:
+    """On both sides of the start, from an instant to a thousand million swings."""
+    spans = swing(motion) * np.array([1e-6, 0.1, 1.0, 30.0, 1e9])
+    return np.concatenate([span * np.linspace(-0.3, 1.0, 411) for span in spans])
+
+
+def same(one: Any, other: Any) -> bool:
+    return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+
+
+@each_motion
+def test_bits_depend_on_the_time_alone(motion: tuple[float, ...]) -> None:
+    """Not on the order, the neighbours, the chunk or the worker."""
+    times, start = times_of(motion), arguments(motion)
+    found = flow(times, **start)
+    generator = np.random.default_rng(5)
+    for order in (np.arange(times.size)[::-1], generator.permutation(times.size)):
+        assert same(flow(times[order], **start), [values[order] for values in found])
+    for part in (slice(0, 8), slice(3, 1001), slice(700, 2000, 7)):
+        assert same(flow(times[part], **start), [values[part] for values in found])
+    for i in (0, 411, 1300, -1):
+        again = flow(np.full(1031, times[i]), **start)
+        assert same(again, [np.full(1031, values[i]) for values in found])
+    assert same(flow(times, **start, workers=3), found)
+
+
+@each_motion
+def test_many_times_are_the_single_ones(motion: tuple[float, ...]) -> None:
+    """Both have their errors; x has the rounding of a length like the body's."""
+    start = arguments(motion)
+    times = times_of(motion)[::137]
+    found = np.array(flow(times, **start))
+    assert np.all(np.isfinite(found))
+    worst = 0.0
+    for i, t in enumerate(times):
+        unit = grain(float(t), motion)
+        unit[2] += 2e-16 * max(motion[:2])
+        off = np.abs(found[:, i] - flow(float(t), **start)) / unit
+        worst = max(worst, float(off.max()))
+    told(f"{worst:.3g} units")
+    assert worst <= 2 * LARGEST_ERROR
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 7, 8, 9, 1023, 1025])
+def test_any_number_of_times(count: int) -> None:
+    """Around the eight that go side by side and the 1024 that are a chunk."""
+    start = arguments(MOTIONS["rotation"])
+    times = np.linspace(0.0, 3.0, count)
+    found = flow(times, **start)
+    assert [values.shape for values in found] == [(count,)] * 3
+    for values, several in zip(found, flow(np.append(times, np.ones(8)), **start), strict=True):
+        # a few ulp of what the motion is worth: three radians, radians a second and metres
+        assert np.all(np.abs(values - several[:count]) <= 32 * math.ulp(10.0))
+
+
+@pytest.mark.parametrize("place", [0, 5, 1500, 2002])
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e300])
+def test_a_wrong_time_is_named_by_its_place(place: int, bad: float) -> None:
+    times = np.linspace(0.0, 3.0, 2003)
+    times[place] = bad
+    times[place + 1 :: 700] = math.nan  # the first one is named
+    with pytest.raises(ValueError, match=rf"^t\[{place}\] must be .* got {bad}".replace("+", ".")):
+        flow(times, **arguments(MOTIONS["libration"]))
+
+
+def test_memory_is_that_of_the_answer() -> None:
+    """Of a million times no copy is made; a tenth is more than any table."""
+    times, start = np.linspace(0.0, 100.0, 1_000_000), arguments(MOTIONS["rotation"])
+    tracemalloc.start()
+    try:
+        found = flow(times, **start)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    answer = sum(values.nbytes for values in found)
+    told(f"{peak / answer:.3f} of the answer")
+    assert answer <= peak <= 1.1 * answer
