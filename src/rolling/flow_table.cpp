@@ -301,7 +301,9 @@ void sample(const FlowTable& table, const double* times, std::size_t n, const Fl
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    constexpr std::size_t few = 8;  // measured: a table costs as much as so many single times
+    // A table costs as much as ten single times; but where a few places are looked at again and
+    // again, now some of them and now others (roots), their bits should not change.
+    constexpr std::size_t few = 40;
     if (expected < few) return;
     table_ = flow_table(flow);
     if (table_->pieces.empty()) table_.reset();
