@@ -12,16 +12,18 @@
 namespace rolling_ellipse {
 
 inline constexpr int lanes = 8;
+inline constexpr int table_order = 14;
+inline constexpr int table_size = table_order + 1;
 inline constexpr int series_columns = 4;  // angle, omega, path; a row of a series fills a register
 
 // Angle, angular velocity and path as power series in time, from a place of the motion on.
-struct MotionSeries {
-    alignas(32) double rows[series_size][series_columns];
+struct TableSeries {
+    alignas(32) double rows[table_size][series_columns];
 };
 
 // The constants of the series, with lengths in units of the long semi-axis and time in a unit of
 // its own.
-struct SeriesConstants {
+struct TableConstants {
     double short_axis2;
     double c2;
     double gravity;
@@ -49,9 +51,9 @@ struct StateBatch {
 };
 
 struct SeriesBatch {
-    Eight angle[series_size];
-    Eight omega[series_size];
-    Eight path[series_size];
+    Eight angle[table_size];
+    Eight omega[table_size];
+    Eight path[table_size];
 };
 
 // A series so far back and forward, in units of its variable, as a part of an angle and a path.
@@ -70,7 +72,7 @@ struct FlowPiece {
     double low;
     double high;
     double quarters;  // from the flat position to where angle and path are counted from
-    MotionSeries series;
+    TableSeries series;
 };
 
 // A motion as its pieces see it.
@@ -97,7 +99,7 @@ struct FlowReader {
     double theta;
     double x;
     double start_radius;  // of times for which its own series holds
-    const MotionSeries* start;
+    const TableSeries* start;
 };
 
 struct FlowColumns {
@@ -110,7 +112,7 @@ struct FlowColumns {
 
 struct FlowKernel {
     void (*states)(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatch& found);
-    void (*series)(const SeriesConstants& body, const StateBatch& at, SeriesBatch& found);
+    void (*series)(const TableConstants& body, const StateBatch& at, SeriesBatch& found);
     void (*reach)(const SeriesBatch& series, ReachBatch& found);
     // The first time that is not within most in size, NaN neither; n if there is none.
     std::size_t (*first_beyond)(const double* times, std::size_t n, double most);

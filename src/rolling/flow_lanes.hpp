@@ -12,7 +12,7 @@ namespace {
 using Lanes [[gnu::vector_size(lanes * sizeof(double))]] = double;
 using Row [[gnu::vector_size(series_columns * sizeof(double))]] = double;
 using Mask = decltype(Lanes{} < Lanes{});
-using LaneSeries = Lanes[series_size];
+using LaneSeries = Lanes[table_size];
 
 [[gnu::always_inline]] inline Lanes load(const double* from) {
     Lanes found;
@@ -129,14 +129,14 @@ void states(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatc
 // Physics (18) with D h^2 = d0 + d1 q, u = h^2, q and p the square of the sine and the product of
 // sine and cosine of the angle:
 //     omega' u (d0 + d1 q) = -c2 p (g u h + S^2 omega^2),   q' = 2 p omega,   p' = (1 - 2 q) omega
-void series(const SeriesConstants& body, const StateBatch& at, SeriesBatch& found) {
+void series(const TableConstants& body, const StateBatch& at, SeriesBatch& found) {
     const Lanes sin = load(at.sin);
     LaneSeries q{sin * sin}, p{sin * load(at.cos)}, w{load(at.omega)};
     LaneSeries u{}, h{}, inertia{}, mass{}, push{}, turning{};
     store(all(0.0), found.angle[0]);
     store(all(0.0), found.path[0]);
 #pragma GCC unroll 16
-    for (int k = 0; k < series_size; ++k) {
+    for (int k = 0; k < table_size; ++k) {
         u[k] = body.c2 * q[k];
         inertia[k] = body.d1 * q[k];
         if (k == 0) {
@@ -147,7 +147,7 @@ void series(const SeriesConstants& body, const StateBatch& at, SeriesBatch& foun
             h[k] = (u[k] - self_product(h, k, 1)) / (2 * h[0]);
         }
         store(w[k], found.omega[k]);
-        if (k == series_order) break;
+        if (k == table_order) break;
         mass[k] = product(u, inertia, k);
         push[k] = body.gravity * product(u, h, k) + body.short_axis2 * self_product(w, k);
         const Lanes force = -body.c2 * product(p, push, k);
@@ -162,24 +162,24 @@ void series(const SeriesConstants& body, const StateBatch& at, SeriesBatch& foun
     }
 }
 
-[[gnu::always_inline]] inline Lanes value(const Eight (&series)[series_size], const Lanes& z) {
-    Lanes sum = load(series[series_order]);
-    for (int k = series_order - 1; k >= 0; --k) sum = sum * z + load(series[k]);
+[[gnu::always_inline]] inline Lanes value(const Eight (&series)[table_size], const Lanes& z) {
+    Lanes sum = load(series[table_order]);
+    for (int k = table_order - 1; k >= 0; --k) sum = sum * z + load(series[k]);
     return sum;
 }
 
 // The last terms, of which one may be small by chance, are some roundings beside what the series is
 // part of; what is left out is smaller by another twentieth.
-[[gnu::always_inline]] inline Mask holds(const Eight (&series)[series_size], const Lanes& whole,
+[[gnu::always_inline]] inline Mask holds(const Eight (&series)[table_size], const Lanes& whole,
                                          const Lanes& radius) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
     const Lanes size = larger(whole, larger(absolute(load(series[1])) * radius,
                                             absolute(load(series[2])) * (radius * radius)));
     Lanes power = radius;
-    for (int k = 2; k < series_order; ++k) power *= radius;
-    return (absolute(load(series[series_order - 1])) * power <= rest_before * size) &
-           (absolute(load(series[series_order])) * (power * radius) <= rest * size);
+    for (int k = 2; k < table_order; ++k) power *= radius;
+    return (absolute(load(series[table_order - 1])) * power <= rest_before * size) &
+           (absolute(load(series[table_order])) * (power * radius) <= rest * size);
 }
 
 void reach(const SeriesBatch& series, ReachBatch& found) {
@@ -201,11 +201,11 @@ struct Motions {
 };
 
 // One series at eight times.
-[[gnu::always_inline]] inline Motions together(const MotionSeries& series, const Lanes& z) {
+[[gnu::always_inline]] inline Motions together(const TableSeries& series, const Lanes& z) {
     const auto& rows = series.rows;
-    Motions sum{all(rows[series_order][0]), all(rows[series_order][1]), all(rows[series_order][2])};
+    Motions sum{all(rows[table_order][0]), all(rows[table_order][1]), all(rows[table_order][2])};
 #pragma GCC unroll 16
-    for (int k = series_order - 1; k >= 0; --k) {
+    for (int k = table_order - 1; k >= 0; --k) {
         sum.angle = sum.angle * z + rows[k][0];
         sum.omega = sum.omega * z + rows[k][1];
         sum.path = sum.path * z + rows[k][2];
@@ -214,10 +214,10 @@ struct Motions {
 }
 
 // A series at one time, its three columns side by side.
-[[gnu::always_inline]] inline Row alone(const MotionSeries& series, double z) {
-    Row sum = row(series.rows[series_order]);
+[[gnu::always_inline]] inline Row alone(const TableSeries& series, double z) {
+    Row sum = row(series.rows[table_order]);
 #pragma GCC unroll 16
-    for (int k = series_order - 1; k >= 0; --k) sum = sum * z + row(series.rows[k]);
+    for (int k = table_order - 1; k >= 0; --k) sum = sum * z + row(series.rows[k]);
     return sum;
 }
 

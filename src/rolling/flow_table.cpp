@@ -153,11 +153,11 @@ class TableMaker {
         describe();
     }
 
-    MotionSeries series(std::size_t i, double angle) const {
+    TableSeries series(std::size_t i, double angle) const {
         const SeriesBatch& from = all_.series[i / lanes];
         const std::size_t lane = i % lanes;
-        MotionSeries found;
-        for (int k = 0; k <= series_order; ++k) {
+        TableSeries found;
+        for (int k = 0; k <= table_order; ++k) {
             found.rows[k][0] = from.angle[k].of[lane];
             found.rows[k][1] = from.omega[k].of[lane] / unit_;
             found.rows[k][2] = from.path[k].of[lane] * length_;
@@ -223,7 +223,7 @@ class TableMaker {
         double radius = (piece->high - piece->low) / unit_;
         const SeriesBatch& from = all_.series[count() / lanes];
         for (int i = 0; i < lanes; ++i) {
-            for (int k = 0; k <= series_order; ++k) {
+            for (int k = 0; k <= table_order; ++k) {
                 same.angle[k].of[i] = from.angle[k].of[count() % lanes];
                 same.omega[k].of[i] = from.omega[k].of[count() % lanes];
                 same.path[k].of[i] = from.path[k].of[count() % lanes];
@@ -275,7 +275,7 @@ class TableMaker {
     bool rotates_;
     double length_;
     double unit_;
-    SeriesConstants body_;
+    TableConstants body_;
     std::vector<Place> places_;
     Batches all_;
 };
