@@ -29,8 +29,9 @@ def flow(
     """Return the rolling state at any time, exactly; it does not check whether rolling is valid.
 
     All arguments broadcast by NumPy's rules. The cost of one time does not depend on how far it is
-    from the start: the period is subtracted as a double-double, and the energy integral is
-    inverted on graded Gauss-Legendre panels. Nothing is stepped.
+    from the start: the period, by the trapezoidal rule in a coordinate in which nothing peaks, is
+    subtracted as a double-double, and the energy integral is inverted from the start on by
+    Gauss-Legendre quadrature and Newton's method. Nothing is stepped.
 
     Parameters
     ----------
@@ -64,6 +65,14 @@ def flow(
     ValueError
         If a number is out of its range or shapes do not broadcast.
     """
+    # Plain floats, as in most calls, need no conversion.
+    if (
+        type(t) is type(a) is type(b) is type(theta) is type(omega) is type(gravity) is float
+        and gyration2 is None
+        and type(workers) is int
+        and workers == 1
+    ):
+        return _core.flow_scalar(t, a, b, theta, omega, gravity, None)
     threads = worker_count(workers)
     one = (a, b, theta, omega, gravity)
     if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):

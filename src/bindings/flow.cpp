@@ -10,17 +10,21 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-RollingFlow validated_flow(const Body& body, double theta, double omega) {
+RollingStart validated_start(const Body& body, double theta, double omega) {
     validate(body);
     validate_motion(body, theta, omega);
-    return rolling_flow(rolling_start(body, theta, omega));
+    return rolling_start(body, theta, omega);
+}
+
+RollingMotion validated_motion(const Body& body, double theta, double omega) {
+    return rolling_motion(validated_start(body, theta, omega));
 }
 
 py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
                       std::optional<double> gyration2) {
-    const RollingFlow flow = validated_flow(body(a, b, gyration2, gravity), theta, omega);
-    validate_time(t, longest_time(flow));
-    const FlowSample now = sample(flow, t);
+    const RollingMotion motion = validated_motion(body(a, b, gyration2, gravity), theta, omega);
+    validate_time(t, longest_time(motion));
+    const FlowSample now = sample(motion, t);
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
@@ -29,7 +33,8 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
                      std::optional<double> gyration2, int workers) {
     const py::ssize_t n = t.size();
     require_length("t", t, n);
-    const RollingFlow flow = validated_flow(body(a, b, gyration2, gravity), theta, omega);
+    const RollingFlow flow =
+        rolling_flow(validated_start(body(a, b, gyration2, gravity), theta, omega));
     const FlowSampler sampler(flow, n);
     const double longest = longest_time(flow);
     const double most = std::min(longest, std::numeric_limits<double>::max());
@@ -55,16 +60,16 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
         arguments_of<7>({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         std::array<double, 6> last{};
-        RollingFlow flow{};
+        RollingMotion motion{};
         for (py::ssize_t i = begin; i < end; ++i) {
             std::array<double, 6> now{};
             for (std::size_t p = 0; p < now.size(); ++p) now[p] = of[1 + p][i];
             if (i == begin || now != last) {
-                flow = validated_flow({now[0], now[1], now[5], now[4]}, now[2], now[3]);
+                motion = validated_motion({now[0], now[1], now[5], now[4]}, now[2], now[3]);
                 last = now;
             }
-            validate_time(of[0][i], longest_time(flow));
-            const FlowSample at = sample(flow, of[0][i]);
+            validate_time(of[0][i], longest_time(motion));
+            const FlowSample at = sample(motion, of[0][i]);
             columns[0][i] = at.theta;
             columns[1][i] = at.omega;
             columns[2][i] = at.x;

@@ -1,6 +1,7 @@
 // Gauss-Legendre quadrature with the number of nodes that the nearest singularities ask for.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
@@ -32,6 +33,25 @@ inline int nodes_needed(double height, std::initializer_list<double> places) {
     }
     const double rho = axis + std::sqrt((axis - 1) * (axis + 1));
     return 1 + static_cast<int>(std::ceil(log_accuracy / (2 * std::log(rho))));
+}
+
+// The smallest tabled rule with full double precision over an interval, so many times as long as
+// twice the distance that its complex neighbourhood is free of singularities; the largest where the
+// interval is longer. The error falls like rho^(-2n), rho the sum of the semi-axes of the ellipse
+// with the ends as foci and that distance as its height (L. N. Trefethen, SIAM Rev. 50 (2008) 67,
+// theorem 4.5): rho = exp(asinh(1/length)).
+inline const GaussRule& rule_for_length(double length) {
+    constexpr double log_accuracy = 38.0;  // -ln(3e-17)
+    static const auto lengths = [] {
+        std::array<double, std::size(gauss_rules)> found{};
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            found[i] = 1 / std::sinh(log_accuracy / (2 * gauss_rules[i].size));
+        }
+        return found;
+    }();
+    std::size_t i = 0;
+    while (i + 1 < lengths.size() && lengths[i] < length) ++i;
+    return gauss_rules[i];
 }
 
 // The integral of f from v0 to v1, as a double-double: the sum itself adds no rounding.

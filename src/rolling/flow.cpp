@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numerics/quadrature.hpp"
 #include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
@@ -24,40 +23,16 @@ struct MotionPoint {
     double sin_phi;
     double cos_phi;
     double omega;
-    double quarters;  // quarter turns of the whole turns made, to be added to sin_phi and cos_phi
 };
 
 // Angle and angular velocity at a phase, on the way up: physics (30), the energy integral at the
 // point itself.
-MotionPoint motion_point(const RollingFlow& flow, const PhasePoint& at) {
-    const double sin_phi = flow.amplitude * at.sin;
-    const double factor = shape_factor(flow.phase.rate, sin_phi);
-    const double root = std::hypot(at.cos, flow.phase.rate.kappa * at.sin);
-    if (flow.kind == MotionKind::rotation) return {sin_phi, at.cos, root / factor, 0.0};
-    return {sin_phi, root, flow.amplitude * at.cos / factor, 0.0};
-}
-
-MotionPoint point_after(const RollingFlow& flow, double t) {
-    const auto [time, half_turns] = phase_instant(flow, t);
-    const double heading = heading_after(flow, half_turns);
-    MotionPoint point = motion_point(flow, point_at_time(flow.phase, time));
-    point.sin_phi *= heading;
-    point.omega *= heading;
-    if (flow.kind == MotionKind::rotation) point.quarters = 2 * heading * half_turns;
-    return point;
-}
-
-// The path of the centre, the integral of h omega over time, for a move over which the difference
-// of two paths would cancel: full relative accuracy. Such a move is short beside its distance from
-// the flat position and the tip, so that eight Gauss nodes are more than enough.
-double short_path(const RollingFlow& flow, double t) {
-    const auto velocity = [&](double at) {
-        const MotionPoint point = point_after(flow, at);
-        const double h =
-            std::hypot(flow.start.long_axis * point.sin_phi, flow.start.short_axis * point.cos_phi);
-        return h * point.omega;
-    };
-    return double(integrate(gauss_rule(8), 0.0, t, velocity));
+MotionPoint motion_point(const RollingMotion& motion, const PhasePoint& at) {
+    const double sin_phi = motion.amplitude * at.sin;
+    const double factor = shape_factor(motion.phase.rate, sin_phi);
+    const double root = std::sqrt(square(at.cos) + square(motion.phase.rate.kappa * at.sin));
+    if (motion.kind == MotionKind::rotation) return {sin_phi, at.cos, root / factor};
+    return {sin_phi, root, motion.amplitude * at.cos / factor};
 }
 
 // The constants of the energy integral, physics (28, 29); see rolling/phase_time.hpp.
@@ -79,44 +54,67 @@ PhaseRate phase_rate(const RollingStart& from, MotionKind kind) {
     rate.kappa = std::min(std::sqrt(tip2 / unit), 1.0);
     rate.d0 = s2 * (body.gyration2 + s2);
     rate.d1 = at.c2 * (body.gyration2 + l2 + s2);
+    rate.rotates = kind == MotionKind::rotation;
     return rate;
 }
 
 // The start as a phase, times the amplitude; the cosine is negative on the way back of a libration.
-PhasePoint start_phase(const RollingFlow& flow) {
-    const FlatView& at = flow.start;
-    if (flow.kind == MotionKind::rotation) return {flow.direction * at.sin, at.cos};
-    return {at.sin, flow.omega * shape_factor(flow.phase.rate, at.sin)};
+PhasePoint start_phase(const RollingMotion& motion) {
+    const FlatView& at = motion.start;
+    if (motion.kind == MotionKind::rotation) return {motion.direction * at.sin, at.cos};
+    return {at.sin, motion.omega * shape_factor(motion.phase.rate, at.sin)};
+}
+
+bool is_still_or_uniform(const RollingMotion& motion) {
+    return motion.kind == MotionKind::rest || motion.kind == MotionKind::uniform;
+}
+
+// What is left of a time without whole turns, or swings, and these.
+struct Reduced {
+    double time;
+    double turns;
+};
+Reduced reduced(const DoubleDouble& turn, double t) {
+    if (std::isinf(turn.high)) return {t, 0.0};
+    const double turns = std::nearbyint(t / turn.high);
+    return {std::fma(-turns, turn.high, t) - turns * turn.low, turns};
 }
 
 }  // namespace
 
-RollingFlow rolling_flow(const RollingStart& from, double x) {
-    RollingFlow flow{};
-    flow.theta = from.theta;
-    flow.omega = from.omega;
-    flow.x = x;
-    flow.gravity = from.body.gravity;
-    flow.start = from.view;
-    const FlatView& at = flow.start;
+RollingMotion rolling_motion(const RollingStart& from, double x) {
+    RollingMotion motion{};
+    motion.theta = from.theta;
+    motion.omega = from.omega;
+    motion.x = x;
+    motion.gravity = from.body.gravity;
+    motion.start = from.view;
     if (from.rests) {
-        flow.kind = MotionKind::rest;
-        return flow;
+        motion.kind = MotionKind::rest;
+        return motion;
     }
-    if (at.c2 == 0) {
-        flow.kind = MotionKind::uniform;
-        return flow;
+    if (from.view.c2 == 0) {
+        motion.kind = MotionKind::uniform;
+        return motion;
     }
     const bool rotates = from.height.over_tip >= 0 && from.omega != 0;
-    flow.kind = rotates ? MotionKind::rotation : MotionKind::libration;
-    flow.direction = rotates ? std::copysign(1.0, from.omega) : 1.0;
-    flow.phase = phase_time(phase_rate(from, flow.kind));
+    motion.kind = rotates ? MotionKind::rotation : MotionKind::libration;
+    motion.direction = rotates ? std::copysign(1.0, from.omega) : 1.0;
+    motion.phase = phase_time(phase_rate(from, motion.kind));
 
-    const PhasePoint start = start_phase(flow);
-    flow.amplitude = std::hypot(start.sin, start.cos);
-    flow.start_on_way_back = start.cos < 0;
-    flow.start_time = time_since_flat(
-        flow.phase, {flow.start_on_way_back ? -start.sin : start.sin, std::abs(start.cos)});
+    const PhasePoint start = start_phase(motion);
+    motion.amplitude = std::sqrt(square(start.sin) + square(start.cos));
+    motion.start_on_way_back = start.cos < 0;
+    motion.start_phase = {motion.start_on_way_back ? -start.sin : start.sin, std::abs(start.cos)};
+    motion.start_place = place_of(motion.phase.map, motion.start_phase);
+    return motion;
+}
+
+RollingFlow rolling_flow(const RollingStart& from, double x) {
+    RollingFlow flow{rolling_motion(from, x), {}, {}, 0.0};
+    if (is_still_or_uniform(flow)) return flow;
+    const FlatView& at = flow.start;
+    flow.start_time = time_since_flat(flow.phase, flow.start_phase);
     flow.start_position = quarter_position(at, at.sin, at.cos);
     flow.quarter_path = path_from_flat(at.long_axis, at.short_axis, 1.0, 0.0);
     return flow;
@@ -143,10 +141,10 @@ PhaseInstant phase_instant(const RollingFlow& flow, double t) {
     return {time, half_turns};
 }
 
-double heading_after(const RollingFlow& flow, double half_turns) {
-    if (flow.kind == MotionKind::rotation) return flow.direction;
+double heading_after(const RollingMotion& motion, double half_turns) {
+    if (motion.kind == MotionKind::rotation) return motion.direction;
     const bool odd = std::fmod(half_turns, 2.0) != 0.0;
-    return odd == flow.start_on_way_back ? 1.0 : -1.0;
+    return odd == motion.start_on_way_back ? 1.0 : -1.0;
 }
 
 PhasePoint phase_of(const RollingFlow& flow, double sin, double cos, double omega) {
@@ -161,29 +159,34 @@ QuarterState quarter_state(const RollingFlow& flow, const PhasePoint& phase) {
     return {at.sin_phi, at.cos_phi, at.omega, quarter_position(flow.start, at.sin_phi, at.cos_phi)};
 }
 
-FlowSample sample(const RollingFlow& flow, double t) {
-    if (flow.kind == MotionKind::rest || t == 0) return {flow.theta, flow.omega, flow.x};
-    if (flow.kind == MotionKind::uniform) {
-        const double turn = flow.omega * t;
-        return {flow.theta + turn, flow.omega, flow.x + flow.start.long_axis * turn};
+FlowSample sample(const RollingMotion& motion, double t) {
+    if (motion.kind == MotionKind::rest || t == 0) return {motion.theta, motion.omega, motion.x};
+    if (motion.kind == MotionKind::uniform) {
+        const double turn = motion.omega * t;
+        return {motion.theta + turn, motion.omega, motion.x + motion.start.long_axis * turn};
     }
-    const MotionPoint now = point_after(flow, t);
-    const QuarterPosition& from = flow.start_position;
-    const QuarterPosition to = quarter_position(flow.start, now.sin_phi, now.cos_phi);
-    const double quarters = now.quarters + (to.quarters - from.quarters);
-    const DoubleDouble turned = half_pi_exact * quarters + (to.angle - from.angle);
-    // Where the difference of two paths would lose more than two bits, over a short time.
-    const bool short_move = quarters == 0 && std::abs(t) < double(flow.phase.quarter_turn) / 8 &&
-                            std::abs(to.path - from.path) < std::abs(from.path) / 4;
-    const double path = short_move ? short_path(flow, t)
-                                   : std::fma(quarters, flow.quarter_path, to.path - from.path);
-    return {double(turned + flow.theta), now.omega, flow.x + path};
+    const bool rotates = motion.kind == MotionKind::rotation;
+    const DoubleDouble& half_turn = motion.phase.half_turn;
+    const auto [time, turns] = reduced(rotates ? half_turn : half_turn * 2.0, t);
+    const PhaseMove made = move(motion.phase, motion.start_place, time);
+    const double heading = heading_after(motion, 0.0);
+    const MotionPoint now = motion_point(motion, phase_point(motion.phase.map, made.to));
+    if (!rotates) {
+        const FlatView& from = motion.start;
+        const double sin_phi = heading * now.sin_phi;
+        const double turned = std::atan2(sin_phi * from.cos - now.cos_phi * from.sin,
+                                         now.cos_phi * from.cos + sin_phi * from.sin);
+        return {motion.theta + turned, heading * now.omega, motion.x + heading * made.way.path};
+    }
+    const DoubleDouble turned = half_pi_exact * (2 * turns) + made.way.angle;
+    return {double(turned * heading + motion.theta), heading * now.omega,
+            motion.x + heading * std::fma(2 * turns, motion.phase.quarter_path, made.way.path)};
 }
 
-double longest_time(const RollingFlow& flow) {
-    if (flow.kind == MotionKind::rest) return infinity;
-    if (flow.kind == MotionKind::uniform) return 1e15 * (pi / std::abs(flow.omega));
-    return 1e15 * flow.phase.half_turn.high;
+double longest_time(const RollingMotion& motion) {
+    if (motion.kind == MotionKind::rest) return infinity;
+    if (motion.kind == MotionKind::uniform) return 1e15 * (pi / std::abs(motion.omega));
+    return 1e15 * motion.phase.half_turn.high;
 }
 
 void validate_time(double t, double longest, const std::string& name) {
@@ -193,10 +196,10 @@ void validate_time(double t, double longest, const std::string& name) {
     }
 }
 
-double period(const RollingFlow& flow) {
-    if (flow.kind == MotionKind::rest) return infinity;
-    if (flow.kind == MotionKind::uniform) return 2 * pi / std::abs(flow.omega);
-    return 2 * double(flow.phase.half_turn);
+double period(const RollingMotion& motion) {
+    if (motion.kind == MotionKind::rest) return infinity;
+    if (motion.kind == MotionKind::uniform) return 2 * pi / std::abs(motion.omega);
+    return 2 * double(motion.phase.half_turn);
 }
 
 double time_of_passing(const RollingFlow& flow, double theta, double heading) {

@@ -19,7 +19,8 @@ struct QuarterPosition {
 
 enum class MotionKind { rest, uniform, libration, rotation };
 
-struct RollingFlow {
+// What one state needs.
+struct RollingMotion {
     MotionKind kind;
     // The start.
     double theta;
@@ -33,6 +34,12 @@ struct RollingFlow {
     PhaseTime phase;
     // The start as the motion sees it.
     bool start_on_way_back;  // of a libration: phase beyond +-pi/2
+    PhasePoint start_phase;  // without that half turn
+    Place start_place;
+};
+
+// And what samples of many times and events are counted from.
+struct RollingFlow : RollingMotion {
     DoubleDouble start_time;
     QuarterPosition start_position;
     double quarter_path;
@@ -44,13 +51,14 @@ struct FlowSample {
     double x;
 };
 
+RollingMotion rolling_motion(const RollingStart& from, double x = 0.0);
 RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);
 
 // For |t| up to longest_time.
-FlowSample sample(const RollingFlow& flow, double t);
+FlowSample sample(const RollingMotion& motion, double t);
 
 // 1e15 half turns: beyond, a double does not know the phase.
-double longest_time(const RollingFlow& flow);
+double longest_time(const RollingMotion& motion);
 
 // Throws std::invalid_argument for a time that is not finite or longer, in either direction.
 void validate_time(double t, double longest, const std::string& name = "t");
@@ -63,7 +71,7 @@ struct PhaseInstant {
 PhaseInstant phase_instant(const RollingFlow& flow, double t);
 
 // +1 or -1: which way the motion goes after so many half turns, for angles and for omega.
-double heading_after(const RollingFlow& flow, double half_turns);
+double heading_after(const RollingMotion& motion, double half_turns);
 
 // On the way up, at a phase between that of the flat position and a quarter turn later.
 struct QuarterState {
@@ -78,7 +86,7 @@ QuarterState quarter_state(const RollingFlow& flow, const PhasePoint& phase);
 PhasePoint phase_of(const RollingFlow& flow, double sin, double cos, double omega);
 
 // Time of a full swing or of a full turn; infinite for a body at rest and on the separatrix.
-double period(const RollingFlow& flow);
+double period(const RollingMotion& motion);
 
 // The first time t >= 0 at which the body passes the angle theta with velocity of the given sign.
 double time_of_passing(const RollingFlow& flow, double theta, double heading);

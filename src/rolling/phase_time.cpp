@@ -8,144 +8,171 @@
 namespace rolling_ellipse {
 namespace {
 
-// From here on e^-w squared is below rounding: the integrand at the tip is constant.
-constexpr double constant_from = 20.0;
-
-// The panel next to the end of a half (coordinate v, from the end), or to the split (w, from
-// there).
-enum class Panel { end, rise };
-
-double length(const Half& half, Panel panel) {
-    return panel == Panel::end ? half.end_length : half.rise_length;
-}
-
-// Tangent of the offset from the end of the half: g sinh(v), with v = W - w on the rise;
-// physics (31).
-double tangent(const Half& half, Panel panel, double v) {
-    if (panel == Panel::end) return half.grade * std::sinh(v);
-    if (v > constant_from) return std::exp(-v);
-    return std::exp(-v) - half.rise_excess * std::sinh(v);
-}
-
-// d tangent/dv = g cosh(v), and its negative on the rise.
-double tangent_rate(const Half& half, Panel panel, double tan) {
-    const double slope = std::sqrt(square(tan) + square(half.grade));
-    return panel == Panel::end ? slope : -slope;
-}
-
-double coordinate(const Half& half, Panel panel, double tan) {
-    if (panel == Panel::end) return std::asinh(tan / half.grade);
-    const double root = std::sqrt(square(tan) + square(half.grade));
-    return -std::log((tan + root) / (2 + half.rise_excess));
-}
-
-double sin2_phase(const Half& half, double tan) {
-    const double cos2 = 1 / (1 + square(tan));
-    return half.at_tip ? cos2 : square(tan) * cos2;
-}
-
 // scale^2 D (H + h), the square of the factor that depends on the shape: physics (28, 29).
 double shape_factor2(const PhaseRate& rate, double sin2_phi) {
     const double h2 = square(rate.short_axis) + rate.c2 * sin2_phi;
     return rate.scale2 * (rate.d0 + rate.d1 * sin2_phi) * (rate.energy_height + std::sqrt(h2)) / h2;
 }
 
-// |dt/dv| where the tangent is `tan`: physics (31).
-double time_rate(const PhaseRate& rate, const Half& half, double tan) {
-    const double tan2 = square(tan);
-    double squared = shape_factor2(rate, rate.amplitude2 * sin2_phase(half, tan)) / (1 + tan2);
-    if (!half.at_tip) squared *= (tan2 + square(half.grade)) / (1 + square(rate.kappa) * tan2);
-    return std::sqrt(squared);
-}
+// A way, and the rates at its end.
+struct WayTo {
+    PhaseWay way;
+    PhaseWay end;
+};
 
-// Quadrature from the anchor of the panel (v = 0) to v. The integrand is singular at Im v = pi/2
-// above the anchor, above the other end of the half, and, at the flat, where h = 0.
-const GaussRule& rule_from_anchor(const PhaseRate& rate, const Half& half, Panel panel, double v) {
-    const bool constant = panel == Panel::end && half.length >= 2 * constant_from;
-    if (v == 0.0 || constant) return gauss_rule(2);
-    const auto mapped = [v](double place) { return 2 * place / v - 1; };
-    double zero_of_h = 0.0;
-    if (!half.at_tip) {
-        const double s2 = square(rate.short_axis);
-        const double place = std::sqrt(s2 / (rate.c2 * rate.amplitude2 + s2)) / half.grade;
-        zero_of_h = std::acosh(std::max(place, 1.0));
-        if (panel == Panel::rise) zero_of_h = half.length - zero_of_h;
+// From one offset to another, by as many panels as it takes.
+WayTo way_by_panels(const PhaseTime& phase, int quarters, double begin, double end) {
+    constexpr double longest_panel = 6.0;
+    constexpr int pairs = phase_lanes / 2;
+    const int panels = 1 + static_cast<int>(std::abs(end - begin) / longest_panel);
+    const double half = 0.5 * (end - begin) / panels;
+    const GaussRule& rule = rule_for_length(2 * std::abs(half) / pi);
+    const int count = (rule.size + 1) / 2;
+    PhaseWays rates;
+    WayTo found{};
+    for (int panel = 0; panel < panels; ++panel) {
+        const double middle = begin + (2 * panel + 1) * half;
+        for (int first = 0; first <= count; first += pairs) {
+            // Two nodes beside the middle, with one weight; after the last ones the end.
+            PhaseLanes offsets;
+            std::array<double, pairs> weights{};
+            offsets.fill(end);
+            for (int i = 0; i < std::min(pairs, count - first); ++i) {
+                const double node = rule.nodes[first + i];
+                weights[i] = node == 0 ? 0.5 * rule.weights[first + i] : rule.weights[first + i];
+                offsets[i] = middle - half * node;
+                offsets[pairs + i] = middle + half * node;
+            }
+            if (first == count && panel + 1 < panels) break;
+            phase_rates(phase.rate, phase.map, quarters, offsets, rates);
+            for (int i = 0; i < pairs; ++i) {
+                found.way.time += weights[i] * (rates.time[i] + rates.time[pairs + i]);
+                found.way.angle += weights[i] * (rates.angle[i] + rates.angle[pairs + i]);
+                found.way.path += weights[i] * (rates.path[i] + rates.path[pairs + i]);
+            }
+        }
     }
-    const double other_end = std::min(half.length, 2 * constant_from);
-    return gauss_rule(nodes_needed(pi / v, {mapped(0.0), mapped(zero_of_h), mapped(other_end)}));
+    found.way = {half * found.way.time, half * found.way.angle, half * found.way.path};
+    found.end = {rates.time[phase_lanes - 1], rates.angle[phase_lanes - 1],
+                 rates.path[phase_lanes - 1]};
+    return found;
 }
 
-// Between two points of a panel: no singularity is closer than pi/2.
-const GaussRule& rule_between(double v0, double v1) {
-    const double distance = std::abs(v1 - v0);
-    if (distance < 1e-5) return gauss_rule(2);
-    return gauss_rule(nodes_needed(pi / distance, {0.0}));
-}
+double end_of_steps(const PhaseMap& map) { return map.steps * map.step; }
 
-DoubleDouble time_from_anchor(const PhaseRate& rate, const Half& half, Panel panel, double v) {
-    const auto rate_at = [&](double at) { return time_rate(rate, half, tangent(half, panel, at)); };
-    if (panel == Panel::rise && v > constant_from) {  // on the separatrix: there is no end panel
-        return time_from_anchor(rate, half, panel, constant_from) +
-               (v - constant_from) * rate_at(constant_from);
+// From one offset to another. Around a tip that is far enough nothing but time goes on, at one
+// rate: for minutes near the separatrix, and for ever on it.
+WayTo way_between(const PhaseTime& phase, int quarters, double begin, double end) {
+    constexpr double long_way = 12.0;
+    const PhaseMap& map = phase.map;
+    const double edge = 2 * end_of_steps(map);
+    if (!map.has_tail || map.quarter <= edge || std::abs(end - begin) <= long_way) {
+        return way_by_panels(phase, quarters, begin, end);
     }
-    return integrate(rule_from_anchor(rate, half, panel, v), 0.0, v, rate_at);
-}
-
-Half graded_half(const PhaseRate& rate, bool at_tip, double grade) {
-    Half half{};
-    half.at_tip = at_tip;
-    half.grade = grade;
-    half.rise_excess = square(grade) / (1 + std::sqrt(1 + square(grade)));
-    half.length = grade == 0.0 ? infinity : std::asinh(1 / grade);
-    half.rise_length = std::min(half.length / 2, constant_from);
-    half.end_length = half.length - half.rise_length;
-    half.rise_time = time_from_anchor(rate, half, Panel::rise, half.rise_length);
-    half.end_time = grade == 0.0 ? DoubleDouble{infinity, 0.0}
-                                 : time_from_anchor(rate, half, Panel::end, half.end_length);
-    return half;
-}
-
-// The point of a panel that is `time` from its anchor: Newton's method on the time integral, which
-// is extended by the last step only. The rest, below 1e-9 of v, is added to the offset itself.
-PhasePoint point_in_panel(const PhaseRate& rate, const Half& half, Panel panel, double time) {
-    constexpr double converged = 1e-9;
-    constexpr int most_iterations = 60;
-    const bool unbounded = half.grade == 0.0;
-    const double limit = unbounded ? infinity : length(half, panel);
-    const auto rate_at = [&](double v) { return time_rate(rate, half, tangent(half, panel, v)); };
-
-    // At the tip time is nearly linear in v, at the flat in the tangent.
-    const auto step = [&](double v, double rest) {
-        const double tan = tangent(half, panel, v);
-        const double slope = time_rate(rate, half, tan);
-        if (half.at_tip) return v + rest / slope;
-        const double target = tan + rest / slope * tangent_rate(half, panel, tan);
-        return coordinate(half, panel, std::clamp(target, 0.0, 1.0));
-    };
-
-    double low = 0.0;
-    double high = limit;
-    double v = std::clamp(step(0.0, time), 0.0, limit);
-    double rest = double(-time_from_anchor(rate, half, panel, v) + time);
-    for (int i = 0; i < most_iterations; ++i) {
-        if (std::abs(rest) <= converged * rate_at(v)) break;
-        (rest > 0 ? low : high) = v;
-        double next = step(v, rest);
-        if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-        if (next == v) break;
-        rest -= v > constant_from && unbounded
-                    ? (next - v) * rate_at(v)
-                    : double(integrate(rule_between(v, next), v, next, rate_at));
-        v = next;
+    // Where that begins and ends, in size of the offset.
+    const double from = quarters == 0 ? edge : 0.0;
+    const double to = quarters == 0 ? 2 * map.quarter - edge : map.quarter - edge;
+    for (const double limit : {-to, -from, from, to}) {
+        if (limit == 0 || !(limit > std::min(begin, end) && limit < std::max(begin, end))) continue;
+        const WayTo first = way_between(phase, quarters, begin, limit);
+        const WayTo second = way_between(phase, quarters, limit, end);
+        return {{first.way.time + second.way.time, first.way.angle + second.way.angle,
+                 first.way.path + second.way.path},
+                second.end};
     }
+    const double middle = std::abs(0.5 * (begin + end));
+    if (!(middle >= from && middle <= to)) return way_by_panels(phase, quarters, begin, end);
+    const PhaseWay slope = way_by_panels(phase, quarters, end, end).end;
+    return {{(end - begin) * slope.time, 0.0, 0.0}, slope};
+}
 
-    const double tan = tangent(half, panel, v);
-    const double cos = 1 / std::sqrt(1 + square(tan));
-    const double sin = tan * cos;
-    const double correction =
-        rest / time_rate(rate, half, tan) * tangent_rate(half, panel, tan) * square(cos);
-    const PhasePoint offset{sin + cos * correction, cos - sin * correction};
-    return half.at_tip ? PhasePoint{offset.cos, offset.sin} : offset;
+// A cubic for dt/dy in the step after y_i, and its integral.
+struct Step {
+    double slope;
+    double time;
+};
+Step in_step(const PhaseTime& phase, int i, double s) {
+    const double* f = &phase.slope[i + 1];
+    const double m0 = 0.5 * (f[1] - f[-1]);
+    const double m1 = 0.5 * (f[2] - f[0]);
+    const double p2 = 3 * (f[1] - f[0]) - 2 * m0 - m1;
+    const double p3 = m0 + m1 - 2 * (f[1] - f[0]);
+    return {f[0] + s * (m0 + s * (p2 + s * p3)),
+            phase.map.step * s * (f[0] + s * (m0 / 2 + s * (p2 / 3 + s * p3 / 4)))};
+}
+
+// To a few digits: the time since the flat, for 0 <= y <= Y, dt/dy, and the place at a time.
+Step rough_time(const PhaseTime& phase, double y) {
+    const PhaseMap& map = phase.map;
+    const double end = end_of_steps(map);
+    if (y >= end) {
+        const double slope = phase.slope[map.steps + 1];
+        return {slope, phase.time[map.steps] + (y - end) * slope};
+    }
+    const int i = std::min(static_cast<int>(y / map.step), map.steps - 1);
+    const Step at = in_step(phase, i, y / map.step - i);
+    return {at.slope, phase.time[i] + at.time};
+}
+
+double rough_place(const PhaseTime& phase, double time) {
+    const PhaseMap& map = phase.map;
+    const double* const times = phase.time.data();
+    const double over = time - times[map.steps];
+    if (over >= 0) return end_of_steps(map) + over / phase.slope[map.steps + 1];
+    const int i = static_cast<int>(std::upper_bound(times, times + map.steps, time) - times) - 1;
+    const double s = (time - times[i]) / (times[i + 1] - times[i]);
+    const Step at = in_step(phase, i, s);
+    return map.step * (i + s) + (time - times[i] - at.time) / at.slope;
+}
+
+// To a few digits, how far in y a time reaches.
+double rough_distance(const PhaseTime& phase, const Place& from, double time) {
+    const double quarter = phase.map.quarter;
+    const double y = from.quarters == 0 ? from.offset : from.quarters * quarter + from.offset;
+    const Step start = rough_time(phase, std::abs(y));
+    if (std::abs(time) < phase.map.step * start.slope) return time / start.slope;
+    const double target = std::copysign(start.time, y) + time;
+    if (std::isinf(quarter)) return std::copysign(rough_place(phase, std::abs(target)), target) - y;
+    const double half_turn = phase.half_turn.high;
+    const double half_turns = std::nearbyint(target / half_turn);
+    const double rest = target - half_turns * half_turn;
+    return std::copysign(rough_place(phase, std::abs(rest)), rest) + 2 * half_turns * quarter - y;
+}
+
+// dt/dy at the steps: the quarter by the trapezoidal rule.
+void integrate_quarter(PhaseTime& phase) {
+    const PhaseMap& map = phase.map;
+    const int n = map.steps;
+    double* const f = &phase.slope[1];
+    PhaseWays rates;
+    DoubleDouble sum{};
+    double beyond = 0.0;  // what is left of dt/dy at the tip
+    if (map.has_tail) {
+        phase_rates(phase.rate, map, 1, PhaseLanes{}, rates);
+        beyond = rates.time[0];
+    }
+    for (int first = 0; first <= n; first += int(phase_lanes)) {
+        PhaseLanes offsets;
+        for (int i = 0; i < int(phase_lanes); ++i) offsets[i] = (first + i) * map.step;
+        phase_rates(phase.rate, map, 0, offsets, rates);
+        for (int i = first; i < std::min(first + int(phase_lanes), n + 1); ++i) {
+            const double weight = i == 0 || i == n ? 0.5 : 1.0;
+            f[i] = rates.time[i - first];
+            const DoubleDouble added = two_sum(sum.high, weight * (f[i] - beyond));
+            sum = {added.high, sum.low + added.low};
+            phase.quarter_path += weight * rates.path[i - first];
+        }
+    }
+    phase.quarter_path *= map.step;
+    f[-1] = f[1];
+    f[n + 1] = f[n - 1];
+    if (map.has_tail) {
+        phase.quarter_turn = sum * map.step + two_product(map.quarter, beyond);
+    } else {
+        phase.quarter_turn = sum * map.step;
+    }
+    phase.time[0] = 0.0;
+    for (int i = 0; i < n; ++i) phase.time[i + 1] = phase.time[i] + in_step(phase, i, 1.0).time;
 }
 
 }  // namespace
@@ -153,16 +180,11 @@ PhasePoint point_in_panel(const PhaseRate& rate, const Half& half, Panel panel, 
 PhaseTime phase_time(const PhaseRate& rate) {
     PhaseTime phase{};
     phase.rate = rate;
-    const double flat_grade = std::sqrt(rate.d0 / (rate.d1 * rate.amplitude2 + rate.d0));
-    phase.flat = graded_half(rate, false, flat_grade);
-    phase.tip = graded_half(rate, true, rate.kappa);
-    phase.split = phase.flat.end_time + phase.flat.rise_time;
-    if (phase.tip.grade == 0.0) {
-        phase.quarter_turn = phase.half_turn = {infinity, 0.0};
-        return phase;
-    }
-    phase.quarter_turn = phase.split + (phase.tip.end_time + phase.tip.rise_time);
+    phase.map = phase_map(rate.kappa, std::sqrt(rate.d0 / (rate.d1 * rate.amplitude2 + rate.d0)));
+    integrate_quarter(phase);
+    if (std::isinf(phase.map.quarter)) phase.quarter_turn = {infinity, 0.0};
     phase.half_turn = phase.quarter_turn * 2.0;
+    if (std::isinf(phase.map.quarter)) phase.half_turn = {infinity, 0.0};
     return phase;
 }
 
@@ -171,50 +193,48 @@ double shape_factor(const PhaseRate& rate, double sin_phi) {
 }
 
 DoubleDouble time_since_flat(const PhaseTime& phase, const PhasePoint& point) {
-    const double sin = std::abs(point.sin);
-    const double cos = std::abs(point.cos);
-    const bool at_tip = sin > cos;
-    const Half& half = at_tip ? phase.tip : phase.flat;
-    const double tan = at_tip ? cos / sin : sin / cos;
-    const bool near_end = half.grade > 0 && coordinate(half, Panel::end, tan) <= half.end_length;
-    const Panel panel = near_end ? Panel::end : Panel::rise;
-    const double v = std::max(coordinate(half, panel, tan), 0.0);
-    // v is rounded: what it misses of the tangent is added by the rate.
-    const double reached = tangent(half, panel, v);
-    const double missed =
-        (tan - reached) * time_rate(phase.rate, half, reached) / tangent_rate(half, panel, reached);
-    const DoubleDouble from_anchor = time_from_anchor(phase.rate, half, panel, v) + missed;
-
-    DoubleDouble time;
-    if (near_end) {
-        time = at_tip ? phase.quarter_turn - from_anchor : from_anchor;
-    } else {
-        time = at_tip ? phase.split + from_anchor : phase.split - from_anchor;
-    }
-    return point.sin < 0 ? -time : time;
+    const Place at = place_of(phase.map, point);
+    const double time = way_between(phase, at.quarters, 0.0, at.offset).way.time;
+    if (at.quarters == 0) return {time, 0.0};
+    return phase.quarter_turn * double(at.quarters) + time;
 }
 
 PhasePoint point_at_time(const PhaseTime& phase, DoubleDouble time) {
-    const bool before = time.high < 0;
-    if (before) time = -time;
-    const double from_split = double(time - phase.split);
-    const auto point = [&](const Half& half, Panel panel, double from_anchor) {
-        return point_in_panel(phase.rate, half, panel, from_anchor);
-    };
-    PhasePoint found{};
-    if (from_split < 0) {
-        const double from_flat = double(time);
-        found = from_flat <= double(phase.flat.end_time)
-                    ? point(phase.flat, Panel::end, from_flat)
-                    : point(phase.flat, Panel::rise, -from_split);
-    } else if (phase.tip.grade == 0.0 || from_split <= double(phase.tip.rise_time)) {
-        found = point(phase.tip, Panel::rise, from_split);
-    } else {
-        const double to_tip = std::max(double(phase.quarter_turn - time), 0.0);
-        found = point(phase.tip, Panel::end, to_tip);
+    const double since_flat = double(time);
+    const int side = since_flat < 0 ? -1 : 1;
+    if (std::abs(since_flat) <= 0.5 * phase.quarter_turn.high) {
+        return phase_point(phase.map, move(phase, {0, 0.0}, since_flat).to);
     }
-    if (before) found.sin = -found.sin;
-    return found;
+    const double since_tip = double(time - phase.quarter_turn * double(side));
+    return phase_point(phase.map, move(phase, {side, 0.0}, since_tip).to);
+}
+
+// Newton's method: the way is integrated to a first guess, and extended by what is missing. The
+// last step is so small that its square is below rounding.
+PhaseMove move(const PhaseTime& phase, const Place& from, double time) {
+    constexpr double smallest_step = 3e-9;
+    constexpr double largest_step = 0.5;
+    constexpr int most_steps = 60;
+    double distance = rough_distance(phase, from, time);
+    auto [way, slope] = way_between(phase, from.quarters, from.offset, from.offset + distance);
+    for (int i = 0; i < most_steps; ++i) {
+        const double step = std::clamp((time - way.time) / slope.time, -largest_step, largest_step);
+        if (std::abs(step) <= smallest_step * std::min(std::abs(distance), 1.0)) {
+            distance += step;
+            way.angle += step * slope.angle;
+            way.path += step * slope.path;
+            break;
+        }
+        const double begin = from.offset + distance;
+        const WayTo more = way_between(phase, from.quarters, begin, begin + step);
+        distance += step;
+        way.time += more.way.time;
+        way.angle += more.way.angle;
+        way.path += more.way.path;
+        slope = more.end;
+    }
+    way.time = time;
+    return {moved(phase.map, from, distance), way};
 }
 
 }  // namespace rolling_ellipse
