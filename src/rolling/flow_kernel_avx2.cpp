@@ -1,4 +1,4 @@
-#include "rolling/flow_lanes.hpp"
+#include "rolling/flow_kernel_lanes.hpp"
 
 namespace rolling_ellipse {
 
