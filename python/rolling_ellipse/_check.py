@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -23,6 +24,7 @@ COORDINATES = 5  # x, z, theta, psi, r
 
 _DOUBLE = np.dtype(np.float64)
 _MOST_WORKERS = 1024
+_PLACE = r"\[(\d+)\]"
 _LONGEST = 300  # characters of a value in a message
 
 
@@ -236,6 +238,7 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
 
     The function takes the number of elements, the arguments as `broadcast` returns them, and the
     settings. Where ``gyration2`` is None, it is that of uniform discs of semi-axes ``a`` and ``b``.
+    What it refuses of an array is named with its place: ``a[3] must be ...``.
     """
     if arguments["gyration2"] is not None:
         shape, columns = broadcast(**arguments)
@@ -245,7 +248,23 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
         shape, columns = broadcast(**arguments)
         known = dict(zip(arguments, columns, strict=True))
         columns.insert(place, uniform_disc(known["a"], known["b"]))
-    return shaped(function(math.prod(shape), columns, *settings), shape)
+    try:
+        found = function(math.prod(shape), columns, *settings)
+    except ValueError as error:
+        raise ValueError(_with_indices(str(error), shape)) from None
+    return shaped(found, shape)
+
+
+def _with_indices(message: str, shape: tuple[int, ...]) -> str:
+    """A message of the core, which counts elements: ``a[7] must be`` with indices of the shape."""
+    if len(shape) < 2:
+        return message
+    name, rest = message.split(" ", 1)
+
+    def indices(place: re.Match[str]) -> str:
+        return str([int(k) for k in np.unravel_index(int(place[1]), shape)])
+
+    return f"{re.sub(_PLACE, indices, name)} {rest}"
 
 
 def uniform_disc(a: Any, b: Any) -> FloatArray:

@@ -58,12 +58,15 @@ def flow(
         |h'| within 8 ulp of h) stays. The last bits may depend on how many times there are: many
         of one motion are read off Taylor series about points of it. Their x then has the rounding
         of a length like the body's, 2e-16 max(a, b), also where the body has come back to its
-        start and x is much smaller than that.
+        start and x is much smaller than that. Many motions at one time each are computed side by
+        side in the vectors of the processor (SSE2, AVX2 or AVX-512, with the same bits), which
+        moves the last bits as well.
 
     Raises
     ------
     ValueError
-        If a number is out of its range or shapes do not broadcast.
+        If a number is out of its range (of an array it is named with its place in the common
+        shape, ``a[3]``) or shapes do not broadcast.
     """
     # Plain floats, as in most calls, need no conversion.
     if (

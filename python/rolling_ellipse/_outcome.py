@@ -152,7 +152,8 @@ def classify(
     Raises
     ------
     ValueError
-        If a number is out of its range or shapes do not broadcast.
+        If a number is out of its range (of an array it is named with its place in the common
+        shape, ``a[3]``) or shapes do not broadcast.
     """
     threads = worker_count(workers)
     found = evaluate(

@@ -39,16 +39,23 @@ void run_interruptible(py::ssize_t n, int workers, const Range& body) {
     workers = static_cast<int>(std::min<py::ssize_t>(workers, n / chunk + 1));
     const py::gil_scoped_release release;
     std::atomic<py::ssize_t> next{0};
-    std::vector<std::exception_ptr> failures(workers);
+    // The failure of the earliest chunk is the one told: all chunks before it have been begun, and
+    // what is begun is ended.
+    struct Failure {
+        py::ssize_t begin = 0;
+        std::exception_ptr exception;
+    };
+    std::vector<Failure> failures(workers);
     const auto work = [&](int worker, bool interruptible) {
+        py::ssize_t begin = 0;
         try {
             SignalWatch look_for_signals;
-            for (py::ssize_t begin; (begin = next.fetch_add(chunk)) < n;) {
+            while ((begin = next.fetch_add(chunk)) < n) {
                 body(begin, std::min(begin + chunk, n));
                 if (interruptible) look_for_signals();
             }
         } catch (...) {
-            failures[worker] = std::current_exception();
+            failures[worker] = {begin, std::current_exception()};
             next = n;
         }
     };
@@ -60,9 +67,12 @@ void run_interruptible(py::ssize_t n, int workers, const Range& body) {
     }
     work(0, true);
     for (std::thread& thread : threads) thread.join();
-    for (const std::exception_ptr& failure : failures) {
-        if (failure) std::rethrow_exception(failure);
+    const Failure* first = nullptr;
+    for (const Failure& failure : failures) {
+        if (!failure.exception) continue;
+        if (first == nullptr || failure.begin < first->begin) first = &failure;
     }
+    if (first != nullptr) std::rethrow_exception(first->exception);
 }
 
 std::vector<Array> empty_arrays(int count, py::ssize_t n) {
@@ -106,6 +116,25 @@ Argument argument(const std::string& name, const Array& array, py::ssize_t n) {
     if (array.size() == 1) return {array.data(), 0};
     require_length(name, array, n);
     return {array.data(), 1};
+}
+
+std::string at_place(const std::string& message, py::ssize_t place, const char* const* names,
+                     const Argument* arguments, std::size_t count) {
+    // The message begins with the name of one argument, or with those of two, "a/b".
+    const std::size_t end = message.find(' ');
+    std::string named;
+    for (std::size_t begin = 0; begin < end;) {
+        const std::size_t stop = std::min(message.find('/', begin), end);
+        const std::string name = message.substr(begin, stop - begin);
+        named += (begin == 0 ? "" : "/") + name;
+        for (std::size_t k = 0; k < count; ++k) {
+            if (name == names[k] && arguments[k].stride != 0) {
+                named += "[" + std::to_string(place) + "]";
+            }
+        }
+        begin = stop + 1;
+    }
+    return named + message.substr(end);
 }
 
 }  // namespace rolling_ellipse::bindings

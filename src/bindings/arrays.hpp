@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,21 @@ std::array<Argument, Count> arguments_of(const std::array<const char*, Count>& n
     std::array<Argument, Count> found{};
     for (std::size_t i = 0; i < Count; ++i) found[i] = argument(names[i], arrays[i], n);
     return found;
+}
+
+// The same message with the place behind the arguments that are arrays: "a[3]/b must be ...".
+std::string at_place(const std::string& message, py::ssize_t place, const char* const* names,
+                     const Argument* arguments, std::size_t count);
+
+// Runs what reads the element i of such arguments, and names it in what is refused.
+template <std::size_t Count, class Action>
+void name_the_place(py::ssize_t i, const std::array<const char*, Count>& names,
+                    const std::array<Argument, Count>& of, const Action& action) {
+    try {
+        action();
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(at_place(error.what(), i, names.data(), of.data(), Count));
+    }
 }
 
 }  // namespace rolling_ellipse::bindings

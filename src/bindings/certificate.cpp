@@ -17,16 +17,22 @@ py::array_t<std::int8_t> classify_array(py::ssize_t n, const std::array<Array, 7
                                         int workers) {
     py::array_t<std::int8_t> out(n);
     std::int8_t* const outcomes = out.mutable_data();
-    const std::array<Argument, 7> of = arguments_of<7>(
-        {"a", "b", "omega", "theta", "friction", "gravity", "gyration2"}, arguments, n);
+    constexpr std::array<const char*, 7> names{"a",        "b",       "omega",    "theta",
+                                               "friction", "gravity", "gyration2"};
+    const std::array<Argument, 7> of = arguments_of<7>(names, arguments, n);
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         const auto& [a, b, omega, theta, friction, gravity, gyration2] = of;
         for (py::ssize_t i = begin; i < end; ++i) {
             const Body body{a[i], b[i], gyration2[i], gravity[i]};
-            validate(body);
-            validate_motion(body, theta[i], omega[i]);
-            validate_friction(friction[i]);
-            outcomes[i] = static_cast<std::int8_t>(classify(body, friction[i], theta[i], omega[i]));
+            const double mu = friction[i];
+            const double angle = theta[i];
+            const double speed = omega[i];
+            name_the_place<7>(i, names, of, [&] {
+                validate(body);
+                validate_motion(body, angle, speed);
+                validate_friction(mu);
+            });
+            outcomes[i] = static_cast<std::int8_t>(classify(body, mu, angle, speed));
         }
     });
     return out;

@@ -4,11 +4,14 @@
 
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
+#include "rolling/flow_lanes.hpp"
 #include "rolling/flow_table.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {
+
+constexpr py::ssize_t scenes_at_once = 512;  // of many: their starts take 64 kB
 
 RollingStart validated_start(const Body& body, double theta, double omega) {
     validate(body);
@@ -52,30 +55,67 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     return py::make_tuple(out[0], out[1], out[2]);
 }
 
+LaneLevel level_called(const std::string& wanted) {
+    const std::vector<LaneLevel> levels = lane_levels();
+    if (wanted == "best") return levels.back();
+    std::string names;
+    for (const LaneLevel level : levels) {
+        if (name(level) == wanted) return level;
+        names += ", '" + name(level) + "'";
+    }
+    throw std::invalid_argument("level must be one of 'best'" + names + ", got '" + wanted + "'");
+}
+
 // t, a, b, theta, omega, gravity, gyration2, each with n elements, or one.
-py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers) {
+py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers,
+                     const std::string& level) {
+    constexpr std::array<const char*, 7> names{"t",     "a",       "b",        "theta",
+                                               "omega", "gravity", "gyration2"};
+    // One alone is as quick alone, and then has the bits of flow_scalar.
+    const LaneLevel lanes = level_called(n == 1 && level == "best" ? "one by one" : level);
     std::vector<Array> out = empty_arrays(3, n);
-    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
-    const std::array<Argument, 7> of =
-        arguments_of<7>({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
-    run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
-        std::array<double, 6> last{};
-        RollingMotion motion{};
+    const FlowColumns found = columns(out);
+    const std::array<Argument, 7> of = arguments_of<7>(names, arguments, n);
+    const auto start = [&](py::ssize_t i) {
+        const auto& [t, a, b, theta, omega, gravity, gyration2] = of;
+        const Body body{a[i], b[i], gyration2[i], gravity[i]};
+        validate(body);
+        validate_motion(body, theta[i], omega[i]);
+        return rolling_start(body, theta[i], omega[i]);
+    };
+    const auto sample_all = [&](LaneLevel by, py::ssize_t begin, py::ssize_t end) {
+        std::array<RollingStart, scenes_at_once> starts;
+        std::array<double, scenes_at_once> times;
+        std::array<FlowSample, scenes_at_once> samples;
         for (py::ssize_t i = begin; i < end; ++i) {
-            std::array<double, 6> now{};
-            for (std::size_t p = 0; p < now.size(); ++p) now[p] = of[1 + p][i];
-            if (i == begin || now != last) {
-                motion = validated_motion({now[0], now[1], now[5], now[4]}, now[2], now[3]);
-                last = now;
+            starts[i - begin] = start(i);
+            times[i - begin] = of[0][i];
+        }
+        sample(by, starts.data(), times.data(), end - begin, samples.data());
+        for (py::ssize_t i = begin; i < end; ++i) store(samples[i - begin], found, i);
+    };
+    run_interruptible(n, workers, [&](py::ssize_t chunk_begin, py::ssize_t chunk_end) {
+        for (py::ssize_t begin = chunk_begin; begin < chunk_end; begin += scenes_at_once) {
+            const py::ssize_t end = std::min(begin + scenes_at_once, chunk_end);
+            try {
+                sample_all(lanes, begin, end);
+            } catch (const std::invalid_argument&) {
+                // Lanes come to their times last: one by one the first wrong scene is the one
+                // named.
+                for (py::ssize_t i = begin; i < end; ++i) {
+                    name_the_place<7>(i, names, of,
+                                      [&] { sample_all(LaneLevel::one_by_one, i, i + 1); });
+                }
             }
-            validate_time(of[0][i], longest_time(motion));
-            const FlowSample at = sample(motion, of[0][i]);
-            columns[0][i] = at.theta;
-            columns[1][i] = at.omega;
-            columns[2][i] = at.x;
         }
     });
     return py::make_tuple(out[0], out[1], out[2]);
+}
+
+std::vector<std::string> flow_levels() {
+    std::vector<std::string> names;
+    for (const LaneLevel level : lane_levels()) names.push_back(name(level));
+    return names;
 }
 
 }  // namespace
@@ -86,7 +126,8 @@ void bind_flow(py::module_& m) {
           "gyration2"_a);
     m.def("flow_times", flow_times, "t"_a, "a"_a, "b"_a, "theta"_a, "omega"_a, "gravity"_a,
           "gyration2"_a, "workers"_a);
-    m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a);
+    m.def("flow_array", flow_array, "n"_a, "arguments"_a, "workers"_a, "level"_a = "best");
+    m.def("flow_levels", flow_levels);
 }
 
 }  // namespace rolling_ellipse::bindings

@@ -127,8 +127,10 @@ FlatView flat_view(const Axes& axes, double theta) {
     const bool a_is_long = axes.a >= axes.b;
     const double long_axis = a_is_long ? axes.a : axes.b;
     const double short_axis = a_is_long ? axes.b : axes.a;
-    const double s = a_is_long ? std::sin(theta) : -std::cos(theta);
-    const double c = a_is_long ? std::cos(theta) : std::sin(theta);
+    const double sin = std::sin(theta);
+    const double cos = std::cos(theta);
+    const double s = a_is_long ? sin : -cos;
+    const double c = a_is_long ? cos : sin;
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
     return {long_axis, short_axis, c2, c < 0 ? -s : s, std::abs(c)};
 }

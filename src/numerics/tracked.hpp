@@ -29,13 +29,16 @@ inline Tracked operator*(Tracked x, Tracked y) {
 
 enum class Sign { positive, negative, undecided };
 
-// The sign of a computed number: coefficients of degree 10 pass some 60 additions and products,
-// each good to half an ulp, and the parameters they start from are rounded themselves.
-inline Sign sign(Tracked number) {
+// How far rounding may have moved a number: coefficients of degree 10 pass some 60 additions and
+// products, each good to half an ulp, and the parameters they start from are rounded themselves.
+inline double margin(Tracked number) {
     constexpr double rounding_units = 64;
-    const double margin = rounding_units * epsilon * number.magnitude;
-    if (number.value > margin) return Sign::positive;
-    return number.value < -margin ? Sign::negative : Sign::undecided;
+    return rounding_units * epsilon * number.magnitude;
+}
+
+inline Sign sign(Tracked number) {
+    if (number.value > margin(number)) return Sign::positive;
+    return number.value < -margin(number) ? Sign::negative : Sign::undecided;
 }
 
 }  // namespace rolling_ellipse

@@ -1,5 +1,6 @@
 #include "outcome/classify.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "proof/certificate.hpp"
@@ -31,11 +32,86 @@ Outcome at_the_top(const RollingStart& from) {
     return over == Sign::positive ? Outcome::rolls_over : Outcome::rocks;
 }
 
-// The sign of a law of rolling from a place x of its range up to the top.
+// A law of rolling from a place x of its range up to the top.
 template <int N>
-Sign sign_from(const Polynomial<N>& law, double x) {
+Bernstein<N> from_place(const Polynomial<N>& law, double x) {
     const Bernstein<N> whole = bernstein(law);
-    return sign_on_unit_interval(x > 0 ? divided(whole, x).right : whole);
+    return x > 0 ? divided(whole, x).right : whole;
+}
+
+// P, Q and G of the forces on a part of their range; Q with the coefficients of P's degree.
+struct ForcesOnPart {
+    Bernstein<5> normal;
+    Bernstein<5> friction;
+    Bernstein<4> slope_square;
+};
+
+// The sign of mu^2 P^2 - G Q^2 = held P^2 - needed G Q^2 by those of sqrt(held) P +- sqrt(needed G)
+// Q with a bound of G, which are of lower degree: undecided where it takes the polynomial itself.
+struct GripByBounds {
+    double held;
+    double needed;
+
+    static constexpr int deepest = 2;
+    static constexpr double rounding = 1 + 64 * epsilon;
+
+    Sign operator()(const ForcesOnPart& part, int depth = 0) const {
+        if (fails(part.normal.coefficients.front(), part.friction.coefficients.front(),
+                  part.slope_square.coefficients.front()) ||
+            fails(part.normal.coefficients.back(), part.friction.coefficients.back(),
+                  part.slope_square.coefficients.back())) {
+            return Sign::negative;
+        }
+        if (holds(part)) return Sign::positive;
+        if (depth == deepest) return Sign::undecided;
+        const Parts<5> normal = divided(part.normal);
+        const Parts<5> friction = divided(part.friction);
+        const Parts<4> slope_square = divided(part.slope_square);
+        const Sign low = (*this)({normal.left, friction.left, slope_square.left}, depth + 1);
+        if (low == Sign::negative) return low;
+        const Sign high = (*this)({normal.right, friction.right, slope_square.right}, depth + 1);
+        return high == Sign::negative || low == Sign::positive ? high : low;
+    }
+
+  private:
+    // At one place, provably.
+    bool fails(Tracked normal, Tracked friction, Tracked slope_square) const {
+        const double most = std::abs(normal.value) + margin(normal);
+        const double least = std::abs(friction.value) - margin(friction);
+        const double least_slope = slope_square.value - margin(slope_square);
+        return least > 0 && least_slope > 0 &&
+               rounding * held * square(most) < needed * least_slope * square(least);
+    }
+
+    // Everywhere, provably.
+    bool holds(const ForcesOnPart& part) const {
+        double most_slope = 0.0;
+        for (const Tracked c : part.slope_square.coefficients) {
+            most_slope = std::max(most_slope, c.value + margin(c));
+        }
+        const double of_normal = std::sqrt(held);
+        const double of_friction = rounding * std::sqrt(needed * most_slope);
+        for (int i = 0; i <= 5; ++i) {
+            const Tracked n = part.normal.coefficients[i];
+            const Tracked f = part.friction.coefficients[i];
+            if (!(of_normal * (n.value - margin(n)) >
+                  of_friction * (std::abs(f.value) + margin(f)))) {
+                return false;
+            }
+        }
+        return true;
+    }
+};
+
+Sign grip_sign(const ForcePolynomials& forces, const Bernstein<5>& normal, double friction,
+               double start) {
+    const bool large = friction > 1;
+    const GripByBounds by_bounds{large ? 1.0 : square(friction),
+                                 large ? 1 / friction / friction : 1.0};
+    const Sign found = by_bounds({normal, from_place(forces.friction + Polynomial<5>{}, start),
+                                  from_place(forces.slope_square, start)});
+    if (found != Sign::undecided) return found;
+    return sign_on_unit_interval(from_place(grip_polynomial(forces, friction), start));
 }
 
 }  // namespace
@@ -46,7 +122,10 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     if (from.rests) return Outcome::rests;
     if (at.c2 == 0) return Outcome::rolls_over;
 
-    const Geometry here = geometry(body.axes(), theta);
+    // Folded by half turns, which changes signs of sin and cos alone: h, h'' and rho are even.
+    const bool a_is_long = body.a >= body.b;
+    const Geometry here =
+        geometry(body.axes(), a_is_long ? at.sin : at.cos, a_is_long ? at.cos : at.sin);
     const Sign pressed = pressed_by_gravity(body, here, from.omega);
     if (pressed == Sign::negative) return Outcome::loses_contact;
     if (pressed == Sign::undecided) return Outcome::edge;
@@ -59,11 +138,12 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     const double over_flat = at.c2 * square(at.sin) / (here.h + at.short_axis) / at.long_axis;
     const double start = rises ? std::min(over_flat / range.width, 1.0) : 0.0;
     const bool grips_always = std::isinf(friction);
-    const Sign contact = sign_from(forces.normal, start);
-    const Sign grip = grips_always ? contact : sign_from(grip_polynomial(forces, friction), start);
-    if (contact == Sign::negative || grip == Sign::negative) {
-        return grips_always ? Outcome::loses_contact : Outcome::slips;
-    }
+    const Bernstein<5> normal = from_place(forces.normal, start);
+    const Sign contact = sign_on_unit_interval(normal);
+    const Sign grip = grips_always || contact == Sign::negative
+                          ? contact
+                          : grip_sign(forces, normal, friction, start);
+    if (grip == Sign::negative) return grips_always ? Outcome::loses_contact : Outcome::slips;
     if (contact == Sign::undecided || grip == Sign::undecided) return Outcome::edge;
     return at_the_top(from);
 }

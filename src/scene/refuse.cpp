@@ -25,22 +25,23 @@ std::string text(double value) {
     return digits;
 }
 
-void refuse(const std::string& name, const std::string& requirement, double value) {
-    throw std::invalid_argument(name + " must be " + requirement + ", got " + text(value));
+void refuse(std::string_view name, const std::string& requirement, double value) {
+    throw std::invalid_argument(std::string(name) + " must be " + requirement + ", got " +
+                                text(value));
 }
 
-void require_finite(const std::string& name, const std::string& unit, double value) {
+void require_finite(std::string_view name, std::string_view unit, double value) {
     if (!(std::abs(value) <= largest_number)) {
-        refuse(name, "a finite number" + unit + " of at most 1e50", value);
+        refuse(name, "a finite number" + std::string(unit) + " of at most 1e50", value);
     }
 }
 
-void require_positive(const std::string& name, const std::string& kind, double value) {
+void require_positive(std::string_view name, std::string_view kind, double value) {
     if (!(value > 0 && std::isfinite(value))) {
-        refuse(name, "a positive finite " + kind, value);
+        refuse(name, "a positive finite " + std::string(kind), value);
     }
     if (value < smallest || value > largest) {
-        refuse(name, "a " + kind + " between 1e-30 and 1e30", value);
+        refuse(name, "a " + std::string(kind) + " between 1e-30 and 1e30", value);
     }
 }
 

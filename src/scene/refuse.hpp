@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace rolling_ellipse {
 
@@ -10,13 +11,13 @@ std::string text(double value);
 
 // Throws std::invalid_argument, which Python shows as ValueError: "name must be requirement, got
 // value".
-[[noreturn]] void refuse(const std::string& name, const std::string& requirement, double value);
+[[noreturn]] void refuse(std::string_view name, const std::string& requirement, double value);
 
 // A position, velocity or impulse; the unit is told as " [m]".
-void require_finite(const std::string& name, const std::string& unit, double value);
+void require_finite(std::string_view name, std::string_view unit, double value);
 
 // A quantity of a kind ("length [m]") that is positive and neither so small nor so large that
 // products of it leave the range of doubles.
-void require_positive(const std::string& name, const std::string& kind, double value);
+void require_positive(std::string_view name, std::string_view kind, double value);
 
 }  // namespace rolling_ellipse

@@ -15,14 +15,15 @@ constexpr double blow_margin = 1e-12;  // of the long semi-axis, for the roundin
 
 // The inertia of a body, in either form, beside that of its mass at the end of the long semi-axis:
 // below the least share k^2 is lost beside h^2 in D.
-void require_inertia(const std::string& name, const std::string& kind, double value, double unit,
-                     const std::string& unit_name) {
+void require_inertia(std::string_view name, std::string_view kind, double value, double unit,
+                     std::string_view unit_name) {
     constexpr double least = 1e-15;
     constexpr double most = 1e30;
-    if (!(value > 0 && std::isfinite(value))) refuse(name, "a positive finite " + kind, value);
+    if (!(value > 0 && std::isfinite(value)))
+        refuse(name, "a positive finite " + std::string(kind), value);
     const double share = value / unit;
     if (!(share >= least && share <= most)) {
-        refuse(name, "between 1e-15 and 1e30 times " + unit_name, value);
+        refuse(name, "between 1e-15 and 1e30 times " + std::string(unit_name), value);
     }
 }
 
@@ -47,7 +48,7 @@ void require_reach(const Scene& scene, const Impulse& blow) {
 
 }  // namespace
 
-void validate_length(const std::string& name, double value) {
+void validate_length(std::string_view name, double value) {
     require_positive(name, "length [m]", value);
 }
 

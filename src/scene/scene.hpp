@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <optional>
-#include <string>
+#include <string_view>
 
 #include "geometry/ellipse.hpp"
 #include "scene/state.hpp"
@@ -69,7 +69,7 @@ inline Body body(double a, double b, std::optional<double> gyration2, double gra
 }
 
 // Throw std::invalid_argument naming the argument, what was required and what came.
-void validate_length(const std::string& name, double value);
+void validate_length(std::string_view name, double value);
 void validate_axes(double a, double b);
 void validate(const Body& body);
 void validate_motion(const Body& body, double theta, double omega);
