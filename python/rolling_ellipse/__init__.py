@@ -26,12 +26,14 @@ from ._status import (
     StabilityWarning,
     Status,
     ValidityWarning,
+    WorkerError,
 )
 from ._trajectory import Trajectory, load
 
 if _TYPE_CHECKING:
     from . import impacts, report
     from ._at import Sample
+    from ._batches import load_many, simulate_many
     from ._blow_to import blow_to
     from ._pictures import (
         animate,
@@ -54,16 +56,17 @@ __all__ = [
     "Certificate", "CompletenessWarning", "ConstraintResiduals", "Event", "EventKind", "Explorer",
     "Impulse", "InitialState", "IntegrationError", "Mode", "Outcome", "Sample", "Scene",
     "StabilityWarning", "Status", "Thresholds", "Trajectory", "Validity", "ValidityWarning",
-    "WorkPrecision", "__version__", "animate", "blow_to", "certify", "classify", "constraints",
-    "explore", "flow", "geometry", "impacts", "kinematics", "load", "outcome", "period", "plot",
-    "plot_constraints", "plot_energy", "plot_error", "plot_forces", "plot_paths", "plot_phase",
-    "plot_phase_map", "plot_strobe", "report", "required_friction", "scenes", "simulate",
-    "thresholds", "work_precision",
+    "WorkPrecision", "WorkerError", "__version__", "animate", "blow_to", "certify", "classify",
+    "constraints", "explore", "flow", "geometry", "impacts", "kinematics", "load", "load_many",
+    "outcome", "period", "plot", "plot_constraints", "plot_energy", "plot_error", "plot_forces",
+    "plot_paths", "plot_phase", "plot_phase_map", "plot_strobe", "report", "required_friction",
+    "scenes", "simulate", "simulate_many", "thresholds", "work_precision",
 ]  # fmt: skip
 
 
 _PLACES = {
-    "Sample": "._at", "blow_to": "._blow_to", "Explorer": "._player", "explore": "._player",
+    "Sample": "._at", "blow_to": "._blow_to", "load_many": "._batches",
+    "simulate_many": "._batches", "Explorer": "._player", "explore": "._player",
     "WorkPrecision": "._work_precision", "work_precision": "._work_precision",
 }  # fmt: skip
 

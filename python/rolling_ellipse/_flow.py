@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import array, evaluate, shaped, worker_count
+from ._check import FloatArray, array, evaluate, shaped, uniform_disc
 from ._scene import Scene, require_scene
+from ._workers import shared, threads_of
 
 _SCALARS = (float, int, np.float64)
 
@@ -24,7 +25,7 @@ def flow(
     omega: Any,
     gravity: Any = 9.81,
     gyration2: Any = None,
-    workers: int = 1,
+    workers: Any = 1,
 ) -> tuple[Any, Any, Any]:
     """Return the rolling state at any time, exactly; it does not check whether rolling is valid.
 
@@ -46,9 +47,10 @@ def flow(
         Acceleration of gravity [m/s^2].
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
-    workers : int
-        Number of threads, up to 1024, -1 for all cores; the same bits for any number. Where fewer
-        can be started, fewer do the work.
+    workers : int or executor
+        Number of threads, up to 1024, -1 for all cores: where fewer can be started, fewer do the
+        work. Or an executor, as of `simulate_many`, for many millions of elements. The same bits
+        for any of them.
 
     Returns
     -------
@@ -76,20 +78,32 @@ def flow(
         and workers == 1
     ):
         return _core.flow_scalar(t, a, b, theta, omega, gravity, None)
-    threads = worker_count(workers)
+    threads = threads_of(workers)
     one = (a, b, theta, omega, gravity)
     if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):
         with suppress(TypeError):  # an int beyond the doubles: refused by name below
             if type(t) in _SCALARS:
                 return _core.flow_scalar(t, *one, gyration2)
             times = array("t", t)
-            found = _core.flow_times(times.ravel(), *one, gyration2, threads)
+            if threads is None:
+                k2 = uniform_disc(a, b) if gyration2 is None else gyration2
+                columns = [times.ravel(), *(np.array([float(v)]) for v in (*one, k2))]
+                found = shared(workers, _times)(times.size, columns)
+            else:
+                found = _core.flow_times(times.ravel(), *one, gyration2, threads)
             return shaped(found, times.shape)  # type: ignore[no-any-return]
     found = evaluate(
-        _core.flow_array, threads, t=t, a=a, b=b, theta=theta, omega=omega, gravity=gravity,
+        shared(workers, _core.flow_array), t=t, a=a, b=b, theta=theta, omega=omega, gravity=gravity,
         gyration2=gyration2,
     )  # fmt: skip
     return found  # type: ignore[no-any-return]
+
+
+def _times(n: int, columns: list[FloatArray], threads: int) -> Any:
+    """Many times of one motion, as a part of more: of as few as pay for no table, all are here."""
+    times, *one = columns
+    a, b, theta, omega, gravity, gyration2 = (float(value[0]) for value in one)
+    return _core.flow_times(times, a, b, theta, omega, gravity, gyration2, threads)
 
 
 def arguments_of(scene: Scene) -> dict[str, Any]:

@@ -11,10 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._check import evaluate, number, optional_number, worker_count
+from ._check import evaluate, number, optional_number
 from ._core import Outcome
 from ._faces import Listed, with_unit
 from ._fields import FieldsOnly, find_late, trusted
+from ._workers import shared
 
 
 @dataclass(frozen=True, repr=False)
@@ -105,7 +106,7 @@ def classify(
     friction: Any = math.inf,
     gravity: Any = 9.81,
     gyration2: Any = None,
-    workers: int = 1,
+    workers: Any = 1,
 ) -> Outcome | npt.NDArray[np.int8]:
     """Tell what a rolling body comes to first, from t = 0 on, without integrating.
 
@@ -141,8 +142,9 @@ def classify(
         Acceleration of gravity [m/s^2].
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
-    workers : int
-        Number of threads, up to 1024, -1 for all cores; the same answers for any number.
+    workers : int or executor
+        Number of threads, up to 1024, -1 for all cores, or an executor, as of `simulate_many`; the
+        same answers for any.
 
     Returns
     -------
@@ -155,10 +157,8 @@ def classify(
         If a number is out of its range (of an array it is named with its place in the common
         shape, ``a[3]``) or shapes do not broadcast.
     """
-    threads = worker_count(workers)
     found = evaluate(
-        _core.classify_array,
-        threads,
+        shared(workers, _core.classify_array),
         a=a,
         b=b,
         omega=omega,

@@ -65,3 +65,7 @@ class IntegrationError(RuntimeError):
     def __reduce__(self) -> tuple[Any, ...]:
         """Be made again of the trajectory: exceptions are made of their message by default."""
         return type(self), (self.trajectory,), self.__dict__
+
+
+class WorkerError(RuntimeError):
+    """An executor lost a task: nothing is known of the scenes that it held. Its cause says why."""

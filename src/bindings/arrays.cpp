@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
+#include <mutex>
 #include <stdexcept>
 #include <thread>
 
@@ -73,6 +75,70 @@ void run_interruptible(py::ssize_t n, int workers, const Range& body) {
         if (first == nullptr || failure.begin < first->begin) first = &failure;
     }
     if (first != nullptr) std::rethrow_exception(first->exception);
+}
+
+void run_each(py::ssize_t n, int workers, const Piece& body) {
+    workers = static_cast<int>(std::min<py::ssize_t>(workers, n));
+    if (workers == 0) return;
+    const py::gil_scoped_release release;
+    struct Stopped {};
+    std::atomic<py::ssize_t> next{0};
+    std::atomic<bool> stopped{false};
+    std::vector<std::exception_ptr> failures(workers);
+    std::mutex mutex;
+    std::condition_variable ended;
+    int running = 0;
+    const auto guarded = [&](int worker, const auto& action) {
+        try {
+            action();
+        } catch (const Stopped&) {
+        } catch (...) {
+            failures[worker] = std::current_exception();
+            stopped = true;
+        }
+    };
+    const auto take = [&](const std::function<void()>& checkpoint) {
+        for (py::ssize_t i; (i = next++) < n;) {
+            checkpoint();
+            body(i, checkpoint);
+        }
+    };
+    const auto look_for_stop = [&] {
+        if (stopped) throw Stopped{};
+    };
+    const auto work = [&](int worker) {
+        guarded(worker, [&] { take(look_for_stop); });
+        const std::lock_guard<std::mutex> lock(mutex);
+        --running;
+        ended.notify_one();
+    };
+    std::vector<std::thread> threads;
+    try {
+        for (int worker = 1; worker < workers; ++worker) {
+            threads.emplace_back(work, worker);
+            const std::lock_guard<std::mutex> lock(mutex);
+            ++running;
+        }
+    } catch (const std::exception&) {
+        // As above: the others take its pieces.
+    }
+    SignalWatch look_for_signals;
+    guarded(0, [&] {
+        take([&] {
+            look_for_stop();
+            look_for_signals();
+        });
+        std::unique_lock<std::mutex> lock(mutex);  // the last pieces of others may be long
+        while (!ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return running == 0; })) {
+            lock.unlock();
+            look_for_signals();
+            lock.lock();
+        }
+    });
+    for (std::thread& thread : threads) thread.join();
+    for (const std::exception_ptr& failure : failures) {
+        if (failure) std::rethrow_exception(failure);
+    }
 }
 
 std::vector<Array> empty_arrays(int count, py::ssize_t n) {

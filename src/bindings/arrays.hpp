@@ -37,6 +37,11 @@ class SignalWatch {
 inline constexpr py::ssize_t chunk = 1024;
 void run_interruptible(py::ssize_t n, int workers, const Range& body);
 
+// Run body(i, checkpoint) for each i of 0 .. n, one at a time, without the GIL: for work of which
+// each piece may be long. Ctrl-C stops all threads at their next checkpoint.
+using Piece = std::function<void(py::ssize_t, const std::function<void()>&)>;
+void run_each(py::ssize_t n, int workers, const Piece& body);
+
 std::vector<Array> empty_arrays(int count, py::ssize_t n);
 
 // The array, from now on never to be written to by Python: `flags.writeable` takes it as long as

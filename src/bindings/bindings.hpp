@@ -29,6 +29,7 @@ void bind_certificate(py::module_& m);
 void bind_flow(py::module_& m);
 void bind_settings(py::module_& m);
 void bind_solution(py::module_& m);
+void bind_batch(py::module_& m);
 void bind_details(py::module_& m);
 void bind_tableaus(py::module_& m);
 void bind_build(py::module_& m);

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, m) {
     bind_flow(m);
     bind_settings(m);
     bind_solution(m);
+    bind_batch(m);
     bind_details(m);
     bind_tableaus(m);
     bind_build(m);

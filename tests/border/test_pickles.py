@@ -85,6 +85,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "validity warning": lambda: rl.ValidityWarning("not from 1 s on"),
     "completeness warning": lambda: rl.CompletenessWarning("in flight"),
     "stability warning": lambda: rl.StabilityWarning("smaller steps"),
+    "worker error": lambda: rl.WorkerError("scenes 3 to 5 got lost"),
     "work-precision": raced,
     "start warning": lambda: rl.report.InconsistentStartWarning("f2 = 1"),
     "printed motion": printed,

@@ -17,6 +17,7 @@ QUICK = (
     "contact/test_contact_reference.py",
     "outcome/test_classify.py",
     "stability/test_singular_chart.py",
+    "batches/test_simulate_many.py::test_bits_of_simulate",
     "trajectory/test_saving.py",
     "trajectory/test_sol.py",
     "trajectory/test_trajectory.py",

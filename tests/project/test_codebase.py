@@ -38,9 +38,10 @@ FOLDERS = (
 MODULES = (
     "_core", "_fields", "_faces", "_quantities", "_check", "geometry", "_constraints", "_status",
     "_impulse", "_start_words", "_scene", "scenes", "_settings", "_events", "_samples",
-    "_turning_points", "_looks", "_when", "_at", "_trajectory", "_stability", "_simulate", "_flow",
-    "_certify", "_outcome", "_blows", "_blow_to", "_errors", "_export", "_work_precision",
-    "impacts", "report", "_pictures", "_player", "", "_command", "__main__",
+    "_turning_points", "_looks", "_when", "_at", "_trajectory", "_stability", "_simulate",
+    "_workers", "_flow", "_certify", "_outcome", "_blows", "_blow_to", "_errors", "_export",
+    "_batches", "_work_precision", "impacts", "report", "_pictures", "_player", "", "_command",
+    "__main__",
 )  # fmt: skip
 COMPLEX_PRODUCTS = """
 void one(const double* x, const double* y, double* z) {

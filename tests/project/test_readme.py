@@ -23,7 +23,8 @@ def test_the_lines_of_the_readme_run(tmp_path: Path, monkeypatch: pytest.MonkeyP
     for block in BLOCKS:
         exec(block.replace("max_seconds=10", "max_seconds=2"), names)
     plt.close("all")
-    assert {path.name for path in tmp_path.iterdir()} == {"roll.gif", "friction.gif", "strike.html"}
+    made = {path.name for path in tmp_path.iterdir()}
+    assert made == {"roll.gif", "friction.gif", "strike.html", "motions"}
 
 
 def test_its_pictures_are_there() -> None:

@@ -359,7 +359,7 @@ def test_scalars_in_floats_out() -> None:
     start: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.2, "omega": 3.2}
     expected = flow(1.5, **start)
     ints = flow(2, a=2, b=1, theta=0, omega=3)
-    numpy_scalars = flow(np.float64(1.5), **{k: np.float64(v) for k, v in start.items()})  # type: ignore[arg-type]
+    numpy_scalars = flow(np.float64(1.5), **{k: np.float64(v) for k, v in start.items()})
     zero_d = flow(np.array(1.5), **start, gravity=np.array(9.81), gyration2=np.array(1.25))
     for answer in (expected, ints, numpy_scalars, zero_d):
         assert isinstance(answer, tuple) and [type(value) for value in answer] == [float] * 3

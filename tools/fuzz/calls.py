@@ -113,6 +113,30 @@ def simulate(draw: Draw) -> Iterator[Line]:
     yield from follow(draw, drawn.body, made)
 
 
+def many(draw: Draw) -> Iterator[Line]:
+    """Several scenes, each of its own or of arrays; each beside itself alone, and out of a file."""
+    drawn = scenes.scene(draw)
+    of = drawn.body
+    t, last = scenes.times(draw, of)
+    columns = _columns(draw, {**_axes(draw, of), **_start(draw, of)})
+    columns["gravity"] = text(of.gravity)
+    arrays = "dict(" + ", ".join(f"{k}={v}" for k, v in draw.mutated(columns).items()) + ")"
+    which = draw.pick(arrays, f"[{drawn.code}] * {draw.count(20)}", f"iter([{drawn.code}])")
+    arguments = {"scenes": which, "t": t, **scenes.settings(draw, last, of.mild)}
+    arguments["workers"] = text(draw.pick(1, 2, -1))
+    if draw.chance(0.3):
+        arguments = draw.mutated(arguments)
+        for name in ("max_steps", "max_events"):  # no more work than the time of a call holds
+            arguments[name] = arguments.get(name, "200").replace("2**31 - 1", "2**31")
+    yield Line(call("rl.simulate_many", **arguments), "found", "simulate_many", patience=4)
+    yield Line("repr(found[:3])", does="simulate_many")
+    if draw.chance(0.2):
+        arguments["out"] = f"'many{draw.random.randrange(10**9)}'"
+        code = call("rl.simulate_many", **arguments)
+        yield Line(code, "folder", "simulate_many", patience=8)
+        yield Line("list(rl.load_many(folder))", "loaded", "load_many", promises.same_many, 8)
+
+
 def stopped(draw: Draw) -> Iterator[Line]:
     """What an integration raises that stops early: it goes to other processes, too."""
     early = draw.pick("max_events=1", "model='rolling', method='dop853', max_steps=1")
@@ -475,6 +499,7 @@ def command(draw: Draw) -> Iterator[Line]:
 CALLS = (
     Call("simulate", 45, simulate),
     Call("modes", 6, modes),
+    Call("many", 2, many),
     Call("stopped", 0.2, stopped),
     Call("scene", 8, make_scene),
     Call("impulse", 1, make_impulse),

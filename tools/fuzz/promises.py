@@ -126,6 +126,16 @@ def same_as_trajectory(values: dict[str, Any]) -> Broken:
             yield "copy", f"{name} is not the same"
 
 
+def same_many(values: dict[str, Any]) -> Broken:
+    """What came out of a folder against what was computed without one."""
+    for one, other in zip(values["found"], values["loaded"], strict=True):
+        if isinstance(one, rl.Trajectory):
+            if one != other:
+                yield "copy", "a motion of a folder is not the same"
+        elif type(one) is not type(other) or str(one) != str(other):
+            yield "copy", "an exception of a folder is not the same"
+
+
 def _nan_in(value: Any, path: str = "the result") -> str | None:
     """Where a result holds NaN."""
     if isinstance(value, float | np.floating):

@@ -14,8 +14,10 @@ from .._scene import Impulse, Scene
 _Made = TypeVar("_Made")
 
 
-def restored(path: str | os.PathLike[str], restore: Callable[[bytes], _Made]) -> _Made:
-    """Return what a function makes of the bytes of a file.
+def restored(
+    path: str | os.PathLike[str], restore: Callable[[bytes], _Made], writer: str = "save"
+) -> _Made:
+    """Return what a function makes of the bytes of a file that its writer is to have written.
 
     Raises
     ------
@@ -33,7 +35,9 @@ def restored(path: str | os.PathLike[str], restore: Callable[[bytes], _Made]) ->
         raise
     except Exception as error:  # damaged bytes raise about every kind there is, on their way here
         wrong = str(error) or type(error).__name__
-        raise ValueError(f"path must name a file written by save, got {name!r}: {wrong}") from error
+        raise ValueError(
+            f"path must name a file written by {writer}, got {name!r}: {wrong}"
+        ) from error
 
 
 def parsed(name: str, text: str) -> Any:

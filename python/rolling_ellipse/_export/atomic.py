@@ -11,6 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+UNFINISHED = ".rolling_ellipse_"  # begins the names of files that are not whole
+
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
@@ -70,7 +72,7 @@ def _target(name: str) -> tuple[Path, os.stat_result | None]:
 def _beside(target: Path) -> Path:
     """Create an empty file in the same folder, as only within a file system can it be moved."""
     plain = re.fullmatch(r"\.[A-Za-z0-9_]{1,16}", target.suffix)
-    new = target.with_name(f".rolling_ellipse_{secrets.token_hex(8)}{plain[0] if plain else ''}")
+    new = target.with_name(f"{UNFINISHED}{secrets.token_hex(8)}{plain[0] if plain else ''}")
     os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
     return new
 

@@ -78,7 +78,7 @@ def plot_phase_map(
     b: float = 1.0,
     gravity: float = 9.81,
     resolution: int = 400,
-    workers: int = -1,
+    workers: Any = -1,
     ax: Axes | None = None,
 ) -> PhaseMap:
     """Colour what `classify` says of uniform discs passing the flat position, over two quantities.
@@ -113,8 +113,8 @@ def plot_phase_map(
         Acceleration of gravity [m/s^2]; likewise.
     resolution : int
         Number of cells along each axis; what is shown is the outcome at their middles.
-    workers : int
-        Number of threads, -1 for all.
+    workers : int or executor
+        Number of threads, -1 for all, or an executor, as of `classify`.
     ax : matplotlib Axes, optional
         Where to draw; without it, in a new pyplot figure. Limits set before stay.
 

@@ -1,0 +1,299 @@
+"""Executors of every kind, real and made up: the same bits, and nothing lost but what was."""
+
+import itertools
+import os
+import pickle
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from distributed import Client, LocalCluster
+from oracles.batches import ENDLESS, NAMED, TIMES
+from oracles.pickles import require_same
+from rolling_ellipse import Scene, WorkerError, _workers, load_many, scenes, simulate_many
+from rolling_ellipse._batches.asked import sizes
+
+THETA = np.linspace(0.0, 1.0, 5000)  # two tasks, of 2048 and the rest
+MANY = [Scene(2.0, 1.0, theta=0.3, omega=1e-3 * (i + 1)) for i in range(400)]
+
+
+class Here(Executor):
+    """Runs what it is given at once; it loses the tasks that it is told to, and then refuses."""
+
+    def __init__(self, lost: tuple[int, ...] = (), closes_after: int = 10**9) -> None:
+        self.lost, self.closes_after = lost, closes_after
+        self.given = 0
+        self.futures: list[Future[Any]] = []
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        place, self.given = self.given, self.given + 1
+        if place >= self.closes_after:
+            raise RuntimeError("cannot schedule new futures after shutdown")
+        future: Future[Any] = Future()
+        self.futures.append(future)
+        if place in self.lost:
+            future.set_exception(BrokenProcessPool("terminated abruptly"))
+        else:
+            future.set_result(pickle.loads(pickle.dumps(fn(*args, **kwargs))))
+        return future
+
+
+class Waiting(Here):
+    """Has done the first tasks; the others never come to an end."""
+
+    def __init__(self, does: int) -> None:
+        super().__init__()
+        self.does = does
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        if self.given < self.does:
+            return super().submit(fn, *args, **kwargs)
+        self.given += 1
+        self.futures.append(Future())
+        return self.futures[-1]
+
+
+class Mapping:
+    """A pool with nothing but map and close, as multiprocessing's and MPI pools have."""
+
+    def __init__(self, lost: bool = False) -> None:
+        self.lost = lost
+
+    def map(self, function: Callable[[Any], Any], tasks: Any) -> list[Any]:
+        if self.lost:
+            raise BrokenPipeError("the other end is gone")
+        return [function(task) for task in tasks]
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.fixture(autouse=True)
+def smaller_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of elements, so that some thousand are several tasks."""
+    monkeypatch.setattr(_workers, "_ELEMENTS", 2048)
+
+
+@pytest.fixture(scope="module")
+def processes() -> Iterator[ProcessPoolExecutor]:
+    """Started afresh: a fork of a process with threads may hang."""
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        yield pool
+
+
+@pytest.fixture(scope="module")
+def dask() -> Iterator[Client]:
+    with (
+        LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+def require_the_same_bits(workers: Any, folder: Path) -> None:
+    found = simulate_many(NAMED * 5, TIMES, workers=workers)
+    expected = simulate_many(NAMED * 5, TIMES)
+    for one, other in zip(found, expected, strict=True):
+        require_same(one, other)
+    simulate_many(NAMED * 5, TIMES, workers=workers, out=folder)
+    assert list(load_many(folder)) == expected
+    body = {"a": 2.0, "b": 1.0, "omega": 1.0}
+    for call in (
+        lambda workers: rl.flow(2.0, theta=THETA, workers=workers, **body),
+        lambda workers: rl.flow(1e3 * THETA, theta=0.1, workers=workers, **body),
+        lambda workers: (rl.classify(theta=THETA, workers=workers, **body),),
+    ):
+        for one, other in zip(call(workers), call(1), strict=True):
+            assert one.dtype == other.dtype and one.tobytes() == other.tobytes()
+    for wrong in ({"a": -1.0}, {"theta": np.append(THETA, np.nan)}):
+        with pytest.raises(ValueError, match=r"^(a|theta) must be"):
+            rl.classify(**{"theta": 0.1, **body, **wrong}, workers=workers)
+
+
+def test_threads(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(3) as pool:
+        require_the_same_bits(pool, tmp_path / "out")
+
+
+def test_a_pool_that_only_maps(tmp_path: Path) -> None:
+    require_the_same_bits(Mapping(), tmp_path / "out")
+
+
+def test_processes(processes: ProcessPoolExecutor, tmp_path: Path) -> None:
+    require_the_same_bits(processes, tmp_path / "out")
+
+
+def test_dask(dask: Client, tmp_path: Path) -> None:
+    require_the_same_bits(dask, tmp_path / "out")
+
+
+def test_few_elements_and_none() -> None:
+    """Scalars stay scalars; what has a series is asked of one task, as without executor."""
+    body = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0}
+    for t in (1.0, [], [1.0], np.linspace(0, 9, 39), np.linspace(0, 9, 41), [[1.0], [2.0]]):
+        require_same(rl.flow(t, **body, workers=Here()), rl.flow(t, **body))
+        require_same(
+            rl.flow(t, **body | {"a": [2.0]}, workers=Here()), rl.flow(t, **body | {"a": [2.0]})
+        )
+    assert rl.classify(**body, workers=Here()) is rl.classify(**body)
+
+
+def test_what_is_asked_of_an_executor_is_no_more_than_it_can_take() -> None:
+    """Scenes of an endless iterable are taken as tasks come back: some two hundred ahead."""
+    taken = itertools.count()
+    executor = Here()
+
+    def endless() -> Iterator[Scene]:
+        for i in taken:
+            yield MANY[i % len(MANY)]
+
+    class Enough(Exception):
+        pass
+
+    def look(done: int, of: int | None) -> None:
+        raise Enough
+
+    with pytest.raises(Enough):
+        simulate_many(endless(), [1.0], workers=executor, progress=look)
+    assert executor.given == 128
+    assert next(taken) == sum(size for _, size in itertools.islice(sizes(1), 128))
+
+
+# ------------------------------------------------------------------------- workers that get lost
+
+
+def begins() -> list[int]:
+    return [begin for begin, _ in itertools.islice(sizes(1), 40)]
+
+
+def test_the_scenes_of_a_lost_task_say_so() -> None:
+    expected, begin = simulate_many(MANY, [1.0]), begins()
+    found = simulate_many(MANY, [1.0], workers=Here(lost=(0, 3)))
+    lost = [isinstance(each, WorkerError) for each in found]
+    assert [i for i, is_lost in enumerate(lost) if is_lost] == [
+        *range(begin[1]), *range(begin[3], begin[4]),
+    ]  # fmt: skip
+    for each, motion in zip(found, expected, strict=True):
+        if isinstance(each, WorkerError):
+            assert isinstance(each.__cause__, BrokenProcessPool)
+        else:
+            require_same(each, motion)
+    assert str(found[begin[3]]).startswith(f"scenes {begin[3]} to {begin[4] - 1} got lost")
+
+
+def test_an_executor_that_takes_no_more() -> None:
+    expected, begin = simulate_many(MANY, [1.0]), begins()
+    found = simulate_many(MANY, [1.0], workers=Here(closes_after=4))
+    assert found[: begin[4]] == expected[: begin[4]]
+    assert len(found) == len(MANY)
+    assert all(isinstance(each, WorkerError) for each in found[begin[4] :])
+    assert "cannot schedule new futures" in str(found[-1])
+
+
+def test_a_pool_that_breaks_loses_a_part() -> None:
+    found = simulate_many(MANY, [1.0], workers=Mapping(lost=True))
+    assert len(found) == len(MANY) and {type(each) for each in found} == {WorkerError}
+    assert "BrokenPipeError" in str(found[0])
+
+
+@pytest.mark.parametrize("workers", [Here(lost=(0, 3)), Here(closes_after=4), Mapping(lost=True)])
+def test_a_folder_keeps_the_others(workers: Any, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    with pytest.raises(WorkerError, match=r"missing.* same call goes on") as caught:
+        simulate_many(MANY, [1.0], workers=workers, out=out)
+    assert isinstance(caught.value.__cause__, WorkerError)
+    kept = {path.name: path.stat().st_ino for path in out.glob("*-*.npz")}
+    if isinstance(workers, Here):
+        assert len(kept) >= 4
+    with pytest.raises(ValueError, match="complete"):
+        load_many(out)
+    simulate_many(MANY, [1.0], out=out)
+    now = {path.name: path.stat().st_ino for path in out.glob("*-*.npz")}
+    assert kept.items() <= now.items()
+    assert list(load_many(out)) == simulate_many(MANY, [1.0])
+
+
+def test_functions_raise_what_the_executor_says() -> None:
+    body = {"a": 2.0, "b": 1.0, "omega": 1.0, "theta": THETA}
+    with pytest.raises(BrokenProcessPool):
+        rl.classify(**body, workers=Here(lost=(1,)))
+    with pytest.raises(RuntimeError, match="after shutdown"):
+        rl.flow(1.0, **body, workers=Here(closes_after=1))
+
+
+def test_a_process_killed_in_the_middle(tmp_path: Path) -> None:
+    """Of a real pool: what was finished is the same, the rest says what happened.
+
+    The pool dies after a chunk of scenes at rest, in the middle of a scene of hours.
+    """
+    quick, out = [Scene(2.0, 1.0)] * 16, tmp_path / "out"
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+
+        def kill(done: int, of: int | None) -> None:
+            for pid in list(pool._processes or ()):
+                os.kill(pid, signal.SIGKILL)
+
+        with pytest.raises(WorkerError) as caught:
+            simulate_many(
+                [*quick, scenes.rocking], 1e5, workers=pool, out=out, progress=kill, **ENDLESS
+            )
+        assert isinstance(caught.value.__cause__, WorkerError)
+        assert isinstance(caught.value.__cause__.__cause__, BrokenProcessPool)
+        found = simulate_many(quick, TIMES, workers=pool)  # which is broken now
+        assert {type(each) for each in found} == {WorkerError}
+    (kept,) = out.glob("*-*.npz")
+    file = kept.stat().st_ino
+    simulate_many(quick, 1e5, out=out, **ENDLESS)
+    assert kept.stat().st_ino == file and len(list(load_many(out))) == 16
+
+
+# ------------------------------------------------------------------------------------ interrupts
+
+
+def test_an_interrupt_keeps_what_is_done_and_cancels_the_rest(tmp_path: Path) -> None:
+    """The fifth task never ends; of those behind it none is left to be begun."""
+    executor, out = Waiting(4), tmp_path / "out"
+    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.5)
+        with pytest.raises(KeyboardInterrupt):
+            simulate_many(MANY, [1.0], workers=executor, out=out)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, usual)
+    assert len(list(out.glob("*-*.npz"))) == 4
+    assert all(future.done() for future in executor.futures[:4])
+    assert all(future.cancelled() for future in executor.futures[4:])
+    simulate_many(MANY, [1.0], out=out)
+    assert list(load_many(out)) == simulate_many(MANY, [1.0])
+
+
+def test_what_ended_out_of_order_is_kept_too(tmp_path: Path) -> None:
+    """An interrupt that comes while the first task is waited for, as a server may send it."""
+    out = tmp_path / "out"
+
+    class Late(Future[Any]):
+        def result(self, timeout: float | None = None) -> Any:
+            raise KeyboardInterrupt
+
+        def done(self) -> bool:
+            return False
+
+    class First(Here):
+        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+            made = super().submit(fn, *args, **kwargs)
+            return Late() if self.given == 1 else made
+
+    with pytest.raises(KeyboardInterrupt):
+        simulate_many([scenes.rocking] * 100, [1.0], workers=First(), out=out)
+    names = sorted(path.name[:8] for path in out.glob("*-*.npz"))
+    assert names[0] == "00000001" and len(names) == 5

@@ -1,0 +1,343 @@
+"""A folder of motions: the same bits, gone on with, and nothing else taken for it."""
+
+import errno
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.batches import ENDLESS, NAMED, TIMES, singly
+from oracles.pickles import require_same
+from rolling_ellipse import Impulse, Scene, load_many, scenes, simulate_many
+from rolling_ellipse._batches import folders
+
+GRID: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.3, "omega": np.linspace(0.1, 1.4, 70)}
+
+
+@pytest.fixture
+def out(tmp_path: Path) -> Path:
+    return tmp_path / "motions"
+
+
+def chunks(folder: Path) -> list[Path]:
+    return sorted(folder.glob("*-*.npz"))
+
+
+def states(folder: Path) -> dict[str, tuple[int, int]]:
+    """What changes if a file is written again."""
+    found = {path.name: path.stat() for path in chunks(folder)}
+    return {name: (of.st_ino, of.st_mtime_ns) for name, of in found.items()}
+
+
+def require_equal(found: Any, expected: Any) -> None:
+    """The same, but for the events, which a folder keeps and memory computes when asked."""
+    for one, other in zip(found, expected, strict=True):
+        assert type(one) is type(other) and str(one) == str(other)
+        ours, theirs = (getattr(each, "trajectory", each) for each in (one, other))
+        if isinstance(ours, rl.Trajectory):
+            assert ours == theirs and ours.stats == theirs.stats
+            assert ours.kept_events == theirs.events
+            require_same(ours._bytes(), theirs._bytes())
+
+
+@pytest.mark.parametrize(
+    "way",
+    [
+        {}, {"model": "contact", "max_events": 1}, {"model": "multipliers", "rtol": 1e-6},
+        {"model": "contact", "max_events": 1, "raise_on_failure": False},
+        {"model": "rolling", "baumgarte": (1, 2), "rest_speed": 1e-3},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_it_comes_back(way: dict[str, Any], out: Path) -> None:
+    many = NAMED * 3
+    assert simulate_many(many, TIMES, out=out, **way) == str(out)
+    assert len(chunks(out)) == 3
+    require_equal(load_many(out), singly(many, TIMES, **way))
+
+
+def test_numbers_that_are_written_in_no_other_way(out: Path) -> None:
+    """Zeros of both signs, infinite friction, what was not given, the last bit of a blow."""
+    mine = [
+        Scene(2.0, 1.0, x=-0.0, omega=-0.0, theta=0.1, friction=np.inf),
+        Scene(2.0, 1.0, z=2.0, x_dot=-0.0, impulse=Impulse(0.1, -0.0, dx=1 / 3)),
+        Scene(2.0, 1.0, inertia=0.1 + 0.2, friction=0.0),
+    ]
+    simulate_many(mine, [1.0], out=out)
+    found = [each for each in load_many(out) if isinstance(each, rl.Trajectory)]
+    assert [repr(each.scene) for each in found] == [repr(scene) for scene in mine]
+
+
+def test_an_end_so_near_that_samples_coincide(out: Path) -> None:
+    simulate_many([scenes.rocking], 5e-324, out=out)
+    require_equal(load_many(out), singly([scenes.rocking], 5e-324))
+
+
+def test_of_arrays_and_of_nothing(out: Path, tmp_path: Path) -> None:
+    simulate_many(GRID, [0.5], out=out)
+    require_equal(load_many(out), simulate_many(GRID, [0.5]))
+    simulate_many([], [0.5], out=tmp_path / "none")
+    assert list(load_many(tmp_path / "none")) == []
+
+
+# ------------------------------------------------------------------------------------ going on
+
+
+def test_what_is_there_is_not_computed_again(out: Path) -> None:
+    simulate_many(GRID, TIMES, out=out)
+    everything = states(out)
+    first, *_, last = chunks(out)
+    first.unlink()
+    (out / "end.json").unlink()
+    (out / ".rolling_ellipse_0123").write_bytes(b"of a process that was killed")
+    told: list[int] = []
+    simulate_many(GRID, TIMES, out=out, workers=2, progress=lambda n, of: told.append(n))
+    now = states(out)
+    assert set(now) == set(everything) and len(told) == 1
+    assert {name for name in now if now[name] != everything[name]} == {first.name}
+    require_equal(load_many(out), simulate_many(GRID, TIMES))
+    last.unlink()  # of a complete folder as well: so a damaged file is made again
+    simulate_many(GRID, TIMES, out=out)
+    require_equal(load_many(out), simulate_many(GRID, TIMES))
+
+
+def test_scenes_one_by_one_and_as_arrays_are_the_same(out: Path) -> None:
+    simulate_many(GRID, TIMES, out=out)
+    before = states(out)
+    each = (Scene(2.0, 1.0, theta=0.3, omega=float(omega)) for omega in GRID["omega"])
+    simulate_many(each, TIMES, out=out)
+    assert states(out) == before
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"t": [1.0]}, "with other times, 60 from 0.0 to 2.0 s"),
+        ({"t": TIMES * (1 + 2**-52)}, "with other times"),
+        ({"rtol": 1e-9}, "with the settings .*'rtol': 1e-10.*'rtol': 1e-09"),
+        ({"raise_on_failure": False}, "with the raise_on_failure True, not False"),
+        ({"scenes": GRID | {"b": 1.1}}, "whose scenes 0 to 15 are others"),
+        ({"scenes": GRID | {"omega": np.r_[GRID["omega"][:69], 1.0]}}, "scenes 66 to 69"),
+        ({"scenes": GRID | {"omega": GRID["omega"][:49]}}, "which has more than 49"),
+        ({"scenes": GRID | {"omega": np.r_[GRID["omega"], 1.0]}}, "scenes 66 to 70"),
+        ({"scenes": [*(Scene(2.0, 1.0, theta=0.3, omega=float(w)) for w in GRID["omega"][:49]),
+                     scenes.report]}, "scenes 49 to 49"),
+    ],
+)  # fmt: skip
+def test_another_request_is_refused(changes: dict[str, Any], said: str, out: Path) -> None:
+    asked: dict[str, Any] = {"scenes": GRID, "t": TIMES}
+    simulate_many(**asked, out=out)
+    before = states(out)
+    with pytest.raises(ValueError, match=f"^out must be a folder of the same .*motions'.*{said}"):
+        simulate_many(**(asked | changes), out=out)
+    assert states(out) == before
+    simulate_many(**asked, out=out)
+
+
+def test_more_scenes_than_a_complete_folder_has_are_refused(out: Path) -> None:
+    """Even where the last chunk was full, so that none differs."""
+    simulate_many([scenes.rocking] * 32, [1.0], out=out)
+    with pytest.raises(ValueError, match=r"same scenes.* which has 32$"):
+        simulate_many([scenes.rocking] * 33, [1.0], out=out)
+
+
+def test_another_version_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    simulate_many(GRID, TIMES, out=out)
+    monkeypatch.setattr(folders, "version", lambda name: "0.0.9")
+    with pytest.raises(ValueError, match=r"^out must be .* version '\d.*', not '0.0.9'"):
+        simulate_many(GRID, TIMES, out=out)
+    list(load_many(out))  # which another version can read
+    monkeypatch.setattr(folders, "_SCHEMA", 99)
+    with pytest.raises(ValueError, match=r"^path must be a folder of schema 99, got .* of 1"):
+        load_many(out)
+
+
+def test_what_is_no_folder_of_motions(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("kept")
+    with pytest.raises(ValueError, match=r"^out must be a new or empty folder, or one of simulate"):
+        simulate_many(GRID, TIMES, out=tmp_path)
+    with pytest.raises(ValueError, match=r"^path must be a folder written by simulate_many"):
+        load_many(tmp_path)
+    with pytest.raises(FileExistsError):
+        simulate_many(GRID, TIMES, out=tmp_path / "mine.txt")
+    with pytest.raises(FileNotFoundError):
+        simulate_many(GRID, TIMES, out=tmp_path / "no" / "folder")
+    with pytest.raises(FileNotFoundError):
+        load_many(tmp_path / "none")
+    with pytest.raises(TypeError, match=r"^path must be a path"):
+        load_many(3)  # type: ignore[arg-type]
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+# -------------------------------------------------------------------------------------- damage
+
+
+@pytest.fixture
+def small(out: Path) -> Path:
+    simulate_many([scenes.jump, scenes.report, scenes.slip], [0.5, 1.5], out=out)
+    return out
+
+
+def test_every_damaged_byte_is_found_or_harmless(small: Path) -> None:
+    """A byte changed anywhere in a file of numbers: refused by the name of the file, or in a place
+    that says nothing, as the dates of a zip archive do."""
+    (path,) = chunks(small)
+    whole, expected = path.read_bytes(), list(load_many(small))
+    refused = 0
+    for place in range(0, len(whole), 17):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 0x11]) + whole[place + 1 :])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of the headers of NumPy's files
+            try:
+                found = list(load_many(small))
+            except ValueError as error:
+                assert path.name in str(error)
+                refused += 1
+            else:
+                require_equal(found, expected)
+    assert refused > len(whole) / 17 / 2
+
+
+@pytest.mark.parametrize("name", ["request.npz", "end.json", "chunk"])
+@pytest.mark.parametrize("content", [b"", b"PK\x05\x06" + bytes(18), b"{}", b"\xff\xfe"])
+def test_other_files_in_their_places(name: str, content: bytes, small: Path) -> None:
+    path = chunks(small)[0] if name == "chunk" else small / name
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=rf"^path must name a file written by sim.*{path.name}"):
+        list(load_many(small))
+
+
+def forge(path: Path, **changes: Any) -> None:
+    with np.load(path) as there:
+        arrays = dict(there) | changes
+    with open(path, "wb") as file:
+        np.savez(file, **arrays)
+
+
+def changed(values: Any, at: Any, value: float) -> Any:
+    found = values.copy()
+    found[at] = value
+    return found
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("codes", lambda v: v[:2]),
+        ("codes", lambda v: v.astype(float)),
+        ("codes", lambda v: changed(v, (0, 0), 77)),
+        ("codes", lambda v: changed(v, (0, 1), 77)),
+        ("codes", lambda v: changed(v, (0, 3), -1)),
+        ("codes", lambda v: changed(v, (0, 3), 1)),
+        ("codes", lambda v: changed(v, (0, 9), 2**62)),
+        ("numbers", lambda v: v * np.nan),
+        ("contact", lambda v: v * np.nan),
+        ("mode", lambda v: v + 9),
+        ("events", lambda v: changed(v, (0, 1), 0.5)),
+        ("events", lambda v: changed(v, (0, 8), 9)),
+        ("text", lambda v: v * 0 - 1),
+        ("scenes", lambda v: -v),
+        ("scenes", lambda v: v[:, :17]),
+    ],
+)
+def test_tables_that_do_not_fit(name: str, change: Any, small: Path) -> None:
+    (path,) = chunks(small)
+    with np.load(path) as there:
+        made = change(there[name])
+    forge(path, **{name: made})
+    with pytest.raises(ValueError, match=rf"^path must name a file written by .*{path.name}"):
+        list(load_many(small))
+
+
+def test_what_is_missing(small: Path) -> None:
+    (path,) = chunks(small)
+    path.rename(path.with_name("00000000-0123456789abcdef.npz"))
+    with pytest.raises(ValueError, match="scenes must be those of the name of the file"):
+        list(load_many(small))
+    chunks(small)[0].unlink()
+    with pytest.raises(ValueError, match=r"^path must have the file 00000000-….npz"):
+        list(load_many(small))
+    (small / "end.json").unlink()
+    with pytest.raises(ValueError, match=r"^path must be a complete folder, .* the same arguments"):
+        load_many(small)
+
+
+@pytest.mark.parametrize("end", [{"scenes": -1, "chunks": 1}, {"scenes": 1}, {"scenes": "3"}])
+def test_a_forged_end(end: dict[str, Any], small: Path) -> None:
+    (small / "end.json").write_text(json.dumps(end))
+    with pytest.raises(ValueError, match=r"end\.json"):
+        load_many(small)
+
+
+# ---------------------------------------------------------------------- full disks, interrupts
+
+
+def test_a_full_disk(out: Path) -> None:
+    """Files may be of 15 kB here, and the first chunk, of 1600 samples, takes 40 kB."""
+    small = [Scene(2.0, 1.0, theta=0.3, omega=0.1)] * 40
+    usual = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (15_000, limits[1]))
+        with pytest.raises(OSError) as caught:
+            simulate_many(small, np.linspace(0, 1, 100), out=out)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, usual)
+    assert caught.value.errno == errno.EFBIG
+    assert [path.name for path in out.iterdir()] == ["request.npz"]
+    simulate_many(small, np.linspace(0, 1, 100), out=out)
+    require_equal(load_many(out), simulate_many(small, np.linspace(0, 1, 100)))
+
+
+def test_an_interrupt_loses_no_finished_chunk(out: Path) -> None:
+    """Sixteen scenes at rest in no time, then one of hours: stopped, and gone on with."""
+    quick = [Scene(2.0, 1.0)] * 16
+    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)
+
+    def last() -> Iterator[Scene]:
+        yield from quick
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        yield scenes.rocking
+
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            simulate_many(last(), 1e5, out=out, workers=2, **ENDLESS)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, usual)
+    assert len(chunks(out)) == 1 and not (out / "end.json").exists()
+    before = states(out)
+    simulate_many(quick, 1e5, out=out, **ENDLESS)
+    assert states(out) == before and len(list(load_many(out))) == 16
+
+
+KILLED = """
+import os, signal, sys
+import rolling_ellipse as rl
+
+def look(done, of):
+    if done > 100:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+rl.simulate_many([rl.scenes.rocking] * 400, [1.0], out=sys.argv[1], progress=look)
+"""
+
+
+def test_a_killed_process_has_left_what_it_finished(out: Path) -> None:
+    done = subprocess.run([sys.executable, "-c", KILLED, os.fspath(out)], timeout=120)
+    assert done.returncode == -signal.SIGKILL
+    before = states(out)
+    assert len(before) > 5
+    simulate_many([scenes.rocking] * 400, [1.0], out=out)
+    assert before.items() <= states(out).items()
+    assert len(list(load_many(out))) == 400

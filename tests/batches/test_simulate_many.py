@@ -1,0 +1,265 @@
+"""`simulate_many` beside `simulate`: the same bits, exceptions in place, scenes from arrays."""
+
+import inspect
+import itertools
+import math
+import signal
+import weakref
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.batches import ENDLESS, NAMED, TIMES, singly
+from oracles.pickles import require_same
+from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
+from rolling_ellipse._batches.asked import sizes
+
+ROLLING = [scenes.report, scenes.rocking, scenes.rolling, scenes.circle, scenes.thin]
+WAYS: dict[str, dict[str, Any]] = {
+    "auto": {},
+    "contact": {"model": "contact"},
+    "not raised": {"model": "contact", "max_events": 1, "raise_on_failure": False},
+    "raised": {"model": "contact", "max_events": 1},
+    "rolling": {"model": "rolling"},
+    "gauss": {"model": "rolling", "method": "gauss", "step": 0.01},
+    "multipliers": {"model": "multipliers", "rtol": 1e-6},
+    "too few steps": {"model": "multipliers", "max_steps": 3},
+}
+
+
+@pytest.mark.parametrize("workers", [1, 2, -1])
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+def test_bits_of_simulate(way: dict[str, Any], workers: int) -> None:
+    """Fields, events, messages of exceptions; and no warning, which the suite would raise."""
+    found = simulate_many(NAMED, TIMES, workers=workers, **way)
+    for one, other in zip(found, singly(NAMED, TIMES, **way), strict=True):
+        require_same(one, other)
+        if isinstance(one, rl.Trajectory):
+            assert one == other and one.sol(one.t_end) == other.sol(one.t_end)
+
+
+def test_the_ways_lead_everywhere() -> None:
+    """What the test above compares: motions, refusals, and both ways to stop early."""
+    found = {name: simulate_many(NAMED, TIMES, **way) for name, way in WAYS.items()}
+    kinds = {name: {type(each) for each in answers} for name, answers in found.items()}
+    assert kinds["rolling"] == {rl.Trajectory, ValueError}
+    assert kinds["raised"] == {rl.Trajectory, rl.IntegrationError}
+    assert kinds["auto"] == kinds["not raised"] == {rl.Trajectory}
+    statuses = {each.status for answers in found.values() for each in answers
+                if isinstance(each, rl.Trajectory)}  # fmt: skip
+    assert {rl.Status.COMPLETED, rl.Status.VALIDITY_LOST, rl.Status.MAX_EVENTS} <= statuses
+
+
+@pytest.mark.parametrize("t", [0, 0.7, [0.5], [0.0, 1e9], np.linspace(0, 1, 3000)], ids=str)
+def test_times_as_of_simulate(t: Any) -> None:
+    """The last of more samples than the core looks at in one go."""
+    for one, scene in zip(simulate_many(ROLLING, t), ROLLING, strict=True):
+        require_same(one, simulate(scene, t))
+
+
+def test_bodies_at_the_limits() -> None:
+    """Also for a thousand million half turns: nothing here may depend on the neighbours."""
+    shapes = [(1e3, 1.0), (1.0, 1e3), (1.0, 1.0), (1e-30, 1e-30), (1e30, 1e28)]
+    bodies = [Scene(a, b, omega=math.sqrt(20 / max(a, b))) for a, b in shapes]
+    t = [0.0, 1e-3, 1e9]
+    for one, other in zip(simulate_many(bodies, t), singly(bodies, t), strict=True):
+        require_same(one, other)
+
+
+# ---------------------------------------------------------------------------- scenes from arrays
+
+
+def test_arrays_broadcast() -> None:
+    """In C order; a number beside arrays, None where Scene has it, blows as well."""
+    a, friction = np.array([1.0, 2.0, 3.0]), np.array([0.2, math.inf])
+    blow = Impulse(0.0, [[[-1.0]], [[-20.0]]], dx=0.5)
+    grid = {"a": a[:, None], "b": 1, "friction": friction, "impulse": blow, "z": None, "x": -0.0}
+    found = simulate_many(grid, TIMES)
+    order = itertools.product([-1.0, -20.0], a, friction)
+    each = [
+        Scene(a, 1, friction=mu, x=-0.0, impulse=Impulse(0.0, jz, dx=0.5)) for jz, a, mu in order
+    ]
+    assert len(found) == 12
+    for one, other in zip(found, singly(each, TIMES), strict=True):
+        require_same(one, other)
+        assert repr(one.scene) == repr(other.scene)  # of the zeros, too
+
+
+def test_every_argument_of_a_scene_has_its_place() -> None:
+    """Each another number than the default, so that no two can be exchanged unseen."""
+    arguments: dict[str, Any] = {
+        "a": 2.0, "b": 1.5, "mass": 3.0, "gravity": 8.0, "inertia": 1.1, "slope": 0.1,
+        "friction": 0.7, "restitution": 0.3, "theta": 0.2, "omega": 0.4, "x": 5.0, "z": 6.0,
+        "x_dot": 0.6, "z_dot": -0.8, "impulse": Impulse(0.1, -0.2, dx=0.3, dz=0.4),
+    }  # fmt: skip
+    assert set(arguments) == set(inspect.signature(Scene).parameters)
+    (found,) = simulate_many(arguments, TIMES)
+    require_same(found, simulate(Scene(**arguments), TIMES))
+    (given,) = simulate_many([Scene(**arguments)], TIMES)
+    require_same(given, found)
+
+
+@pytest.mark.parametrize(
+    ("scenes", "error", "said"),
+    [
+        ({"a": [1, 2, 3, -1.0], "b": 1}, ValueError,
+         r"^scenes\['a'\]\[3\] must be a positive finite length \[m\], got -1.0$"),
+        ({"a": 0, "b": [1, 1]}, ValueError, r"^scenes\['a'\] must be a positive .* got 0.0"),
+        ({"a": 1, "b": [[1], [math.nan]], "theta": [0, 1, 2]}, ValueError,
+         r"^scenes\['b'\]\[1, 0\] must be a positive .* got nan"),
+        ({"a": 1, "b": 1, "z": [2, math.nan]}, ValueError, r"^scenes\['z'\]\[1\] must .* got nan"),
+        ({"a": 1, "b": 1, "z": [2, 0.5]}, ValueError, r"^scenes\['z'\]\[1\] must be at least"),
+        ({"a": 1, "b": 1, "inertia": math.nan}, ValueError, r"^scenes\['inertia'\] must"),
+        ({"a": [1, 1e9], "b": 1}, ValueError, r"^scenes\[1\]: a/b must be between"),
+        ({"a": [1, 2], "b": [1, 2, 3]}, ValueError, r"must broadcast .*scenes\['b'\] \(3,\)"),
+        ({"a": "1", "b": 1}, TypeError, r"^scenes\['a'\] must be a number"),
+        ({"a": None, "b": 1}, TypeError, r"^scenes\['a'\] must be a number"),
+        ({"a": 1}, TypeError, r"^scenes must have 'b'"),
+        ({}, TypeError, r"^scenes must have 'a'"),
+        ({"a": 1, "b": 1, "omga": 2}, TypeError, r"^scenes must have names of a, b, .*'omga'"),
+        ({"a": 1, "b": 1, "impulse": 3}, TypeError, r"^scenes\['impulse'\] must be an Impulse"),
+        ({"a": 1, "b": 1, "impulse": Impulse(0, -1, dx=[0, 4])}, ValueError,
+         r"^scenes\[1\]: impulse must be along a line that meets"),
+        ([scenes.rocking] * 3 + ["rocking"], TypeError, r"^scenes\[3\] must be a Scene, got 'r"),
+        (scenes.rocking, TypeError, r"^scenes must be Scenes, as an iterable, or a mapping"),
+        (7, TypeError, r"^scenes must be Scenes"),
+        (np.array("1"), TypeError, r"^scenes must be Scenes"),
+    ],
+)  # fmt: skip
+def test_wrong_scenes(scenes: Any, error: type[Exception], said: str) -> None:
+    with pytest.raises(error, match=said):
+        simulate_many(scenes, 1.0)
+
+
+def test_a_wrong_number_far_behind_is_refused_before_anything_is_computed() -> None:
+    theta = np.zeros(200_000)
+    theta[170_001] = math.nan
+    done: list[int] = []
+    with pytest.raises(ValueError, match=r"^scenes\['theta'\]\[170001\] must be"):
+        simulate_many({"a": 2, "b": 1, "theta": theta}, 1.0, progress=lambda n, of: done.append(n))
+    assert done == []
+
+
+@pytest.mark.parametrize("nothing", [[], iter(()), {"a": [], "b": 1}, {"a": 1, "b": [[], []]}])
+def test_no_scenes(nothing: Any) -> None:
+    assert simulate_many(nothing, 1.0) == []
+
+
+# ------------------------------------------------------------------------------- other arguments
+
+
+@pytest.mark.parametrize(
+    ("wrong", "error", "said"),
+    [
+        ({"t": -1.0}, ValueError, "^t must not be negative"),
+        ({"rtol": -1.0}, ValueError, "^rtol must"),
+        ({"model": "roling"}, ValueError, "^model must be one of"),
+        ({"method": "rk4"}, ValueError, "^step must"),
+        ({"raise_on_failure": 1}, TypeError, "^raise_on_failure must be True or False"),
+        ({"progress": "yes"}, TypeError, "^progress must be True, False or a function"),
+        ({"out": 3}, TypeError, "^out must be a path"),
+        ({"workers": 0}, ValueError, "^workers must be an int from 1 to 1024"),
+        ({"workers": 2.0}, TypeError, "^workers must be a whole number, or an executor"),
+        ({"workers": True}, TypeError, "^workers must be a whole number, or an executor"),
+        ({"workers": "2"}, TypeError, "^workers must be a whole number, or an executor"),
+        ({"workers": None}, TypeError, "^workers must be a whole number, or an executor"),
+        ({"workers": ThreadPoolExecutor}, TypeError, "^workers must be .* an executor"),
+    ],
+)
+def test_wrong_arguments(wrong: dict[str, Any], error: type[Exception], said: str) -> None:
+    """Before a scene is looked at: what is wrong for all is not said of each."""
+    with pytest.raises(error, match=said):
+        simulate_many([], **({"t": 1.0} | wrong))
+    if "workers" in wrong:
+        for call in (rl.flow, rl.classify):
+            arguments = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0} | wrong
+            with pytest.raises(error, match=said):
+                call(1.0, **arguments) if call is rl.flow else call(**arguments)
+
+
+def test_arguments_are_those_of_simulate() -> None:
+    mine = dict(inspect.signature(simulate_many).parameters)
+    others = dict(inspect.signature(simulate).parameters)
+    for name in ("scene", "scenes", "workers", "progress", "out"):
+        mine.pop(name, None)
+        others.pop(name, None)
+    assert mine == others
+
+
+# ---------------------------------------------------------------------------- chunks and progress
+
+
+def test_sizes_of_chunks() -> None:
+    """They cover all scenes in order, grow from 16 to 2048, and hold no more samples than 2^18."""
+    for samples in (1, 1001, 2**20):
+        found = list(itertools.islice(sizes(samples), 500))
+        assert [begin for begin, _ in found] == list(
+            itertools.accumulate((size for _, size in found[:-1]), initial=0)
+        )
+        grown = [size for _, size in found]
+        assert grown == sorted(grown)
+        assert max(grown) == max(1, min(2048, 2**18 // samples)) and grown[0] == min(16, grown[-1])
+
+
+def test_progress() -> None:
+    told: list[tuple[int, int | None]] = []
+    simulate_many([scenes.rocking] * 50, 1.0, progress=lambda *said: told.append(said))
+    assert [done for done, _ in told] == [16, 32, 49, 50] and {of for _, of in told} == {50}
+    simulate_many(iter([scenes.rocking] * 3), 1.0, progress=lambda *said: told.append(said))
+    assert told[-1] == (3, None)
+
+
+@pytest.mark.parametrize("bar", [True, False])
+def test_progress_is_shown(
+    bar: bool, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not bar:
+        monkeypatch.setattr("rolling_ellipse._batches.progress.find_spec", lambda name: None)
+    simulate_many([scenes.rocking] * 20, 1.0, progress=True)
+    said = capfd.readouterr().err
+    assert ("20/20" if bar else "\r20 of 20 scenes\n") in said
+
+
+def test_scenes_are_taken_as_they_are_needed(tmp_path: Path) -> None:
+    """With a folder to write to, no more scenes live than those of the chunk in work."""
+    living: weakref.WeakSet[Scene] = weakref.WeakSet()
+    most = 0
+
+    class Watched(Scene):
+        pass
+
+    def many() -> Iterator[Scene]:
+        for i in range(1500):
+            scene = Watched(2.0, 1.0, omega=1e-4 * (i + 1))
+            living.add(scene)
+            yield scene
+
+    def look(done: int, of: int | None) -> None:
+        nonlocal most
+        most = max(most, len(living))
+
+    simulate_many(many(), [1.0], out=tmp_path / "out", progress=look)
+    largest = max(size for begin, size in itertools.islice(sizes(1), 200) if begin < 1500)
+    assert 16 <= most <= 2 * largest + 1
+
+
+# -------------------------------------------------------------------------------------- Ctrl-C
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_ctrl_c_stops_scenes_of_hours(workers: int) -> None:
+    """In the middle of a scene, in whatever thread it is, and no thread is left."""
+    before = len(list(Path("/proc/self/task").iterdir()))
+    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with pytest.raises(KeyboardInterrupt):
+            simulate_many([scenes.rocking] * 2, 1e6, workers=workers, **ENDLESS)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, usual)
+    assert len(list(Path("/proc/self/task").iterdir())) == before

@@ -1,0 +1,32 @@
+"""Many scenes one by one, which is what `simulate_many` must come to."""
+
+import warnings
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import rolling_ellipse as rl
+
+TIMES = np.linspace(0.0, 2.0, 60)
+NAMED = [
+    rl.scenes.report, rl.scenes.rocking, rl.scenes.rolling, rl.scenes.separatrix,
+    rl.scenes.circle, rl.scenes.thin, rl.scenes.slope, rl.scenes.slip, rl.scenes.jump,
+    rl.scenes.drop, rl.scenes.bounce, rl.Scene(2.0, 1.0, friction=0.1, omega=3.0),
+]  # fmt: skip
+# a scene that rolls takes hours, one at rest no time
+ENDLESS: dict[str, Any] = {
+    "model": "rolling", "method": "rk4", "step": 1e-7, "max_steps": 2**31 - 1,
+}  # fmt: skip
+
+
+def singly(scenes: Iterable[rl.Scene], t: Any, **settings: Any) -> list[Any]:
+    """A motion of `simulate`, or the exception that it raises, for each scene."""
+    found: list[Any] = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for scene in scenes:
+            try:
+                found.append(rl.simulate(scene, t, **settings))
+            except (ValueError, rl.IntegrationError) as error:
+                found.append(error)
+    return found
