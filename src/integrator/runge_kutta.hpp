@@ -27,21 +27,22 @@ struct DenseRow {
 
 // By components: as expressions of vectors they are not inlined.
 template <class Row, std::size_t J, class K, int N>
-void add_weighted(const K& k, Vector<N>& sum) {
+[[gnu::always_inline]] inline void add_weighted(const K& k, Vector<N>& sum) {
     if constexpr (Row::weights[J] != 0.0) {
         for (int i = 0; i < N; ++i) sum[i] += Row::weights[J] * k[J][i];
     }
 }
 
 template <class Row, int N, std::size_t Size, std::size_t... J>
-Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k, std::index_sequence<J...>) {
+[[gnu::always_inline]] inline Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k,
+                                                     std::index_sequence<J...>) {
     Vector<N> sum = Vector<N>::Zero();
     (add_weighted<Row, J, std::array<Vector<N>, Size>, N>(k, sum), ...);
     return sum;
 }
 
 template <class Row, int N, std::size_t Size>
-Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k) {
+[[gnu::always_inline]] inline Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k) {
     return weighted_sum<Row>(k, std::make_index_sequence<Size>{});
 }
 
@@ -54,7 +55,8 @@ struct DenseOutput {
     Vector<N> change(double s) const {
         Vector<N> value = terms.back();
         for (int i = 1 + Terms; i >= 0; --i) {
-            value = (terms[i] + (i % 2 == 0 ? 1 - s : s) * value).eval();
+            const double factor = i % 2 == 0 ? 1 - s : s;
+            for (int j = 0; j < N; ++j) value[j] = terms[i][j] + factor * value[j];
         }
         return s * value;
     }
@@ -124,8 +126,8 @@ class ExplicitMethod {
                 Point<N> next = point;
                 add<N>(next, increment(h));
                 const double error =
-                    in_range<N>(next.y) ? error_norm(point, next, h, tolerance) : infinity;
-                const double factor = safety * std::pow(error, -1.0 / Tableau::order);
+                    in_range<N>(next.y) ? error_square(point, next, h, tolerance) : infinity;
+                const double factor = safety * std::pow(error, -0.5 / Tableau::order);
                 if (error < 1) {
                     evaluate<error_stages, Tableau::stages + 1>(point, h);
                     point = next;
@@ -154,10 +156,19 @@ class ExplicitMethod {
     static constexpr int error_stages =
         Tableau::stages + (Tableau::error[0][Tableau::stages] != 0.0 ? 1 : 0);
 
+    // What does not need the slope before, which comes last, is added up while that is computed.
     template <int Stage>
     [[gnu::always_inline]] void evaluate_stage(const Point<N>& from, double h) {
-        const Vector<N> change = h * weighted_sum<StageRow<Tableau, Stage>>(k_);
-        k_[Stage] = f_(from.t + Tableau::c[Stage] * h, from.y + (from.carry + change));
+        Vector<N> change = from.carry;
+        if constexpr (Stage > 0) {
+            using Row = StageRow<Tableau, Stage>;
+            const Vector<N> known = weighted_sum<Row>(k_, std::make_index_sequence<Stage - 1>{});
+            const double share = h * Row::weights[Stage - 1];
+            for (int i = 0; i < N; ++i) {
+                change[i] = (change[i] + h * known[i]) + share * k_[Stage - 1][i];
+            }
+        }
+        k_[Stage] = f_(from.t + Tableau::c[Stage] * h, from.y + change);
         ++counts_.evaluations;
     }
 
@@ -181,32 +192,40 @@ class ExplicitMethod {
         ((dense.terms[3 + I] = h * weighted_sum<DenseRow<Tableau, I>>(k_)), ...);
     }
 
-    // The root mean square of v relative to the tolerance; a component without error counts as 0
-    // even where the tolerance is 0.
-    static double norm(const Vector<N>& v, const Vector<N>& scale) {
+    // What a relative and an absolute error allow, inverted; infinite where that is nothing.
+    static Vector<N> inverse_scale(const Tolerance& tolerance, const Vector<N>& size) {
+        Vector<N> inverse;
+        for (int i = 0; i < N; ++i) {
+            inverse[i] = 1 / (tolerance.absolute + tolerance.relative * size[i]);
+        }
+        return inverse;
+    }
+
+    // The mean square of v relative to the tolerance; a component without error counts as 0 even
+    // where the tolerance is 0.
+    [[gnu::always_inline]] static double mean_square(const Vector<N>& v, const Vector<N>& inverse) {
         double sum = 0.0;
         for (int i = 0; i < N; ++i) {
-            if (v[i] != 0.0) sum += square(v[i] / scale[i]);
+            sum += v[i] != 0.0 ? square(v[i] * inverse[i]) : 0.0;
         }
-        return std::sqrt(sum / N);
+        return sum / N;
     }
 
-    static Vector<N> scale(const Tolerance& tolerance, const Vector<N>& size) {
-        return (tolerance.absolute + tolerance.relative * size.array()).matrix();
-    }
-
-    double error_norm(const Point<N>& before, const Point<N>& after, double h,
-                      const Tolerance& tolerance) const {
-        const Vector<N> size =
-            (before.origin + before.y).cwiseAbs().cwiseMax((after.origin + after.y).cwiseAbs());
-        const Vector<N> allowed = scale(tolerance, size);
-        const double error = h * norm(weighted_sum<ErrorRow<Tableau, 0>>(k_), allowed);
+    // The square of the error relative to the tolerance, which spares roots.
+    [[gnu::always_inline]] double error_square(const Point<N>& before, const Point<N>& after,
+                                               double h, const Tolerance& tolerance) const {
+        Vector<N> size;
+        for (int i = 0; i < N; ++i) {
+            size[i] = std::max(std::abs(before.origin[i] + before.y[i]),
+                               std::abs(after.origin[i] + after.y[i]));
+        }
+        const Vector<N> inverse = inverse_scale(tolerance, size);
+        const double error = mean_square(weighted_sum<ErrorRow<Tableau, 0>>(k_), inverse);
         if constexpr (Tableau::error_estimates == 1) {
-            return error;
+            return h * h * error;
         } else {  // HNW II.10: the estimate of order 5, damped by that of order 3
-            const double rough = h * norm(weighted_sum<ErrorRow<Tableau, 1>>(k_), allowed);
-            if (error == 0.0 && rough == 0.0) return 0.0;
-            return error * (error / std::hypot(error, 0.1 * rough));
+            const double rough = mean_square(weighted_sum<ErrorRow<Tableau, 1>>(k_), inverse);
+            return error == 0.0 ? 0.0 : h * h * error * (error / (error + 0.01 * rough));
         }
     }
 
@@ -215,14 +234,15 @@ class ExplicitMethod {
         constexpr double longest = 1e300;  // where there is no end: infinity would not shrink
         const double span = std::min(t_end - point.t, longest);
         const Vector<N> size = (point.origin + point.y).cwiseAbs();
-        const Vector<N> allowed = scale(tolerance, size);
-        const double d0 = norm(size, allowed);
-        const double d1 = norm(k_[0], allowed);
+        const Vector<N> inverse = inverse_scale(tolerance, size);
+        const auto norm = [&](const Vector<N>& v) { return std::sqrt(mean_square(v, inverse)); };
+        const double d0 = norm(size);
+        const double d1 = norm(k_[0]);
         double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
         if (!(h0 > 0.0 && h0 < span)) h0 = span;
         const Vector<N> slope = f_(point.t + h0, point.y + h0 * k_[0]);
         ++counts_.evaluations;
-        const double d2 = norm(slope - k_[0], allowed) / h0;
+        const double d2 = norm(slope - k_[0]) / h0;
         const double h1 = d1 <= 1e-15 && d2 <= 1e-15
                               ? std::max(1e-6, 1e-3 * h0)
                               : std::pow(0.01 / std::max(d1, d2), 1.0 / Tableau::order);

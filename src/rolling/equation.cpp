@@ -6,9 +6,8 @@
 namespace rolling_ellipse {
 RollingEquation::RollingEquation(const Body& body, double slope)
     : axes_(body.axes()),
-      a2_(body.a * body.a),
-      b2_(body.b * body.b),
-      c2_((body.a - body.b) * (body.a + body.b)),
+      turned_{{square(body.a), square(body.b), (body.a - body.b) * (body.a + body.b)},
+              {square(body.b), square(body.a), (body.b - body.a) * (body.b + body.a)}},
       gyration2_(body.gyration2),
       gravity_(ground_gravity(body.gravity, slope)),
       long_axis_(std::max(body.a, body.b)) {}

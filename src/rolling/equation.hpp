@@ -6,6 +6,7 @@
 
 #include "geometry/constraints.hpp"
 #include "integrator/system.hpp"
+#include "numerics/sine_cosine.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {
@@ -18,7 +19,9 @@ class RollingEquation {
 
     RollingEquation(const Body& body, double slope);
 
-    double acceleration(double sin_theta, double cos_theta, double omega) const;
+    double acceleration(double sin_theta, double cos_theta, double omega) const {
+        return acceleration(turned_[0], sin_theta, cos_theta, omega);
+    }
 
     Vector<2> operator()(double t, const Vector<2>& y) const;
     Matrix<2> jacobian(double t, const Vector<2>& y) const;
@@ -28,27 +31,42 @@ class RollingEquation {
     }
 
   private:
+    struct Squares {
+        double a2;
+        double b2;
+        double c2;  // a^2 - b^2
+    };
+    double acceleration(const Squares& axes, double s, double c, double omega) const;
+
     Axes axes_;
-    double a2_;
-    double b2_;
-    double c2_;  // a^2 - b^2
+    Squares turned_[2];  // after an even number of quarter turns, and after an odd one
     double gyration2_;
     GroundGravity gravity_;
     double long_axis_;
 };
 
 // physics (18) times h^4, so that one root and one division are enough: with u = h^2, p = h h',
-//     theta'' u (u (k^2 + u) + p^2) = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
-inline double RollingEquation::acceleration(double s, double c, double omega) const {
-    const double u = a2_ * s * s + b2_ * c * c;
-    const double p = c2_ * s * c;
-    const double drive = u * std::sqrt(u) * (u * gravity_.along - p * gravity_.into);
-    const double turning = p * a2_ * b2_ * omega * omega;
-    return (drive - turning) / (u * (u * (gyration2_ + u) + p * p));
+//     theta'' (u^2 (k^2 + u) + u p^2) = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
+// The division does not wait for the root.
+[[gnu::always_inline]] inline double RollingEquation::acceleration(const Squares& axes, double s,
+                                                                   double c, double omega) const {
+    const double u = axes.a2 * (s * s) + axes.b2 * (c * c);
+    const double p = axes.c2 * (s * c);
+    const double inverse = 1 / (u * u * (gyration2_ + u) + u * (p * p));
+    const double drive = u * (u * gravity_.along - p * gravity_.into) * std::sqrt(u);
+    const double turning = p * (axes.a2 * axes.b2 * (omega * omega));
+    return (drive - turning) * inverse;
 }
 
-inline Vector<2> RollingEquation::operator()(double, const Vector<2>& y) const {
-    return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
+// After a quarter turn the body is one with its axes exchanged.
+[[gnu::always_inline]] inline Vector<2> RollingEquation::operator()(double,
+                                                                    const Vector<2>& y) const {
+    if (!(std::abs(y[0]) <= largest_in_quarters)) {
+        return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
+    }
+    const auto [rest, odd] = nearest_quarter(y[0]);
+    const auto [sine, cosine] = sine_cosine_of_rest(rest);
+    return {y[1], acceleration(turned_[odd], sine, cosine, y[1])};
 }
 
 // Everything that rolling does at a place: physics (20), Newton's law for the centre.

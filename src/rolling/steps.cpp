@@ -6,6 +6,7 @@
 #include "integrator/gauss.hpp"
 #include "integrator/radau.hpp"
 #include "integrator/runge_kutta.hpp"
+#include "rolling/path_series.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -35,14 +36,33 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     }
 }
 
-FlowSample flow_sample(const SteppedRolling& motion, const Knot<2>& knot, const Vector<2>& change) {
-    const DoubleDouble theta = DoubleDouble{knot.y[0], knot.carry[0]} + change[0];
-    const double path = centre_path(motion.axes, static_cast<double>(theta));
-    return {
-        static_cast<double>(motion.theta_base + half_turn * knot.periods + theta),
-        knot.y[1] + (knot.carry[1] + change[1]),
-        static_cast<double>(motion.x_base + std::fma(knot.periods, motion.half_turn_path, path))};
-}
+// The samples of a motion. All times of a step share what is known at its knot.
+class StepView {
+  public:
+    explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
+
+    FlowSample operator()(const Knot<2>& knot, const Vector<2>& change) {
+        if (&knot != knot_) move_to(knot);
+        const double rest = knot.y[0] + (knot.carry[0] + change[0]);
+        const double path = change[0] == 0 ? centre_path(motion_.axes, rest) : path_(rest);
+        return {static_cast<double>(theta_ + change[0]), knot.y[1] + (knot.carry[1] + change[1]),
+                static_cast<double>(motion_.x_base + (path_before_ + path))};
+    }
+
+  private:
+    void move_to(const Knot<2>& knot) {
+        knot_ = &knot;
+        theta_ =
+            motion_.theta_base + half_turn * knot.periods + DoubleDouble{knot.y[0], knot.carry[0]};
+        path_before_ = knot.periods * motion_.half_turn_path;
+    }
+
+    const SteppedRolling& motion_;
+    PathSeries path_;
+    const Knot<2>* knot_ = nullptr;
+    DoubleDouble theta_;
+    double path_before_ = 0.0;  // of the half turns until then
+};
 
 }  // namespace
 
@@ -85,9 +105,10 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples) {
     with_integrator(motion, [&](auto integrator) {
+        StepView view(motion);
         look(integrator, motion.steps, times, n,
              [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
-                 samples[i] = flow_sample(motion, knot, change);
+                 samples[i] = view(knot, change);
              });
     });
 }

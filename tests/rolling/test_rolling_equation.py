@@ -19,7 +19,9 @@ from rolling_ellipse import Scene, Trajectory, _core
 
 SLOPES = (0.0, 0.1, -0.7, 1.4)
 SPEEDS = (0.0, 1e-8, -1.3, 40.0)
-ANGLES = (0.0, 1e-8, 0.3, 1.2, math.pi / 2, 2.0, -0.9, 333.3)
+# about where the nearest quarter turn changes, and where quarter turns are no longer counted
+ANGLES = (0.0, 1e-8, 0.3, math.pi / 4, math.nextafter(math.pi / 4, 1), 1.2, math.pi / 2, 2.0, -0.9)
+FAR_ANGLES = (333.3, -99_999.9, 100_000.1, 3e15)
 
 
 class Motion(NamedTuple):
@@ -64,7 +66,7 @@ def test_acceleration_and_its_derivatives(shape: tuple[float, float], slope: flo
     """8 ulp of the terms that are added up: some ten roundings, sin and cos among them."""
     scene = Scene(*shape, gravity=3.7, slope=slope)
     unit = math.sqrt(scene.gravity / max(shape))
-    for theta in ANGLES:
+    for theta in (*ANGLES, *FAR_ANGLES):
         for omega in (speed * unit for speed in SPEEDS):
             exact, sizes = lagrange(scene, theta, omega)
             acceleration, jacobian = _core.rolling_equation(
