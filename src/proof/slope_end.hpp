@@ -3,7 +3,7 @@
 // N and F come from the same power series as the motion, N = g_into + h'' and F = x'' - g_along, so
 // that the first place at which the law is broken is the first root of a polynomial. Half turns
 // need not be followed one by one: at each angle N and F are linear in W = D omega^2/2, physics
-// (61), so that the law holds for an interval of W, and what holds in two half turns holds in all
+// (58), so that the law holds for an interval of W, and what holds in two half turns holds in all
 // between them.
 #pragma once
 

@@ -1,5 +1,5 @@
-// The coordinate y in which the phase of a rolling motion is swept evenly: nothing peaks in it, at
-// the flat however thin the body, or at the tip however near the separatrix.
+// The coordinate y in which the phase of a rolling motion is swept evenly, physics (61): nothing
+// peaks in it, at the flat however thin the body, or at the tip however near the separatrix.
 //
 //     tan phase = g sc(w, k),   k' = kappa g,   w = theta_3(q)^2 y,   q = e^(-2 Y),
 //

@@ -25,7 +25,7 @@ struct SlopeBody {
     SeriesConstants series;  // for a time unit of 1
     double slowest;          // rate of what gravity does from rest
     double quarter_path;     // of the centre, in a quarter turn
-    double gain;             // of W = D omega^2/2 in half a turn downhill, physics (61)
+    double gain;             // of W = D omega^2/2 in half a turn downhill, physics (58)
 };
 
 SlopeBody slope_body(const Body& body, double slope);
@@ -48,7 +48,7 @@ inline Geometry geometry(const SlopeBody& body, const SlopePlace& at) {
 // The path of the centre from the flat position of quarter 0.
 double path_at(const SlopeBody& body, double quarters, double angle);
 
-// The energy W = D omega^2/2 along the motion, from that of its start: physics (61).
+// The energy W = D omega^2/2 along the motion, from that of its start: physics (58).
 struct SlopeEnergy {
     double start;   // W
     double height;  // of the centre

@@ -12,7 +12,7 @@ namespace {
 constexpr double least_levels = 4;      // W/w from which the sums below are used
 constexpr double asymptotic_from = 14;  // W/w from which R(W) is right to 2e-17
 
-// sqrt(w) R(W/w) of physics (63).
+// sqrt(w) R(W/w) of physics (60).
 double remainder(double level, double gain) {
     const double ratio = gain / level;
     const double r2 = square(ratio);
@@ -46,7 +46,7 @@ struct Centre {
     double at() const { return quarters * half_pi + angle; }
 };
 
-// Where W is least: physics (61) with h' = h tan(slope), beyond the well; the tip if there is none.
+// Where W is least: physics (58) with h' = h tan(slope), beyond the well; the tip if there is none.
 double hill_angle(const SlopeBody& body) {
     const double incline = body.gravity.along / body.gravity.into;
     const double both = 2 * body.long_axis * body.short_axis * incline;
@@ -278,7 +278,7 @@ SlopePlace place_in_half_turn(const SlopeRun& run, double half_turns, double res
             continue;
         }
         for (int i = 0; i < panel.parts; ++i) {
-            std::array<double, 16> times;
+            std::array<double, 16> times{};
             const std::size_t begin = (panel.part + i) * times.size();
             const double part = times_of(run, run.part_nodes, begin, begin + times.size(),
                                          half_turns, times.data());

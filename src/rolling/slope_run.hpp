@@ -1,7 +1,7 @@
 // Many half turns on a slope, down it or up it, at a cost that does not depend on their number.
 //
 // W = D omega^2/2 is the same function of the angle in every half turn, but for its gain w, so that
-// the time of n of them is physics (62),
+// the time of n of them is physics (59),
 //     T(n) = int sqrt(D/2) sum_(j<n) (W + j w)^(-1/2) dphi   over one half turn,
 // and the sum is a difference of Hurwitz zeta functions, here by Euler and Maclaurin. The integrand
 // is singular beside the flat position, where D = 0, and beside the place of the least W: panels
