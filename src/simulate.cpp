@@ -41,8 +41,7 @@ Beginning beginning(const Scene& scene) {
     if (scene.slope == 0) {
         found.rolling = rolling_start(scene.body(), start.theta, start.omega);
     } else {
-        found.on_slope =
-            slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
+        found.on_slope = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
     }
     return found;
 }

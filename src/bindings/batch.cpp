@@ -122,9 +122,8 @@ py::dict facts(const std::vector<Answer>& answers) {
     const py::ssize_t n = answers.size();
     Codes codes({n, py::ssize_t{10}});
     Array numbers = matrix(n, 2);
-    Bytes text(total(answers, [](const Answer& each) -> py::ssize_t {
-        return each.solution.message.size();
-    }));
+    Bytes text(total(
+        answers, [](const Answer& each) -> py::ssize_t { return each.solution.message.size(); }));
     std::int8_t* letters = text.mutable_data();
     for (py::ssize_t i = 0; i < n; ++i) {
         const auto& [ending, solution, segments, samples, r, c, q] = answers[i];

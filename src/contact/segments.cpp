@@ -1,6 +1,7 @@
 #include "contact/segments.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 
 namespace rolling_ellipse {
@@ -163,7 +164,9 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
     std::vector<double> since;
     for (std::size_t i = 0; i < n;) {
         // The last segment that has begun at the time i, and all that follow in it.
-        const auto time = [&, unit = units.time](std::size_t j) { return times[j] / unit; };
+        const auto time = [&, unit = units.time](std::size_t j) {
+            return std::min(times[j] / unit, std::numeric_limits<double>::max());
+        };
         const auto later =
             std::upper_bound(segments.begin(), segments.end(), time(i),
                              [](double t, const Segment& segment) { return t < segment.begin; });

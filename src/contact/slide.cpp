@@ -44,11 +44,12 @@ double value(const SlideCoefficients& series, double clock) {
 }
 
 SlidePoint moved(const SlidePiece& piece, double clock) {
-    const auto& [centre, kind, reach, angle, omega, slip, path, time] = piece;
+    const auto& [centre, kind, unit, reach, angle, omega, slip, path, time] = piece;
     const auto change = [clock](const SlideCoefficients& series) { return value(series, clock); };
-    return {centre.angle + change(angle), centre.omega + change(omega), centre.slip + change(slip),
-            centre.path + change(path),
-            centre.time + (kind == SlideClock::time ? clock : change(time))};
+    const double lasts = kind == SlideClock::time ? clock : change(time);
+    return {centre.angle + change(angle), centre.omega + change(omega) / unit,
+            centre.slip + change(slip) / unit, centre.path + change(path),
+            centre.time + lasts * unit};
 }
 
 // A series on [0, reach] as a polynomial on [0, 1]; each coefficient with the magnitude of what it
@@ -95,16 +96,20 @@ class Follower {
     std::optional<SlideStop> step() {
         const SlidePoint& from = slide_.last;
         const auto [sin, cos] = sin_cos(from.angle);
-        const SlideState start{0.0, double(from.omega), double(from.slip), 0.0, 0.0};
-        SlideSeries series = slide_series(slide_.body, start, sin, cos, clock_);
+        // As fast as it turns: no power of the rate leaves the doubles.
+        const double unit = std::ldexp(1.0, -std::ilogb(1 + std::abs(double(from.omega))));
+        SlidingBody body = slide_.body;
+        body.gravity = {body.gravity.into * square(unit), body.gravity.along * square(unit)};
+        const SlideState start{0.0, double(from.omega) * unit, double(from.slip) * unit, 0.0, 0.0};
+        SlideSeries series = slide_series(body, start, sin, cos, clock_);
         // What reaches for ever may grow with what there is.
-        const double most = 1 + 15 * from.time.high;
+        const double most = 1 + 15 * from.time.high / unit;
         reach_ = std::min({reach(series.angle), reach(series.omega), most});
         if (!(reach_ > 0)) return SlideStop::no_progress;
-        examine(series);
+        examine(body, series);
         series.omega[0] = series.slip[0] = 0.0;
-        slide_.pieces.push_back({from, clock_, reach_, series.angle, series.omega, series.slip,
-                                 series.path, series.time});
+        slide_.pieces.push_back({from, clock_, unit, reach_, series.angle, series.omega,
+                                 series.slip, series.path, series.time});
         const SlidePoint next = moved(slide_.pieces.back(), reach_);
         const bool stands_still = clock_ == SlideClock::time && next.time.high == from.time.high;
         slide_.last = next;
@@ -116,9 +121,8 @@ class Follower {
     enum class End { slip, pressure, response, recovery, theta, turning_back };
 
     // Ends the piece where something comes to an end.
-    void examine(const SlideSeries& series) {
+    void examine(const SlidingBody& body, const SlideSeries& series) {
         end_.reset();
-        const SlidingBody& body = slide_.body;
         const auto look = [&](End what, auto coefficient, auto magnitude) {
             const auto place = first_end(stretched(reach_, coefficient, magnitude));
             if (!place) return;
@@ -203,7 +207,7 @@ class Follower {
                        {state.slip, 0.0},
                        {state.path, 0.0},
                        {state.time, 0.0}};
-        slide_.pieces.push_back({slide_.last, SlideClock::time, 0.0, {}, {}, {}, {}, {}});
+        slide_.pieces.push_back({slide_.last, SlideClock::time, 1.0, 0.0, {}, {}, {}, {}, {}});
         return end == SlideEnd::slip_vanishes ? SlideStop::slip_vanishes : SlideStop::jams;
     }
 
@@ -217,6 +221,7 @@ class Follower {
 
 // The clock of a piece at a time since its centre.
 double clock_at(const SlidePiece& piece, double time) {
+    time /= piece.unit;
     if (piece.clock == SlideClock::time) return time;
     return bisect(0.0, piece.reach, [&](double clock) { return value(piece.time, clock) >= time; })
         .high;

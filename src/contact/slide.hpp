@@ -24,10 +24,12 @@ struct SlidePoint {
     DoubleDouble time;
 };
 
-// How the motion goes on from a point, by a clock that is 0 there; the series are of the changes.
+// How the motion goes on from a point, by a clock that is 0 there; the series are of the changes,
+// in a unit of time of their own.
 struct SlidePiece {
     SlidePoint centre;
     SlideClock clock;
+    double unit;
     double reach;  // of the clock
     SlideCoefficients angle;
     SlideCoefficients omega;

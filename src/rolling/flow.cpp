@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "rolling/motion_series.hpp"
 #include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
@@ -104,7 +106,8 @@ RollingMotion rolling_motion(const RollingStart& from, double x) {
 
     const PhasePoint start = start_phase(motion);
     motion.amplitude = std::sqrt(square(start.sin) + square(start.cos));
-    motion.start_on_way_back = start.cos < 0;
+    // At rest it goes back from either side in the same way.
+    motion.start_on_way_back = start.cos < 0 || (!rotates && start.cos == 0 && start.sin > 0);
     motion.start_phase = {motion.start_on_way_back ? -start.sin : start.sin, std::abs(start.cos)};
     motion.start_place = place_of(motion.phase.map, motion.start_phase);
     return motion;
@@ -159,27 +162,59 @@ QuarterState quarter_state(const RollingFlow& flow, const PhasePoint& phase) {
     return {at.sin_phi, at.cos_phi, at.omega, quarter_position(flow.start, at.sin_phi, at.cos_phi)};
 }
 
+namespace {
+
+// A move so short that one power series knows it: it keeps the digits of what has changed.
+std::optional<FlowSample> short_move(const RollingMotion& motion, double t) {
+    constexpr double longest = 0.05;  // in the time scale of the flat position and of turning
+    const auto [unit, short_axis, c2, sin, cos] = motion.start;
+    const double fast = std::abs(motion.omega) + std::sqrt(motion.gravity / short_axis);
+    if (!(std::abs(t) * fast < longest)) return std::nullopt;
+    const double unit2 = square(unit);
+    const SeriesConstants body{
+        square(short_axis) / unit2, c2 / unit2, motion.gravity * square(t) / unit,
+        motion.phase.rate.d0 / square(unit2), motion.phase.rate.d1 / square(unit2)};
+    const MotionSeries series = motion_series(body, sin, cos, motion.omega * t);
+    if (!(std::min(reach(series.angle), reach(series.omega)) >= 1)) return std::nullopt;
+    Series gain = series.omega;
+    gain[0] = 0.0;
+    return FlowSample{motion.theta + value(series.angle, 1.0), motion.omega + value(gain, 1.0) / t,
+                      motion.x + unit * value(series.path, 1.0)};
+}
+
+}  // namespace
+
 FlowSample sample(const RollingMotion& motion, double t) {
     if (motion.kind == MotionKind::rest || t == 0) return {motion.theta, motion.omega, motion.x};
     if (motion.kind == MotionKind::uniform) {
         const double turn = motion.omega * t;
         return {motion.theta + turn, motion.omega, motion.x + motion.start.long_axis * turn};
     }
+    if (const auto moved = short_move(motion, t)) return *moved;
     const bool rotates = motion.kind == MotionKind::rotation;
     const DoubleDouble& half_turn = motion.phase.half_turn;
     const auto [time, turns] = reduced(rotates ? half_turn : half_turn * 2.0, t);
     const PhaseMove made = move(motion.phase, motion.start_place, time);
     const double heading = heading_after(motion, 0.0);
     const MotionPoint now = motion_point(motion, phase_point(motion.phase.map, made.to));
+    const double omega = heading * now.omega;
     if (!rotates) {
         const FlatView& from = motion.start;
         const double sin_phi = heading * now.sin_phi;
         const double turned = std::atan2(sin_phi * from.cos - now.cos_phi * from.sin,
                                          now.cos_phi * from.cos + sin_phi * from.sin);
-        return {motion.theta + turned, heading * now.omega, motion.x + heading * made.way.path};
+        const bool turned_back = now.omega < 0;
+        const double path =
+            turned_back ? path_between(motion.phase, motion.start_place, made.to) : made.way.path;
+        return {motion.theta + turned, omega, motion.x + heading * path};
     }
-    const DoubleDouble turned = half_pi_exact * (2 * turns) + made.way.angle;
-    return {double(turned * heading + motion.theta), heading * now.omega,
+    DoubleDouble turned = half_pi_exact * (2 * turns) + made.way.angle;
+    if (std::isinf(half_turn.high) && now.sin_phi > now.cos_phi) {  // it creeps to the tip
+        const PhasePoint& from = motion.start_phase;
+        turned = half_pi_exact +
+                 -(std::atan2(now.cos_phi, now.sin_phi) + std::atan2(from.sin, from.cos));
+    }
+    return {double(turned * heading + motion.theta), omega,
             motion.x + heading * std::fma(2 * turns, motion.phase.quarter_path, made.way.path)};
 }
 

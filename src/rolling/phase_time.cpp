@@ -30,6 +30,11 @@ WayTo way_by_panels(const PhaseTime& phase, int quarters, double begin, double e
     const int count = (rule.size + 1) / 2;
     PhaseWays rates;
     WayTo found{};
+    DoubleDouble time{}, angle{}, path{};
+    const auto add = [](DoubleDouble& sum, double term) {
+        const DoubleDouble next = two_sum(sum.high, term);
+        sum = {next.high, sum.low + next.low};
+    };
     for (int panel = 0; panel < panels; ++panel) {
         const double middle = begin + (2 * panel + 1) * half;
         for (int first = 0; first <= count; first += pairs) {
@@ -46,13 +51,13 @@ WayTo way_by_panels(const PhaseTime& phase, int quarters, double begin, double e
             if (first == count && panel + 1 < panels) break;
             phase_rates(phase.rate, phase.map, quarters, offsets, rates);
             for (int i = 0; i < pairs; ++i) {
-                found.way.time += weights[i] * (rates.time[i] + rates.time[pairs + i]);
-                found.way.angle += weights[i] * (rates.angle[i] + rates.angle[pairs + i]);
-                found.way.path += weights[i] * (rates.path[i] + rates.path[pairs + i]);
+                add(time, weights[i] * (rates.time[i] + rates.time[pairs + i]));
+                add(angle, weights[i] * (rates.angle[i] + rates.angle[pairs + i]));
+                add(path, weights[i] * (rates.path[i] + rates.path[pairs + i]));
             }
         }
     }
-    found.way = {half * found.way.time, half * found.way.angle, half * found.way.path};
+    found.way = {half * double(time), half * double(angle), half * double(path)};
     found.end = {rates.time[phase_lanes - 1], rates.angle[phase_lanes - 1],
                  rates.path[phase_lanes - 1]};
     return found;
@@ -215,7 +220,9 @@ PhaseMove move(const PhaseTime& phase, const Place& from, double time) {
     constexpr double smallest_step = 3e-9;
     constexpr double largest_step = 0.5;
     constexpr int most_steps = 60;
-    double distance = rough_distance(phase, from, time);
+    // To places that are doubles themselves, so that the way and the place it leads to agree.
+    const auto to_double = [&](double distance) { return (from.offset + distance) - from.offset; };
+    double distance = to_double(rough_distance(phase, from, time));
     auto [way, slope] = way_between(phase, from.quarters, from.offset, from.offset + distance);
     for (int i = 0; i < most_steps; ++i) {
         const double step = std::clamp((time - way.time) / slope.time, -largest_step, largest_step);
@@ -226,8 +233,8 @@ PhaseMove move(const PhaseTime& phase, const Place& from, double time) {
             break;
         }
         const double begin = from.offset + distance;
-        const WayTo more = way_between(phase, from.quarters, begin, begin + step);
-        distance += step;
+        distance = to_double(distance + step);
+        const WayTo more = way_between(phase, from.quarters, begin, from.offset + distance);
         way.time += more.way.time;
         way.angle += more.way.angle;
         way.path += more.way.path;
@@ -235,6 +242,14 @@ PhaseMove move(const PhaseTime& phase, const Place& from, double time) {
     }
     way.time = time;
     return {moved(phase.map, from, distance), way};
+}
+
+// The place beyond a turning point is that as far before it.
+double path_between(const PhaseTime& phase, const Place& from, const Place& to) {
+    const double side = to.quarters == 0 ? std::copysign(1.0, to.offset) : to.quarters < 0 ? -1 : 1;
+    const double distance =
+        (2 * side - to.quarters - from.quarters) * phase.map.quarter - (to.offset + from.offset);
+    return way_between(phase, from.quarters, from.offset, from.offset + distance).way.path;
 }
 
 }  // namespace rolling_ellipse

@@ -44,4 +44,8 @@ struct PhaseMove {
 };
 PhaseMove move(const PhaseTime& phase, const Place& from, double time);
 
+// The path of the centre of a libration from a place to one beyond the next turning point, as it is
+// without the way to that and back.
+double path_between(const PhaseTime& phase, const Place& from, const Place& to);
+
 }  // namespace rolling_ellipse

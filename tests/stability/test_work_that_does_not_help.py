@@ -11,21 +11,39 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mpmath import mp
 from oracles.margins import told
 from oracles.numbers import EPS
 from oracles.stability import GRAVITY, GYRATION2, A, B, exponent
 from rolling_ellipse import Scene, flow, period, simulate
 
-STARTS = 100
+STARTS, FEW = 100, 8
 SPAN = 2.0  # s: its steps of powers of two end on it
 _random = np.random.default_rng(1)
 THETA, SPEED = _random.uniform(-0.1, 0.1, STARTS), _random.uniform(0.8, 1.2, STARTS)
 
 
 def exact(theta: np.ndarray = THETA, omega: np.ndarray = SPEED) -> np.ndarray:
-    """Angles after SPAN."""
+    """Angles after SPAN, as the package has them."""
     found, _, _ = flow(SPAN, a=A, b=B, theta=theta, omega=omega)
     return np.asarray(found)
+
+
+@cache
+def known() -> np.ndarray:
+    """Angles of the first FEW starts after SPAN, to 20 digits: Taylor series of mpmath."""
+    with mp.workdps(25):
+        a2, b2, k2, g = (mp.mpf(value) for value in (A**2, B**2, GYRATION2, GRAVITY))
+
+        def rates(_: Any, y: Any) -> list[Any]:
+            sine, cosine = mp.sin(y[0]), mp.cos(y[0])
+            h2 = a2 * sine**2 + b2 * cosine**2
+            slope = (a2 - b2) * sine * cosine / mp.sqrt(h2)
+            load = g + a2 * b2 / (h2 * mp.sqrt(h2)) * y[1] ** 2
+            return [y[1], -slope * load / (k2 + h2 + slope**2)]
+
+        starts = zip(THETA[:FEW].tolist(), SPEED[:FEW].tolist(), strict=True)
+        return np.array([float(mp.odefun(rates, 0, list(map(mp.mpf, y)))(SPAN)[0]) for y in starts])
 
 
 # ------------------------------------------------------------------- plain sums get worse
@@ -86,7 +104,6 @@ def test_plain_steps_get_worse_with_more_of_them() -> None:
 ORDERS = {"rk4": 4, "dopri5": 5, "radau": 5, "dop853": 8, "gauss": 8}
 COARSE = {"rk4": (4, 10), "dopri5": (5, 9), "radau": (4, 8), "dop853": (2, 4), "gauss": (2, 4)}
 FINE = {"rk4": (14, 18), "dopri5": (11, 17), "radau": (11, 15), "dop853": (8, 16), "gauss": (8, 16)}
-FEW = 8  # starts
 
 
 def stepped(method: Any, power: int) -> float:
@@ -101,7 +118,7 @@ def stepped(method: Any, power: int) -> float:
         ).theta[0]
         for theta, omega in zip(THETA[:FEW], SPEED[:FEW], strict=True)
     ]
-    return math.sqrt(np.mean((np.array(ends) - exact()[:FEW]) ** 2))
+    return math.sqrt(np.mean((np.array(ends) - known()) ** 2))
 
 
 @pytest.mark.parametrize("method", ORDERS)
@@ -118,17 +135,18 @@ def test_the_package_gets_no_worse(method: str) -> None:
         f"{staying[-1]:.1e} (2^-{fine[-1]})"
     )
     assert slope == pytest.approx(ORDERS[method], abs=0.5)
-    assert abs(rest) <= 0.15
+    last_bit = 2 * math.ulp(0.1)  # of most of the angles: there is no slope left to see
+    assert abs(rest) <= 0.15 or max(staying) <= last_bit
     assert max(staying) <= 4 * EPS * 0.4
 
 
 def test_exact_rolling_has_nothing_to_refine() -> None:
-    """One evaluation, and the error of the best above or less."""
+    """One evaluation, and an error no more than the others may keep."""
     ends = [
         simulate(Scene(A, B, theta=theta, omega=omega), [SPAN]).theta[0]
         for theta, omega in zip(THETA[:FEW], SPEED[:FEW], strict=True)
     ]
-    assert np.max(np.abs(np.array(ends) - exact()[:FEW])) <= EPS * 0.4
+    assert math.sqrt(np.mean((np.array(ends) - known()) ** 2)) <= 4 * EPS * 0.4
 
 
 # -------------------------------------------------------------------------------- a plateau
