@@ -108,7 +108,13 @@ def passed(measure: Measure, low: FloatArray, high: FloatArray) -> FloatArray:
     By bisection to neighbouring doubles, all pairs at once; the measure is told which of them.
     """
     low, high = low.copy(), high.copy()
-    before = np.sign(measure(low, np.arange(low.size)))
+    at_low, at_high = (measure(times, np.arange(low.size)) for times in (low, high))
+    before = np.sign(at_low)
+    # One of them is a root, and among other times it is rounded to the other side of it.
+    same = before == np.sign(at_high)
+    first = np.abs(at_low) <= np.abs(at_high)
+    high[same & first] = low[same & first]
+    low[same & ~first] = high[same & ~first]
     for _ in range(_MOST_BISECTIONS):
         middle = low + 0.5 * (high - low)
         between = np.flatnonzero((low < middle) & (middle < high))

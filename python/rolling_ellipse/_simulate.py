@@ -49,11 +49,12 @@ def simulate(
     model : {"auto", "rolling", "multipliers", "contact"}
         "rolling" is rolling without slip; the certificate (see `certify`) says until when it is
         true. "contact" is the whole motion: it rolls, slides, flies, hits the ground and comes to
-        rest, on segments joined by ``events``; exact rolling and flight, "dop853" at rounding level
-        for the rest. "auto" is "rolling" where the certificate proves it, and "contact" elsewhere;
-        with a method given it is "rolling". "multipliers" is the same motion in the report's five
-        coordinates with four constraints and their Lagrange multipliers, for study: "dop853" (also
-        its "auto"), "dopri5", "rk4", or "radau" with the stabilization "ggl".
+        rest, on segments joined by ``events``, none of which is stepped: slides are power series in
+        time [9]_ that end at proved first roots. "auto" is "rolling" where the certificate proves
+        it, and "contact" elsewhere; with a method given it is "rolling". "multipliers" is the same
+        motion in the report's five coordinates with four constraints and their Lagrange
+        multipliers, for study: "dop853" (also its "auto"), "dopri5", "rk4", or "radau" with the
+        stabilization "ggl".
     method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
         "exact" inverts the energy integral at each time; nothing is stepped, and neither
         tolerances nor the span matter. On a slope power series in time at rounding level follow
@@ -128,6 +129,7 @@ def simulate(
     .. [6] Ch. Lubich, Ch. Engstler, U. Nowak, U. Poehle, Mech. Struct. Mach. 23 (1995) 473.
     .. [7] C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12-13 (1985) 77.
     .. [8] NIST Digital Library of Mathematical Functions, 25.11.
+    .. [9] A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99.
     """
     require_scene(scene)
     raise_on_failure = flag("raise_on_failure", raise_on_failure)

@@ -244,7 +244,7 @@ def changed(values: Any, at: Any, value: float) -> Any:
         ("mode", lambda v: v + 9),
         ("events", lambda v: changed(v, (0, 1), 0.5)),
         ("events", lambda v: changed(v, (0, 8), 9)),
-        ("text", lambda v: v * 0 - 1),
+        ("text", lambda v: np.append(v, v[:1] + np.int8(1)) if v.size else np.ones(1, np.int8)),
         ("scenes", lambda v: -v),
         ("scenes", lambda v: v[:, :17]),
     ],

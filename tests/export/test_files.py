@@ -257,7 +257,7 @@ PARTS = {
     "whole": ("scene", "a", 2, r"scene must be what save writes, .*'a': 2\.0.*'a': 2\b"),
     "tolerance": ("settings", "rtol", -1.0, "rtol must be a finite number of at least 0, got -1"),
     "other model": ("settings", "model", "rolling", "model must be that of .*'rolling', got 'con"),
-    "other method": ("settings", "method", "rk4", "method must be that of .*'rk4', got 'dop853'"),
+    "other method": ("settings", "method", "rk4", "method must be that of .*'rk4', got 'exact'"),
     "no events": ("settings", "max_events", 0, "max_events must be at least 1, got 0"),
     "gains": ("settings", "baumgarte", [1.0], r"baumgarte must be two numbers, got \[1.0\]"),
 }

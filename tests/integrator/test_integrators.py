@@ -73,9 +73,10 @@ ORDER_SCENES = {
     "libration": (Scene(1.2, 1.0, theta=0.5), 3.0, 0.25),
     "circle-like": (Scene(1.1, 1.0, theta=0.3, omega=2.0), 2.0, 0.25),
 }
-# errors used for the fit: above rounding (1e-15), and small enough for the leading term to rule
+# errors used for the fit: well above rounding, an ulp of theta, 2e-15, of either solution, and
+# small enough for the leading term to rule
 LOW_ORDER_WINDOW = (1e-12, 1e-9)
-HIGH_ORDER_WINDOW = (2e-14, 1e-11)
+HIGH_ORDER_WINDOW = (6e-14, 3e-11)
 BETWEEN = (0.25, 0.5, 0.8)
 
 

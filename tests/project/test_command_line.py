@@ -321,9 +321,12 @@ def test_a_slope_has_a_summary_too(command: Any) -> None:
     code, out, err = command("--slope", "0.1", "--omega", "3", "--time", "2")
     assert (code, err) == (0, "")
     assert "COMPLETED" in out and "slope = 0.1 rad" in out
-    found = strict_json(command("--slope", "0.1", "--time", "2", "--json").out)
+    rocks = ("--slope", "0.1", "--omega", "0.5", "--time", "2", "--json")
+    found = strict_json(command(*rocks).out)
     assert found["period"] > 0 and found["smallest_normal_force"] > 0
-    assert found["distance"] > 0
+    runs = strict_json(command("--slope", "0.1", "--time", "2", "--json").out)
+    assert runs["period"] is None and runs["smallest_normal_force"] is None
+    assert runs["distance"] > 0
 
 
 def test_extreme_motions_are_still_json(command: Any) -> None:

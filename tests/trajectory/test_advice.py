@@ -69,7 +69,7 @@ def test_it_says_how_much_is_lost_and_what_to_use() -> None:
     )
     slope = Scene(2.0, 1.0, slope=0.01, omega=2.0)
     motion, (said,) = advice(slope, 3.0, step=0.4, model="rolling", method="rk4")
-    assert "or method 'gauss'" in said and motion.success
+    assert "or method 'exact'" in said and motion.success
 
 
 @pytest.mark.parametrize(
