@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numerics/pair.hpp"
+#include "numerics/series.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -13,38 +14,15 @@ constexpr int order = slide_order;
 // Two series, of which two products at a time are made.
 using TwoSeries = std::array<Pair, order + 1>;
 
-// The terms of the coefficients k of both products for which all is known before the coefficients
-// k: those from 1 to k - 1. Two sums need not wait for each other.
-inline Pair inner(const TwoSeries& p, const TwoSeries& q, int k) {
-    Pair even{};
-    Pair odd{};
-    int i = 1;
-    for (; i < k - 1; i += 2) {
-        even += p[i] * q[k - i];
-        odd += p[i + 1] * q[k - i - 1];
-    }
-    if (i == k - 1) even += p[i] * q[k - i];
-    return even + odd;
-}
-
-inline double inner(const SlideCoefficients& p, const SlideCoefficients& q, int k) {
-    double even = 0.0;
-    double odd = 0.0;
-    int i = 1;
-    for (; i < k - 1; i += 2) {
-        even += p[i] * q[k - i];
-        odd += p[i + 1] * q[k - i - 1];
-    }
-    if (i == k - 1) even += p[i] * q[k - i];
-    return even + odd;
+// The terms of the coefficient k of a product for which all is known before the coefficients k.
+template <class Coefficients>
+inline auto inner(const Coefficients& p, const Coefficients& q, int k) {
+    return terms(p, q, k, 1, k - 1);
 }
 
 // The terms 0 and k, of which the one is the other for k = 0.
-inline Pair outer(const TwoSeries& p, const TwoSeries& q, int k) {
-    return k == 0 ? p[0] * q[0] : p[0] * q[k] + p[k] * q[0];
-}
-
-inline double outer(const SlideCoefficients& p, const SlideCoefficients& q, int k) {
+template <class Coefficients>
+inline auto outer(const Coefficients& p, const Coefficients& q, int k) {
     return k == 0 ? p[0] * q[0] : p[0] * q[k] + p[k] * q[0];
 }
 

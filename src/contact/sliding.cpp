@@ -35,7 +35,7 @@ Response response(const SlidingBody& body, const Geometry& at, double omega) {
 
 ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double omega) {
     const auto [c, b] = response(body, at, omega);
-    const double force = body.mass * (c / b);
+    const double force = body.mass * (std::max(c, 0.0) / b);  // c = 0 at lift-off, but for rounding
     return {body.normal_share * force, body.friction_share * force};
 }
 
