@@ -40,7 +40,6 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
     const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
     switch (ending) {
         case Ending::completed:
-        case Ending::event:
             return {};
         case Ending::max_steps:
             return "max_steps = " + std::to_string(settings.max_steps) + " steps ended" + place +

@@ -78,13 +78,13 @@ class Method(enum.Enum):
 
 class Ending(enum.Enum):
     COMPLETED = 0
-    MAX_STEPS = 2
-    STEP_TOO_SMALL = 3
-    STEP_TOO_LARGE = 4
-    MAX_EVENTS = 5
-    JAMMED = 6
-    UNDETERMINED = 7
-    VALIDITY_LOST = 8
+    MAX_STEPS = 1
+    STEP_TOO_SMALL = 2
+    STEP_TOO_LARGE = 3
+    MAX_EVENTS = 4
+    JAMMED = 5
+    UNDETERMINED = 6
+    VALIDITY_LOST = 7
 
 class ArcKind(enum.Enum):
     """What a motion does between two events."""

@@ -198,7 +198,7 @@ class Follower {
     // B = 0: in a moment, N = c/B ends it.
     SlideStop last_moment() {
         const auto& [angle, omega, slip, path, time] = slide_.last;
-        const auto [end, state] = rolling_ellipse::last_moment(
+        const auto [stops, state] = rolling_ellipse::last_moment(
             slide_.body, {double(angle), double(omega), double(slip), double(path), double(time)});
         slide_.last = {{state.angle, 0.0},
                        {state.omega, 0.0},
@@ -206,7 +206,7 @@ class Follower {
                        {state.path, 0.0},
                        {state.time, 0.0}};
         slide_.pieces.push_back({slide_.last, SlideClock::time, 1.0, 0.0, {}, {}, {}, {}, {}});
-        return end == SlideEnd::slip_vanishes ? SlideStop::slip_vanishes : SlideStop::jams;
+        return stops ? SlideStop::slip_vanishes : SlideStop::jams;
     }
 
     Slide& slide_;

@@ -70,7 +70,7 @@ LastMoment last_moment(const SlidingBody& body, const SlideState& state) {
     const double until_made = (stops ? impulse_to_stop : impulse_to_jam) * b / c;
     const double least = std::min(until_no_b, until_made >= 0 ? until_made : infinity);
     const double after = least < infinity ? least : 0.0;
-    return {stops ? SlideEnd::slip_vanishes : SlideEnd::jams,
+    return {stops,
             {angle + omega * after, omega_after, slip_after, path + (slip + at.h * omega) * after,
              time + after}};
 }

@@ -5,9 +5,6 @@
 
 namespace rolling_ellipse {
 
-// In the order in which they count where they happen at once.
-enum class SlideEnd { slip_vanishes, pressure_vanishes, jams };
-
 // The state of a slide since its start; the angle is counted from a quarter turn.
 struct SlideState {
     double angle;
@@ -51,9 +48,9 @@ ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double o
 double slip_rate(const SlidingBody& body, const Geometry& at, double omega);
 
 // Where a slide ends that has come to B = 0 with c > 0: in a moment, N = c/B makes either the slip
-// or c vanish, physics (54).
+// or c vanish, physics (54): it stops slipping or jams.
 struct LastMoment {
-    SlideEnd end;
+    bool stops;
     SlideState state;
 };
 LastMoment last_moment(const SlidingBody& body, const SlideState& state);

@@ -83,11 +83,6 @@ class ExplicitMethod {
     // The dense output of the step of size h from a point.
     Dense dense_output(const Point<N>& from, double h) {
         evaluate<0, Tableau::stages + 1>(from, h);
-        return dense_output_of_last_step(from, h);
-    }
-
-    // The dense output of the step just taken, while `integrate` lets its point be seen.
-    Dense dense_output_of_last_step(const Point<N>& from, double h) {
         evaluate<Tableau::stages + 1, Tableau::all_stages>(from, h);
         const Vector<N> change = increment(h);
         const Vector<N>& slope_before = k_[0];
@@ -104,7 +99,7 @@ class ExplicitMethod {
         return dense;
     }
 
-    // Steps of controlled error up to t_end; `visit(point)` sees each new point, may change or stop
+    // Steps of controlled error up to t_end; `visit(point)` sees each new point and may change
     // it. The elementary controller of HNW II.4, with the limits that SciPy takes.
     template <class Visit>
     Ending integrate(Point<N> point, double t_end, const Tolerance& tolerance, long max_steps,
@@ -140,7 +135,6 @@ class ExplicitMethod {
                 ++counts_.rejected;
             }
             const AfterStep next = visit(point);
-            if (next == AfterStep::stop) return Ending::event;
             if (!(point.t < t_end)) return Ending::completed;
             if (next == AfterStep::changed) {
                 evaluate<0, 1>(point, 0.0);

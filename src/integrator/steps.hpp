@@ -8,9 +8,8 @@
 //     bool advance(Point<N>&, double h);       // one step; false if its stages have no solution
 //     Dense dense_output(const Point<N>& from, double h);  // .change(s), 0 <= s <= 1, since `from`
 //     const StepCounts& counts() const;
-// and, where it controls its error, for integration by its own steps and for events within them,
+// and, where it controls its error, for integration by its own steps,
 //     Ending integrate(Point<N>, double t_end, const Tolerance&, long max_steps, Visit);
-//     Dense dense_output_of_last_step(const Point<N>& from, double h);
 // It allocates nothing in a step, sums compensated (`add`), and knows nothing of ellipses.
 #pragma once
 

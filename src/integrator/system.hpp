@@ -63,23 +63,15 @@ struct StepCounts {
     long steps = 0;
     long rejected = 0;
     long evaluations = 0;  // of f
-
-    StepCounts& operator+=(const StepCounts& more) {
-        steps += more.steps;
-        rejected += more.rejected;
-        evaluations += more.evaluations;
-        return *this;
-    }
 };
 
-// What is to happen after a step: nothing, f to be evaluated anew, or an end.
-enum class AfterStep { go_on, changed, stop };
+// What is to happen after a step: nothing, or f to be evaluated anew.
+enum class AfterStep { go_on, changed };
 
-// How a motion ended. An integrator comes to the last time, to an event, or to a step that it may
-// not or cannot take; the rest is said of whole motions.
+// How a motion ended. An integrator comes to the last time, or to a step that it may not or cannot
+// take; the rest is said of whole motions.
 enum class Ending {
     completed,
-    event,
     max_steps,
     step_too_small,  // the tolerance cannot be met
     step_too_large,  // a fixed step: stages without a solution, or a state out of range
@@ -99,8 +91,8 @@ struct Integration {
 };
 
 // Steps of one size up to t_end, the last one shorter. `method.advance(point, h)` takes all of the
-// point but its time on by h, and says whether it could; `visit(point)` sees each new point, may
-// change or stop it. Times are not summed, so that no rounding collects.
+// point but its time on by h, and says whether it could; `visit(point)` sees each new point and may
+// change it. Times are not summed, so that no rounding collects.
 template <class Method, int N, class Visit>
 Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, double t_end,
                                 long max_steps, Visit visit) {
@@ -114,7 +106,7 @@ Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, dou
             return Ending::step_too_large;
         }
         point.t = last ? t_end : start + (n + 1) * step;
-        if (visit(point) == AfterStep::stop) return Ending::event;
+        visit(point);
     }
     return Ending::completed;
 }

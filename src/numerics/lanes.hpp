@@ -1,6 +1,6 @@
 // Several doubles side by side, and functions of them. For files that are compiled once for every
-// vector level, see rolling/flow_lanes.inl: everything here is in an anonymous namespace, so that
-// no function of a wide level can come to run on a machine without it.
+// vector level, see rolling/flow_lanes_kernel.hpp: everything here is in an anonymous namespace, so
+// that no function of a wide level can come to run on a machine without it.
 //
 // The same operations in the same order at every level, so that all levels give the same bits: a
 // fused multiply-add serves two_product alone, which is exact without it as well.

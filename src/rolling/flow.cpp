@@ -123,43 +123,14 @@ RollingFlow rolling_flow(const RollingStart& from, double x) {
     return flow;
 }
 
-PhaseInstant phase_instant(const RollingFlow& flow, double t) {
-    // Whole half turns first; t - n T is formed without rounding, T being a double-double.
-    const DoubleDouble& period = flow.phase.half_turn;
-    double half_turns = 0.0;
-    DoubleDouble time = flow.start_time + t;
-    if (std::isfinite(period.high)) {
-        half_turns = std::nearbyint(t / period.high);
-        time = flow.start_time + std::fma(-half_turns, period.high, t) +
-               two_product(-half_turns, period.low);
-        while (double(time * 2.0 - period) > 0) {
-            time = time - period;
-            half_turns += 1;
-        }
-        while (double(time * 2.0 + period) < 0) {
-            time = time + period;
-            half_turns -= 1;
-        }
-    }
-    return {time, half_turns};
-}
-
-double heading_after(const RollingMotion& motion, double half_turns) {
+double heading(const RollingMotion& motion) {
     if (motion.kind == MotionKind::rotation) return motion.direction;
-    const bool odd = std::fmod(half_turns, 2.0) != 0.0;
-    return odd == motion.start_on_way_back ? 1.0 : -1.0;
+    return motion.start_on_way_back ? -1.0 : 1.0;
 }
 
-PhasePoint phase_of(const RollingFlow& flow, double sin, double cos, double omega) {
-    if (flow.kind == MotionKind::rotation) return {sin, cos};
-    const double adjacent = omega * shape_factor(flow.phase.rate, sin);
-    const double size = std::hypot(sin, adjacent);
-    return {sin / size, adjacent / size};
-}
-
-QuarterState quarter_state(const RollingFlow& flow, const PhasePoint& phase) {
+QuarterPosition position_at(const RollingFlow& flow, const PhasePoint& phase) {
     const MotionPoint at = motion_point(flow, phase);
-    return {at.sin_phi, at.cos_phi, at.omega, quarter_position(flow.start, at.sin_phi, at.cos_phi)};
+    return quarter_position(flow.start, at.sin_phi, at.cos_phi);
 }
 
 namespace {
@@ -195,7 +166,7 @@ FlowSample sample(const RollingMotion& motion, double t) {
     const DoubleDouble& half_turn = motion.phase.half_turn;
     const auto [time, turns] = reduced(rotates ? half_turn : half_turn * 2.0, t);
     const PhaseMove made = move(motion.phase, motion.start_place, time);
-    const double heading = heading_after(motion, 0.0);
+    const double heading = rolling_ellipse::heading(motion);
     const MotionPoint now = motion_point(motion, phase_point(motion.phase.map, made.to));
     const double omega = heading * now.omega;
     if (!rotates) {

@@ -63,27 +63,11 @@ double longest_time(const RollingMotion& motion);
 // Throws std::invalid_argument for a time that is not finite or longer, in either direction.
 void validate_time(double t, double longest, const std::string& name = "t");
 
-// A time since the start as one since the flat position, half turns (or swings) made in between.
-struct PhaseInstant {
-    DoubleDouble time;  // within half a half turn of it
-    double half_turns;
-};
-PhaseInstant phase_instant(const RollingFlow& flow, double t);
+// +1 or -1: which way the motion goes at its start, for angles and for omega.
+double heading(const RollingMotion& motion);
 
-// +1 or -1: which way the motion goes after so many half turns, for angles and for omega.
-double heading_after(const RollingMotion& motion, double half_turns);
-
-// On the way up, at a phase between that of the flat position and a quarter turn later.
-struct QuarterState {
-    double sin;  // of the angle from the flat position
-    double cos;
-    double omega;
-    QuarterPosition position;
-};
-QuarterState quarter_state(const RollingFlow& flow, const PhasePoint& phase);
-
-// The phase of such a state, from the sine and cosine of its angle and its angular velocity.
-PhasePoint phase_of(const RollingFlow& flow, double sin, double cos, double omega);
+// Where the body is at a phase on the way up.
+QuarterPosition position_at(const RollingFlow& flow, const PhasePoint& phase);
 
 // Time of a full swing or of a full turn; infinite for a body at rest and on the separatrix.
 double period(const RollingMotion& motion);

@@ -207,7 +207,7 @@ class TableMaker {
         if (pieces[last].quarters == 0) return;
         const double tangent = places_[last].tangent;
         const double sin = 1 / std::hypot(1.0, tangent);
-        path(last) = quarter_state(flow_, {sin, tangent * sin}).position.path;
+        path(last) = position_at(flow_, {sin, tangent * sin}).path;
         for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
             path(i - 1) = path(i) - step(i);
     }
@@ -257,7 +257,7 @@ class TableMaker {
             reader.half_turns_per_time = 1 / half_turn.high;
         }
         reader.start_time = flow_.start_time;
-        reader.spin = heading_after(flow_, 0.0);
+        reader.spin = heading(flow_);
         reader.alternates = !rotates_;
         reader.quarters_per_half_turn = rotates_ ? 2 * flow_.direction : 0.0;
         const QuarterPosition& from = flow_.start_position;

@@ -204,16 +204,6 @@ DoubleDouble time_since_flat(const PhaseTime& phase, const PhasePoint& point) {
     return phase.quarter_turn * double(at.quarters) + time;
 }
 
-PhasePoint point_at_time(const PhaseTime& phase, DoubleDouble time) {
-    const double since_flat = double(time);
-    const int side = since_flat < 0 ? -1 : 1;
-    if (std::abs(since_flat) <= 0.5 * phase.quarter_turn.high) {
-        return phase_point(phase.map, move(phase, {0, 0.0}, since_flat).to);
-    }
-    const double since_tip = double(time - phase.quarter_turn * double(side));
-    return phase_point(phase.map, move(phase, {side, 0.0}, since_tip).to);
-}
-
 // Newton's method: the way is integrated to a first guess, and extended by what is missing. The
 // last step is so small that its square is below rounding.
 PhaseMove move(const PhaseTime& phase, const Place& from, double time) {

@@ -34,9 +34,6 @@ double shape_factor(const PhaseRate& rate, double sin_phi);
 
 DoubleDouble time_since_flat(const PhaseTime& phase, const PhasePoint& point);
 
-// The inverse of time_since_flat, for |time| <= half_turn/2.
-PhasePoint point_at_time(const PhaseTime& phase, DoubleDouble time);
-
 // Where a motion is after a time of at most a full swing, and the way there.
 struct PhaseMove {
     Place to;
