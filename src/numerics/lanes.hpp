@@ -6,7 +6,9 @@
 // fused multiply-add serves two_product alone, which is exact without it as well.
 #pragma once
 
+#if defined(__x86_64__)
 #include <immintrin.h>
+#endif
 
 #if defined(__AVX512F__)
 #define ROLLING_ELLIPSE_LANES 8
@@ -47,8 +49,11 @@ inline Pack sqrt(Pack x) {
     return (Pack)_mm512_maskz_sqrt_pd(0xff, (__m512d)x);
 #elif defined(__AVX2__)
     return (Pack)_mm256_sqrt_pd((__m256d)x);
-#else
+#elif defined(__SSE2__)
     return (Pack)_mm_sqrt_pd((__m128d)x);
+#else
+    for (int i = 0; i < lanes; ++i) x[i] = __builtin_sqrt(x[i]);
+    return x;
 #endif
 }
 

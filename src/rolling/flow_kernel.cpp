@@ -2,14 +2,17 @@
 
 namespace rolling_ellipse {
 
-const FlowKernel& flow_kernel() {
-#if defined(__x86_64__) && defined(__GNUC__)
-    static const FlowKernel best = __builtin_cpu_supports("avx512f") ? flow_kernel_avx512()
-                                   : __builtin_cpu_supports("avx2")  ? flow_kernel_avx2()
-                                                                     : flow_kernel_baseline();
-#else
-    static const FlowKernel best = flow_kernel_baseline();
+FlowKernel flow_kernel(LaneLevel level) {
+#ifdef ROLLING_ELLIPSE_HAS_LANES
+    if (level == LaneLevel::avx512) return flow_kernel_avx512();
+    if (level == LaneLevel::avx2) return flow_kernel_avx2();
 #endif
+    static_cast<void>(level);
+    return flow_kernel_baseline();
+}
+
+const FlowKernel& flow_kernel() {
+    static const FlowKernel best = flow_kernel(lane_levels().back());
     return best;
 }
 

@@ -1,24 +1,26 @@
-// What a table of exact rolling is made of and read by, eight numbers side by side: the same code
-// for several vector levels (flow_kernel_*.cpp), of which the best one of the machine is taken. No
-// instruction but the plain ones, and so the same bits at every level.
+// What a table of exact rolling is made of and read by: the same code for several vector levels
+// (flow_kernel_*.cpp), of which the best one of the machine is taken, with the same bits at every
+// level (see numerics/lanes.hpp).
 #pragma once
 
 #include <cstddef>
 
 #include "numerics/double_double.hpp"
+#include "numerics/lane_levels.hpp"
 #include "numerics/series.hpp"
 #include "rolling/phase_time.hpp"
 
 namespace rolling_ellipse {
 
-inline constexpr int lanes = 8;
+inline constexpr int batch_size = 8;  // places of a table that are made at once
 inline constexpr int table_order = 14;
 inline constexpr int table_size = table_order + 1;
 inline constexpr int series_columns = 4;  // angle, omega, path; a row of a series fills a register
 
-// Angle, angular velocity and path as power series in time, from a place of the motion on.
+// Angle, angular velocity and path as power series in time, from a place of the motion on. One
+// more row, of zeros: rows are read in pairs.
 struct TableSeries {
-    alignas(32) double rows[table_size][series_columns];
+    alignas(64) double rows[table_size + 1][series_columns];
 };
 
 // The constants of the series, with lengths in units of the long semi-axis and time in a unit of
@@ -32,7 +34,7 @@ struct TableConstants {
 };
 
 struct alignas(64) Eight {
-    double of[lanes];
+    double of[batch_size];
 };
 
 // Phases by the tangent of their offset from the flat position, or from the tip.
@@ -78,11 +80,13 @@ struct FlowPiece {
 // A motion as its pieces see it.
 struct FlowReader {
     const FlowPiece* pieces;
-    std::size_t count;
+    const double* ends;  // of the pieces; the last of them is taken for all that is beyond
+    double last_end;
     const unsigned short* first;  // by buckets of time: the first piece that reaches into it
     double buckets_per_time;
-    std::size_t buckets;
-    double per_unit;  // of time, to the variable of the series
+    double last_bucket;
+    int most_in_bucket;  // pieces that end in one
+    double per_unit;     // of time, to the variable of the series
     // Half turns and the time since the flat position.
     DoubleDouble half_turn;
     double half_turns_per_time;
@@ -124,6 +128,9 @@ struct FlowKernel {
 FlowKernel flow_kernel_baseline();
 FlowKernel flow_kernel_avx2();
 FlowKernel flow_kernel_avx512();
+
+// For a level that the machine has; the narrowest serves all below.
+FlowKernel flow_kernel(LaneLevel level);
 
 // The best one of the machine.
 const FlowKernel& flow_kernel();

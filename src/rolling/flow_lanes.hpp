@@ -10,20 +10,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "numerics/gauss_legendre.hpp"
+#include "numerics/lane_levels.hpp"
 #include "rolling/flow.hpp"
 
 namespace rolling_ellipse {
-
-enum class LaneLevel { one_by_one, sse2, avx2, avx512 };
-
-std::string name(LaneLevel level);
-
-// Those that the machine has and the build knows, the quickest last.
-std::vector<LaneLevel> lane_levels();
 
 // The states of n bodies at times of their own, not validated; throws std::invalid_argument for a
 // time that is.

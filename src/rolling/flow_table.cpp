@@ -29,7 +29,7 @@ struct Batches {
 class TableMaker {
   public:
     explicit TableMaker(const RollingFlow& flow)
-        : flow_(flow), kernel_(flow_kernel()), table_{flow, {}, {}, {}, {}} {
+        : flow_(flow), kernel_(flow_kernel()), table_{flow, {}, {}, {}, {}, {}} {
         const PhaseRate& rate = flow.phase.rate;
         rotates_ = flow.kind == MotionKind::rotation;
         length_ = flow.start.long_axis;
@@ -79,14 +79,14 @@ class TableMaker {
 
     template <class Batch>
     static double& at(std::vector<Batch>& batches, Eight Batch::* column, std::size_t i) {
-        return (batches[i / lanes].*column).of[i % lanes];
+        return (batches[i / batch_size].*column).of[i % batch_size];
     }
 
     // The states of all places and, after them, of the start; and their series.
     void expand() {
-        const std::size_t size = count() / lanes + 1;
+        const std::size_t size = count() / batch_size + 1;
         std::vector<PlaceBatch> at_places(size);
-        for (std::size_t i = 0; i < size * lanes; ++i) {
+        for (std::size_t i = 0; i < size * batch_size; ++i) {
             const std::size_t j = std::min(i, count() - 1);
             const bool at_tip = places_[j].at_tip;
             const bool first_of_half = j == 0 || (at_tip && places_[j].tangent == 1.0);
@@ -117,7 +117,7 @@ class TableMaker {
     // Do the series meet half way between their places?
     bool holds() {
         const double per_unit = 0.5 / unit_;
-        for (std::size_t i = 0; i < all_.reach.size() * lanes; ++i) {
+        for (std::size_t i = 0; i < all_.reach.size() * batch_size; ++i) {
             const std::size_t j = std::min(i, count() - 1);
             const double back = per_unit * duration(std::max<std::size_t>(j, 1));
             at(all_.reach, &ReachBatch::back, i) = back;
@@ -154,9 +154,9 @@ class TableMaker {
     }
 
     TableSeries series(std::size_t i, double angle) const {
-        const SeriesBatch& from = all_.series[i / lanes];
-        const std::size_t lane = i % lanes;
-        TableSeries found;
+        const SeriesBatch& from = all_.series[i / batch_size];
+        const std::size_t lane = i % batch_size;
+        TableSeries found{};
         for (int k = 0; k <= table_order; ++k) {
             found.rows[k][0] = from.angle[k].of[lane];
             found.rows[k][1] = from.omega[k].of[lane] / unit_;
@@ -221,35 +221,45 @@ class TableMaker {
         SeriesBatch same{};
         ReachBatch found{};
         double radius = (piece->high - piece->low) / unit_;
-        const SeriesBatch& from = all_.series[count() / lanes];
-        for (int i = 0; i < lanes; ++i) {
+        const SeriesBatch& from = all_.series[count() / batch_size];
+        for (int i = 0; i < batch_size; ++i) {
             for (int k = 0; k <= table_order; ++k) {
-                same.angle[k].of[i] = from.angle[k].of[count() % lanes];
-                same.omega[k].of[i] = from.omega[k].of[count() % lanes];
-                same.path[k].of[i] = from.path[k].of[count() % lanes];
+                same.angle[k].of[i] = from.angle[k].of[count() % batch_size];
+                same.omega[k].of[i] = from.omega[k].of[count() % batch_size];
+                same.path[k].of[i] = from.path[k].of[count() % batch_size];
             }
             found.back.of[i] = found.forward.of[i] = radius;
             radius *= 0.75;
         }
         kernel_.reach(same, found);
-        const auto* const holds = std::find(found.holds.of, found.holds.of + lanes, 1.0);
-        table_.reader.start_radius =
-            holds == found.holds.of + lanes ? 0.0 : unit_ * found.back.of[holds - found.holds.of];
+        const auto* const holds = std::find(found.holds.of, found.holds.of + batch_size, 1.0);
+        table_.reader.start_radius = holds == found.holds.of + batch_size
+                                         ? 0.0
+                                         : unit_ * found.back.of[holds - found.holds.of];
     }
 
     void describe() {
         FlowReader& reader = table_.reader;
         const std::vector<FlowPiece>& pieces = table_.pieces;
-        reader.count = pieces.size();
-        reader.buckets = table_.first.size();
-        reader.buckets_per_time = double(reader.buckets) / pieces.back().high;
+        const std::size_t buckets = table_.first.size();
+        table_.ends.reserve(pieces.size());
+        for (const FlowPiece& piece : pieces) table_.ends.push_back(piece.high);
+        table_.ends.back() = infinity;
+        reader.last_end = pieces.back().high;
+        reader.buckets_per_time = double(buckets) / reader.last_end;
+        reader.last_bucket = double(buckets - 1);
         std::size_t piece = 0;
-        for (std::size_t i = 0; i < reader.buckets; ++i) {
-            while (pieces[piece].high * reader.buckets_per_time * (1 + 4 * epsilon) < double(i)) {
+        for (std::size_t i = 0; i < buckets; ++i) {
+            while (table_.ends[piece] * reader.buckets_per_time * (1 + 4 * epsilon) < double(i)) {
                 ++piece;
             }
             table_.first[i] = static_cast<unsigned short>(piece);
+            const int before = table_.first[i == 0 ? 0 : i - 1];
+            reader.most_in_bucket = std::max(reader.most_in_bucket, int(piece) - before);
         }
+        // Of the last bucket, and one more for the roundings of a time.
+        const int in_last = int(pieces.size() - 1 - piece);
+        reader.most_in_bucket = std::max(reader.most_in_bucket, in_last) + 1;
         reader.per_unit = 1 / unit_;
         const DoubleDouble half_turn = flow_.phase.half_turn;
         if (std::isfinite(half_turn.high)) {
@@ -287,6 +297,7 @@ FlowTable flow_table(const RollingFlow& flow) { return TableMaker(flow).make(); 
 FlowReader reader(const FlowTable& table) {
     FlowReader found = table.reader;
     found.pieces = table.pieces.data();
+    found.ends = table.ends.data();
     found.first = table.first.data();
     found.start = &table.start;
     return found;

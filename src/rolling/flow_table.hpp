@@ -26,6 +26,7 @@ inline void store(const FlowSample& sample, const FlowColumns& columns, std::siz
 struct FlowTable {
     RollingFlow flow;
     std::vector<FlowPiece> pieces;
+    std::vector<double> ends;
     TableSeries start;  // about t = 0; its angle and path are those since then
     std::array<unsigned short, 256> first;
     FlowReader reader;  // but for what it points to

@@ -168,11 +168,8 @@ void wrong_numbers_are_refused() {
 }
 
 std::vector<FlowKernel> kernels_of_this_machine() {
-    std::vector<FlowKernel> found = {flow_kernel_baseline()};
-#if defined(__x86_64__) && defined(__GNUC__)
-    if (__builtin_cpu_supports("avx2")) found.push_back(flow_kernel_avx2());
-    if (__builtin_cpu_supports("avx512f")) found.push_back(flow_kernel_avx512());
-#endif
+    std::vector<FlowKernel> found;
+    for (const LaneLevel level : lane_levels()) found.push_back(flow_kernel(level));
     return found;
 }
 
@@ -188,7 +185,7 @@ void every_vector_level_has_the_same_bits() {
         const FlowTable table = flow_table(rolling_flow(rolling_start(body, 0.2, omega)));
         const PhaseRate& rate = table.flow.phase.rate;
         PlaceBatch places{};
-        for (int i = 0; i < lanes; ++i) {
+        for (int i = 0; i < batch_size; ++i) {
             places.at_tip.of[i] = i % 2;
             places.tangent.of[i] = 0.12 * i + 0.11;
             places.from.of[i] = 0.12 * i;
