@@ -205,7 +205,7 @@ DoubleDouble time_since_flat(const PhaseTime& phase, const PhasePoint& point) {
 }
 
 // Newton's method: the way is integrated to a first guess, and extended by what is missing. The
-// last step is so small that its square is below rounding.
+// last step is so small that its square is below rounding, or the place does not show it.
 PhaseMove move(const PhaseTime& phase, const Place& from, double time) {
     constexpr double smallest_step = 3e-9;
     constexpr double largest_step = 0.5;
@@ -216,13 +216,15 @@ PhaseMove move(const PhaseTime& phase, const Place& from, double time) {
     auto [way, slope] = way_between(phase, from.quarters, from.offset, from.offset + distance);
     for (int i = 0; i < most_steps; ++i) {
         const double step = std::clamp((time - way.time) / slope.time, -largest_step, largest_step);
-        if (std::abs(step) <= smallest_step * std::min(std::abs(distance), 1.0)) {
+        const double begin = from.offset + distance;
+        const double least =
+            std::max(smallest_step * std::min(std::abs(distance), 1.0), epsilon * std::abs(begin));
+        if (std::abs(step) <= least) {
             distance += step;
             way.angle += step * slope.angle;
             way.path += step * slope.path;
             break;
         }
-        const double begin = from.offset + distance;
         distance = to_double(distance + step);
         const WayTo more = way_between(phase, from.quarters, begin, from.offset + distance);
         way.time += more.way.time;
