@@ -139,8 +139,9 @@ class Sorter {
         }
     }
 
-    // The integral of h omega over time: no place of it is as far as the flat position or the tip,
-    // beside which the integrand has its singularities.
+    // The integral of h omega over time, for moves that stay on their side of 45 degrees: no place
+    // of it is as far as the flat position or the tip, beside which the integrand has its
+    // singularities. A path half as long as that to the tip may lead past a flat position.
     std::optional<double> path_over_time(RollingStart start, double t, int rule) const {
         constexpr int nodes = 16;
         const GaussRule& gauss = gauss_rule(nodes);
@@ -158,11 +159,15 @@ class Sorter {
         std::array<double, nodes> losses;
         kernel_({starts.data(), times.data(), places.data(), nodes, rule}, samples.data(),
                 losses.data());
+        const bool near_tip = std::abs(start.view.sin) > start.view.cos;
         double sum = 0.0;
         for (int k = 0; k < nodes; ++k) {
-            if (losses[k] == infinity) return std::nullopt;
-            const double h = std::hypot(start.view.long_axis * std::sin(samples[k].theta),
-                                        start.view.short_axis * std::cos(samples[k].theta));
+            const double sin = std::sin(samples[k].theta);
+            const double cos = std::cos(samples[k].theta);
+            if (losses[k] == infinity || (std::abs(sin) > std::abs(cos)) != near_tip) {
+                return std::nullopt;
+            }
+            const double h = std::hypot(start.view.long_axis * sin, start.view.short_axis * cos);
             sum += gauss.weights[k % (nodes / 2)] * (h * samples[k].omega);
         }
         return 0.5 * t * sum;

@@ -132,6 +132,10 @@ EXTREMES: dict[str, Callable[[], Columns]] = {
         "gyration2": 10.0 ** np.arange(-58, 58, 4), "gravity": 10.0 ** np.arange(-29, 29, 2),
         "omega": 3.0, "t": 0.2,
     },
+    # the way from 45 degrees to the tip of a thin body is 2.4 times that to its flat position
+    "from beside 45 degrees past the flat": lambda: {
+        "b": 0.02, "theta": -0.79, "omega": 3.0, "t": np.linspace(0.15, 0.35, 41),
+    },
     "very fast": lambda: {"omega": 10.0 ** np.arange(1, 49, 4), "t": 10.0 ** -np.arange(1, 49, 4)},
     "no time at all": lambda: {"theta": 0.3, "omega": np.linspace(-2, 2, 9), "t": 0.0},
 }  # fmt: skip
