@@ -8,7 +8,8 @@ namespace {
 
 // A climb of fewer half turns is followed by series.
 constexpr double least_climb = 16;
-// Half turns downhill that are followed by series before a sum over them is worth its preparation.
+// Half turns that are followed by series before a sum over them: it is worth its preparation then,
+// and a shorter way loses digits in it.
 constexpr double half_turns_before_a_run = 1;
 
 SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega) {
@@ -46,6 +47,11 @@ SlopePlace begin(SlopeFlow& flow) {
     if (start.omega >= 0) return start;
     const double n = may_run(flow.body, flow.energy.start, flow.energy.height, start.omega);
     if (n < least_climb) return start;
+    SlopePlace at = start;
+    while (start.quarters - at.quarters <= 2 * half_turns_before_a_run) {
+        flow.foot.push_back(piece_from(flow.body, at));
+        at = place_after(flow.body, flow.energy, flow.foot.back());
+    }
     flow.climb = slope_run(flow.body, start, flow.energy.start, n);
     flow.climbed = n;
     return place_after(*flow.climb, n);
@@ -62,12 +68,12 @@ SlopePlace circle_at(const SlopeFlow& flow, double t) {
     return place;
 }
 
-SlopePlace place_in_pieces(const SlopeFlow& flow, DoubleDouble time) {
+SlopePlace place_in_pieces(const std::vector<SlopePiece>& pieces, DoubleDouble time) {
     const double t = double(time);
     const auto later = std::upper_bound(
-        flow.pieces.begin(), flow.pieces.end(), t,
+        pieces.begin(), pieces.end(), t,
         [](double at, const SlopePiece& piece) { return at < double(piece.from.time); });
-    const SlopePiece& piece = later == flow.pieces.begin() ? *later : later[-1];
+    const SlopePiece& piece = later == pieces.begin() ? *later : later[-1];
     return place_in(piece, double(time - piece.from.time));
 }
 
@@ -77,11 +83,11 @@ SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
     const DoubleDouble last = flow.turnings[1];
     const DoubleDouble half = last - first;
     const DoubleDouble since = -last + t;
-    if (double(since) <= 0) return place_in_pieces(flow, {t, 0.0});
+    if (double(since) <= 0) return place_in_pieces(flow.pieces, {t, 0.0});
     const double swings = std::floor(double(since) / double(half));
     const DoubleDouble rest = since - half * swings;
     const bool back = std::fmod(swings, 2.0) == 0;
-    SlopePlace place = place_in_pieces(flow, back ? last - rest : first + rest);
+    SlopePlace place = place_in_pieces(flow.pieces, back ? last - rest : first + rest);
     if (back) place.omega = -place.omega;
     return place;
 }
@@ -142,10 +148,11 @@ SlopePlace place_at(const SlopeFlow& flow, double t) {
     if (flow.kind == MotionKind::uniform) return circle_at(flow, time);
     if (flow.kind == MotionKind::libration) return place_in_swing(flow, time);
     if (flow.climb && time < double(first_of_pieces(flow).time)) {
+        if (time < flow.foot.back().end()) return place_in_pieces(flow.foot, {time, 0.0});
         return place_at(*flow.climb, {time, 0.0});
     }
     if (flow.run && time > known_until(flow)) return place_at(*flow.run, {time, 0.0});
-    return place_in_pieces(flow, {time, 0.0});
+    return place_in_pieces(flow.pieces, {time, 0.0});
 }
 
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {

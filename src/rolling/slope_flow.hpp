@@ -2,9 +2,9 @@
 //
 // The motion begins with power series about its start (`pieces`). Where it rocks between two
 // turning points they are followed up to the second one, and all else is their repetition. Where it
-// runs uphill for many half turns, these are a sum (`climb`), and the series begin near its top;
-// once it runs downhill for good, the rest is one (`run`). So neither cost nor error grow with the
-// time.
+// runs uphill for many half turns, all but the first (`foot`) are a sum (`climb`), and the series
+// go on near its top; once it runs downhill for good, the rest is one (`run`). So neither cost nor
+// error grow with the time.
 #pragma once
 
 #include <optional>
@@ -25,6 +25,7 @@ struct SlopeFlow {
     double acceleration;  // of a circle
     SlopePlace start;
     SlopeEnergy energy;
+    std::vector<SlopePiece> foot;  // of a climb: a sum loses the digits of a short way
     std::optional<SlopeRun> climb;
     double climbed;  // half turns
     std::vector<SlopePiece> pieces;
