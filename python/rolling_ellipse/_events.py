@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 from ._core import EventKind, Mode
 from ._faces import Row, brief, html_table, text_table
-from ._fields import trusted
+from ._fields import FieldsOnly, find_late, trusted
 from ._scene import InitialState, Scene
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
 _STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot", "mode")
-_numbers = attrgetter(*_STATE)
+_numbers = attrgetter(*_STATE[:-1])
+_KINDS: dict[float, EventKind] = {kind.value: kind for kind in EventKind}
+_MODES: dict[float, Mode] = {mode.value: mode for mode in Mode}
 _SENTENCES = {
     EventKind.SLIP: "friction cannot hold the contact any more",
     EventKind.STICK: "the slip has come to an end; the body rolls",
@@ -35,7 +37,7 @@ _FIRST, _LAST = 12, 4  # of many events, those shown
 
 
 @dataclass(frozen=True, repr=False)
-class Event:
+class Event(FieldsOnly):
     """A change of mode, or an impact.
 
     Attributes
@@ -123,45 +125,59 @@ class Events(tuple[Event, ...]):
         return events_dataframe(self)
 
 
-def event(scene: Scene, found: Any) -> Event:
-    """Make an event of what the core, or a file, says: t, kind, and the states before and after."""
-    kind, before, after, mass = found.kind, found.before, found.after, scene.mass
-    hit = kind is EventKind.IMPACT
-    pulled = kind is EventKind.SLIP and math.isinf(scene.friction)
-    free_omega = before.omega
-    says = _SLIP_WITHOUT_LIMIT if pulled else _SENTENCES[kind]
-    reaction_x = mass * (after.x_dot - before.x_dot) if hit else 0.0
-    reaction_z = mass * (after.z_dot - before.z_dot) if hit else 0.0
-    return Event(
-        found.t,
-        kind,
-        state_before=_state(before, free_omega, "just before", 0.0, 0.0),
-        state_after=_state(after, free_omega, says, reaction_x, reaction_z),
+def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:
+    """Make the events of what the core, or a file, says; their states when they are asked for.
+
+    A row holds t and the code of the kind, then theta, omega, x, z, x_dot, z_dot and the code of
+    the mode, just before and just after.
+    """
+    return Events(
+        [
+            trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_found": row, "_scene": scene})
+            for row in rows
+        ]
     )
 
 
+def _before(event: Any) -> InitialState:
+    return _state(event._found[2:9], event._found[3], "just before", 0.0, 0.0)
+
+
+def _after(event: Any) -> InitialState:
+    row, scene, kind = event._found, event._scene, event.kind
+    hit = kind is EventKind.IMPACT
+    pulled = kind is EventKind.SLIP and math.isinf(scene.friction)
+    reaction_x = scene.mass * (row[13] - row[6]) if hit else 0.0
+    reaction_z = scene.mass * (row[14] - row[7]) if hit else 0.0
+    says = _SLIP_WITHOUT_LIMIT if pulled else _SENTENCES[kind]
+    return _state(row[9:16], row[3], says, reaction_x, reaction_z)
+
+
 def _state(
-    state: Any, free_omega: float, reason: str, reaction_x: float, reaction_z: float
+    numbers: Sequence[float], free_omega: float, reason: str, reaction_x: float, reaction_z: float
 ) -> InitialState:
-    values = dict(zip(_STATE, _numbers(state), strict=True))
-    values |= {"reaction_x": reaction_x, "reaction_z": reaction_z}
+    values: dict[str, Any] = dict(zip(_STATE, numbers, strict=True))
+    values |= {"mode": _MODES[values["mode"]], "reaction_x": reaction_x, "reaction_z": reaction_z}
     return trusted(InitialState, values | {"free_omega": free_omega, "reason": reason})
+
+
+find_late(Event, state_before=_before, state_after=_after)
 
 
 def as_numbers(found: Event) -> list[Any]:
     """Return an event as JSON knows it; `from_numbers` makes it again."""
     before, after = (
-        [*(getattr(state, name) for name in _STATE[:-1]), int(state.mode)]
-        for state in (found.state_before, found.state_after)
+        [*_numbers(state), int(state.mode)] for state in (found.state_before, found.state_after)
     )
     return [found.t, found.kind.name, before, after]
 
 
-def from_numbers(scene: Scene, numbers: list[Any]) -> Event:
-    """Make an event of what `as_numbers` returned."""
-    t, kind, *states = numbers
-    before, after = (
-        SimpleNamespace(**dict(zip(_STATE, (*state[:-1], Mode(state[-1])), strict=True)))
-        for state in states
-    )
-    return event(scene, SimpleNamespace(t=t, kind=EventKind[kind], before=before, after=after))
+def from_numbers(numbers: list[Any]) -> list[Any]:
+    """Return what `as_numbers` returned as a row that `events` takes."""
+    t, kind, before, after = numbers
+    row = [t, EventKind[kind].value]
+    for state in (before, after):
+        if len(state) != len(_STATE):
+            raise ValueError(f"events must hold states of {len(_STATE)} numbers, got {state!r}")
+        row += [*state[:-1], Mode(state[-1])]
+    return row

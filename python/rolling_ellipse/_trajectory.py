@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _core
 from ._check import FloatArray, array, number
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
-from ._events import Event, Events, event
+from ._events import Event, Events, events
 from ._fields import FieldsOnly, find_late, trusted
 from ._quantities import MODE, QUANTITIES
 from ._samples import (
@@ -287,7 +287,7 @@ class Trajectory(FieldsOnly):
         """Changes of mode and impacts in the order of time, a tuple that prints as a table."""
         if self.kept_events is not None:
             return Events(self.kept_events)
-        return Events(event(self.scene, found) for found in self._solution.events)
+        return events(self.scene, self._solution.events.tolist())
 
     @property
     def success(self) -> bool:

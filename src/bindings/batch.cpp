@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bindings/bindings.hpp"
+#include "bindings/samples.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -12,7 +13,6 @@ using Codes = py::array_t<std::int64_t>;
 using Bytes = py::array_t<std::int8_t>;
 
 constexpr py::ssize_t scene_numbers = 18;
-constexpr py::ssize_t event_numbers = 16;
 constexpr int refused = -1;  // in the place of an Ending
 
 // A row of the table; NaN is what was not given.
@@ -109,14 +109,6 @@ py::ssize_t total(const std::vector<Answer>& answers, py::ssize_t (*count)(const
     return sum;
 }
 
-double* store_state(const State& state, double* to) {
-    for (const double value :
-         {state.theta, state.omega, state.x, state.z, state.x_dot, state.z_dot}) {
-        *to++ = value;
-    }
-    return to;
-}
-
 // How each ended, one row a scene.
 py::dict facts(const std::vector<Answer>& answers) {
     const py::ssize_t n = answers.size();
@@ -155,14 +147,7 @@ Array event_table(const std::vector<Answer>& answers) {
         event_numbers);
     double* to = table.mutable_data();
     for (const Answer& each : answers) {
-        for (const Event& event : each.solution.motion.events) {
-            *to++ = event.t;
-            *to++ = static_cast<int>(event.kind);
-            for (const State* state : {&event.before, &event.after}) {
-                to = store_state(*state, to);
-                *to++ = static_cast<int>(state->mode);
-            }
-        }
+        for (const Event& event : each.solution.motion.events) to = store_event(event, to);
     }
     return table;
 }

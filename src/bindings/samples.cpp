@@ -19,6 +19,24 @@ CoordinateState single_state(const Array& q, const Array& q_dot) {
     return state_at(q, q_dot, 0);
 }
 
+double* store_state(const State& state, double* to) {
+    for (const double value :
+         {state.theta, state.omega, state.x, state.z, state.x_dot, state.z_dot}) {
+        *to++ = value;
+    }
+    return to;
+}
+
+double* store_event(const Event& event, double* to) {
+    *to++ = event.t;
+    *to++ = static_cast<int>(event.kind);
+    for (const State* state : {&event.before, &event.after}) {
+        to = store_state(*state, to);
+        *to++ = static_cast<int>(state->mode);
+    }
+    return to;
+}
+
 FlowColumns columns(std::vector<Array>& arrays) {
     return {arrays[0].mutable_data(), arrays[1].mutable_data(), arrays[2].mutable_data()};
 }

@@ -139,6 +139,15 @@ py::dict losses_by_name(const Solution& solution) {
     return py::dict("energy"_a = found.energy, "constraints"_a = found.constraints);
 }
 
+// A row an event.
+Array events(const Solution& solution) {
+    const std::vector<Event>& found = solution.motion.events;
+    Array table = matrix(found.size(), event_numbers);
+    double* to = table.mutable_data();
+    for (const Event& event : found) to = store_event(event, to);
+    return table;
+}
+
 // The marks as an array.
 py::array_t<double> marks(const Arc& arc) {
     return py::array_t<double>(static_cast<py::ssize_t>(arc.marks.size()), arc.marks.data());
@@ -172,11 +181,6 @@ void bind_solution(py::module_& m) {
         .value("STEP_TOO_SMALL", Ending::step_too_small)
         .value("STEP_TOO_LARGE", Ending::step_too_large)
         .finalize();
-    bind_class<Event>(m, "Event")
-        .def_readonly("t", &Event::t)
-        .def_readonly("kind", &Event::kind)
-        .def_readonly("before", &Event::before)
-        .def_readonly("after", &Event::after);
     py::native_enum<ArcKind>(m, "ArcKind", "enum.Enum", "What a motion does between two events.")
         .value("STILL", ArcKind::still)
         .value("UNIFORM", ArcKind::uniform)
@@ -203,7 +207,7 @@ void bind_solution(py::module_& m) {
         .def_property_readonly("model", [](const Solution& s) { return name(s.model); })
         .def_property_readonly("method", [](const Solution& s) { return name(s.method); })
         .def_property_readonly("stats", stats)
-        .def_property_readonly("events", [](const Solution& s) { return s.motion.events; })
+        .def_property_readonly("events", events)
         .def(
             "reason", [](const Solution& s, const Scene& scene) { return reason(scene, s); },
             "scene"_a)

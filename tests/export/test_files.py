@@ -237,6 +237,8 @@ TEXTS = {
     "event": ({"events": [[0.1, "SLIP"]]}, ".*unpack"),
     "kind": ({"events": [[0.1, "FALL", [0.0] * 7, [0.0] * 7]]}, "kind must be one of .*'FALL'$"),
     "late": ({"events": [[9.0, "SLIP", [0.0] * 6 + [0], [0.0] * 6 + [0]]]}, r"times of .*got 9\.0"),
+    "too short": ({"events": [[0.1, "SLIP", [0.0] * 6, [0.0] * 8]]}, "events .* of 7 numbers"),
+    "no mode": ({"events": [[0.1, "SLIP", [0.0] * 6 + [0], [0.0] * 6 + [9]]]}, "9 is not a valid"),
     "no numbers": ({"events": [[0.1, "SLIP", ["a"] * 7, [0.0] * 7]]}, "events must .*, got 'a'$"),
 }
 

@@ -59,8 +59,7 @@ def core_objects() -> dict[str, Any]:
         "Settings": motion.settings.core,
         "Solution": motion._solution,
         "Arc": motion._solution.arcs()[0],
-        "Event": motion._solution.events[0],
-        "State": motion._solution.events[0].before,
+        "State": _core.initial_state(motion.scene.core).state,
         "InitialState": _core.initial_state(motion.scene.core),
         "Continuation": _core.first_continuation(
             motion.scene.core, _core.initial_state(motion.scene.core).state

@@ -13,8 +13,8 @@ import numpy.typing as npt
 
 from .. import _core
 from .._check import FloatArray
-from .._core import EventKind
-from .._events import Event, Events, from_numbers
+from .._events import Events
+from .._events import events as made_events
 from .._samples import ContactSamples, frozen
 from .._scene import Scene
 from .._settings import Settings
@@ -112,8 +112,7 @@ class _Cut:
         return self._letters[self._next("text", size)].decode() if size else ""
 
     def events(self, scene: Scene, size: int) -> Events:
-        rows = self._tables["events"][self._next("events", size)].tolist()
-        return Events(_event(scene, row) for row in rows)
+        return made_events(scene, self._tables["events"][self._next("events", size)].tolist())
 
     def samples(self, model: str, size: int) -> dict[str, Any]:
         """The arrays that a Trajectory holds."""
@@ -130,9 +129,3 @@ class _Cut:
             return {"t": t, "theta": theta, "omega": omega, "x": x, "contact": contact}
         theta, omega, x = frozen(tables["rolling"][:, here].copy())
         return {"t": t, "theta": theta, "omega": omega, "x": x}
-
-
-def _event(scene: Scene, row: list[float]) -> Event:
-    t, kind, *states = row
-    before, after = ([*state[:-1], int(state[-1])] for state in (states[:7], states[7:]))
-    return from_numbers(scene, [t, EventKind(int(kind)).name, before, after])

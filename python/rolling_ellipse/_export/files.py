@@ -15,9 +15,8 @@ import numpy.typing as npt
 
 from .._check import choice, file_name
 from .._core import EventKind
-from .._events import Event, Events, as_numbers, from_numbers
+from .._events import as_numbers, events, from_numbers
 from .._samples import ContactSamples
-from .._scene import Scene
 from .._settings import METHODS, MODELS, Settings
 from .about import field_names, parsed, require_names, restored, scene_of
 from .atomic import replacing
@@ -118,7 +117,7 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
         scene=scene,
         settings=Settings(**settings),
         status=Status[choice("status", about["status"], tuple(Status.__members__))],
-        kept_events=Events(_event(scene, numbers) for numbers in about["events"]),
+        kept_events=events(scene, map(_event, about["events"])),
     )
     _require_consistent(trajectory)
     again = _about(trajectory)
@@ -146,13 +145,14 @@ def _require_values(name: str, values: npt.NDArray[Any]) -> None:
         raise ValueError(f"{name} must be finite, got {float(values[~np.isfinite(values)][0])!r}")
 
 
-def _event(scene: Scene, numbers: Any) -> Event:
+def _event(numbers: Any) -> list[Any]:
+    """Return the row of an event."""
     t, kind, before, after = numbers
     choice("kind", kind, tuple(EventKind.__members__))
     for value in (t, *before[:-1], *after[:-1]):
         if not (isinstance(value, float) and math.isfinite(value)):
             raise ValueError(f"events must hold finite numbers, got {value!r}")
-    return from_numbers(scene, numbers)
+    return from_numbers(numbers)
 
 
 def _require_consistent(trajectory: Trajectory) -> None:
