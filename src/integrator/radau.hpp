@@ -4,11 +4,11 @@
 // complex system of the size of y.
 #pragma once
 
-#include <Eigen/LU>
 #include <complex>
 
 #include "integrator/collocation.hpp"
 #include "integrator/implicit.hpp"
+#include "numerics/lu.hpp"
 
 namespace rolling_ellipse {
 
@@ -29,11 +29,14 @@ class Radau {
         const Matrix<N> jacobian = f_.jacobian(point.t, point.y);
         const Vector<N> mass = f_.mass() / h;
         Matrix<N> real_matrix = -jacobian;
-        real_matrix.diagonal() += C::gamma * mass;
-        ComplexMatrix complex_matrix = -jacobian.template cast<std::complex<double>>();
-        complex_matrix.diagonal() += pair * mass.template cast<std::complex<double>>();
-        const Eigen::PartialPivLU<Matrix<N>> real(real_matrix);
-        const Eigen::PartialPivLU<ComplexMatrix> complex(complex_matrix);
+        ComplexMatrix complex_matrix;
+        for (int k = 0; k < N * N; ++k) complex_matrix(k) = real_matrix(k);
+        for (int k = 0; k < N; ++k) {
+            real_matrix(k, k) += C::gamma * mass[k];
+            complex_matrix(k, k) += pair * mass[k];
+        }
+        const LU<double, N> real(real_matrix);
+        const LU<std::complex<double>, N> complex(complex_matrix);
 
         StageVectors<N, 3> z;  // the stages less y
         StageVectors<N, 3> w;  // inverse_transform z

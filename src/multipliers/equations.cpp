@@ -1,8 +1,9 @@
 #include "multipliers/equations.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "numerics/lu.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -71,8 +72,7 @@ ConstrainedBody::Saddle<Rows> ConstrainedBody::solve_saddle(
     matrix.template bottomLeftCorner<Rows, 5>() = rows;
     Eigen::Matrix<double, size, 1> right;
     right << force.cwiseProduct(unit), row_unit.cwiseProduct(demand);
-    const Eigen::Matrix<double, size, 1> solution =
-        Eigen::PartialPivLU<Eigen::Matrix<double, size, size>>(matrix).solve(right);
+    const Eigen::Matrix<double, size, 1> solution = LU<double, size>(matrix).solve(right);
     return {solution.template head<5>().cwiseProduct(unit),
             solution.template tail<Rows>().cwiseProduct(row_unit)};
 }

@@ -3,6 +3,7 @@
 //     cmake --preset release && cmake --build --preset release && ctest --preset release
 
 #include <cmath>
+#include <complex>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
 #include "numerics/double_double.hpp"
+#include "numerics/lu.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;
@@ -48,6 +50,16 @@ void bisection_by_secants_ends_at_the_same_neighbours() {
     const Bracket falling = bisect_root(0.0, 4.0, [&](double x) { return -f(x); });
     CHECK(falling.high == std::nextafter(falling.low, 4.0));
     CHECK(f(falling.low) < 0 && f(falling.high) >= 0);
+}
+
+// The rows go round, and all multipliers are halves, so that nothing is rounded.
+template <class Number>
+void equations_are_solved_whatever_their_order(Number unit) {
+    Eigen::Matrix<Number, 3, 3> rows;
+    rows << 0, 4, 5, 2, 3, 8.5, 4, 2, 8;
+    const Eigen::Matrix<Number, 3, 1> solution{1, -2, 3}, right{7, 21.5, 24};
+    CHECK(LU<Number, 3>(unit * rows).solve(unit * right) == solution);
+    CHECK(!LU<Number, 3>(0.0 * rows).solve(right).allFinite());
 }
 
 // From 0.25 to 0.75 it is negative; with a constant added it touches zero, or stays above.
@@ -223,6 +235,8 @@ int main() {
     a_double_double_keeps_what_rounding_takes();
     bisection_ends_at_neighbours();
     bisection_by_secants_ends_at_the_same_neighbours();
+    equations_are_solved_whatever_their_order(2.0);
+    equations_are_solved_whatever_their_order(std::complex<double>(0.0, 2.0));
     the_first_place_where_a_polynomial_is_negative();
     a_polynomial_that_touches_zero_has_no_sign();
     a_dip_between_two_looks_is_found();

@@ -1,0 +1,57 @@
+// Systems of a few linear equations by LU decomposition with partial pivoting: G. H. Golub, C. F.
+// Van Loan, Matrix Computations, 4th ed., 3.4. Loops as they stand there: for so few equations the
+// blocked ones of Eigen gain nothing, and take seconds to compile for each size.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <utility>
+
+namespace rolling_ellipse {
+
+template <class Number, int N>
+class LU {
+  public:
+    using Vector = Eigen::Matrix<Number, N, 1>;
+    using Matrix = Eigen::Matrix<Number, N, N>;
+
+    explicit LU(const Matrix& matrix) : factors_(matrix) {
+        for (int k = 0; k < N; ++k) {
+            pivots_[k] = k;
+            for (int i = k + 1; i < N; ++i) {
+                if (std::abs(factors_(i, k)) > std::abs(factors_(pivots_[k], k))) pivots_[k] = i;
+            }
+            if (pivots_[k] != k) {
+                for (int j = 0; j < N; ++j) std::swap(factors_(k, j), factors_(pivots_[k], j));
+            }
+            inverses_[k] = 1.0 / factors_(k, k);
+            for (int i = k + 1; i < N; ++i) factors_(i, k) *= inverses_[k];
+            for (int j = k + 1; j < N; ++j) subtract(factors_(k, j), k, &factors_(0, j));
+        }
+    }
+
+    // The solution for a right side; not numbers where the matrix is singular.
+    Vector solve(Vector v) const {
+        for (int k = 0; k < N; ++k) std::swap(v[k], v[pivots_[k]]);
+        for (int k = 0; k < N; ++k) subtract(v[k], k, v.data());
+        for (int k = N - 1; k >= 0; --k) {
+            v[k] *= inverses_[k];
+            for (int i = 0; i < k; ++i) v[i] -= factors_(i, k) * v[k];
+        }
+        return v;
+    }
+
+  private:
+    // What column k of the lower factor has below the diagonal, so many times.
+    void subtract(const Number times, int k, Number* column) const {
+        for (int i = k + 1; i < N; ++i) column[i] -= factors_(i, k) * times;
+    }
+
+    Matrix factors_;  // the unit diagonal of the lower one is not kept
+    std::array<Number, N> inverses_;
+    std::array<int, N> pivots_;  // the row that was put in the place of each
+};
+
+}  // namespace rolling_ellipse
