@@ -10,14 +10,10 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
 from . import geometry, scenes
-from ._blows import outcome, required_friction
-from ._certify import Certificate, certify
 from ._constraints import ConstraintResiduals, constraints, kinematics
 from ._core import EventKind, Mode, Outcome, Validity
 from ._events import Event
-from ._flow import flow, period
 from ._impulse import Impulse
-from ._outcome import Thresholds, classify, thresholds
 from ._scene import InitialState, Scene
 from ._simulate import simulate
 from ._status import (
@@ -35,6 +31,10 @@ if _TYPE_CHECKING:
     from ._at import Sample
     from ._batches import load_many, simulate_many
     from ._blow_to import blow_to
+    from ._blows import outcome, required_friction
+    from ._certify import Certificate, certify
+    from ._flow import flow, period
+    from ._outcome import Thresholds, classify, thresholds
     from ._pictures import (
         animate,
         plot,
@@ -66,13 +66,16 @@ __all__ = [
 
 _PLACES = {
     "Sample": "._at", "blow_to": "._blow_to", "load_many": "._batches",
-    "simulate_many": "._batches", "Explorer": "._player", "explore": "._player",
-    "WorkPrecision": "._work_precision", "work_precision": "._work_precision",
+    "simulate_many": "._batches", "outcome": "._blows", "required_friction": "._blows",
+    "Certificate": "._certify", "certify": "._certify", "flow": "._flow", "period": "._flow",
+    "Thresholds": "._outcome", "classify": "._outcome", "thresholds": "._outcome",
+    "Explorer": "._player", "explore": "._player", "WorkPrecision": "._work_precision",
+    "work_precision": "._work_precision",
 }  # fmt: skip
 
 
 def __getattr__(name: str) -> _Any:
-    """Load what is slow to load when it is first asked for, above all matplotlib."""
+    """Load what not every motion needs when it is first asked for, above all matplotlib."""
     if name == "__version__":
         from importlib.metadata import version
 
