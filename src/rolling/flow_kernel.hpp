@@ -48,6 +48,8 @@ struct PlaceBatch {
 struct StateBatch {
     Eight sin;  // of the angle from the flat position
     Eight cos;
+    Eight near_tip;  // 1 or 0
+    Eight angle;     // from the nearer one of flat position and tip
     Eight omega;
     Eight duration;
 };

@@ -53,8 +53,14 @@ void states(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatc
     const Pack across = sqrt(cos * cos + square(rate.kappa) * (sin * sin));
     const Pack factor = sqrt(shape_factor2(rate, rate.amplitude2 * (sin * sin)));
     const double amplitude = __builtin_sqrt(rate.amplitude2);
-    store(amplitude * sin, found.sin, lane);
-    store(rotates ? cos : across, found.cos, lane);
+    const Pack body_sin = amplitude * sin;
+    const Pack body_cos = rotates ? cos : across;
+    const Mask near_tip = body_sin > body_cos;
+    const Pack angle = octant_angle(min(body_sin, body_cos), max(body_sin, body_cos));
+    store(body_sin, found.sin, lane);
+    store(body_cos, found.cos, lane);
+    store(near_tip ? pack(1.0) : pack(0.0), found.near_tip, lane);
+    store(near_tip ? -angle : angle, found.angle, lane);
     store((rotates ? across : amplitude * cos) / factor, found.omega, lane);
 }
 

@@ -28,8 +28,7 @@ struct Batches {
 
 class TableMaker {
   public:
-    explicit TableMaker(const RollingFlow& flow)
-        : flow_(flow), kernel_(flow_kernel()), table_{flow, {}, {}, {}, {}, {}} {
+    explicit TableMaker(const RollingFlow& flow) : flow_(flow), kernel_(flow_kernel()) {
         const PhaseRate& rate = flow.phase.rate;
         rotates_ = flow.kind == MotionKind::rotation;
         length_ = flow.start.long_axis;
@@ -141,11 +140,9 @@ class TableMaker {
         std::vector<FlowPiece>& pieces = table_.pieces;
         pieces.resize(count());
         for (std::size_t i = 0; i < count(); ++i) {
-            const double sin = at(all_.states, &StateBatch::sin, i);
-            const double cos = at(all_.states, &StateBatch::cos, i);
-            const bool near_tip = sin > cos;
-            pieces[i].quarters = near_tip;
-            pieces[i].series = series(i, near_tip ? -std::atan2(cos, sin) : std::atan2(sin, cos));
+            pieces[i].quarters = at(all_.states, &StateBatch::near_tip, i);
+            fill(pieces[i].series, i);
+            pieces[i].series.rows[0][0] = at(all_.states, &StateBatch::angle, i);
         }
         add_times();
         add_paths();
@@ -153,18 +150,16 @@ class TableMaker {
         describe();
     }
 
-    TableSeries series(std::size_t i, double angle) const {
+    // All but what the angle is counted from.
+    void fill(TableSeries& found, std::size_t i) const {
         const SeriesBatch& from = all_.series[i / batch_size];
         const std::size_t lane = i % batch_size;
-        TableSeries found{};
-        for (int k = 0; k <= table_order; ++k) {
+        const double per_unit = 1 / unit_;
+        for (int k = 0; k < table_size; ++k) {
             found.rows[k][0] = from.angle[k].of[lane];
-            found.rows[k][1] = from.omega[k].of[lane] / unit_;
+            found.rows[k][1] = from.omega[k].of[lane] * per_unit;
             found.rows[k][2] = from.path[k].of[lane] * length_;
-            found.rows[k][3] = 0.0;
         }
-        found.rows[0][0] = angle;
-        return found;
     }
 
     // From the end that is nearer: the flat position, or the tip or the turning point.
@@ -213,7 +208,7 @@ class TableMaker {
     }
 
     void add_start() {
-        table_.start = series(count(), 0.0);
+        fill(table_.start, count());
         // Its radius is somewhat like that of the piece about the same place.
         const double since = std::abs(double(flow_.start_time));
         const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
@@ -281,7 +276,7 @@ class TableMaker {
 
     const RollingFlow& flow_;
     const FlowKernel& kernel_;
-    FlowTable table_;
+    FlowTable table_{};
     bool rotates_;
     double length_;
     double unit_;
@@ -303,13 +298,6 @@ FlowReader reader(const FlowTable& table) {
     return found;
 }
 
-void sample(const FlowTable& table, const double* times, std::size_t n, const FlowColumns& out) {
-    if (!flow_kernel().read(reader(table), times, n, out)) return;
-    for (std::size_t i = 0; i < n; ++i) {
-        if (std::isnan(out.theta[i])) store(sample(table.flow, times[i]), out, i);
-    }
-}
-
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
     // A table costs as much as ten single times; but where a few places are looked at again and
@@ -321,8 +309,10 @@ FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(
 }
 
 void FlowSampler::operator()(const double* times, std::size_t n, const FlowColumns& out) const {
-    if (table_) return sample(*table_, times, n, out);
-    for (std::size_t i = 0; i < n; ++i) store(sample(flow_, times[i]), out, i);
+    if (table_ && !flow_kernel().read(reader(*table_), times, n, out)) return;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!table_ || std::isnan(out.theta[i])) store(sample(flow_, times[i]), out, i);
+    }
 }
 
 void FlowSampler::operator()(const double* times, std::size_t n, FlowSample* samples) const {

@@ -24,7 +24,6 @@ inline void store(const FlowSample& sample, const FlowColumns& columns, std::siz
 
 // The table of a rotation or a libration, for any time; no pieces where no series holds.
 struct FlowTable {
-    RollingFlow flow;
     std::vector<FlowPiece> pieces;
     std::vector<double> ends;
     TableSeries start;  // about t = 0; its angle and path are those since then
@@ -37,11 +36,9 @@ FlowTable flow_table(const RollingFlow& flow);
 // The table as a kernel reads it, as long as it lives.
 FlowReader reader(const FlowTable& table);
 
-// The bits depend on the time alone, not on those beside it.
-void sample(const FlowTable& table, const double* times, std::size_t n, const FlowColumns& out);
-
-// A motion to be sampled at so many times in all: few of them are not worth a table, nor are rest
-// and uniform rotation.
+// A motion, which has to live as long, to be sampled at so many times in all: few of them are not
+// worth a table, nor are rest and uniform rotation. The bits depend on the time alone, not on those
+// beside it.
 class FlowSampler {
   public:
     FlowSampler(const RollingFlow& flow, std::size_t expected);
@@ -50,7 +47,7 @@ class FlowSampler {
     void operator()(const double* times, std::size_t n, FlowSample* samples) const;
 
   private:
-    RollingFlow flow_;
+    const RollingFlow& flow_;
     std::optional<FlowTable> table_;
 };
 

@@ -194,8 +194,9 @@ bool same_bits(const Batch& one, const Batch& other) {
 void every_vector_level_has_the_same_bits() {
     const Body body{2.0, 1.0, 1.25, 9.81};
     for (const double omega : {1.0, 3.2}) {  // libration and rotation
-        const FlowTable table = flow_table(rolling_flow(rolling_start(body, 0.2, omega)));
-        const PhaseRate& rate = table.flow.phase.rate;
+        const RollingFlow flow = rolling_flow(rolling_start(body, 0.2, omega));
+        const FlowTable table = flow_table(flow);
+        const PhaseRate& rate = flow.phase.rate;
         PlaceBatch places{};
         for (int i = 0; i < batch_size; ++i) {
             places.at_tip.of[i] = i % 2;
