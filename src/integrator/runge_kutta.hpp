@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "integrator/dense_output.hpp"
 #include "integrator/explicit_tableaus.hpp"
 #include "integrator/system.hpp"
 
@@ -46,28 +47,15 @@ template <class Row, int N, std::size_t Size>
     return weighted_sum<Row>(k, std::make_index_sequence<Size>{});
 }
 
-// The dense output of a step (HNW II.6): the cubic Hermite polynomial and what raises its order,
-//     y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))),   0 <= s <= 1.
-template <int N, int Terms>
-struct DenseOutput {
-    std::array<Vector<N>, 3 + Terms> terms;
-
-    Vector<N> change(double s) const {
-        Vector<N> value = terms.back();
-        for (int i = 1 + Terms; i >= 0; --i) {
-            const double factor = i % 2 == 0 ? 1 - s : s;
-            for (int j = 0; j < N; ++j) value[j] = terms[i][j] + factor * value[j];
-        }
-        return s * value;
-    }
-};
-
 template <class Tableau, class System>
 class ExplicitMethod {
   public:
     static constexpr int N = System::size;
     static constexpr bool controls_error = Tableau::error_estimates > 0;
     using Dense = DenseOutput<N, Tableau::dense_terms>;
+    // Whether a step of controlled error has all that its dense output needs.
+    static constexpr bool keeps_dense =
+        controls_error && Tableau::all_stages == Tableau::stages + 1;
 
     explicit ExplicitMethod(const System& system) : f_(system) {}
 
@@ -84,20 +72,11 @@ class ExplicitMethod {
     Dense dense_output(const Point<N>& from, double h) {
         evaluate<0, Tableau::stages + 1>(from, h);
         evaluate<Tableau::stages + 1, Tableau::all_stages>(from, h);
-        const Vector<N> change = increment(h);
-        const Vector<N>& slope_before = k_[0];
-        const Vector<N>& slope_after = k_[Tableau::stages];
-        Dense dense;
-        dense.terms[0] = change;
-        dense.terms[1] = h * slope_before - change;
-        dense.terms[2] = 2 * change - h * (slope_before + slope_after);
-        add_dense_terms(h, dense, std::make_index_sequence<Tableau::dense_terms>{});
-        for (Vector<N>& term : dense.terms) {
-            // Where a stage overflows, nothing is known between the ends of the step.
-            if (!in_range<N>(term)) term.setZero();
-        }
-        return dense;
+        return dense_of_stages(h);
     }
+
+    // That of the last step of controlled error, where it is kept.
+    const Dense& last_dense() const { return last_dense_; }
 
     // Steps of controlled error up to t_end; `visit(point)` sees each new point and may change
     // it. The elementary controller of HNW II.4, with the limits that SciPy takes.
@@ -125,6 +104,7 @@ class ExplicitMethod {
                 const double factor = safety * std::pow(error, -0.5 / Tableau::order);
                 if (error < 1) {
                     evaluate<error_stages, Tableau::stages + 1>(point, h);
+                    if constexpr (keeps_dense) last_dense_ = dense_of_stages(h);
                     point = next;
                     point.t = t;
                     h *= std::min(growth_limit, factor);
@@ -146,6 +126,22 @@ class ExplicitMethod {
     }
 
   private:
+    Dense dense_of_stages(double h) const {
+        const Vector<N> change = increment(h);
+        const Vector<N>& slope_before = k_[0];
+        const Vector<N>& slope_after = k_[Tableau::stages];
+        Dense dense;
+        dense.terms[0] = change;
+        dense.terms[1] = h * slope_before - change;
+        dense.terms[2] = 2 * change - h * (slope_before + slope_after);
+        add_dense_terms(h, dense, std::make_index_sequence<Tableau::dense_terms>{});
+        for (Vector<N>& term : dense.terms) {
+            // Where a stage overflows, nothing is known between the ends of the step.
+            if (!in_range<N>(term)) term.setZero();
+        }
+        return dense;
+    }
+
     // The stages that the error estimate needs: one pair uses the slope at the end, too.
     static constexpr int error_stages =
         Tableau::stages + (Tableau::error[0][Tableau::stages] != 0.0 ? 1 : 0);
@@ -247,6 +243,7 @@ class ExplicitMethod {
     const System& f_;
     StepCounts counts_;
     std::array<Vector<N>, Tableau::all_stages> k_;
+    Dense last_dense_;
 };
 
 }  // namespace rolling_ellipse

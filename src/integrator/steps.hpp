@@ -1,5 +1,6 @@
 // A solution as the list of the points between its steps. What a step needs for its dense output is
-// computed again when somebody looks into it.
+// kept where it is known without more evaluations, and else computed again when somebody looks into
+// it.
 //
 // An integration method is a class of a System (see system.hpp) with
 //     static constexpr int N;                  // = System::size
@@ -10,6 +11,8 @@
 //     const StepCounts& counts() const;
 // and, where it controls its error, for integration by its own steps,
 //     Ending integrate(Point<N>, double t_end, const Tolerance&, long max_steps, Visit);
+//     static constexpr bool keeps_dense;
+//     const Dense& last_dense() const;         // where it keeps it
 // It allocates nothing in a step, sums compensated (`add`), and knows nothing of ellipses.
 #pragma once
 
@@ -18,6 +21,7 @@
 #include <optional>
 #include <vector>
 
+#include "integrator/dense_output.hpp"
 #include "integrator/system.hpp"
 
 namespace rolling_ellipse {
@@ -36,7 +40,11 @@ template <int N>
 struct Steps {
     double size;  // 0: chosen by error control
     std::vector<Knot<N>> knots;
+    std::vector<DenseOutput<N, 1>> dense = {};  // of the first steps, where it is kept
 };
+
+// Steps whose dense output is kept, lest long runs take several times the memory.
+inline constexpr std::size_t most_kept = std::size_t{1} << 17;
 
 // Integrate from the last knot to t_end. `after_step(point)` may change each new point;
 // `reduce(point)` takes periods off it, and says how many; `checkpoint()` is called now and then.
@@ -55,7 +63,13 @@ Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& toler
     const Point<N> start = steps.knots.back().point();
     if constexpr (Integrator::controls_error) {
         if (steps.size == 0) {
-            return integrator.integrate(start, t_end, tolerance, max_steps, visit);
+            return integrator.integrate(start, t_end, tolerance, max_steps, [&](Point<N>& point) {
+                if constexpr (Integrator::keeps_dense) {
+                    auto& kept = steps.dense;
+                    if (kept.size() < most_kept) kept.push_back(integrator.last_dense());
+                }
+                return visit(point);
+            });
         }
     }
     return integrate_by_fixed_steps(integrator, start, steps.size, t_end, max_steps, visit);
@@ -82,6 +96,11 @@ class StepFinder {
     }
 
     const Knot<N>& knot() const { return steps_.knots[step_]; }
+
+    // The dense output of the step, or null where it is not kept.
+    const DenseOutput<N, 1>* dense() const {
+        return step_ < steps_.dense.size() ? &steps_.dense[step_] : nullptr;
+    }
 
     // Time since the knot. Fixed steps lie at multiples that are not rounded.
     double since_knot(double t) const {
@@ -112,8 +131,12 @@ void look(Integrator& integrator, const Steps<N>& steps, const double* times, st
         const double since = finder.since_knot(times[i]);
         Vector<N> change = Vector<N>::Zero();
         if (size > 0 && since != 0) {
-            if (!dense) dense.emplace(integrator.dense_output(finder.knot().point(), size));
-            change = dense->change(since / size);
+            if (const auto* kept = finder.dense()) {
+                change = kept->change(since / size);
+            } else {
+                if (!dense) dense.emplace(integrator.dense_output(finder.knot().point(), size));
+                change = dense->change(since / size);
+            }
         }
         take(i, finder.knot(), change);
     }

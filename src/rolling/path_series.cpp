@@ -18,26 +18,39 @@ double PathSeries::distance(double theta) const {
     return std::hypot(by_flat ? std::abs(rest) : half_pi - std::abs(rest), off_axis_);
 }
 
-// Intervals are halves of halves of [n, n + 1), the first that is a 3.5th of the distance or less:
-// the 17 terms then leave out less than 1e-17 of h times the interval.
 void PathSeries::move_to(double theta) {
-    constexpr double share = 3.5;
+    constexpr std::size_t most_known = 256;  // a half turn of the thinnest body has about a hundred
     if (!(std::abs(theta) <= largest_in_quarters)) {
-        path_ = {centre_path(axes_, theta)};
-        low_ = high_ = middle_ = theta;
+        here_ = {theta, theta, theta, {centre_path(axes_, theta)}};
         return;
     }
+    for (const Interval& interval : known_) {
+        if (interval.holds(theta)) {
+            here_ = interval;
+            return;
+        }
+    }
+    here_ = interval_at(theta);
+    if (known_.size() == most_known) known_.clear();
+    known_.push_back(here_);
+}
+
+// Intervals are halves of halves of [n, n + 1), the first that is a 3.5th of the distance or less:
+// the 17 terms then leave out less than 1e-17 of h times the interval.
+PathSeries::Interval PathSeries::interval_at(double theta) const {
+    constexpr double share = 3.5;
+    Interval found;
     double width = 2.0;
     do {
         width /= 2;
-        low_ = std::floor(theta / width) * width;
-        middle_ = low_ + width / 2;
-    } while (share * width > distance(middle_));
-    high_ = low_ + width;
+        found.low = std::floor(theta / width) * width;
+        found.middle = found.low + width / 2;
+    } while (share * width > distance(found.middle));
+    found.high = found.low + width;
 
     // h^2 = u, u'' = -4 u + constant
-    const double s = std::sin(middle_);
-    const double c = std::cos(middle_);
+    const double s = std::sin(found.middle);
+    const double c = std::cos(found.middle);
     Series u;
     u[0] = square(axes_.a * s) + square(axes_.b * c);
     u[1] = 2 * c2_ * s * c;
@@ -46,12 +59,13 @@ void PathSeries::move_to(double theta) {
     Series h;
     h[0] = std::sqrt(u[0]);
     const double half = 0.5 / h[0];
-    path_[0] = centre_path(axes_, middle_);
-    path_[1] = h[0];
+    found.path[0] = centre_path(axes_, found.middle);
+    found.path[1] = h[0];
     for (int k = 1; k < series_order; ++k) {
         h[k] = half * (u[k] - self_product(h, k, 1));
-        path_[k + 1] = h[k] / (k + 1);
+        found.path[k + 1] = h[k] / (k + 1);
     }
+    return found;
 }
 
 }  // namespace rolling_ellipse
