@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, lru_cache
 from operator import is_
 from typing import Any, Literal, get_args
 
@@ -74,7 +74,15 @@ def settings(*given: Any) -> Settings:
     """Return Settings of values in the order of their fields; nothing is checked twice."""
     if all(map(is_, given, _GIVEN_BY_DEFAULT)):
         return DEFAULTS
+    plain = all(type(value) in _PLAIN or value is DEFAULTS.baumgarte for value in given)
+    return _kept(*given) if plain else _checked(*given)
+
+
+def _checked(*given: Any) -> Settings:
     return Settings(**dict(zip(_NAMES, given, strict=True)))
+
+
+_kept = lru_cache(maxsize=128, typed=True)(_checked)
 
 
 def _pair(name: str, value: Any) -> tuple[float, float]:
@@ -108,3 +116,4 @@ DEFAULTS = Settings(
 )
 _NAMES = tuple(field.name for field in fields(Settings))
 _GIVEN_BY_DEFAULT = tuple(getattr(DEFAULTS, name) for name in _NAMES)
+_PLAIN = (float, int, str, type(None))  # whose values never change

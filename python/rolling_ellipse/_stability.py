@@ -28,21 +28,24 @@ def advice(motion: Trajectory) -> str | None:
         if (growth := _core.feedback_growth(settings.core)) > 1:
             return _too_stiff(settings, step, growth)
     losses = motion._solution.losses()
-    when = f"by t = {motion.t_end:g} s"
     if motion.model == "multipliers" and losses["constraints"] > _MISSED:
         return (
             f"the constraints are missed by {losses['constraints']:.2g} of the long semi-axis "
-            f"{when} with stabilization {settings.stabilization!r}: use 'projection', which keeps "
-            "them, or the model 'rolling', which has none to miss"
+            f"{_when(motion)} with stabilization {settings.stabilization!r}: use 'projection', "
+            "which keeps them, or the model 'rolling', which has none to miss"
         )
     expected = 0.0 if settings.step else _OF_RTOL * settings.rtol
     if losses["energy"] > max(_LOST_ENERGY, expected):
         finer = "smaller steps" if settings.step else "smaller rtol and atol"
         return (
-            f"the energy has changed by {losses['energy']:.2g} of itself {when} with method "
-            f"{settings.method!r}: take {finer}, {_better(motion)}"
+            f"the energy has changed by {losses['energy']:.2g} of itself {_when(motion)} with "
+            f"method {settings.method!r}: take {finer}, {_better(motion)}"
         )
     return None
+
+
+def _when(motion: Trajectory) -> str:
+    return f"by t = {motion.t_end:g} s"
 
 
 def _better(motion: Trajectory) -> str:

@@ -405,3 +405,25 @@ def test_a_body_too_far_away_to_be_seen_is_refused(draw: Any) -> None:
     assert not plt.get_fignums()
     draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=1e12), 1.0))
     plt.close("all")
+
+
+class Dial:
+    """A number that may be turned."""
+
+    def __init__(self, value: float) -> None:
+        self.value = value
+
+    def __float__(self) -> float:
+        return self.value
+
+
+def test_settings_that_were_seen_before_are_checked_as_at_first() -> None:
+    """Equal numbers of another type are not the same, nor is an object whose value has changed."""
+    scene, dial = rl.scenes.rolling, Dial(1e-4)
+    how: dict[str, Any] = {"model": "rolling", "method": "dopri5"}
+    assert rl.simulate(scene, [1.0], max_steps=500, **how).settings.max_steps == 500
+    with pytest.raises(TypeError, match=r"max_steps must be a whole number, got 500\.0"):
+        rl.simulate(scene, [1.0], max_steps=500.0, **how)  # type: ignore[arg-type]
+    for dial.value in (1e-4, 1e-6):
+        changing: Any = dial
+        assert rl.simulate(scene, [1.0], rtol=changing, **how).settings.rtol == dial.value
