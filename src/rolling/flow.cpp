@@ -137,10 +137,8 @@ namespace {
 
 // A move so short that one power series knows it: it keeps the digits of what has changed.
 std::optional<FlowSample> short_move(const RollingMotion& motion, double t) {
-    constexpr double longest = 0.05;  // in the time scale of the flat position and of turning
     const auto [unit, short_axis, c2, sin, cos] = motion.start;
-    const double fast = std::abs(motion.omega) + std::sqrt(motion.gravity / short_axis);
-    if (!(std::abs(t) * fast < longest)) return std::nullopt;
+    if (!may_be_short(t, motion.omega, motion.gravity, short_axis)) return std::nullopt;
     const double unit2 = square(unit);
     const SeriesConstants body{
         square(short_axis) / unit2, c2 / unit2, motion.gravity * square(t) / unit,

@@ -2,6 +2,7 @@
 // does not depend on how far it is from the start.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "rolling/phase_time.hpp"
@@ -53,6 +54,12 @@ struct FlowSample {
 
 RollingMotion rolling_motion(const RollingStart& from, double x = 0.0);
 RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);
+
+// Whether a move may be so short that one power series about its start knows it: by the time scale
+// of the flat position and of turning.
+inline bool may_be_short(double t, double omega, double gravity, double short_axis) {
+    return std::abs(t) * (std::abs(omega) + std::sqrt(gravity / short_axis)) < 0.05;
+}
 
 // For |t| up to longest_time.
 FlowSample sample(const RollingMotion& motion, double t);

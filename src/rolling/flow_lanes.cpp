@@ -100,7 +100,10 @@ class Sorter {
             samples_[i] = {start.theta, start.omega, 0.0};
             return;
         }
-        const int rule = kernel_ != nullptr && finite ? rule_for(start) : -1;
+        // A short move is the small difference of two times, which its power series is not.
+        const bool alone = !finite || may_be_short(times_[i], start.omega, start.body.gravity,
+                                                   start.view.short_axis);
+        const int rule = kernel_ != nullptr && !alone ? rule_for(start) : -1;
         if (rule < 0) {
             samples_[i] = sample_alone(start, times_[i]);
             return;

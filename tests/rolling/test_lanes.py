@@ -136,6 +136,11 @@ EXTREMES: dict[str, Callable[[], Columns]] = {
     "from beside 45 degrees past the flat": lambda: {
         "b": 0.02, "theta": -0.79, "omega": 3.0, "t": np.linspace(0.15, 0.35, 41),
     },
+    # omega changes by less than the rounding of the time since the flat position does to it
+    "thin, beside the flat, soon after": lambda: {
+        "a": 1.0, "b": 2.86e-3, "gyration2": 7.73e-6, "theta": -1.776e-4, "omega": 3.68,
+        "t": np.geomspace(1e-9, 1e-6, 61),
+    },
     "very fast": lambda: {"omega": 10.0 ** np.arange(1, 49, 4), "t": 10.0 ** -np.arange(1, 49, 4)},
     "no time at all": lambda: {"theta": 0.3, "omega": np.linspace(-2, 2, 9), "t": 0.0},
 }  # fmt: skip
