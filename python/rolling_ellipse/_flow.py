@@ -73,11 +73,11 @@ def flow(
     # Plain floats, as in most calls, need no conversion.
     if (
         type(t) is type(a) is type(b) is type(theta) is type(omega) is type(gravity) is float
-        and gyration2 is None
+        and (gyration2 is None or type(gyration2) is float)
         and type(workers) is int
         and workers == 1
     ):
-        return _core.flow_scalar(t, a, b, theta, omega, gravity, None)
+        return _core.flow_scalar(t, a, b, theta, omega, gravity, gyration2)
     threads = threads_of(workers)
     one = (a, b, theta, omega, gravity)
     if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):

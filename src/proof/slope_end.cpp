@@ -98,11 +98,44 @@ LawMeetings law_in_half_turn(const SlopeFlow& flow, double friction, const Slope
     return watch.met();
 }
 
+// About the first half turn of a run in which the law is broken, by a look at some places, denser
+// near the flat of a thin body: the forces at a place are linear in omega^2, which is so in n.
+double broken_about(const SlopeFlow& flow, const SlopeRun& run, double friction) {
+    constexpr int looks = 64;
+    const SlopeBody& body = flow.body;
+    const auto [normal, needed] = weights(friction);
+    const SlopeEnergy energy = energy_of(body, run.from);
+    const double start = path_at(body, 0.0, double(run.from.angle));
+    double least = infinity;
+    for (int i = 0; i < looks; ++i) {
+        const double u = pi * (i + 0.5) / looks - half_pi;
+        SlopePlace place{};
+        place.angle = {std::atan2(body.short_axis * std::sin(u), body.long_axis * std::cos(u)),
+                       0.0};
+        const Geometry here = geometry(body, place);
+        const double inertia = inertia_about_contact(body.gyration2, here);
+        const double w = energy.start +
+                         body.gravity.along * (path_at(body, 0.0, double(place.angle)) - start) +
+                         body.gravity.into * (energy.height - here.h);
+        const double omega2 = 2 * w / inertia;
+        const double gain = run.heading * 2 * body.gain / inertia;
+        if (!(omega2 > 0)) continue;
+        const ContactForce at_rest = contact_force(body, place);
+        place.omega = std::sqrt(omega2);
+        const ContactForce moving = contact_force(body, place);
+        for (const double side : {1.0, -1.0}) {
+            const double still = normal * at_rest.normal - side * needed * at_rest.friction;
+            const double now = normal * moving.normal - side * needed * moving.friction;
+            const double change = (now - still) / omega2 * gain;
+            if (change < 0) least = std::min(least, -now / change);
+        }
+    }
+    return least;
+}
+
 // The first of the half turns 1 ... most of a run in which the law is broken, which it stays in all
 // that follow.
 LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double friction, double most) {
-    double holds = 0.0;
-    double next = 1.0;
     LawMeetings met{};
     LawMeetings found{};
     const auto fails = [&](double n) {
@@ -110,12 +143,23 @@ LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double fricti
         if (met.broken) found = met;
         return met.broken.has_value();
     };
-    while (!fails(std::min(next, most))) {
-        if (next >= most) return met;
-        holds = next;
-        next *= 2;
+    double next = std::clamp(std::ceil(broken_about(flow, run, friction)), 1.0, most);
+    double holds = 0.0;
+    double step = 1.0;
+    if (fails(next)) {
+        while (next > step && fails(next - step)) {
+            next -= step;
+            step *= 2;
+        }
+        holds = std::max(next - step, 0.0);
+    } else {
+        do {
+            if (next >= most) return met;
+            holds = next;
+            next = std::min(next + step, most);
+            step *= 2;
+        } while (!fails(next));
     }
-    next = std::min(next, most);
     while (next - holds > 1) {
         const double middle = std::floor(0.5 * (holds + next));
         (fails(middle) ? next : holds) = middle;
