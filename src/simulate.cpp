@@ -63,6 +63,14 @@ Proof proof(const Scene& scene, Beginning& from) {
     return {{Validity::no_proof}};
 }
 
+// In contact, arcs on slopes are proved one by one, as far as they are asked for.
+bool by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
+    if (!from.on_slope) return false;
+    if (asked.model == Model::contact) return true;
+    return asked.model == Model::automatic && asked.method == Method::automatic &&
+           !may_hold_for_ever(scene, from.state);
+}
+
 void end_validity(double t, double t_end, Solution& solution) {
     solution.valid_until = t;
     if (solution.ending == Ending::completed && t < t_end) {
@@ -176,9 +184,8 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
                   const Checkpoint& checkpoint) {
     validate(asked, t_end);
     Beginning from = beginning(scene);
-    // In contact, arcs on slopes are proved one by one.
-    const bool by_arcs = asked.model == Model::contact && from.on_slope;
-    const Proof proof = by_arcs ? Proof{{Validity::no_proof}} : rolling_ellipse::proof(scene, from);
+    const Proof proof = by_arcs(scene, from, asked) ? Proof{{Validity::no_proof}}
+                                                    : rolling_ellipse::proof(scene, from);
     const Settings settings = chosen(asked, proof.end.validity);
     Solution solution = solved(scene, from, proof.end, settings, t_end, checkpoint);
     if (settings.model != Model::contact) judge_by_proof(from, proof, t_end, solution);

@@ -146,7 +146,20 @@ class Well {
     bool holds_ = false;
 };
 
+Well well_of(const Scene& scene, const State& start, const FlatView& at) {
+    const double side = std::copysign(1.0, scene.slope);
+    return Well(downhill(scene), side * std::atan2(at.sin, at.cos), start.omega);
+}
+
 }  // namespace
+
+bool may_hold_for_ever(const Scene& scene, const State& start) {
+    const FlatView at = flat_view(scene.axes(), start.theta);
+    const Geometry here = geometry(scene.axes(), start.theta);
+    if (at.c2 == 0) return true;
+    if (start.omega == 0 && is_equilibrium(here, std::tan(scene.slope))) return true;
+    return well_of(scene, start, at).holds();
+}
 
 std::optional<SlopeExtremes> extremes_on_slope(const Scene& scene, const State& start) {
     const double incline = std::tan(scene.slope);
@@ -159,9 +172,9 @@ std::optional<SlopeExtremes> extremes_on_slope(const Scene& scene, const State& 
     if (start.omega == 0 && is_equilibrium(here, incline)) return constant(std::abs(incline));
     const double k2 = scene.body().gyration2;
     if (at.c2 == 0) return constant(std::abs(incline) * k2 / (k2 + square(scene.a)));
-    const double side = std::copysign(1.0, scene.slope);
-    const Well well(downhill(scene), side * std::atan2(at.sin, at.cos), start.omega);
+    const Well well = well_of(scene, start, at);
     if (!well.holds()) return std::nullopt;
+    const double side = std::copysign(1.0, scene.slope);
     SlopeExtremes found = well.extremes();
     found.least_normal_angle = start.theta + side * found.least_normal_angle;
     found.most_friction_angle = start.theta + side * found.most_friction_angle;

@@ -14,9 +14,12 @@ struct SlopeExtremes {
     double most_friction_angle;
 };
 
-// Of the rolling motion from a state on a slope, for all times. A circle and a body in equilibrium
-// have the same forces all the time; a body that rocks has turning points; all others run downhill
-// faster and faster until no ground holds them: nothing.
+// Whether the rolling motion from a state on a slope may be true for ever. A circle and a body in
+// equilibrium have the same forces all the time; a body that rocks has turning points; all others
+// run downhill faster and faster until no ground holds them.
+bool may_hold_for_ever(const Scene& scene, const State& start);
+
+// Of such a motion, for all times; else nothing.
 std::optional<SlopeExtremes> extremes_on_slope(const Scene& scene, const State& start);
 
 // The certificate of rolling that meets the law so.
