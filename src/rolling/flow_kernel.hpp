@@ -82,13 +82,10 @@ struct FlowPiece {
 // A motion as its pieces see it.
 struct FlowReader {
     const FlowPiece* pieces;
-    const double* ends;  // of the pieces; the last of them is taken for all that is beyond
+    const double* ends;  // of the pieces, and infinities: 2 half - 1 of them
+    int half;
     double last_end;
-    const unsigned short* first;  // by buckets of time: the first piece that reaches into it
-    double buckets_per_time;
-    double last_bucket;
-    int most_in_bucket;  // pieces that end in one
-    double per_unit;     // of time, to the variable of the series
+    double per_unit;  // of time, to the variable of the series
     // Half turns and the time since the flat position.
     DoubleDouble half_turn;
     double half_turns_per_time;

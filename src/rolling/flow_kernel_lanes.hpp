@@ -215,11 +215,12 @@ inline void alone(const TableSeries& series, double z, Block& found, int i) {
     found.path[i] = sum[2];
 }
 
-// No branch for the processor to guess: times may come in any order.
+// By halves, without a branch for the processor to guess: times may come in any order.
 inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
-    const double bucket = time * motion.buckets_per_time;
-    int i = motion.first[int(bucket < motion.last_bucket ? bucket : motion.last_bucket)];
-    for (int j = 0; j < motion.most_in_bucket; ++j) i += time >= motion.ends[i];
+    int i = 0;
+    for (int half = motion.half; half > 0; half /= 2) {
+        i += time >= motion.ends[i + half - 1] ? half : 0;
+    }
     return motion.pieces[i];
 }
 
@@ -241,12 +242,10 @@ void look_up(const FlowReader& motion, int n, Block& block) {
             continue;
         }
         for (int lane = 0; lane < lanes; ++lane) {
-            const double since_one = __builtin_fabs(block.time[i + lane]);
-            const double low_one =
-                block.time[i + lane] < 0 ? -block.low[i + lane] : block.low[i + lane];
-            const FlowPiece& piece = piece_at(motion, since_one);
-            const double z =
-                ((since_one - piece.centre.high) + (low_one - piece.centre.low)) * motion.per_unit;
+            const FlowPiece& piece = piece_at(motion, since[lane]);
+            const double z = ((since[lane] - piece.centre.high) +
+                              (since_low[lane] - piece.centre.low)) *
+                             motion.per_unit;
             alone(piece.series, z, block, i + lane);
             block.quarters[i + lane] = piece.quarters;
         }

@@ -236,25 +236,12 @@ class TableMaker {
     void describe() {
         FlowReader& reader = table_.reader;
         const std::vector<FlowPiece>& pieces = table_.pieces;
-        const std::size_t buckets = table_.first.size();
-        table_.ends.reserve(pieces.size());
-        for (const FlowPiece& piece : pieces) table_.ends.push_back(piece.high);
-        table_.ends.back() = infinity;
+        reader.half = 1;
+        while (2 * reader.half <= int(pieces.size()) - 1) reader.half *= 2;
+        // The last piece is taken for all that is beyond.
+        table_.ends.assign(2 * reader.half - 1, infinity);
+        for (std::size_t i = 0; i + 1 < pieces.size(); ++i) table_.ends[i] = pieces[i].high;
         reader.last_end = pieces.back().high;
-        reader.buckets_per_time = double(buckets) / reader.last_end;
-        reader.last_bucket = double(buckets - 1);
-        std::size_t piece = 0;
-        for (std::size_t i = 0; i < buckets; ++i) {
-            while (table_.ends[piece] * reader.buckets_per_time * (1 + 4 * epsilon) < double(i)) {
-                ++piece;
-            }
-            table_.first[i] = static_cast<unsigned short>(piece);
-            const int before = table_.first[i == 0 ? 0 : i - 1];
-            reader.most_in_bucket = std::max(reader.most_in_bucket, int(piece) - before);
-        }
-        // Of the last bucket, and one more for the roundings of a time.
-        const int in_last = int(pieces.size() - 1 - piece);
-        reader.most_in_bucket = std::max(reader.most_in_bucket, in_last) + 1;
         reader.per_unit = 1 / unit_;
         const DoubleDouble half_turn = flow_.phase.half_turn;
         if (std::isfinite(half_turn.high)) {
@@ -293,7 +280,6 @@ FlowReader reader(const FlowTable& table) {
     FlowReader found = table.reader;
     found.pieces = table.pieces.data();
     found.ends = table.ends.data();
-    found.first = table.first.data();
     found.start = &table.start;
     return found;
 }

@@ -6,7 +6,6 @@
 // (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -27,7 +26,6 @@ struct FlowTable {
     std::vector<FlowPiece> pieces;
     std::vector<double> ends;
     TableSeries start;  // about t = 0; its angle and path are those since then
-    std::array<unsigned short, 256> first;
     FlowReader reader;  // but for what it points to
 };
 
