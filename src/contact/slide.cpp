@@ -9,41 +9,18 @@
 #include "geometry/half_turns.hpp"
 #include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
-#include "numerics/series.hpp"
 
 namespace rolling_ellipse {
 namespace {
-
-constexpr int order = slide_order;
 
 // The response B, physics (50), below which the slower clock is the better one, physics (54); and
 // that which is none.
 constexpr double small_response = 1e-2;
 constexpr double no_response = 1e-13;
 
-// How far a series is as good as a double, beside its own size there: its last terms are one
-// rounding then, and what is left out, smaller by another tenth, is less. Four of them, as symmetry
-// may hide three. A fixed point, whose logarithm is at an eighth of the error after each step.
-double reach(const SlideCoefficients& series) {
-    constexpr double rest = 1e-16;  // half an ulp
-    static_assert(order == 24, "three square roots and a cube root");
-    double r = 0.1;
-    for (int i = 0; i < 4; ++i) {
-        const double size = std::max(
-            {std::abs(series[0]), std::abs(series[1]) * r, std::abs(series[2]) * square(r)});
-        const double r2 = square(r);
-        const double last =
-            std::max({std::abs(series[order - 3]), std::abs(series[order - 2]) * r,
-                      std::abs(series[order - 1]) * r2, std::abs(series[order]) * r * r2});
-        if (!(last > 0)) return infinity;
-        r = std::cbrt(std::sqrt(std::sqrt(std::sqrt(rest * size * r * r2 / last))));
-    }
-    return r;
-}
-
 SlidePoint moved(const SlidePiece& piece, double clock) {
     const auto& [centre, kind, unit, reach, angle, omega, slip, path, time] = piece;
-    const auto change = [clock](const SlideCoefficients& series) { return value(series, clock); };
+    const auto change = [clock](const LongSeries& series) { return value(series, clock); };
     const double lasts = kind == SlideClock::time ? clock : change(time);
     return {centre.angle + change(angle), centre.omega + change(omega) / unit,
             centre.slip + change(slip) / unit, centre.path + change(path),
@@ -53,10 +30,10 @@ SlidePoint moved(const SlidePiece& piece, double clock) {
 // A series on [0, reach] as a polynomial on [0, 1]; each coefficient with the magnitude of what it
 // was made from.
 template <class Coefficient, class Magnitude>
-Polynomial<order> stretched(double reach, Coefficient coefficient, Magnitude magnitude) {
-    Polynomial<order> p;
+Polynomial<long_order> stretched(double reach, Coefficient coefficient, Magnitude magnitude) {
+    Polynomial<long_order> p;
     double power = 1.0;
-    for (int k = 0; k <= order; ++k) {
+    for (int k = 0; k <= long_order; ++k) {
         p.coefficients[k] = {power * coefficient(k), power * magnitude(k)};
         power *= reach;
     }
@@ -64,9 +41,9 @@ Polynomial<order> stretched(double reach, Coefficient coefficient, Magnitude mag
 }
 
 // The first place at which what has to stay positive is negative, provably.
-std::optional<double> first_end(const Polynomial<order>& margin) {
+std::optional<double> first_end(const Polynomial<long_order>& margin) {
     double others = 0.0;
-    for (int k = 1; k <= order; ++k) others += margin.coefficients[k].magnitude;
+    for (int k = 1; k <= long_order; ++k) others += margin.coefficients[k].magnitude;
     if (margin.coefficients[0].value > others) return std::nullopt;
     return first_negative(bernstein(margin));
 }

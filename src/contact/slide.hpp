@@ -31,11 +31,11 @@ struct SlidePiece {
     SlideClock clock;
     double unit;
     double reach;  // of the clock
-    SlideCoefficients angle;
-    SlideCoefficients omega;
-    SlideCoefficients slip;
-    SlideCoefficients path;
-    SlideCoefficients time;
+    LongSeries angle;
+    LongSeries omega;
+    LongSeries slip;
+    LongSeries path;
+    LongSeries time;
 };
 
 struct Slide {

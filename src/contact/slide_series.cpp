@@ -1,42 +1,10 @@
 #include "contact/slide_series.hpp"
 
-#include <array>
 #include <cmath>
 
-#include "numerics/pair.hpp"
-#include "numerics/series.hpp"
-
 namespace rolling_ellipse {
-namespace {
-
-constexpr int order = slide_order;
-
-// Two series, of which two products at a time are made.
-using TwoSeries = std::array<Pair, order + 1>;
-
-// The terms of the coefficient k of a product for which all is known before the coefficients k.
-template <class Coefficients>
-inline auto inner(const Coefficients& p, const Coefficients& q, int k) {
-    return terms(p, q, k, 1, k - 1);
-}
-
-// The terms 0 and k, of which the one is the other for k = 0.
-template <class Coefficients>
-inline auto outer(const Coefficients& p, const Coefficients& q, int k) {
-    return k == 0 ? p[0] * q[0] : p[0] * q[k] + p[k] * q[0];
-}
-
-constexpr auto reciprocals() {
-    std::array<double, order + 1> found{};
-    for (int k = 0; k <= order; ++k) found[k] = 1.0 / (k + 1);
-    return found;
-}
-
-}  // namespace
-
 SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double sin, double cos,
                          SlideClock clock) {
-    static constexpr auto over = reciprocals();
     const auto [a, b] = body.axes;
     const double c2 = (a - b) * (a + b);
     const double k2 = body.gyration2;
@@ -55,7 +23,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
     TwoSeries loads, gains;      // (u V) omega', (h V) impulse'
     TwoSeries rate_c, w_h;       // dt/dtau omega, C h
     TwoSeries c_s, spread;       // cos angle', -sin angle'
-    SlideCoefficients h, bend, w2, rate, velocity, impulse;
+    LongSeries h, bend, w2, rate, velocity, impulse;
     angle[0] = at.angle;
     w[0] = at.omega;
     path[0] = at.path;
@@ -71,7 +39,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
     const double per_clock = 1 / (k2 * u0 * u0);
     Pair over_loads{};
 
-    for (int k = 0; k <= order; ++k) {
+    for (int k = 0; k <= long_order; ++k) {
         const Pair known_squares = inner(s_s, s_c, k);
         const Pair known_bends = inner(w_below, w_above, k);
         const Pair known_weights = inner(p_u, lever_h, k);
@@ -123,19 +91,19 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
         }
         slip[k] = k == 0 ? at.slip : impulse[k] + body.gravity.along * time[k] - rolled[k];
         velocity[k] = slip[k] + rolled[k];
-        if (k == order) break;
-        const Pair turns = (known_turns + outer(c_s, spread, k)) * pair(over[k], over[k]);
+        if (k == long_order) break;
+        const Pair turns = (known_turns + outer(c_s, spread, k)) * pair(over_next[k], over_next[k]);
         s_s[k + 1] = pair(turns[0], turns[0]);
         s_c[k + 1] = turns;
         c_s[k + 1] = pair(turns[1], -turns[0]);
-        angle[k + 1] = spread[k][0] * over[k];
-        w[k + 1] = gain[0] * over[k];
-        impulse[k + 1] = gain[1] * over[k];
+        angle[k + 1] = spread[k][0] * over_next[k];
+        w[k + 1] = gain[0] * over_next[k];
+        impulse[k + 1] = gain[1] * over_next[k];
         if (slowed) {
-            path[k + 1] = (inner(rate, velocity, k) + outer(rate, velocity, k)) * over[k];
-            time[k + 1] = rate[k] * over[k];
+            path[k + 1] = (inner(rate, velocity, k) + outer(rate, velocity, k)) * over_next[k];
+            time[k + 1] = rate[k] * over_next[k];
         } else {
-            path[k + 1] = velocity[k] * over[k];
+            path[k + 1] = velocity[k] * over_next[k];
             time[k + 1] = k == 0 ? 1.0 : 0.0;
         }
     }

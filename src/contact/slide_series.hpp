@@ -10,28 +10,23 @@
 // N = c/B grows without bound, all of that is polynomial in them: physics (54).
 #pragma once
 
-#include <array>
-
 #include "contact/sliding.hpp"
+#include "numerics/long_series.hpp"
 
 namespace rolling_ellipse {
-
-// The cost of a series grows with its order little faster than its reach, and each has its price.
-inline constexpr int slide_order = 24;
-using SlideCoefficients = std::array<double, slide_order + 1>;
 
 enum class SlideClock { time, slowed };
 
 struct SlideSeries {
-    SlideCoefficients angle;
-    SlideCoefficients omega;
-    SlideCoefficients slip;
-    SlideCoefficients path;
-    SlideCoefficients rolled;  // h omega
-    SlideCoefficients time;
-    SlideCoefficients pressure;  // C
-    SlideCoefficients response;  // V
-    SlideCoefficients height2;   // u
+    LongSeries angle;
+    LongSeries omega;
+    LongSeries slip;
+    LongSeries path;
+    LongSeries rolled;  // h omega
+    LongSeries time;
+    LongSeries pressure;  // C
+    LongSeries response;  // V
+    LongSeries height2;   // u
 };
 
 SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double sin, double cos,

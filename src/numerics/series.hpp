@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <type_traits>
 
 namespace rolling_ellipse {
@@ -39,19 +40,14 @@ template <class Coefficients>
     return k % 2 == 0 && k / 2 >= from ? pairs + p[k / 2] * p[k / 2] : pairs;
 }
 
-template <class Coefficients>
-double value(const Coefficients& series, double z) {
-    double sum = 0.0;
-    for (auto c = series.rbegin(); c != series.rend(); ++c) sum = sum * z + *c;
-    return sum;
-}
-
-// The same with two sums that do not wait for each other, which halves the wait.
-inline double value_in_pairs(const Series& series, double z) {
+// Two sums do not wait for each other, which halves the wait.
+template <std::size_t Size>
+double value(const std::array<double, Size>& series, double z) {
+    static_assert(Size % 2 == 1 && Size > 2);
     const double z2 = z * z;
-    double even = series[series_order];
-    double odd = series[series_order - 1];
-    for (int k = series_order - 2; k > 0; k -= 2) {
+    double even = series[Size - 1];
+    double odd = series[Size - 2];
+    for (int k = int(Size) - 3; k > 0; k -= 2) {
         even = even * z2 + series[k];
         odd = odd * z2 + series[k - 1];
     }

@@ -11,7 +11,7 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr int degree = series_order - 2;
+constexpr int degree = long_order - 2;
 
 // Beside the sum of the sizes of all terms. The series end where their last terms are a rounding,
 // and the second derivative of what they leave out is up to some thousand of them.

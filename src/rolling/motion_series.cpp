@@ -13,13 +13,11 @@ constexpr int order = series_order;
 }  // namespace
 
 // Physics (18) with D h^2 = d0 + d1 s^2, u = h^2 and s, c the sine and cosine of the angle:
-//     omega' u (d0 + d1 s^2) = -c2 s c (g u h + L^2 S^2 omega^2) + g_along u^2 h
+//     omega' u (d0 + d1 s^2) = -c2 s c (g u h + S^2 omega^2)
 MotionSeries motion_series(const SeriesConstants& body, double sin, double cos, double omega) {
-    Series s{sin}, c{cos}, w{omega}, s2{}, u{}, inertia{}, mass{}, sc{}, w2{}, uh{}, load{};
-    Series turning{}, drive{};
+    Series s{sin}, c{cos}, w{omega}, s2{}, u{}, inertia{}, mass{}, sc{}, w2{}, uh{}, load{}, h{},
+        turning{};
     MotionSeries motion{};
-    Series& h = motion.height;
-    const double centrifugal = body.long_axis2 * body.short_axis2;
     for (int k = 0; k <= order; ++k) {
         s2[k] = self_product(s, k);
         u[k] = body.c2 * s2[k];
@@ -35,13 +33,8 @@ MotionSeries motion_series(const SeriesConstants& body, double sin, double cos, 
         sc[k] = product(s, c, k);
         w2[k] = self_product(w, k);
         uh[k] = product(u, h, k);
-        // Near an equilibrium on a slope what drives is a small difference: it is formed first.
-        load[k] = centrifugal * w2[k] + (body.along == 0 ? body.gravity * uh[k] : 0.0);
-        double force = -body.c2 * product(sc, load, k);
-        if (body.along != 0) {
-            drive[k] = body.along * u[k] - body.c2 * body.gravity * sc[k];
-            force += product(uh, drive, k);
-        }
+        load[k] = body.short_axis2 * w2[k] + body.gravity * uh[k];
+        const double force = -body.c2 * product(sc, load, k);
         const double known = terms(mass, turning, k, 1, k);
         turning[k] = (force - known) / mass[0];
         motion.omega[k] = w[k];

@@ -1,26 +1,24 @@
-// Exact rolling as power series in time about a place of the motion.
+// Exact rolling on level ground as power series in time about a place of the motion.
 #pragma once
 
 #include "numerics/series.hpp"
 
 namespace rolling_ellipse {
 
-// The constants of the series, with time in a unit of its own.
+// The constants of the series, with the long semi-axis as the unit of length and time in a unit of
+// its own.
 struct SeriesConstants {
     double short_axis2;
     double c2;
-    double gravity;  // into the ground
-    double d0;       // D h^2 = d0 + d1 sin^2 phi, physics (28)
+    double gravity;
+    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28)
     double d1;
-    double along = 0.0;       // gravity along a slope that falls to growing angles
-    double long_axis2 = 1.0;  // other than 1 only where lengths are not in units of that axis
 };
 
 struct MotionSeries {
     Series angle;
     Series omega;
     Series path;
-    Series height;
 };
 
 // The series from the sine and cosine of the angle from the flat position and the angular velocity.

@@ -17,7 +17,7 @@ class PathSeries {
     // As centre_path, to the last place or two; what was asked before changes no bit.
     double operator()(double theta) {
         if (!here_.holds(theta)) move_to(theta);
-        return value_in_pairs(here_.path, theta - here_.middle);
+        return value(here_.path, theta - here_.middle);
     }
 
   private:

@@ -8,31 +8,6 @@
 namespace rolling_ellipse {
 namespace {
 
-// How far a series is as good as a double beside its own size: as `reach`, for the last four terms
-// together, whose root is a square root four times over. By symmetries three of four may vanish;
-// those before the last two count as they would be at the end of a series that falls tenfold.
-double radius(const Series& series) {
-    static_assert(series_order == 16);
-    constexpr double rest = 1e-16;  // half an ulp
-    double found = 1.0;
-    for (int i = 0; i < 3; ++i) {
-        const double size = std::max({std::abs(series[0]), std::abs(series[1]) * found,
-                                      std::abs(series[2]) * square(found)});
-        const double earlier = 1e-2 * std::abs(series[14]) + 1e-3 * std::abs(series[13]) / found;
-        const double last = std::abs(series[16]) + (std::abs(series[15]) + earlier / found) / found;
-        if (last == 0) return infinity;
-        found = std::sqrt(std::sqrt(std::sqrt(std::sqrt(rest * size / last))));
-    }
-    return found;
-}
-
-// What a series adds to its first coefficient.
-double change(const Series& series, double z) {
-    double sum = series[series_order];
-    for (int k = series_order - 1; k > 0; --k) sum = sum * z + series[k];
-    return sum * z;
-}
-
 bool at_tip(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
 
 // The nearest flat position or tip.
@@ -61,12 +36,11 @@ SlopeBody slope_body(const Body& from, double slope) {
     const double s2 = square(body.short_axis);
     const double l2 = square(body.long_axis);
     body.series = {s2,
+                   l2,
                    body.c2,
-                   body.gravity.into,
+                   body.gravity,
                    s2 * (body.gyration2 + s2),
-                   body.c2 * (body.gyration2 + l2 + s2),
-                   body.gravity.along,
-                   l2};
+                   body.c2 * (body.gyration2 + l2 + s2)};
     body.slowest = std::sqrt(gravity * body.long_axis / (body.gyration2 + s2));
     body.quarter_path = path_from_flat(body.long_axis, body.short_axis, 1.0, 0.0);
     body.gain = body.gravity.along * 2 * body.quarter_path;
@@ -106,12 +80,12 @@ SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
     SlopePiece piece{};
     piece.from = from;
     piece.unit = 1 / std::max(std::abs(from.omega), body.slowest);
-    SeriesConstants constants = body.series;
-    constants.gravity *= square(piece.unit);
-    constants.along *= square(piece.unit);
+    SlopeConstants constants = body.series;
+    constants.gravity.into *= square(piece.unit);
+    constants.gravity.along *= square(piece.unit);
     const bool tip = at_tip(from.quarters);
-    piece.series = motion_series(constants, tip ? c : s, tip ? -s : c, from.omega * piece.unit);
-    piece.lasts = piece.unit * std::min(radius(piece.series.omega), radius(piece.series.path));
+    piece.series = slope_series(constants, tip ? c : s, tip ? -s : c, from.omega * piece.unit);
+    piece.lasts = piece.unit * std::min(reach(piece.series.omega), reach(piece.series.path));
     return piece;
 }
 
@@ -119,21 +93,21 @@ SlopePlace place_in(const SlopePiece& piece, double since) {
     const double z = since / piece.unit;
     SlopePlace place = piece.from;
     place.time = place.time + since;
-    place.angle = place.angle + change(piece.series.angle, z);
-    place.path = place.path + change(piece.series.path, z);
+    place.angle = place.angle + value(piece.series.angle, z);
+    place.path = place.path + value(piece.series.path, z);
     place.omega = value(piece.series.omega, z) / piece.unit;
     normalize(place);
     return place;
 }
 
 double angle_in(const SlopePiece& piece, double since) {
-    return double(piece.from.angle) + change(piece.series.angle, since / piece.unit);
+    return double(piece.from.angle) + value(piece.series.angle, since / piece.unit);
 }
 
 double acceleration_in(const SlopePiece& piece, double since) {
     const double z = since / piece.unit;
     double sum = 0.0;
-    for (int k = series_order; k > 0; --k) sum = sum * z + k * piece.series.omega[k];
+    for (int k = long_order; k > 0; --k) sum = sum * z + k * piece.series.omega[k];
     return sum / square(piece.unit);
 }
 

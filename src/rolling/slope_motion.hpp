@@ -6,7 +6,7 @@
 
 #include "numerics/double_double.hpp"
 #include "numerics/tracked.hpp"
-#include "rolling/motion_series.hpp"
+#include "rolling/slope_series.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {
@@ -21,11 +21,11 @@ struct SlopeBody {
     double short_axis;
     double c2;
     double gyration2;
-    GroundGravity gravity;   // along > 0
-    SeriesConstants series;  // for a time unit of 1
-    double slowest;          // rate of what gravity does from rest
-    double quarter_path;     // of the centre, in a quarter turn
-    double gain;             // of W = D omega^2/2 in half a turn downhill, physics (58)
+    GroundGravity gravity;  // along > 0
+    SlopeConstants series;  // for a time unit of 1
+    double slowest;         // rate of what gravity does from rest
+    double quarter_path;    // of the centre, in a quarter turn
+    double gain;            // of W = D omega^2/2 in half a turn downhill, physics (58)
 };
 
 SlopeBody slope_body(const Body& body, double slope);
@@ -60,7 +60,7 @@ struct SlopePiece {
     SlopePlace from;
     double unit;   // of time, in the series
     double lasts;  // in units of the body
-    MotionSeries series;
+    SlopeSeries series;
 
     double end() const { return double(from.time + lasts); }
 };
