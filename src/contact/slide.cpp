@@ -27,24 +27,23 @@ SlidePoint moved(const SlidePiece& piece, double clock) {
             centre.time + lasts * unit};
 }
 
-// A series on [0, reach] as a polynomial on [0, 1]; each coefficient with the magnitude of what it
-// was made from.
+// The first share of a reach at which a series that has to stay positive is negative, provably;
+// each coefficient with the magnitude of what it was made from.
 template <class Coefficient, class Magnitude>
-Polynomial<long_order> stretched(double reach, Coefficient coefficient, Magnitude magnitude) {
-    Polynomial<long_order> p;
-    double power = 1.0;
-    for (int k = 0; k <= long_order; ++k) {
-        p.coefficients[k] = {power * coefficient(k), power * magnitude(k)};
+std::optional<double> first_end(double reach, Coefficient coefficient, Magnitude magnitude) {
+    double others = 0.0;
+    double power = reach;
+    for (int k = 1; k <= long_order; ++k) {
+        others += power * magnitude(k);
         power *= reach;
     }
-    return p;
-}
-
-// The first place at which what has to stay positive is negative, provably.
-std::optional<double> first_end(const Polynomial<long_order>& margin) {
-    double others = 0.0;
-    for (int k = 1; k <= long_order; ++k) others += margin.coefficients[k].magnitude;
-    if (margin.coefficients[0].value > others) return std::nullopt;
+    if (coefficient(0) > others) return std::nullopt;
+    Polynomial<long_order> margin;
+    power = 1.0;
+    for (int k = 0; k <= long_order; ++k) {
+        margin.coefficients[k] = {power * coefficient(k), power * magnitude(k)};
+        power *= reach;
+    }
     return first_negative(bernstein(margin));
 }
 
@@ -83,9 +82,17 @@ class Follower {
         if (!(reach_ > 0)) return SlideStop::no_progress;
         examine(body, series);
         series.omega[0] = series.slip[0] = 0.0;
-        slide_.pieces.push_back({from, clock_, unit, reach_, series.angle, series.omega,
-                                 series.slip, series.path, series.time});
-        const SlidePoint next = moved(slide_.pieces.back(), reach_);
+        SlidePiece& piece = slide_.pieces.emplace_back();
+        piece.centre = from;
+        piece.clock = clock_;
+        piece.unit = unit;
+        piece.reach = reach_;
+        piece.angle = series.angle;
+        piece.omega = series.omega;
+        piece.slip = series.slip;
+        piece.path = series.path;
+        piece.time = series.time;
+        const SlidePoint next = moved(piece, reach_);
         const bool stands_still = clock_ == SlideClock::time && next.time.high == from.time.high;
         slide_.last = next;
         if (!end_) return stands_still ? std::optional(SlideStop::no_progress) : std::nullopt;
@@ -99,7 +106,7 @@ class Follower {
     void examine(const SlidingBody& body, const SlideSeries& series) {
         end_.reset();
         const auto look = [&](End what, auto coefficient, auto magnitude) {
-            const auto place = first_end(stretched(reach_, coefficient, magnitude));
+            const auto place = first_end(reach_, coefficient, magnitude);
             if (!place) return;
             end_ = what;
             reach_ *= *place;

@@ -3,6 +3,9 @@
 #include <cmath>
 
 namespace rolling_ellipse {
+
+// The rates of u = h^2 and p = h h' are 2 p and q times that of the angle, that of q is -4 p times
+// it.
 SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double sin, double cos,
                          SlideClock clock) {
     const auto [a, b] = body.axes;
@@ -15,60 +18,55 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
     SlideSeries slide;
     auto& [angle, w, slip, path, rolled, time, pressure, response, u] = slide;
     // Side by side: what is multiplied at once.
-    TwoSeries s_s, s_c;          // sin^2, sin cos
-    TwoSeries w_below, w_above;  // omega^2, (a b - u)(a b + u)
-    TwoSeries p_u, lever_h;      // p L, u h
-    TwoSeries u_h, v_v;          // u V, h V
-    TwoSeries l_h, c_w;          // L C, h omega
-    TwoSeries loads, gains;      // (u V) omega', (h V) impulse'
-    TwoSeries rate_c, w_h;       // dt/dtau omega, C h
-    TwoSeries c_s, spread;       // cos angle', -sin angle'
-    LongSeries h, bend, w2, rate, velocity, impulse;
+    TwoSeries p_q, spread;   // p angle', q angle'
+    TwoSeries w_u;           // omega^2, u^2
+    TwoSeries h_bend, h_w2;  // h^2, (a b - u)(a b + u) omega^2
+    TwoSeries p_u, lever_h;  // p L, u h
+    TwoSeries u_h, v_v;      // u V, h V
+    TwoSeries l_h, c_w;      // L C, h omega
+    TwoSeries loads, gains;  // (u V) omega', (h V) impulse'
+    TwoSeries rate_c, w_h;   // dt/dtau omega, C h
+    LongSeries h, rate, velocity, impulse;
     angle[0] = at.angle;
     w[0] = at.omega;
     path[0] = at.path;
     time[0] = at.time;
     impulse[0] = 0.0;
-    s_s[0] = pair(sin, sin);
-    s_c[0] = pair(sin, cos);
-    c_s[0] = pair(cos, -sin);
-    const double u0 = square(a * sin) + square(b * cos);  // nothing cancels for thin bodies,
-    const double below0 = (a - b) * (b * square(cos) - a * square(sin));  // nor for circles
+    p_q[0] = pair(c2 * sin * cos, c2 * (cos - sin) * (cos + sin));
+    const double u0 = square(a * sin) + square(b * cos);
+    u[0] = u0;
+    // Nothing cancels for thin bodies, nor for circles.
+    const double bend0 = (a - b) * (b * square(cos) - a * square(sin)) * (a * b + u0);
     const double h0 = std::sqrt(u0);
     const double over_2h0 = 0.5 / h0;
     const double per_clock = 1 / (k2 * u0 * u0);
     Pair over_loads{};
 
     for (int k = 0; k <= long_order; ++k) {
-        const Pair known_squares = inner(s_s, s_c, k);
-        const Pair known_bends = inner(w_below, w_above, k);
+        const Pair known_spread = inner(p_q, spread, k);
+        const Pair known_squares = self_product(w_u, k, 1);
+        const Pair known_bends = inner(h_bend, h_w2, k);
         const Pair known_weights = inner(p_u, lever_h, k);
         const Pair known_loads = inner(u_h, v_v, k);
         const Pair known_torques = inner(l_h, c_w, k);
-        const Pair known_turns = inner(c_s, spread, k);
-        const double known_turning = inner(bend, w2, k);
-        const double known_h = inner(h, h, k);
 
-        const Pair squares = known_squares + outer(s_s, s_c, k);
-        const double varying = k == 0 ? 0.0 : c2 * squares[0];
-        u[k] = k == 0 ? u0 : varying;
-        h[k] = k == 0 ? h0 : (u[k] - known_h) * over_2h0;
-        const double p = c2 * squares[1];
+        h[k] = k == 0 ? h0 : (u[k] - known_bends[0]) * over_2h0;
+        const double p = p_q[k][0];
         const double lever = nu * p + phi * u[k];
-        w_below[k] = pair(w[k], k == 0 ? below0 : -varying);
-        w_above[k] = pair(w[k], k == 0 ? u0 + a * b : varying);
+        w_u[k] = pair(w[k], u[k]);
+        const Pair squares = k == 0 ? w_u[0] * w_u[0] : known_squares + 2 * (w_u[0] * w_u[k]);
+        h_bend[k] = pair(h[k], k == 0 ? bend0 : -squares[1]);
+        h_w2[k] = pair(h[k], squares[0]);
         p_u[k] = pair(p, u[k]);
         lever_h[k] = pair(lever, h[k]);
         u_h[k] = pair(u[k], h[k]);
         l_h[k] = pair(lever, h[k]);
 
-        const Pair bends = known_bends + outer(w_below, w_above, k);
-        w2[k] = bends[0];
-        bend[k] = bends[1];
+        const Pair bends = known_bends + outer(h_bend, h_w2, k);
         const Pair weights = known_weights + outer(p_u, lever_h, k);
         response[k] = nu * k2 * u[k] + weights[0];
         v_v[k] = pair(response[k], response[k]);
-        pressure[k] = body.gravity.into * weights[1] + (known_turning + outer(bend, w2, k));
+        pressure[k] = body.gravity.into * weights[1] + bends[1];
         c_w[k] = pair(pressure[k], w[k]);
         const Pair torques = known_torques + outer(l_h, c_w, k);
         rolled[k] = torques[1];
@@ -92,10 +90,10 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
         slip[k] = k == 0 ? at.slip : impulse[k] + body.gravity.along * time[k] - rolled[k];
         velocity[k] = slip[k] + rolled[k];
         if (k == long_order) break;
-        const Pair turns = (known_turns + outer(c_s, spread, k)) * pair(over_next[k], over_next[k]);
-        s_s[k + 1] = pair(turns[0], turns[0]);
-        s_c[k + 1] = turns;
-        c_s[k + 1] = pair(turns[1], -turns[0]);
+        const Pair turns =
+            (known_spread + outer(p_q, spread, k)) * pair(over_next[k], over_next[k]);
+        u[k + 1] = 2 * turns[0];
+        p_q[k + 1] = pair(turns[1], -4 * turns[0]);
         angle[k + 1] = spread[k][0] * over_next[k];
         w[k + 1] = gain[0] * over_next[k];
         impulse[k + 1] = gain[1] * over_next[k];

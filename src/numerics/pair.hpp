@@ -24,6 +24,7 @@ struct Pair {
 inline Pair operator+(Pair x, const Pair& y) { return x += y; }
 inline Pair operator-(const Pair& x, const Pair& y) { return {{x[0] - y[0], x[1] - y[1]}}; }
 inline Pair operator*(const Pair& x, const Pair& y) { return {{x[0] * y[0], x[1] * y[1]}}; }
+inline Pair operator*(double factor, const Pair& x) { return {{factor * x[0], factor * x[1]}}; }
 
 #endif
 

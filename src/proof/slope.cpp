@@ -146,38 +146,39 @@ class Well {
     bool holds_ = false;
 };
 
-Well well_of(const Scene& scene, const State& start, const FlatView& at) {
-    const double side = std::copysign(1.0, scene.slope);
-    return Well(downhill(scene), side * std::atan2(at.sin, at.cos), start.omega);
+double side_of(const Scene& scene) { return std::copysign(1.0, scene.slope); }
+
+Well well_of(const Scene& scene, const State& start) {
+    const FlatView at = flat_view(scene.axes(), start.theta);
+    return Well(downhill(scene), side_of(scene) * std::atan2(at.sin, at.cos), start.omega);
+}
+
+// The friction that a motion with constant forces needs: of a body in equilibrium, and a circle.
+std::optional<double> constant_friction(const Scene& scene, const State& start) {
+    const double incline = std::abs(std::tan(scene.slope));
+    const Geometry here = geometry(scene.axes(), start.theta);
+    if (start.omega == 0 && is_equilibrium(here, std::tan(scene.slope))) return incline;
+    if (scene.a != scene.b) return std::nullopt;
+    const double k2 = scene.body().gyration2;
+    return incline * k2 / (k2 + square(scene.a));
 }
 
 }  // namespace
 
 bool may_hold_for_ever(const Scene& scene, const State& start) {
-    const FlatView at = flat_view(scene.axes(), start.theta);
-    const Geometry here = geometry(scene.axes(), start.theta);
-    if (at.c2 == 0) return true;
-    if (start.omega == 0 && is_equilibrium(here, std::tan(scene.slope))) return true;
-    return well_of(scene, start, at).holds();
+    return constant_friction(scene, start) || well_of(scene, start).holds();
 }
 
 std::optional<SlopeExtremes> extremes_on_slope(const Scene& scene, const State& start) {
-    const double incline = std::tan(scene.slope);
-    const double weight = scene.mass * scene.ground_gravity().into;
-    const FlatView at = flat_view(scene.axes(), start.theta);
-    const Geometry here = geometry(scene.axes(), start.theta);
-    const auto constant = [&](double needed) {
-        return SlopeExtremes{weight, start.theta, needed, start.theta};
-    };
-    if (start.omega == 0 && is_equilibrium(here, incline)) return constant(std::abs(incline));
-    const double k2 = scene.body().gyration2;
-    if (at.c2 == 0) return constant(std::abs(incline) * k2 / (k2 + square(scene.a)));
-    const Well well = well_of(scene, start, at);
+    if (const auto needed = constant_friction(scene, start)) {
+        const double weight = scene.mass * scene.ground_gravity().into;
+        return SlopeExtremes{weight, start.theta, *needed, start.theta};
+    }
+    const Well well = well_of(scene, start);
     if (!well.holds()) return std::nullopt;
-    const double side = std::copysign(1.0, scene.slope);
     SlopeExtremes found = well.extremes();
-    found.least_normal_angle = start.theta + side * found.least_normal_angle;
-    found.most_friction_angle = start.theta + side * found.most_friction_angle;
+    found.least_normal_angle = start.theta + side_of(scene) * found.least_normal_angle;
+    found.most_friction_angle = start.theta + side_of(scene) * found.most_friction_angle;
     return found;
 }
 

@@ -36,6 +36,11 @@ Weights weights(double friction) {
     return friction > 1 ? Weights{1.0, 1 / friction} : Weights{friction, 1.0};
 }
 
+// What is left of the law for friction to one side.
+double law_margin(const Weights& by, const ContactForce& force, double side) {
+    return by.normal * force.normal - side * by.friction * force.friction;
+}
+
 LawPolynomial law_polynomial(const SlopeBody& body, const SlopePiece& piece, double friction,
                              double side) {
     const auto [normal, needed] = weights(friction);
@@ -103,7 +108,7 @@ LawMeetings law_in_half_turn(const SlopeFlow& flow, double friction, const Slope
 double broken_about(const SlopeFlow& flow, const SlopeRun& run, double friction) {
     constexpr int looks = 64;
     const SlopeBody& body = flow.body;
-    const auto [normal, needed] = weights(friction);
+    const Weights by = weights(friction);
     const SlopeEnergy energy = energy_of(body, run.from);
     const double start = path_at(body, 0.0, double(run.from.angle));
     double least = infinity;
@@ -124,9 +129,8 @@ double broken_about(const SlopeFlow& flow, const SlopeRun& run, double friction)
         place.omega = std::sqrt(omega2);
         const ContactForce moving = contact_force(body, place);
         for (const double side : {1.0, -1.0}) {
-            const double still = normal * at_rest.normal - side * needed * at_rest.friction;
-            const double now = normal * moving.normal - side * needed * moving.friction;
-            const double change = (now - still) / omega2 * gain;
+            const double now = law_margin(by, moving, side);
+            const double change = (now - law_margin(by, at_rest, side)) / omega2 * gain;
             if (change < 0) least = std::min(least, -now / change);
         }
     }
@@ -217,9 +221,7 @@ Meeting LawWatch::meeting(const SlopePiece& piece, double share) const {
 
 double LawWatch::margin(const SlopePiece& piece, double share, double side) const {
     const SlopePlace place = place_in(piece, share * piece.lasts);
-    const ContactForce force = contact_force(body_, place);
-    const auto [normal, needed] = weights(friction_);
-    return normal * force.normal - side * needed * force.friction;
+    return law_margin(weights(friction_), contact_force(body_, place), side);
 }
 
 template <class Law>
@@ -239,14 +241,16 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, double tolerance
             // The forces themselves know it better than the series of their polynomials.
             const double fine = finest_rounding * law.size;
             const double low = places[i];
+            const double high = places[i + 1];
             const auto at = [&](double share) { return margin(piece, share, side); };
-            double least = golden_section(low, places[i + 1],
-                                          [&](double x, double y) { return at(x) < at(y); });
-            for (const double end : {low, places[i + 1]}) least = at(end) < at(least) ? end : least;
+            double least = at(low) < at(high) ? low : high;
+            if (at(least) >= -fine) {
+                const double inside =
+                    golden_section(low, high, [&](double x, double y) { return at(x) < at(y); });
+                if (at(inside) < at(least)) least = inside;
+            }
             if (at(least) < -fine) {
-                const double first =
-                    at(low) < 0 ? low
-                                : bisect(low, least, [&](double x) { return at(x) < 0; }).high;
+                const double first = at(low) < 0 ? low : bisect_root(low, least, at).high;
                 const Meeting found = meeting(piece, first);
                 if (!met_.broken || found.time < met_.broken->time) met_.broken = found;
                 return;
