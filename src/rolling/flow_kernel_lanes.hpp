@@ -225,27 +225,31 @@ inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
 }
 
 void look_up(const FlowReader& motion, int n, Block& block) {
+    const FlowPiece* recent = motion.pieces;
     for (int i = 0; i < n; i += lanes) {
         const Pack time = load(block.time + i);
         const Pack low = load(block.low + i);
         const Pack since = abs(time);
         const Pack since_low = time < 0 ? -low : low;
-        const FlowPiece& first = piece_at(motion, since[0]);
-        if (!any((since < first.low) | (since >= first.high))) {
-            const Pack z =
-                ((since - first.centre.high) + (since_low - first.centre.low)) * motion.per_unit;
-            const Motions found = together(first.series, z);
+        const auto holds = [&](const FlowPiece& piece) {
+            return !any((since < piece.low) | (since >= piece.high));
+        };
+        if (!holds(*recent)) recent = &piece_at(motion, since[0]);
+        if (holds(*recent)) {
+            const Pack z = ((since - recent->centre.high) + (since_low - recent->centre.low)) *
+                           motion.per_unit;
+            const Motions found = together(recent->series, z);
             store(found.angle, block.angle + i);
             store(found.omega, block.omega + i);
             store(found.path, block.path + i);
-            store(pack(first.quarters), block.quarters + i);
+            store(pack(recent->quarters), block.quarters + i);
             continue;
         }
         for (int lane = 0; lane < lanes; ++lane) {
             const FlowPiece& piece = piece_at(motion, since[lane]);
-            const double z = ((since[lane] - piece.centre.high) +
-                              (since_low[lane] - piece.centre.low)) *
-                             motion.per_unit;
+            const double z =
+                ((since[lane] - piece.centre.high) + (since_low[lane] - piece.centre.low)) *
+                motion.per_unit;
             alone(piece.series, z, block, i + lane);
             block.quarters[i + lane] = piece.quarters;
         }
