@@ -1,0 +1,278 @@
+"""Make one-line changes in the sources, each of which the tests should notice.
+
+    python tools/mutants.py core --count 100 --folder /tmp/mutants
+    python tools/mutants.py python --count 30 --folder /tmp/mutants
+    python tools/mutants.py core --only src/contact/slide.cpp:52:3 --folder /tmp/mutants
+
+copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
+tolerances, and/or, min/max) from lines all over the sources, and for each builds what has changed
+and runs the tests nearest to it, then some of every folder, up to the first that fails. What is
+left alive is listed, with --thorough after the whole suite has seen it. A mutant that does not
+compile counts for nothing. Results are kept in FOLDER/SIDE.json, with which the same command goes
+on where it was stopped. Needs the requirements of the build and of the tests.
+"""
+
+import argparse
+import json
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# What is changed into what. A change of what is written alone is none: no strings, no comments.
+CHANGES = {
+    "sign": [(r" \+ ", " - "), (r" - ", " + "), (r"([=(,] ?)-(?=[\w(])", r"\1"),
+             (r" \+= ", " -= "), (r" -= ", " += ")],
+    "function": [(r"\bsin\(", "cos("), (r"\bcos\(", "sin("), (r"\bmax\(", "min("),
+                 (r"\bmin\(", "max("), (r"\bfloor\(", "ceil("), (r"\b(std::)?abs\(", "("),
+                 (r"\bsquare\(", "(")],
+    "factor": [(r"\b0\.5 \*", "0.51 *"), (r"\b2 \*", "3 *"), (r" \* ", " / "), (r" / ", " * ")],
+    "comparison": [(r" < ", " <= "), (r" <= ", " < "), (r" > ", " >= "), (r" >= ", " > "),
+                   (r" == ", " != "), (r" != ", " == ")],
+    "logic": [(r" && ", " || "), (r" \|\| ", " && "), (r"\btrue\b", "false"),
+              (r"\bfalse\b", "true"), (r" and ", " or "), (r" or ", " and "),
+              (r"\bif not ", "if "), (r"\bTrue\b", "False"), (r"\bFalse\b", "True")],
+    "index": [(r"\[0\]", "[1]"), (r"\[1\]", "[0]"), (r" \+ 1\b", " + 2"), (r" - 1\b", " - 2"),
+              (r"= 0;", "= 1;"), (r"= 1;", "= 0;")],
+    "tolerance": [(r"\b(\d+)e-(\d+)\b", r"\1e-3"), (r"\b(\d+) \* epsilon\b", r"1000000 * epsilon")],
+}  # fmt: skip
+
+# The tests nearest to a folder of the sources; others have the folder of their own name.
+NEAREST = {
+    "bindings": ["trajectory", "border", "batches"],
+    "core": ["trajectory", "contact", "rolling"],
+    "multipliers": ["multipliers", "stability"],
+    "numerics": ["rolling", "proof", "contact"],
+    "proof": ["proof", "outcome", "contact"],
+    "rolling": ["rolling", "integrator", "contact"],
+    "scene": ["scene", "contact", "border"],
+    "_pictures": ["pictures"],
+    "_player": ["player"],
+    "_export": ["export", "trajectory"],
+    "_faces": ["border", "trajectory"],
+    "_command": ["project"],
+    "python": ["trajectory", "scene", "outcome", "border", "batches"],
+}
+
+# Written by programs, or nothing but names.
+LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "details.cpp", "build.cpp", "_core.pyi")
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A changed line.
+
+    Attributes
+    ----------
+    path : str
+        Of the source, in the project.
+    line : int
+        From 1 on.
+    number : int
+        Of this change among those of the line.
+    kind : str
+        Key of CHANGES.
+    was, now : str
+        The line, without what it is indented by.
+    """
+
+    path: str
+    line: int
+    number: int
+    kind: str
+    was: str
+    now: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.path}:{self.line}:{self.number}"
+
+
+def changes(line: str) -> Iterator[tuple[str, str]]:
+    """All changes of a line, by kind."""
+    code = re.split(r"//|  # ", line)[0]
+    for kind, rules in CHANGES.items():
+        for pattern, replacement in rules:
+            for found in re.finditer(pattern, code):
+                new = found.expand(replacement)
+                yield kind, line[: found.start()] + new + line[found.end() :]
+
+
+def mutants_of(path: Path) -> Iterator[Mutant]:
+    is_core = path.suffix in (".cpp", ".hpp")
+    passive = r"\s*(#|//|template|static_assert|using |\"|import |from |def |class |raise )"
+    in_text = False
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+        if not is_core and line.count('"""') % 2:
+            in_text = not in_text
+            continue
+        if in_text or re.match(passive, line) or '"' in line:
+            continue
+        for index, (kind, now) in enumerate(changes(line)):
+            name = path.relative_to(ROOT).as_posix()
+            yield Mutant(name, number, index, kind, line.strip(), now.strip())
+
+
+def drawn(side: str, count: int, seed: int) -> list[Mutant]:
+    """As many of each file as the root of what it has, in a mixed order."""
+    folder, suffixes = ("src", (".cpp", ".hpp")) if side == "core" else ("python", (".py",))
+    random_ = random.Random(seed)
+    order = []
+    for path in sorted((ROOT / folder).rglob("*")):
+        if path.suffix not in suffixes or path.name in LEFT_OUT:
+            continue
+        found = list(mutants_of(path))
+        random_.shuffle(found)
+        order += [((i + random_.random()) / len(found) ** 0.5, m) for i, m in enumerate(found)]
+    order.sort(key=lambda pair: (pair[0], pair[1].name))
+    return [mutant for _, mutant in order[:count]]
+
+
+class Workshop:
+    """A copy of the project in which one mutant after the other is built and tested."""
+
+    def __init__(self, folder: Path, processes: int):
+        self.spread = ["-n", str(processes), "--dist", "loadfile"] if processes > 1 else []
+        self.copy = folder / "copy"
+        self.objects = folder / "objects"
+        self.site = folder / "site"
+        skipped = shutil.ignore_patterns(".git", ".venv", "build", "__pycache__", ".*_cache")
+        shutil.copytree(ROOT, self.copy, ignore=skipped, dirs_exist_ok=True)
+        self.environment = {**os.environ, "PYTHONPATH": str(self.site), "CI": "true"}
+
+    def configure(self) -> None:
+        import pybind11
+
+        eigen = subprocess.run(
+            [sys.executable, "-m", "cmeel", "cmake"], check=True, capture_output=True, text=True
+        ).stdout.strip()
+        subprocess.run(
+            ["cmake", "-S", self.copy, "-B", self.objects, "-G", "Ninja",
+             "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1", "-DSKBUILD=2",
+             f"-DSKBUILD_PROJECT_VERSION={version()}",
+             f"-DPython_EXECUTABLE={sys.executable}",
+             f"-Dpybind11_DIR={pybind11.get_cmake_dir()}",
+             f"-DCMAKE_PREFIX_PATH={eigen}"],
+            check=True, stdout=subprocess.DEVNULL,
+        )  # fmt: skip
+
+    def build(self) -> bool:
+        done = subprocess.run(["cmake", "--build", self.objects], capture_output=True)
+        if done.returncode:
+            return False
+        package = self.site / "rolling_ellipse"
+        shutil.copytree(self.copy / "python" / "rolling_ellipse", package, dirs_exist_ok=True)
+        for module in self.objects.glob("_core*"):
+            if module.is_file():
+                shutil.copy2(module, package)
+        return True
+
+    def passes(self, *arguments: str, seconds: float) -> bool:
+        """Whether the tests notice nothing; one that hangs has noticed."""
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider",
+                   *self.spread, *arguments]  # fmt: skip
+        try:
+            done = subprocess.run(
+                command, cwd=self.copy, env=self.environment, capture_output=True, timeout=seconds
+            )
+        except subprocess.TimeoutExpired:
+            return False
+        if done.returncode == 4:
+            sys.exit(done.stderr.decode())
+        return done.returncode in (0, 5)  # 5: no such tests there
+
+    def judged(self, mutant: Mutant, thorough: bool) -> str:
+        """What noticed it: "build", a stage of the tests, or nothing: "alive"."""
+        path = self.copy / mutant.path
+        whole = path.read_text(encoding="utf-8")
+        lines = whole.splitlines(keepends=True)
+        old = lines[mutant.line - 1]
+        assert old.strip() == mutant.was, f"{mutant.name}: the sources have changed since"
+        lines[mutant.line - 1] = old.replace(mutant.was, mutant.now)
+        path.write_text("".join(lines), encoding="utf-8")
+        try:
+            if not self.build():
+                return "build"
+            for folder in nearest(mutant.path):
+                if not self.passes(f"tests/{folder}", seconds=900):
+                    return folder
+            if not self.passes("-m", "quick", seconds=900):
+                return "quick"
+            if thorough and not self.passes(seconds=7200):
+                return "all"
+            return "alive"
+        finally:
+            path.write_text(whole, encoding="utf-8")
+
+
+def version() -> str:
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    found = re.search(r'^version = "(.*)"', text, re.MULTILINE)
+    assert found
+    return found[1]
+
+
+def nearest(path: str) -> list[str]:
+    parts = Path(path).parts
+    if parts[0] == "src":
+        folder = parts[1] if len(parts) > 2 else "core"
+    else:
+        folder = parts[2] if len(parts) > 3 else "python"
+    return NEAREST.get(folder, [folder])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("side", choices=["core", "python"])
+    parser.add_argument("--folder", type=Path, required=True)
+    parser.add_argument("--count", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", help="PATH:LINE:NUMBER, the name of one of them")
+    parser.add_argument("--thorough", action="store_true")
+    parser.add_argument("--processes", type=int, default=1, help="that share the tests")
+    parser.add_argument("--list", action="store_true", help="draw and print, no more")
+    options = parser.parse_args()
+    if options.only:
+        path = ROOT / options.only.split(":")[0]
+        todo = [mutant for mutant in mutants_of(path) if mutant.name == options.only]
+    else:
+        todo = drawn(options.side, options.count, options.seed)
+    if options.list:
+        for mutant in todo:
+            print(f"{mutant.name} {mutant.kind}\n    {mutant.was}\n    {mutant.now}")
+        return
+    options.folder.mkdir(parents=True, exist_ok=True)
+    results = options.folder / f"{options.side}.json"
+    known = json.loads(results.read_text()) if results.exists() else {}
+    workshop = Workshop(options.folder, options.processes)
+    workshop.configure()
+    if not workshop.build() or not workshop.passes("-m", "quick", seconds=900):
+        sys.exit("the sources as they are do not build, or do not pass")
+    for i, mutant in enumerate(todo):
+        if mutant.name in known and not options.only:
+            continue
+        begin = time.monotonic()
+        fate = workshop.judged(mutant, options.thorough)
+        known[mutant.name] = {**asdict(mutant), "fate": fate}
+        results.write_text(json.dumps(known, indent=1))
+        print(f"{i + 1}/{len(todo)} {mutant.name} {mutant.kind}: {fate}, "
+              f"{time.monotonic() - begin:.0f} s", flush=True)  # fmt: skip
+        if fate == "alive":
+            print(f"    {mutant.was}\n    {mutant.now}", flush=True)
+    fates = [known[m.name]["fate"] for m in todo if known.get(m.name, {}).get("fate") != "build"]
+    killed = sum(fate != "alive" for fate in fates)
+    print(f"{killed} of {len(fates)} noticed")
+
+
+if __name__ == "__main__":
+    main()
