@@ -1,0 +1,42 @@
+#!/bin/sh
+# What the suite runs of the sources: lines and branches of C++ (g++ -O0 --coverage, gcovr) and of
+# Python (coverage.py, with the processes and threads that tests start), in a build apart from the
+# ordinary installation:
+#
+#   tools/coverage.sh                                   (the whole suite, in one process)
+#   tools/coverage.sh tests/contact tests/proof         (a part of it; any argument of pytest)
+#
+# PYTHON names the interpreter (default python3; it must have the extras test and coverage and the
+# build requirements). All lies in build/coverage; what was not run is there by file and line, in
+# lines.txt and branches.txt (C++) and python.txt. Each run counts afresh. Edges that only an
+# exception takes are no branches here: nearly every call has one.
+set -eu
+cd "$(dirname "$0")/.."
+python=${PYTHON:-python3}
+folder=$PWD/build/coverage
+
+"$python" -m pip install --quiet --no-build-isolation --no-deps --upgrade \
+    --target "$folder/site" -Cbuild-dir="$folder/objects" -Cinstall.strip=false \
+    -Ccmake.build-type=None \
+    -Ccmake.define.CMAKE_CXX_FLAGS="-O0 --coverage -fprofile-update=atomic" .
+find "$folder/objects" -name '*.gcda' -delete
+rm -f "$folder"/data.*
+
+export PYTHONPATH="$folder/site${PYTHONPATH:+:$PYTHONPATH}"
+export COVERAGE_FILE="$folder/data"
+status=0
+"$python" -m coverage run -m pytest -p no:cacheprovider "$@" || status=$?
+
+"$python" -m coverage combine --quiet
+"$python" -m coverage report --show-missing >"$folder/python.txt"
+"$python" -m gcovr --root . --filter src/ --exclude-throw-branches --json "$folder/core.json" \
+    "$folder/objects"
+for metric in line branch; do
+    "$python" -m gcovr --root . --add-tracefile "$folder/core.json" --txt-metric $metric \
+        --txt "$folder/${metric}s.txt"
+done
+echo "C++"
+"$python" -m gcovr --root . --add-tracefile "$folder/core.json" --print-summary --txt /dev/null
+echo "Python"
+tail -n 1 "$folder/python.txt"
+exit $status
