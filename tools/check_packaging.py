@@ -26,9 +26,10 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-TRIAL = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["cibuildwheel"]
+TOOLS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
+TRIAL = TOOLS["cibuildwheel"]
+NOT_PACKED = tuple(f"{folder}/" for folder in TOOLS["scikit-build"]["sdist"]["exclude"])
 PACKAGE = "python/rolling_ellipse/"
-NOT_PACKED = (".ci/", ".github/")  # as at sdist.exclude in pyproject.toml
 
 
 def run(*command: str | Path, cwd: Path, **variables: str) -> str:

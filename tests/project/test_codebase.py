@@ -172,6 +172,16 @@ def test_quick_tests_come_from_every_folder() -> None:
     assert {name.partition("/")[0] for name in QUICK} == folders
 
 
+def test_wheels_are_tried_by_tests_of_the_suite() -> None:
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    words = settings["tool"]["cibuildwheel"]["test-command"].split()
+    names = [word.partition("}/")[2] for word in words if word.startswith("{project}/")]
+    assert len(names) > 5
+    for name in names:
+        file, _, test = name.partition("::")
+        assert f"def {test or 'test_'}" in (ROOT / file).read_text(encoding="utf-8"), name
+
+
 # --------------------------------------------------------------------------------- walls
 
 
