@@ -100,7 +100,8 @@ def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
     run(tools, "-m", "auditwheel", "repair", "-w", folder, first, cwd=folder, PATH=path)
     repaired = the_one(folder, "*.whl")
     with zipfile.ZipFile(repaired) as archive:
-        files = {name for name in archive.namelist() if ".dist-info/" not in name}
+        files = {each.filename for each in archive.infolist() if not each.is_dir()}
+    files = {name for name in files if not name.startswith("rolling_ellipse-")}  # what pip writes
     core = {name for name in files if Path(name).match("rolling_ellipse/_core.*.so")}
     known = {name.removeprefix("python/") for name in files_of_git() if name.startswith(PACKAGE)}
     require_same(repaired.name, files - core, known)
