@@ -31,12 +31,11 @@ status=0
 "$python" -m coverage report --show-missing >"$folder/python.txt"
 "$python" -m gcovr --root . --filter src/ --exclude-throw-branches --json "$folder/core.json" \
     "$folder/objects"
-for metric in line branch; do
-    "$python" -m gcovr --root . --add-tracefile "$folder/core.json" --txt-metric $metric \
-        --txt "$folder/${metric}s.txt"
-done
+"$python" -m gcovr --root . --add-tracefile "$folder/core.json" --txt-metric line \
+    --txt "$folder/lines.txt"
 echo "C++"
-"$python" -m gcovr --root . --add-tracefile "$folder/core.json" --print-summary --txt /dev/null
+"$python" -m gcovr --root . --add-tracefile "$folder/core.json" --txt-metric branch \
+    --txt "$folder/branches.txt" --print-summary
 echo "Python"
 tail -n 1 "$folder/python.txt"
 exit $status
