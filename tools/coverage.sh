@@ -14,11 +14,13 @@ set -eu
 cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
 folder=$PWD/build/coverage
+# What is always inlined would count anew wherever it is; so it counts once.
+once=-Dalways_inline=noinline
 
 "$python" -m pip install --quiet --no-build-isolation --no-deps --upgrade \
     --target "$folder/site" -Cbuild-dir="$folder/objects" -Cinstall.strip=false \
     -Ccmake.build-type=None \
-    -Ccmake.define.CMAKE_CXX_FLAGS="-O0 --coverage -fprofile-update=atomic" .
+    -Ccmake.define.CMAKE_CXX_FLAGS="-O0 --coverage -fprofile-update=atomic $once" .
 find "$folder/objects" -name '*.gcda' -delete
 rm -f "$folder"/data.*
 
@@ -29,8 +31,8 @@ status=0
 
 "$python" -m coverage combine --quiet
 "$python" -m coverage report --show-missing >"$folder/python.txt"
-"$python" -m gcovr --root . --filter src/ --exclude-throw-branches --json "$folder/core.json" \
-    "$folder/objects"
+"$python" -m gcovr --root . --filter src/ --exclude-throw-branches --merge-lines \
+    --json "$folder/core.json" "$folder/objects"
 "$python" -m gcovr --root . --add-tracefile "$folder/core.json" --txt-metric line \
     --txt "$folder/lines.txt"
 echo "C++"
