@@ -31,13 +31,13 @@ status=0
 
 "$python" -m coverage combine --quiet
 "$python" -m coverage report --show-missing >"$folder/python.txt"
-"$python" -m gcovr --root . --filter src/ --exclude-throw-branches --merge-lines \
-    --json "$folder/core.json" "$folder/objects"
-"$python" -m gcovr --root . --add-tracefile "$folder/core.json" --txt-metric line \
-    --txt "$folder/lines.txt"
+"$python" -m gcovr --root . --filter src/ --exclude-throw-branches --json "$folder/core.json" \
+    "$folder/objects"
+"$python" -m gcovr --root . --add-tracefile "$folder/core.json" --merge-lines \
+    --txt-metric line --txt "$folder/lines.txt"
 echo "C++"
-"$python" -m gcovr --root . --add-tracefile "$folder/core.json" --txt-metric branch \
-    --txt "$folder/branches.txt" --print-summary
+"$python" -m gcovr --root . --add-tracefile "$folder/core.json" --merge-lines \
+    --txt-metric branch --txt "$folder/branches.txt" --print-summary
 echo "Python"
 tail -n 1 "$folder/python.txt"
 exit $status
