@@ -1,35 +1,56 @@
 #!/bin/sh
-# Build the extension with the address and undefined-behaviour sanitizers of g++, apart from the
-# ordinary installation, and run a command of Python under it:
+# Build the extension with sanitizers of g++, apart from the ordinary installation, and run a
+# command of Python under it:
 #
 #   tools/sanitized_build.sh                                   (builds only)
+#   tools/sanitized_build.sh --suite                           (the whole suite of tests)
 #   tools/sanitized_build.sh tools/fuzz_api.py --calls 5000 --seconds-per-call 20 --no-memory-limit
 #   tools/sanitized_build.sh -m pytest tests/contact/test_contact.py
+#   tools/sanitized_build.sh --threads --suite                 (all that runs in several threads)
 #
-# PYTHON names the interpreter (default python3; it must have the build requirements); the build
-# lies in build/sanitized. Reads out of bounds, undefined arithmetic and the like end the process
-# with a report; the fuzzer counts that as a crash.
+# Without --threads they are the address and undefined-behaviour sanitizers: reads out of bounds,
+# undefined arithmetic and the like end the process with a report; the fuzzer counts that as a
+# crash. With --threads it is the thread sanitizer: two threads that touch the same memory, one of
+# them to write, with nothing between that orders them, are told, and the exit code is 66.
+#
+# PYTHON names the interpreter (default python3; it must have the build requirements); the builds
+# lie in build/sanitized and build/sanitized-threads.
 set -eu
 cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
-folder=$PWD/build/sanitized
-flags="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -O1 -g1"
+if [ "${1:-}" = --threads ]; then
+    shift
+    folder=$PWD/build/sanitized-threads
+    flags="-fsanitize=thread"
+    runtime=libtsan.so
+else
+    folder=$PWD/build/sanitized
+    flags="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
+    runtime=libasan.so
+fi
 
 "$python" -m pip install --quiet --no-build-isolation --no-deps --upgrade \
     --target "$folder/site" -Cbuild-dir="$folder/objects" -Cinstall.strip=false \
-    -Ccmake.build-type=None -Ccmake.define.CMAKE_CXX_FLAGS="$flags" .
+    -Ccmake.build-type=None -Ccmake.define.CMAKE_CXX_FLAGS="$flags -fno-omit-frame-pointer -O1 -g1" .
 
 # Python itself is not built so: the runtime has to be there before it, and with it libstdc++, whose
 # exceptions the runtime watches.
-preload="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libstdc++.so.6)"
+preload="$(g++ -print-file-name=$runtime) $(g++ -print-file-name=libstdc++.so.6)"
 export PYTHONPATH="$folder/site${PYTHONPATH:+:$PYTHONPATH}"
-export ASAN_OPTIONS="detect_leaks=0:allocator_may_return_null=1:handle_segv=1${ASAN_OPTIONS:+:$ASAN_OPTIONS}"
-export UBSAN_OPTIONS="print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
 export PYTHONMALLOC=malloc # so that arrays of NumPy and bytes have their bounds
+if [ $runtime = libtsan.so ]; then
+    tsan="suppressions=$PWD/tools/tsan_suppressions.txt:exitcode=66:halt_on_error=0"
+    export TSAN_OPTIONS="$tsan${TSAN_OPTIONS:+:$TSAN_OPTIONS}"
+else
+    asan="detect_leaks=0:allocator_may_return_null=1:handle_segv=1"
+    export ASAN_OPTIONS="$asan${ASAN_OPTIONS:+:$ASAN_OPTIONS}"
+    export UBSAN_OPTIONS="print_stacktrace=1${UBSAN_OPTIONS:+:$UBSAN_OPTIONS}"
+fi
 
 if [ $# -eq 0 ]; then
-    echo "LD_PRELOAD='$preload' PYTHONPATH='$PYTHONPATH' ASAN_OPTIONS='$ASAN_OPTIONS' \\"
-    echo "UBSAN_OPTIONS='$UBSAN_OPTIONS' PYTHONMALLOC=malloc $python ..."
+    echo "LD_PRELOAD='$preload' PYTHONPATH='$PYTHONPATH' PYTHONMALLOC=malloc \\"
+    echo "TSAN_OPTIONS='${TSAN_OPTIONS:-}' ASAN_OPTIONS='${ASAN_OPTIONS:-}' \\"
+    echo "UBSAN_OPTIONS='${UBSAN_OPTIONS:-}' $python ..."
     exit
 fi
 LD_PRELOAD="$preload" exec "$python" "$@"

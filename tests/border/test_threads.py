@@ -1,0 +1,184 @@
+"""Several Python threads at once: the bits of one thread alone, also where they share objects."""
+
+import random
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from functools import cached_property
+from threading import Barrier
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from oracles.pickles import require_same
+from rolling_ellipse import Scene, _core, scenes, simulate
+
+THREADS, CALLS_EACH = 8, 1000
+PLACES = 5  # of each kind of call as many different ones, so that neighbours do different work
+BODY = {"a": 2.0, "b": 1.0}
+TIMES = np.linspace(0.0, 1.0, 20)
+ROLLED = simulate(scenes.rolling, 4.0)
+TOUCHED = simulate(scenes.drop, 2.0)
+STEPPED = simulate(scenes.rocking, 1.0, model="multipliers", rtol=1e-6)
+DOWNHILL = simulate(scenes.slope, 2.0)
+
+
+def rolling(i: int) -> Scene:
+    return scenes.rolling.replace(omega=1.0 + 0.6 * i)
+
+
+def solved(i: int, **settings: Any) -> rl.Trajectory:
+    return simulate(rolling(i), TIMES, **settings)
+
+
+def all_of(motion: rl.Trajectory) -> list[Any]:
+    names = ("x", "z", "psi", "r", "omega_dot", "normal_force", "energy", "multipliers", "turns",
+             "friction_needed", "mode", "contact_x", "x_ddot", "events")  # fmt: skip
+    return [getattr(motion, name) for name in names]
+
+
+# Each is a pure function of its place, 0 .. PLACES - 1.
+KINDS: dict[str, Callable[[int], Any]] = {
+    "flow": lambda i: rl.flow(0.3 * i, **BODY, theta=0.1, omega=3.2),
+    "flow, times": lambda i: rl.flow(TIMES + i, **BODY, theta=0.1, omega=1.0 + i),
+    "flow, many times": lambda i: rl.flow(
+        np.linspace(0.0, 9.0 + i, 3000), **BODY, theta=0.1, omega=1.0 + i, workers=2
+    ),
+    "flow, bodies": lambda i: rl.flow(
+        2.0, a=2.0, b=np.linspace(0.5, 1.5 + i, 2000), theta=0.1, omega=1.0, workers=2
+    ),
+    "classify": lambda i: rl.classify(**BODY, theta=0.1, omega=1.0 + i, friction=0.4),
+    "classify, bodies": lambda i: rl.classify(
+        **BODY, theta=0.1, omega=np.linspace(0.0, 3.0 + i, 2500), friction=0.4, workers=2
+    ),
+    "auto": lambda i: all_of(solved(i)),
+    "exact": lambda i: solved(i, model="rolling", method="exact"),
+    "rk4": lambda i: solved(i, model="rolling", method="rk4", step=0.02),
+    "dopri5": lambda i: solved(i, model="rolling", method="dopri5", rtol=1e-6),
+    "gauss": lambda i: solved(i, model="rolling", method="gauss", step=0.05),
+    "radau": lambda i: solved(i, model="rolling", method="radau", step=0.05),
+    "projection": lambda i: all_of(solved(i, model="multipliers", rtol=1e-6)),
+    "ggl": lambda i: solved(
+        i, model="multipliers", method="radau", stabilization="ggl", step=0.05
+    ),
+    "contact": lambda i: all_of(simulate(scenes.drop.replace(theta=0.1 + 0.2 * i), 1.0)),
+    "slide": lambda i: all_of(simulate(scenes.slip.replace(friction=0.1 + 0.1 * i), TIMES)),
+    "slope": lambda i: all_of(simulate(scenes.slope.replace(slope=0.02 * (i + 1)), TIMES)),
+    "settings": lambda i: solved(i, rtol=1e-9 * (1 + random.Random(i).random())),
+    "many": lambda i: rl.simulate_many([rolling(i), scenes.jump, scenes.drop], TIMES, workers=2),
+    "certify": lambda i: rl.certify(rolling(i)),
+    "certify, slope": lambda i: rl.certify(scenes.slope.replace(slope=0.02 * (i + 1))),
+    "thresholds": lambda i: rl.thresholds(**BODY, friction=0.1 + 0.1 * i).slip_speed,
+    "period": lambda i: rl.period(rolling(i)),
+    "outcome": lambda i: rl.outcome(rolling(i)),
+    "blows": lambda i: rl.outcome(scenes.report, rl.Impulse(np.linspace(-9.0, 9.0, 20 + i))),
+    "required": lambda i: rl.required_friction(rolling(i)),
+    "constraints": lambda i: rl.constraints(
+        *rl.kinematics(0.3 * i, np.linspace(-1.0, 1.0, 9), **BODY), **BODY
+    ),
+    "geometry": lambda i: rl.geometry.arc_length(np.linspace(0.0, 1.0 + i, 50), **BODY),
+    "refused": lambda i: refusal(lambda: Scene(2.0, -1.0 - i)),
+    "sol, exact": lambda i: all_of(ROLLED.sol(np.linspace(0.0, 3.0, 100 + i))),
+    "sol, contact": lambda i: all_of(TOUCHED.sol(np.linspace(0.0, 2.0, 100 + i))),
+    "sol, steps": lambda i: all_of(STEPPED.sol(np.linspace(0.0, 1.0, 100 + i))),
+    "sol, slope": lambda i: all_of(DOWNHILL.sol(np.linspace(0.0, 2.0, 100 + i))),
+    "at": lambda i: (ROLLED.at(0.1 * i), TOUCHED.at(0.4 * i), STEPPED.at(0.2 * i)),
+    "when": lambda i: (ROLLED.when(theta=0.2 + 0.5 * i), TOUCHED.when(z=1.0 + 0.1 * i)),
+    "scene at": lambda i: ROLLED.scene_at(0.7 * i),
+}  # fmt: skip
+
+
+def refusal(call: Callable[[], Any]) -> str:
+    with pytest.raises(ValueError) as caught:
+        call()
+    return str(caught.value)
+
+
+@pytest.fixture(autouse=True)
+def eager_threads() -> Iterator[None]:
+    """Threads that change places a thousand times as often as usual."""
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(5e-6)
+    yield
+    sys.setswitchinterval(usual)
+
+
+def at_once(work: Callable[[int], Any]) -> list[Any]:
+    """What the work of each thread returns, all begun together."""
+    start = Barrier(THREADS)
+
+    def begin(thread: int) -> Any:
+        start.wait()
+        return work(thread)
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        return list(pool.map(begin, range(THREADS)))
+
+
+def test_mixed_calls_have_the_bits_of_one_thread() -> None:
+    """8000 calls: each thread goes through all kinds and places in an order of its own."""
+    alone = {(kind, place): call(place) for kind, call in KINDS.items() for place in range(PLACES)}
+
+    def work(thread: int) -> int:
+        draw = random.Random(thread)
+        asked = list(alone)
+        done = 0
+        while done < CALLS_EACH:
+            draw.shuffle(asked)
+            for kind, place in asked[: CALLS_EACH - done]:
+                require_same(KINDS[kind](place), alone[kind, place], f"{kind}, {place}")
+                done += 1
+        return done
+
+    assert at_once(work) == [CALLS_EACH] * THREADS
+
+
+def late_names(of: Any) -> list[str]:
+    """What users see of what an object computes when it is first asked for."""
+    return [
+        name
+        for kind in type(of).__mro__
+        for name, value in vars(kind).items()
+        if isinstance(value, cached_property) and not name.startswith("_")
+    ]
+
+
+LATE: dict[str, Callable[[], Any]] = {
+    "exact": lambda: simulate(scenes.rolling, TIMES),
+    "contact": lambda: simulate(scenes.drop, 2.0),
+    "multipliers": lambda: simulate(scenes.rocking, TIMES, model="multipliers", rtol=1e-6),
+    "slope": lambda: simulate(scenes.slope, TIMES),
+    "scene": lambda: Scene(2.0, 1.0, theta=0.3, omega=1.0),
+    "thresholds": lambda: rl.thresholds(2.0, 1.0, gyration2=0.0435, friction=0.3),
+    "settings": lambda: simulate(scenes.rolling, TIMES, rtol=3e-9).settings,
+}
+
+
+@pytest.mark.parametrize("make", LATE.values(), ids=LATE)
+def test_what_is_computed_late_is_the_same_for_all(make: Callable[[], Any]) -> None:
+    """Threads that ask a new object for it together, each beginning with another name."""
+
+    def comparable(found: Any) -> Any:
+        """Objects of the core, which have no fields in Python, by the names of their kinds."""
+        kind = type(found)
+        return kind.__name__ if kind.__module__ == _core.__name__ else found
+
+    names = late_names(make())
+    assert names
+    alone = {name: comparable(getattr(make(), name)) for name in names}
+    for turn in range(10):
+        shared = make()
+
+        def ask(thread: int, shared: Any = shared, turn: int = turn) -> dict[str, Any]:
+            first = (thread + turn) % len(names)
+            return {name: getattr(shared, name) for name in names[first:] + names[:first]}
+
+        for found in at_once(ask):
+            require_same({name: comparable(found[name]) for name in names}, alone)
+
+
+def test_the_names_that_a_trajectory_keeps_are_seen() -> None:
+    """The test above asks for what follows from the samples, and for what the solver says late."""
+    seen = {"events", "psi", "energy", "normal_force", "turns", "reason", "stats"}
+    assert seen <= set(late_names(ROLLED))
