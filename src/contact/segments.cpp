@@ -162,6 +162,7 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
     }
     const auto& [units, scene, segments, events] = motion_;
     std::vector<double> since;
+    since.reserve(n);
     for (std::size_t i = 0; i < n;) {
         // The last segment that has begun at the time i, and all that follow in it.
         const auto time = [&, unit = units.time](std::size_t j) {

@@ -1,0 +1,206 @@
+// Nothing is allocated in a step or for a sample: twice as many of them ask for memory as often.
+//
+//     cmake --preset release && cmake --build --preset release && ctest --preset release
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "outcome/classify.hpp"
+#include "rolling/flow_lanes.hpp"
+#include "rolling/flow_table.hpp"
+#include "simulate.hpp"
+
+namespace {
+
+std::atomic<long> asked{0};
+
+void* memory(std::size_t size) {
+    ++asked;
+    if (void* const found = std::malloc(size == 0 ? 1 : size)) return found;
+    throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return memory(size); }
+void* operator new[](std::size_t size) { return memory(size); }
+void operator delete(void* at) noexcept { std::free(at); }
+void operator delete[](void* at) noexcept { std::free(at); }
+void operator delete(void* at, std::size_t) noexcept { std::free(at); }
+void operator delete[](void* at, std::size_t) noexcept { std::free(at); }
+
+using namespace rolling_ellipse;
+
+namespace {
+
+int failures = 0;
+
+template <class Action>
+long allocations(const Action& action) {
+    const long before = asked;
+    action();
+    return asked - before;
+}
+
+void check(bool holds, const char* what, long once, long twice) {
+    if (holds) return;
+    std::printf("%s: %ld allocations, %ld for twice as much\n", what, once, twice);
+    ++failures;
+}
+
+Scene scene_of(double omega, double slope = 0.0) {
+    Scene scene{};
+    scene.a = 2.0;
+    scene.b = 1.0;
+    scene.mass = 10.0;
+    scene.gravity = 9.81;
+    scene.inertia = scene.mass * uniform_disc_gyration2(scene.a, scene.b);
+    scene.slope = slope;
+    scene.friction = 0.9;
+    scene.theta = 0.1;
+    scene.omega = omega;
+    return scene;
+}
+
+Scene sliding() {
+    Scene scene = scene_of(0.0);
+    scene.friction = 0.1;
+    scene.x_dot = 3.0;
+    return scene;
+}
+
+Settings settings_of(Model model, Method method, std::optional<double> step = {},
+                     Stabilization stabilization = Stabilization::projection) {
+    Settings settings{};
+    settings.model = model;
+    settings.method = method;
+    settings.stabilization = stabilization;
+    settings.rtol = 1e-10;
+    settings.atol = 1e-12;
+    settings.step = step;
+    settings.max_steps = 1'000'000;
+    settings.max_events = 10'000;
+    return settings;
+}
+
+struct Job {
+    const char* name;
+    Scene scene;
+    Settings settings;
+    double t;
+};
+
+const Job stepped[] = {
+    {"dop853", scene_of(1.0), settings_of(Model::rolling, Method::dop853), 200.0},
+    {"dopri5", scene_of(1.0), settings_of(Model::rolling, Method::dopri5), 100.0},
+    {"rk4", scene_of(1.0), settings_of(Model::rolling, Method::rk4, 0.01), 20.0},
+    {"gauss", scene_of(1.0), settings_of(Model::rolling, Method::gauss, 0.01), 20.0},
+    {"radau", scene_of(1.0), settings_of(Model::rolling, Method::radau, 0.01), 20.0},
+    {"dop853 on a slope", scene_of(3.0, 0.1), settings_of(Model::rolling, Method::dop853), 50.0},
+    {"multipliers", scene_of(1.0), settings_of(Model::multipliers, Method::dop853), 100.0},
+    {"Baumgarte", scene_of(1.0),
+     settings_of(Model::multipliers, Method::dopri5, {}, Stabilization::baumgarte), 50.0},
+    {"projection and energy", scene_of(1.0),
+     settings_of(Model::multipliers, Method::rk4, 0.01, Stabilization::projection_energy), 10.0},
+    {"Gear, Gupta and Leimkuhler", scene_of(1.0),
+     settings_of(Model::multipliers, Method::radau, 0.01, Stabilization::ggl), 10.0},
+};
+
+const Job sampled[] = {
+    {"exact", scene_of(1.0), settings_of(Model::rolling, Method::exact), 20.0},
+    {"exact on a slope", scene_of(3.0, 0.1), settings_of(Model::automatic, Method::automatic), 9.0},
+    {"a jump", scene_of(5.5), settings_of(Model::contact, Method::automatic), 0.8},
+    {"a slide", sliding(), settings_of(Model::contact, Method::automatic), 1.0},
+};
+
+// The knots, and the dense output beside them, are in vectors that double: twice as many steps ask
+// each of them for memory once more.
+void steps_allocate_nothing() {
+    constexpr long vectors = 2;
+    for (const Job& job : stepped) {
+        long steps[2];
+        long found[2];
+        for (const int times : {1, 2}) {
+            found[times - 1] = allocations([&] {
+                const Solution solution = simulate(job.scene, job.settings, times * job.t, [] {});
+                steps[times - 1] = solution.counts.steps;
+            });
+        }
+        // 50 steps and more: with one allocation each, the difference would be as large.
+        check(steps[1] - steps[0] >= 50 && found[1] - found[0] <= vectors, job.name, found[0],
+              found[1]);
+    }
+}
+
+// Over the same segments, each of which may ask for memory once.
+template <class Sample>
+void kind_of_sample(const Job& job, const Solution& solution) {
+    const Sampler look(solution.motion, 1000);
+    const auto take = [&](std::size_t n) {
+        std::vector<double> times;
+        for (std::size_t i = 0; i < n; ++i) times.push_back(job.t * i / n);
+        std::vector<Sample> samples(n);
+        return allocations([&] { look(times.data(), n, samples.data()); });
+    };
+    const long once = take(1000);
+    const long twice = take(2000);
+    check(once == twice, job.name, once, twice);
+}
+
+void samples_allocate_nothing() {
+    const auto all_kinds = [](const Job& job) {
+        const Solution solution = simulate(job.scene, job.settings, job.t, [] {});
+        kind_of_sample<FlowSample>(job, solution);
+        kind_of_sample<ContactSample>(job, solution);
+        kind_of_sample<CoordinateState>(job, solution);
+    };
+    for (const Job& job : sampled) all_kinds(job);
+    for (const Job& job : stepped) all_kinds(job);
+}
+
+void bodies_allocate_nothing() {
+    constexpr std::size_t n = 512;
+    std::vector<RollingStart> starts;
+    std::vector<double> times;
+    for (std::size_t i = 0; i < 2 * n; ++i) {
+        starts.push_back(rolling_start(scene_of(0.0).body(), 0.1, 0.5 + 0.003 * i));
+        times.push_back(2.0);
+    }
+    std::vector<FlowSample> samples(times.size());
+    for (const LaneLevel level : lane_levels()) {
+        const auto take = [&](std::size_t count) {
+            return allocations(
+                [&] { sample(level, starts.data(), times.data(), count, samples.data()); });
+        };
+        const long once = take(n);
+        const long both = take(2 * n);
+        check(once == both, name(level).c_str(), once, both);
+    }
+    for (std::size_t i = 0; i < 2 * n; ++i) {
+        const long one =
+            allocations([&] { samples[i] = sample(rolling_motion(starts[i]), times[i]); });
+        const long judged = allocations([&] { classify(starts[i].body, 0.6, 0.1, 1.0); });
+        check(one == 0, "one state", 0, one);
+        check(judged == 0, "one outcome", 0, judged);
+    }
+}
+
+// The counter is the one that the program has.
+void it_counts() {
+    const long once = allocations([] { std::vector<double> one(3); });
+    check(once == 1, "a vector", once, 1);
+}
+
+}  // namespace
+
+int main() {
+    it_counts();
+    steps_allocate_nothing();
+    samples_allocate_nothing();
+    bodies_allocate_nothing();
+    std::printf(failures == 0 ? "all hold\n" : "%d do not hold\n", failures);
+    return failures == 0 ? 0 : 1;
+}
