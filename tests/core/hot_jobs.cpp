@@ -1,0 +1,99 @@
+// Five standard jobs, one by its number, for tools/hot_loops.py to count the instructions of.
+
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <vector>
+
+#include "rolling/flow_table.hpp"
+#include "simulate.hpp"
+
+using namespace rolling_ellipse;
+
+namespace {
+
+Scene scene_of(double theta, double omega) {
+    Scene scene{};
+    scene.a = 2.0;
+    scene.b = 1.0;
+    scene.mass = 1.0;
+    scene.gravity = 9.81;
+    scene.inertia = scene.mass * uniform_disc_gyration2(scene.a, scene.b);
+    scene.friction = infinity;
+    scene.theta = theta;
+    scene.omega = omega;
+    return scene;
+}
+
+Settings settings_of(Model model, Method method, std::optional<double> step = {}) {
+    Settings settings{};
+    settings.model = model;
+    settings.method = method;
+    settings.stabilization = Stabilization::projection;
+    settings.rtol = 1e-10;
+    settings.atol = 1e-12;
+    settings.step = step;
+    settings.max_steps = 1'000'000;
+    settings.max_events = 10'000;
+    return settings;
+}
+
+void require(bool holds) {
+    if (!holds) throw std::logic_error("the job is not what its name says");
+}
+
+void one_state() {
+    const RollingStart start = rolling_start(scene_of(0.1, 3.2).body(), 0.1, 3.2);
+    require(sample(rolling_motion(start), 5.0).theta > 0.1);
+}
+
+void thousand_samples() {
+    const RollingStart start = rolling_start(scene_of(0.1, 3.2).body(), 0.1, 3.2);
+    const RollingFlow flow = rolling_flow(start);
+    std::vector<double> times;
+    for (int i = 0; i < 1000; ++i) times.push_back(0.01 * i);
+    std::vector<FlowSample> samples(times.size());
+    FlowSampler(flow, times.size())(times.data(), times.size(), samples.data());
+    require(samples.back().theta > 0.1);
+}
+
+void ten_events() {
+    Scene scene = scene_of(0.5, 0.0);
+    scene.friction = 0.3;
+    scene.restitution = 0.6;
+    scene.z = 3.0;
+    Settings settings = settings_of(Model::contact, Method::automatic);
+    settings.max_events = 10;
+    require(simulate(scene, settings, 1e3, [] {}).motion.events.size() == 10);
+}
+
+void ten_half_turns() {
+    const Scene scene = scene_of(0.0, 3.2);
+    const double t = 5 * period(scene);
+    const Settings settings = settings_of(Model::rolling, Method::dop853);
+    require(simulate(scene, settings, t, [] {}).followed_until == t);
+}
+
+void hundred_steps() {
+    const Settings settings = settings_of(Model::multipliers, Method::rk4, 0.01);
+    require(simulate(scene_of(0.1, 3.2), settings, 1.0, [] {}).counts.steps == 100);
+}
+
+constexpr void (*jobs[])() = {one_state, thousand_samples, ten_events, ten_half_turns,
+                              hundred_steps};
+
+}  // namespace
+
+// By this name callgrind knows what to count.
+[[gnu::noinline]] void counted(void (*job)()) {
+    job();
+    std::puts("done");  // or the call would be a jump, and callgrind would not see its end
+}
+
+int main(int count, char** words) {
+    const int which = count == 2 ? std::atoi(words[1]) : -1;
+    if (which < 0 || which >= static_cast<int>(std::size(jobs))) return 2;
+    jobs[which]();  // what is made once for all is there
+    counted(jobs[which]);
+    return 0;
+}

@@ -1,0 +1,82 @@
+"""Count the instructions of five standard jobs, and compare them with the counts on record.
+
+    cmake --preset release && cmake --build --preset release
+    python tools/hot_loops.py build/release/hot_jobs             (1 where one is 5 % more)
+    python tools/hot_loops.py build/release/hot_jobs --write     (makes them the record)
+
+Instructions do not depend on what else the machine does, as times do. Valgrind counts them: it
+knows no AVX-512, of which it tells the program, so that the vectors are those of AVX2. Its counts
+are those of one compiler and one C library, which the record names; with others nothing is judged.
+"""
+
+import argparse
+import json
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+RECORD = Path(__file__).resolve().parents[1] / "tests" / "benchmarks" / "hot_loops.json"
+JOBS = (
+    "exact flow, one state",
+    "exact flow, a table and 1000 samples",
+    "contact, ten events",
+    "dop853, ten half turns",
+    "multipliers, 100 steps of rk4",
+)
+SLACK = 0.05
+
+
+def instructions(program: Path, job: int) -> int:
+    with tempfile.TemporaryDirectory() as folder:
+        command = [
+            "valgrind", "--tool=callgrind", "--collect-atstart=no", "--toggle-collect=counted(*",
+            f"--callgrind-out-file={folder}/counts", str(program), str(job),
+        ]  # fmt: skip
+        done = subprocess.run(command, capture_output=True, text=True)
+    found = re.search(r"Collected : (\d+)", done.stderr)
+    if done.returncode != 0 or found is None or found[1] == "0":
+        sys.exit(f"{' '.join(command)}\n{done.stderr}")
+    return int(found[1])
+
+
+def built_by(program: Path) -> dict[str, str]:
+    """What else the counts depend on: the compiler, as it signs its work, and the C library."""
+    compilers = set(re.findall(rb"(?:GCC: |clang version )[^\0\n]{3,60}", program.read_bytes()))
+    return {
+        "compiler": ", ".join(sorted(each.decode("ascii", "replace") for each in compilers)),
+        "C library": " ".join(platform.libc_ver()),
+        "machine": platform.machine(),
+    }
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=str(__doc__).partition("\n")[0])
+    parser.add_argument("program", type=Path)
+    parser.add_argument("--write", action="store_true", help="make the counts the record")
+    options = parser.parse_args()
+    if shutil.which("valgrind") is None:
+        sys.exit("valgrind must be installed")
+    found = {name: instructions(options.program, job) for job, name in enumerate(JOBS)}
+    by = built_by(options.program)
+    if options.write:
+        record = {"built by": by, "instructions": found}
+        RECORD.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+    record = json.loads(RECORD.read_text(encoding="utf-8"))
+    print(f"{'instructions':40} {'now':>12} {'on record':>12}  ratio")
+    worst = 0.0
+    for name, count in found.items():
+        before = record["instructions"][name]
+        worst = max(worst, count / before)
+        print(f"{name:40} {count:12d} {before:12d} {count / before:6.3f}")
+    if record["built by"] != by:
+        print(f"not judged: this is {by}, the record {record['built by']}")
+        return 0
+    return 1 if worst > 1 + SLACK else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
