@@ -30,7 +30,8 @@ JOBS = (
 SLACK = 0.05
 
 
-def instructions(program: Path, job: int) -> int:
+def instructions(program: Path, job: int) -> tuple[int, str]:
+    """How many, and the vector level that they are of."""
     with tempfile.TemporaryDirectory() as folder:
         command = [
             "valgrind", "--tool=callgrind", "--collect-atstart=no", "--toggle-collect=counted(*",
@@ -40,16 +41,17 @@ def instructions(program: Path, job: int) -> int:
     found = re.search(r"Collected : (\d+)", done.stderr)
     if done.returncode != 0 or found is None or found[1] == "0":
         sys.exit(f"{' '.join(command)}\n{done.stderr}")
-    return int(found[1])
+    return int(found[1]), done.stdout.strip()
 
 
-def built_by(program: Path) -> dict[str, str]:
+def made_by(program: Path, level: str) -> dict[str, str]:
     """What else the counts depend on: the compiler, as it signs its work, and the C library."""
     compilers = set(re.findall(rb"(?:GCC: |clang version )[^\0\n]{3,60}", program.read_bytes()))
     return {
         "compiler": ", ".join(sorted(each.decode("ascii", "replace") for each in compilers)),
         "C library": " ".join(platform.libc_ver()),
         "machine": platform.machine(),
+        "vectors": level,
     }
 
 
@@ -60,10 +62,11 @@ def main() -> int:
     options = parser.parse_args()
     if shutil.which("valgrind") is None:
         sys.exit("valgrind must be installed")
-    found = {name: instructions(options.program, job) for job, name in enumerate(JOBS)}
-    by = built_by(options.program)
+    counts = [instructions(options.program, job) for job in range(len(JOBS))]
+    found = {name: count for name, (count, _) in zip(JOBS, counts, strict=True)}
+    by = made_by(options.program, counts[0][1])
     if options.write:
-        record = {"built by": by, "instructions": found}
+        record = {"made by": by, "instructions": found}
         RECORD.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
     record = json.loads(RECORD.read_text(encoding="utf-8"))
     print(f"{'instructions':40} {'now':>12} {'on record':>12}  ratio")
@@ -72,7 +75,7 @@ def main() -> int:
         before = record["instructions"][name]
         worst = max(worst, count / before)
         print(f"{name:40} {count:12d} {before:12d} {count / before:6.3f}")
-    if record["built by"] != by:
+    if record["made by"] != by:
         print(f"not judged: this is {by}, the record {record['built by']}")
         return 0
     return 1 if worst > 1 + SLACK else 0

@@ -57,8 +57,8 @@ fi
 if [ "$1" = --suite ]; then
     shift
     # Not where memory is limited: the runtimes reserve terabytes of addresses. Nor the browser, of
-    # which each process would have the runtime before it.
-    set -- -m pytest -p no:cacheprovider "$@" \
+    # which each process would have the runtime before it. What the runtimes print is not captured.
+    set -- -m pytest -p no:cacheprovider --capture=sys "$@" \
         --deselect tests/border/test_border.py::test_threads_that_cannot_start_are_not_missed \
         --ignore tests/player/test_browser.py
     if [ $runtime = libtsan.so ]; then
