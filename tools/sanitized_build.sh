@@ -57,10 +57,11 @@ fi
 if [ "$1" = --suite ]; then
     shift
     # Not where memory is limited: the runtimes reserve terabytes of addresses. Nor the browser, of
-    # which each process would have the runtime before it. What the runtimes print is not captured.
+    # which each process would have the runtime before it. The fuzzer runs as above, without its
+    # limit. What the runtimes print is not captured.
     set -- -m pytest -p no:cacheprovider --capture=sys "$@" \
         --deselect tests/border/test_border.py::test_threads_that_cannot_start_are_not_missed \
-        --ignore tests/player/test_browser.py
+        --ignore tests/border/test_fuzz.py --ignore tests/player/test_browser.py
     if [ $runtime = libtsan.so ]; then
         set -- "$@" tests/border/test_threads.py tests/border/test_border.py tests/batches \
             tests/rolling/test_many_times.py tests/rolling/test_lanes.py \
