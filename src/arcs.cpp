@@ -135,7 +135,7 @@ std::vector<Arc> arcs(const Solution& solution) {
         const double next =
             i + 1 == segments.size() ? infinity : segments[i + 1].begin * units.time;
         if (begin > last) break;
-        Arc here = std::visit([](const auto& law) { return arc(law); }, segments[i].law);
+        Arc here = std::visit([](const auto& law) { return arc(itself(law)); }, segments[i].law);
         here.begin = begin;
         here.end = std::min(next, last);
         here.period *= units.time;

@@ -82,8 +82,8 @@ void end_validity(double t, double t_end, Solution& solution) {
 void judge_by_proof(const Beginning& from, const Proof& proof, double t_end, Solution& solution) {
     if (!proof.end.angle) return;
     if (from.on_slope) return end_validity(proof.time, t_end, solution);
-    const auto* flow = std::get_if<RollingFlow>(&solution.motion.segments.front().law);
-    const double ends = time_of_end(flow ? *flow : rolling_flow(*from.rolling), proof.end);
+    const auto* flow = std::get_if<Apart<RollingFlow>>(&solution.motion.segments.front().law);
+    const double ends = time_of_end(flow ? **flow : rolling_flow(*from.rolling), proof.end);
     end_validity(ends, t_end, solution);
 }
 
@@ -107,10 +107,11 @@ Motion exact_motion(const Scene& scene, const Beginning& from, double t_end) {
         SlopeFlow flow = *from.on_slope;
         prepare(flow, t_end);
         validate_time(t_end, longest_time(flow));
-        return single(scene, std::move(flow));
+        return single(scene, std::make_shared<const SlopeFlow>(std::move(flow)));
     }
-    const RollingFlow flow = rolling_flow(*from.rolling, from.state.x);
-    validate_time(t_end, longest_time(flow));
+    const auto flow =
+        std::make_shared<const RollingFlow>(rolling_flow(*from.rolling, from.state.x));
+    validate_time(t_end, longest_time(*flow));
     return single(scene, flow);
 }
 

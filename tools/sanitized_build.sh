@@ -40,8 +40,7 @@ preload="$(g++ -print-file-name=$runtime) $(g++ -print-file-name=libstdc++.so.6)
 export PYTHONPATH="$folder/site${PYTHONPATH:+:$PYTHONPATH}"
 export PYTHONMALLOC=malloc # so that arrays of NumPy and bytes have their bounds
 if [ $runtime = libtsan.so ]; then
-    tsan="suppressions=$PWD/tools/tsan_suppressions.txt:exitcode=66:die_after_fork=0"
-    export TSAN_OPTIONS="$tsan${TSAN_OPTIONS:+:$TSAN_OPTIONS}"
+    export TSAN_OPTIONS="exitcode=66:die_after_fork=0${TSAN_OPTIONS:+:$TSAN_OPTIONS}"
 else
     asan="detect_leaks=0:allocator_may_return_null=1:handle_segv=1"
     export ASAN_OPTIONS="$asan${ASAN_OPTIONS:+:$ASAN_OPTIONS}"

@@ -112,7 +112,7 @@ class ContactRun {
         if (lasts == infinity) {
             validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
         }
-        if (lasts > 0) add_segment(flow);
+        if (lasts > 0) add_segment(std::make_shared<const RollingFlow>(flow));
         if (t_ + lasts > t_end_) return finish();
         const FlowSample last = sample(flow, lasts);
         stop_rolling(lasts, last.theta, last.omega, last.x);
@@ -129,7 +129,7 @@ class ContactRun {
             validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
         }
         const FlowSample last = lasts < infinity ? sample(flow, lasts) : FlowSample{};
-        if (lasts > 0) add_segment(std::move(flow));
+        if (lasts > 0) add_segment(std::make_shared<const SlopeFlow>(std::move(flow)));
         if (t_ + lasts > t_end_) return finish();
         stop_rolling(lasts, last.theta, last.omega, last.x);
     }

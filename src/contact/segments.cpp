@@ -150,8 +150,8 @@ Motion single(const Scene& scene, decltype(Segment::law) law) {
 
 Sampler::Sampler(const Motion& motion, std::size_t expected) : motion_(motion) {
     if (motion.segments.size() != 1 || !motion.units.are_si()) return;
-    if (const auto* flow = std::get_if<RollingFlow>(&motion.segments.front().law)) {
-        flow_.emplace(*flow, expected);
+    if (const auto* flow = std::get_if<Apart<RollingFlow>>(&motion.segments.front().law)) {
+        flow_.emplace(**flow, expected);
     }
 }
 
@@ -178,7 +178,9 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
             since.push_back(time(j) - segment.begin);
         }
         std::visit(
-            [&](const auto& law) { look_at(scene, law, since.data(), since.size(), samples + i); },
+            [&](const auto& law) {
+                look_at(scene, itself(law), since.data(), since.size(), samples + i);
+            },
             segment.law);
         const std::size_t last = i + since.size();
         if (segment.turned.high != 0) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -42,11 +43,15 @@ struct Resting {
     State state;
 };
 
+// A law of some kB, kept apart: in the list itself every bounce would take as much.
+template <class Law>
+using Apart = std::shared_ptr<const Law>;
+
 // What a body does from a time on, up to the next segment.
 struct Segment {
     double begin;
-    std::variant<RollingFlow, SlopeFlow, SteppedRolling, SteppedMultipliers, Slide, Flight,
-                 Settling, Resting, Jam>
+    std::variant<Apart<RollingFlow>, Apart<SlopeFlow>, SteppedRolling, SteppedMultipliers, Slide,
+                 Flight, Settling, Resting, Jam>
         law;
     DoubleDouble turned{};  // beside the angles of the law
 };
@@ -57,6 +62,17 @@ struct Motion {
     std::vector<Segment> segments;
     std::vector<Event> events;
 };
+
+// The law itself, wherever it is kept.
+template <class Law>
+const Law& itself(const Law& law) {
+    return law;
+}
+
+template <class Law>
+const Law& itself(const Apart<Law>& law) {
+    return *law;
+}
 
 // A motion in SI units by one law.
 Motion single(const Scene& scene, decltype(Segment::law) law);

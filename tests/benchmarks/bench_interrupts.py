@@ -120,7 +120,7 @@ class Notebook:
 
     def delay(self, code: str, after: float) -> float:
         """From the button Interrupt to the reply [s]."""
-        asked = self.client.execute(code)
+        asked = self.client.execute(code, stop_on_error=False)  # or what comes next is dropped
         self.wait(self.client.get_iopub_msg, asked, "execute_input")
         time.sleep(after)
         begin = time.perf_counter()
