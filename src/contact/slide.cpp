@@ -70,8 +70,8 @@ class Follower {
     std::optional<SlideStop> step() {
         const SlidePoint& from = slide_.last;
         const auto [sin, cos] = sin_cos(from.angle);
-        // As fast as it turns: no power of the rate leaves the doubles.
-        const double unit = std::ldexp(1.0, -std::ilogb(1 + std::abs(double(from.omega))));
+        const double unit =
+            std::ldexp(1.0, -std::ilogb(rate(geometry(slide_.body.axes, sin, cos))));
         SlidingBody body = slide_.body;
         body.gravity = {body.gravity.into * square(unit), body.gravity.along * square(unit)};
         const SlideState start{0.0, double(from.omega) * unit, double(from.slip) * unit, 0.0, 0.0};
@@ -93,6 +93,10 @@ class Follower {
         piece.path = series.path;
         piece.time = series.time;
         const SlidePoint next = moved(piece, reach_);
+        if (!is_known(next)) {
+            slide_.pieces.pop_back();
+            return SlideStop::no_progress;
+        }
         const bool stands_still = clock_ == SlideClock::time && next.time.high == from.time.high;
         slide_.last = next;
         if (!end_) return stands_still ? std::optional(SlideStop::no_progress) : std::nullopt;
@@ -100,6 +104,23 @@ class Follower {
     }
 
   private:
+    // As fast as it turns, and as its response changes, where that is next to none: no power of the
+    // rate is to leave the doubles.
+    double rate(const Geometry& at) const {
+        constexpr double stiff = 0x1p20;
+        const double omega = double(slide_.last.omega);
+        double by_force = slowed_response_rate(slide_.body, at, omega);
+        if (clock_ == SlideClock::time) by_force /= response(slide_.body, at, omega).b;
+        return 1 + std::abs(omega) + (by_force > stiff && by_force < infinity ? by_force : 0.0);
+    }
+
+    // Beyond some 1e100 powers of the rate leave the doubles all the same.
+    static bool is_known(const SlidePoint& point) {
+        return std::isfinite(double(point.angle)) && std::isfinite(double(point.omega)) &&
+               std::isfinite(double(point.slip)) && std::isfinite(double(point.path)) &&
+               std::isfinite(double(point.time));
+    }
+
     enum class End { slip, pressure, response, recovery, theta, turning_back };
 
     // Ends the piece where something comes to an end.

@@ -11,6 +11,13 @@ double spin(const SlidingBody& body, const Geometry& at) {
     return -(at.h * body.friction_share + at.dh * body.normal_share) / body.gyration2;
 }
 
+// dB/dtheta, B of physics (50).
+double response_derivative(const SlidingBody& body, const Geometry& at) {
+    return (2 * body.normal_share * at.dh * at.ddh +
+            body.friction_share * (at.dh * at.dh + at.h * at.ddh)) /
+           body.gyration2;
+}
+
 }  // namespace
 
 SlidingBody sliding_body(const Scene& scene, double side) {
@@ -45,13 +52,16 @@ double slip_rate(const SlidingBody& body, const Geometry& at, double omega) {
     return by_force + body.gravity.along - at.dh * omega * omega;
 }
 
+double slowed_response_rate(const SlidingBody& body, const Geometry& at, double omega) {
+    const double c = response(body, at, omega).c;
+    return std::sqrt(std::abs(response_derivative(body, at) * c * spin(body, at)));
+}
+
 // The impulse of N changes omega and slip in a fixed ratio, physics (54).
 LastMoment last_moment(const SlidingBody& body, const SlideState& state) {
     const auto [angle, omega, slip, path, time] = state;
     const Geometry at = geometry(body.axes, angle);
-    const double b_derivative = (2 * body.normal_share * at.dh * at.ddh +
-                                 body.friction_share * (at.dh * at.dh + at.h * at.ddh)) /
-                                body.gyration2;
+    const double b_derivative = response_derivative(body, at);
     const auto [c, b] = response(body, at, omega);
     const double turn_by_force = spin(body, at);
     const double slip_by_turning = body.friction_share / turn_by_force - at.h;

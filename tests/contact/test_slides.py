@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from oracles.contact import random_scenes
 from oracles.geometry import support
-from rolling_ellipse import EventKind, Mode, Scene, Trajectory, scenes, simulate
+from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, scenes, simulate
 
 EPSILON = float(np.finfo(float).eps)
 
@@ -153,3 +153,25 @@ def test_extreme_bodies_slide(b: float) -> None:
     assert sliding[0]
     energy = motion.energy[sliding]
     assert np.all(np.diff(energy) <= 8 * EPSILON * np.abs(energy).max())
+
+
+@pytest.mark.parametrize("theta", [1e-8, 1e-12, 1e-13, 1e-16, 1e-20, 1e-30, 1e-80])
+def test_a_slide_that_begins_next_to_no_response(theta: float) -> None:
+    """Nearly flat, endless friction turns the body by 1/B, B in proportion to theta: within a time
+    like theta it sticks, as by an impulse along the ground, J = 1/(1/m + h^2/I) of the slip.
+
+    The body has turned by less than 2 theta by then, and what that changes is no more; the rest is
+    rounding. Powers of 1/theta as high as the series has would leave the doubles."""
+    scene = Scene(1.0, 0.5, gravity=1.0, theta=theta, x_dot=-1.0)
+    stick = simulate(scene, 1.0, model="contact").events[0]
+    assert stick.kind is EventKind.STICK
+    assert theta / 4 < stick.t < 4 * theta
+    impulse = 1 / (1 + 0.5**2 / scene.gyration2)
+    assert abs(stick.state_after.x_dot - (impulse - 1)) <= 4 * theta + 16 * EPSILON
+
+
+def test_a_slide_too_quick_for_any_power_says_so() -> None:
+    scene = Scene(1.0, 0.5, gravity=1.0, theta=1e-300, x_dot=-1.0)
+    found = simulate(scene, 1.0, model="contact", raise_on_failure=False)
+    assert found.status is Status.STEP_TOO_SMALL and found.events == ()
+    assert np.isfinite(found.x).all()
