@@ -1,0 +1,158 @@
+"""Every message with which something is refused is provoked once: none is out of reach.
+
+The calls stand in `tests/oracles/refusals`. That they are all is seen from the sources: every
+`raise` of the package must have been on the way of some exception, and every text of the core in
+some message. What no call can reach is listed here, with its reason.
+"""
+
+import ast
+import re
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple
+
+import pytest
+import rolling_ellipse
+from oracles.paths import ROOT
+from oracles.refusals import Refusal, core, motions, pictures, research
+
+TABLE: list[Refusal] = [
+    refusal for part in (core, motions, pictures, research) for refusal in part.REFUSALS
+]
+PACKAGE = Path(rolling_ellipse.__file__).resolve().parent
+#: Python: functions whose calls carry a requirement, as a `raise` does.
+REQUIRE = ("require", "_refuse", "_refuse_scenes")
+#: C++: what throws, with its texts.
+THROW = re.compile(r"\b(?:refuse|std::(?:invalid_argument|logic_error|runtime_error))\(")
+
+#: What no caller is to see, with its reason.
+UNREACHABLE: dict[str, str] = {
+    "raise TypeError from error": "becomes the sentence of `number`, which names the argument",
+    "raise NotImplementedError": "of classes that are there to be derived from",
+    "trajectory must have finite samples": "pictures refuse what is too far away before",
+    "there is no integrator for the method '": "settings refuse such a method before",
+    # of one way in a race: the reason of its run, which has no answer
+    "flow must be given a scene that rolls": "a reason",
+    "raise Stopped(": "a reason",
+    "of {name} must return a function": "a reason",
+    "it returned theta, omega, x": "a reason",
+}
+
+
+class Provoked(NamedTuple):
+    """What an exception said, and the lines of the package that it passed."""
+
+    message: str
+    lines: set[tuple[str, int]]
+
+
+def chain(error: BaseException | None) -> Iterator[BaseException]:
+    """An exception and those out of which it was made."""
+    while error is not None:
+        yield error
+        error = error.__cause__ or error.__context__
+
+
+def places(traceback: TracebackType | None) -> Iterator[tuple[str, int]]:
+    while traceback is not None:
+        path = Path(traceback.tb_frame.f_code.co_filename)
+        if path.is_relative_to(PACKAGE):
+            yield path.relative_to(PACKAGE).as_posix(), traceback.tb_lineno
+        traceback = traceback.tb_next
+
+
+def provoked(refusal: Refusal, folder: Path) -> Provoked:
+    _, call = refusal
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rolling_ellipse.ValidityWarning)
+        try:
+            call(folder)
+        except (Exception, SystemExit) as error:
+            every = list(chain(error))
+            lines = {place for each in every for place in places(each.__traceback__)}
+            return Provoked("\n".join(map(str, every)), lines)
+    return Provoked("nothing was refused", set())
+
+
+@pytest.fixture(scope="module")
+def all_provoked(tmp_path_factory: pytest.TempPathFactory) -> list[Provoked]:
+    return [provoked(refusal, tmp_path_factory.mktemp("refused")) for refusal in TABLE]
+
+
+def test_each_call_is_refused_in_these_words(all_provoked: list[Provoked]) -> None:
+    wrong = [
+        f"{pattern}\n    {found.message}"
+        for (pattern, _), found in zip(TABLE, all_provoked, strict=True)
+        if not re.search(pattern, found.message, re.DOTALL)
+    ]
+    assert wrong == [], "\n".join(wrong)
+
+
+# ------------------------------------------------------------------------------- the sources
+
+
+def raising(path: Path) -> Iterator[tuple[int, int, str]]:
+    """First and last line of what raises in a file, and its source."""
+    source = path.read_text(encoding="utf-8")
+    for node in ast.walk(ast.parse(source)):
+        raises = isinstance(node, ast.Raise) and node.exc is not None
+        if isinstance(node, ast.Call):
+            name = ast.unparse(node.func).rpartition(".")[2]
+            raises = name in REQUIRE
+        if raises:
+            text = ast.get_source_segment(source, node) or ""
+            yield node.lineno, node.end_lineno or node.lineno, text  # type: ignore[attr-defined]
+
+
+def test_no_raise_of_the_package_is_out_of_reach(all_provoked: list[Provoked]) -> None:
+    reached = {place for found in all_provoked for place in found.lines}
+    missed = []
+    total = 0
+    for path in sorted((ROOT / "python" / "rolling_ellipse").rglob("*.py")):
+        name = path.relative_to(ROOT / "python" / "rolling_ellipse").as_posix()
+        for first, last, text in raising(path):
+            total += 1
+            if any((name, line) in reached for line in range(first, last + 1)):
+                continue
+            if not any(text.find(known) >= 0 for known in UNREACHABLE):
+                missed.append(f"{name}:{first}: {' '.join(text.split())}")
+    assert total > 150  # fewer: they are no longer recognised
+    assert missed == [], "\n".join([f"{len(missed)} of {total}", *missed])
+
+
+def thrown_texts(path: Path) -> Iterator[str]:
+    """The texts within what throws in a file of C++, neighbouring ones joined."""
+    source = path.read_text(encoding="utf-8")
+    for found in THROW.finditer(source):
+        depth, end = 1, found.end()
+        while depth:
+            if source[end] == '"':
+                end = source.index('"', end + 1)
+            depth += {"(": 1, ")": -1}.get(source[end], 0)
+            end += 1
+        statement = re.sub(r'"\s*"', "", source[found.end() : end])
+        yield from re.findall(r'"([^"]*)"', statement)
+
+
+def test_no_text_of_the_core_is_out_of_reach(all_provoked: list[Provoked]) -> None:
+    said = "\n".join(found.message for found in all_provoked)
+    missed, total = [], 0
+    for path in sorted((ROOT / "src").rglob("*.cpp")):
+        for text in thrown_texts(path):
+            total += 1
+            if text not in said and text not in UNREACHABLE:
+                missed.append(f"{path.relative_to(ROOT)}: {text}")
+    assert total > 50  # fewer: they are no longer recognised
+    assert missed == [], "\n".join([f"{len(missed)} of {total}", *missed])
+
+
+def test_what_is_listed_as_out_of_reach_is_there() -> None:
+    sources = "".join(
+        path.read_text(encoding="utf-8")
+        for folder, kind in (("python", "*.py"), ("src", "*.cpp"))
+        for path in (ROOT / folder).rglob(kind)
+    )
+    for text in UNREACHABLE:
+        assert text in sources, text
