@@ -135,6 +135,11 @@ def many(draw: Draw) -> Iterator[Line]:
         code = call("rl.simulate_many", **arguments)
         yield Line(code, "folder", "simulate_many", patience=8)
         yield Line("list(rl.load_many(folder))", "loaded", "load_many", promises.same_many, 8)
+        files, share = "sorted(map(str, Path(folder).iterdir()))", draw.random.random()
+        file = f"{files}[int({share!r} * len({files}))]"
+        bits = f"{draw.random.random()!r}, {draw.random.randrange(1, 256)}"
+        yield Line(f"damage.flip({file}, {bits})", does="damage")
+        yield Line("list(rl.load_many(folder))", does="load_many", patience=8, forgery=True)
 
 
 def stopped(draw: Draw) -> Iterator[Line]:
@@ -442,6 +447,10 @@ def _range(draw: Draw, name: str) -> tuple[float, float]:
     return first, draw.pick(last, last * (1 + 2**-52), 2 * last)
 
 
+# of JSON
+TEXTS = ("','", "':'", "'{'", "'['", "']'", "'}'", "'1'", "'null'", "'\"'", "'e-'", "'NaN'", "''")
+
+
 def race(draw: Draw) -> Iterator[Line]:
     drawn = scenes.scene(draw)
     while not drawn.body.mild:  # others may take a million steps in one call
@@ -466,6 +475,10 @@ def race(draw: Draw) -> Iterator[Line]:
     yield Line(made, "found", does="work_precision", patience=6, forgery=True)
     yield Line("(found.verdict(), repr(found))", does="verdict")
     yield Line("found.save('race.json') or repr(rl.WorkPrecision.load('race.json'))", does="save")
+    old, new = draw.pick(*TEXTS), draw.pick(*TEXTS, "'['*99999", "'1'*9999")
+    spoil = f"damage.line('race.json', {draw.random.random()!r}, {old}, {new})"
+    yield Line(spoil, does="damage")
+    yield Line("repr(rl.WorkPrecision.load('race.json'))", does="load", forgery=True)
     yield Line("found.plot()", does="WorkPrecision.plot", patience=6)
     yield Line("plt.close('all')", does="close")
 

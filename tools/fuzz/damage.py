@@ -1,8 +1,12 @@
-"""Ways to spoil a file that `Trajectory.save` wrote; places are shares of what there is."""
+"""Ways to spoil files and pickles of the package; places are shares of what there is."""
 
 from __future__ import annotations
 
 import json
+import pickle
+import struct
+import zipfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +51,63 @@ def inner_fact(path: str, share: float, value: Any) -> None:
     holder, key = places[int(share * len(places))]
     holder[key] = value
     _write(path, {**arrays, "about": np.array(json.dumps(about))})
+
+
+def packed(path: str, size: int) -> None:
+    """Put a member into the file that unpacks to so many zeros."""
+    with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        archive.writestr("z.npy", bytes(size))
+
+
+def header(path: str, name: str, text: str, version: int = 1) -> None:
+    """Give one array a header that says something else, of a few numbers."""
+    code = "<H" if version == 1 else "<I"
+    size = struct.pack(code, len(text) % 2**16)
+    _raw(path, name, b"\x93NUMPY" + bytes([version, 0]) + size + text.encode() + bytes(24))
+
+
+def twice(path: str, name: str) -> None:
+    """Put one array into the file once more."""
+    with zipfile.ZipFile(path) as archive:
+        content = archive.read(f"{name}.npy")
+    _raw(path, name, content)
+
+
+def text(path: str, content: str) -> None:
+    """Put any text in the place of the JSON."""
+    _write(path, {**_arrays(path), "about": np.array(content)})
+
+
+def nested(path: str, depth: int, opening: str) -> None:
+    """JSON within JSON."""
+    text(path, opening * depth)
+
+
+def line(path: str, share: float, old: str, new: str) -> None:
+    """Replace the part of a text file that begins at a place, up to the next `old`."""
+    content = Path(path).read_text()
+    begin = int(share * len(content))
+    Path(path).write_text(content[:begin] + content[begin:].replace(old, new, 1))
+
+
+def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
+    """Whether a pickle with some bits turned over still makes something that says what it is.
+
+    Pickles may raise anything when they are spoiled; here they must not end the interpreter.
+    """
+    data = bytearray(pickle.dumps(value, protocol))
+    data[int(share * len(data))] ^= mask
+    with suppress(Exception):
+        found = pickle.loads(bytes(data))
+        for name in ("t", "energy", "events", "initial_state", "q"):
+            getattr(found, name, None)
+        return bool(repr(found))
+    return False
+
+
+def _raw(path: str, name: str, content: bytes) -> None:
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr(f"{name}.npy", content)
 
 
 def _places(found: Any) -> list[tuple[Any, Any]]:

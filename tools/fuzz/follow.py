@@ -27,6 +27,8 @@ JSON = (
     "'COMPLETED'", "'contact'", "'rolling'", "'multipliers'", "'JAMMED'", "2**70", "'\\x00'",
 )  # fmt: skip
 FILE = "'trajectory.npz'"
+NEST = '{"scene": '
+DIGITS = "'1' * 5000"  # more than Python makes an int of
 
 Follow = Callable[[Draw, Body], Iterator[Line]]
 
@@ -129,8 +131,9 @@ def damaged_file(draw: Draw, _: Body) -> Iterator[Line]:
                 f"damage.member({FILE}, {member}, None)",
                 f"damage.fact({FILE}, {key}, {draw.pick(*JSON)})",
                 f"damage.inner_fact({FILE}, {share}, {draw.pick(*JSON)})",
+                bomb(draw, member),
             ),
-            (1, 3, 2, 1, 3, 4),
+            (1, 3, 2, 1, 3, 4, 3),
         ),
         does="damage",
     )
@@ -141,11 +144,30 @@ def damaged_file(draw: Draw, _: Body) -> Iterator[Line]:
         yield Line("loaded.sol(loaded.t_end)", does="loaded.sol", forgery=True)
 
 
+def bomb(draw: Draw, member: str) -> str:
+    """Small files that would become large, or deep, if somebody unpacked them."""
+    shape = draw.pick("(10**18,)", "(-1,)", "(2**62, 2**62)", "(3.0,)", "(1,)*40", "('a',)", "3")
+    kind = draw.pick("<f8", "O", "<U1000000000", "V8", ">f8", "f8,i4", "M8[s]", "x")
+    said = repr(f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}\n")
+    long = f"'{{' + ' ' * {draw.count(10**7)}"
+    header = draw.pick(said, said, long, "'(' * 9000", "''")
+    return draw.pick(
+        f"damage.packed({FILE}, {draw.pick('10**9', '10**6')})",
+        f"damage.header({FILE}, {member}, {header}, {draw.pick('1', '2', '3')})",
+        f"damage.twice({FILE}, {draw.pick(text('t'), text('about'))})",
+        f"damage.nested({FILE}, {draw.count(10**6)}, {draw.pick(text('['), text(NEST))})",
+        f"damage.text({FILE}, {draw.pick(text(''), text('1e999'), text('null'), DIGITS)})",
+    )
+
+
 def pickled(draw: Draw, _: Body) -> Iterator[Line]:
     same = promises.same_as_trajectory
     code = f"pickle.loads(pickle.dumps(trajectory, {draw.random.randrange(6)}))"
     yield Line(code, "copied", "pickle", same)
     yield Line("copied.sol(copied.t_end).x", does="pickle")
+    what, share = draw.pick("trajectory", "trajectory.scene"), draw.random.random()
+    bits = f"{draw.random.randrange(6)}, {share!r}, {draw.random.randrange(1, 256)}"
+    yield Line(f"damage.unpickled({what}, {bits})", does="damage", forgery=True)
 
 
 def copied(draw: Draw, _: Body) -> Iterator[Line]:
