@@ -139,7 +139,7 @@ def many(draw: Draw) -> Iterator[Line]:
         file = f"{files}[int({share!r} * len({files}))]"
         bits = f"{draw.random.random()!r}, {draw.random.randrange(1, 256)}"
         yield Line(f"damage.flip({file}, {bits})", does="damage")
-        yield Line("list(rl.load_many(folder))", does="load_many", patience=8, forgery=True)
+        yield Line("list(rl.load_many(path=folder))", does="load_many", patience=8, forgery=True)
 
 
 def stopped(draw: Draw) -> Iterator[Line]:
@@ -478,7 +478,7 @@ def race(draw: Draw) -> Iterator[Line]:
     old, new = draw.pick(*TEXTS), draw.pick(*TEXTS, "'['*99999", "'1'*9999")
     spoil = f"damage.line('race.json', {draw.random.random()!r}, {old}, {new})"
     yield Line(spoil, does="damage")
-    yield Line("repr(rl.WorkPrecision.load('race.json'))", does="load", forgery=True)
+    yield Line("repr(rl.WorkPrecision.load(path='race.json'))", does="load", forgery=True)
     yield Line("found.plot()", does="WorkPrecision.plot", patience=6)
     yield Line("plt.close('all')", does="close")
 

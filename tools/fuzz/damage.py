@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pickle
 import struct
+import warnings
 import zipfile
 from contextlib import suppress
 from pathlib import Path
@@ -106,7 +107,8 @@ def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
 
 
 def _raw(path: str, name: str, content: bytes) -> None:
-    with zipfile.ZipFile(path, "a") as archive:
+    with warnings.catch_warnings(), zipfile.ZipFile(path, "a") as archive:
+        warnings.simplefilter("ignore")  # of a name that comes twice
         archive.writestr(f"{name}.npy", content)
 
 
