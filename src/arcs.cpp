@@ -75,7 +75,8 @@ Arc arc(const SlopeFlow& flow) {
         constexpr double most_half_turns = 1e5;
         constexpr int parts = 16;
         double last = double(run.from.time);
-        for (double n = 1; n <= std::min(half_turns, most_half_turns); ++n) {
+        const double most = std::min(half_turns, most_half_turns);
+        for (double n = 1; n <= most && last < flow.until; ++n) {
             const double next = double(run.from.time + time_of(run, n));
             for (int i = 1; i <= parts; ++i)
                 found.marks.push_back(last + (next - last) * i / parts);
