@@ -1,0 +1,371 @@
+// The core under any numbers at all, for libFuzzer: tools/fuzz_core.sh builds and runs it.
+//
+// What must hold of every input: wrong numbers are refused by std::invalid_argument, in words that
+// name the argument, and nothing else is thrown; what is not refused is finite, has a status that
+// fits, and loses energy rather than gaining any.
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <vector>
+
+#include "arcs.hpp"
+#include "bytes.hpp"
+#include "contact/continuation.hpp"
+#include "losses.hpp"
+#include "outcome/blow.hpp"
+#include "outcome/required_friction.hpp"
+#include "outcome/thresholds.hpp"
+#include "rolling/flow_lanes.hpp"
+#include "scene/impact.hpp"
+#include "simulate.hpp"
+
+using namespace rolling_ellipse;
+using fuzz_core::Bytes;
+
+namespace {
+
+Scene scene;  // of the input
+
+// As Python takes it.
+void print_scene() {
+    const auto number = [](const char* name, std::optional<double> value) {
+        if (value) std::fprintf(stderr, ", %s=%.17g", name, *value);
+    };
+    std::fprintf(stderr, "Scene(%.17g, %.17g", scene.a, scene.b);
+    number("mass", scene.mass);
+    number("gravity", scene.gravity);
+    number("inertia", scene.inertia);
+    number("slope", scene.slope);
+    number("friction", scene.friction);
+    number("restitution", scene.restitution);
+    number("theta", scene.theta);
+    number("omega", scene.omega);
+    number("x", scene.x);
+    number("z", scene.z);
+    number("x_dot", scene.x_dot);
+    number("z_dot", scene.z_dot);
+    if (const auto& blow = scene.impulse) {
+        std::fprintf(stderr, ", impulse=Impulse(%.17g, %.17g, dx=%.17g, dz=%.17g)", blow->jx,
+                     blow->jz, blow->dx, blow->dz);
+    }
+    std::fprintf(stderr, ")\n");
+}
+
+// A failure is an abort, whose input libFuzzer keeps.
+void check(bool holds, const char* what, int line) {
+    if (holds) return;
+    std::fprintf(stderr, "line %d: %s\n", line, what);
+    print_scene();
+    std::abort();
+}
+#define CHECK(...) check((__VA_ARGS__), #__VA_ARGS__, __LINE__)
+
+struct Interrupted {};  // what Ctrl-C throws
+
+// Work without an end in sight is left as Ctrl-C leaves it.
+Checkpoint patience(int looks) {
+    return [looks]() mutable {
+        if (--looks < 0) throw Interrupted{};
+    };
+}
+
+Scene scene_from(Bytes& bytes) {
+    Scene scene{};
+    scene.a = bytes.power(-2, 2);
+    const double thin = bytes.chance(64) ? 3.0 : 0.7;
+    scene.b = bytes.chance(32) ? scene.a : scene.a * bytes.power(-thin, thin);
+    scene.mass = bytes.power(-2, 2);
+    scene.gravity = bytes.power(-1, 2);
+    const double longer = std::max(scene.a, scene.b);
+    scene.inertia = bytes.chance(128) ? scene.mass * uniform_disc_gyration2(scene.a, scene.b)
+                                      : scene.mass * longer * longer * bytes.power(-6, 0);
+    scene.slope = bytes.chance(128) ? 0.0 : bytes.between(-1.55, 1.55);
+    scene.friction = bytes.chance(64) ? infinity : bytes.power(-3, 2);
+    scene.restitution = bytes.chance(64) ? 0.0 : bytes.between(0, 1);
+    const double rate = std::sqrt(scene.gravity / longer);
+    scene.theta = bytes.chance(64) ? half_pi * bytes.choice(8) : bytes.between(-7, 7);
+    scene.omega = bytes.sign() * (bytes.chance(32) ? 0.0 : rate * bytes.power(-4, 1.5));
+    scene.x = bytes.chance(200) ? 0.0 : bytes.between(-1e3, 1e3);
+    const double speed = rate * longer;
+    if (bytes.chance(64)) scene.z = longer * bytes.power(-1, 1.5);
+    if (bytes.chance(64)) scene.x_dot = speed * bytes.between(-5, 5);
+    if (bytes.chance(32)) scene.z_dot = speed * bytes.between(-5, 5);
+    if (bytes.chance(64)) {
+        const double size = scene.mass * speed;
+        const double least = std::min(scene.a, scene.b);
+        scene.impulse = Impulse{size * bytes.between(-3, 3), size * bytes.between(-3, 3),
+                                least * bytes.between(-1, 1), least * bytes.between(-1, 1)};
+    }
+    return scene;
+}
+
+double unit_of_time(const Scene& scene) {
+    return std::sqrt(std::max(scene.a, scene.b) / scene.gravity);
+}
+
+Settings settings_from(Bytes& bytes, double t_end) {
+    Settings settings{};
+    settings.model = static_cast<Model>(bytes.choice(4));
+    settings.method = bytes.chance(128) ? Method::automatic : static_cast<Method>(bytes.choice(7));
+    settings.stabilization =
+        bytes.chance(128) ? Stabilization::projection : static_cast<Stabilization>(bytes.choice(5));
+    settings.rtol = bytes.power(-13, -3);
+    settings.atol = bytes.power(-14, -3);
+    if (bytes.chance(96)) settings.step = t_end * bytes.power(-2, 0);
+    if (bytes.chance(32)) settings.stages = bytes.choice(6);
+    settings.baumgarte_alpha = bytes.power(0, 2);
+    settings.baumgarte_beta = bytes.power(0, 2);
+    settings.max_steps = bytes.chance(16) ? bytes.choice(3) : 40;
+    settings.max_events = bytes.chance(16) ? bytes.choice(3) : 10;
+    if (bytes.chance(32)) settings.rest_speed = bytes.power(-9, 0);
+    return settings;
+}
+
+bool is_finite(const State& state) {
+    return std::isfinite(state.theta) && std::isfinite(state.omega) && std::isfinite(state.x) &&
+           std::isfinite(state.z) && std::isfinite(state.x_dot) && std::isfinite(state.z_dot);
+}
+
+// Energy per mass, and what may be wrong about it: sums of rounded terms, and an angle that is
+// known to its ulp only.
+struct Energy {
+    double value;
+    double unsure;
+};
+
+Energy energy(const Scene& scene, const State& state) {
+    const GroundGravity gravity = scene.ground_gravity();
+    const double kinetic = 0.5 * (square(state.x_dot) + square(state.z_dot) +
+                                  scene.inertia / scene.mass * square(state.omega));
+    const double size =
+        kinetic + std::abs(gravity.into * state.z) + std::abs(gravity.along * state.x);
+    const double thin = std::max(scene.a / scene.b, scene.b / scene.a);
+    const double blur = thin * epsilon * (1 + std::abs(state.theta));
+    return {kinetic + gravity.into * state.z - gravity.along * state.x, (1e-7 + blur) * size};
+}
+
+void check_no_gain(const Scene& scene, const State& before, const State& after) {
+    const Energy first = energy(scene, before);
+    const Energy then = energy(scene, after);
+    if (!std::isfinite(first.unsure + then.unsure)) return;
+    CHECK(then.value - first.value <= first.unsure + then.unsure);
+}
+
+void check_start(const Scene& scene) {
+    const State before = state_before_impulse(scene);
+    const InitialState start = initial_state(scene);
+    CHECK(is_finite(before) && is_finite(start.state));
+    CHECK(std::isfinite(start.reaction_x) && std::isfinite(start.reaction_z));
+    CHECK(start.reaction_z >= 0);
+    const double least = sticking_friction(scene);
+    CHECK(least >= 0);
+    CHECK(before.theta == start.state.theta && before.z == start.state.z);
+    if (!scene.impulse && rolls(before)) {
+        CHECK(start.reaction_x == 0 && before.omega == start.state.omega);
+    }
+    const Continuation next = first_continuation(scene, start.state);
+    CHECK(std::abs(next.side) <= 1);
+}
+
+// Blows of the ground itself: a body that moves into it, at any speed and slip.
+void check_collision(const Scene& scene, Bytes& bytes) {
+    const Geometry at = geometry(scene.axes(), scene.theta);
+    const double speed = std::max(scene.a, scene.b) / unit_of_time(scene);
+    State before{scene.theta, scene.omega, scene.x, at.h, 0.0, 0.0, Mode::flight};
+    before.x_dot = speed * bytes.between(-5, 5);
+    before.z_dot = at.dh * before.omega - speed * bytes.power(-6, 1);
+    validate_velocity(scene.body(), before.x_dot, before.z_dot);
+    if (!(before.z_dot < at.dh * before.omega)) return;
+    const State after = after_collision(scene, before);
+    CHECK(is_finite(after));
+    CHECK(after.theta == before.theta && after.x == before.x);
+    check_no_gain(scene, before, after);
+}
+
+void check_certificate(const Scene& scene, bool rougher_too) {
+    const auto [found, reason] = certify(scene);
+    CHECK(!reason.empty());
+    const Validity validity = found.end.validity;
+    CHECK(found.end.angle.has_value() || validity == Validity::valid ||
+          validity == Validity::no_proof);
+    if (found.smallest_normal_force) CHECK(!std::isnan(*found.smallest_normal_force));
+    if (!found.largest_friction_needed) return;
+    const double needed = *found.largest_friction_needed;
+    CHECK(needed >= 0);
+    // On a slope what holds for 1e15 half turns is valid, though more would ask for no end of it.
+    const bool holds = validity == Validity::valid;
+    if (holds && std::isfinite(needed)) CHECK(needed <= scene.friction * (1 + 1e-6));
+    if (!rougher_too || !holds) return;
+    Scene rougher = scene;
+    rougher.friction = 2 * scene.friction;
+    CHECK(certify(rougher).certificate.end.validity == validity);
+}
+
+void check_samples(const Scene& scene, const Solution& solution, double t_end, bool of_contact) {
+    if (solution.motion.segments.empty()) return;
+    constexpr int count = 8;
+    const double last = std::min(t_end, solution.followed_until);
+    std::vector<double> times(count);
+    for (int i = 0; i < count; ++i) times[i] = last * i / (count - 1);
+    const Sampler look(solution.motion, count);
+    std::vector<ContactSample> samples(count);
+    look(times.data(), count, samples.data());
+    for (int i = 0; i < count; ++i) {
+        CHECK(is_finite(samples[i].state));
+        CHECK(std::isfinite(samples[i].force.normal) && std::isfinite(samples[i].force.friction));
+        if (of_contact && i > 0) check_no_gain(scene, samples[i - 1].state, samples[i].state);
+    }
+    std::vector<CoordinateState> coordinates(count);
+    look(times.data(), count, coordinates.data());
+    for (const CoordinateState& each : coordinates) {
+        CHECK(each.q.allFinite() && each.q_dot.allFinite());
+    }
+}
+
+void check_solution(const Scene& scene, const Solution& solution, double t_end) {
+    CHECK(solution.followed_until >= 0 && solution.followed_until <= t_end);
+    const bool ran_through =
+        solution.ending == Ending::completed || solution.ending == Ending::validity_lost;
+    if (ran_through) CHECK(solution.followed_until == t_end);
+    CHECK(!(solution.valid_until < 0));
+    if (solution.ending == Ending::validity_lost) CHECK(solution.valid_until < t_end);
+    if (solution.ending != Ending::completed) CHECK(!solution.message.empty());
+    double last = 0.0;
+    const bool contact = solution.model == Model::contact;
+    for (const Event& event : solution.motion.events) {
+        CHECK(event.t >= last && event.t <= t_end);
+        CHECK(is_finite(event.before) && is_finite(event.after));
+        if (contact) check_no_gain(scene, event.before, event.after);
+        last = event.t;
+    }
+    check_samples(scene, solution, t_end, contact);
+    if (!solution.motion.segments.empty()) {
+        double reached = 0.0;
+        for (const Arc& arc : arcs(solution)) {
+            CHECK(arc.begin >= reached && arc.end >= arc.begin);
+            reached = arc.begin;
+        }
+    }
+}
+
+void check_simulation(const Scene& scene, Bytes& bytes) {
+    const double unit = unit_of_time(scene);
+    const double t_end = bytes.chance(16) ? bytes.any() : unit * bytes.power(-3, 1.3);
+    const Settings settings = settings_from(bytes, t_end);
+    if (!(t_end >= 0 && std::isfinite(t_end))) return;  // Python's to refuse
+    const Solution solution = simulate(scene, settings, t_end, patience(20));
+    check_solution(scene, solution, t_end);
+    if (bytes.chance(16)) CHECK(!reason(scene, solution).empty());
+}
+
+// The report's coordinates, whether they meet the constraints or not.
+void check_coordinates(const Scene& scene, Bytes& bytes) {
+    CoordinateState start = kinematics(scene.axes(), scene.theta, scene.omega);
+    for (int i = 0; i < 5; ++i) {
+        if (bytes.chance(48)) start.q[i] += bytes.sign() * bytes.power(-9, 0);
+        if (bytes.chance(48)) start.q_dot[i] += bytes.sign() * bytes.power(-9, 0);
+    }
+    if (!start.q.allFinite() || !start.q_dot.allFinite()) return;
+    const double largest =
+        std::max(start.q.cwiseAbs().maxCoeff(), start.q_dot.cwiseAbs().maxCoeff());
+    if (largest > largest_number) return;  // Python's to refuse
+    const double t_end = unit_of_time(scene) * bytes.power(-3, 1);
+    Settings settings = settings_from(bytes, t_end);
+    settings.model = Model::multipliers;
+    if (!(t_end > 0 && std::isfinite(t_end))) return;
+    const Solution solution = simulate(scene, start, settings, t_end, patience(20));
+    CHECK(solution.followed_until >= 0 && solution.followed_until <= t_end);
+    check_samples(scene, solution, t_end, false);
+}
+
+// Rolling at any time by its three roads: one state, a table of many, the lanes of the processor.
+void check_flow(const Scene& scene, Bytes& bytes) {
+    const Body body = scene.body();
+    const double t = bytes.sign() * unit_of_time(scene) * bytes.power(-6, 9);
+    validate_motion(body, scene.theta, scene.omega);
+    const RollingStart start = rolling_start(body, scene.theta, scene.omega);
+    const RollingFlow flow = rolling_flow(start, scene.x);
+    validate_time(t, longest_time(flow));
+    const auto energy_at = [&](const FlowSample& sample) {
+        const Geometry at = geometry(scene.axes(), sample.theta);
+        return 0.5 * inertia_about_contact(body.gyration2, at) * square(sample.omega) +
+               body.gravity * at.h;
+    };
+    const double whole = energy_at({scene.theta, scene.omega, 0.0});
+    const double thin = std::max(scene.a / scene.b, scene.b / scene.a);
+    const auto check_state = [&](const FlowSample& found) {
+        CHECK(std::isfinite(found.theta) && std::isfinite(found.omega) && std::isfinite(found.x));
+        const double blur = square(thin) * epsilon * (1 + std::abs(found.theta));
+        if (whole < 1e90) CHECK(std::abs(energy_at(found) - whole) <= (1e-9 + 8 * blur) * whole);
+    };
+    check_state(sample(static_cast<const RollingMotion&>(flow), t));
+    constexpr int count = 8;
+    double times[count];
+    for (int i = 0; i < count; ++i) times[i] = t * (i + 1) / count;
+    FlowSample samples[count];
+    FlowSampler(flow, 1000)(times, count, samples);
+    std::for_each(samples, samples + count, check_state);
+    const std::vector<RollingStart> starts(count, start);
+    sample(lane_levels().back(), starts.data(), times, count, samples);
+    std::for_each(samples, samples + count, check_state);
+    CHECK(period(flow) > 0);
+}
+
+void check_answers(const Scene& scene, Bytes& bytes) {
+    const int what = bytes.choice(8);
+    if (what == 0) CHECK(required_friction(scene) >= 0);
+    if (what <= 2) CHECK(!std::isnan(period(scene)));
+    const int code = static_cast<int>(outcome(scene, patience(20)));
+    CHECK(code >= 0 && code <= static_cast<int>(Outcome::edge));
+    press_to(scene, scene.a * bytes.between(-1, 1), scene.omega);
+}
+
+void check_body(const Scene& scene, bool thresholds_too) {
+    const int code =
+        static_cast<int>(classify(scene.body(), scene.friction, scene.theta, scene.omega));
+    CHECK(code >= 0 && code <= static_cast<int>(Outcome::edge));
+    if (!thresholds_too) return;
+    const Thresholds found = thresholds(scene.body(), scene.friction);
+    CHECK(found.roll_over_speed >= 0 && found.contact_loss_speed >= 0 && found.slip_speed >= 0);
+    CHECK(found.slip_speed <= found.contact_loss_speed * (1 + 1e-9));
+    CHECK(found.friction_to_roll_over >= 0 && found.painleve_friction >= 0);
+}
+
+void run(Bytes& bytes) {
+    const int what = bytes.choice(8);
+    scene = scene_from(bytes);
+    validate(scene);
+    switch (what) {
+        case 0:
+            return check_start(scene);
+        case 1:
+            return check_collision(scene, bytes);
+        case 2:
+            return check_certificate(scene, bytes.chance(64));
+        case 3:
+            return check_coordinates(scene, bytes);
+        case 4:
+            return check_flow(scene, bytes);
+        case 5:
+            return check_answers(scene, bytes);
+        case 6:
+            return check_body(scene, bytes.chance(32));
+        default:
+            return check_simulation(scene, bytes);
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Bytes bytes(data, size);
+    try {
+        run(bytes);
+    } catch (const std::invalid_argument& refused) {
+        CHECK(std::string(refused.what()).find(" must ") != std::string::npos);
+    } catch (const Interrupted&) {
+    }
+    return 0;
+}
