@@ -7,8 +7,8 @@
 #   tools/fuzz_core.sh crash-0123abcd           (that input alone)
 #
 # CXX names the compiler (default clang++, with its compiler-rt: Debian's libclang-rt-dev), PYTHON an
-# interpreter that has Eigen and CMake (the build requirements, or the test environment). Inputs that
-# reached new code are kept in build/fuzz_core/corpus, and go on from there.
+# interpreter that has the build requirements. Inputs that reached new code are kept in
+# build/fuzz_core/corpus; a run begins with them.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 folder=$source/build/fuzz_core

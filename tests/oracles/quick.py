@@ -16,6 +16,7 @@ QUICK = (
     "multipliers/test_multipliers.py",
     "contact/test_contact_reference.py",
     "outcome/test_classify.py",
+    "properties/test_certificates.py::test_thresholds_grow_with_friction",
     "stability/test_singular_chart.py",
     "batches/test_simulate_many.py::test_bits_of_simulate",
     "trajectory/test_saving.py",

@@ -1,0 +1,117 @@
+"""What hypothesis draws: bodies, grounds, starts and times, over all that the package accepts."""
+
+import math
+from typing import Any
+
+from hypothesis import strategies as st
+from rolling_ellipse import Impulse, Scene, geometry
+
+Draw = Any  # what st.composite passes
+
+#: Angles that are hard: on and beside the quarter turns, and thousands of turns away.
+QUARTERS = st.builds(
+    lambda k, beside: k * math.pi / 2 + beside,
+    st.integers(-9, 9),
+    st.sampled_from([0.0, 1e-90, 1e-9, -1e-6, 1e-3]),
+)
+SIGNS = st.sampled_from([1.0, -1.0])
+
+
+def numbers(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers in a range, 0 among them, none so small that its square is no normal double."""
+    return st.floats(low, high).map(lambda value: value if abs(value) > 1e-100 else 0.0)
+
+
+def powers(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers whose size is anything between 10^low and 10^high."""
+    return st.floats(low, high).map(lambda exponent: 10.0**exponent)
+
+
+ANGLES = st.one_of(numbers(-4.0, 4.0), QUARTERS, numbers(-1e4, 1e4))
+FRICTIONS = st.one_of(
+    st.sampled_from([0.0, math.inf]),
+    numbers(0.0, 3.0),
+    st.builds(pow, st.just(10.0), st.floats(-3, 4)),
+)
+SLOPES = st.one_of(numbers(-1.5, 1.5), st.builds(math.copysign, st.floats(1e-6, 0.3), SIGNS))
+
+
+@st.composite
+def bodies(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
+    """a, b, gravity and gyration2: circles, nearly circles, thin ones either way up."""
+    size = draw(powers(-3, 3))
+    near = st.builds(lambda e, s: 1 + s * 10.0**e, st.floats(-15, -1), SIGNS)
+    thin = st.floats(-thinnest, thinnest).map(lambda exponent: 10.0**exponent)
+    ratio = draw(st.one_of(st.just(1.0), near, st.floats(0.3, 3.0), thin))
+    limit = 1e3 * (1 - 1e-9)  # roundings of it are still accepted
+    ratio = min(max(ratio, 1 / limit), limit)
+    a, b = (size, size / ratio) if ratio > 1 else (size * ratio, size)
+    spread2 = max(a, b) ** 2
+    shares = powers(-6, 0).map(lambda share: share * spread2)
+    return {
+        "a": a,
+        "b": b,
+        "gravity": draw(powers(-1, 2)),
+        "gyration2": draw(st.one_of(st.just((a * a + b * b) / 4), shares)),
+    }
+
+
+def rate(body: dict[str, float]) -> float:
+    """Of falling over: sqrt(g/long) [1/s]."""
+    return math.sqrt(body["gravity"] / max(body["a"], body["b"]))
+
+
+@st.composite
+def motions(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
+    """A body that rolls, from slow rocking to fast turning."""
+    body = draw(bodies(thinnest))
+    speed = draw(st.one_of(st.just(0.0), powers(-6, 2), st.floats(0.1, 5.0)))
+    omega = draw(SIGNS) * speed * rate(body)
+    return {"theta": draw(ANGLES), "omega": omega, **body}
+
+
+@st.composite
+def spans(draw: Draw, motion: dict[str, float], most: float) -> float:
+    """A time of up to that many half turns, or swings."""
+    half_turns = draw(powers(-3, math.log10(most)))
+    return float(half_turns * math.pi / max(abs(motion["omega"]), rate(motion)))
+
+
+@st.composite
+def scenes(draw: Draw, /, **given: Any) -> Scene:
+    """On every ground, rolling, sliding or in the air, some of them struck."""
+    of = draw(motions(thinnest=1.5))
+    mass = draw(powers(-2, 2))
+    values = {
+        "a": of["a"],
+        "b": of["b"],
+        "mass": mass,
+        "gravity": of["gravity"],
+        "inertia": mass * of["gyration2"],
+        "theta": of["theta"],
+        "omega": of["omega"],
+        "slope": draw(st.one_of(st.just(0.0), SLOPES)),
+        "friction": draw(FRICTIONS),
+        "restitution": draw(st.one_of(st.sampled_from([0.0, 1.0]), numbers(0.0, 1.0))),
+        **given,
+    }
+    start = draw(st.sampled_from(["rolling", "sliding", "air", "struck"]))
+    speed = rate(of) * max(of["a"], of["b"])
+    if start == "sliding":
+        values["x_dot"] = draw(numbers(-3.0, 3.0)) * speed
+    elif start == "air":
+        height = geometry.support(of["theta"], a=of["a"], b=of["b"])
+        values["z"] = height * (1 + draw(powers(-2, 1)))
+        values["x_dot"] = draw(numbers(-3.0, 3.0)) * speed
+        values["z_dot"] = draw(numbers(-3.0, 3.0)) * speed
+    elif start == "struck":
+        reach = min(of["a"], of["b"])
+        jx, jz = (draw(numbers(-2.0, 2.0)) * mass * speed for _ in range(2))
+        dx, dz = (draw(numbers(-0.7, 0.7)) * reach for _ in range(2))
+        values["impulse"] = Impulse(jx, jz, dx=dx, dz=dz)
+    return Scene(**values)
+
+
+def clock(scene: Scene) -> float:
+    """The time of falling over [s]."""
+    return math.sqrt(max(scene.a, scene.b) / scene.gravity)

@@ -1,0 +1,103 @@
+"""What is true of every certificate: what more friction, another mass or a mirror do to it."""
+
+import math
+from typing import Any
+
+import numpy as np
+from hypothesis import assume, event, given
+from hypothesis import strategies as st
+from oracles.drawn import FRICTIONS, SLOPES, motions, powers
+from rolling_ellipse import Scene, Validity, certify, classify, required_friction, thresholds
+
+
+@st.composite
+def rolling_scenes(draw: Any) -> Scene:
+    of = draw(motions())
+    slope = draw(st.one_of(st.just(0.0), SLOPES))
+    inertia = of.pop("gyration2")
+    return Scene(**of, inertia=inertia, slope=slope, friction=draw(FRICTIONS))
+
+
+@given(st.data())
+def test_more_friction_never_ends_a_rolling(data: Any) -> None:
+    """The set of states that the ground holds only grows with mu: what was valid stays valid, and
+    what ends does not end sooner."""
+    scene = data.draw(rolling_scenes())
+    more = scene.friction * (1 + data.draw(powers(-16, 3))) + data.draw(powers(-16, 1))
+    less, better = certify(scene), certify(scene.replace(friction=more))
+    event(f"{less.validity.name}, {better.validity.name}")
+    if less.validity is Validity.VALID:
+        assert better.validity is Validity.VALID
+    if better.validity is Validity.INVALID:
+        assert less.validity in (Validity.INVALID, Validity.EDGE)
+    if less.ends_at is not None and better.ends_at is not None:
+        rounding = 1e-9 * max(1.0, abs(scene.theta), abs(less.ends_at))
+        ends = [abs(each.ends_at - scene.theta) for each in (less, better)]
+        if less.validity is better.validity is Validity.INVALID and scene.slope == 0:
+            assert ends[1] >= ends[0] - rounding
+
+
+@given(st.data())
+def test_the_ground_holds_what_it_holds_with_the_friction_that_is_required(data: Any) -> None:
+    scene = data.draw(rolling_scenes())
+    needed = required_friction(scene)
+    assume(1e-200 < needed < 1e10)  # of fewer the millionth is no double
+    above = certify(scene.replace(friction=needed * (1 + 1e-6))).validity
+    below = certify(scene.replace(friction=needed * (1 - 1e-6))).validity
+    unsure = () if abs(scene.a / scene.b - 1) > 0.05 else (Validity.EDGE,)  # forces of a - b
+    event(f"{above.name}, {below.name}")
+    assert above in (Validity.VALID, *unsure)
+    assert below in (Validity.INVALID, Validity.NO_PROOF, *unsure)
+
+
+@given(st.data())
+def test_neither_mass_nor_units_nor_a_mirror_change_the_answer(data: Any) -> None:
+    scene = data.draw(rolling_scenes())
+    metre, second, mass = (2.0 ** data.draw(st.integers(-12, 12)) for _ in range(3))
+    scaled = scene.replace(
+        a=scene.a * metre,
+        b=scene.b * metre,
+        gravity=scene.gravity * metre / second**2,
+        omega=-scene.omega / second,
+        theta=-scene.theta,
+        slope=-scene.slope,
+        mass=mass,
+        inertia=scene.gyration2 * mass * metre**2,
+    )
+    one, other = certify(scene), certify(scaled)
+    assert one.validity is other.validity
+    assert one.largest_friction_needed == other.largest_friction_needed
+    if one.smallest_normal_force is not None:
+        force = mass * metre / second**2
+        assert one.smallest_normal_force * force == other.smallest_normal_force
+    assert one.ends_at is None or one.ends_at == -(other.ends_at or 0.0)
+
+
+@given(st.data())
+def test_an_outcome_does_not_depend_on_units(data: Any) -> None:
+    of = data.draw(motions())
+    friction = data.draw(FRICTIONS)
+    metre, second = (2.0 ** data.draw(st.integers(-12, 12)) for _ in range(2))
+    scaled = {
+        "a": of["a"] * metre, "b": of["b"] * metre, "gyration2": of["gyration2"] * metre**2,
+        "gravity": of["gravity"] * metre / second**2,
+    }  # fmt: skip
+    image = {"theta": -of["theta"], "omega": -of["omega"] / second}
+    assert classify(**of, friction=friction) == classify(**scaled, **image, friction=friction)
+
+
+@given(st.data())
+def test_thresholds_grow_with_friction(data: Any) -> None:
+    of = data.draw(motions())
+    body = {name: of[name] for name in ("a", "b", "gravity", "gyration2")}
+    friction = data.draw(FRICTIONS)
+    more = friction + data.draw(powers(-16, 3))
+    one, other = thresholds(**body, friction=friction), thresholds(**body, friction=more)
+    # each is a root of its own polynomial, to roundings
+    assert other.slip_speed >= one.slip_speed * (1 - 1e-12)
+    assert other.slip_speed <= other.contact_loss_speed * (1 + 1e-12)
+    assert (one.roll_over_speed, one.contact_loss_speed) == (
+        other.roll_over_speed, other.contact_loss_speed
+    )  # fmt: skip
+    assert not math.isnan(other.slip_speed)
+    assert np.isfinite(other.roll_over_speed)

@@ -1,0 +1,205 @@
+"""What is true of all rolling on level ground: its symmetries, its composition, its energy, its
+volume in phase space."""
+
+import math
+from typing import Any
+
+import numpy as np
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from numpy.testing import assert_array_equal
+from oracles.drawn import SIGNS, motions, powers, rate, spans
+from oracles.numbers import EPS
+from oracles.spread import ROUNDINGS, Floats, known_to, spread
+from rolling_ellipse import flow, geometry
+
+MOST_HALF_TURNS = 1e9
+
+
+def state(t: float, **motion: float) -> Floats:
+    """theta, omega and x after t."""
+    return np.array(flow(t, **motion))
+
+
+def leave_equilibria_out(motion: dict[str, float]) -> None:
+    """Within 8 ulp of one a body at rest stays for ever, where a rounding further on it does not:
+    no bound spans that."""
+    assume(motion["omega"] != 0 or abs(math.sin(2 * motion["theta"])) > 1e-6)
+
+
+def path_grain(motion: dict[str, float]) -> Floats:
+    """x is a difference of lengths like the body's, each rounded."""
+    return np.array([0.0, 0.0, ROUNDINGS * EPS * max(motion["a"], motion["b"])])
+
+
+@given(st.data())
+def test_the_mirror_image_has_the_same_bits(data: Any) -> None:
+    """x -> -x: nothing of the arithmetic has a side."""
+    motion = data.draw(motions())
+    t = data.draw(spans(motion, MOST_HALF_TURNS))
+    image = motion | {"theta": -motion["theta"], "omega": -motion["omega"]}
+    assert_array_equal(state(t, **image), -state(t, **motion))
+    times = np.linspace(0.0, t, 300)  # so many are read off series
+    assert_array_equal(flow(times, **image), np.negative(flow(times, **motion)))
+
+
+@given(st.data())
+def test_backwards_is_forwards_with_the_speed_turned_round(data: Any) -> None:
+    """To rounding: what has passed is told from the other side of the phase."""
+    motion = data.draw(motions())
+    leave_equilibria_out(motion)
+    t = data.draw(spans(motion, 1e4))
+    theta, omega, x = state(-t, **motion)
+    back = motion | {"omega": -motion["omega"]}
+    allowed = known_to(state, {"t": t} | back) + path_grain(motion)
+    assert np.all(np.abs(state(t, **back) - [theta, -omega, x]) <= allowed)
+
+
+@given(st.data())
+def test_units_of_powers_of_two_leave_the_bits(data: Any) -> None:
+    """Lengths, times: what is computed has no dimension, or is a product."""
+    motion = data.draw(motions())
+    t = data.draw(spans(motion, MOST_HALF_TURNS))
+    metre, second = (2.0 ** data.draw(st.integers(-20, 20)) for _ in range(2))
+    scaled = in_units(motion, metre, second)
+    assert_array_equal(state(t * second, **scaled), state(t, **motion) * [1, 1 / second, metre])
+
+
+def in_units(motion: dict[str, float], metre: float, second: float) -> dict[str, float]:
+    return {
+        "theta": motion["theta"],
+        "omega": motion["omega"] / second,
+        "a": motion["a"] * metre,
+        "b": motion["b"] * metre,
+        "gravity": motion["gravity"] * metre / second**2,
+        "gyration2": motion["gyration2"] * metre**2,
+    }
+
+
+@given(st.data())
+def test_units_of_any_size_leave_the_motion(data: Any) -> None:
+    """To what the rounding of the numbers in them does."""
+    motion = data.draw(motions())
+    leave_equilibria_out(motion)
+    t = data.draw(spans(motion, 1e4))
+    metre, second = data.draw(powers(-3, 3)), data.draw(powers(-3, 3))
+    assume(1e-3 <= motion["a"] * metre / (motion["b"] * metre) <= 1e3)
+    found = state(t * second, **in_units(motion, metre, second)) * [1, second, 1 / metre]
+    allowed = known_to(state, {"t": t} | motion) + path_grain(motion)
+    assert np.all(np.abs(found - state(t, **motion)) <= allowed)
+
+
+@given(st.data())
+def test_axes_may_change_their_names(data: Any) -> None:
+    """a and b exchanged are the same body a quarter turn on."""
+    motion = data.draw(motions())
+    leave_equilibria_out(motion)
+    t = data.draw(spans(motion, 1e4))
+    turned = motion | {
+        "a": motion["b"], "b": motion["a"], "theta": motion["theta"] + math.pi / 2
+    }  # fmt: skip
+    found = state(t, **turned) - [math.pi / 2, 0, 0]
+    allowed = known_to(state, {"t": t} | turned) + path_grain(motion)
+    assert np.all(np.abs(found - state(t, **motion)) <= allowed)
+
+
+@given(st.data())
+def test_half_a_turn_shows_the_same_body(data: Any) -> None:
+    motion = data.draw(motions())
+    leave_equilibria_out(motion)
+    t = data.draw(spans(motion, 1e4))
+    turns = data.draw(st.integers(-1000, 1000))
+    turned = motion | {"theta": motion["theta"] + turns * math.pi}
+    found = state(t, **turned) - [turns * math.pi, 0, 0]
+    allowed = known_to(state, {"t": t} | turned) + path_grain(motion)
+    assert np.all(np.abs(found - state(t, **motion)) <= allowed)
+
+
+@given(st.data())
+def test_two_moves_are_one(data: Any) -> None:
+    """t1, then t2, is t1 + t2: to the errors of the state between, carried on, and of both."""
+    motion = data.draw(motions())
+    leave_equilibria_out(motion)
+    first, second = data.draw(spans(motion, 1e4)), data.draw(SIGNS) * data.draw(spans(motion, 1e4))
+    whole = state(first + second, **motion)
+    allowed = known_to(state, {"t": first + second} | motion)
+
+    between = state(first, **motion)
+    error = known_to(state, {"t": first} | motion)
+    reached = motion | {"theta": float(between[0]), "omega": float(between[1])}
+    inputs = {"t": second} | reached
+    errors = {"theta": float(error[0]), "omega": float(error[1])}
+    allowed += known_to(state, inputs) + spread(state, inputs, errors)
+    allowed += [0, 0, error[2]] + 3 * path_grain(motion)
+    found = np.add(state(second, **reached), [0, 0, between[2]])
+    assert np.all(np.abs(found - whole) <= allowed)
+
+
+def energy(theta: float, omega: float, a: float, b: float, gravity: float, gyration2: float) -> Any:
+    """E/m, and by how much it changes where theta and omega are off by a rounding."""
+    h = geometry.support(theta, a=a, b=b)
+    slope = geometry.support_slope(theta, a=a, b=b)
+    kinetic = 0.5 * (gyration2 + h * h + slope * slope) * omega**2
+    return kinetic + gravity * h
+
+
+@given(st.data())
+def test_energy_stays_for_a_milliard_half_turns(data: Any) -> None:
+    """It is as well known as theta and omega are: an ulp of a large angle is a move."""
+    motion = data.draw(motions())
+    t = data.draw(spans(motion, MOST_HALF_TURNS))
+    theta, omega, _ = flow(t, **motion)
+
+    def of(**inputs: float) -> Floats:
+        return np.array([energy(**inputs)])
+
+    start, end = motion, motion | {"theta": theta, "omega": omega}
+    allowed = known_to(of, start) + known_to(of, end)
+    assert abs(of(**end) - of(**start)) <= allowed
+
+
+@given(st.data())
+def test_phase_space_keeps_its_volume(data: Any) -> None:
+    """det d(theta, D omega)/d(theta0, D0 omega0) = 1, D the inertia about the contact.
+
+    By central differences over s and 2s: one Richardson step leaves errors of the order s^4, of
+    which what the step changed is a fivefold overestimate where s^2 is small beside 1; where the
+    two differ by much, s is no small step for this motion.
+    """
+    motion = data.draw(motions(thinnest=1.5))
+    t = data.draw(spans(motion, 20.0))
+    assume(motion["a"] != motion["b"])
+    body = {name: motion[name] for name in ("a", "b")}
+
+    def inertia(theta: float) -> float:
+        h = geometry.support(theta, **body)
+        return float(motion["gyration2"] + h**2 + geometry.support_slope(theta, **body) ** 2)
+
+    unit = inertia(0.0) * rate(motion)  # of the momentum: both columns are of the same kind
+    theta0 = motion["theta"]
+    momentum0 = inertia(theta0) * motion["omega"] / unit
+
+    def end(theta: float, momentum: float) -> Floats:
+        start = {"theta": theta, "omega": momentum * unit / inertia(theta)}
+        found, omega, _ = flow(t, **motion | start)
+        return np.array([found - theta0, inertia(found) * omega / unit])
+
+    def columns(s: float) -> Floats:
+        scale = s * max(1.0, abs(momentum0))
+        return np.stack(
+            [
+                (end(theta0 + s, momentum0) - end(theta0 - s, momentum0)) / (2 * s),
+                (end(theta0, momentum0 + scale) - end(theta0, momentum0 - scale)) / (2 * scale),
+            ],
+            axis=1,
+        )
+
+    s = 1e-5
+    coarse, fine = columns(2 * s), columns(s)
+    best = (4 * fine - coarse) / 3
+    inputs = {"t": t} | motion
+    noise = known_to(state, inputs)[:2] * [1, inertia(theta0) / unit] / s
+    error = np.abs(best - fine) + noise[:, None]
+    assume(np.all(error <= 1e-3 * np.max(np.abs(best))))
+    size = np.abs(best[::-1, ::-1])  # what multiplies the error of each entry in the determinant
+    assert abs(np.linalg.det(best) - 1) <= 2 * np.sum(size * error) + 1e-12
