@@ -160,7 +160,8 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
     if constexpr (std::is_same_v<Sample, FlowSample>) {
         if (flow_) return (*flow_)(times, n, samples);
     }
-    const auto& [units, scene, segments, events] = motion_;
+    const Units& units = motion_.units;
+    const std::vector<Segment>& segments = motion_.segments;
     std::vector<double> since;
     since.reserve(n);
     for (std::size_t i = 0; i < n;) {
@@ -179,7 +180,7 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
         }
         std::visit(
             [&](const auto& law) {
-                look_at(scene, itself(law), since.data(), since.size(), samples + i);
+                look_at(motion_.scene, itself(law), since.data(), since.size(), samples + i);
             },
             segment.law);
         const std::size_t last = i + since.size();

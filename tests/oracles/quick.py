@@ -4,6 +4,7 @@ A minute that sees most mistakes; the whole suite is what counts.
 """
 
 QUICK = (
+    "core/test_core.py::test_motions_through_python",
     "integrator/test_tableaus.py",
     "geometry/test_constraints.py::test_kinematics_against_differentiation",
     "geometry/test_ellipse.py::test_curvatures",

@@ -1,0 +1,156 @@
+"""The programs of C++: the core built once more, by the compiler of this machine without
+optimisation, and run.
+
+That build is as far from the installed one as a compiler gets, and promised to have the same bits:
+motions of every model and answers of every proof (golden.cpp) are compared with those of the
+installed extension, and with the committed ones (golden.txt) where the C library is the same. Its
+sin, cos, exp and log are rounded in another way by another version, and by the same one on a
+processor without fused multiply-add; then the bound of oracles/golden.py holds.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+from oracles.golden import (
+    OTHER_LIBRARY,
+    Record,
+    blocks,
+    bodies_through_python,
+    difference,
+    golden,
+    motion_through_python,
+    outcomes_through_python,
+    printed,
+)  # fmt: skip
+from oracles.margins import told
+from oracles.paths import ROOT
+
+LIBRARY, RECORDS = golden()
+MOTIONS = [name for name in blocks(RECORDS, "motion")]
+OTHERS = ("body", "lanes", "alone", "thresholds", "classify")
+
+
+def found(name: str) -> str | None:
+    """A program that the test extra puts beside the interpreter, or one of the system."""
+    scripts = sysconfig.get_path("scripts")
+    return shutil.which(name, path=os.pathsep.join((scripts, os.environ.get("PATH", ""))))
+
+
+def run(*command: str) -> str:
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=1200)
+    assert done.returncode == 0, f"{command}:\n{done.stdout[-5000:]}\n{done.stderr[-5000:]}"
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def build(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the programs: a minute of work for one core."""
+    cmake, ninja = found("cmake"), found("ninja")
+    compiler = os.environ.get("CXX") or found("c++") or found("g++") or found("clang++")
+    for name, program in {"CMake": cmake, "C++ compiler": compiler}.items():
+        if program is None:
+            pytest.skip(f"there is no {name} on this machine")
+    assert cmake and compiler
+    folder = tmp_path_factory.mktemp("core")
+    eigen = [str(at) for place in sys.path if (at := Path(place, "cmeel.prefix")).is_dir()]
+    run(
+        cmake, "-S", str(ROOT), "-B", str(folder), "-DROLLING_ELLIPSE_PYTHON=OFF",
+        "-DROLLING_ELLIPSE_TESTS=ON", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O0",
+        f"-DCMAKE_CXX_COMPILER={compiler}", f"-DCMAKE_PREFIX_PATH={';'.join(eigen)}",
+        *(["-G", "Ninja", f"-DCMAKE_MAKE_PROGRAM={ninja}"] if ninja else []),
+    )  # fmt: skip
+    run(cmake, "--build", str(folder), "--parallel", str(os.cpu_count() or 1))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def second(build: Path) -> tuple[str, list[Record]]:
+    return printed(build / "golden")
+
+
+# ------------------------------------------------------------------------------- programs
+
+
+@pytest.mark.parametrize("program", ["core_test", "lanes_test"])
+def test_all_holds(program: str, build: Path) -> None:
+    if program == "lanes_test" and not (build / program).exists():
+        pytest.skip("this processor has no lanes of its own")
+    assert "all hold" in run(str(build / program))
+
+
+# ----------------------------------------------------------------------------------- bits
+
+
+def test_the_second_build_has_the_committed_bits(second: tuple[str, list[Record]]) -> None:
+    library, records = second
+    worst, where = difference(RECORDS, records)
+    told(library, worst, where)
+    assert worst <= (0.0 if library == LIBRARY else OTHER_LIBRARY), where
+
+
+def test_another_rounding_of_the_c_library_stays_within_the_bound(
+    build: Path, second: tuple[str, list[Record]]
+) -> None:
+    """glibc without fused multiply-add, as on a processor that has none."""
+    library, records = printed(build / "golden", GLIBC_TUNABLES="glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4")
+    if library == second[0]:
+        pytest.skip(f"{library} has one rounding only")
+    worst, where = difference(second[1], records)
+    told(library, worst, where)
+    assert 0 < worst <= OTHER_LIBRARY, where
+
+
+def test_every_model_method_and_event_has_its_bits() -> None:
+    motions = [each.words for each in RECORDS if each.kind == "motion"]
+    stabilizations = {words[3] for words in motions if words[1] == "multipliers"}
+    assert stabilizations == {"none", "baumgarte", "projection", "projection+energy", "ggl"}
+    solutions = {each.words for each in RECORDS if each.kind == "solution"}
+    assert {model for model, _ in solutions} == {"rolling", "multipliers", "contact"}
+    assert {method for _, method in solutions} == {
+        "exact", "dop853", "dopri5", "rk4", "gauss", "radau",
+    }  # fmt: skip
+    events = {each.words[0] for each in RECORDS if each.kind == "event"}
+    assert events == {"slip", "stick", "reverse", "lift_off", "impact", "rest", "jam"}
+
+
+# --------------------------------------------------------------------- the installed extension
+
+
+def compare(mine: list[Record], through_python: list[Record], bound: float) -> None:
+    worst, where = difference(mine, through_python)
+    told(worst, where)
+    assert worst <= bound, where
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_motions_through_python(name: str) -> None:
+    """Within the bound wherever there is no compiler to tell what this C library's bits are."""
+    motion = [each for each in blocks(RECORDS, "motion")[name] if each.kind not in OTHERS]
+    compare(motion[2:], list(motion_through_python(motion)), OTHER_LIBRARY)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_motions_of_the_installed_extension_have_the_bits_of_the_second_build(
+    name: str, second: tuple[str, list[Record]]
+) -> None:
+    motion = [each for each in blocks(second[1], "motion")[name] if each.kind not in OTHERS]
+    compare(motion[2:], list(motion_through_python(motion)), 0.0)
+
+
+def test_bodies_of_the_installed_extension_have_the_bits_of_the_second_build(
+    second: tuple[str, list[Record]],
+) -> None:
+    bodies = [each for each in second[1] if each.kind in ("body", "lanes", "alone")]
+    compare(bodies, bodies_through_python(bodies), 0.0)
+
+
+def test_outcomes_of_the_installed_extension_are_those_of_the_second_build(
+    second: tuple[str, list[Record]],
+) -> None:
+    outcomes = [each for each in second[1] if each.kind in ("thresholds", "classify")]
+    compare(outcomes, list(outcomes_through_python(outcomes)), 0.0)

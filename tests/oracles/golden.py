@@ -1,0 +1,198 @@
+"""The bits of tests/core/golden.cpp: read, compared, and asked for again through Python."""
+
+import math
+import os
+import subprocess
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rolling_ellipse as rl
+
+from .paths import TESTS
+
+GOLDEN = TESTS / "core" / "golden.txt"
+
+# Another C library rounds its sin and cos in another way. What is exact or has fixed steps then
+# moves by roundings; what chooses its steps, to a tolerance of 1e-10, by no more than that.
+OTHER_LIBRARY = 1e-10
+
+_COLUMNS = {
+    "rolling": ("theta", "omega", "x"),
+    "contact": (
+        "theta", "omega", "x", "z", "x_dot", "z_dot", "normal_force", "friction_force",
+    ),
+    "multipliers": (
+        "x", "z", "theta", "psi", "r", "x_dot", "z_dot", "omega", "psi_dot", "r_dot",
+    ),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Record:
+    """A line: what it is, words and numbers."""
+
+    kind: str
+    words: tuple[str, ...]
+    numbers: tuple[float, ...]
+
+    def __str__(self) -> str:
+        return " ".join((self.kind, *self.words, *(number.hex() for number in self.numbers)))
+
+
+def is_number(word: str) -> bool:
+    return word in ("nan", "inf", "-inf") or word.lstrip("-").startswith("0x")
+
+
+def record(line: str) -> Record:
+    kind, *rest = line.split()
+    numbers = [float.fromhex(word) for word in rest if is_number(word)]
+    return Record(kind, tuple(word for word in rest if not is_number(word)), tuple(numbers))
+
+
+def read(text: str) -> tuple[str, list[Record]]:
+    """The C library that it was made with, and the records."""
+    library, *lines = text.splitlines()
+    assert library.startswith("library ")
+    return library, [record(line) for line in lines]
+
+
+def golden() -> tuple[str, list[Record]]:
+    """The committed bits."""
+    return read(GOLDEN.read_text(encoding="utf-8"))
+
+
+def printed(program: Path, **environment: str) -> tuple[str, list[Record]]:
+    """What the program golden of a build prints."""
+    done = subprocess.run(
+        [str(program)], env=os.environ | environment, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    return read(done.stdout)
+
+
+def blocks(records: list[Record], first: str) -> dict[str, list[Record]]:
+    """What belongs to each record of a kind: itself, and those up to the next one of that kind."""
+    starts = [i for i, each in enumerate(records) if each.kind == first]
+    ends = [*starts[1:], len(records)]
+    found: dict[str, list[Record]] = {}
+    for begin, end in zip(starts, ends, strict=True):
+        name = records[begin].words[0] if records[begin].words else str(len(found))
+        found[name] = records[begin:end]
+    return found
+
+
+def difference(one: list[Record], other: list[Record]) -> tuple[float, str]:
+    """The largest one of two numbers, relative above 1, and the records; words have to agree."""
+    assert len(one) == len(other)
+    worst, where = 0.0, "the same bits"
+    for mine, theirs in zip(one, other, strict=True):
+        told = f"\n{mine}\n{theirs}"
+        assert (mine.kind, mine.words) == (theirs.kind, theirs.words), told
+        assert len(mine.numbers) == len(theirs.numbers), told
+        for x, y in zip(mine.numbers, theirs.numbers, strict=True):
+            if x == y and math.copysign(1, x) == math.copysign(1, y):
+                continue
+            if math.isnan(x) and math.isnan(y):
+                continue
+            off = max(abs(x - y) / max(1.0, abs(x)), math.ulp(0.0))  # also if a zero has its sign
+            if not off <= worst:  # also if it is no number
+                worst, where = off, told
+    return worst, where
+
+
+# ------------------------------------------------------------------- the same through Python
+
+
+def given(value: float) -> float | None:
+    return None if math.isnan(value) else value
+
+
+def or_nan(value: float | None) -> float:
+    return math.nan if value is None else float(value)
+
+
+def scene_of(row: tuple[float, ...]) -> rl.Scene:
+    a, b, mass, gravity, inertia, slope, friction, restitution, theta, omega, x = row[:11]
+    z, x_dot, z_dot = map(given, row[11:14])
+    blow = rl.Impulse(row[14], row[15], dx=row[16], dz=row[17]) if any(row[14:16]) else None
+    return rl.Scene(
+        a, b, mass=mass, gravity=gravity, inertia=inertia, slope=slope, friction=friction,
+        restitution=restitution, theta=theta, omega=omega, x=x, z=z, x_dot=x_dot, z_dot=z_dot,
+        impulse=blow,
+    )  # fmt: skip
+
+
+def at(state: Any) -> tuple[float, ...]:
+    return (state.theta, state.omega, state.x, state.z, state.x_dot, state.z_dot)
+
+
+def motion_through_python(motion: list[Record]) -> Iterator[Record]:
+    """The records that follow "motion" and "scene"."""
+    (_, model, method, stabilization), scene = motion[0].words, scene_of(motion[1].numbers)
+    t_end, samples, step, stages = motion[0].numbers
+    times = np.array([t_end * i / (samples - 1) for i in range(int(samples))])
+    chosen: dict[str, Any] = {"model": model, "method": method, "stabilization": stabilization}
+    chosen |= {"step": given(step), "stages": int(stages) or None}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rl.ValidityWarning)
+        warnings.simplefilter("ignore", rl.StabilityWarning)
+        found = rl.simulate(scene, times, **chosen)
+    solution = next(each for each in motion if each.kind == "solution")
+    ending, followed_until, _ = solution.numbers  # which have no name in Python
+    yield Record("solution", (found.model, found.method),
+                 (ending, followed_until, found.valid_until))  # fmt: skip
+    for event in found.events:
+        yield Record("event", (event.kind.name.lower(),), (event.t, *at(event.state_after)))
+    columns = [getattr(found, name) for name in _COLUMNS[found.model]]
+    shown = [each.numbers[0] for each in motion if each.kind == "sample"]
+    for i in np.searchsorted(found.t, shown):
+        yield Record("sample", (), (float(found.t[i]), *(float(column[i]) for column in columns)))
+    proof = rl.certify(scene)
+    yield Record("certificate", (proof.validity.name.lower(),), (
+        or_nan(proof.ends_at), or_nan(proof.smallest_normal_force),
+        or_nan(proof.smallest_normal_force_angle), or_nan(proof.largest_friction_needed),
+        or_nan(proof.largest_friction_needed_angle), rl.required_friction(scene),
+    ))  # fmt: skip
+    yield Record("outcome", (str(int(rl.outcome(scene))),), ())
+
+
+def bodies_through_python(records: list[Record]) -> list[Record]:
+    """All records of many bodies: each, side by side, and alone."""
+    bodies = [each for each in records if each.kind == "body"]
+    columns = np.array([each.numbers for each in bodies]).T
+    t, a, b, theta, omega, gravity, gyration2 = columns
+    named = {"a": a, "b": b, "theta": theta, "omega": omega, "gravity": gravity}
+    lanes = np.array(rl.flow(t, **named, gyration2=gyration2))
+    found = []
+    for i, body in enumerate(bodies):
+        one = {name: float(column[i]) for name, column in named.items()}
+        alone = rl.flow(float(t[i]), **one, gyration2=float(gyration2[i]))
+        found += [body, Record("lanes", (), tuple(map(float, lanes[:, i]))),
+                  Record("alone", (), tuple(map(float, alone)))]  # fmt: skip
+    return found
+
+
+def outcomes_through_python(records: list[Record]) -> Iterator[Record]:
+    """All records of thresholds and of classify."""
+    theta, omega = np.array([0.2 * i for i in range(16)]), np.array([0.5 * i for i in range(16)])
+    for one, other in pairwise(each for each in records if each.kind in ("thresholds", "classify")):
+        if one.kind == "classify":
+            continue
+        a, b, gravity, gyration2, friction = body = other.numbers
+        known = rl.thresholds(a, b, gravity=gravity, gyration2=gyration2, friction=friction)
+        names = (
+            "roll_over_speed", "contact_loss_speed", "contact_loss_angle", "slip_speed",
+            "slip_angle", "friction_to_roll_over", "painleve_friction", "painleve_angle",
+            "rocking_rate", "tip_rate",
+        )  # fmt: skip
+        yield Record("thresholds", (), (*body, *(or_nan(getattr(known, name)) for name in names)))
+        codes = rl.classify(
+            a=a, b=b, theta=theta[:, None], omega=omega, friction=friction, gravity=gravity,
+            gyration2=gyration2,
+        )  # fmt: skip
+        yield Record("classify", ("".join(map(str, np.ravel(codes))),), body)
