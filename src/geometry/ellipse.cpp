@@ -71,7 +71,7 @@ CarlsonPair carlson(double x, double y, double z) {
 // its last term, which is the lead -h' of the centre.
 double arc_from_tip(double long_axis, double short_axis, double s, double c) {
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
-    const double h = std::hypot(long_axis * c, short_axis * s);
+    const double h = root_of_squares(long_axis * c, short_axis * s);
     const double l2 = long_axis * long_axis;
     const auto [rf, rd] = carlson(l2 * c * c, l2, h * h);
     return short_axis * short_axis * s * (rf + c2 * s * s / 3 * rd);
@@ -120,7 +120,7 @@ double path_from_flat(double long_axis, double short_axis, double s, double c) {
 double path_from_tip(double long_axis, double short_axis, double s, double c) {
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
     return arc_from_tip(long_axis, short_axis, s, c) +
-           c2 * s * c / std::hypot(long_axis * c, short_axis * s);
+           c2 * s * c / root_of_squares(long_axis * c, short_axis * s);
 }
 
 FlatView flat_view(const Axes& axes, double theta) {
@@ -164,7 +164,7 @@ double contact_angle_second(const Axes& axes, const Geometry& at) {
 
 // physics (5)
 double contact_distance(const Axes& axes, const Geometry& at) {
-    return std::hypot(axes.a * axes.a * at.sin, axes.b * axes.b * at.cos) / at.h;
+    return root_of_squares(axes.a * axes.a * at.sin, axes.b * axes.b * at.cos) / at.h;
 }
 
 // physics (7)

@@ -105,7 +105,7 @@ void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
 // Newton's method, until the excess stops shrinking.
 void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy) const {
     constexpr int most_iterations = 20;
-    const double rate2 = std::hypot(gravity_.into, gravity_.along) / length_;
+    const double rate2 = root_of_squares(gravity_.into, gravity_.along) / length_;
     project(q, q_dot);
     double last = infinity;
     for (int i = 0; i < most_iterations; ++i) {

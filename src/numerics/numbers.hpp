@@ -1,6 +1,7 @@
 // Constants and the smallest of functions.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 namespace rolling_ellipse {
@@ -18,5 +19,9 @@ inline constexpr double equal_ulps = 8;
 inline constexpr double largest_number = 1e50;
 
 constexpr double square(double x) { return x * x; }
+
+// sqrt(x^2 + y^2) of lengths and the like, whose squares stay within the doubles: within 1.5 ulp.
+// The hypot of C libraries is within 1, in bits that differ from version to version.
+inline double root_of_squares(double x, double y) { return std::sqrt(x * x + y * y); }
 
 }  // namespace rolling_ellipse

@@ -27,7 +27,7 @@ class RollingEquation {
     Matrix<2> jacobian(double t, const Vector<2>& y) const;
     Vector<2> mass() const { return Vector<2>::Ones(); }
     Vector<2> typical() const {
-        return {1.0, std::sqrt(std::hypot(gravity_.into, gravity_.along) / long_axis_)};
+        return {1.0, std::sqrt(root_of_squares(gravity_.into, gravity_.along) / long_axis_)};
     }
 
   private:

@@ -170,7 +170,8 @@ class Sorter {
             if (losses[k] == infinity || (std::abs(sin) > std::abs(cos)) != near_tip) {
                 return std::nullopt;
             }
-            const double h = std::hypot(start.view.long_axis * sin, start.view.short_axis * cos);
+            const double h =
+                root_of_squares(start.view.long_axis * sin, start.view.short_axis * cos);
             sum += gauss.weights[k % (nodes / 2)] * (h * samples[k].omega);
         }
         return 0.5 * t * sum;

@@ -201,7 +201,7 @@ class TableMaker {
         const std::size_t last = count() - 1;
         if (pieces[last].quarters == 0) return;
         const double tangent = places_[last].tangent;
-        const double sin = 1 / std::hypot(1.0, tangent);
+        const double sin = 1 / root_of_squares(1.0, tangent);
         path(last) = position_at(flow_, {sin, tangent * sin}).path;
         for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
             path(i - 1) = path(i) - step(i);

@@ -15,7 +15,7 @@ PathSeries::PathSeries(const Axes& axes)
 double PathSeries::distance(double theta) const {
     const auto [rest, odd] = nearest_quarter(theta);
     const bool by_flat = odd == (c2_ < 0);
-    return std::hypot(by_flat ? std::abs(rest) : half_pi - std::abs(rest), off_axis_);
+    return root_of_squares(by_flat ? std::abs(rest) : half_pi - std::abs(rest), off_axis_);
 }
 
 void PathSeries::move_to(double theta) {

@@ -1,7 +1,8 @@
 #include "scene/refuse.hpp"
 
-#include <charconv>
 #include <cmath>
+#include <locale>
+#include <sstream>
 #include <stdexcept>
 
 #include "numerics/numbers.hpp"
@@ -15,12 +16,21 @@ constexpr double largest = 1e30;
 
 }  // namespace
 
+// As few digits as tell the number from its neighbours; 17 do for any.
 std::string text(double value) {
     if (std::isnan(value)) return "nan";
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-    char buffer[40];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-    std::string digits(buffer, end);
+    std::string digits;
+    for (int count = 15; count <= 17; ++count) {
+        std::stringstream stream;
+        stream.imbue(std::locale::classic());
+        stream.precision(count);
+        stream << value;
+        digits = stream.str();
+        double again = 0.0;
+        stream >> again;
+        if (again == value) break;
+    }
     if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
     return digits;
 }

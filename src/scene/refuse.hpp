@@ -6,7 +6,7 @@
 
 namespace rolling_ellipse {
 
-// A double as Python prints it.
+// A double as Python prints it; 1e+15 and subnormal numbers in other words.
 std::string text(double value);
 
 // Throws std::invalid_argument, which Python shows as ValueError: "name must be requirement, got

@@ -30,14 +30,17 @@ void require_inertia(std::string_view name, std::string_view kind, double value,
 // A blow touches the body where its line of action enters it: the line must not pass it by. Its
 // distance from the centre is that of two parallel tangents at most, physics (1) across the line.
 void require_reach(const Scene& scene, const Impulse& blow) {
-    const double size = std::hypot(blow.jx, blow.jz);
-    if (size == 0) return;
-    const double across_x = -blow.jz / size;
-    const double across_z = blow.jx / size;
+    const double larger = std::max(std::abs(blow.jx), std::abs(blow.jz));
+    if (larger == 0) return;
+    const double jx = blow.jx / larger;  // of which the squares count, however small the blow
+    const double jz = blow.jz / larger;
+    const double size = root_of_squares(jx, jz);
+    const double across_x = -jz / size;
+    const double across_z = jx / size;
     const double s = std::sin(scene.theta);
     const double c = std::cos(scene.theta);
-    const double reach = std::hypot(scene.a * (across_x * c - across_z * s),
-                                    scene.b * (across_x * s + across_z * c));
+    const double reach = root_of_squares(scene.a * (across_x * c - across_z * s),
+                                         scene.b * (across_x * s + across_z * c));
     const double distance = std::abs(blow.dx * across_x + blow.dz * across_z);
     if (distance <= reach + blow_margin * std::max(scene.a, scene.b)) return;
     refuse("impulse",

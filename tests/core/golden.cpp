@@ -55,7 +55,8 @@ std::uint64_t fingerprint() {
     Draw draw;
     std::uint64_t sum = 14695981039346656037ULL;
     for (int i = 0; i < 20'000; ++i) {
-        const double x = (draw() - 0.5) * 20, y = draw() * 4 + 1e-3;
+        const double x = (draw() - 0.5) * 20;
+        const double y = draw() * 4 + 1e-3;
         for (const double value :
              {std::sin(x), std::cos(x), std::tan(x), std::atan(x), std::atan2(x, y), std::exp(x),
               std::log(y), std::pow(y, x), std::sinh(x), std::tanh(x), std::asinh(x),
@@ -355,7 +356,9 @@ void print_bodies() {
     for (int i = 0; i < count; ++i) {
         const double b = i % 3 == 0 ? 0.001 + draw() : 0.3 + draw();
         const Body body{1.0, b, (1 + b * b) / 4, 9.81};
-        starts.push_back(rolling_start(body, 6 * draw() - 3, 8 * draw() - 4));
+        const double theta = 6 * draw() - 3;  // drawn before omega by every compiler
+        const double omega = 8 * draw() - 4;
+        starts.push_back(rolling_start(body, theta, omega));
         times.push_back((draw() - 0.5) * (i % 5 == 0 ? 1e6 : 20.0));
     }
     std::vector<FlowSample> side_by_side(count), alone(count);

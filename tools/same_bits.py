@@ -1,0 +1,131 @@
+"""Build tests/core/golden.cpp in many ways, and tell whether all of them print the same bits.
+
+    python tools/same_bits.py FOLDER                 all builds whose compiler is on this machine
+    python tools/same_bits.py FOLDER --only clang    those with this word in their name
+    python tools/same_bits.py FOLDER --write         g++ -O3, and make tests/core/golden.txt of it
+
+The builds lie in FOLDER, to be kept or deleted; with ccache on the machine a second time is quick.
+Those of one kind of processor must agree to the last bit. aarch64 (g++-aarch64-linux-gnu and
+qemu-user-static, or qemu-user) has another C library, whose sin and cos are rounded in another way:
+its builds must agree among each other, and with those of x86-64 within the bound of
+tests/oracles/golden.py. Exit code 1 where they do not.
+"""
+
+import argparse
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tests"))
+
+from oracles.golden import GOLDEN, OTHER_LIBRARY, difference, read  # noqa: E402
+
+ARM = "aarch64-linux-gnu-g++"
+
+
+@dataclass(frozen=True)
+class Build:
+    """A compiler and its flags; the machine that it compiles for runs the program."""
+
+    compiler: str
+    flags: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.compiler} {self.flags}"
+
+    @property
+    def settings(self) -> list[str]:
+        """Of CMake."""
+        if self.compiler != ARM:
+            return []
+        return ["-DCMAKE_SYSTEM_NAME=Linux", "-DCMAKE_SYSTEM_PROCESSOR=aarch64"]
+
+    @property
+    def runner(self) -> list[str]:
+        if self.compiler != ARM:
+            return []
+        qemu = shutil.which("qemu-aarch64") or shutil.which("qemu-aarch64-static")
+        return [qemu or "qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"]
+
+
+BUILDS = (
+    *(Build("g++", flags) for flags in ("-O3", "-O2", "-O0", "-O3 -flto", "-O3 -march=native")),
+    *(Build("clang++", flags) for flags in ("-O2", "-O0", "-O3 -march=native")),
+    *(Build(ARM, flags) for flags in ("-O3", "-O2", "-O0")),
+)
+
+
+def output(build: Build, folder: Path, jobs: int) -> str:
+    """What the program prints; ends the script where it cannot be built."""
+    place = folder / build.name.replace(" ", "").replace("+", "p").replace("=", "-")
+    eigen = [str(at) for part in sys.path if (at := Path(part, "cmeel.prefix")).is_dir()]
+    launcher = shutil.which("ccache")
+    configure = [
+        "cmake", "-S", ROOT, "-B", place, "-DROLLING_ELLIPSE_PYTHON=OFF",
+        "-DROLLING_ELLIPSE_TESTS=ON", "-DCMAKE_BUILD_TYPE=None",
+        f"-DCMAKE_CXX_COMPILER={build.compiler}", f"-DCMAKE_CXX_FLAGS={build.flags}",
+        f"-DCMAKE_PREFIX_PATH={';'.join(eigen)}", *build.settings,
+        *([f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"] if launcher else []),
+    ]  # fmt: skip
+    compile_it = ["cmake", "--build", place, "--target", "golden", "--parallel", str(jobs)]
+    for command in (configure, compile_it, [*build.runner, place / "golden"]):
+        done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(f"{build.name}:\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}")
+    return done.stdout
+
+
+def compare(texts: dict[Build, str]) -> bool:
+    """Whether all is as promised; says what is not."""
+    holds = True
+    for arm in (False, True):
+        mine = {build: text for build, text in texts.items() if (build.compiler == ARM) == arm}
+        first = next(iter(mine), None)
+        for build, text in mine.items():
+            if first and text != mine[first]:
+                holds = False
+                print(f"{build.name} differs from {first.name}:")
+                print(*difference(read(mine[first])[1], read(text)[1]))
+    for build, text in texts.items():
+        worst, where = difference(read(GOLDEN.read_text(encoding="utf-8"))[1], read(text)[1])
+        print(f"{build.name:<32} {worst:.1e} from golden.txt")
+        if worst > OTHER_LIBRARY:
+            holds = False
+            print(where)
+    return holds
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--only", default="", help="a word of the builds' names")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--write", action="store_true", help="make tests/core/golden.txt")
+    chosen = parser.parse_args()
+    if chosen.write:
+        GOLDEN.write_text(output(BUILDS[0], chosen.folder, chosen.jobs), encoding="utf-8")
+        return
+    texts = {}
+    for build in BUILDS:
+        if chosen.only not in build.name:
+            continue
+        if shutil.which(build.compiler) is None:
+            print(f"{build.name:<32} not on this machine")
+            continue
+        texts[build] = text = output(build, chosen.folder, chosen.jobs)
+        library, _, records = text.partition("\n")
+        digest = hashlib.sha256(records.encode()).hexdigest()[:16]
+        print(f"{build.name:<32} {digest}  {library}", flush=True)
+    if not texts:
+        sys.exit(f"no build has {chosen.only!r} in its name and its compiler on this machine")
+    sys.exit(0 if compare(texts) else 1)
+
+
+if __name__ == "__main__":
+    main()
