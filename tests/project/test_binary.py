@@ -1,0 +1,83 @@
+"""The installed extension as the machine sees it: its instructions, what it needs, what it does to
+the processor when it is loaded."""
+
+import platform
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+from oracles.margins import told
+from rolling_ellipse import _core
+
+# Functions whose bits differ from version to version of the C library, and one that older systems
+# lack (GCC below 11, macOS below 13.3).
+UNWANTED = ("hypot", "hypotf", "cbrt", "lgamma", "tgamma", "_ZSt8to_charsPcS_d")
+
+SUBNORMALS = """
+import threading
+import numpy as np
+import rolling_ellipse
+
+kept = []
+
+
+def products():
+    # Text, so that nothing is multiplied when this is compiled.
+    tiny, least, one = float("5e-324"), float("2.2250738585072014e-308"), float("1")
+    kept.append(tiny * one == tiny > 0 and least / 4 * 4 == least)
+    kept.append(bool(np.all(np.full(9, tiny) * one > 0)))
+
+
+products()
+worker = threading.Thread(target=products)
+worker.start()
+worker.join()
+rolling_ellipse.flow(np.linspace(0, 1, 100_000), a=2, b=1, theta=0.3, omega=0, workers=2)
+products()
+assert kept == [True] * 6, kept
+"""
+
+
+def disassembled(*options: str) -> str:
+    """What objdump tells of the extension."""
+    objdump = shutil.which("objdump")
+    if objdump is None:
+        pytest.skip("there is no objdump on this machine")
+    done = subprocess.run(
+        [objdump, *options, str(_core.__file__)], capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_nothing_is_fused_but_the_exact_products_of_lanes() -> None:
+    """two_product of src/numerics/lanes.hpp is x y - round(x y), packed, in AVX2 and AVX-512.
+
+    A product and a sum that a compiler fuses by itself would be an addition somewhere, or of single
+    numbers. std::fma is a call.
+    """
+    if platform.machine() != "x86_64":
+        pytest.skip(f"the instructions are those of x86-64, not of {platform.machine()}")
+    flags = _core.build()["flags"]
+    if re.search(r"-march=|-mfma", flags):
+        pytest.skip(f"it was compiled for processors that have std::fma: {flags}")
+    fused = re.findall(r"\bvfn?m(?:add|sub)\w+", disassembled("-d", "--no-show-raw-insn"))
+    told(len(fused), sorted(set(fused)))
+    assert all(re.fullmatch(r"vfmsub(?:132|213|231)pd", each) for each in fused), set(fused)
+    assert fused or "sse2" not in _core.flow_levels()  # else they are no longer recognised
+
+
+def test_it_calls_nothing_that_differs_between_systems() -> None:
+    symbols = re.findall(r"\*UND\*.*?(\w+)$", disassembled("-T"), re.MULTILINE)
+    assert {"sin", "atan2", "PyErr_SetString"} <= set(symbols)  # else none are recognised
+    assert not set(symbols) & set(UNWANTED)
+
+
+def test_subnormal_numbers_survive_the_import() -> None:
+    """What is linked with -ffast-math sets the processor to make zeros of them, for everybody."""
+    done = subprocess.run(
+        [sys.executable, "-c", SUBNORMALS], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
