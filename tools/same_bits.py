@@ -6,8 +6,8 @@
 
 The builds lie in FOLDER, to be kept or deleted; with ccache on the machine a second time is quick.
 Those of one kind of processor must agree to the last bit. aarch64 (g++-aarch64-linux-gnu and
-qemu-user-static, or qemu-user) has another C library, whose sin and cos are rounded in another way:
-its builds must agree among each other, and with those of x86-64 within the bound of
+qemu-user-static, or qemu-user) has no lanes, and may have another rounding of sin and cos in its C
+library: its builds must agree among each other, and with those of x86-64 within the bound of
 tests/oracles/golden.py. Exit code 1 where they do not.
 """
 

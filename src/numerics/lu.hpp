@@ -11,6 +11,18 @@
 
 namespace rolling_ellipse {
 
+inline double reciprocal(double x) { return 1.0 / x; }
+
+// Scaled, so that no square overflows. Not the quotient of the compiler, a call of its own library:
+// its steps differ from version to version, and are fused on some processors.
+inline std::complex<double> reciprocal(std::complex<double> z) {
+    const double size = std::fmax(std::abs(z.real()), std::abs(z.imag()));
+    const double x = z.real() / size;
+    const double y = z.imag() / size;
+    const double norm = size * (x * x + y * y);
+    return {x / norm, -y / norm};
+}
+
 template <class Number, int N>
 class LU {
   public:
@@ -26,7 +38,7 @@ class LU {
             if (pivots_[k] != k) {
                 for (int j = 0; j < N; ++j) std::swap(factors_(k, j), factors_(pivots_[k], j));
             }
-            inverses_[k] = 1.0 / factors_(k, k);
+            inverses_[k] = reciprocal(factors_(k, k));
             for (int i = k + 1; i < N; ++i) factors_(i, k) *= inverses_[k];
             for (int j = k + 1; j < N; ++j) subtract(factors_(k, j), k, &factors_(0, j));
         }

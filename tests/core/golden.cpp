@@ -75,8 +75,9 @@ void print_library() {
 #else
     const std::string library = "other 0";
 #endif
-    std::printf("library %s %016llx\n", library.c_str(),
-                static_cast<unsigned long long>(fingerprint()));
+    std::printf("library %s %016llx %s\n", library.c_str(),
+                static_cast<unsigned long long>(fingerprint()),
+                lane_levels().size() > 1 ? "lanes" : "no-lanes");
 }
 
 // -------------------------------------------------------------------------------- motions
@@ -359,7 +360,7 @@ void print_bodies() {
         const double theta = 6 * draw() - 3;  // drawn before omega by every compiler
         const double omega = 8 * draw() - 4;
         starts.push_back(rolling_start(body, theta, omega));
-        times.push_back((draw() - 0.5) * (i % 5 == 0 ? 1e6 : 20.0));
+        times.push_back((draw() - 0.5) * (i % 5 == 0 ? 1e4 : 20.0));
     }
     std::vector<FlowSample> side_by_side(count), alone(count);
     sample(lane_levels().back(), starts.data(), times.data(), count, side_by_side.data());

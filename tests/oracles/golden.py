@@ -55,7 +55,7 @@ def record(line: str) -> Record:
 
 
 def read(text: str) -> tuple[str, list[Record]]:
-    """The C library that it was made with, and the records."""
+    """The C library that it was made with (and whether there are lanes), and the records."""
     library, *lines = text.splitlines()
     assert library.startswith("library ")
     return library, [record(line) for line in lines]
