@@ -62,7 +62,7 @@ ARRAY_DOORS: list[tuple[str, Door]] = [
 NO_NUMBERS: list[Any] = [
     None, {}, object, float, np.float64, "2", b"2", np.str_("2"), np.bytes_(b"2"), np.array("2"),
     np.array(b"2"), 2j, np.complex64(2 + 1j), np.array(2 + 0j), np.datetime64("2020"),
-    np.timedelta64(2), np.array(2.0, dtype=object), np.zeros((), dtype=[("a", float)]),
+    np.timedelta64(2, "s"), np.array(2.0, dtype=object), np.zeros((), dtype=[("a", float)]),
     Decimal("sNaN"),
 ]  # fmt: skip
 NO_ARRAYS = [

@@ -336,7 +336,7 @@ def test_without_axes_it_opens_a_figure() -> None:
         ({"resolution": 0}, r"resolution must be an int from 1 to 10000, got 0"),
         ({"resolution": 2.5}, r"resolution must be an int from 1 to 10000, got 2.5"),
         ({"resolution": True}, r"resolution must be an int from 1 to 10000, got True"),
-        ({"resolution": np.timedelta64(3)}, r"resolution must be an int from 1 to 10000, got np"),
+        ({"resolution": np.timedelta64(3, "s")}, "must be an int from 1 to 10000, got np"),
         ({"workers": 0}, r"workers must be an int from 1 to 1024, or -1 for all cores, got 0"),
     ],
 )
