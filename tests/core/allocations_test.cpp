@@ -145,8 +145,8 @@ void kind_of_sample(const Job& job, const Solution& solution) {
         std::vector<Sample> samples(n);
         return allocations([&] { look(times.data(), n, samples.data()); });
     };
-    const long once = take(1000);
-    const long twice = take(2000);
+    const long once = take(100);
+    const long twice = take(200);
     check(once == twice, job.name, once, twice);
 }
 

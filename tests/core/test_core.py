@@ -76,7 +76,7 @@ def second(build: Path) -> tuple[str, list[Record]]:
 # ------------------------------------------------------------------------------- programs
 
 
-@pytest.mark.parametrize("program", ["core_test", "threads_test", "lanes_test"])
+@pytest.mark.parametrize("program", ["core_test", "threads_test", "allocations_test", "lanes_test"])
 def test_all_holds(program: str, build: Path) -> None:
     if program == "lanes_test" and not (build / program).exists():
         pytest.skip("this processor has no lanes of its own")
