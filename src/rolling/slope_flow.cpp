@@ -45,7 +45,7 @@ SlopePlace begin(SlopeFlow& flow) {
     const SlopePlace& start = flow.start;
     if (start.omega == 0) flow.turnings.push_back(start.time);
     if (start.omega >= 0) return start;
-    const double n = may_run(flow.body, flow.energy.start, flow.energy.height, start.omega);
+    const double n = may_run(flow.body, flow.energy.start, geometry(flow.body, start), start.omega);
     if (n < least_climb) return start;
     SlopePlace at = start;
     while (start.quarters - at.quarters <= 2 * half_turns_before_a_run) {
@@ -121,9 +121,10 @@ bool grow(SlopeFlow& flow) {
     const SlopePlace from =
         flow.pieces.empty() ? begin(flow) : place_after(flow.body, flow.energy, flow.pieces.back());
     if (!flow.downhill && from.omega > 0) {
-        const double w = energy_at(flow, from);
-        if (may_run(flow.body, w, geometry(flow.body, from).h, from.omega) > 0)
-            flow.downhill = from;
+        const Geometry here = geometry(flow.body, from);
+        const Tracked w = energy_at(flow.body, flow.energy, from, here);
+        const double at_least = w.value - 8 * epsilon * w.magnitude;
+        if (may_run(flow.body, at_least, here, from.omega) > 0) flow.downhill = from;
     }
     if (flow.downhill && from.quarters - flow.downhill->quarters > 2 * half_turns_before_a_run) {
         flow.run = slope_run(flow.body, *flow.downhill, energy_at(flow, *flow.downhill), 0.0);

@@ -297,8 +297,10 @@ SlopePlace place_in_half_turn(const SlopeRun& run, double half_turns, double res
 
 }  // namespace
 
-double may_run(const SlopeBody& body, double energy, double height, double omega) {
-    const double above = energy - body.gravity.into * (body.long_axis - height);
+double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega) {
+    // As a product: the height of one that is nearly a circle would be a rounding.
+    const double to_tip = body.c2 * square(at.cos) / (at.h + body.long_axis);
+    const double above = energy - body.gravity.into * to_tip;
     const double levels = above / body.gain - least_levels;
     if (!(levels >= 0)) return 0.0;
     return omega > 0 ? most_half_turns : std::min(std::floor(levels), most_half_turns);

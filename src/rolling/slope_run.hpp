@@ -58,7 +58,7 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
 inline constexpr double most_half_turns = 1e15;
 
 // Half turns from a place, the way it goes, in which W is large enough beside w for the sum.
-double may_run(const SlopeBody& body, double energy, double height, double omega);
+double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega);
 
 // The time of n half turns.
 DoubleDouble time_of(const SlopeRun& run, double half_turns);

@@ -258,3 +258,12 @@ def equilibrium_tangent(slope: float) -> float:
     """tan(theta) from (a^2 tan^2 + b^2) tan(slope) = (a^2 - b^2) tan, the smaller root."""
     incline = math.tan(slope)
     return 2 * incline / (3.0 + math.sqrt(9.0 - 16.0 * incline**2))
+
+
+def test_a_body_that_is_nearly_a_circle_climbs_on_no_rounding() -> None:
+    """Its tip is higher by one ulp, its speed is next to none: it is driven by gravity times h',
+    of at most b - a, over the inertia about the contact, of at least a^2."""
+    a, b, t = 7.374404490252059, 7.37440449025206, 2.5
+    scene = rl.Scene(a, b, theta=0.3, omega=-5.6e-51, friction=0.02, slope=5e-324)
+    moved = abs(rl.simulate(scene, t).theta[-1] - 0.3)
+    assert moved <= t**2 / 2 * scene.gravity * (b - a) / a**2 + np.spacing(0.3)
