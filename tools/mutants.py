@@ -156,8 +156,7 @@ class Workshop:
         ).stdout.strip()
         subprocess.run(
             ["cmake", "-S", self.copy, "-B", self.objects, "-G", "Ninja",
-             "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1", "-DSKBUILD=2",
-             f"-DSKBUILD_PROJECT_VERSION={version()}",
+             "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1",
              f"-DPython_EXECUTABLE={sys.executable}",
              f"-Dpybind11_DIR={pybind11.get_cmake_dir()}",
              f"-DCMAKE_PREFIX_PATH={eigen}"],
@@ -211,13 +210,6 @@ class Workshop:
             return "alive"
         finally:
             path.write_text(whole, encoding="utf-8")
-
-
-def version() -> str:
-    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    found = re.search(r'^version = "(.*)"', text, re.MULTILINE)
-    assert found
-    return found[1]
 
 
 def nearest(path: str) -> list[str]:

@@ -109,8 +109,9 @@ class Follower {
     double rate(const Geometry& at) const {
         constexpr double stiff = 0x1p20;
         const double omega = double(slide_.last.omega);
-        double by_force = slowed_response_rate(slide_.body, at, omega);
-        if (clock_ == SlideClock::time) by_force /= response(slide_.body, at, omega).b;
+        const auto [c, b] = response(slide_.body, at, omega);
+        double by_force = slowed_response_rate(slide_.body, at, c);
+        if (clock_ == SlideClock::time) by_force /= b;
         return 1 + std::abs(omega) + (by_force > stiff && by_force < infinity ? by_force : 0.0);
     }
 

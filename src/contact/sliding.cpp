@@ -52,8 +52,7 @@ double slip_rate(const SlidingBody& body, const Geometry& at, double omega) {
     return by_force + body.gravity.along - at.dh * omega * omega;
 }
 
-double slowed_response_rate(const SlidingBody& body, const Geometry& at, double omega) {
-    const double c = response(body, at, omega).c;
+double slowed_response_rate(const SlidingBody& body, const Geometry& at, double c) {
     return std::sqrt(std::abs(response_derivative(body, at) * c * spin(body, at)));
 }
 

@@ -47,9 +47,9 @@ ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double o
 // The rate of the slip velocity, physics (51).
 double slip_rate(const SlidingBody& body, const Geometry& at, double omega);
 
-// How fast the force makes B change by turning the body, in a time that runs by B: so it has a
-// square root in it. In the time itself it is 1/B times as fast.
-double slowed_response_rate(const SlidingBody& body, const Geometry& at, double omega);
+// How fast the force, by the c of the response, makes B change by turning the body, in a time that
+// runs by B: so it has a square root in it. In the time itself it is 1/B times as fast.
+double slowed_response_rate(const SlidingBody& body, const Geometry& at, double c);
 
 // Where a slide ends that has come to B = 0 with c > 0: in a moment, N = c/B makes either the slip
 // or c vanish, physics (54): it stops slipping or jams.

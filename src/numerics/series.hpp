@@ -54,4 +54,11 @@ double value(const std::array<double, Size>& series, double z) {
     return series[0] + (z * odd + z2 * even);
 }
 
+template <std::size_t Size>
+double derivative(const std::array<double, Size>& series, double z) {
+    double sum = 0.0;
+    for (int k = int(Size) - 1; k > 0; --k) sum = sum * z + k * series[k];
+    return sum;
+}
+
 }  // namespace rolling_ellipse

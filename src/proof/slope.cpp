@@ -155,12 +155,12 @@ Well well_of(const Scene& scene, const State& start) {
 
 // The friction that a motion with constant forces needs: of a body in equilibrium, and a circle.
 std::optional<double> constant_friction(const Scene& scene, const State& start) {
-    const double incline = std::abs(std::tan(scene.slope));
+    const double incline = std::tan(scene.slope);
     const Geometry here = geometry(scene.axes(), start.theta);
-    if (start.omega == 0 && is_equilibrium(here, std::tan(scene.slope))) return incline;
+    if (start.omega == 0 && is_equilibrium(here, incline)) return std::abs(incline);
     if (scene.a != scene.b) return std::nullopt;
     const double k2 = scene.body().gyration2;
-    return incline * k2 / (k2 + square(scene.a));
+    return std::abs(incline) * k2 / (k2 + square(scene.a));
 }
 
 }  // namespace

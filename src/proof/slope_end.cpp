@@ -70,12 +70,6 @@ double value(const LawPolynomial& law, double x) {
     return sum;
 }
 
-double slope_of(const LawPolynomial& law, double x) {
-    double sum = 0.0;
-    for (int k = degree; k > 0; --k) sum = sum * x + k * law.coefficients[k];
-    return sum;
-}
-
 // The places at which the law passes a value.
 void add_passages(const LawPolynomial& law, double of, std::vector<double>& places) {
     Polynomial<degree> shifted;
@@ -243,19 +237,26 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, double tolerance
             const double low = places[i];
             const double high = places[i + 1];
             const auto at = [&](double share) { return margin(piece, share, side); };
-            double least = at(low) < at(high) ? low : high;
-            if (at(least) >= -fine) {
+            const double at_low = at(low);
+            const double at_high = at(high);
+            double least = at_low < at_high ? low : high;
+            double at_least = std::min(at_low, at_high);
+            if (at_least >= -fine) {
                 const double inside =
                     golden_section(low, high, [&](double x, double y) { return at(x) < at(y); });
-                if (at(inside) < at(least)) least = inside;
+                const double at_inside = at(inside);
+                if (at_inside < at_least) {
+                    least = inside;
+                    at_least = at_inside;
+                }
             }
-            if (at(least) < -fine) {
-                const double first = at(low) < 0 ? low : bisect_root(low, least, at).high;
+            if (at_least < -fine) {
+                const double first = at_low < 0 ? low : bisect_root(low, least, at).high;
                 const Meeting found = meeting(piece, first);
                 if (!met_.broken || found.time < met_.broken->time) met_.broken = found;
                 return;
             }
-            if (at(least) > fine) {
+            if (at_least > fine) {
                 near = {};
             } else if (!near.is) {
                 near = {true, first_ && i == 0, meeting(piece, least)};
@@ -264,7 +265,7 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, double tolerance
             // The root itself, by Newton's method on the forces: the series knows it nearly.
             double share = places[i];
             for (int j = 0; j < 2; ++j) {
-                const double rate = slope_of(law, share);
+                const double rate = derivative(law.coefficients, share);
                 const double step = rate < 0 ? -margin(piece, share, side) / rate : 0.0;
                 if (std::abs(step) < 1e-3) share = std::clamp(share + step, 0.0, 1.0);
             }

@@ -105,10 +105,7 @@ double angle_in(const SlopePiece& piece, double since) {
 }
 
 double acceleration_in(const SlopePiece& piece, double since) {
-    const double z = since / piece.unit;
-    double sum = 0.0;
-    for (int k = long_order; k > 0; --k) sum = sum * z + k * piece.series.omega[k];
-    return sum / square(piece.unit);
+    return derivative(piece.series.omega, since / piece.unit) / square(piece.unit);
 }
 
 DoubleDouble time_of_turning(const SlopePiece& piece) {

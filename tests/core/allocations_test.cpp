@@ -8,6 +8,7 @@
 #include <new>
 #include <vector>
 
+#include "motions.hpp"
 #include "outcome/classify.hpp"
 #include "rolling/flow_lanes.hpp"
 #include "rolling/flow_table.hpp"
@@ -52,16 +53,8 @@ void check(bool holds, const char* what, long once, long twice) {
 }
 
 Scene scene_of(double omega, double slope = 0.0) {
-    Scene scene{};
-    scene.a = 2.0;
-    scene.b = 1.0;
-    scene.mass = 10.0;
-    scene.gravity = 9.81;
-    scene.inertia = scene.mass * uniform_disc_gyration2(scene.a, scene.b);
+    Scene scene = ellipse(0.1, omega, 0.9);
     scene.slope = slope;
-    scene.friction = 0.9;
-    scene.theta = 0.1;
-    scene.omega = omega;
     return scene;
 }
 
@@ -70,20 +63,6 @@ Scene sliding() {
     scene.friction = 0.1;
     scene.x_dot = 3.0;
     return scene;
-}
-
-Settings settings_of(Model model, Method method, std::optional<double> step = {},
-                     Stabilization stabilization = Stabilization::projection) {
-    Settings settings{};
-    settings.model = model;
-    settings.method = method;
-    settings.stabilization = stabilization;
-    settings.rtol = 1e-10;
-    settings.atol = 1e-12;
-    settings.step = step;
-    settings.max_steps = 1'000'000;
-    settings.max_events = 10'000;
-    return settings;
 }
 
 struct Job {

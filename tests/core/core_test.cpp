@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "integrator/first_negative.hpp"
+#include "motions.hpp"
 #include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
 #include "numerics/double_double.hpp"
@@ -101,32 +102,18 @@ void a_dip_between_two_looks_is_found() {
     CHECK(none.found() == infinity);
 }
 
-Scene ellipse() {
-    Scene scene{};
-    scene.a = 2.0;
-    scene.b = 1.0;
-    scene.mass = 10.0;
-    scene.gravity = 9.81;
-    scene.inertia = scene.mass * uniform_disc_gyration2(scene.a, scene.b);
-    scene.friction = 0.3;
+// It rolls, slides, leaves the ground and comes down again.
+Scene jumping() {
+    Scene scene = ellipse(0.0, 5.5, 0.3);
     scene.restitution = 0.5;
-    scene.omega = 5.5;  // it rolls, slides, leaves the ground and comes down again
     return scene;
 }
 
-Settings automatic() {
-    Settings settings{};
-    settings.stabilization = Stabilization::projection;
-    settings.rtol = 1e-10;
-    settings.atol = 1e-12;
-    settings.max_steps = 1'000'000;
-    settings.max_events = 10'000;
-    return settings;
-}
+Settings automatic() { return settings_of(Model::automatic, Method::automatic); }
 
 // Whatever a segment is, it gives the coordinates and the state of one and the same motion.
 void every_segment_knows_every_kind_of_sample() {
-    const Scene scene = ellipse();
+    const Scene scene = jumping();
     const Solution solution = simulate(scene, automatic(), 3.0, [] {});
     CHECK(solution.model == Model::contact && solution.ending == Ending::completed);
     CHECK(solution.motion.segments.size() > 3);
@@ -160,7 +147,7 @@ void a_checkpoint_that_throws_ends_the_work() {
     };
     bool stopped = false;
     try {
-        simulate(ellipse(), automatic(), 3.0, stop);
+        simulate(jumping(), automatic(), 3.0, stop);
     } catch (const std::runtime_error&) {
         stopped = true;
     }
@@ -168,7 +155,7 @@ void a_checkpoint_that_throws_ends_the_work() {
 }
 
 void wrong_numbers_are_refused() {
-    Scene scene = ellipse();
+    Scene scene = jumping();
     scene.friction = -1;
     std::string message;
     try {

@@ -19,6 +19,7 @@
 #include <gnu/libc-version.h>
 #endif
 
+#include "motions.hpp"
 #include "outcome/blow.hpp"
 #include "outcome/classify.hpp"
 #include "outcome/required_friction.hpp"
@@ -95,19 +96,6 @@ struct Asked {
     int printed = 13;
 };
 
-Scene ellipse(double theta, double omega, double friction = infinity) {
-    Scene scene{};
-    scene.a = 2.0;
-    scene.b = 1.0;
-    scene.mass = 10.0;
-    scene.gravity = 9.81;
-    scene.inertia = scene.mass * uniform_disc_gyration2(scene.a, scene.b);
-    scene.friction = friction;
-    scene.theta = theta;
-    scene.omega = omega;
-    return scene;
-}
-
 Scene thin() {
     Scene scene = ellipse(0.3, 0.0);
     scene.b = 0.02;
@@ -176,6 +164,9 @@ std::vector<Asked> motions() {
     const Scene turning = ellipse(0.0, 3.2), rocking = ellipse(0.5, 0.0);
     const Scene report = struck({0.0, -48.0, 1.5, 0.0}, infinity);
     constexpr Model rolling = Model::rolling, multipliers = Model::multipliers;
+    const auto table = [&](const char* name, const Scene& scene, double t_end) {
+        return Asked{name, scene, t_end, rolling, Method::exact, S::projection, {}, {}, 2001, 41};
+    };
     const auto stepped = [&](const char* name, Method method, std::optional<double> step,
                              std::optional<int> stages = {}) {
         return Asked{name, turning, 20.0, rolling, method, S::projection, step, stages};
@@ -193,34 +184,15 @@ std::vector<Asked> motions() {
         {"over-separatrix", separatrix(1e-6), 20.0, rolling, Method::exact},
         {"under-separatrix", separatrix(-1e-9), 20.0, rolling, Method::exact},
         {"circle", circle()},
-        {"table-of-rotation",
-         turning,
-         40.0,
-         rolling,
-         Method::exact,
-         S::projection,
-         {},
-         {},
-         2001,
-         41},
-        {"table-of-libration",
-         rocking,
-         4e5,
-         rolling,
-         Method::exact,
-         S::projection,
-         {},
-         {},
-         2001,
-         41},
-        {"table-of-thin", thin(), 30.0, rolling, Method::exact, S::projection, {}, {}, 2001, 41},
+        table("table-of-rotation", turning, 40.0),
+        table("table-of-libration", rocking, 4e5),
+        table("table-of-thin", thin(), 30.0),
         {"down-the-slope", on_slope(ellipse(0.0, 3.0), 0.1), 20.0, rolling, Method::exact},
         {"up-the-slope", on_slope(ellipse(0.0, -6.0), 0.1), 8.0, rolling, Method::exact},
         {"rocking-on-slope", on_slope(ellipse(0.3, 0.0), 0.1), 8.0, rolling, Method::exact},
         {"circle-on-slope", on_slope(circle(), 0.1), 8.0, rolling, Method::exact},
         {"slope-with-friction", on_slope(ellipse(0.0, 3.0, 0.8), 0.1), 4.0},
-        {"rk4", stepped("", Method::rk4, 0.01).scene, 20.0, rolling, Method::rk4, S::projection,
-         0.01},
+        stepped("rk4", Method::rk4, 0.01),
         stepped("dop853", Method::dop853, {}),
         stepped("dopri5", Method::dopri5, {}),
         stepped("gauss-2", Method::gauss, 0.05, 2),
@@ -289,17 +261,9 @@ void print_samples(const Asked& asked, const Solution& solution, Numbers numbers
 
 void print_motion(const Asked& asked) {
     const Scene& scene = asked.scene;
-    Settings settings{};
-    settings.model = asked.model;
-    settings.method = asked.method;
-    settings.rtol = 1e-10;
-    settings.atol = 1e-12;
-    settings.step = asked.step;
+    Settings settings = settings_of(asked.model, asked.method, asked.step, asked.stabilization);
     settings.stages = asked.stages;
-    settings.stabilization = asked.stabilization;
     settings.baumgarte_alpha = settings.baumgarte_beta = 10.0;
-    settings.max_steps = 1'000'000;
-    settings.max_events = 10'000;
     print(std::string("motion ") + asked.name + " " + name(asked.model) + " " + name(asked.method) +
               " " + name(asked.stabilization),
           {asked.t_end, static_cast<double>(asked.samples), or_nan(asked.step),

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "motions.hpp"
 #include "numerics/lane_levels.hpp"
 #include "rolling/flow_table.hpp"
 #include "simulate.hpp"
@@ -13,43 +14,17 @@ using namespace rolling_ellipse;
 
 namespace {
 
-Scene scene_of(double theta, double omega) {
-    Scene scene{};
-    scene.a = 2.0;
-    scene.b = 1.0;
-    scene.mass = 1.0;
-    scene.gravity = 9.81;
-    scene.inertia = scene.mass * uniform_disc_gyration2(scene.a, scene.b);
-    scene.friction = infinity;
-    scene.theta = theta;
-    scene.omega = omega;
-    return scene;
-}
-
-Settings settings_of(Model model, Method method, std::optional<double> step = {}) {
-    Settings settings{};
-    settings.model = model;
-    settings.method = method;
-    settings.stabilization = Stabilization::projection;
-    settings.rtol = 1e-10;
-    settings.atol = 1e-12;
-    settings.step = step;
-    settings.max_steps = 1'000'000;
-    settings.max_events = 10'000;
-    return settings;
-}
-
 void require(bool holds) {
     if (!holds) throw std::logic_error("the job is not what its name says");
 }
 
 void one_state() {
-    const RollingStart start = rolling_start(scene_of(0.1, 3.2).body(), 0.1, 3.2);
+    const RollingStart start = rolling_start(ellipse(0.1, 3.2).body(), 0.1, 3.2);
     require(sample(rolling_motion(start), 5.0).theta > 0.1);
 }
 
 void thousand_samples() {
-    const RollingStart start = rolling_start(scene_of(0.1, 3.2).body(), 0.1, 3.2);
+    const RollingStart start = rolling_start(ellipse(0.1, 3.2).body(), 0.1, 3.2);
     const RollingFlow flow = rolling_flow(start);
     std::vector<double> times;
     for (int i = 0; i < 1000; ++i) times.push_back(0.01 * i);
@@ -59,7 +34,7 @@ void thousand_samples() {
 }
 
 void ten_events() {
-    Scene scene = scene_of(0.5, 0.0);
+    Scene scene = ellipse(0.5, 0.0);
     scene.friction = 0.3;
     scene.restitution = 0.6;
     scene.z = 3.0;
@@ -69,7 +44,7 @@ void ten_events() {
 }
 
 void ten_half_turns() {
-    const Scene scene = scene_of(0.0, 3.2);
+    const Scene scene = ellipse(0.0, 3.2);
     const double t = 5 * period(scene);
     const Settings settings = settings_of(Model::rolling, Method::dop853);
     require(simulate(scene, settings, t, [] {}).followed_until == t);
@@ -77,7 +52,7 @@ void ten_half_turns() {
 
 void hundred_steps() {
     const Settings settings = settings_of(Model::multipliers, Method::rk4, 0.01);
-    require(simulate(scene_of(0.1, 3.2), settings, 1.0, [] {}).counts.steps == 100);
+    require(simulate(ellipse(0.1, 3.2), settings, 1.0, [] {}).counts.steps == 100);
 }
 
 constexpr void (*jobs[])() = {one_state, thousand_samples, ten_events, ten_half_turns,

@@ -1,0 +1,40 @@
+// A body and settings that the programs have in common.
+#pragma once
+
+#include <optional>
+
+#include "geometry/ellipse.hpp"
+#include "scene/scene.hpp"
+#include "scene/settings.hpp"
+
+namespace rolling_ellipse {
+
+// The 2:1 disc of 10 kg.
+inline Scene ellipse(double theta, double omega, double friction = infinity) {
+    Scene scene{};
+    scene.a = 2.0;
+    scene.b = 1.0;
+    scene.mass = 10.0;
+    scene.gravity = 9.81;
+    scene.inertia = scene.mass * uniform_disc_gyration2(scene.a, scene.b);
+    scene.friction = friction;
+    scene.theta = theta;
+    scene.omega = omega;
+    return scene;
+}
+
+inline Settings settings_of(Model model, Method method, std::optional<double> step = {},
+                            Stabilization stabilization = Stabilization::projection) {
+    Settings settings{};
+    settings.model = model;
+    settings.method = method;
+    settings.stabilization = stabilization;
+    settings.rtol = 1e-10;
+    settings.atol = 1e-12;
+    settings.step = step;
+    settings.max_steps = 1'000'000;
+    settings.max_events = 10'000;
+    return settings;
+}
+
+}  // namespace rolling_ellipse
