@@ -6,7 +6,7 @@
 
 copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
 tolerances, and/or, min/max) from lines all over the sources, and for each builds what has changed
-and runs the tests nearest to it, then some of every folder, up to the first that fails. What is
+and runs the tests nearest to it, those of bits and some of every folder, up to the first that fails. What is
 left alive is listed, with --thorough after the whole suite has seen it. A mutant that does not
 compile counts for nothing. Results are kept in FOLDER/SIDE.json, with which the same command goes
 on where it was stopped. Needs the requirements of the build and of the tests.
@@ -61,6 +61,9 @@ NEAREST = {
     "_command": ["project"],
     "python": ["trajectory", "scene", "outcome", "border", "batches"],
 }
+
+# The bits of motions of every model, as they are on record.
+BITS = "tests/core/test_core.py::test_motions_through_python"
 
 # Written by programs, or nothing but names.
 LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "details.cpp", "build.cpp", "_core.pyi")
@@ -140,6 +143,7 @@ class Workshop:
     """A copy of the project in which one mutant after the other is built and tested."""
 
     def __init__(self, folder: Path, processes: int):
+        self.took: dict[tuple[str, ...], float] = {}  # seconds, of tests that passed
         self.spread = ["-n", str(processes), "--dist", "loadfile"] if processes > 1 else []
         self.copy = folder / "copy"
         self.objects = folder / "objects"
@@ -174,8 +178,10 @@ class Workshop:
                 shutil.copy2(module, package)
         return True
 
-    def passes(self, *arguments: str, seconds: float) -> bool:
-        """Whether the tests notice nothing; one that hangs has noticed."""
+    def passes(self, *arguments: str) -> bool:
+        """Whether the tests notice nothing; one that hangs, for five times as long, has noticed."""
+        seconds = 60 + 5 * self.took.get(arguments, 1500.0)
+        begin = time.monotonic()
         command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider",
                    *self.spread, *arguments]  # fmt: skip
         try:
@@ -186,7 +192,10 @@ class Workshop:
             return False
         if done.returncode == 4:
             sys.exit(done.stderr.decode())
-        return done.returncode in (0, 5)  # 5: no such tests there
+        if done.returncode not in (0, 5):  # 5: no such tests there
+            return False
+        self.took[arguments] = time.monotonic() - begin
+        return True
 
     def judged(self, mutant: Mutant, thorough: bool) -> str:
         """What noticed it: "build", a stage of the tests, or nothing: "alive"."""
@@ -201,11 +210,13 @@ class Workshop:
             if not self.build():
                 return "build"
             for folder in nearest(mutant.path):
-                if not self.passes(f"tests/{folder}", seconds=900):
+                if not self.passes(f"tests/{folder}"):
                     return folder
-            if not self.passes("-m", "quick", seconds=900):
+            if mutant.path.startswith("src") and not self.passes(BITS):
+                return "bits"
+            if not self.passes("-m", "quick"):
                 return "quick"
-            if thorough and not self.passes(seconds=7200):
+            if thorough and not self.passes():
                 return "all"
             return "alive"
         finally:
@@ -248,7 +259,7 @@ def main() -> None:
     known = json.loads(results.read_text()) if results.exists() else {}
     workshop = Workshop(options.folder, options.processes)
     workshop.configure()
-    if not workshop.build() or not workshop.passes("-m", "quick", seconds=900):
+    if not workshop.build() or not workshop.passes("-m", "quick"):
         sys.exit("the sources as they are do not build, or do not pass")
     for i, mutant in enumerate(todo):
         if mutant.name in known and not options.only:
