@@ -46,6 +46,8 @@ class ContactRun {
           motion_{units_, scene_, {}, {}} {}
 
     Integration<Motion> run() {
+        const double rest = resolved(state_.theta);
+        if (rest != state_.theta) turn_off(two_sum(state_.theta, -rest), rest);
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
         while (!ending_) {
@@ -63,15 +65,20 @@ class ContactRun {
 
   private:
     // From an event on: the ellipse is the same after half a turn, and near a flat position its
-    // angle has more digits. What touches, or has no slip, goes on to do so.
+    // angle has more digits.
     void take_half_turns_off() {
         const double half_turns = std::nearbyint(state_.theta / pi);
         if (half_turns == 0 || motion_.segments.empty()) return;
         const DoubleDouble rest = DoubleDouble{state_.theta, 0.0} - half_turn * half_turns;
-        turned_ = turned_ + half_turn * half_turns + rest.low;
+        turn_off(half_turn * half_turns + rest.low, rest.high);
+    }
+
+    // Leave the rest of the angle in the state. What touches, or has no slip, goes on to do so.
+    void turn_off(const DoubleDouble& turned, double rest) {
+        turned_ = turned_ + turned;
         const Geometry before = geometry(axes_, state_.theta);
-        const Geometry after = geometry(axes_, rest.high);
-        state_.theta = rest.high;
+        const Geometry after = geometry(axes_, rest);
+        state_.theta = rest;
         const double omega = state_.omega;
         if (state_.z == before.h) state_.z = after.h;
         if (state_.x_dot == before.h * omega) state_.x_dot = after.h * omega;

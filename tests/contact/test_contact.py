@@ -8,6 +8,7 @@ from collections import Counter, defaultdict
 from pathlib import Path
 from typing import Any
 
+import mpmath as mp
 import numpy as np
 import pytest
 import rolling_ellipse as rl
@@ -760,6 +761,26 @@ def test_other_units_give_the_same_bits(number: int, powers: tuple[int, int, int
     force = mass * speed / time
     assert np.array_equal(one.normal_force * force, many.normal_force)
     assert np.array_equal(one.friction_force * force, many.friction_force)
+
+
+@pytest.mark.parametrize("theta", [-3e15, 1e16, 1e22, -1e50])
+@pytest.mark.parametrize("omega", [0.5, 3.0])
+def test_an_angle_without_parts_of_a_turn_is_where_it_points(theta: float, omega: float) -> None:
+    """The motion is that of the same body whose angle is what is left of it without half turns:
+    slides, jumps and rolls to a few roundings of the angle, 40 of the time at worst."""
+    with mp.workdps(400):
+        rest = float(mp.mpf(theta) - mp.nint(mp.mpf(theta) / mp.pi) * mp.pi)
+    near = Scene(1.0, 0.2, theta=rest, omega=omega, friction=0.6, restitution=0.5, x_dot=2.0)
+    far = dataclasses.replace(near, theta=theta)
+    times = np.linspace(0.0, 2.0, 41)
+    one, other = (simulate(scene, times, model="contact") for scene in (near, far))
+    assert one.events and kinds(one) == kinds(other)
+    for this, that in zip(one.events, other.events, strict=True):
+        assert that.t == pytest.approx(this.t, rel=40 * EPS)
+        assert that.state_after.theta == theta + (this.state_after.theta - rest)
+        assert that.state_after.x == pytest.approx(this.state_after.x, rel=1e-13)
+    np.testing.assert_allclose(other.omega, one.omega, rtol=1e-13, atol=1e-13)
+    np.testing.assert_allclose(other.x, one.x, rtol=1e-13, atol=1e-13)
 
 
 def test_a_slide_takes_as_many_steps_whatever_its_size() -> None:

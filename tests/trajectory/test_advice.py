@@ -40,6 +40,18 @@ def test_losses_are_what_the_samples_say(how: dict[str, Any], slope: float) -> N
     assert losses["energy"] > 1e-6
 
 
+def test_the_constraints_lost_are_the_worst_of_three() -> None:
+    """f2, f3 and f4 are each the worst once."""
+    worst = set()
+    for t in (0.15, 0.4, 2.0):
+        motion, _ = advice(Scene(1.0, 0.3, theta=0.2, omega=1.0), [0.0, t], step=0.02, **DRIFTING)
+        missed = np.abs(motion.constraint_residuals().position[-1])  # the long semi-axis is 1
+        worst.add(int(np.argmax(missed)))
+        lost = motion._solution.losses()["constraints"]
+        assert lost == pytest.approx(np.max(missed), abs=16 * EPS)
+    assert worst == {0, 1, 2}
+
+
 def test_it_comes_with_the_loss_and_not_before() -> None:
     """Finer and finer steps, up to which the constraints or the energy are lost."""
     for how, quantity, least in (

@@ -303,6 +303,16 @@ def test_wrong_arguments_are_refused_by_name(
         work_precision(ROTATION, END, **how)
 
 
+def test_names_are_looked_at_before_the_motion() -> None:
+    """Which may take long."""
+
+    def known(_: Any) -> Any:
+        raise AssertionError("the motion was computed first")
+
+    with pytest.raises(ValueError, match="got 'euler'"):
+        work_precision(ROTATION, END, methods=["euler"], reference=known)
+
+
 @pytest.mark.parametrize("t_end", [0.0, -1.0, math.inf, [2.0, 1.0], []])
 def test_ends_that_are_none_are_refused(t_end: Any) -> None:
     with pytest.raises(ValueError, match="t_end must be"):

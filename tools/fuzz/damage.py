@@ -56,8 +56,7 @@ def inner_fact(path: str, share: float, value: Any) -> None:
 
 def packed(path: str, size: int) -> None:
     """Put a member into the file that unpacks to so many zeros."""
-    with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        archive.writestr("z.npy", bytes(size))
+    _raw(path, "z", bytes(size), compresslevel=1)
 
 
 def header(path: str, name: str, text: str, version: int = 1) -> None:
@@ -106,10 +105,11 @@ def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
     return False
 
 
-def _raw(path: str, name: str, content: bytes) -> None:
+def _raw(path: str, name: str, content: bytes, compresslevel: int | None = None) -> None:
+    method = zipfile.ZIP_STORED if compresslevel is None else zipfile.ZIP_DEFLATED
     with warnings.catch_warnings(), zipfile.ZipFile(path, "a") as archive:
         warnings.simplefilter("ignore")  # of a name that comes twice
-        archive.writestr(f"{name}.npy", content)
+        archive.writestr(f"{name}.npy", content, method, compresslevel)
 
 
 def _places(found: Any) -> list[tuple[Any, Any]]:

@@ -23,7 +23,7 @@ from .laps import Lap, judge_all, time_all
 from .machine import machine
 from .progress import Progress
 from .results import WorkPrecision
-from .truth import Judge, Truth
+from .truth import Judge, Truth, rolls_for_certain
 
 _MOST = 1_000_000  # rounds, samples
 _KNOWING = 0.2  # share of the time after which no more is asked of what is attainable
@@ -107,9 +107,9 @@ def work_precision(
     if reference is not None and not callable(reference):
         raise TypeError(f"reference must be a function of times or None, got {shown(reference)}")
     rivals = peer_contenders(_listed("peers", peers))
-    judges = [Judge(scene, end, samples, reference, begin + _KNOWING * seconds) for end in ends]
-    contenders = [*own_contenders(methods, scene, judges[-1].rolls), *rivals]
+    contenders = [*own_contenders(methods, scene, rolls_for_certain(scene)), *rivals]
     _require_apart(contenders)
+    judges = [Judge(scene, end, samples, reference, begin + _KNOWING * seconds) for end in ends]
     laps = [
         Lap(contender, judge, setting)
         for judge in judges

@@ -62,8 +62,9 @@ class Judge:
     ) -> None:
         inner = np.sort(np.modf(np.arange(1, samples + 1) * _GOLDEN)[0]) * t_end
         self.times = np.concatenate([[0.0], inner, [t_end]])
-        self.t_end, self.rolls = t_end, _rolls(scene)
-        own: _Own = _Exact(scene, t_end) if self.rolls else _Contact(scene, t_end)
+        self.t_end = t_end
+        rolls = rolls_for_certain(scene)
+        own: _Own = _Exact(scene, t_end) if rolls else _Contact(scene, t_end)
         self._truth = _columns(own.known if given is None else given, self.times)
         self._sizes = self._units_of_states(scene)
         attainable = self._attainable(own, deadline)
@@ -111,18 +112,18 @@ class Judge:
     def _attainable(self, own: _Own, deadline: float) -> float:
         ends = [float(column[-1]) for column in self._truth]
         digits = np.array([math.ulp(end) for end in ends]) / self._sizes
+        middle = own.end(own.inputs[0], 0.0)
         carried = np.zeros(3)
         for name in own.inputs:
-            carried += self._carried(own, name, deadline)
+            carried += self._carried(own, name, middle, deadline)
         return float(np.max(2 * digits + carried))
 
-    def _carried(self, own: _Own, name: str, deadline: float) -> FloatArray:
+    def _carried(self, own: _Own, name: str, middle: Columns | None, deadline: float) -> FloatArray:
         """How far the end goes when a number of the scene changes by 2.2e-16 of itself, (3,).
 
         From ever smaller changes: of the rates, that which differs least from the one before and
         between its two sides. Before it the motion is not linear, after it rounding rules.
         """
-        middle = own.end(name, 0.0)
         rate, least = np.zeros(3), math.inf
         before, change = np.full(3, math.inf), _LARGEST_CHANGE
         while change >= _SMALLEST_CHANGE and least > _AGREED:
@@ -224,7 +225,7 @@ class _Contact(_Own):
         return None
 
 
-def _rolls(scene: Scene) -> bool:
+def rolls_for_certain(scene: Scene) -> bool:
     """Whether level ground holds the body for certain."""
     return scene.slope == 0 and certify(scene).validity is Validity.VALID
 
