@@ -209,9 +209,11 @@ class Workshop:
         try:
             if not self.build():
                 return "build"
-            for folder in nearest(mutant.path):
-                if not self.passes(f"tests/{folder}"):
-                    return folder
+            folders = nearest(mutant.path)
+            for options in (["-m", "quick"], []):
+                for folder in folders:
+                    if not self.passes(f"tests/{folder}", *options):
+                        return folder
             if mutant.path.startswith("src") and not self.passes(BITS):
                 return "bits"
             if not self.passes("-m", "quick"):
