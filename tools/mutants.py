@@ -13,6 +13,7 @@ command goes on where it was stopped. Needs the requirements of the build and of
 """
 
 import argparse
+import filecmp
 import json
 import os
 import random
@@ -149,7 +150,7 @@ class Workshop:
         self.objects = folder / "objects"
         self.site = folder / "site"
         skipped = shutil.ignore_patterns(".git", ".venv", "build", "__pycache__", ".*_cache")
-        shutil.copytree(ROOT, self.copy, ignore=skipped, dirs_exist_ok=True)
+        shutil.copytree(ROOT, self.copy, ignore=skipped, copy_function=renew, dirs_exist_ok=True)
         self.environment = {**os.environ, "PYTHONPATH": str(self.site), "CI": "true"}
 
     def configure(self) -> None:
@@ -223,6 +224,12 @@ class Workshop:
             return "alive"
         finally:
             path.write_text(whole, encoding="utf-8")
+
+
+def renew(source: str, target: str) -> None:
+    """Copy what is another file; a mutant that was left behind is built anew then."""
+    if not (os.path.exists(target) and filecmp.cmp(source, target, shallow=False)):
+        shutil.copyfile(source, target)
 
 
 def nearest(path: str) -> list[str]:
