@@ -82,6 +82,15 @@ def test_a_notebook_shows_the_least_of_each_way() -> None:
         assert f">{name}</th>{row}</tr>" in html
 
 
+def test_the_verdict_gives_no_number_for_what_nobody_has_computed() -> None:
+    """With no time for it, the error of the reference is not known either: 0 says nothing."""
+    unknown = replace(FOUND.references[0], floor=0.0, attainable=float("nan"))
+    said = replace(FOUND, references=(unknown,)).verdict().splitlines()[0]
+    assert said == (
+        "To t = 2 s, judged by exact rolling (no time was left to find what is attainable):"
+    )
+
+
 def test_the_verdict_says_what_the_table_says() -> None:
     lines = FOUND.verdict().splitlines()
     assert lines[0].startswith("To t = 2 s, judged by exact rolling (its own error 4.0e-13;")

@@ -25,10 +25,12 @@ def verdict(found: WorkPrecision, reference: Reference) -> str:
     end, runs = reference.t_end, found.of(reference.t_end)
     table = {decade: found.least(decade, t_end=end) for decade in DECADES}
     ways = {run.name: (run.model, run.method) for run in runs}
-    lines = [
-        f"To t = {end:.6g} s, judged by {reference.name} (its own error "
-        f"{reference.floor:.1e}; attainable {reference.attainable:.1e}):"
-    ]
+    limits = [f"its own error {reference.floor:.1e}"] if reference.floor else []
+    if math.isnan(reference.attainable):
+        limits.append("no time was left to find what is attainable")
+    else:
+        limits.append(f"attainable {reference.attainable:.1e}")
+    lines = [f"To t = {end:.6g} s, judged by {reference.name} ({'; '.join(limits)}):"]
     lines += _leaders(table, ways, reference)
     lines += _beside_peers(table, {run.name for run in runs if "peer" in run.tags})
     lines += _without_answer(runs)
