@@ -38,14 +38,19 @@ std::string why_not_rolling(const Scene& scene, const State& start) {
 
 std::string why_ended(Ending ending, const Settings& settings, double t, double t_end) {
     const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
+    const bool in_contact = settings.model == Model::contact;  // no steps with an error
     switch (ending) {
         case Ending::completed:
             return {};
-        case Ending::max_steps:
-            return "max_steps = " + std::to_string(settings.max_steps) + " steps ended" + place +
-                   ": allow more of them, or " +
+        case Ending::max_steps: {
+            const std::string ended =
+                "max_steps = " + std::to_string(settings.max_steps) + " steps ended" + place;
+            if (in_contact) return ended + ": allow more of them";
+            return ended + ": allow more of them, or " +
                    (settings.step ? "larger ones" : "loosen rtol and atol");
+        }
         case Ending::step_too_small:
+            if (in_contact) return "the slide changes faster than doubles can follow" + place;
             return "no step of a size that changes t meets rtol and atol" + place + ": loosen them";
         case Ending::step_too_large:
             return "a step of " + brief(*settings.step) + " s cannot be solved" + place +

@@ -5,10 +5,11 @@
     python tools/same_bits.py FOLDER --write         g++ -O3, and make tests/core/golden.txt of it
 
 The builds lie in FOLDER, to be kept or deleted; with ccache on the machine a second time is quick.
-Those of one kind of processor must agree to the last bit. aarch64 (g++-aarch64-linux-gnu and
-qemu-user-static, or qemu-user) has no lanes, and may have another rounding of sin and cos in its C
-library: its builds must agree among each other, and with those of x86-64 within the bound of
-tests/oracles/golden.py. Exit code 1 where they do not.
+Those of one target must agree to the last bit. Two other targets have another rounding of sin and
+cos in their C library, and no lanes: aarch64 (g++-aarch64-linux-gnu and qemu-user) and Windows
+(g++-mingw-w64-x86-64-posix and wine64). Their builds must agree among each other, and with those of
+x86-64 Linux within the bound of tests/oracles/golden.py. Exit code 1 where they do not. libc++ is
+that of libc++-dev and libc++abi-dev.
 """
 
 import argparse
@@ -26,11 +27,21 @@ sys.path.insert(0, str(ROOT / "tests"))
 from oracles.golden import GOLDEN, OTHER_LIBRARY, difference, read  # noqa: E402
 
 ARM = "aarch64-linux-gnu-g++"
+WINDOWS = "x86_64-w64-mingw32-g++-posix"
+
+# Of CMake, for the target of a compiler; with nothing said it is this machine.
+SETTINGS = {
+    ARM: ["-DCMAKE_SYSTEM_NAME=Linux", "-DCMAKE_SYSTEM_PROCESSOR=aarch64"],
+    WINDOWS: [
+        "-DCMAKE_SYSTEM_NAME=Windows", "-DCMAKE_SYSTEM_PROCESSOR=x86_64",
+        "-DCMAKE_EXE_LINKER_FLAGS=-static",
+    ],
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Build:
-    """A compiler and its flags; the machine that it compiles for runs the program."""
+    """A compiler and its flags; `target` is the compiler where that is for other machines."""
 
     compiler: str
     flags: str
@@ -40,24 +51,25 @@ class Build:
         return f"{self.compiler} {self.flags}"
 
     @property
-    def settings(self) -> list[str]:
-        """Of CMake."""
-        if self.compiler != ARM:
-            return []
-        return ["-DCMAKE_SYSTEM_NAME=Linux", "-DCMAKE_SYSTEM_PROCESSOR=aarch64"]
+    def target(self) -> str:
+        return self.compiler if self.compiler in SETTINGS else ""
 
-    @property
-    def runner(self) -> list[str]:
-        if self.compiler != ARM:
-            return []
-        qemu = shutil.which("qemu-aarch64") or shutil.which("qemu-aarch64-static")
-        return [qemu or "qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"]
+    def command(self, folder: Path) -> list[str]:
+        """What runs the program."""
+        if self.target == ARM:
+            qemu = shutil.which("qemu-aarch64") or shutil.which("qemu-aarch64-static")
+            return [qemu or "qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", str(folder / "golden")]
+        if self.target == WINDOWS:
+            return ["wine", str(folder / "golden.exe")]
+        return [str(folder / "golden")]
 
 
 BUILDS = (
     *(Build("g++", flags) for flags in ("-O3", "-O2", "-O0", "-O3 -flto", "-O3 -march=native")),
     *(Build("clang++", flags) for flags in ("-O2", "-O0", "-O3 -march=native")),
+    Build("clang++", "-O2 -stdlib=libc++"),
     *(Build(ARM, flags) for flags in ("-O3", "-O2", "-O0")),
+    *(Build(WINDOWS, flags) for flags in ("-O3", "-O2")),  # at -O0 its square root is misrounded
 )
 
 
@@ -70,12 +82,14 @@ def output(build: Build, folder: Path, jobs: int) -> str:
         "cmake", "-S", ROOT, "-B", place, "-DROLLING_ELLIPSE_PYTHON=OFF",
         "-DROLLING_ELLIPSE_TESTS=ON", "-DCMAKE_BUILD_TYPE=None",
         f"-DCMAKE_CXX_COMPILER={build.compiler}", f"-DCMAKE_CXX_FLAGS={build.flags}",
-        f"-DCMAKE_PREFIX_PATH={';'.join(eigen)}", *build.settings,
+        f"-DCMAKE_PREFIX_PATH={';'.join(eigen)}", *SETTINGS.get(build.target, []),
         *([f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"] if launcher else []),
     ]  # fmt: skip
     compile_it = ["cmake", "--build", place, "--target", "golden", "--parallel", str(jobs)]
-    for command in (configure, compile_it, [*build.runner, place / "golden"]):
-        done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    alone = os.environ | {"WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
+    for command in (configure, compile_it, build.command(place)):
+        words = [str(part) for part in command]
+        done = subprocess.run(words, capture_output=True, text=True, env=alone)
         if done.returncode != 0:
             sys.exit(f"{build.name}:\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}")
     return done.stdout
@@ -84,14 +98,13 @@ def output(build: Build, folder: Path, jobs: int) -> str:
 def compare(texts: dict[Build, str]) -> bool:
     """Whether all is as promised; says what is not."""
     holds = True
-    for arm in (False, True):
-        mine = {build: text for build, text in texts.items() if (build.compiler == ARM) == arm}
-        first = next(iter(mine), None)
-        for build, text in mine.items():
-            if first and text != mine[first]:
-                holds = False
-                print(f"{build.name} differs from {first.name}:")
-                print(*difference(read(mine[first])[1], read(text)[1]))
+    firsts: dict[str, Build] = {}
+    for build, text in texts.items():
+        first = firsts.setdefault(build.target, build)
+        if text != texts[first]:
+            holds = False
+            print(f"{build.name} differs from {first.name}:")
+            print(*difference(read(texts[first])[1], read(text)[1]))
     for build, text in texts.items():
         worst, where = difference(read(GOLDEN.read_text(encoding="utf-8"))[1], read(text)[1])
         print(f"{build.name:<32} {worst:.1e} from golden.txt")

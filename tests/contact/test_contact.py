@@ -607,6 +607,8 @@ def test_max_steps_stops_where_the_steps_ended() -> None:
     whole = simulate(rl.scenes.slip, 5.0)
     cut = simulate(rl.scenes.slip, 5.0, max_steps=5, raise_on_failure=False)
     assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == 5
+    assert cut.message.startswith("max_steps = 5 steps ended at t = ")
+    assert cut.message.endswith(": allow more of them")  # they have no tolerance
     assert 0 < cut.t_end < whole.events[0].t and cut.t[-1] <= cut.t_end
     assert np.allclose(cut.omega, whole.omega[: cut.t.size], rtol=1e-11, atol=1e-13)
 
