@@ -15,6 +15,7 @@
 #include "numerics/bisect.hpp"
 #include "numerics/double_double.hpp"
 #include "numerics/lu.hpp"
+#include "proof/law.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;
@@ -166,6 +167,13 @@ void wrong_numbers_are_refused() {
     CHECK(message.rfind("friction must be", 0) == 0);
 }
 
+void friction_is_needed_where_something_is_to_be_held() {
+    CHECK(friction_needed({2.0, -1.0}) == 0.5);
+    CHECK(friction_needed({0.0, 0.0}) == 0);
+    CHECK(friction_needed({0.0, 1e-300}) == infinity);
+    CHECK(friction_needed({-1.0, 0.0}) == infinity);
+}
+
 std::vector<FlowKernel> kernels_of_this_machine() {
     std::vector<FlowKernel> found;
     for (const LaneLevel level : lane_levels()) found.push_back(flow_kernel(level));
@@ -231,6 +239,7 @@ int main() {
     every_segment_knows_every_kind_of_sample();
     a_checkpoint_that_throws_ends_the_work();
     wrong_numbers_are_refused();
+    friction_is_needed_where_something_is_to_be_held();
     every_vector_level_has_the_same_bits();
     std::printf(failures == 0 ? "all hold\n" : "%d do not hold\n", failures);
     return failures == 0 ? 0 : 1;

@@ -19,6 +19,8 @@ SCENES = {
     "rocking": Scene(2.0, 1.0, theta=0.5),
     "circle": Scene(1.0, 1.0, omega=-2.0),
     "nearly a circle": Scene(1.0, 1.0 - 1e-8, omega=2.0),
+    "many turns on": Scene(2.0, 1.0, theta=3e5, omega=3.2),  # beyond what series are kept for
+    "many turns back": Scene(0.7, 1.9, theta=-3e5, omega=-4.0),
     "thinnest": Scene(1.0, 1e-3, theta=0.3),
     "thinnest, upright": Scene(1e-3, 1.0, theta=0.1, omega=9.0),
 }
