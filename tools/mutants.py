@@ -6,8 +6,8 @@
 
 copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
 tolerances, and/or, min/max) from lines all over the sources, and for each builds what has changed
-and runs the tests nearest to it, those of bits, and some of every folder, up to the first that
-fails. What is left alive is listed, with --thorough after the whole suite has seen it. A mutant
+and runs the tests nearest to it, those of bits, some of every folder, and the programs of C++, up
+to the first that fails. What is left alive is listed, with --thorough after the whole suite has seen it. A mutant
 that does not compile counts for nothing. Results are kept in FOLDER/SIDE.json, with which the same
 command goes on where it was stopped. Needs the requirements of the build and of the tests.
 """
@@ -50,6 +50,7 @@ CHANGES = {
 NEAREST = {
     "bindings": ["trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
+    "geometry": ["geometry", "rolling"],
     "multipliers": ["multipliers", "stability"],
     "numerics": ["rolling", "proof", "contact"],
     "proof": ["proof", "outcome", "contact"],
@@ -220,6 +221,8 @@ class Workshop:
                 return "bits"
             if not self.passes("-m", "quick"):
                 return "quick"
+            if mutant.path.startswith("src") and not self.passes("tests/core"):
+                return "core"
             if thorough and not self.passes():
                 return "all"
             return "alive"
