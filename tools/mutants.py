@@ -7,9 +7,10 @@
 copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
 tolerances, and/or, min/max) from lines all over the sources, and for each builds what has changed
 and runs the tests nearest to it, those of bits, some of every folder, and the programs of C++, up
-to the first that fails. What is left alive is listed, with --thorough after the whole suite has seen it. A mutant
-that does not compile counts for nothing. Results are kept in FOLDER/SIDE.json, with which the same
-command goes on where it was stopped. Needs the requirements of the build and of the tests.
+to the first that fails. What is left alive is listed, with --thorough after the whole suite has
+seen it. A mutant that does not compile counts for nothing. Results are kept in FOLDER/SIDE.json,
+with which the same command goes on where it was stopped. Needs the requirements of the build and
+of the tests.
 """
 
 import argparse
