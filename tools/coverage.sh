@@ -33,7 +33,8 @@ status=0
 
 "$python" -m coverage combine --quiet
 "$python" -m coverage report --show-missing >"$folder/python.txt"
-"$python" -m gcovr --root . --filter src/ --exclude-throw-branches --json "$folder/core.json" \
+"$python" -m gcovr --root . --filter src/ --exclude-throw-branches \
+    --gcov-ignore-parse-errors suspicious_hits.warn_once_per_file --json "$folder/core.json" \
     "$folder/objects"
 "$python" -m gcovr --root . --add-tracefile "$folder/core.json" --merge-lines \
     --txt-metric line --txt "$folder/lines.txt"

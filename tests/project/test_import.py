@@ -65,7 +65,7 @@ DISTURBANCES = {
     "numpy": "np.seterr(divide='ignore')",
     "rounding,control word": "ctypes.CDLL('libm.so.6').fesetround(0x800)",
     "signals": "signal.signal(signal.SIGINT, signal.SIG_IGN)",
-    "environment": "os.environ['OMP_NUM_THREADS'] = '1'",
+    "environment": "os.environ['A_NAME_OF_ITS_OWN'] = '1'",
     "threads": "threading.Thread(target=threading.Event().wait, daemon=True).start()",
     "folder": "os.chdir('/')",
     "hooks": "sys.path.append('elsewhere')",
