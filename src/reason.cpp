@@ -42,13 +42,12 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
     switch (ending) {
         case Ending::completed:
             return {};
-        case Ending::max_steps: {
-            const std::string ended =
-                "max_steps = " + std::to_string(settings.max_steps) + " steps ended" + place;
-            if (in_contact) return ended + ": allow more of them";
-            return ended + ": allow more of them, or " +
-                   (settings.step ? "larger ones" : "loosen rtol and atol");
-        }
+        case Ending::max_steps:
+            return "max_steps = " + std::to_string(settings.max_steps) + " steps ended" + place +
+                   ": allow more of them" +
+                   (in_contact      ? ""
+                    : settings.step ? ", or larger ones"
+                                    : ", or loosen rtol and atol");
         case Ending::step_too_small:
             if (in_contact) return "the slide changes faster than doubles can follow" + place;
             return "no step of a size that changes t meets rtol and atol" + place + ": loosen them";

@@ -6,11 +6,10 @@
 
 copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
 tolerances, and/or, min/max) from lines all over the sources, and for each builds what has changed
-and runs the tests nearest to it, those of bits, some of every folder, and the programs of C++, up
-to the first that fails. What is left alive is listed, with --thorough after the whole suite has
-seen it. A mutant that does not compile counts for nothing. Results are kept in FOLDER/SIDE.json,
-with which the same command goes on where it was stopped. Needs the requirements of the build and
-of the tests.
+and runs the tests nearest to it, some of every folder, and those of tests/core, up to the first
+that fails. What is left alive is listed, with --thorough after the whole suite has seen it. A
+mutant that does not compile counts for nothing. Results are kept in FOLDER/SIDE.json, with which
+the same command goes on where it was stopped. Needs the requirements of the build and of the tests.
 """
 
 import argparse
@@ -64,9 +63,6 @@ NEAREST = {
     "_command": ["project"],
     "python": ["trajectory", "scene", "outcome", "border", "batches"],
 }
-
-# The bits of motions of every model, as they are on record.
-BITS = "tests/core/test_core.py::test_motions_through_python"
 
 # Written by programs, or nothing but names.
 LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "details.cpp", "build.cpp", "_core.pyi")
@@ -213,19 +209,9 @@ class Workshop:
         try:
             if not self.build():
                 return "build"
-            folders = nearest(mutant.path)
-            for options in (["-m", "quick"], []):
-                for folder in folders:
-                    if not self.passes(f"tests/{folder}", *options):
-                        return folder
-            if mutant.path.startswith("src") and not self.passes(BITS):
-                return "bits"
-            if not self.passes("-m", "quick"):
-                return "quick"
-            if mutant.path.startswith("src") and not self.passes("tests/core"):
-                return "core"
-            if thorough and not self.passes():
-                return "all"
+            for stage, arguments in stages(mutant.path, thorough):
+                if not self.passes(*arguments):
+                    return stage
             return "alive"
         finally:
             path.write_text(whole, encoding="utf-8")
@@ -244,6 +230,18 @@ def nearest(path: str) -> list[str]:
     else:
         folder = parts[2] if len(parts) > 3 else "python"
     return NEAREST.get(folder, [folder])
+
+
+def stages(path: str, thorough: bool) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """What a mutant meets, by name, with what pytest is asked for."""
+    for options in (("-m", "quick"), ()):
+        for folder in nearest(path):
+            yield folder, (f"tests/{folder}", *options)
+    yield "quick", ("-m", "quick")
+    if path.startswith("src"):
+        yield "core", ("tests/core",)
+    if thorough:
+        yield "all", ()
 
 
 def main() -> None:

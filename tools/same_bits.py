@@ -6,10 +6,10 @@
 
 The builds lie in FOLDER, to be kept or deleted; with ccache on the machine a second time is quick.
 Those of one target must agree to the last bit. Two other targets have another rounding of sin and
-cos in their C library, and no lanes: aarch64 (g++-aarch64-linux-gnu and qemu-user) and Windows
-(g++-mingw-w64-x86-64-posix and wine64). Their builds must agree among each other, and with those of
-x86-64 Linux within the bound of tests/oracles/golden.py. Exit code 1 where they do not. libc++ is
-that of libc++-dev and libc++abi-dev.
+cos in their C library: aarch64, which has no lanes either (g++-aarch64-linux-gnu and qemu-user),
+and Windows (g++-mingw-w64-x86-64-posix and wine64). Their builds must agree among each other, and
+with those of x86-64 Linux within the bound of tests/oracles/golden.py. Exit code 1 where they do
+not. libc++ is that of libc++-dev and libc++abi-dev.
 """
 
 import argparse

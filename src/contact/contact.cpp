@@ -46,8 +46,7 @@ class ContactRun {
           motion_{units_, scene_, {}, {}} {}
 
     Integration<Motion> run() {
-        const double rest = resolved(state_.theta);
-        if (rest != state_.theta) turn_off(two_sum(state_.theta, -rest), rest);
+        resolve_angle();
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
         while (!ending_) {
@@ -64,9 +63,16 @@ class ContactRun {
     }
 
   private:
+    // At the start, and where a flight or a slide turned the body so often.
+    void resolve_angle() {
+        const double rest = resolved(state_.theta);
+        if (rest != state_.theta) turn_off(two_sum(state_.theta, -rest), rest);
+    }
+
     // From an event on: the ellipse is the same after half a turn, and near a flat position its
     // angle has more digits.
     void take_half_turns_off() {
+        resolve_angle();
         const double half_turns = std::nearbyint(state_.theta / pi);
         if (half_turns == 0 || motion_.segments.empty()) return;
         const DoubleDouble rest = DoubleDouble{state_.theta, 0.0} - half_turn * half_turns;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/half_turns.hpp"
 #include "numerics/bisect.hpp"
 
 namespace rolling_ellipse {
@@ -19,9 +18,7 @@ double root_between(const Function& f, double low, double high) {
 class Gap {
   public:
     explicit Gap(const Flight& flight)
-        : flight_(flight),
-          theta0_(resolved(flight.start.theta)),
-          h0_(geometry(flight.axes, flight.start.theta).h) {}
+        : flight_(flight), h0_(geometry(flight.axes, flight.start.theta).h) {}
 
     double height(double t) const {
         const State& s = flight_.start;
@@ -36,7 +33,7 @@ class Gap {
         const auto [a, b] = flight_.axes;
         const double turned = s.omega * t;
         const double rise =
-            (a - b) * (a + b) * std::sin(2 * theta0_ + turned) * std::sin(turned) / (at(t).h + h0_);
+            (a - b) * (a + b) * std::sin(2 * s.theta + turned) * std::sin(turned) / (at(t).h + h0_);
         return (s.z - h0_) + (t * (s.z_dot - 0.5 * flight_.gravity.into * t) - rise);
     }
 
@@ -56,11 +53,10 @@ class Gap {
 
   private:
     Geometry at(double t) const {
-        return geometry(flight_.axes, theta0_ + flight_.start.omega * t);
+        return geometry(flight_.axes, flight_.start.theta + flight_.start.omega * t);
     }
 
     const Flight& flight_;
-    double theta0_;
     double h0_;
 };
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/half_turns.hpp"
 #include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
 
@@ -245,15 +244,14 @@ ContactSample sample_at(const Slide& slide, const SlidePoint& point) {
 Slide slide_from(const Scene& scene, const State& start, double side) {
     const Axes axes = scene.axes();
     const double slip = slip_velocity(start, geometry(axes, start.theta));
-    const double turn = resolved(start.theta);
-    const double quarters = std::nearbyint(turn / half_pi);
-    const DoubleDouble rest = DoubleDouble{turn, 0.0} - half_pi_exact * quarters;
+    const double quarters = std::nearbyint(start.theta / half_pi);
+    const DoubleDouble rest = DoubleDouble{start.theta, 0.0} - half_pi_exact * quarters;
     Scene seen = scene;
     if (std::fmod(quarters, 2.0) != 0.0) std::swap(seen.a, seen.b);
     constexpr std::size_t usual_pieces = 16;
     Slide slide{sliding_body(seen, side),
                 axes,
-                two_sum(start.theta, -turn) + half_pi_exact * quarters,
+                half_pi_exact * quarters,
                 start.x,
                 {rest, {start.omega, 0.0}, {slip, 0.0}, {0.0, 0.0}, {0.0, 0.0}},
                 {}};

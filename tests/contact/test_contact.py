@@ -14,7 +14,7 @@ import pytest
 import rolling_ellipse as rl
 import scipy.integrate
 import scipy.optimize
-from oracles.contact import random_scenes, response
+from oracles.contact import random_scenes, response, way_of_slide
 from oracles.geometry import support
 from oracles.numbers import EPS, known
 from rolling_ellipse import (
@@ -179,16 +179,6 @@ def slide_in_its_own_clock(
     return scipy.integrate.solve_ivp(rates, (0.0, 1e6), begin, **how).y[:4, -1]
 
 
-def way(scene: Scene, side: float, start: InitialState, end: InitialState, lasts: float) -> float:
-    """That of a slide: F = -side mu N, and z'' = N/m - g cos(slope) integrates to h."""
-    (h0, dh0, _), (h, _, _) = (
-        [float(each) for each in support(at.theta, scene.a, scene.b)] for at in (start, end)
-    )
-    into, along = (scene.gravity * f(scene.slope) for f in (math.cos, math.sin))
-    lifted = h - h0 - dh0 * start.omega * lasts + into * lasts**2 / 2
-    return start.x_dot * lasts + along * lasts**2 / 2 - side * scene.friction * lifted
-
-
 @pytest.mark.parametrize("scene", JAMS_ON_THE_WAY)
 def test_a_jam_on_the_way(scene: Scene) -> None:
     """B = 0 and c = 0 at once (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653).
@@ -215,7 +205,8 @@ def test_a_jam_on_the_way(scene: Scene) -> None:
     assert motion.t[-1] <= jam.t and motion.t_end == jam.t
     # some roundings of the terms, and of the angle on which h depends
     moved, speed = jam.state_before.x - start.x, max(abs(start.x_dot), 1.0)
-    expected = way(scene, side, start, jam.state_before, jam.t - t0)
+    friction, lasts = -side * scene.friction, jam.t - t0
+    expected = way_of_slide(scene, start, friction, jam.state_before.theta, lasts)
     assert moved == pytest.approx(expected, abs=1e-13 * speed)
 
 
@@ -247,7 +238,8 @@ def test_a_slip_that_ends_just_before_a_jam(
     assert stops.state_before.theta == pytest.approx(theta, abs=1e-11)
     assert stops.state_before.omega == pytest.approx(omega, rel=1e-10)
     moved = stops.state_before.x - scene.initial_state.x
-    expected = way(scene, 1.0, scene.initial_state, stops.state_before, stops.t)
+    end = stops.state_before.theta
+    expected = way_of_slide(scene, scene.initial_state, -friction, end, stops.t)
     assert moved == pytest.approx(expected, abs=1e-13 * slip)
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.contact import random_scenes
+from oracles.contact import random_scenes, way_of_slide
 from oracles.geometry import support
 from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, scenes, simulate
 
@@ -50,13 +50,12 @@ def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
         start = scene.initial_state
         t, theta, omega = motion.t, motion.theta, motion.omega
         h, dh, ddh = support(theta, scene.a, scene.b)
-        h0, dh0, _ = (float(each[0]) for each in support(theta[:1], scene.a, scene.b))
+        dh0 = float(support(start.theta, scene.a, scene.b).slope)
         into, along = (scene.gravity * f(slope) for f in (math.cos, math.sin))
         friction = friction_share(scene, motion)
         pushed = dh * omega - dh0 * start.omega + into * t
-        lifted = h - h0 - dh0 * start.omega * t + into * t**2 / 2
         x_dot = start.x_dot + friction * pushed + along * t
-        x = start.x + start.x_dot * t + friction * lifted + along * t**2 / 2
+        x = start.x + way_of_slide(scene, start, friction, theta, t)
         # a few ulp of theta and omega in h' omega, of h and h', and of the sums themselves
         turn = np.abs(ddh * omega) * (1 + np.abs(theta)) + np.abs(dh * omega)
         speeds = (

@@ -34,8 +34,7 @@ void thousand_samples() {
 }
 
 void ten_events() {
-    Scene scene = ellipse(0.5, 0.0);
-    scene.friction = 0.3;
+    Scene scene = ellipse(0.5, 0.0, 0.3);
     scene.restitution = 0.6;
     scene.z = 3.0;
     Settings settings = settings_of(Model::contact, Method::automatic);

@@ -37,6 +37,16 @@ def response(scene: Scene, state: InitialState) -> Response:
     )
 
 
+def way_of_slide(scene: Scene, start: InitialState, friction: float, theta: Any, lasts: Any) -> Any:
+    """What x gains up to an angle, with F = friction N, the sign of which is that of F: as
+    z'' = N/m - g cos(slope) integrates to h."""
+    h0, dh0, _ = (float(each) for each in support(start.theta, scene.a, scene.b))
+    into, along = (scene.gravity * f(scene.slope) for f in (math.cos, math.sin))
+    h = support(theta, scene.a, scene.b).h
+    lifted = h - h0 - dh0 * start.omega * lasts + into * lasts**2 / 2
+    return start.x_dot * lasts + friction * lifted + along * lasts**2 / 2
+
+
 def kinetic_energy(scene: Scene, state: InitialState) -> float:
     inertia = scene.mass * scene.gyration2
     linear = scene.mass * (state.x_dot**2 + state.z_dot**2)
