@@ -14,21 +14,24 @@ source=$(cd "$(dirname "$0")/.." && pwd)
 folder=$source/build/fuzz_core
 compiler=${CXX:-clang++}
 python=${PYTHON:-python3}
+# Bytes become numbers by arithmetic: what these are compared with tells libFuzzer nothing, and to
+# note it takes two thirds of the time.
+untraced="-fno-sanitize-coverage=trace-cmp"
 checks="address,undefined -fno-sanitize-recover=all"
 eigen=$("$python" -c "import os, sys; print(';'.join(
     f'{p}/cmeel.prefix' for p in sys.path if os.path.isdir(f'{p}/cmeel.prefix')))")
 
+mkdir -p "$folder/corpus"
 cmake -S "$source" -B "$folder" -DCMAKE_CXX_COMPILER="$compiler" -DROLLING_ELLIPSE_PYTHON=OFF \
     -DCMAKE_BUILD_TYPE=None -DCMAKE_PREFIX_PATH="$eigen" \
-    -DCMAKE_CXX_FLAGS="-O2 -g1 -fsanitize=fuzzer-no-link,$checks" > "$folder.log"
-cmake --build "$folder" --target rolling_ellipse_core --parallel "${JOBS:-1}" > "$folder.log"
+    -DCMAKE_CXX_FLAGS="-O2 -g1 -fsanitize=fuzzer-no-link,$checks $untraced" > "$folder/build.log"
+cmake --build "$folder" --target rolling_ellipse_core --parallel "${JOBS:-1}" >> "$folder/build.log"
 "$compiler" -std=c++17 -O2 -g1 -fsanitize=fuzzer,$checks -DEIGEN_DONT_VECTORIZE -ffp-contract=off \
     -I "$source/src" $(echo "$eigen" | tr ';' '\n' | sed 's|^..*|-isystem &/include/eigen3|') \
     "$source/tools/fuzz_core/fuzz_core.cpp" "$folder/librolling_ellipse_core.a" -pthread \
     -o "$folder/fuzz_core"
 
 cd "$folder"
-mkdir -p corpus
 [ $# -gt 0 ] || set -- -max_total_time=600
 case $1 in
 -*) exec ./fuzz_core "$@" -max_len=256 -len_control=0 -timeout=60 -print_final_stats=1 corpus ;;

@@ -6,10 +6,11 @@
 
 copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
 tolerances, and/or, min/max) from lines all over the sources, and for each builds what has changed
-and runs the tests nearest to it, some of every folder, and those of tests/core, up to the first
-that fails. What is left alive is listed, with --thorough after the whole suite has seen it. A
-mutant that does not compile counts for nothing. Results are kept in FOLDER/SIDE.json, with which
-the same command goes on where it was stopped. Needs the requirements of the build and of the tests.
+and runs the tests nearest to it, the programs of tests/core, and some tests of every folder, up to
+the first that fails. What is left alive is listed, with --thorough after the whole suite has seen
+it. A mutant that does not compile counts for nothing. Results are kept in FOLDER/SIDE.json, with
+which the same command goes on where it was stopped. Needs the requirements of the build and of the
+tests.
 """
 
 import argparse
@@ -63,6 +64,9 @@ NEAREST = {
     "_command": ["project"],
     "python": ["trajectory", "scene", "outcome", "border", "batches"],
 }
+
+# Of tests/core, those that need seconds; the last prints numbers.
+PROGRAMS = ("core_test", "threads_test", "lanes_test", "golden")
 
 # Written by programs, or nothing but names.
 LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "details.cpp", "build.cpp", "_core.pyi")
@@ -143,6 +147,7 @@ class Workshop:
 
     def __init__(self, folder: Path, processes: int):
         self.took: dict[tuple[str, ...], float] = {}  # seconds, of tests that passed
+        self.bits = b""  # what the last of PROGRAMS prints for the sources as they are
         self.spread = ["-n", str(processes), "--dist", "loadfile"] if processes > 1 else []
         self.copy = folder / "copy"
         self.objects = folder / "objects"
@@ -159,7 +164,7 @@ class Workshop:
         ).stdout.strip()
         subprocess.run(
             ["cmake", "-S", self.copy, "-B", self.objects, "-G", "Ninja",
-             "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1",
+             "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1", "-DROLLING_ELLIPSE_TESTS=ON",
              f"-DPython_EXECUTABLE={sys.executable}",
              f"-Dpybind11_DIR={pybind11.get_cmake_dir()}",
              f"-DCMAKE_PREFIX_PATH={eigen}"],
@@ -197,6 +202,21 @@ class Workshop:
         self.took[arguments] = time.monotonic() - begin
         return True
 
+    def programs_hold(self) -> bool:
+        """Whether those of tests/core notice nothing, and the bits are those of the first call."""
+        printed = b""
+        for name in PROGRAMS:
+            if (program := self.objects / name).exists():
+                try:
+                    done = subprocess.run([program], capture_output=True, timeout=60)
+                except subprocess.TimeoutExpired:
+                    return False
+                if done.returncode:
+                    return False
+                printed = done.stdout
+        self.bits = self.bits or printed
+        return printed == self.bits
+
     def judged(self, mutant: Mutant, thorough: bool) -> str:
         """What noticed it: "build", a stage of the tests, or nothing: "alive"."""
         path = self.copy / mutant.path
@@ -210,7 +230,7 @@ class Workshop:
             if not self.build():
                 return "build"
             for stage, arguments in stages(mutant.path, thorough):
-                if not self.passes(*arguments):
+                if not (self.programs_hold() if stage == "programs" else self.passes(*arguments)):
                     return stage
             return "alive"
         finally:
@@ -234,12 +254,13 @@ def nearest(path: str) -> list[str]:
 
 def stages(path: str, thorough: bool) -> Iterator[tuple[str, tuple[str, ...]]]:
     """What a mutant meets, by name, with what pytest is asked for."""
-    for options in (("-m", "quick"), ()):
-        for folder in nearest(path):
-            yield folder, (f"tests/{folder}", *options)
-    yield "quick", ("-m", "quick")
+    for folder in nearest(path):
+        yield folder, (f"tests/{folder}", "-m", "quick")
     if path.startswith("src"):
-        yield "core", ("tests/core",)
+        yield "programs", ()
+    for folder in nearest(path):
+        yield folder, (f"tests/{folder}",)
+    yield "quick", ("-m", "quick")
     if thorough:
         yield "all", ()
 
@@ -271,7 +292,7 @@ def main() -> None:
     known = json.loads(results.read_text()) if results.exists() else {}
     workshop = Workshop(options.folder, options.processes)
     workshop.configure()
-    if not workshop.build() or not workshop.passes("-m", "quick"):
+    if not (workshop.build() and workshop.programs_hold() and workshop.passes("-m", "quick")):
         sys.exit("the sources as they are do not build, or do not pass")
     for i, mutant in enumerate(todo):
         if mutant.name in known and not options.only:
