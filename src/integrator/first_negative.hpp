@@ -67,6 +67,7 @@ class FirstNegative {
     static double lowest(const Look& a, const Look& b, const Look& c, int i,
                          const Margins& margins) {
         const double rough = bottom_of_parabola(a, b, c, i);
+        if (!std::isfinite(rough)) return b.t;  // margins beyond the doubles are on no parabola
         const double beside = 0.05 * (c.t - a.t);
         const auto at = [&](double t) { return Look{t, margins(t)}; };
         if (!(a.t < rough - beside && rough + beside < c.t)) return rough;

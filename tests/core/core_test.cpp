@@ -101,6 +101,14 @@ void a_dip_between_two_looks_is_found() {
         none.look(t, [&](double at) { return std::array<double, 1>{margin(at)[0] + 3e-7}; });
     }
     CHECK(none.found() == infinity);
+    FirstNegative<1> steep;  // through infinite margins there is no parabola
+    for (double t = 0.0; t <= 5.0; t += 1.0) {
+        steep.look(t, [&](double at) {
+            CHECK(std::isfinite(at));
+            return std::array<double, 1>{at == 2.0 ? 1.0 : infinity};
+        });
+    }
+    CHECK(steep.found() == infinity);
 }
 
 // It rolls, slides, leaves the ground and comes down again.
