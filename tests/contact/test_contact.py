@@ -166,17 +166,55 @@ def slowed_slide(scene: Scene, side: float) -> Any:
 
 
 def slide_in_its_own_clock(
-    scene: Scene, start: Any, t0: float, side: float, least_b: float = 0.0
+    scene: Scene,
+    start: Any,
+    t0: float,
+    side: float,
+    least_b: float = 0.0,
+    least_c: float = -math.inf,
 ) -> Any:
-    """By SciPy: theta, omega, slip and t where the slip vanishes, or B is so small."""
+    """By SciPy: theta, omega, slip and t where the slip vanishes, or B or c is so small."""
     forces, rates = slowed_slide(scene, side)
-    ends = [lambda _, y: side * y[2], lambda _, y: math.exp(y[4]) - least_b]
+    ends = [
+        lambda _, y: side * y[2],
+        lambda _, y: math.exp(y[4]) - least_b,
+        lambda _, y: forces(y[0], y[1])[2] - least_c,
+    ]
     for end in ends:
         end.terminal, end.direction = True, -1  # type: ignore[attr-defined]
     b = forces(start.theta, start.omega)[1]
     begin = [start.theta, start.omega, response(scene, start).slip, t0, math.log(b)]
     how: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "events": ends}
     return scipy.integrate.solve_ivp(rates, (0.0, 1e6), begin, **how).y[:4, -1]
+
+
+@pytest.mark.parametrize(
+    ("friction", "theta"), [(1.5, 1.1954466905), (2.0, 1.334565838), (4.0, 1.46422879159)]
+)
+@pytest.mark.parametrize("omega", [1.0, -1.0])
+def test_a_slide_that_comes_out_of_a_small_response(
+    friction: float, theta: float, omega: float
+) -> None:
+    """From B = 0.005, where N = c/B is large, to where c = 0 lets the body go."""
+    at = support(theta, 2.0, 1.0)
+    scene = Scene(
+        2.0, 1.0, theta=theta, omega=omega, x_dot=float(at.h) * omega + 500, friction=friction
+    )
+    forces, _ = slowed_slide(scene, 1.0)
+    assert 0.0049 < forces(theta, omega)[1] < 0.0051
+    motion = simulate(scene, np.linspace(0.0, 1.0, 11), model="contact")
+    lift = motion.events[0]
+    assert lift.kind is EventKind.LIFT_OFF
+    assert forces(lift.state_before.theta, lift.state_before.omega)[1] > 0.025
+    expected = slide_in_its_own_clock(scene, scene.initial_state, 0.0, 1.0, least_c=0.0)
+    # the tolerance of the reference, over the dozens of its steps, and of its end
+    found = [
+        lift.state_before.theta,
+        lift.state_before.omega,
+        response(scene, lift.state_before).slip,
+        lift.t,
+    ]
+    assert found == pytest.approx(list(expected), rel=1e-11)
 
 
 @pytest.mark.parametrize("scene", JAMS_ON_THE_WAY)
