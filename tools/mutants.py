@@ -8,9 +8,9 @@ copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors,
 tolerances, and/or, min/max) from lines all over the sources, and for each builds what has changed
 and runs the tests nearest to it, the programs of tests/core, and some tests of every folder, up to
 the first that fails. What is left alive is listed, with --thorough after the whole suite has seen
-it. A mutant that does not compile counts for nothing. Results are kept in FOLDER/SIDE.json, with
-which the same command goes on where it was stopped. Needs the requirements of the build and of the
-tests.
+it. A mutant that does not compile counts for nothing; tests that notice one have to pass without
+it, which is looked at last. Results are kept in FOLDER/SIDE.json, with which the same command goes
+on where it was stopped. Needs the requirements of the build and of the tests.
 """
 
 import argparse
@@ -305,9 +305,13 @@ def main() -> None:
               f"{time.monotonic() - begin:.0f} s", flush=True)  # fmt: skip
         if fate == "alive":
             print(f"    {mutant.was}\n    {mutant.now}", flush=True)
-    fates = [known[m.name]["fate"] for m in todo if known.get(m.name, {}).get("fate") != "build"]
-    killed = sum(fate != "alive" for fate in fates)
-    print(f"{killed} of {len(fates)} noticed")
+    fates = [fate for m in todo if (fate := known[m.name]["fate"]) != "build"]
+    if not workshop.build():
+        sys.exit("the sources as they are do not build any more")
+    for folder in sorted(set(fates) - {"programs", "quick", "all", "alive"}):
+        if not workshop.passes(f"tests/{folder}"):
+            sys.exit(f"tests/{folder} notices something in the sources as they are")
+    print(f"{sum(fate != 'alive' for fate in fates)} of {len(fates)} noticed")
 
 
 if __name__ == "__main__":
