@@ -71,7 +71,7 @@ WayTo way_between(const PhaseTime& phase, int quarters, double begin, double end
     constexpr double long_way = 12.0;
     const PhaseMap& map = phase.map;
     const double edge = 2 * end_of_steps(map);
-    if (!map.has_tail || map.quarter <= edge || std::abs(end - begin) <= long_way) {
+    if (map.quarter <= edge || std::abs(end - begin) <= long_way) {
         return way_by_panels(phase, quarters, begin, end);
     }
     // Where that begins and ends, in size of the offset.

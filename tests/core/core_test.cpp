@@ -16,6 +16,7 @@
 #include "numerics/double_double.hpp"
 #include "numerics/lu.hpp"
 #include "proof/law.hpp"
+#include "proof/watch.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;
@@ -182,6 +183,16 @@ void friction_is_needed_where_something_is_to_be_held() {
     CHECK(friction_needed({-1.0, 0.0}) == infinity);
 }
 
+void of_equal_forces_the_first_is_told() {
+    const auto same = [](const double*, std::size_t n, ContactForce* found) {
+        std::fill_n(found, n, ContactForce{2.0, 1.0});
+    };
+    const ContactWatch watch = watch_contact(1.0, {3.0, 4.0, 5.0}, same, [] {});
+    CHECK(watch.smallest_normal_force == 2 && watch.smallest_normal_force_time == 3);
+    CHECK(watch.largest_friction_needed == 0.5 && watch.largest_friction_needed_time == 3);
+    CHECK(watch.holds_until == infinity);
+}
+
 std::vector<FlowKernel> kernels_of_this_machine() {
     std::vector<FlowKernel> found;
     for (const LaneLevel level : lane_levels()) found.push_back(flow_kernel(level));
@@ -248,6 +259,7 @@ int main() {
     a_checkpoint_that_throws_ends_the_work();
     wrong_numbers_are_refused();
     friction_is_needed_where_something_is_to_be_held();
+    of_equal_forces_the_first_is_told();
     every_vector_level_has_the_same_bits();
     std::printf(failures == 0 ? "all hold\n" : "%d do not hold\n", failures);
     return failures == 0 ? 0 : 1;
