@@ -88,7 +88,7 @@ class Scene(FieldsOnly, Listed):
     slope : float
         Angle of the ground [rad], downwards in x; |slope| < pi/2.
     friction : float
-        Coefficient of friction, infinity allowed.
+        Coefficient of friction, up to 1e50 or infinite.
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     theta, omega : float

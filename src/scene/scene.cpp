@@ -93,7 +93,9 @@ void validate_velocity(const Body& body, double x_dot, double z_dot) {
 }
 
 void validate_friction(double friction) {
-    if (!(friction >= 0)) refuse("friction", "a coefficient of at least 0 (inf allowed)", friction);
+    if (!(friction >= 0 && (friction <= largest_number || friction == infinity))) {
+        refuse("friction", "a coefficient from 0 to 1e50, or inf", friction);
+    }
 }
 
 void validate(const Impulse& impulse) {

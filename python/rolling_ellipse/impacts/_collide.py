@@ -41,7 +41,7 @@ def collide(
     a, b : float or array_like
         Semi-axes [m].
     friction, restitution : float or array_like
-        Coefficients: at least 0 (inf allowed), and between 0 and 1.
+        Coefficients: from 0 to 1e50 or infinite, and between 0 and 1.
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
     law : {"stronge", "poisson", "newton"}

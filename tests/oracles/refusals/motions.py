@@ -60,7 +60,7 @@ PARTS: list[Refusal] = [
 
 
 def ended_at_once() -> Any:
-    too_quick = Scene(1.0, 0.5, x_dot=-1.0, friction=1e300)
+    too_quick = Scene(1.0, 0.5, theta=1e-310, x_dot=-1.0)
     found = rl.simulate(too_quick, [0.0, 1.0], raise_on_failure=False)
     return found._solution.sample_contact(np.zeros(1))
 
