@@ -52,7 +52,7 @@ NEAREST = {
     "bindings": ["trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
     "geometry": ["geometry", "rolling"],
-    "multipliers": ["multipliers", "stability"],
+    "multipliers": ["multipliers", "trajectory", "stability"],
     "numerics": ["rolling", "proof", "contact"],
     "proof": ["proof", "outcome", "contact"],
     "rolling": ["rolling", "integrator", "contact"],
