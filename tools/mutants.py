@@ -57,8 +57,6 @@ NEAREST = {
     "proof": ["proof", "outcome", "contact"],
     "rolling": ["rolling", "integrator", "contact"],
     "scene": ["scene", "contact", "border"],
-    "_pictures": ["pictures"],
-    "_player": ["player"],
     "_export": ["export", "trajectory"],
     "_faces": ["border", "trajectory"],
     "_command": ["project"],
@@ -249,7 +247,7 @@ def nearest(path: str) -> list[str]:
         folder = parts[1] if len(parts) > 2 else "core"
     else:
         folder = parts[2] if len(parts) > 3 else "python"
-    return NEAREST.get(folder, [folder])
+    return NEAREST.get(folder, [folder.removeprefix("_")])
 
 
 def stages(path: str, thorough: bool) -> Iterator[tuple[str, tuple[str, ...]]]:

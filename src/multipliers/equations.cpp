@@ -124,10 +124,15 @@ void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy)
     }
 }
 
-// Newton's method; where rounding is reached the residuals stop shrinking.
+// Newton's method; where rounding is reached the residuals stop shrinking. What psi and r are makes
+// no difference, as they have no mass: far off they follow from theta first, lest their digits take
+// the place of its own.
 void ConstrainedBody::project_position(Coordinates& q) const {
     constexpr int most_iterations = 20;
     const Eigen::Vector3d row_unit{1.0, 1.0, length_};
+    if (!(position_residuals(axes_, q).cwiseProduct(row_unit).cwiseAbs().maxCoeff() <= length_)) {
+        q.tail<2>() = kinematics(axes_, q[coordinate::theta], 0.0).q.tail<2>();
+    }
     double last = infinity;
     for (int i = 0; i < most_iterations; ++i) {
         const Eigen::Vector3d residuals = position_residuals(axes_, q);

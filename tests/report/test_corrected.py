@@ -85,6 +85,21 @@ def test_corrected_projects_to_the_nearest_state() -> None:
     assert np.array_equal(again.q[0], there) and np.array_equal(again.q_dot[0], rates)
 
 
+@pytest.mark.parametrize("stabilization", ["projection", "projection+energy"])
+@pytest.mark.parametrize("which", [3, 4])
+@pytest.mark.parametrize("off", [1.0, 1e10, -1e20, 1e50])
+def test_how_far_off_psi_and_r_are_moves_no_body_that_is_projected(
+    stabilization: str, which: int, off: float
+) -> None:
+    """They have no mass; as a circle's equations of motion do not depend on them, it rolls on."""
+    q, q_dot = rl.kinematics(0.3, 0.2, a=1.5, b=1.5)
+    given = np.where(np.arange(5) == which, q + off, q)
+    motion = as_given(given, q_dot, [0.01, 0.02], a=1.5, b=1.5, stabilization=stabilization)
+    # roundings of 0.3 and of the projection
+    assert motion.theta == pytest.approx(0.3 + 0.2 * motion.t, rel=1e-14)
+    assert motion.x == pytest.approx(q[0] + 0.3 * motion.t, rel=1e-14, abs=1e-15)
+
+
 def test_corrected_runs_the_reports_own_start_as_given_and_says_so() -> None:
     with pytest.warns() as caught:
         motion = corrected(
