@@ -207,8 +207,6 @@ double period(const RollingMotion& motion) {
 }
 
 double time_of_passing(const RollingFlow& flow, double theta, double heading) {
-    if (flow.kind == MotionKind::rest) return infinity;
-    if (flow.kind == MotionKind::uniform) return (theta - flow.theta) / flow.omega;
     // The ellipse of the start, turned on by theta - flow.theta.
     const double turn = theta - flow.theta;
     const FlatView& at = flow.start;

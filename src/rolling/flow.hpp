@@ -79,7 +79,8 @@ QuarterPosition position_at(const RollingFlow& flow, const PhasePoint& phase);
 // Time of a full swing or of a full turn; infinite for a body at rest and on the separatrix.
 double period(const RollingMotion& motion);
 
-// The first time t >= 0 at which the body passes the angle theta with velocity of the given sign.
+// The first time t >= 0 at which an ellipse that moves passes the angle theta with velocity of the
+// given sign.
 double time_of_passing(const RollingFlow& flow, double theta, double heading);
 
 }  // namespace rolling_ellipse

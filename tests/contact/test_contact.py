@@ -104,6 +104,36 @@ def test_dropped_without_spin_it_comes_to_rest(
     assert abs(kinds(simulate(scene, 2 * meant)).count(EventKind.IMPACT) - count) <= 1
 
 
+def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> None:
+    """Infinitely many bounces are one segment, in which the state is between its ends."""
+    scene = Scene(2.0, 1.0, theta=0.3, omega=1.0, z=2.5, friction=0.4, restitution=0.5, x_dot=1.0)
+    motion = simulate(scene, 2.0)
+    stays = next(i for i, each in enumerate(motion.events) if each.kind is EventKind.STICK)
+    impact, stick = motion.events[stays - 1 : stays + 1]
+    assert impact.kind is EventKind.IMPACT
+    times = np.linspace(impact.t, stick.t, 9)
+    inside = motion.sol(times[:-1])
+    for name in ("theta", "omega", "x", "x_dot"):
+        ends = (getattr(impact.state_after, name), getattr(stick.state_before, name))
+        # the share of the time is of a millionth of it, and so known to 1e-9
+        most = 1e-9 * abs(ends[1] - ends[0]) + 4 * EPS * abs(ends[0])
+        expected = np.linspace(*ends, 9)[:-1]
+        assert np.all(np.abs(getattr(inside, name) - expected) <= most), name
+    at = support(inside.theta, scene.a, scene.b)
+    assert np.array_equal(inside.z, at.h) and np.all(inside.normal_force == 0)
+
+
+def test_forces_are_in_newtons_where_only_the_mass_is_no_unit_of_its_own_size() -> None:
+    """The units of length and time of this scene are metres and seconds, and 8 kg is its mass's."""
+    light = Scene(1.2, 0.8, gravity=1.0, theta=0.3, omega=2.0, friction=0.2, x_dot=1.0)
+    heavy = dataclasses.replace(light, mass=8.0)
+    one, eight = (simulate(scene, np.linspace(0.0, 3.0, 31)) for scene in (light, heavy))
+    assert np.any(one.normal_force > 0)
+    assert np.array_equal(eight.normal_force, 8 * one.normal_force)
+    assert np.array_equal(eight.friction_force, 8 * one.friction_force)
+    assert np.array_equal(eight.theta, one.theta)
+
+
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.7, 1.9)])
 @pytest.mark.parametrize("side", [1, -1])
 def test_held_on_a_slope(a: float, b: float, side: int) -> None:
