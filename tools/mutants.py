@@ -63,7 +63,7 @@ NEAREST = {
     "python": ["trajectory", "scene", "outcome", "border", "batches"],
 }
 
-# Of tests/core, those that need seconds; the last prints numbers.
+# Of tests/core, those that need seconds.
 PROGRAMS = ("core_test", "threads_test", "lanes_test", "golden")
 
 # Written by programs, or nothing but names.
@@ -145,7 +145,7 @@ class Workshop:
 
     def __init__(self, folder: Path, processes: int):
         self.took: dict[tuple[str, ...], float] = {}  # seconds, of tests that passed
-        self.bits = b""  # what the last of PROGRAMS prints for the sources as they are
+        self.printed: dict[str, bytes] = {}  # by PROGRAMS, from the sources as they are
         self.spread = ["-n", str(processes), "--dist", "loadfile"] if processes > 1 else []
         self.copy = folder / "copy"
         self.objects = folder / "objects"
@@ -180,8 +180,8 @@ class Workshop:
                 shutil.copy2(module, package)
         return True
 
-    def passes(self, *arguments: str) -> bool:
-        """Whether the tests notice nothing; one that hangs, for five times as long, has noticed."""
+    def failing(self, *arguments: str) -> str:
+        """Which test fails first, if any; one that hangs, for five times as long as usual, does."""
         usual = 60.0 if arguments else 1500.0
         seconds = 60 + 5 * self.took.get(arguments, usual)
         begin = time.monotonic()
@@ -189,34 +189,34 @@ class Workshop:
                    *self.spread, *arguments]  # fmt: skip
         try:
             done = subprocess.run(
-                command, cwd=self.copy, env=self.environment, capture_output=True, timeout=seconds
-            )
+                command, cwd=self.copy, env=self.environment, capture_output=True, text=True,
+                timeout=seconds,
+            )  # fmt: skip
         except subprocess.TimeoutExpired:
-            return False
+            return "one that takes too long"
         if done.returncode == 4:
-            sys.exit(done.stderr.decode())
+            sys.exit(done.stderr)
         if done.returncode not in (0, 5):  # 5: no such tests there
-            return False
+            told = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
+            return told[1] if told else f"exit code {done.returncode}"
         self.took[arguments] = time.monotonic() - begin
-        return True
+        return ""
 
-    def programs_hold(self) -> bool:
-        """Whether those of tests/core notice nothing, and the bits are those of the first call."""
-        printed = b""
+    def failing_program(self) -> str:
+        """Which of PROGRAMS fails, or prints other bits than in the first call."""
         for name in PROGRAMS:
-            if (program := self.objects / name).exists():
-                try:
-                    done = subprocess.run([program], capture_output=True, timeout=60)
-                except subprocess.TimeoutExpired:
-                    return False
-                if done.returncode:
-                    return False
-                printed = done.stdout
-        self.bits = self.bits or printed
-        return printed == self.bits
+            if not (program := self.objects / name).exists():
+                continue
+            try:
+                done = subprocess.run([program], capture_output=True, timeout=60)
+            except subprocess.TimeoutExpired:
+                return name
+            if done.returncode or self.printed.setdefault(name, done.stdout) != done.stdout:
+                return name
+        return ""
 
-    def judged(self, mutant: Mutant, thorough: bool) -> str:
-        """What noticed it: "build", a stage of the tests, or nothing: "alive"."""
+    def judged(self, mutant: Mutant, thorough: bool) -> tuple[str, str]:
+        """What noticed it: "build", a stage of the tests or nothing ("alive"); and which test."""
         path = self.copy / mutant.path
         whole = path.read_text(encoding="utf-8")
         lines = whole.splitlines(keepends=True)
@@ -226,11 +226,12 @@ class Workshop:
         path.write_text("".join(lines), encoding="utf-8")
         try:
             if not self.build():
-                return "build"
+                return "build", ""
             for stage, arguments in stages(mutant.path, thorough):
-                if not (self.programs_hold() if stage == "programs" else self.passes(*arguments)):
-                    return stage
-            return "alive"
+                programs = stage == "programs"
+                if by := self.failing_program() if programs else self.failing(*arguments):
+                    return stage, by
+            return "alive", ""
         finally:
             path.write_text(whole, encoding="utf-8")
 
@@ -290,25 +291,27 @@ def main() -> None:
     known = json.loads(results.read_text()) if results.exists() else {}
     workshop = Workshop(options.folder, options.processes)
     workshop.configure()
-    if not (workshop.build() and workshop.programs_hold() and workshop.passes("-m", "quick")):
-        sys.exit("the sources as they are do not build, or do not pass")
+    if not workshop.build():
+        sys.exit("the sources as they are do not build")
+    if by := workshop.failing_program() or workshop.failing("-m", "quick"):
+        sys.exit(f"{by} fails with the sources as they are")
     for i, mutant in enumerate(todo):
         if mutant.name in known and not options.only:
             continue
         begin = time.monotonic()
-        fate = workshop.judged(mutant, options.thorough)
-        known[mutant.name] = {**asdict(mutant), "fate": fate}
+        fate, by = workshop.judged(mutant, options.thorough)
+        known[mutant.name] = {**asdict(mutant), "fate": fate, "by": by}
         results.write_text(json.dumps(known, indent=1))
-        print(f"{i + 1}/{len(todo)} {mutant.name} {mutant.kind}: {fate}, "
-              f"{time.monotonic() - begin:.0f} s", flush=True)  # fmt: skip
+        took = f"{time.monotonic() - begin:.0f} s"
+        print(f"{i + 1}/{len(todo)} {mutant.name} {mutant.kind}: {fate}, {took} {by}", flush=True)
         if fate == "alive":
             print(f"    {mutant.was}\n    {mutant.now}", flush=True)
     fates = [fate for m in todo if (fate := known[m.name]["fate"]) != "build"]
     if not workshop.build():
         sys.exit("the sources as they are do not build any more")
     for folder in sorted(set(fates) - {"programs", "quick", "all", "alive"}):
-        if not workshop.passes(f"tests/{folder}"):
-            sys.exit(f"tests/{folder} notices something in the sources as they are")
+        if by := workshop.failing(f"tests/{folder}"):
+            sys.exit(f"{by} fails with the sources as they are")
     print(f"{sum(fate != 'alive' for fate in fates)} of {len(fates)} noticed")
 
 
