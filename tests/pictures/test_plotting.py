@@ -88,6 +88,13 @@ def test_strobe_bodies_stand_on_the_ground_at_even_times(trajectory: rl.Trajecto
         assert abs(lowest_x - contact_x[i]) <= 1e-13 * (size + rho + abs(at.x[i]))
 
 
+def test_strobe_bodies_darken_evenly_from_early_to_late(report: rl.Trajectory) -> None:
+    shown = rl.plot_strobe(report, ax=new_axes(), count=5)
+    light = [float(np.dot(body.get_edgecolor()[:3], (0.3, 0.6, 0.1))) for body in shown.bodies]
+    steps = -np.diff(light)
+    assert np.all(steps > 0.1) and steps.max() < 3 * steps.min()
+
+
 def test_strobe_hand_ends_on_the_outline_at_the_end_of_axis_a(trajectory: rl.Trajectory) -> None:
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     for body, hand in zip(shown.bodies, shown.hands, strict=True):

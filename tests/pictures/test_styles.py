@@ -12,6 +12,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 import rolling_ellipse as rl
+from cycler import cycler
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -73,6 +74,12 @@ def test_a_style_with_colours_of_its_own_gives_them() -> None:
         assert drawn <= {matplotlib.colors.to_hex(colour) for colour in own}
     with plt.style.context({"axes.facecolor": "black", "figure.facecolor": "black"}):
         assert contrast(palette_of().blue, "black") > 4.5
+
+
+def test_colours_of_a_style_that_are_nearly_its_background_or_its_text_are_left_out() -> None:
+    with plt.style.context({"axes.prop_cycle": cycler(color=["#fefefe", "#020202", "red"])}):
+        palette = palette_of()
+        assert {palette.blue, palette.orange, palette.sky, palette.plum} == {"#ff0000"}
 
 
 def test_axes_made_in_another_style_are_drawn_in_by_their_own_background() -> None:

@@ -104,6 +104,8 @@ def test_any_quantity_goes_on_either_axis(x: str, y: str) -> None:
     runs = [run for run in FOUND.of() if run.name == "dop853"]
     last = runs[-1].value(y)
     assert line[-1, 1] == (max(last, FOUND.reference.floor) if y == "final" else last)
+    if x in ("steps", "evaluations", "setting"):  # where nothing is kept on the rim
+        assert line[-1, 0] == runs[-1].value(x)
     chart.ax.figure.canvas.draw()
 
 
