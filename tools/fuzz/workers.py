@@ -60,6 +60,7 @@ def work(task: Task, pipe: int) -> None:
     from . import judge
 
     faulthandler.enable()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell lets run aside has none
     if task.limit_memory:
         import resource
 
