@@ -17,7 +17,7 @@ from oracles.geometry import support
 from oracles.margins import told
 from oracles.numbers import DIGITS, EPS, PI
 from oracles.trajectory import MATRICES, SCENES, VECTORS
-from rolling_ellipse import Scene, Trajectory, simulate
+from rolling_ellipse import Mode, Scene, Trajectory, simulate
 
 Long = Any  # arrays of np.longdouble
 
@@ -114,8 +114,27 @@ DERIVATIVES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", [name for name, rate in DERIVATIVES.items() if rate])
+CHANGING = [name for name, rate in DERIVATIVES.items() if rate]
+IN_ONE_MODE = {
+    Mode.SLIDING: Scene(2.0, 1.0, theta=0.4, omega=1.0, x_dot=9.0, friction=0.2),
+    Mode.FLIGHT: Scene(2.0, 1.0, theta=0.4, omega=2.0, x_dot=1.0, z=8.0, z_dot=1.0),
+}
+
+
+@pytest.mark.parametrize("name", CHANGING)
 def test_rates_are_derivatives(motion: Trajectory, name: str) -> None:
+    its_rate_is_its_derivative(motion, name)
+
+
+@pytest.mark.parametrize("name", CHANGING)
+@pytest.mark.parametrize("mode", IN_ONE_MODE)
+def test_rates_are_derivatives_in_slides_and_flights(mode: Mode, name: str) -> None:
+    motion = simulate(IN_ONE_MODE[mode], np.linspace(0.0, 1.0, 101))
+    assert set(motion.mode) == {mode}
+    its_rate_is_its_derivative(motion, name)
+
+
+def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
     """Central differences D(d) of `sol` at times d and 2 d away. D(d) misses the rate by c d^2 +
     O(d^4), so D(2 d) - D(d) = 3 c d^2 is three times that; and by the grain of the values over d:
     16 ulp of their size, and a few ulp of theta through their slope in theta."""
