@@ -1,10 +1,15 @@
 """Shapes and angles that every layer of the suite runs through."""
 
 import math
+import signal
 
 import pytest
 
 pytest.register_assert_rewrite("oracles")
+
+# Tests send Ctrl-C, to children, too: what a shell runs aside would have it ignored.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # neutral (the circle), a hair beside it (where a*a - b*b cancels), generic, standing up, thin both
 # ways up to the limits of the package, and sizes far from a metre (nothing may depend on the unit)
