@@ -109,7 +109,7 @@ class _Search:
             self.unproved[where(kind)] = None
             times, measures = self._with_minima(times, measures)
         # What only touches the value is rounded to one side of it or the other.
-        step = np.diff(measures)
+        step = np.sign(np.diff(measures))
         turns = np.full(times.size, at.constant or bool((np.abs(measures) <= rounding).all()))
         turns[1:-1] |= step[1:] * step[:-1] <= 0
         measures = np.where(turns & (np.abs(measures) <= rounding), 0.0, measures)

@@ -184,6 +184,14 @@ def test_touches_between_two_looks_of_a_function() -> None:
     assert touch == pytest.approx([once], abs=1e-7)
 
 
+def test_a_function_of_any_size_is_looked_at() -> None:
+    """Another warning would be an error: products of its changes leave the doubles."""
+    motion = simulate(Scene(1.7, 1.0, theta=math.pi / 2, friction=0.0), [1e299, 1e300])
+    with pytest.warns(CompletenessWarning, match="while it rests"):
+        (half,) = motion.when(function=lambda at: at.t - 5e299)
+    assert half == pytest.approx(5e299, rel=1e-15)
+
+
 def test_it_warns_only_where_nothing_is_proved() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")

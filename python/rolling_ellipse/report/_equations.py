@@ -177,20 +177,22 @@ def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 def eq_48(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
     """Return theta_dot just after the blow by eq 48 [rad/s]; right: `struck_speed`."""
     body = Scene(a, b, mass=mass)
-    _require_blow(impulse, d)
+    impulse, d = _blow(impulse, d)
     return 4 * impulse * d / (body.mass * (body.a**2 + body.b**2))
 
 
 def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
     """Return theta_dot after a blow on the body at rest, lying flat, that sticks [rad/s]."""
-    _require_blow(impulse, d)
+    impulse, d = _blow(impulse, d)
     return Scene(a, b, mass=mass, impulse=Impulse.press(impulse, d)).initial_state.omega
 
 
-def _require_blow(impulse: Any, d: Any) -> None:
-    for name, value in (("impulse", impulse), ("d", d)):
-        if not math.isfinite(number(name, value)):
+def _blow(impulse: Any, d: Any) -> tuple[float, float]:
+    blow = number("impulse", impulse), number("d", d)
+    for name, value in zip(("impulse", "d"), blow, strict=True):
+        if not math.isfinite(value):
             raise ValueError(f"{name} must be finite, got {value}")
+    return blow
 
 
 def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
