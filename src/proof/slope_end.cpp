@@ -115,7 +115,7 @@ double broken_about(const SlopeFlow& flow, const SlopeRun& run, double friction)
         const double inertia = inertia_about_contact(body.gyration2, here);
         const double w = energy.start +
                          body.gravity.along * (path_at(body, 0.0, double(place.angle)) - start) +
-                         body.gravity.into * (energy.height - here.h);
+                         body.gravity.into * fall(body, energy.at, here).value;
         const double omega2 = 2 * w / inertia;
         const double gain = run.heading * 2 * body.gain / inertia;
         if (!(omega2 > 0)) continue;

@@ -62,16 +62,26 @@ double path_at(const SlopeBody& body, double quarters, double angle) {
     return std::fma(quarters, body.quarter_path, std::copysign(over, angle));
 }
 
+Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to) {
+    const auto difference = [](double x, double y) {
+        return tracked(square(x)) - tracked(square(y));
+    };
+    const bool by_tips =
+        std::abs(from.cos) + std::abs(to.cos) < std::abs(from.sin) + std::abs(to.sin);
+    return tracked(body.c2 / (from.h + to.h)) *
+           (by_tips ? difference(to.cos, from.cos) : difference(from.sin, to.sin));
+}
+
 SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start) {
     const Geometry at = geometry(body, start);
-    return {0.5 * inertia_about_contact(body.gyration2, at) * square(start.omega), at.h};
+    return {0.5 * inertia_about_contact(body.gyration2, at) * square(start.omega), at};
 }
 
 Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
                   const Geometry& here) {
     const double gained = body.gravity.along * double(at.path);
     return tracked(energy.start) + tracked(gained) +
-           tracked(body.gravity.into) * (tracked(energy.height) - tracked(here.h));
+           tracked(body.gravity.into) * fall(body, energy.at, here);
 }
 
 SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {

@@ -48,10 +48,14 @@ inline Geometry geometry(const SlopeBody& body, const SlopePlace& at) {
 // The path of the centre from the flat position of quarter 0.
 double path_at(const SlopeBody& body, double quarters, double angle);
 
+// How much lower the centre is at one place than at another: as a product, since the difference of
+// the heights of what is nearly a circle would be a rounding.
+Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to);
+
 // The energy W = D omega^2/2 along the motion, from that of its start: physics (58).
 struct SlopeEnergy {
-    double start;   // W
-    double height;  // of the centre
+    double start;  // W
+    Geometry at;
 };
 
 SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start);

@@ -85,9 +85,9 @@ Offset offset_at(const RunPanel& panel, double v) {
 }
 
 // W less that at `from`.
-double gained(const SlopeRun& run, double quarters, double angle, double height) {
-    return run.body.gravity.along * (path_at(run.body, quarters, angle) - run.path) -
-           run.body.gravity.into * (height - run.height);
+double gained(const SlopeRun& run, double quarters, double angle, const Geometry& here) {
+    return run.body.gravity.along * (path_at(run.body, quarters, angle) - run.path) +
+           run.body.gravity.into * fall(run.body, run.at, here).value;
 }
 
 class RunMaker {
@@ -100,13 +100,14 @@ class RunMaker {
         run_.heading = std::copysign(1.0, from.omega);
         run_.energy = energy;
         run_.path = path_at(body, from.quarters - run_.turns, double(from.angle));
-        run_.height = geometry(body, from).h;
+        run_.at = geometry(body, from);
         const double lost = run_.heading < 0 ? (half_turns - 1) * body.gain : 0.0;
         const double hill = hill_angle(body);
         const Geometry top = geometry(body, 1.0, hill);
         const double curvature = body.gravity.along * top.dh - body.gravity.into * top.ddh;
-        const double least = std::max(energy - lost - body.gravity.into * (top.h - run_.height),
-                                      least_levels * body.gain);
+        const double least =
+            std::max(energy - lost + body.gravity.into * fall(body, run_.at, top).value,
+                     least_levels * body.gain);
         const double flat = std::asinh(std::sqrt(body.series.d0 / body.series.d1));
         const double beside_hill =
             curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
@@ -174,7 +175,7 @@ class RunMaker {
             const Geometry at = geometry(run_.body, panel.quarters, angle);
             const double root = std::sqrt(0.5 * inertia_about_contact(run_.body.gyration2, at));
             nodes.weight.push_back(weight * half * rate * root);
-            nodes.level.push_back(run_.energy + gained(run_, panel.quarters, angle, at.h));
+            nodes.level.push_back(run_.energy + gained(run_, panel.quarters, angle, at));
         }
     }
 
@@ -255,7 +256,7 @@ double times_of(const SlopeRun& run, const RunNodes& nodes, std::size_t begin, s
 SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns) {
     const double angle = panel.angle + offset_at(panel, v).angle;
     const Geometry at = geometry(run.body, panel.quarters, angle);
-    const double w = run.energy + gained(run, panel.quarters, angle, at.h) +
+    const double w = run.energy + gained(run, panel.quarters, angle, at) +
                      run.heading * half_turns * run.body.gain;
     const double inertia = inertia_about_contact(run.body.gyration2, at);
     const double turned = run.heading * 2 * half_turns;

@@ -41,8 +41,8 @@ struct SlopeRun {
     double turns;    // quarters of whole half turns before it, from which its own count
     double heading;  // +1 downhill, -1 uphill
     double path;     // at `from`, from the flat position that they end at
-    double height;
-    double energy;  // W there
+    Geometry at;     // there
+    double energy;   // W there
     std::vector<RunPanel> panels;
     RunNodes nodes;
     RunNodes part_nodes;

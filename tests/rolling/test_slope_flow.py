@@ -269,3 +269,30 @@ def test_a_body_that_is_nearly_a_circle_climbs_on_no_rounding() -> None:
     scene = rl.Scene(a, b, theta=0.3, omega=-5.6e-51, friction=0.02, slope=5e-324)
     moved = abs(rl.simulate(scene, t).theta[-1] - 0.3)
     assert moved <= t**2 / 2 * scene.gravity * (b - a) / a**2 + np.spacing(0.3)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        rl.Scene(
+            1.0 + EPS,
+            1.0 - EPS / 2,
+            theta=math.pi / 2,
+            omega=2.6e-10,
+            friction=1.0,
+            gravity=1.0,
+            slope=5e-324,
+        ),
+        rl.Scene(1e21, 1e21 * (1 + EPS), omega=-9.9e-31, friction=0.053, slope=5e-324),
+    ],
+    ids=["tall", "flat"],
+)
+def test_a_body_that_is_nearly_a_circle_has_a_certificate(scene: rl.Scene) -> None:
+    """All that drives it is the roundings of its height: its motion is one piece all the same,
+    and its omega changes by no more than gravity and all of its height differences give."""
+    t = 0.1 / abs(scene.omega)
+    motion = rl.simulate(scene, t, model="rolling")
+    fall = 2 * scene.gravity * abs(scene.a - scene.b) / min(scene.a, scene.b) ** 2
+    assert np.all(np.abs(motion.omega**2 - scene.omega**2) <= fall + 8 * EPS * scene.omega**2)
+    assert rl.certify(scene).validity is rl.Validity.VALID
+    assert rl.simulate(scene, t).model == "contact"
