@@ -206,8 +206,7 @@ class ContactRun {
         const double rebound = std::max(state_.z_dot - at.dh * state_.omega, 0.0);
         const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
         const double ratio = rebound / (at.dh * before.omega - before.z_dot);
-        if (rebound > 0 &&
-            (rebound > rest_speed_ || c <= 0 || !(ratio < largest_ratio_that_settles))) {
+        if (rebound > 0 && !settles(rebound, ratio, c)) {
             return go_on_with({Mode::flight}, EventKind::impact, before);
         }
         if (rebound > 0) {
@@ -217,6 +216,16 @@ class ContactRun {
             return;
         }
         go_on_with(continuation(scene_, state_), EventKind::impact, before);
+    }
+
+    // Whether a rebound is the first of bounces that are too small and too short to tell apart. The
+    // short ones take place under one c and h': where c is small, no slow rebound is short.
+    bool settles(double rebound, double ratio, double c) const {
+        constexpr double longest = 0.04;  // of the time in which a body falls or turns
+        if (rebound > rest_speed_ || c <= 0 || !(ratio < largest_ratio_that_settles)) return false;
+        const double rate = std::max(std::sqrt(scene_.gravity / std::min(scene_.a, scene_.b)),
+                                     std::abs(state_.omega));
+        return 2 * rebound * rate <= longest * c * (1 - ratio);
     }
 
     // Infinitely many bounces that shrink by a ratio take a finite time, physics (57); so small

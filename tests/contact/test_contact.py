@@ -123,6 +123,25 @@ def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> No
     assert np.array_equal(inside.z, at.h) and np.all(inside.normal_force == 0)
 
 
+@pytest.mark.parametrize("tilt", [1e-3, 1e-5, 1e-7])
+def test_bounces_on_a_wall_are_too_long_to_settle(tilt: float) -> None:
+    """Where next to nothing presses the body to its ground, a slow rebound is a long one: the body
+    is accelerated evenly without friction, while it flies, settles or slides."""
+    slope = math.pi / 2 - tilt
+    scene = Scene(2.0, 1.0, friction=0.0, restitution=0.5, slope=slope, z=1.0 + 1e-13 / tilt)
+    motion = simulate(scene, 30.0)
+    assert kinds(motion)[0] is EventKind.IMPACT and motion.mode[-1] == Mode.SLIDING
+    fallen = GRAVITY * math.sin(slope) * motion.t**2 / 2
+    # settling in one piece goes evenly: wrong by an eighth of the square of the time it may last
+    lasts = 0.04 / math.sqrt(GRAVITY / scene.b)
+    assert np.all(
+        np.abs(motion.x - fallen) <= GRAVITY * lasts**2 / 8 * (fallen > 0) + 1e-15 * fallen
+    )
+    late = motion.t > 20.0
+    assert np.all(np.abs(motion.x - fallen)[late] <= 4 * EPS * fallen[late])
+    assert np.ptp(motion.energy) <= 8 * EPS * motion.kinetic_energy.max()
+
+
 def test_forces_are_in_newtons_where_only_the_mass_is_no_unit_of_its_own_size() -> None:
     """The units of length and time of this scene are metres and seconds, and 8 kg is its mass's."""
     light = Scene(1.2, 0.8, gravity=1.0, theta=0.3, omega=2.0, friction=0.2, x_dot=1.0)
