@@ -70,9 +70,9 @@ Arc arc(const SlopeFlow& flow) {
         for (double& mark : found.marks) mark *= flow.body.time;
         return found;
     }
-    Arc found{ArcKind::rolling_steps, 0.0, 0.0, infinity, {}};
+    Arc found{ArcKind::sloping, 0.0, 0.0, infinity, {}};
     const auto mark_run = [&](const SlopeRun& run, double half_turns) {
-        constexpr double most_half_turns = 1e5;
+        constexpr double most_half_turns = 50'000;
         constexpr int parts = 16;
         double last = double(run.from.time);
         const double most = std::min(half_turns, most_half_turns);

@@ -12,6 +12,7 @@ enum class ArcKind {
     uniform,           // a circle that rolls on level ground
     turning,           // exact rolling over and over
     swinging,          // exact rolling to and fro
+    sloping,           // exact rolling on a slope, not to and fro: it turns round once at most
     rolling_steps,     // integrated: polynomials of theta and omega between the marks
     coordinate_steps,  // of all coordinates
     sliding_steps,     // of theta, omega and x
@@ -21,7 +22,8 @@ enum class ArcKind {
 
 // The marks lie strictly inside, ascending: of exact rolling the passages of the flat position and
 // of the tip, or turning point, in the first period, between which height, speed and angle rise or
-// fall; steps of integrations; the vertices of flight.
+// fall; on a slope sixteen parts of each half turn, of 50 000 at most, in which its omega is nearly
+// a polynomial; steps of integrations; the vertices of flight.
 struct Arc {
     ArcKind kind;
     double begin;   // [s]

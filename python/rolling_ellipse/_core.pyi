@@ -93,11 +93,12 @@ class ArcKind(enum.Enum):
     UNIFORM = 1
     TURNING = 2
     SWINGING = 3
-    ROLLING_STEPS = 4
-    COORDINATE_STEPS = 5
-    SLIDING_STEPS = 6
-    SETTLING = 7
-    FLIGHT = 8
+    SLOPING = 4
+    ROLLING_STEPS = 5
+    COORDINATE_STEPS = 6
+    SLIDING_STEPS = 7
+    SETTLING = 8
+    FLIGHT = 9
 
 class Settings:
     def __init__(

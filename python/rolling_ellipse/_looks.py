@@ -32,6 +32,7 @@ _CONSTANT = {
     ArcKind.FLIGHT: ("omega",),
 }
 _POLYNOMIAL = {
+    ArcKind.SLOPING: {"omega": "omega"},
     ArcKind.ROLLING_STEPS: {**dict.fromkeys(_TURNS, "theta"), "omega": "omega"},
     ArcKind.COORDINATE_STEPS: {name: name for name in _EXACT},
     ArcKind.SLIDING_STEPS: {name: name for name in (*_TURNS, "omega")},
@@ -47,6 +48,7 @@ _WHERE = {
 
 _MOST_BISECTIONS = 2200  # all doubles from 0 to the largest
 _LOOKS_A_STEP, _LOOKS_A_QUARTER = 16, 64
+_MARKS_A_QUARTER = 8  # on a slope
 _MOST_QUARTERS = 100_000
 
 
@@ -88,11 +90,19 @@ def looks(arc: Arc, name: str, value: float, last: float, at: At) -> Looks:
     if name in _EXACT and arc.kind in _PERIODIC:
         one_way = arc.kind is ArcKind.TURNING and name in _TURNS
         return Looks(ends) if one_way else _periodic(arc, name, value, last, at)
+    if arc.kind is ArcKind.SLOPING:
+        turned = _with_turn(ends, at)
+        if name in _TURNS:
+            return Looks(turned)
+        _require_few(name, _quarters(turned, at))
+        if name == "z":
+            return Looks(_with_axes_passed(turned, at))
     times = _within(arc.marks, ends)
     if (same := _POLYNOMIAL.get(arc.kind, {}).get(name)) is not None:
         return Looks(*turning_points(times, same, at))
     if name == "z":
         times, proved = turning_points(times, "theta", at)
+        _require_few(name, _quarters(times, at))
         return Looks(_with_axes_passed(times, at), proved)
     return Looks(_close_together(arc, name, times, at), proved=False)
 
@@ -177,6 +187,19 @@ def _periodic(arc: Arc, name: str, value: float, last: float, at: At) -> Looks:
 # ----------------------------------------------------------------------------------- and others
 
 
+def _quarters(times: FloatArray, at: At) -> float:
+    """Quarter turns between the times, to and fro."""
+    return float(np.abs(np.diff(at("theta", times))).sum()) / (math.pi / 2)
+
+
+def _with_turn(ends: FloatArray, at: At) -> FloatArray:
+    """Add the time at which a motion on a slope turns round."""
+    before, after = np.sign(at("omega", ends))
+    if before * after >= 0:
+        return ends
+    return _joined(ends, passed(lambda times, _: at("omega", times), ends[:1], ends[1:]))
+
+
 def _with_axes_passed(times: FloatArray, at: At) -> FloatArray:
     """Add the times at which theta passes multiples of pi/2, where the height turns round."""
     quarters = at("theta", times) / (math.pi / 2)
@@ -202,6 +225,8 @@ def _close_together(arc: Arc, name: str, times: FloatArray, at: At) -> FloatArra
         _require_few(name, quarters)
         marks = _marks_between(arc, times[0], times[-1])
         return _divided(_within(marks, times), _LOOKS_A_QUARTER)
+    if arc.kind is ArcKind.SLOPING:
+        return _divided(times, _LOOKS_A_QUARTER // _MARKS_A_QUARTER)
     quarters = float(np.ptp(at("theta", times))) / (math.pi / 2)
     _require_few(name, quarters)
     return _divided(times, _LOOKS_A_QUARTER * (8 + math.ceil(quarters)))

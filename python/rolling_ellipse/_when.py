@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from ._trajectory import Trajectory
 
 _MOST_TIMES = 1_000_000
-_EXACT_ROUNDINGS, _STEPPED_ROUNDINGS = 8, 1000  # ulp of a value that is no more than rounding
-_STEPPED = (ArcKind.ROLLING_STEPS, ArcKind.COORDINATE_STEPS, ArcKind.SLIDING_STEPS)
+_EXACT_ROUNDINGS, _SUMMED_ROUNDINGS = 8, 1000  # ulp of a value that is no more than rounding
+_SUMMED = (
+    ArcKind.SLOPING, ArcKind.ROLLING_STEPS, ArcKind.COORDINATE_STEPS, ArcKind.SLIDING_STEPS,
+)  # fmt: skip
 _SAME_TIME = 4  # ulp
 _GOLDEN = 0.6180339887498949
 _SECTIONS = 45  # to 1e-9 of two looks: there a minimum is flat
@@ -126,7 +128,7 @@ class _Search:
         size = np.abs(measures + self._value).max() + abs(self._value)
         if self._name in ("x", "contact_x"):
             size += max(scene.a, scene.b)
-        ulps = _STEPPED_ROUNDINGS if kind in _STEPPED else _EXACT_ROUNDINGS
+        ulps = _SUMMED_ROUNDINGS if kind in _SUMMED else _EXACT_ROUNDINGS
         return float(ulps * np.finfo(float).eps * size)
 
     def _with_minima(

@@ -186,6 +186,7 @@ void bind_solution(py::module_& m) {
         .value("UNIFORM", ArcKind::uniform)
         .value("TURNING", ArcKind::turning)
         .value("SWINGING", ArcKind::swinging)
+        .value("SLOPING", ArcKind::sloping)
         .value("ROLLING_STEPS", ArcKind::rolling_steps)
         .value("COORDINATE_STEPS", ArcKind::coordinate_steps)
         .value("SLIDING_STEPS", ArcKind::sliding_steps)

@@ -160,6 +160,32 @@ def test_a_turning_point_on_a_slope() -> None:
     assert both == pytest.approx([(3.0 - root) / pull, (3.0 + root) / pull], rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
+@pytest.mark.filterwarnings("error::rolling_ellipse.CompletenessWarning")
+def test_far_down_a_slope() -> None:
+    """It comes by the place of its start once more, and never again; all heights are too many."""
+    motion = simulate(Scene(2.0, 1.0, slope=0.1, omega=-8.0), [0.0, 1e6], model="rolling")
+    start, again = motion.when(theta=0.0)
+    assert start == 0 and motion.when(x=0.0) == pytest.approx([0.0, again], rel=1e-12)
+    before, after = motion.sol([0.5 * again, again]).omega
+    assert abs(before) < 1 and after == pytest.approx(8.0, rel=1e-12)  # that energy again
+    angle = 0.5 * motion.theta[-1]
+    (t,) = motion.when(theta=angle)
+    assert abs(motion.at(t).theta - angle) <= 8 * EPS * angle
+    for name in ("z", "omega"):
+        with pytest.raises(ValueError, match=f"^{name} must not be looked at over more than 1000"):
+            motion.when(**{name: 1.5})  # type: ignore[arg-type]
+
+
+def test_steps_that_are_too_long_are_not_looked_at_for_ever() -> None:
+    """The last step of what stopped goes over millions of quarter turns."""
+    thin = Scene(0.002832888141846167, 1.0, theta=math.pi / 2, gravity=1e-19, inertia=1e-5)
+    with pytest.raises(rl.IntegrationError) as stopped:
+        simulate(thin, 1.7e10, model="rolling", method="rk4", step=1.15e9)
+    with pytest.raises(ValueError, match=r"^z must not be looked at over more than 100000 quarter"):
+        stopped.value.trajectory.when(z=0.5)
+
+
 @pytest.mark.parametrize(("a", "b", "theta"), [(1e3, 1.0, 0.3), (1.0, 1e3, 1.3), (1.0, 1e-3, 0.3)])
 def test_the_thinnest(a: float, b: float, theta: float) -> None:
     scene = Scene(a, b, theta=theta)
