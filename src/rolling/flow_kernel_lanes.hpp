@@ -149,7 +149,7 @@ struct alignas(64) Block {
     double quarters[block];
 };
 
-// t + start - n T without rounding.
+// t + start - n T without rounding. Of a late time the low part of n T is longer than a piece.
 void reduce(const FlowReader& motion, const double* times, int n, Block& found) {
     const DoubleDouble period = motion.half_turn;
     const DoubleDouble start = motion.start_time;
@@ -158,10 +158,12 @@ void reduce(const FlowReader& motion, const double* times, int n, Block& found) 
         const Pack turns = nearest((t + start.high) * motion.half_turns_per_time);
         const PackPair turned = two_product(turns, pack(period.high));
         const PackPair rest = two_sum(t, -turned.high);
-        const PackPair time = two_sum(rest.high, pack(start.high));
+        const PackPair high = two_sum(rest.high, pack(start.high));
+        const Pack low = (rest.low + high.low) - (turned.low + turns * period.low) + start.low;
+        const PackPair time = two_sum(high.high, low);
         store(turns, found.turns + i);
         store(time.high, found.time + i);
-        store((rest.low + time.low) - (turned.low + turns * period.low) + start.low, found.low + i);
+        store(time.low, found.low + i);
     }
 }
 
