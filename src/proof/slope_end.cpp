@@ -64,6 +64,14 @@ LawPolynomial law_polynomial(const SlopeBody& body, const SlopePiece& piece, dou
     return law;
 }
 
+// Whether what the polynomial leaves out is within its rounding. Pieces are as long as angle, speed
+// and path allow; of a body that is nearly a circle, on what is nearly a wall, the law is so much
+// less than those that it has to be looked at in shorter ones.
+bool is_resolved(const LawPolynomial& law) {
+    const double last = std::abs(law.coefficients[degree - 1]) + std::abs(law.coefficients[degree]);
+    return !(last > rounding * law.size);
+}
+
 double value(const LawPolynomial& law, double x) {
     double sum = 0.0;
     for (int k = degree; k >= 0; --k) sum = sum * x + law.coefficients[k];
@@ -279,17 +287,34 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, double tolerance
 bool LawWatch::look(const SlopePiece& piece) {
     const int laws = std::isinf(friction_) ? 1 : 2;
     if (std::isinf(piece.lasts)) return false;
+    const double sides[] = {1.0, -1.0};
+    LawPolynomial law[2];
     for (int i = 0; i < laws; ++i) {
-        const double side = i == 0 ? 1.0 : -1.0;
-        const LawPolynomial law = law_polynomial(body_, piece, friction_, side);
-        const double tolerance = rounding * law.size;
-        double least = law.coefficients[0];
-        for (int k = 1; k <= degree; ++k) least -= std::abs(law.coefficients[k]);
+        law[i] = law_polynomial(body_, piece, friction_, sides[i]);
+        if (!is_resolved(law[i])) return look_at_parts(piece);
+    }
+    for (int i = 0; i < laws; ++i) {
+        const double tolerance = rounding * law[i].size;
+        double least = law[i].coefficients[0];
+        for (int k = 1; k <= degree; ++k) least -= std::abs(law[i].coefficients[k]);
         if (least > tolerance && !near_[i].is) continue;
-        examine(piece, law, tolerance, side, near_[i]);
+        examine(piece, law[i], tolerance, sides[i], near_[i]);
     }
     first_ = false;
     return met_.broken.has_value();
+}
+
+bool LawWatch::look_at_parts(const SlopePiece& piece) {
+    SlopePiece part = piece;
+    part.lasts = 0.5 * piece.lasts;
+    double seen = 0.0;
+    while (!look(part)) {
+        seen += part.lasts;
+        if (seen >= piece.lasts) return false;
+        part = piece_from(body_, place_in(piece, seen));
+        part.lasts = std::min(part.lasts, piece.lasts - seen);
+    }
+    return true;
 }
 
 LawMeetings LawWatch::met() const {

@@ -41,6 +41,8 @@ class LawWatch {
     LawMeetings met() const;
 
   private:
+    bool look_at_parts(const SlopePiece& piece);
+
     struct Near {
         bool is = false;
         bool from_start = false;

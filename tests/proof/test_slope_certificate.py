@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from numpy.typing import NDArray
+from oracles.numbers import EPS
 from rolling_ellipse import Scene, Validity, certify
 
 GRAVITY = 9.81
@@ -214,3 +215,31 @@ def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
     with pytest.warns(rl.ValidityWarning):
         forced = rl.simulate(scene, 50.0, model="rolling")
     assert forced.valid_until == pytest.approx(motion.events[0].t, rel=1e-14)
+
+
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
+@pytest.mark.parametrize("roundness", [2.0**-20, 2.0**-35, 2.0**-44, 2.0**-49])
+def test_nearly_round_on_what_is_nearly_a_wall(roundness: float) -> None:
+    """Rolling ends where N = m (g cos(alpha) + z'') of the motion itself is zero, and not before:
+    N is less than a millionth, or a 1e15th, of the weight there."""
+    rng = np.random.default_rng(int(1 / roundness) % 1000)
+    ended = 0
+    for _ in range(120):
+        omega = float(rng.normal() * 10 ** rng.uniform(0, 1.5))
+        b = 1.0 + roundness * (1 if rng.random() < 0.5 else -1)
+        wall = math.pi / 2 - roundness * omega**2 * rng.uniform(0.2, 4.0) / GRAVITY
+        wall = min(wall, math.nextafter(math.pi / 2, 0.0))
+        slope = wall if rng.random() < 0.5 else -wall
+        scene = Scene(1.0, b, friction=math.inf, slope=slope, theta=rng.uniform(-7, 7), omega=omega)
+        motion = rl.simulate(scene, 20.0 / abs(omega), model="rolling")
+        end = motion.valid_until
+        if not 0 < end < motion.t_end:
+            continue
+        ended += 1
+        found = motion.sol(np.linspace(0.0, end, 1001))
+        force = found.normal_force / scene.mass
+        size = GRAVITY * math.cos(slope) + 2 * roundness * np.max(found.omega**2)
+        # theta'' is of gravity, and h' of the roundness, to some roundings each
+        rounding = 64 * EPS * (size + roundness * GRAVITY) * (1 + np.abs(found.theta).max())
+        assert np.all(force >= -rounding) and abs(force[-1]) <= rounding
+    assert ended >= 10
