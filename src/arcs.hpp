@@ -16,7 +16,7 @@ enum class ArcKind {
     rolling_steps,     // integrated: polynomials of theta and omega between the marks
     coordinate_steps,  // of all coordinates
     sliding_steps,     // of theta, omega and x
-    settling,          // theta, omega and x are linear
+    settling,          // omega is linear, theta and x are parabolas
     flight,            // theta is linear, x and z are parabolas
 };
 

@@ -49,7 +49,7 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
                     : settings.step ? ", or larger ones"
                                     : ", or loosen rtol and atol");
         case Ending::step_too_small:
-            if (in_contact) return "the slide changes faster than doubles can follow" + place;
+            if (in_contact) return "the motion goes faster than doubles can follow" + place;
             return "no step of a size that changes t meets rtol and atol" + place + ": loosen them";
         case Ending::step_too_large:
             return "a step of " + brief(*settings.step) + " s cannot be solved" + place +

@@ -80,6 +80,8 @@ class _Search:
         self._repeats: list[tuple[float, float, int]] = []
         self.unproved: dict[str, None] = {}
         arcs = motion._solution.arcs()
+        if arcs:  # a function that is none is told of before millions of looks
+            self._measure(np.array([arcs[0].begin]))
         for arc in arcs:
             last = arc.end if arc is arcs[-1] else np.nextafter(arc.end, 0.0)
             if last >= arc.begin:

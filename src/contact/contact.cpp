@@ -119,8 +119,8 @@ class ContactRun {
     void roll_exactly() {
         const RollingStart start = rolling_start(scene_.body(), state_.theta, state_.omega);
         const RollingFlow flow = rolling_flow(start, state_.x);
-        const EndOfRolling end =
-            motion_.segments.empty() ? first_end_ : end_of_rolling(start, scene_.friction);
+        const bool is_first = motion_.segments.empty() && turned_.high == 0;
+        const EndOfRolling end = is_first ? first_end_ : end_of_rolling(start, scene_.friction);
         const double lasts = end.validity == Validity::invalid ? time_of_end(flow, end) : infinity;
         if (lasts == infinity) {
             validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
@@ -192,12 +192,24 @@ class ContactRun {
     void fly() {
         const Flight flight{axes_, scene_.ground_gravity(), state_};
         const double lasts = touch_down(flight);
+        const bool lands = t_ + lasts <= t_end_;
+        State before = state_at(flight, lands ? lasts : t_end_ - t_);
+        if (!is_known(before)) {
+            ending_ = Ending::step_too_small;
+            t_end_ = t_;
+            return finish();
+        }
         add_segment(flight);
-        if (t_ + lasts > t_end_) return finish();
-        State before = state_at(flight, lasts);
+        if (!lands) return finish();
         before.z = geometry(axes_, before.theta).h;
         t_ += lasts;
         hit(before);
+    }
+
+    // Down a wall a body flies farther than doubles reach, if it is let for long enough.
+    static bool is_known(const State& state) {
+        return std::isfinite(state.theta) && std::isfinite(state.x) && std::isfinite(state.z) &&
+               std::isfinite(state.x_dot) && std::isfinite(state.z_dot);
     }
 
     void hit(const State& before) {
@@ -242,9 +254,11 @@ class ContactRun {
             const double hop = 2 * speed / c;
             const double gained =
                 (gravity.along - at.dh * square(moving.omega)) * hop;  // slip in flight
+            // of the centre, which moves as the slip and (h + h' turned) omega say
+            const double velocity = moving.x_dot + at.dh * turned * moving.omega;
+            moving.x += (velocity + 0.5 * gravity.along * hop) * hop;
             lasts += hop;
             turned += moving.omega * hop;
-            moving.x += (moving.x_dot + 0.5 * gained) * hop;
             moving.x_dot += gained;
             moving.z_dot = at.dh * moving.omega - speed;
             moving = after_collision(scene_, moving);

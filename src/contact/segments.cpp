@@ -87,10 +87,15 @@ void look_at(const Scene& scene, const Settling& settling, const double* times, 
     for (std::size_t i = 0; i < n; ++i) {
         const double share = times[i] / lasts;
         const auto between = [share](double from, double to) { return from + share * (to - from); };
-        const double theta = between(start.theta, end.theta);
+        // What a rate that goes evenly comes to, and evenly what the bounces come to beside that.
+        const auto gone = [share, time = lasts](double rate, double last_rate, double in_all) {
+            const double beside = in_all - time * (rate + 0.5 * (last_rate - rate));
+            return share * (time * (rate + 0.5 * share * (last_rate - rate)) + beside);
+        };
+        const double theta = start.theta + gone(start.omega, end.omega, end.theta - start.theta);
         const State state{theta,
                           between(start.omega, end.omega),
-                          between(start.x, end.x),
+                          start.x + gone(start.x_dot, end.x_dot, end.x - start.x),
                           geometry(scene.axes(), theta).h,
                           between(start.x_dot, end.x_dot),
                           between(start.z_dot, end.z_dot),

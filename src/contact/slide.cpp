@@ -75,9 +75,11 @@ class Follower {
         body.gravity = {body.gravity.into * square(unit), body.gravity.along * square(unit)};
         const SlideState start{0.0, double(from.omega) * unit, double(from.slip) * unit, 0.0, 0.0};
         SlideSeries series = slide_series(body, start, sin, cos, clock_);
-        // What reaches for ever may grow with what there is.
+        // What reaches for ever may grow with what there is. The path and the pressure vary by more
+        // of themselves than angle and speed do where the body is nearly round.
         const double most = 1 + 15 * from.time.high / unit;
-        reach_ = std::min({reach(series.angle), reach(series.omega), most});
+        reach_ = std::min({reach(series.angle), reach(series.omega), reach(series.rolled),
+                           reach(series.pressure), most});
         if (!(reach_ > 0)) return SlideStop::no_progress;
         examine(body, series);
         series.omega[0] = series.slip[0] = 0.0;

@@ -168,7 +168,8 @@ def pickled(draw: Draw, _: Body) -> Iterator[Line]:
     yield Line("copied.sol(copied.t_end).x", does="pickle")
     what, share = draw.pick("trajectory", "trajectory.scene"), draw.random.random()
     bits = f"{draw.random.randrange(6)}, {share!r}, {draw.random.randrange(1, 256)}"
-    yield Line(f"damage.unpickled({what}, {bits})", does="damage", forgery=True)
+    made = f"damage.unpickled({what}, {bits})"
+    yield Line(made, does="damage", patience=10, forgery=True)  # pickle itself asks for gigabytes
 
 
 def copied(draw: Draw, _: Body) -> Iterator[Line]:
