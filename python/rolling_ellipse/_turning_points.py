@@ -45,7 +45,10 @@ def turning_points(times: FloatArray, name: str, at: At) -> tuple[FloatArray, bo
             break
         middle = times[coarse] + 0.5 * (times[coarse + 1] - times[coarse])
         times = np.unique(np.concatenate([times, middle]))
+        before = missed.max()
         rows, noise, missed = _interpolated(times, name, at)
+        if missed.max() > before / 2:  # by 2^9 if it is smooth: this is the noise of an iteration
+            break
     return _with_turns(times, rows, noise), bool((missed <= noise).all())
 
 

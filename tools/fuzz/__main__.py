@@ -94,13 +94,18 @@ def main(arguments: list[str] | None = None) -> int:
     if options.index is not None:
         print("\n".join(map(str, task.case(first)[1])))
     begin = last = time.monotonic()
+    told: set[tuple[str, ...]] = set()
 
     def heard(workers: list[Worker]) -> None:
         nonlocal last
+        findings = [each for worker in workers for each in worker.findings]
+        for each in findings:
+            if signature(each) not in told:
+                told.add(signature(each))
+                print(show(each, options.only), file=sys.stderr)
         if time.monotonic() - last > 30:
             last = time.monotonic()
-            found = sum(len(worker.findings) for worker in workers)
-            print(f"{summary(workers, last - begin)}; {found} findings", file=sys.stderr)
+            print(f"{summary(workers, last - begin)}; {len(findings)} findings", file=sys.stderr)
 
     workers = run(list(shares(task, options.workers)), heard)
     findings = distinct([each for worker in workers for each in worker.findings])

@@ -48,6 +48,8 @@ def strobe_svg(trajectory: Trajectory) -> str:
         seen = np.append(seen, ground)
     corner = complex(seen.real.min(), seen.imag.min())
     size = complex(seen.real.max(), seen.imag.max()) - corner
+    if size.real == 0 or size.imag == 0:  # too far away for its places to differ
+        return ""
     scale = min(_WIDTH / size.real, _HEIGHT / size.imag)
     rx, ry = _short(scale * scene.a / unit), _short(scale * scene.b / unit)
     bodies = [

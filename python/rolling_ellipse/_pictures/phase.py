@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .._trajectory import Trajectory
 
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
+_COARSE = 1e-3  # rad
 _MOST = 1000.0  # half turns or swings in one picture
 _SMALL = 0.1  # of the separatrix's speed: a slower motion would be a dot in a whole eye
 
@@ -94,12 +95,13 @@ def plot_phase(
     Raises
     ------
     ValueError
-        If there is no trajectory, one has no samples or the number of labels or
-        colours is wrong.
+        If there is no trajectory, one has no samples, the number of labels or
+        colours is wrong, or theta is so large that a double knows no thousandths of a radian.
     TypeError
         If something is no trajectory.
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
+    _require_parts_of_a_turn(shown.motions)
     if fold is None:
         fold = any(np.ptp(each.theta) > _FEW_TURNS * 2 * math.pi for each in shown.motions)
     parts, notes = zip(*map(_part, shown.motions), strict=True)
@@ -171,6 +173,16 @@ def _path(
         np.insert(theta - math.pi * cell, places, folds),
         np.insert(omega, places, speeds_there),
     )
+
+
+def _require_parts_of_a_turn(motions: Sequence[Trajectory]) -> None:
+    for motion in motions:
+        farthest = float(np.abs(motion.theta).max())
+        if np.spacing(farthest) > _COARSE:
+            raise ValueError(
+                "trajectories must have angles of which a double knows thousandths of a radian, up "
+                f"to 4e12 rad, got theta = {farthest:.6g} rad: start as many half turns nearer to 0"
+            )
 
 
 def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:

@@ -13,6 +13,7 @@ from oracles.refusals import Refusal
 ROLLING = Scene(2.0, 1.0, omega=1.0)
 AIR = Scene(2.0, 1.0, z=3.0)
 MOTION = rl.simulate(ROLLING, 0.5)
+FAR = rl.simulate(rl.Scene(2.0, 1.0, theta=1e16, omega=1.0), 0.5, model="rolling")
 TWO_IMPACTS: Any = np.zeros((3, 2))
 Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
 AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
@@ -87,6 +88,7 @@ NUMBERS: list[Refusal] = [
     (r"^workers must be an int from 1 to 1024, or -1", lambda _: rl.flow(**FLOW, workers=0)),
     (r"^workers must be a whole number, or an executor", lambda _: rl.flow(**FLOW, workers="x")),
     (r"^fold must be True or False, got 1", lambda _: rl.plot_phase(MOTION, fold=1)),  # type: ignore[arg-type]
+    (r"^trajectories must have angles of which a double", lambda _: rl.plot_phase(FAR)),
     (r"^t must be a number or an array of numbers", lambda _: rl.flow(**{**FLOW, "t": "x"})),
     (r"^t must have no masked entries", lambda _: rl.flow(**{**FLOW, "t": MASKED})),
     (r"^t must be within the range of doubles", lambda _: rl.flow(**{**FLOW, "t": 10**400})),
