@@ -89,7 +89,8 @@ def simulate(
     rest_speed : float, optional
         Rebound speed [m/s] under which "contact" sums the infinitely many bounces that are left,
         with a relative error of its own size beside sqrt(g min(a, b)); default a millionth of
-        that, at most a hundredth.
+        that, at most a hundredth. Where next to nothing presses the body to its ground, bounces
+        that would take long are not summed.
     raise_on_failure : bool
         Whether an integration that stops before the last time raises; otherwise it returns what
         there is up to then.
