@@ -427,3 +427,14 @@ def test_fit_names_its_options() -> None:
         impacts.fit(*good, a=0.7, b=-0.3)
     with pytest.raises(ValueError, match=r"gyration2 must be a positive finite area .*, got 0.0"):
         impacts.fit(*good, **BODY, gyration2=0.0)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("law", LAWS)
+def test_no_impacts_come_to_nothing(law: Any) -> None:
+    """Whatever the numbers beside an empty array are."""
+    found = impacts.collide(
+        theta=0.0, x_dot=0.0, z_dot=[], omega=-math.inf, a=2.0, b=1.0, friction=0.2,
+        restitution=0.5, law=law,
+    )  # fmt: skip
+    assert [values.shape for values in found[:3]] == [(0,)] * 3

@@ -67,7 +67,7 @@ def collide(law: str, columns: list[FloatArray]) -> tuple[FloatArray, FloatArray
     "poisson": the normal impulse of restitution is e times that of compression (S. D. Poisson,
     Traité de mécanique, 1833). "newton": the normal velocity afterwards is -e times that before.
     """
-    theta, x_dot, z_dot, omega, a, b, k2, mu, e = columns
+    theta, x_dot, z_dot, omega, a, b, k2, mu, e = np.broadcast_arrays(*columns)
     h, dh = geometry.support(theta, a=a, b=b), geometry.support_slope(theta, a=a, b=b)
     v, u = x_dot - h * omega, z_dot - dh * omega  # physics (12)
     path = _impulse_path(v, u, h, dh, k2, mu)
