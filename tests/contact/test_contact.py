@@ -893,6 +893,18 @@ def test_an_angle_without_parts_of_a_turn_rolls_as_far_as_it_may() -> None:
         assert motion.events and motion.events[0].t <= 2 * math.pi / abs(omega)
 
 
+@pytest.mark.parametrize("omega", [-1e-88, -1e-100, -1e-150, 1e-200, -5e-324])
+def test_next_to_no_speed_on_a_tip(omega: float) -> None:
+    """It rolls where the angle of the tip, as a double, lets it fall to; or stays if its speed is
+    none in its units. There is an end to the search for that of rolling."""
+    thin = Scene(6.1e-13, 6.05e-14, theta=math.pi / 2, omega=omega, friction=0.89, gravity=1.0)
+    high = Scene(1e-3, 1.0, omega=omega, friction=1.9, gravity=1.6e29)
+    for scene in (thin, high):
+        for t in (0.0, 1e-15):
+            motion = simulate(scene, [t], model="contact")
+            assert motion.success and abs(motion.theta[0] - scene.theta) <= 1e-12
+
+
 def test_a_flight_farther_than_doubles_reach_says_so() -> None:
     """Bounces down what is nearly a wall go faster and farther each time."""
     scene = Scene(
