@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ._trajectory import Trajectory
 
 _MOST_TIMES = 1_000_000
+_MOST_LOOKS = 7_000_000  # some seconds, half a minute on slopes
 _EXACT_ROUNDINGS, _SUMMED_ROUNDINGS = 8, 1000  # ulp of a value that is no more than rounding
 _SUMMED = (
     ArcKind.SLOPING, ArcKind.ROLLING_STEPS, ArcKind.COORDINATE_STEPS, ArcKind.SLIDING_STEPS,
@@ -79,6 +80,7 @@ class _Search:
         self._joined: list[npt.NDArray[np.bool_]] = []  # a look and the next are of one arc
         self._repeats: list[tuple[float, float, int]] = []
         self.unproved: dict[str, None] = {}
+        self._count = 0
         arcs = motion._solution.arcs()
         if arcs:  # a function that is none is told of before millions of looks
             self._measure(np.array([arcs[0].begin]))
@@ -107,6 +109,12 @@ class _Search:
         return found
 
     def _add(self, kind: ArcKind, at: Looks) -> None:
+        self._count += at.times.size
+        if self._count > _MOST_LOOKS:
+            raise ValueError(
+                f"{self._name} must not be looked at more than {_MOST_LOOKS} times, got "
+                f"{self._count} for a part of the motion: simulate a shorter one"
+            )
         times, measures = at.times, self._measure(at.times)
         rounding = self._rounding(measures, kind)
         if not at.proved:

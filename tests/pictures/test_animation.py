@@ -265,6 +265,22 @@ def test_the_ground_is_ruled_where_the_body_is() -> None:
         assert all(float(text[:-2].replace("−", "-")) == place for place, text in texts.items())
 
 
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
+@pytest.mark.parametrize("slope", [0.4, 1.2, -1.5, math.nextafter(math.pi / 2, 0.0)])
+def test_a_slope_is_ruled_where_it_is_seen(slope: float) -> None:
+    """To the rims of the view, up to a wall; and figures are where matplotlib can draw them."""
+    scene = rl.Scene(2.0, 1.0, theta=0.3, omega=1.0, slope=slope)
+    animation = rl.animate(rl.simulate(scene, 1.0, model="rolling"), fps=25, width=160)
+    strip = only(animation)
+    animation.draw(10)
+    (left, right), (bottom, top) = view_of(animation)
+    ticks = np.array([tick[0, 0] for tick in strip.ruler.ticks.get_segments()])
+    x, z = ticks * math.cos(slope), -ticks * math.sin(slope)
+    seen = (left < x) & (x < right) & (bottom < z) & (z < top)
+    assert seen.sum() >= 5 and not seen[0] and not seen[-1]
+    assert np.ptp(ticks) <= 4 * (right - left)
+
+
 # -------------------------------------------------------------------------------------- files
 
 

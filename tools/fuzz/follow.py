@@ -88,7 +88,7 @@ def when(draw: Draw, _: Body) -> Iterator[Line]:
     given = draw.mutated(given) if draw.chance(0.1) else given
     code = ", ".join(f"{key}={value}" for key, value in given.items())
     made = f"trajectory.t.size and trajectory.when({code})"
-    yield Line(made, "times", "Trajectory.when", patience=5)
+    yield Line(made, "times", "Trajectory.when", patience=20)
     share = draw.pick("0.0", "1.0", repr(draw.random.random()), "2.0")
     yield Line(f"trajectory.at({share} * trajectory.t_end)", does="Trajectory.at")
 

@@ -13,13 +13,17 @@ from ._rows import rows
 
 
 def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
-    """Return lambda1 ... lambda4 as eq 39 prints them (lambda3 with F of eq 40), (..., 4)."""
+    """Return lambda1 ... lambda4 as eq 39 prints them (lambda3 with F of eq 40), (..., 4).
+
+    lambda3 is infinite where eq 39 divides by zero: at every quarter turn, and for a circle.
+    """
     body = Scene(a, b, mass=mass, gravity=gravity)
     _, psi, _, _, _ = state(q, q_ddot=q_ddot)
     ddot = coordinates("q_ddot", q_ddot)
     squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
     with np.errstate(divide="ignore", invalid="ignore"):
         third = eq_40(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity) / squeeze
+    third = np.where(np.isnan(third) & (squeeze == 0), np.inf, third)
     fourth = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
     return np.stack(
         np.broadcast_arrays(

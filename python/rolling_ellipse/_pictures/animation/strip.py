@@ -119,7 +119,8 @@ class Strip:
         self.centre_trace.set_data(motion.x[past], motion.z[past])
         self.caption.set_text(self._caption(i))
         left, right, bottom, top = self._views[i]
-        self.ruler.move((left + right) / 2 / math.cos(scene.slope))
+        middle = np.array([(left + right) / 2, (bottom + top) / 2])
+        self.ruler.move(float(drawing.tilted(scene).inverted().transform(middle)[0]))
         self.ax.set(xlim=(left, right), ylim=(bottom, top))
         return [self.body, self.axis_a, self.axis_b, self.tip, self.contact, self.slip,
                 self.shadow, self.tip_trace, self.centre_trace, self.skid_trace,
