@@ -136,6 +136,8 @@ FlatView flat_view(const Axes& axes, double theta) {
 }
 
 bool is_equilibrium(const Geometry& at, double incline) {
+    const bool is_circle = at.dh == 0 && at.ddh == 0;
+    if (is_circle) return incline == 0;
     return std::abs(at.dh - incline * at.h) <= equal_ulps * epsilon * at.h;
 }
 

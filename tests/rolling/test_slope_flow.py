@@ -210,6 +210,22 @@ def test_a_circle_is_uniformly_accelerated() -> None:
     assert np.allclose(found.theta, 0.3 + 2.0 * times + gain * times**2 / 2, rtol=8 * EPS)
 
 
+@pytest.mark.parametrize("slope", [1e-12, 1e-20, -1e-200])
+def test_a_circle_rests_on_no_slope(slope: float) -> None:
+    """Its contact is never right below its centre, however near: it rolls from rest, if friction
+    holds a third of the pull, and slides otherwise."""
+    needed = abs(slope) / 3
+    scene = rl.Scene(1.0, 1.0, slope=slope, friction=needed * (1 + 1e-9))
+    less = scene.replace(friction=needed * (1 - 1e-9))
+    assert rl.required_friction(scene) == pytest.approx(needed, rel=4 * EPS)
+    assert rl.certify(scene).validity is rl.Validity.VALID
+    assert rl.certify(less).validity is rl.Validity.INVALID
+    t = 1.0 / math.sqrt(abs(slope))
+    for body, share in ((scene, 2 / 3), (less, 2 / 3 + 1e-9 / 3)):
+        x = rl.simulate(body, t, model="contact").x[-1]
+        assert x == pytest.approx(share * math.copysign(9.81, slope) / 2, rel=16 * EPS)
+
+
 @pytest.mark.parametrize("ratio", [1e-3, 1 - 1e-12, 1e3])
 @pytest.mark.parametrize("slope", [1e-300, 1e-9, -0.5, 1.57])
 def test_all_shapes_keep_their_energy(ratio: float, slope: float) -> None:

@@ -20,10 +20,7 @@ def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
     body = Scene(a, b, mass=mass, gravity=gravity)
     _, psi, _, _, _ = state(q, q_ddot=q_ddot)
     ddot = coordinates("q_ddot", q_ddot)
-    squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        third = eq_40(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity) / squeeze
-    third = np.where(np.isnan(third) & (squeeze == 0), np.inf, third)
+    third = _squeezed(eq_40(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity), psi, body)
     fourth = lambda4_numerator(q, q_ddot, a=a, b=b, mass=mass, gravity=gravity)
     return np.stack(
         np.broadcast_arrays(
@@ -65,6 +62,14 @@ def multipliers(
     third = -normal * matrix[..., 1, 4] / matrix[..., 2, 4]
     fourth = -(normal * matrix[..., 1, 3] + third * matrix[..., 2, 3]) / matrix[..., 3, 3]
     return np.stack(np.broadcast_arrays(friction, normal, third, fourth), axis=-1)
+
+
+def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
+    """Over what eqs 39 and 41 divide by: by zero it is infinite, of zero too."""
+    squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found: FloatArray = np.where((squeeze == 0) & (values == 0), np.inf, values / squeeze)
+    return found
 
 
 def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
@@ -110,7 +115,8 @@ def eq_41(
 ) -> FloatArray:
     """Return the residual of eq 41, with F1 of `eq_42` or, if complete, 2 (...)^(3/2) F [N].
 
-    Complete, it is eq 36 times -1 with the multipliers put in.
+    Complete, it is eq 36 times -1 with the multipliers put in. It divides by zero where eq 39 does,
+    and is infinite there.
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
     complete = flag("complete", complete)
@@ -120,9 +126,7 @@ def eq_41(
         spread = 2 * polar(psi, body) ** 1.5 * complete_f(q, q_ddot, **arguments)
     else:
         spread = eq_42(q, q_ddot, **arguments)
-    squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found: FloatArray = _head(q, q_ddot, body) - spread / squeeze
+    found: FloatArray = _head(q, q_ddot, body) - _squeezed(spread, psi, body)
     return found
 
 
