@@ -26,9 +26,8 @@ Start start_on_range(const RollingStart& from, const EnergyRange& range) {
     // At a turning point the body falls back towards the flat position.
     const double direction = omega != 0 ? std::copysign(1.0, omega) : -std::copysign(1.0, at.sin);
     const double omega2 = omega * omega * at.long_axis / from.body.gravity;
-    // From the tip it goes down, to either side.
-    const double angle = at.cos == 0 ? -half_pi : direction * std::atan2(at.sin, at.cos);
-    return {angle, direction, rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
+    return {direction * std::atan2(at.sin, at.cos), direction,
+            rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
 }
 
 double margin(const RollingForces& forces, double friction) {

@@ -24,7 +24,9 @@ Shape shape(const Body& body, const FlatView& view) {
 
 RollingStart rolling_start(const Body& body, double theta, double omega) {
     omega = zero_if_negligible(omega);
-    const FlatView view = flat_view(body.axes(), theta);
+    FlatView view = flat_view(body.axes(), theta);
+    // From the tip it goes down, with the same bits to either side.
+    if (view.cos == 0 && omega != 0) view.sin = -std::copysign(1.0, omega);
     const bool rests = omega == 0 && is_equilibrium(geometry(body.axes(), theta));
     return {body, theta, omega, view, energy_height(view, body, omega), rests};
 }
