@@ -67,7 +67,7 @@ def multipliers(
 def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
     """Over what eqs 39 and 41 divide by: by zero it is infinite, of zero too."""
     squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found: FloatArray = np.where((squeeze == 0) & (values == 0), np.inf, values / squeeze)
     return found
 
