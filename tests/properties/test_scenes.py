@@ -154,6 +154,7 @@ def test_energy_never_grows_in_contact(data: Any) -> None:
 
     An event rounds each number of its state a few times. An arc is known to rounding of the scales
     that it has passed: of the energies at both ends and, of a flight, of its height between them.
+    Bounces that settle are summed to the square of `rest_speed`, a millionth of sqrt(g min(a, b)).
     """
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 1.5)) * clock(scene)
@@ -166,8 +167,10 @@ def test_energy_never_grows_in_contact(data: Any) -> None:
         lost = energy(scene, **numbers(start)) - energy(scene, **numbers(end))
         assert lost >= -8 * allowed, (each, lost / allowed)
         lost = energy(scene, **numbers(before)) - energy(scene, **numbers(start))
-        allowed = blur(scene, before) + blur(scene, start)
-        assert lost >= -64 * allowed, (each, lost / allowed)
+        allowed = 64 * (blur(scene, before) + blur(scene, start))
+        if before.mode is Mode.FLIGHT and each.kind is not EventKind.IMPACT:  # it settled
+            allowed *= 1e-12 / (64 * EPS)
+        assert lost >= -allowed, (each, lost / allowed)
         before = end
 
 
