@@ -82,7 +82,7 @@ class _Search:
         self.unproved: dict[str, None] = {}
         self._count = 0
         arcs = motion._solution.arcs()
-        if arcs:  # a function that is none is told of before millions of looks
+        if function is not None and arcs:  # one that is none is told of before millions of looks
             self._measure(np.array([arcs[0].begin]))
         for arc in arcs:
             last = arc.end if arc is arcs[-1] else np.nextafter(arc.end, 0.0)

@@ -121,9 +121,8 @@ double broken_about(const SlopeFlow& flow, const SlopeRun& run, double friction)
                        0.0};
         const Geometry here = geometry(body, place);
         const double inertia = inertia_about_contact(body.gyration2, here);
-        const double w = energy.start +
-                         body.gravity.along * (path_at(body, 0.0, double(place.angle)) - start) +
-                         body.gravity.into * fall(body, energy.at, here).value;
+        place.path = {path_at(body, 0.0, double(place.angle)) - start, 0.0};
+        const double w = energy_at(body, energy, place, here).value;
         const double omega2 = 2 * w / inertia;
         const double gain = run.heading * 2 * body.gain / inertia;
         if (!(omega2 > 0)) continue;
