@@ -14,14 +14,15 @@ constexpr double aspect_limit = 1e3;
 constexpr double blow_margin = 1e-12;  // of the long semi-axis, for the rounding of a point on it
 
 // The inertia of a body, in either form, beside that of its mass at the end of the long semi-axis:
-// below the least share k^2 is lost beside h^2 in D.
-void require_inertia(std::string_view name, std::string_view kind, double value, double unit,
+// below the least share k^2 is lost beside h^2 in D. It is k^2 that is compared, so that whoever
+// takes it from a scene has what a body takes.
+void require_inertia(std::string_view name, std::string_view kind, double value, const Body& body,
                      std::string_view unit_name) {
     constexpr double least = 1e-15;
     constexpr double most = 1e30;
     if (!(value > 0 && std::isfinite(value)))
         refuse(name, "a positive finite " + std::string(kind), value);
-    const double share = value / unit;
+    const double share = body.gyration2 / square(std::max(body.a, body.b));
     if (!(share >= least && share <= most)) {
         refuse(name, "between 1e-15 and 1e30 times " + std::string(unit_name), value);
     }
@@ -67,8 +68,7 @@ void validate_axes(double a, double b) {
 void validate(const Body& body) {
     validate_axes(body.a, body.b);
     require_positive("gravity", "acceleration [m/s^2]", body.gravity);
-    require_inertia("gyration2", "area [m^2]", body.gyration2, square(std::max(body.a, body.b)),
-                    "max(a, b)^2");
+    require_inertia("gyration2", "area [m^2]", body.gyration2, body, "max(a, b)^2");
 }
 
 void validate_motion(const Body& body, double theta, double omega) {
@@ -109,9 +109,8 @@ void validate(const Scene& scene) {
     validate_axes(scene.a, scene.b);
     require_positive("mass", "mass [kg]", scene.mass);
     require_positive("gravity", "acceleration [m/s^2]", scene.gravity);
-    require_inertia("inertia", "moment of inertia [kg m^2]", scene.inertia,
-                    scene.mass * square(std::max(scene.a, scene.b)), "mass max(a, b)^2");
-    validate(scene.body());
+    require_inertia("inertia", "moment of inertia [kg m^2]", scene.inertia, scene.body(),
+                    "mass max(a, b)^2");
     if (!(std::abs(scene.slope) < half_pi)) {
         const bool degrees = std::abs(scene.slope) <= 90;
         refuse("slope",

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from .. import _core
 from .._check import choice, file_name
 from .._core import EventKind
 from .._events import as_numbers, events, from_numbers
@@ -179,6 +180,7 @@ def _require_consistent(trajectory: Trajectory) -> None:
     for name, count in stats.items():
         if type(count) is not int or not 0 <= count < 2**63:
             raise ValueError(f"{name} must be a count, got {count!r}")
+    _core.validate_settings(asked.core, span)
     solve(trajectory.scene, asked, 0.0, trajectory.start)  # the core checks what was asked for
 
 
