@@ -281,6 +281,15 @@ def test_events_in_disorder_are_refused(contents: dict[str, bytes], tmp_path: Pa
     refusal(put_together(about, arrays), tmp_path / "motion.npz", "times of events must not fall")
 
 
+def test_a_step_is_refused_beside_a_span_that_forgets_it(
+    contents: dict[str, bytes], tmp_path: Path
+) -> None:
+    about, arrays = taken_apart(contents["multipliers"])
+    assert about["settings"]["step"] == 0.1
+    about["span"] = 1e308
+    refusal(put_together(about, arrays), tmp_path / "motion.npz", "step must be at")
+
+
 RAW_TEXTS = {
     "no JSON": "t = 1",
     "a list": "[]",

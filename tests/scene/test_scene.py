@@ -282,6 +282,25 @@ def test_gyration2() -> None:
     assert scene(mass=4.0, inertia=2.0).gyration2 == 0.5
 
 
+def test_what_is_taken_as_inertia_is_taken_as_gyration2() -> None:
+    """At the ends of the range, where the last bit of either decides."""
+    random = np.random.default_rng(9)
+    taken = 0
+    for axis, mass, off in zip(
+        random.uniform(0.1, 9, 400), random.uniform(0.1, 9, 400), range(-200, 200), strict=True
+    ):
+        inertia = mass * axis**2 * 1e-15 * (1 + off // 40 * 2.0**-52)
+        try:
+            body = scene(a=axis, b=axis, mass=mass, inertia=inertia)
+        except ValueError as error:
+            assert str(error).startswith("inertia must be between 1e-15 and 1e30 times mass")
+        else:
+            taken += 1
+            flow(1.0, a=axis, b=axis, theta=0.1, omega=0.0, gyration2=body.gyration2)
+            simulate(body, 1e-9)
+    assert 100 < taken < 300
+
+
 # ------------------------------------------------------------- touching, rolling, and neither
 
 ANGLES = [0.0, 0.5, 1.2, 2.5, -4.0, 400.0]
