@@ -122,8 +122,12 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution)
 
 // The gap rate is the rebound afterwards, and v = 0 where it sticks, exactly. The angular momentum
 // about the contact, which no reaction changes, gives the sticking angular velocity, physics (40):
-// k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega + rebound.
+// k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega + rebound. Where a light
+// body turns so fast that little is left of that sum, its z_dot is what the impulse makes of it.
 void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, State& state) {
+    const double kick = reaction.normal / scene.mass;
+    const double pushed = state.z_dot + kick;
+    const double largest = 2 * (std::abs(state.z_dot) + kick);
     if (reaction.sticks) {
         const double k2 = scene.inertia / scene.mass;
         state.omega =
@@ -134,7 +138,8 @@ void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, Sta
         state.omega -= (at.h * reaction.tangential + at.dh * reaction.normal) / scene.inertia;
         state.x_dot += reaction.tangential / scene.mass;
     }
-    state.z_dot = at.dh * state.omega + reaction.rebound;
+    const double turning = at.dh * state.omega;
+    state.z_dot = std::abs(turning) > largest ? pushed : turning + reaction.rebound;
 }
 
 Reaction reaction_to(const Scene& scene, const Contact& c, double restitution) {

@@ -142,6 +142,29 @@ def test_stronge_and_poisson_create_no_energy(law: Any, shape: tuple[float, floa
             assert np.all(speed(np.stack(after), k2) <= speed(state[1:], k2) * (1 + 100 * EPS))
 
 
+def test_a_light_thin_body_that_turns_fast_keeps_its_energy() -> None:
+    """h' omega is up to 100 times z_dot: no velocity may be what is left of such a difference.
+
+    Three velocities of some ten roundings each, the energy twice as much of its own size.
+    """
+    random = np.random.default_rng(6)
+    body: dict[str, Any] = {"a": 1.0, "b": 0.05, "gyration2": 1e-4}
+    theta = random.choice([1.0, -1.0], 4000) * random.uniform(0.002, 0.05, 4000)
+    omega = random.uniform(-60, 60, 4000)  # k omega is up to 0.6 m/s
+    before = np.array([random.uniform(-0.2, 0.2, 4000), random.uniform(-1, 1, 4000), omega])
+    slope = geometry.support_slope(theta, a=1.0, b=0.05)
+    hits = before[1] < slope * omega
+    theta, before, slope = theta[hits], before[:, hits], slope[hits]
+    assert np.max(np.abs(slope * before[2] / before[1])) > 100
+    k2 = body["gyration2"]
+    for friction in (0.0, 0.3, math.inf):
+        after = np.stack(impacts.collide(theta, *before, **body, friction=friction, restitution=1))
+        gained = speed(after, k2) ** 2 / speed(before, k2) ** 2 - 1
+        assert np.max(gained) < 40 * EPS
+        if friction == 0:
+            assert np.min(gained) > -40 * EPS
+
+
 def test_newton_creates_energy() -> None:
     """The contact slips forwards behind the centre. Friction helps the approach until the slip
     stops; what it adds to u is not in u before, but the whole approach is given back."""

@@ -72,6 +72,14 @@ def test_f1_is_the_velocity_of_the_geometric_contact() -> None:
     assert found.right == zero(at.h * at.omega)
 
 
+def test_rates_beyond_the_doubles_are_infinite() -> None:
+    q, _ = rl.kinematics(0.2, 2.0, **SHAPE)
+    rates = report.consistent_rates(q, 1.0, **SHAPE)
+    assert np.array_equal(np.abs(rates) > 1, [True, True, False, True, True])
+    beyond = report.consistent_rates(q, -1.7e308, **SHAPE)
+    assert np.array_equal(beyond, [-math.inf, math.inf, -1.7e308, math.inf, math.inf])
+
+
 def test_f1_frozen_means_no_advance() -> None:
     """With f1 = 0 the body spins over the spot: x + h' stays while theta makes its way."""
     q, _ = rl.kinematics(0.2, 2.0, **SHAPE)

@@ -65,6 +65,16 @@ def _events(found: rl.Trajectory) -> Broken:
             return
 
 
+def _beside_a_quarter_turn(theta: Any) -> float:
+    """What the angle is known to beside how far it is from a quarter turn, at most.
+
+    The forces of infinite friction go by that next to a tip.
+    """
+    off = np.abs(theta - np.pi / 2 * np.round(theta / (np.pi / 2))).max()
+    ulp = np.spacing(np.abs(theta).max())
+    return float(ulp / max(off, ulp))
+
+
 def _energy(found: rl.Trajectory) -> Broken:
     with np.errstate(all="ignore"):
         energy = found.energy
@@ -72,6 +82,8 @@ def _energy(found: rl.Trajectory) -> Broken:
         grown = np.max(np.diff(energy)) / scale
         thin = max(found.scene.a / found.scene.b, found.scene.b / found.scene.a)
         blur = thin * np.spacing(np.abs(found.theta).max())  # what the angle itself is known to
+        if math.isinf(found.scene.friction):
+            blur += _beside_a_quarter_turn(found.theta)
     if grown > _ENERGY_NOISE + blur:
         yield "energy", f"the energy of a contact motion grows by more than {_ENERGY_NOISE:g}"
 

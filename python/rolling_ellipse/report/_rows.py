@@ -143,5 +143,6 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
     speed = finite("omega", omega)[..., None]
     require_together(q=q, omega=speed)
     allowed = direction(coordinates("q", q), body.a, body.b, misprints(printed))
-    rates: FloatArray = allowed * speed
+    with np.errstate(over="ignore"):  # infinite, where it is beyond the doubles
+        rates: FloatArray = allowed * speed
     return rates
