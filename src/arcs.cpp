@@ -72,10 +72,10 @@ Arc arc(const SlopeFlow& flow) {
     }
     Arc found{ArcKind::sloping, 0.0, 0.0, infinity, {}};
     const auto mark_run = [&](const SlopeRun& run, double half_turns) {
-        constexpr double most_half_turns = 50'000;
+        constexpr double most_marked = 50'000;
         constexpr int parts = 16;
         double last = double(run.from.time);
-        const double most = std::min(half_turns, most_half_turns);
+        const double most = std::min(half_turns, most_marked);
         for (double n = 1; n <= most && last < flow.until; ++n) {
             const double next = double(run.from.time + time_of(run, n));
             for (int i = 1; i <= parts; ++i)

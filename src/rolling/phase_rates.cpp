@@ -44,8 +44,8 @@ namespace {
 }  // namespace
 
 ROLLING_ELLIPSE_VECTOR_LEVELS
-void phase_rates(const PhaseRate& rate, const PhaseMap& map, int quarters,
-                 const PhaseLanes& offsets, PhaseWays& rates) {
+PhaseWays phase_rates(const PhaseRate& rate, const PhaseMap& map, int quarters,
+                      const PhaseLanes& offset) {
     const bool from_tip = quarters != 0;
     // Of the end from which the offsets are, and of the other one: is it the tip?
     const double tip_here = from_tip ? 1.0 : 0.0;
@@ -60,10 +60,8 @@ void phase_rates(const PhaseRate& rate, const PhaseMap& map, int quarters,
     const double grade2 = square(map.grade);
     const auto [a0, a1, a2, a3] = map.a;
     const auto [b0, b1, b2] = map.b;
-    const double* const offset = offsets.data();
-    double* const time = rates.time.data();
-    double* const angle = rates.angle.data();
-    double* const path = rates.path.data();
+    PhaseWays rates;
+    auto& [time, angle, path] = rates;
     // The distance from the nearest end, its scale, and whether it is the tip.
     std::array<double, phase_lanes> distance, scale2, tip;
     for (std::size_t i = 0; i < phase_lanes; ++i) {
@@ -76,7 +74,6 @@ void phase_rates(const PhaseRate& rate, const PhaseMap& map, int quarters,
         scale2[i] = same < other ? scale2_here : scale2_there;
         tip[i] = same < other ? tip_here : tip_there;
     }
-#pragma GCC ivdep  // what is written is nothing of what is read
     for (std::size_t i = 0; i < phase_lanes; ++i) {
         // The phase there.
         const double gain = exp_minus_one(2 * distance[i]);
@@ -100,7 +97,7 @@ void phase_rates(const PhaseRate& rate, const PhaseMap& map, int quarters,
         angle[i] = map.speed * std::sqrt(graded * other);
         path[i] = h * angle[i];
     }
-    if (rate.rotates) return;
+    if (rate.rotates) return rates;
     // A libration that has passed its turning point goes back.
     for (std::size_t i = 0; i < phase_lanes; ++i) {
         const double to_tip = quarters > 0 ? -offset[i] : offset[i];
@@ -109,6 +106,7 @@ void phase_rates(const PhaseRate& rate, const PhaseMap& map, int quarters,
         angle[i] = -angle[i];
         path[i] = -path[i];
     }
+    return rates;
 }
 
 }  // namespace rolling_ellipse

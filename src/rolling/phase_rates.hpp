@@ -51,7 +51,7 @@ struct PhaseWays {
 };
 
 // The rates at y = quarters Y + offset, |quarters| <= 1, |offset| <= 5/2 Y.
-void phase_rates(const PhaseRate& rate, const PhaseMap& map, int quarters,
-                 const PhaseLanes& offsets, PhaseWays& rates);
+PhaseWays phase_rates(const PhaseRate& rate, const PhaseMap& map, int quarters,
+                      const PhaseLanes& offset);
 
 }  // namespace rolling_ellipse

@@ -28,7 +28,7 @@ WayTo way_by_panels(const PhaseTime& phase, int quarters, double begin, double e
     const double half = 0.5 * (end - begin) / panels;
     const GaussRule& rule = rule_for_length(2 * std::abs(half) / pi);
     const int count = (rule.size + 1) / 2;
-    PhaseWays rates;
+    PhaseWays rates{};  // in the end, the last of them is that of the end
     WayTo found{};
     DoubleDouble time{}, angle{}, path{};
     const auto add = [](DoubleDouble& sum, double term) {
@@ -49,7 +49,7 @@ WayTo way_by_panels(const PhaseTime& phase, int quarters, double begin, double e
                 offsets[pairs + i] = middle + half * node;
             }
             if (first == count && panel + 1 < panels) break;
-            phase_rates(phase.rate, phase.map, quarters, offsets, rates);
+            rates = phase_rates(phase.rate, phase.map, quarters, offsets);
             for (int i = 0; i < pairs; ++i) {
                 add(time, weights[i] * (rates.time[i] + rates.time[pairs + i]));
                 add(angle, weights[i] * (rates.angle[i] + rates.angle[pairs + i]));
@@ -149,17 +149,15 @@ void integrate_quarter(PhaseTime& phase) {
     const PhaseMap& map = phase.map;
     const int n = map.steps;
     double* const f = &phase.slope[1];
-    PhaseWays rates;
     DoubleDouble sum{};
     double beyond = 0.0;  // what is left of dt/dy at the tip
     if (map.has_tail) {
-        phase_rates(phase.rate, map, 1, PhaseLanes{}, rates);
-        beyond = rates.time[0];
+        beyond = phase_rates(phase.rate, map, 1, PhaseLanes{}).time[0];
     }
     for (int first = 0; first <= n; first += int(phase_lanes)) {
         PhaseLanes offsets;
         for (int i = 0; i < int(phase_lanes); ++i) offsets[i] = (first + i) * map.step;
-        phase_rates(phase.rate, map, 0, offsets, rates);
+        const PhaseWays rates = phase_rates(phase.rate, map, 0, offsets);
         for (int i = first; i < std::min(first + int(phase_lanes), n + 1); ++i) {
             const double weight = i == 0 || i == n ? 0.5 : 1.0;
             f[i] = rates.time[i - first];
