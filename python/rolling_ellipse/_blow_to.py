@@ -17,6 +17,7 @@ from .geometry import support
 
 _SPEEDS = 2048  # looked at on the way up from the speed that just reaches the tip
 _FASTEST = 1e3  # of them, beside that
+_LARGEST = 1e50  # that an impulse may be
 
 
 def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Impulse:
@@ -93,10 +94,10 @@ def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
 
 
 def _require_lever(F: float, distance: float) -> None:
-    if not math.isfinite(F):
+    if not abs(F) <= _LARGEST:
         raise ValueError(
-            "distance must not be right over the contact, where a press has no lever, "
-            f"got {distance!r}"
+            "distance must not be right over the contact, where a press has no lever, or next to "
+            f"none, got {distance!r}"
         )
 
 
@@ -116,7 +117,7 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
     forces = np.array(
         [_core.press_to(scene.core, distance, side * least * (1 + s)) for s in beyond]
     )
-    forces = forces[forces > 0]
+    forces = forces[(forces > 0) & (forces <= _LARGEST)]
     codes = outcome(scene, Impulse.press(forces, distance))
     over = np.flatnonzero(np.asarray(codes) == Outcome.ROLLS_OVER)
     if over.size == 0:

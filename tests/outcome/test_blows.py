@@ -273,6 +273,8 @@ def test_a_harder_press_may_need_less_friction() -> None:
         (replace(REPORT, friction=0.3), 1.5, 1.0, "omega must be one.*would need 0.666667"),
         (REPORT, 0.0, None, "distance must not be right over the contact"),
         (REPORT, 0.0, 1.0, "distance must not be right over the contact"),
+        (REPORT, 1e-300, None, "distance must not be right over the contact"),
+        (REPORT, 1e-300, 1.0, "distance must not be right over the contact"),
         (REPORT, 2.01, None, r"distance must be over the body, at most 2.0 \[m\]"),
         (REPORT, math.inf, None, "distance must be over the body"),
         (REPORT, 1.5, -1.0, "distance must be on the other side.*pull"),
@@ -292,6 +294,15 @@ def test_blow_to_says_why_not(
 ) -> None:
     with pytest.raises(ValueError, match=reason):
         blow_to(scene, distance, omega=omega)
+
+
+def test_blow_to_where_presses_are_as_large_as_they_may_be() -> None:
+    """A thousand times faster would ask for more: F d makes the speed, as with a longer lever."""
+    usual, huge = (
+        -blow_to(replace(REPORT, friction=math.inf), distance).jz for distance in (1e-3, 1e-48)
+    )
+    assert 1e48 < huge <= 1e50
+    assert huge * 1e-48 == pytest.approx(usual * 1e-3, rel=1e-9)
 
 
 def test_blow_to_refuses_what_is_no_number() -> None:
