@@ -97,7 +97,13 @@ def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
     """
     data = bytearray(pickle.dumps(value, protocol))
     data[int(share * len(data))] ^= mask
-    with suppress(Exception), np.errstate(all="ignore"):  # a number may be any other now
+    with (
+        suppress(Exception),
+        np.errstate(all="ignore"),  # a number may be any other now
+        warnings.catch_warnings(),
+    ):
+        # NumPy's, of what its own part of the pickle has become
+        warnings.simplefilter("ignore", np.exceptions.VisibleDeprecationWarning)
         found = pickle.loads(bytes(data))
         for name in ("t", "energy", "events", "initial_state", "q"):
             getattr(found, name, None)
