@@ -184,7 +184,9 @@ double touch_down(const Flight& flight) {
                                 end);
         }
         const Curvature::Interval next = curvature.after(now);
-        const bool too_fast = !(now.end < next.end);  // half a turn between two doubles
+        // Half a turn between two doubles, or from the beginning of a convex interval to its tip.
+        const bool too_fast =
+            !(now.end < next.end) || (next.convex && !(next.begin < curvature.tip_time(next)));
         if (too_fast || !(end < sure)) return end;
         before = after;
         now = next;

@@ -943,3 +943,17 @@ def test_a_body_that_spins_too_fast_for_its_fall_still_lands() -> None:
         # it stands on its tip and leaves the ground there, for half a turn
         assert motion.events[0].kind is EventKind.IMPACT
         assert motion.events[0].t == pytest.approx(math.pi / omega, rel=1e-9)
+
+
+def test_a_nearly_round_body_that_turns_between_doubles_still_lands() -> None:
+    """Half turns of one to a hundred doubles of time, as many as 1e12 while it falls a rounding.
+
+    It lands within sixteen roundings of its height, in the time that these take to fall.
+    """
+    drop = 1.47e-11
+    fall, speed = math.sqrt(2 * drop), math.sqrt(2 * drop)
+    for omega in (3e19, 1e20, 3e20, 1e21, 2.2091212861158539e21, 5e21, 1e22):
+        scene = Scene(1 + 4 * EPS, 1 + 7 * EPS, gravity=1.0, omega=-omega, z=1 + drop, friction=0.3)
+        motion = simulate(scene, [1e-5], max_events=1, max_steps=1, raise_on_failure=False)
+        assert motion.events[0].kind is EventKind.IMPACT
+        assert abs(motion.events[0].t - fall) < 16 * EPS / speed
