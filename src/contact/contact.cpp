@@ -230,14 +230,19 @@ class ContactRun {
         go_on_with(continuation(scene_, state_), EventKind::impact, before);
     }
 
-    // Whether a rebound is the first of bounces that are too small and too short to tell apart. The
-    // short ones take place under one c and h': where c is small, no slow rebound is short.
+    // Whether a rebound is the first of bounces that are too small and too short to tell apart.
+    // They take place under one c and h', an error of the square of how long they last beside the
+    // time in which a body falls or turns by b/a: no more than the share of the speed at which it
+    // rests. Those that do not shrink are none where each is less than a rounding.
     bool settles(double rebound, double ratio, double c) const {
-        constexpr double longest = 0.04;  // of the time in which a body falls or turns
-        if (rebound > rest_speed_ || c <= 0 || !(ratio < largest_ratio_that_settles)) return false;
-        const double rate = std::max(std::sqrt(scene_.gravity / std::min(scene_.a, scene_.b)),
-                                     std::abs(state_.omega));
-        return 2 * rebound * rate <= longest * c * (1 - ratio);
+        if (rebound > rest_speed_ || c <= 0) return false;
+        const auto [least, most] = std::minmax(scene_.a, scene_.b);
+        const double rate =
+            std::max(std::sqrt(scene_.gravity / least), std::abs(state_.omega) * most / least);
+        const double longest = std::sqrt(rest_speed_ / speed_of_fall());
+        const bool shrinks = ratio < largest_ratio_that_settles;
+        if (!shrinks && rebound > epsilon * speed_of_fall()) return false;
+        return 2 * rebound * rate <= longest * c * (shrinks ? 1 - ratio : 1.0);
     }
 
     // Infinitely many bounces that shrink by a ratio take a finite time, physics (57); so small
@@ -309,11 +314,15 @@ class ContactRun {
         if (!ending_) ending_ = Ending::completed;
     }
 
+    double speed_of_fall() const {
+        return std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b));
+    }
+
     double rest_speed() const {
         constexpr double small = 1e-6;
         // Where bounces are summed, c and h' stay what they are: an error of this size.
         constexpr double large = 1e-2;
-        const double unit = std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b));
+        const double unit = speed_of_fall();
         if (!settings_.rest_speed) return small * unit;
         const double speed = *settings_.rest_speed / units_.speed();
         if (speed > large * unit) {

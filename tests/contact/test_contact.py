@@ -957,3 +957,14 @@ def test_a_nearly_round_body_that_turns_between_doubles_still_lands() -> None:
         motion = simulate(scene, [1e-5], max_events=1, max_steps=1, raise_on_failure=False)
         assert motion.events[0].kind is EventKind.IMPACT
         assert abs(motion.events[0].t - fall) < 16 * EPS / speed
+
+
+def test_a_rebound_of_a_rounding_on_the_tip_does_not_take_the_body_through_the_ground() -> None:
+    """Rounding leaves it no speed off the ground, and its weight presses it there."""
+    scene = Scene(
+        1.0, 0.8, gravity=1.0, inertia=0.41, friction=0.0, restitution=1.0,
+        theta=-3 * math.pi / 2, omega=1.0, impulse=Impulse(0.5, 0.0, dx=0.0, dz=0.4),
+    )  # fmt: skip
+    motion = simulate(scene, np.linspace(0.0, 2.0, 200), model="contact")
+    assert np.min(motion.z - support(motion.theta, 1.0, 0.8).h) > -4 * EPS
+    assert np.ptp(motion.energy) < 64 * EPS * motion.energy[0]

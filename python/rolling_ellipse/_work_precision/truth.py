@@ -27,6 +27,7 @@ Truth = Callable[[FloatArray], Columns]
 ROUNDING = 2.2e-16
 _MANY = 20_000  # times that are asked for one by one
 _GOLDEN = (math.sqrt(5) - 1) / 2
+_STILL = 1e-100  # of the rate of falling: slower turning is none
 _LARGEST_CHANGE, _SMALLEST_CHANGE, _AGREED = 2.0**-20, 2.0**-44, 0.02
 
 
@@ -107,7 +108,8 @@ class Judge:
     def _units_of_states(self, scene: Scene) -> tuple[float, float, float]:
         length = max(scene.a, scene.b)
         fastest = max(abs(float(omega)) for omega in self._truth[1])
-        return 1.0, fastest or math.sqrt(scene.gravity / length), length
+        falls = math.sqrt(scene.gravity / length)
+        return 1.0, fastest if fastest > _STILL * falls else falls, length
 
     def _attainable(self, own: _Own, deadline: float) -> float:
         ends = [float(column[-1]) for column in self._truth]
