@@ -159,13 +159,9 @@ double touch_down(const Flight& flight) {
     const auto rate = [&](double t) { return gap.rate(t); };
 
     Curvature::Interval now = curvature.first();
-    // A body that leaves by its acceleration does so where the gap becomes convex; what is pressed
-    // down until then, so that more than a rounding of its height is missing, does not leave.
+    // A body that leaves by its acceleration does so where the gap becomes convex.
     const bool leaves_slowly = gap.value(0.0) <= 0 && gap.rate(0.0) <= 0;
-    if (leaves_slowly && !now.convex) {
-        if (gap.value(std::min(now.end, sure)) < -epsilon * flight.start.z) return 0.0;
-        now = curvature.after(now);
-    }
+    if (leaves_slowly && !now.convex) now = curvature.after(now);
     double before = leaves_slowly ? 0.0 : gap.rate(now.begin);  // rate at the interval's begin
     for (;;) {
         if (gap.height(now.begin) > tall) {
