@@ -17,7 +17,6 @@ from .geometry import support
 
 _SPEEDS = 2048  # looked at on the way up from the speed that just reaches the tip
 _FASTEST = 1e3  # of them, beside that
-_LARGEST = 1e50  # that an impulse may be
 
 
 def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Impulse:
@@ -94,7 +93,7 @@ def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
 
 
 def _require_lever(F: float, distance: float) -> None:
-    if not abs(F) <= _LARGEST:
+    if math.isinf(F):
         raise ValueError(
             "distance must not be right over the contact, where a press has no lever, or next to "
             f"none, got {distance!r}"
@@ -117,7 +116,7 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
     forces = np.array(
         [_core.press_to(scene.core, distance, side * least * (1 + s)) for s in beyond]
     )
-    forces = forces[(forces > 0) & (forces <= _LARGEST)]
+    forces = forces[(forces > 0) & np.isfinite(forces)]
     codes = outcome(scene, Impulse.press(forces, distance))
     over = np.flatnonzero(np.asarray(codes) == Outcome.ROLLS_OVER)
     if over.size == 0:

@@ -89,8 +89,8 @@ def simulate(
     rest_speed : float, optional
         Rebound speed [m/s] under which "contact" sums the infinitely many bounces that are left,
         with a relative error of its own size beside sqrt(g min(a, b)); default a millionth of
-        that, at most a hundredth. Where next to nothing presses the body to its ground, bounces
-        that would take long are not summed.
+        that, at most a hundredth. Bounces that would take longer than that allows are not summed:
+        where next to nothing presses the body to its ground, or restitution is near 1.
     raise_on_failure : bool
         Whether an integration that stops before the last time raises; otherwise it returns what
         there is up to then.

@@ -32,7 +32,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
     path[0] = at.path;
     time[0] = at.time;
     impulse[0] = 0.0;
-    p_q[0] = pair(c2 * sin * cos, c2 * (cos - sin) * (cos + sin));
+    p_q[0] = pair(c2 * sin * cos, c2 * ((cos - sin) * (cos + sin)));
     const double u0 = square(a * sin) + square(b * cos);
     u[0] = u0;
     // Nothing cancels for thin bodies, nor for circles.

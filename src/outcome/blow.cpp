@@ -90,7 +90,8 @@ double press_to(const Scene& scene, double distance, double omega) {
     const double k2 = scene.body().gyration2;
     const double wanted = inertia_about_contact(k2, at) * omega;
     const double there = k2 * state.omega + at.h * state.x_dot + at.dh * state.z_dot;
-    return scene.mass * (wanted - there) / (distance - at.dh);
+    const double force = scene.mass * (wanted - there) / (distance - at.dh);
+    return std::abs(force) <= largest_number ? force : std::copysign(infinity, force);
 }
 
 double speed_to_the_tip(const Scene& scene) {

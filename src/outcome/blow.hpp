@@ -13,8 +13,8 @@ namespace rolling_ellipse {
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint);
 
 // The downward impulse at a horizontal distance from the centre after which the body has an angular
-// velocity, if the contact sticks: physics (38, 40). Negative where it would have to be a pull, not
-// finite where it has no lever.
+// velocity, if the contact sticks: physics (38, 40). Negative where it would have to be a pull,
+// infinite where it has so little lever that no impulse of a scene would do.
 double press_to(const Scene& scene, double distance, double omega);
 
 // The angular velocity with which a body that rolls on level ground from the angle of the scene

@@ -213,7 +213,6 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
     double sin = at.sin * std::cos(turn) + at.cos * std::sin(turn);
     double cos = at.cos * std::cos(turn) - at.sin * std::sin(turn);
     double half_turns = 0.0;
-    bool on_way_back = false;
     if (flow.kind == MotionKind::rotation) {
         const double end_angle = std::atan2(at.sin, at.cos) + turn;
         half_turns = std::nearbyint(flow.direction * end_angle / pi);
@@ -222,17 +221,17 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
     } else {
         sin = std::clamp(sin / flow.amplitude, -1.0, 1.0);
         cos = std::sqrt((1 - sin) * (1 + sin));
-        on_way_back = heading < 0;
+        const bool on_way_back = heading < 0;
         if (on_way_back) sin = -sin;
-        half_turns = double(on_way_back) - double(flow.start_on_way_back);
+        half_turns = on_way_back == flow.start_on_way_back ? 0.0 : 1.0;
     }
     DoubleDouble time = time_since_flat(flow.phase, {sin, cos}) - flow.start_time;
+    // On the same way and behind the start: in the next swing.
+    if (flow.kind == MotionKind::libration && half_turns == 0 && time.high < 0) half_turns = 2.0;
     if (half_turns != 0) {
         if (std::isinf(flow.phase.half_turn.high)) return infinity;
         time = time + flow.phase.half_turn * half_turns;
     }
-    if (time.high < 0 && flow.kind == MotionKind::libration)
-        time = time + flow.phase.half_turn * 2.0;
     return std::max(double(time), 0.0);
 }
 

@@ -3,6 +3,7 @@
 // over comes back to the same intervals in each half turn.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "geometry/ellipse.hpp"
@@ -14,10 +15,13 @@ class PathSeries {
   public:
     explicit PathSeries(const Axes& axes);
 
-    // As centre_path, to the last place or two; what was asked before changes no bit.
+    // As centre_path, to the last place or two; what was asked before changes no bit, nor does the
+    // side of 0.
     double operator()(double theta) {
-        if (!here_.holds(theta)) move_to(theta);
-        return value(here_.path, theta - here_.middle);
+        const double angle = std::abs(theta);
+        if (!here_.holds(angle)) move_to(angle);
+        const double path = value(here_.path, angle - here_.middle);
+        return theta < 0 ? -path : path;
     }
 
   private:
@@ -27,12 +31,12 @@ class PathSeries {
         double middle = 0.0;
         Series path{};
 
-        bool holds(double theta) const { return low <= theta && theta < high; }
+        bool holds(double angle) const { return low <= angle && angle < high; }
     };
 
-    void move_to(double theta);
-    Interval interval_at(double theta) const;
-    double distance(double theta) const;
+    void move_to(double angle);
+    Interval interval_at(double angle) const;
+    double distance(double angle) const;
 
     Axes axes_;
     double c2_;

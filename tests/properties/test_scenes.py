@@ -65,12 +65,6 @@ def test_the_mirror_image_has_the_same_bits(data: Any) -> None:
     mine, yours = scene.initial_state, mirrored(scene).initial_state
     assert (mine.reaction_x, mine.reaction_z) == (-yours.reaction_x, yours.reaction_z)
     assert mine.mode is yours.mode
-    # Slides end where series say so, and those have roundings that see a side: what follows one of
-    # them is the mirror image of the other to rounding, which the next impact makes large.
-    slides = Mode.SLIDING in (mine.mode, *(each.state_after.mode for each in one.events))
-    if slides:
-        assert [each.kind for each in one.events][:1] == [each.kind for each in other.events][:1]
-        return
     for name in EVEN:
         assert np.array_equal(getattr(one, name), getattr(other, name)), name
     for name in ODD:
@@ -164,9 +158,9 @@ def test_energy_never_grows_in_contact(data: Any) -> None:
 
     An event rounds each number of its state a few times, the end of a slip every term of it. An
     arc is known to rounding of the scales that it has passed: of the energies at both ends and, of
-    a flight, of its height between them.
-    Bounces that settle take place under the forces of their beginning: an error of the square of
-    how long they last, beside the time in which a body falls, turns by b/a, or a force turns it.
+    a flight, of its height between them. Bounces that settle take place under the forces of their
+    beginning: an error of the square of how long they last, beside the time in which a body falls,
+    turns by b/a, or a force turns it.
     """
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 1.5)) * clock(scene)
@@ -177,7 +171,8 @@ def test_energy_never_grows_in_contact(data: Any) -> None:
         start, end = each.state_before, each.state_after
         allowed = blur(scene, start) + blur(scene, end)
         lost = energy(scene, **numbers(start)) - energy(scene, **numbers(end))
-        assert lost >= -16 * allowed, (each, lost / allowed)
+        slip_ends = start.mode is Mode.SLIDING and each.kind is not EventKind.LIFT_OFF
+        assert lost >= -(16 if slip_ends else 8) * allowed, (each, lost / allowed)
         lost = energy(scene, **numbers(before)) - energy(scene, **numbers(start))
         sizes = (blur(scene, before) + blur(scene, start)) / EPS
         allowed = 64 * EPS * sizes
