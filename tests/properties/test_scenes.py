@@ -30,6 +30,7 @@ METHODS: list[dict[str, Any]] = [
     {"model": "contact"},
     {"model": "rolling", "method": "dop853"},
     {"model": "rolling", "method": "gauss"},
+    {"model": "multipliers", "stabilization": "projection+energy"},
     {"model": "multipliers"},  # not "radau", whose matrices are differences to one side
 ]
 
