@@ -42,6 +42,11 @@ def frozen(values: _Values) -> _Values:
     return values
 
 
+def even_times(begin: float, end: float, count: int) -> FloatArray:
+    """Return even times, none after the end: a subnormal step of `np.linspace` is rounded up."""
+    return np.minimum(np.linspace(begin, end, count), end)
+
+
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     """Return the arrays that a Trajectory holds, at so many times."""
     found: dict[str, Any] = {"t": frozen(np.array(times))}

@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _core
 from ._check import FloatArray, array, flag, shown
+from ._samples import even_times
 from ._scene import Scene, require_scene
 from ._settings import DEFAULTS, Method, Model, Stabilization, settings
 from ._stability import advice
@@ -171,7 +172,7 @@ def sample_times(t: Any) -> FloatArray:
     if times.size and times.min() < 0:
         raise ValueError(f"t must not be negative [s], got {float(times.min())!r}")
     if times.ndim == 0:
-        return np.linspace(0.0, float(times), _DEFAULT_SAMPLES) if times > 0 else np.zeros(1)
+        return even_times(0.0, float(times), _DEFAULT_SAMPLES) if times > 0 else np.zeros(1)
     if times.ndim != 1 or times.size == 0:
         raise ValueError(f"t must be an end time or a 1-D array of times, got shape {times.shape}")
     i = int(np.flatnonzero(np.diff(times) <= 0)[0])

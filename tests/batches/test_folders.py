@@ -77,9 +77,10 @@ def test_numbers_that_are_written_in_no_other_way(out: Path) -> None:
     assert [repr(each.scene) for each in found] == [repr(scene) for scene in mine]
 
 
-def test_an_end_so_near_that_samples_coincide(out: Path) -> None:
-    simulate_many([scenes.rocking], 5e-324, out=out)
-    require_equal(load_many(out), singly([scenes.rocking], 5e-324))
+@pytest.mark.parametrize("end", [5e-324, 512 * 5e-324])  # of the other, a thousandth is one, too
+def test_an_end_so_near_that_samples_coincide(out: Path, end: float) -> None:
+    simulate_many([scenes.rocking], end, out=out)
+    require_equal(load_many(out), singly([scenes.rocking], end))
 
 
 def test_of_arrays_and_of_nothing(out: Path, tmp_path: Path) -> None:

@@ -227,6 +227,19 @@ def test_what_cannot_be_made() -> None:
             refused(name, lambda name=name, **given: rl.animate(MOTION, **given), value)
 
 
+@pytest.mark.parametrize("units", [1, 512, 749])
+def test_a_motion_of_next_to_no_time(units: int) -> None:
+    """No even time is after its end, whose share in it is rounded up to a unit or two."""
+    end = units * 5e-324
+    assert rl.simulate(rl.scenes.rocking, end).t[-1] == end
+    motion = rl.simulate(rl.scenes.rocking, [0.0, end])
+    draw: Any
+    for draw in (rl.plot, rl.plot_strobe, *CURVES):
+        draw(motion)
+        plt.close()
+    assert rl.animate(motion)._repr_html_() and motion._repr_html_()
+
+
 # ------------------------------------------------------------------------------------ films
 
 

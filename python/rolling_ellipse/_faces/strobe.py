@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from .._samples import even_times
+
 if TYPE_CHECKING:
     from .._trajectory import Trajectory
 
@@ -38,7 +40,7 @@ def strobe_svg(trajectory: Trajectory) -> str:
         return places
 
     bodies_at, points_at = (
-        np.linspace(first, last, count if last > first else 1) for count in (_BODIES, _POINTS)
+        even_times(first, last, count if last > first else 1) for count in (_BODIES, _POINTS)
     )
     at, path = trajectory.sol(bodies_at), centres(trajectory.sol(points_at))
     along = (path / fall).real

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._flow import period
-from .._samples import ContactSamples
+from .._samples import ContactSamples, even_times
 from .separatrix import flat_angle
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def between(motion: Trajectory, begin: float, end: float, count: float) -> Traje
 
 def _refined(motion: Trajectory, begin: float, end: float, count: float) -> Trajectory:
     points = min(max(_POINTS[0], math.ceil(_POINTS[1] * count)), _MOST_POINTS)
-    times = np.union1d(np.linspace(begin, end, points), _jumps(motion, begin, end))
+    times = np.union1d(even_times(begin, end, points), _jumps(motion, begin, end))
     values = _bending(motion, times)
     scale = np.ptp(values, axis=1, keepdims=True)
     scale[~(scale > 0) | ~np.isfinite(scale)] = np.inf  # what is constant does not bend
@@ -168,7 +168,7 @@ def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
     if not is_at_hand(motion):
         return min(end, _used_up(motion, turns, rate))
     while True:
-        found = min(end, _used_up(motion.sol(np.linspace(begin, end, 2001)), turns, rate))
+        found = min(end, _used_up(motion.sol(even_times(begin, end, 2001)), turns, rate))
         if not begin < found < begin + (end - begin) / 8:
             return found
         end = begin + 2 * (found - begin)  # look closer: nothing is between samples by then

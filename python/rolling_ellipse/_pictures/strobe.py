@@ -10,6 +10,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.ticker import MaxNLocator
 
 from .._check import number, whole_within
+from .._samples import even_times
 from . import ground as drawing
 from .artists import Artists
 from .axes import axes_of, leaving_no_figure
@@ -95,7 +96,7 @@ def plot_strobe(
     check_strobe(trajectory, count, t_end)
     first, last = span_of(trajectory)
     end = turned_until(trajectory, SHOWN_TURNS, "omega") if t_end is None else t_end
-    at = at_times(trajectory, np.linspace(first, end, count))
+    at = at_times(trajectory, even_times(first, end, count))
     path = between(trajectory, first, end, HALF_TURNS)
     view = drawing.view(path)
     ax = axes_of(ax, figure_size(view))

@@ -12,6 +12,7 @@ from .._blows import outcome
 from .._core import Outcome
 from .._outcome import thresholds
 from .._pictures.phase_map import COLOURS
+from .._samples import even_times
 from .._scene import Impulse, Scene
 from .._simulate import simulate
 from .._status import Status
@@ -99,7 +100,7 @@ def _sampled(motion: Trajectory, tolerance: float) -> Trajectory:
     """The motion where it is drawn from; even times where it trembles too fast for that."""
     end = motion.t_end
     times = sample_times(motion, end, tolerance, most=10 * _SAMPLES, for_forces=_SAMPLES)
-    return motion.sol(np.linspace(0.0, end, _SAMPLES) if times is None else times)
+    return motion.sol(even_times(0.0, end, _SAMPLES) if times is None else times)
 
 
 def _reason(motion: Trajectory) -> str:

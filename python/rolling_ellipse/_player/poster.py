@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from .._samples import even_times
 from .look import DARK, LIGHT
 
 if TYPE_CHECKING:
@@ -49,7 +48,7 @@ def poster(
 
 def positions(motion: Trajectory, end: float) -> Trajectory:
     """Return the motion at the even times that a poster shows."""
-    return motion.sol(np.linspace(0.0, min(end, float(motion.t[-1])), _BODIES))
+    return motion.sol(even_times(0.0, min(end, float(motion.t[-1])), _BODIES))
 
 
 def _strip(motion: Trajectory, window: tuple[float, float, float, float], scale: float) -> str:
@@ -70,7 +69,7 @@ def _strip(motion: Trajectory, window: tuple[float, float, float, float], scale:
             f'<ellipse class="body" rx="{scene.a:.6g}" ry="{scene.b:.6g}"/>'
             f'<path class="hand" d="M0 0H{scene.a:.6g}"/></g>'
         )
-    path = motion.sol(np.linspace(0.0, float(motion.t[-1]), 121))
+    path = motion.sol(even_times(0.0, float(motion.t[-1]), 121))
     parts.append(f'<path class="path" d="{_line(path.x, path.z)}"/></g>')
     return "".join(parts)
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._samples import even_times
+
 if TYPE_CHECKING:
     from .._check import FloatArray
     from .._trajectory import Trajectory
@@ -79,7 +81,7 @@ def sample_times(
     """
     jumps = [event.t for event in motion.events if 0 < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
-    times = np.unique(np.concatenate([np.linspace(0.0, end, _FIRST + 1), jumps, just_before]))
+    times = np.unique(np.concatenate([even_times(0.0, end, _FIRST + 1), jumps, just_before]))
     open_ones = np.diff(times) > 1e-12 * end  # intervals that have to be looked at
     while np.any(open_ones):
         if times.size > most:
