@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "numerics/bisect.hpp"
+#include "rolling/slope_run_reader.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -86,7 +87,7 @@ Arc arc(const SlopeFlow& flow) {
     if (flow.climb) mark_run(*flow.climb, flow.climbed);
     for (const SlopePiece& piece : flow.pieces) found.marks.push_back(double(piece.from.time));
     if (flow.run) {
-        const SlopePlace last = place_at(*flow.run, {flow.until, 0.0});
+        const SlopePlace last = RunReader(*flow.run)({flow.until, 0.0});
         mark_run(*flow.run, (last.quarters - flow.run->from.quarters) / 2 + 1);
     }
     for (double& mark : found.marks) mark *= flow.body.time;

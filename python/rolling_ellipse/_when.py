@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ._trajectory import Trajectory
 
 _MOST_TIMES = 1_000_000
-_MOST_LOOKS = 7_000_000  # some seconds, half a minute on slopes
+_MOST_LOOKS = 7_000_000  # some seconds, a dozen on slopes
 _EXACT_ROUNDINGS, _SUMMED_ROUNDINGS = 8, 1000  # ulp of a value that is no more than rounding
 _SUMMED = (
     ArcKind.SLOPING, ArcKind.ROLLING_STEPS, ArcKind.COORDINATE_STEPS, ArcKind.SLIDING_STEPS,

@@ -17,7 +17,7 @@ void look_at(const Scene&, const RollingFlow& flow, const double* times, std::si
 
 void look_at(const Scene&, const SlopeFlow& flow, const double* times, std::size_t n,
              FlowSample* samples) {
-    for (std::size_t i = 0; i < n; ++i) samples[i] = sample(flow, times[i]);
+    sample(flow, times, n, samples);
 }
 
 void look_at(const Scene&, const SteppedRolling& motion, const double* times, std::size_t n,

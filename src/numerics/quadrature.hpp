@@ -19,6 +19,18 @@ inline const GaussRule& gauss_rule(int n) {
     return gauss_rules[std::size(gauss_rules) - 1];
 }
 
+// The nodes of a rule, ascending, on -1 .. 1.
+struct Node {
+    double place;
+    double weight;
+};
+
+inline Node node_of(const GaussRule& rule, int i) {
+    const bool left = i < rule.size / 2;
+    const int from_middle = left ? (rule.size + 1) / 2 - 1 - i : i - rule.size / 2;
+    return {left ? -rule.nodes[from_middle] : rule.nodes[from_middle], rule.weights[from_middle]};
+}
+
 // Nodes for full double precision where the integrand is singular at the points place +- i height,
 // both mapped to the interval -1 .. 1: the error falls like rho^(-2n), rho the sum of the semi-axes
 // of the smallest ellipse with foci +-1 through a singularity (Trefethen, SIAM Rev. 50 (2008) 67,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rolling/slope_run_reader.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
@@ -92,6 +94,34 @@ SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
     return place;
 }
 
+// The places of a motion that moves.
+class SlopeReader {
+  public:
+    explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
+
+    SlopePlace operator()(double t) {
+        const double time = t / flow_.body.time;
+        if (flow_.kind == MotionKind::uniform) return circle_at(flow_, time);
+        if (flow_.kind == MotionKind::libration) return place_in_swing(flow_, time);
+        if (flow_.climb && time < double(first_of_pieces(flow_).time)) {
+            if (time < flow_.foot.back().end()) return place_in_pieces(flow_.foot, {time, 0.0});
+            return read(climb_, *flow_.climb, time);
+        }
+        if (flow_.run && time > known_until(flow_)) return read(run_, *flow_.run, time);
+        return place_in_pieces(flow_.pieces, {time, 0.0});
+    }
+
+  private:
+    static SlopePlace read(std::optional<RunReader>& reader, const SlopeRun& run, double time) {
+        if (!reader) reader.emplace(run);
+        return (*reader)({time, 0.0});
+    }
+
+    const SlopeFlow& flow_;
+    std::optional<RunReader> climb_;
+    std::optional<RunReader> run_;
+};
+
 }  // namespace
 
 SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x) {
@@ -143,19 +173,6 @@ void prepare(SlopeFlow& flow, double t) {
     while (known_until(flow) <= flow.until && grow(flow)) continue;
 }
 
-SlopePlace place_at(const SlopeFlow& flow, double t) {
-    const double time = t / flow.body.time;
-    if (flow.kind == MotionKind::rest || t == 0) return flow.start;
-    if (flow.kind == MotionKind::uniform) return circle_at(flow, time);
-    if (flow.kind == MotionKind::libration) return place_in_swing(flow, time);
-    if (flow.climb && time < double(first_of_pieces(flow).time)) {
-        if (time < flow.foot.back().end()) return place_in_pieces(flow.foot, {time, 0.0});
-        return place_at(*flow.climb, {time, 0.0});
-    }
-    if (flow.run && time > known_until(flow)) return place_at(*flow.run, {time, 0.0});
-    return place_in_pieces(flow.pieces, {time, 0.0});
-}
-
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {
     const SlopeBody& body = flow.body;
     const DoubleDouble turned =
@@ -165,8 +182,18 @@ FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {
 }
 
 FlowSample sample(const SlopeFlow& flow, double t) {
-    if (flow.kind == MotionKind::rest || t == 0) return {flow.theta, flow.omega, flow.x};
-    return sample_of(flow, place_at(flow, t));
+    FlowSample found;
+    sample(flow, &t, 1, &found);
+    return found;
+}
+
+void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
+    SlopeReader place_at(flow);
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool starts = flow.kind == MotionKind::rest || times[i] == 0;
+        samples[i] = starts ? FlowSample{flow.theta, flow.omega, flow.x}
+                            : sample_of(flow, place_at(times[i]));
+    }
 }
 
 double longest_time(const SlopeFlow& prepared) {

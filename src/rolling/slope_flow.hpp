@@ -44,9 +44,9 @@ void prepare(SlopeFlow& flow, double t);
 // Add one piece to those known; false where no more of them are needed, for the rest is known.
 bool grow(SlopeFlow& flow);
 
-// At a time for which it was prepared, in [0, longest_time].
-SlopePlace place_at(const SlopeFlow& flow, double t);
+// At a time for which it was prepared, in [0, longest_time]; at n times, best ascending.
 FlowSample sample(const SlopeFlow& flow, double t);
+void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples);
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
 
 // 1e15 half turns or swings; infinite where it was not prepared for that many.

@@ -1,10 +1,7 @@
 #include "rolling/slope_run.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "numerics/quadrature.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -23,20 +20,34 @@ double remainder(double level, double gain) {
     return ratio / std::sqrt(level) * series;
 }
 
-// The sum of (W + j w)^(-1/2) over j = 0 ... n - 1.
-double sum_of_rates(double level, double gain, double n) {
-    double sum = 0.0;
-    while (n > 0 && (level < asymptotic_from * gain || n < 4)) {
-        sum += 1 / std::sqrt(level);
+// The first terms of the sum of (W + j w)^(-1/2), up to where the others are known in one.
+FirstRates first_rates(double level, double gain) {
+    FirstRates first{};
+    while (level < asymptotic_from * gain) {
+        first.sum += 1 / std::sqrt(level);
         level += gain;
-        n -= 1;
+        first.count += 1;
     }
-    if (n == 0) return sum;
-    const double end = std::fma(n, gain, level);
-    const double a = std::sqrt(level);
+    first.level = level;
+    first.root = std::sqrt(level);
+    first.remainder = remainder(level, gain);
+    return first;
+}
+
+// The sum over j = 0 ... n - 1.
+double sum_of_rates(double level, const FirstRates& first, double gain, double n) {
+    constexpr double few = 4;
+    const double others = n - first.count;
+    if (others < few) {
+        double sum = 0.0;
+        for (; n > 0; n -= 1, level += gain) sum += 1 / std::sqrt(level);
+        return sum;
+    }
+    const double end = std::fma(others, gain, first.level);
+    const double a = first.root;
     const double b = std::sqrt(end);
-    const double ends = n * gain / (2 * a * b * (a + b));
-    return sum + (2 * n / (a + b) + (ends + (remainder(level, gain) - remainder(end, gain))));
+    const double ends = others * gain / (2 * a * b * (a + b));
+    return first.sum + (2 * others / (a + b) + (ends + (first.remainder - remainder(end, gain))));
 }
 
 struct Centre {
@@ -55,21 +66,7 @@ double hill_angle(const SlopeBody& body) {
     return -std::atan2(2 * square(body.long_axis) * incline, body.c2 + std::sqrt(root));
 }
 
-// The nodes of a rule, ascending.
-struct Node {
-    double place;
-    double weight;
-};
-
-Node node_of(const GaussRule& rule, int i) {
-    const bool left = i < rule.size / 2;
-    const int from_middle = left ? (rule.size + 1) / 2 - 1 - i : i - rule.size / 2;
-    return {left ? -rule.nodes[from_middle] : rule.nodes[from_middle], rule.weights[from_middle]};
-}
-
-// The rule of the parts, whose integrand is met by a polynomial through its nodes: no singularity
-// is closer than pi/2, five times half of a part.
-const GaussRule& part_rule = gauss_rule(16);
+// No singularity is closer to a part than pi/2, five times half of one.
 constexpr double widest_part = 0.6;
 
 // The angle from the centre of a panel at v, and its derivative.
@@ -127,6 +124,11 @@ class RunMaker {
             add(centres_[i], gap, std::max(low, centres_[i].at()), std::min(high, split));
             add(centres_[i + 1], gap, std::max(low, split), std::min(high, centres_[i + 1].at()));
         }
+        if (run_.heading > 0) {
+            for (const double level : run_.nodes.level) {
+                run_.first.push_back(first_rates(level, run_.body.gain));
+            }
+        }
         return std::move(run_);
     }
 
@@ -156,11 +158,11 @@ class RunMaker {
             run_.mass += run_.nodes.weight[i];
             run_.half_turn += run_.nodes.weight[i] / std::sqrt(run_.nodes.level[i]);
         }
-        panel.part = run_.part_nodes.weight.size() / part_rule.size;
+        panel.part = run_.part_nodes.weight.size() / part_order;
         panel.parts = static_cast<int>(std::ceil(width / widest_part));
         for (int i = 0; i < panel.parts; ++i) {
             add_nodes(panel, panel.first + width * i / panel.parts,
-                      panel.first + width * (i + 1) / panel.parts, part_rule, run_.part_nodes);
+                      panel.first + width * (i + 1) / panel.parts, part_rule(), run_.part_nodes);
         }
         run_.panels.push_back(panel);
     }
@@ -183,119 +185,6 @@ class RunMaker {
     std::vector<Centre> centres_;
 };
 
-// Half turns that take about so long: as if D and W were the same everywhere.
-double guess(const SlopeRun& run, double time) {
-    const double speed = run.mass / run.half_turn;  // sqrt(W)
-    const double change = run.heading * run.body.gain * time / (4 * run.mass);
-    return std::max(std::floor(time / run.mass * (speed + change)), 0.0);
-}
-
-// The place in a part, -1 .. 1, at a time after its begin: the integrand by Legendre polynomials,
-// from the times that belong to the nodes.
-double place_in_part(const double* times, double time) {
-    constexpr int n = 16;
-    std::array<double, n> nodes, before, now, coefficients;
-    for (int i = 0; i < n; ++i) {
-        nodes[i] = node_of(part_rule, i).place;
-        before[i] = 1.0;
-        now[i] = nodes[i];
-    }
-    for (int k = 0; k < n; ++k) {
-        const double up = (2 * k + 3.0) / (k + 2);
-        const double down = (k + 1.0) / (k + 2);
-        double sum = 0.0;
-        for (int i = 0; i < n; ++i) {
-            sum += times[i] * before[i];
-            const double next = up * nodes[i] * now[i] - down * before[i];
-            before[i] = now[i];
-            now[i] = next;
-        }
-        coefficients[k] = (k + 0.5) * sum;
-    }
-    constexpr int most_tries = 60;
-    constexpr double converged = 1e-9;  // Newton's method squares it
-    double x = std::clamp(time / coefficients[0] - 1, -1.0, 1.0);
-    double low = -1.0;
-    double high = 1.0;
-    for (int i = 0; i < most_tries; ++i) {
-        double p0 = 1.0;
-        double p1 = x;
-        double rate = coefficients[0];
-        double sum = coefficients[0] * (x + 1);
-        for (int k = 1; k < n; ++k) {
-            const double p2 = ((2 * k + 1) * x * p1 - k * p0) / (k + 1);
-            rate += coefficients[k] * p1;
-            sum += coefficients[k] * (p2 - p0) / (2 * k + 1);
-            p0 = p1;
-            p1 = p2;
-        }
-        const double rest = time - sum;
-        (rest > 0 ? low : high) = x;
-        double next = x + rest / rate;
-        if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-        const double moved = std::abs(next - x);
-        x = next;
-        if (moved < converged) break;
-    }
-    return x;
-}
-
-// The times that belong to nodes, after so many half turns; returns their sum.
-double times_of(const SlopeRun& run, const RunNodes& nodes, std::size_t begin, std::size_t end,
-                double half_turns, double* times) {
-    const double change = run.heading * half_turns * run.body.gain;
-    double sum = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
-        const double time = nodes.weight[i] / std::sqrt(nodes.level[i] + change);
-        if (times) *times++ = time;
-        sum += time;
-    }
-    return sum;
-}
-
-SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns) {
-    const double angle = panel.angle + offset_at(panel, v).angle;
-    const Geometry at = geometry(run.body, panel.quarters, angle);
-    const double w = run.energy + gained(run, panel.quarters, angle, at) +
-                     run.heading * half_turns * run.body.gain;
-    const double inertia = inertia_about_contact(run.body.gyration2, at);
-    const double turned = run.heading * 2 * half_turns;
-    SlopePlace place{};
-    place.quarters = run.turns + panel.quarters + turned;
-    place.angle = {angle, 0.0};
-    place.omega = run.heading * std::sqrt(2 * w / inertia);
-    place.path = run.from.path + (path_at(run.body, panel.quarters, angle) - run.path) +
-                 two_product(turned, run.body.quarter_path);
-    return place;
-}
-
-// The place at a time after the upper end of the half turn that follows n of them.
-SlopePlace place_in_half_turn(const SlopeRun& run, double half_turns, double rest) {
-    for (const RunPanel& panel : run.panels) {
-        const double whole = times_of(run, run.nodes, panel.begin, panel.end, half_turns, nullptr);
-        const bool is_last = &panel == &run.panels.back();
-        if (rest > whole && !is_last) {
-            rest -= whole;
-            continue;
-        }
-        for (int i = 0; i < panel.parts; ++i) {
-            std::array<double, 16> times{};
-            const std::size_t begin = (panel.part + i) * times.size();
-            const double part = times_of(run, run.part_nodes, begin, begin + times.size(),
-                                         half_turns, times.data());
-            if (rest > part && i + 1 < panel.parts) {
-                rest -= part;
-                continue;
-            }
-            const double x = place_in_part(times.data(), std::clamp(rest, 0.0, part));
-            const double v =
-                panel.first + (panel.last - panel.first) * (i + 0.5 * (x + 1)) / panel.parts;
-            return place_on(run, panel, v, half_turns);
-        }
-    }
-    return run.from;
-}
-
 }  // namespace
 
 double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega) {
@@ -315,29 +204,29 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
 DoubleDouble time_of(const SlopeRun& run, double half_turns) {
     const double gain = run.body.gain;
     const double lowest = run.heading < 0 ? (half_turns - 1) * gain : 0.0;
-    const auto& [weight, level] = run.nodes;
+    const auto& [weight, levels] = run.nodes;
     DoubleDouble sum{};
     for (std::size_t i = 0; i < weight.size(); ++i) {
-        sum = sum + two_product(weight[i], sum_of_rates(level[i] - lowest, gain, half_turns));
+        const double level = levels[i] - lowest;
+        const FirstRates& first = run.heading < 0 ? first_rates(level, gain) : run.first[i];
+        sum = sum + two_product(weight[i], sum_of_rates(level, first, gain, half_turns));
     }
     return sum;
 }
 
-SlopePlace place_at(const SlopeRun& run, DoubleDouble time) {
-    constexpr int most_tries = 20;
-    const DoubleDouble since = time - run.from.time;
-    double half_turns = guess(run, double(since));
-    double rest = 0.0;
-    double lasts = 0.0;
-    for (int i = 0; i < most_tries; ++i) {
-        rest = double(since - time_of(run, half_turns));
-        lasts = times_of(run, run.nodes, 0, run.nodes.weight.size(), half_turns, nullptr);
-        const double over = std::floor(rest / lasts);
-        if (over == 0 || half_turns + over < 0) break;
-        half_turns += over;
-    }
-    SlopePlace place = place_in_half_turn(run, half_turns, run.heading < 0 ? lasts - rest : rest);
-    place.time = time;
+SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns) {
+    const double angle = panel.angle + offset_at(panel, v).angle;
+    const Geometry at = geometry(run.body, panel.quarters, angle);
+    const double w = run.energy + gained(run, panel.quarters, angle, at) +
+                     run.heading * half_turns * run.body.gain;
+    const double inertia = inertia_about_contact(run.body.gyration2, at);
+    const double turned = run.heading * 2 * half_turns;
+    SlopePlace place{};
+    place.quarters = run.turns + panel.quarters + turned;
+    place.angle = {angle, 0.0};
+    place.omega = run.heading * std::sqrt(2 * w / inertia);
+    place.path = run.from.path + (path_at(run.body, panel.quarters, angle) - run.path) +
+                 two_product(turned, run.body.quarter_path);
     return place;
 }
 

@@ -8,16 +8,32 @@
 // are graded towards both, as those of physics (31).
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
+#include "numerics/quadrature.hpp"
 #include "rolling/slope_motion.hpp"
 
 namespace rolling_ellipse {
+
+// The rule of the parts of panels, in which the integrand is the polynomial through its nodes.
+inline constexpr int part_order = 16;
+inline const GaussRule& part_rule() { return gauss_rule(part_order); }
 
 // Nodes of Gauss rules, each with its weight times sqrt(D/2), and W in the first half turn.
 struct RunNodes {
     std::vector<double> weight;
     std::vector<double> level;
+};
+
+// Of the sum of (W + j w)^(-1/2): so many terms, and what the others need of the level W + j w that
+// they start at.
+struct FirstRates {
+    double count;
+    double sum;
+    double level;
+    double root;
+    double remainder;
 };
 
 // tan((phi - centre)/scale) = grade sinh(v), first <= v <= last. The integral over all of it takes
@@ -46,8 +62,9 @@ struct SlopeRun {
     std::vector<RunPanel> panels;
     RunNodes nodes;
     RunNodes part_nodes;
-    double mass;       // the sum of all weights
-    double half_turn;  // time of the first one
+    std::vector<FirstRates> first;  // of the nodes, downhill
+    double mass;                    // the sum of all weights
+    double half_turn;               // time of the first one
 };
 
 // From a place, for as many half turns as W stays some times w above 0 everywhere: see
@@ -63,8 +80,8 @@ double may_run(const SlopeBody& body, double energy, const Geometry& at, double 
 // The time of n half turns.
 DoubleDouble time_of(const SlopeRun& run, double half_turns);
 
-// The place at a time of the motion, after `from`.
-SlopePlace place_at(const SlopeRun& run, DoubleDouble time);
+// The place at v in a panel, of the half turn that follows n of them.
+SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns);
 
 // The place after n half turns.
 SlopePlace place_after(const SlopeRun& run, double half_turns);

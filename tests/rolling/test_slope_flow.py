@@ -246,12 +246,18 @@ def test_all_shapes_keep_their_energy(ratio: float, slope: float) -> None:
     assert np.all(np.abs(found.energy - found.energy[0]) < 16 * (EPS * size.max() + turned))
 
 
-def test_samples_do_not_depend_on_each_other() -> None:
-    """The same bits for a time alone as among many, before and behind it."""
-    scene = rl.Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=-5.0)
-    times = np.linspace(0.0, 40.0, 33)[1:]
-    together = rolled(scene, times).theta
-    assert [rolled(scene, [t]).theta[0] for t in times] == together.tolist()
+@pytest.mark.parametrize("omega", [-5.0, 3.0, -150.0])  # the last climbs some 2000 half turns
+@pytest.mark.parametrize("begin, end", [(0.0, 40.0), (20.0, 20.5), (1000.0, 9e4)])
+def test_samples_do_not_depend_on_each_other(omega: float, begin: float, end: float) -> None:
+    """The same bits for a time alone as among many, before and behind it: of one half turn too."""
+    scene = rl.Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=omega)
+    times = np.linspace(begin, end, 200)[1:]
+    motion = rolled(scene, times)
+    for each in (rolled(scene, times[::-1][:50][::-1]), motion.sol(times[::-1])):
+        assert set(zip(each.t, each.theta, each.omega, each.x, strict=True)) <= set(
+            zip(motion.t, motion.theta, motion.omega, motion.x, strict=True)
+        )
+    assert [motion.sol([t]).theta[0] for t in times] == motion.theta.tolist()
 
 
 @pytest.mark.parametrize("t", [1e150, 1e300])

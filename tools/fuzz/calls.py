@@ -103,13 +103,15 @@ def simulate(draw: Draw) -> Iterator[Line]:
     drawn = scenes.scene(draw, mutate=0.03)
     t, last = scenes.times(draw, drawn.body)
     arguments = {"scene": drawn.code, "t": t, **scenes.settings(draw, last, drawn.body.mild)}
+    patience = 1
     if draw.chance(0.35):
         arguments = draw.mutated(arguments)
         for name in ("max_steps", "max_events"):  # no more work than the time of a call holds
             arguments[name] = arguments.get(name, "200").replace("2**31 - 1", "2**31")
     elif drawn.body.mild and 0 < last < 20 * drawn.body.clock and draw.chance(0.05):
         arguments = {"scene": drawn.code, "t": t}
-    made = Line(call("rl.simulate", **arguments), does="simulate")
+        patience = 4  # 1e6 steps at 2 microseconds, where nothing else ends it
+    made = Line(call("rl.simulate", **arguments), does="simulate", patience=patience)
     yield from follow(draw, drawn.body, made)
 
 
