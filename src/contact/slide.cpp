@@ -26,6 +26,11 @@ SlidePoint moved(const SlidePiece& piece, double clock) {
             centre.time + lasts * unit};
 }
 
+// Of a circle all but the first coefficients vanish, and its reach has powers that are infinite.
+double times_power(double coefficient, double power) {
+    return coefficient == 0 ? 0.0 : coefficient * power;
+}
+
 // The first share of a reach at which a series that has to stay positive is negative, provably;
 // each coefficient with the magnitude of what it was made from.
 template <class Coefficient, class Magnitude>
@@ -33,14 +38,15 @@ std::optional<double> first_end(double reach, Coefficient coefficient, Magnitude
     double others = 0.0;
     double power = reach;
     for (int k = 1; k <= long_order; ++k) {
-        others += power * magnitude(k);
+        others += times_power(magnitude(k), power);
         power *= reach;
     }
     if (coefficient(0) > others) return std::nullopt;
     Polynomial<long_order> margin;
     power = 1.0;
     for (int k = 0; k <= long_order; ++k) {
-        margin.coefficients[k] = {power * coefficient(k), power * magnitude(k)};
+        margin.coefficients[k] = {times_power(coefficient(k), power),
+                                  times_power(magnitude(k), power)};
         power *= reach;
     }
     return first_negative(bernstein(margin));
@@ -50,7 +56,9 @@ std::optional<double> first_end(double reach, Coefficient coefficient, Magnitude
 std::pair<double, double> sin_cos(const DoubleDouble& angle) {
     const double sin = std::sin(angle.high);
     const double cos = std::cos(angle.high);
-    return {sin + angle.low * cos, cos - angle.low * sin};
+    const double rest_sin = std::sin(angle.low);  // up to one, after 1e16 radians
+    const double rest_cos = std::cos(angle.low);
+    return {sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin};
 }
 
 class Follower {

@@ -137,10 +137,11 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
     const bool balanced = is_equilibrium(geometry(body.axes(), theta), std::tan(slope));
     if (omega == 0 && balanced) flow.kind = MotionKind::rest;
     if (flow.body.c2 == 0) {
-        flow.kind = MotionKind::uniform;
         const double radius = flow.body.long_axis;
         flow.acceleration =
             flow.body.gravity.along * radius / (flow.body.gyration2 + square(radius));
+        const bool moves = omega != 0 || flow.acceleration > 0;  // which may be below the doubles
+        flow.kind = moves ? MotionKind::uniform : MotionKind::rest;
     }
     return flow;
 }

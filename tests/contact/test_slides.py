@@ -14,9 +14,19 @@ import numpy as np
 import pytest
 from oracles.contact import random_scenes, way_of_slide
 from oracles.geometry import support
-from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, scenes, simulate
+from rolling_ellipse import (
+    EventKind,
+    Impulse,
+    Mode,
+    Scene,
+    Status,
+    Trajectory,
+    scenes,
+    simulate,
+)
 
 EPSILON = float(np.finfo(float).eps)
+GRAVITY = 9.81
 
 
 def slides(count: int, seed: int, **given: Any) -> list[tuple[Scene, Trajectory]]:
@@ -212,3 +222,36 @@ def test_a_nearly_round_body_leaves_the_wall_where_nothing_presses_it(roundness:
         assert np.all(pressure[:-1] >= -32 * EPSILON * (1 + np.abs(theta[:-1])) * parts[:-1])
         assert abs(pressure[-1]) <= 32 * EPSILON * (1 + abs(theta[-1])) * parts[-1]
     assert left >= 10
+
+
+@pytest.mark.parametrize("k2", [1e-14, 1e-6, 0.25, 1.0])
+@pytest.mark.parametrize("turned", [1.0, 1e6, 1e9, 1e12, 1e15])
+def test_a_ball_slides_evenly_however_far_it_turns(k2: float, turned: float) -> None:
+    """Half of mu g a/k^2 t^2 and mu g t, until a omega is x': one part in 1 + k^2/a^2 earlier than
+    its spin alone would end. What is left of the spin is a difference, good to its roundings."""
+    spin_end = 2.0  # where a omega alone would vanish
+    omega = 2 * turned / spin_end
+    friction = omega / spin_end * k2 / GRAVITY
+    scene = Scene(1.0, 1.0, inertia=k2, friction=friction, omega=omega, x_dot=0.0)
+    end = spin_end / (1 + k2)
+    motion = simulate(scene, [0.0, end / 4, end / 2, 1.01 * end], model="contact")
+    (stick,) = motion.events
+    assert stick.kind is EventKind.STICK
+    assert abs(stick.t - end) <= 8 * EPSILON * end
+    lost = 1 - np.array([0.0, 0.25, 0.5, 1.0]) / (1 + k2)
+    assert np.all(np.abs(motion.omega - omega * lost) <= 8 * EPSILON * omega)
+    path = friction * GRAVITY * motion.t[:3] ** 2 / 2
+    terms = path + omega * motion.t[:3]  # x_dot is slip + h omega, and each a double
+    assert np.all(np.abs(np.abs(motion.x[:3]) - path) <= 8 * EPSILON * terms)
+
+
+def test_a_ball_of_next_to_no_inertia_keeps_no_energy_of_its_spin() -> None:
+    """Its spin of 9e13 rad/s ends in 1.2 s, in a piece whose length has powers beyond doubles."""
+    push = Impulse(30.0, 0.0, dx=0.03, dz=-0.145)
+    scene = Scene(0.39, 0.39, inertia=4.5e-14, friction=1.0, restitution=0.0, impulse=push)
+    motion = simulate(scene, np.linspace(0.0, 2.0, 500))
+    (stick,) = motion.events
+    slip = abs(scene.initial_state.x_dot - 0.39 * scene.initial_state.omega)
+    end = slip / (GRAVITY * (1 + 0.39**2 / 4.5e-14))
+    assert abs(stick.t - end) <= 16 * EPSILON * end
+    assert np.all(np.diff(motion.energy) <= 4 * EPSILON * motion.energy[0])

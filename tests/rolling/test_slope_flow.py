@@ -260,6 +260,13 @@ def test_samples_do_not_depend_on_each_other(omega: float, begin: float, end: fl
     assert [motion.sol([t]).theta[0] for t in times] == motion.theta.tolist()
 
 
+def test_a_circle_that_is_driven_by_less_than_doubles_tell_rests() -> None:
+    """Its acceleration, in its own units, is less than half of the smallest of them."""
+    scene = rl.Scene(1.6e-23, 1.6e-23, slope=5e-324, theta=0.3)
+    motion = rl.simulate(scene, [0.0, 1e300])
+    assert motion.theta.tolist() == [0.3, 0.3] and motion.omega.tolist() == [0.0, 0.0]
+
+
 @pytest.mark.parametrize("t", [1e150, 1e300])
 def test_a_double_knows_no_phase_beyond_1e15_half_turns(t: float) -> None:
     for scene in (rl.scenes.slope, rl.Scene(1.0, 1.0, slope=0.1), rl.Scene(2.0, 1.0, slope=0.1)):

@@ -75,6 +75,13 @@ def _beside_a_quarter_turn(theta: Any) -> float:
     return float(ulp / max(off, ulp))
 
 
+def _of_summed_bounces(found: rl.Trajectory) -> float:
+    """What a given `rest_speed` may err by: itself beside sqrt(g min(a, b)), at most 1/100."""
+    given = found.settings.rest_speed
+    fall = math.sqrt(found.scene.gravity) * math.sqrt(min(found.scene.a, found.scene.b))
+    return min(given / fall, 0.01) if given is not None and fall > 0 else 0.0
+
+
 def _energy(found: rl.Trajectory) -> Broken:
     with np.errstate(all="ignore"):
         energy = found.energy
@@ -84,6 +91,7 @@ def _energy(found: rl.Trajectory) -> Broken:
         blur = thin * np.spacing(np.abs(found.theta).max())  # what the angle itself is known to
         if math.isinf(found.scene.friction):
             blur += _beside_a_quarter_turn(found.theta)
+        blur += _of_summed_bounces(found)
     if grown > _ENERGY_NOISE + blur:
         yield "energy", f"the energy of a contact motion grows by more than {_ENERGY_NOISE:g}"
 
