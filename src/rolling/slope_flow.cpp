@@ -158,7 +158,8 @@ bool grow(SlopeFlow& flow) {
         if (may_run(flow.body, at_least, here, from.omega) > 0) flow.downhill = from;
     }
     if (flow.downhill && from.quarters - flow.downhill->quarters > 2 * half_turns_before_a_run) {
-        flow.run = slope_run(flow.body, *flow.downhill, energy_at(flow, *flow.downhill), 0.0);
+        flow.run =
+            slope_run(flow.body, *flow.downhill, energy_at(flow, *flow.downhill), most_half_turns);
         return false;
     }
     flow.pieces.push_back(piece_from(flow.body, from));

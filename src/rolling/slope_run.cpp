@@ -95,6 +95,7 @@ class RunMaker {
         run_.from = from;
         run_.turns = 2 * std::floor(from.quarters / 2);
         run_.heading = std::copysign(1.0, from.omega);
+        run_.half_turns = half_turns;
         run_.energy = energy;
         run_.path = path_at(body, from.quarters - run_.turns, double(from.angle));
         run_.at = geometry(body, from);

@@ -65,10 +65,11 @@ struct SlopeRun {
     std::vector<FirstRates> first;  // of the nodes, downhill
     double mass;                    // the sum of all weights
     double half_turn;               // time of the first one
+    double half_turns;              // for which it may be asked
 };
 
-// From a place, for as many half turns as W stays some times w above 0 everywhere: see
-// `may_run`.
+// From a place, for so many half turns uphill that W stays some times w above 0 everywhere, see
+// `may_run`; for any number of them downhill.
 SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy, double half_turns);
 
 // Beyond, a double does not know the phase.

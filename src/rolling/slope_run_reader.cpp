@@ -106,15 +106,16 @@ bool RunReader::is_well_within(double rest) const {
 // To the half turn of a time since the begin of the run; what is over.
 double RunReader::move_to(DoubleDouble since) {
     constexpr int most_tries = 20;
-    half_turns_ = guess(run_, double(since));
+    const double last = run_.half_turns - 1;
+    half_turns_ = std::min(guess(run_, double(since)), last);
     double rest = 0.0;
     for (int i = 1;; ++i) {
         begin_ = time_of(run_, half_turns_);
         rest = double(since - begin_);
         lasts_ = times_of(run_, run_.nodes, 0, run_.nodes.weight.size(), half_turns_, nullptr);
-        const double over = std::floor(rest / lasts_);
-        if (over == 0 || half_turns_ + over < 0 || i == most_tries) break;
-        half_turns_ += over;
+        const double next = std::clamp(half_turns_ + std::floor(rest / lasts_), 0.0, last);
+        if (next == half_turns_ || i == most_tries) break;
+        half_turns_ = next;
     }
     std::fill(panel_times_.begin(), panel_times_.end(), unknown);
     std::fill(part_times_.begin(), part_times_.end(), unknown);

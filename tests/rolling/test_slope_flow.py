@@ -226,24 +226,43 @@ def test_a_circle_rests_on_no_slope(slope: float) -> None:
         assert x == pytest.approx(share * math.copysign(9.81, slope) / 2, rel=16 * EPS)
 
 
-@pytest.mark.parametrize("ratio", [1e-3, 1 - 1e-12, 1e3])
-@pytest.mark.parametrize("slope", [1e-300, 1e-9, -0.5, 1.57])
-def test_all_shapes_keep_their_energy(ratio: float, slope: float) -> None:
-    """E/m = D omega^2/2 + g (h cos(slope) - x sin(slope)) over nine decades of time.
+def assert_keeps_energy(found: rl.Trajectory) -> None:
+    """E/m = D omega^2/2 + g (h cos(slope) - x sin(slope)), of a body whose b is 1.
 
     Each of its terms has a few roundings, 16 in all; x and theta move h by theirs over the
     radius of the tip, which a thin body has 1/ratio times in its length, and squared as h''.
     """
-    scene = rl.Scene(ratio, 1.0, slope=slope, theta=0.7, omega=0.4)
-    times = np.concatenate([[0.0], np.logspace(-2, 4, 60)])
-    found = rolled(scene, times)
+    axes = {"a": found.scene.a, "b": 1.0}
     size = found.kinetic_energy + np.abs(found.energy - found.kinetic_energy)
-    h = rl.geometry.support(found.theta, a=ratio, b=1.0)
-    h1 = rl.geometry.support_slope(found.theta, a=ratio, b=1.0)
-    h2 = rl.geometry.support_curvature(found.theta, a=ratio, b=1.0)
+    h = rl.geometry.support(found.theta, **axes)
+    h1 = rl.geometry.support_slope(found.theta, **axes)
+    h2 = rl.geometry.support_curvature(found.theta, **axes)
     change = np.abs(h2 - h) + np.abs(h1)  # of the terms with an angle
     turned = EPS * (1 + np.abs(found.theta)) * (9.81 + np.abs(found.omega) ** 2 * change) * change
     assert np.all(np.abs(found.energy - found.energy[0]) < 16 * (EPS * size.max() + turned))
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1 - 1e-12, 1e3])
+@pytest.mark.parametrize("slope", [1e-300, 1e-9, -0.5, 1.57])
+def test_all_shapes_keep_their_energy(ratio: float, slope: float) -> None:
+    """Over nine decades of time."""
+    scene = rl.Scene(ratio, 1.0, slope=slope, theta=0.7, omega=0.4)
+    assert_keeps_energy(rolled(scene, np.concatenate([[0.0], np.logspace(-2, 4, 60)])))
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1 - 1e-9, 2.0])
+@pytest.mark.parametrize("slope", [1e-8, 1e-4, -0.02, 0.3])
+@pytest.mark.parametrize("half_turns", [30, 1000, 1e6, 1e9])
+def test_a_climb_is_known_up_to_its_top(ratio: float, slope: float, half_turns: float) -> None:
+    """On all of its way up and down: near the top a half turn takes much longer than before."""
+    height = half_turns * math.pi * max(ratio, 1.0) * math.sin(abs(slope)) + abs(1 - ratio)
+    speed = math.sqrt(9.81 * height / rl.Scene(ratio, 1.0).gyration2)
+    scene = rl.Scene(ratio, 1.0, slope=slope, omega=-math.copysign(speed, slope))
+    top = 2 * speed * max(ratio, 1.0) / (9.81 * math.sin(abs(slope)))
+    found = rolled(scene, np.linspace(0.0, 2 * top, 500))
+    climbed = math.copysign(1.0, slope) * -found.x
+    assert 0 < np.argmax(climbed) < 499
+    assert_keeps_energy(found)
 
 
 @pytest.mark.parametrize("omega", [-5.0, 3.0, -150.0])  # the last climbs some 2000 half turns
