@@ -130,7 +130,8 @@ def options(draw: Draw, of: Body) -> dict[str, float | None]:
     if draw.chance(0.3):
         steep = math.copysign(math.nextafter(math.pi / 2, 0), draw.between(-1, 1))
         found["slope"] = draw.pick(
-            draw.between(-0.5, 0.5), draw.between(-1.57, 1.57), draw.power(-20, 0), 5e-324,
+            draw.between(-0.5, 0.5), draw.between(-1.57, 1.57), 5e-324, draw.power(-20, 0),
+            draw.power(-9, 0), -draw.power(-9, 0),
             *(() if of.mild else (steep, draw.beside(steep))),
         )  # fmt: skip
     if draw.chance(0.4):
@@ -185,6 +186,8 @@ def scene(draw: Draw, mutate: float = 0.0) -> DrawnScene:
 def times(draw: Draw, of: Body) -> tuple[str, float]:
     """Source text of sample times, and their last."""
     last = of.clock * draw.pick(draw.between(0, 12), draw.between(0, 12), draw.power(-3, 2))
+    if draw.chance(0.08):  # long climbs of slopes, many half turns
+        last = of.clock * draw.power(1, 8)
     if draw.chance(0.12):
         last = draw.pick(0.0, 5e-324, 1e300, draw.power(-320, 300), draw.power(-6, 6) * of.clock)
     last = min(last, 1e300)

@@ -76,12 +76,16 @@ Scene scene_from(Bytes& bytes) {
     scene.a = bytes.power(-2, 2);
     const double thin = bytes.chance(64) ? 3.0 : 0.7;
     scene.b = bytes.chance(32) ? scene.a : scene.a * bytes.power(-thin, thin);
+    if (bytes.chance(24)) scene.b = scene.a * (1 + bytes.sign() * bytes.power(-15, -1));
     scene.mass = bytes.power(-2, 2);
     scene.gravity = bytes.power(-1, 2);
     const double longer = std::max(scene.a, scene.b);
     scene.inertia = bytes.chance(128) ? scene.mass * uniform_disc_gyration2(scene.a, scene.b)
                                       : scene.mass * longer * longer * bytes.power(-6, 0);
-    scene.slope = bytes.chance(128) ? 0.0 : bytes.between(-1.55, 1.55);
+    if (bytes.chance(128)) {
+        const bool gentle = bytes.chance(96);  // long climbs, and motion that hardly changes
+        scene.slope = gentle ? bytes.sign() * bytes.power(-9, 0) : bytes.between(-1.55, 1.55);
+    }
     scene.friction = bytes.chance(64) ? infinity : bytes.power(-3, 2);
     scene.restitution = bytes.chance(64) ? 0.0 : bytes.between(0, 1);
     const double rate = std::sqrt(scene.gravity / longer);
@@ -252,7 +256,8 @@ void check_solution(const Scene& scene, const Solution& solution, double t_end) 
 
 void check_simulation(const Scene& scene, Bytes& bytes) {
     const double unit = unit_of_time(scene);
-    const double t_end = bytes.chance(16) ? bytes.any() : unit * bytes.power(-3, 1.3);
+    const double span = bytes.chance(48) ? bytes.power(0, 8) : bytes.power(-3, 1.3);
+    const double t_end = bytes.chance(16) ? bytes.any() : unit * span;
     const Settings settings = settings_from(bytes, t_end);
     if (!(t_end >= 0 && std::isfinite(t_end))) return;  // Python's to refuse
     const Solution solution = simulate(scene, settings, t_end, patience(20));
