@@ -88,7 +88,8 @@ def _energy(found: rl.Trajectory) -> Broken:
         scale = np.max(np.abs(found.kinetic_energy) + np.abs(found.potential_energy))
         grown = np.max(np.diff(energy)) / scale
         thin = max(found.scene.a / found.scene.b, found.scene.b / found.scene.a)
-        blur = thin * np.spacing(np.abs(found.theta).max())  # what the angle itself is known to
+        # What the angle itself is known to: D changes by 1.6 a/b of itself in a radian, h by a/2b.
+        blur = 2 * thin * np.spacing(np.abs(found.theta).max())
         if math.isinf(found.scene.friction):
             blur += _beside_a_quarter_turn(found.theta)
         blur += _of_summed_bounces(found)
