@@ -40,7 +40,7 @@ WRONG = (
     "np.datetime64('NaT')", "np.timedelta64(3, 's')", "np.array('1')", "np.array(['1', '2'])",
     "[]", "()", "[1.0]", "[[1.0], [2.0, 3.0]]", "[None]", "{}", "{1.0}", "{'a': 1.0}",
     "(v for v in (1.0, 2.0))", "Decimal('NaN')", "Decimal('1e400')", "Decimal('sNaN')",
-    "np.longdouble('1e4000')", "10**400", "-10**400", "Fraction(10**400)", "object()", "float",
+    "np.longdouble('1e4000')", "10**400", "-10**400", "Fraction(10**400)", "object()", "type",
     "range(3)", "slice(3)", "...", "NotImplemented", "np.void(b'abc')", "memoryview(b'abc')",
     "np.array([(1.0, 2.0)], dtype='f8,f8')", "np.empty(0)", "np.empty((2, 0))", "np.ones((2, 3))",
     "np.ones((1, 1, 1, 1))", "np.array([1.0, 2.0, 3.0])", "np.array(['NaT'], dtype='M8[s]')",
