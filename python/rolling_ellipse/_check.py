@@ -274,6 +274,15 @@ def uniform_disc(a: Any, b: Any) -> FloatArray:
     return squares
 
 
+def require_near(name: str, size: float, farthest: float) -> None:
+    """Raise ValueError if a double does not know a thousandth of a body so far away."""
+    if not size > 1e3 * np.spacing(farthest):
+        raise ValueError(
+            f"{name} must stay where a double still knows a thousandth of its body of "
+            f"{size:.6g} m, got a centre {farthest:.6g} m away"
+        )
+
+
 def file_name(name: str, value: Any) -> str:
     """Return the path of a file as text, or raise an error naming the argument."""
     found = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None

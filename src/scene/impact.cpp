@@ -172,7 +172,9 @@ InitialState initial_state(const Scene& scene) {
     const bool slip_removed = state.mode == Mode::sliding && std::isinf(scene.friction);
     if (!touching || !(is_struck(scene) || slip_removed)) return result;
 
-    const Contact c = contact(scene, at, state);
+    Contact c = contact(scene, at, state);
+    // Next to the flat position a slide would end before doubles tell its time from 0.
+    if (slip_removed && zero_if_negligible(state.theta) == 0) c.gtn = 0.0;
     if (c.u > 0) {
         state.mode = Mode::flight;
         return result;

@@ -34,9 +34,10 @@ struct ContactSample {
     ContactForce force;
 };
 
-// An angular velocity below 1e-100 rad/s counts as rest: its energy is no longer a normal double.
-inline double zero_if_negligible(double omega) {
-    return omega > -1e-100 && omega < 1e-100 ? 0.0 : omega;
+// An angular velocity below 1e-100 rad/s counts as rest, and so small an angle as none where its
+// square matters: that is no longer a normal double.
+inline double zero_if_negligible(double value) {
+    return value > -1e-100 && value < 1e-100 ? 0.0 : value;
 }
 
 // Whether two numbers are equal but for the rounding of a few operations.

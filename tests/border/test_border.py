@@ -119,17 +119,6 @@ def test_times_that_a_solution_does_not_know_are_refused(t: float) -> None:
             sample(np.array([0.0, t]))
 
 
-def test_a_motion_without_arcs_is_one_without_samples() -> None:
-    """A slide of which no power of the rate is a double: not even its first piece is known."""
-    scene = Scene(7.0, 1.0, theta=1e-290, omega=1e39, x_dot=0.0)
-    motion = simulate(scene, 1e-3, raise_on_failure=False)
-    assert motion.stats["segments"] == 0 and motion.t.size == 0 and motion.events == ()
-    for values in (motion.x, motion.mode, motion.normal_force, motion.energy, motion.q):
-        assert len(values) == 0
-    with pytest.raises(ValueError, match=r"^t must be empty, for the motion ended before"):
-        motion.sol(0.0)
-
-
 # --------------------------------------------------------------------------------- threads
 
 

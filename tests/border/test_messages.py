@@ -33,6 +33,8 @@ UNREACHABLE: dict[str, str] = {
     "raise NotImplementedError": "of classes that are there to be derived from",
     "trajectory must have finite samples": "pictures refuse what is too far away before",
     "there is no integrator for the method '": "settings refuse such a method before",
+    "t must be empty, for the motion ended before it began: ": "no slide is known that is too quick"
+    " for its first piece since angles below 1e-100 are none to endless friction",
     # of one way in a race: the reason of its run, which has no answer
     "flow must be given a scene that rolls": "a reason",
     "raise Stopped(": "a reason",

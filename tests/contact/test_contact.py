@@ -959,6 +959,22 @@ def test_a_nearly_round_body_that_turns_between_doubles_still_lands() -> None:
         assert abs(motion.events[0].t - fall) < 16 * EPS / speed
 
 
+@pytest.mark.parametrize("theta", [1e-101, -1e-150, 1e-235, -5e-324])
+@pytest.mark.parametrize("omega", [-30.0, 30.0, 4e47])
+def test_endless_friction_next_to_the_flat_position_is_that_in_it(
+    theta: float, omega: float
+) -> None:
+    """A slide there would end at theta/100, and its friction, c/Gtn, leave the doubles."""
+    flat = Scene(2.0, 1.0, theta=0.0, omega=omega, friction=math.inf, x_dot=0.0)
+    expected, found = (
+        simulate(scene, 10 / abs(omega), model="contact", max_events=20)
+        for scene in (flat, flat.replace(theta=theta))
+    )
+    assert [(e.t, e.kind) for e in found.events] == [(e.t, e.kind) for e in expected.events]
+    assert found.omega.tolist() == expected.omega.tolist()
+    assert np.isfinite(found.friction_force).all() and np.isfinite(found.normal_force).all()
+
+
 def test_a_rebound_of_a_rounding_on_the_tip_does_not_take_the_body_through_the_ground() -> None:
     """Rounding leaves it no speed off the ground, and its weight presses it there."""
     scene = Scene(

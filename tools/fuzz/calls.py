@@ -507,7 +507,8 @@ def command(draw: Draw) -> Iterator[Line]:
     if draw.chance(0.2):
         arguments.append(draw.pick("--model=contact", "--model=multipliers", "--method=dop853"))
     arguments += ["--json"] if draw.chance(0.3) else []
-    yield Line(f"command({arguments})", does="python -m rolling_ellipse", patience=2)
+    # 1e6 steps, where nothing else ends it
+    yield Line(f"command({arguments})", does="python -m rolling_ellipse", patience=8)
 
 
 # A newcomer adds a line; weights are chosen for some 15 ms a case.

@@ -15,6 +15,7 @@ from matplotlib.patches import Ellipse, Polygon
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D
 
+from .._check import require_near
 from .._core import Mode
 from ..geometry import support_slope
 from .palette import PLUM, palette_of
@@ -81,11 +82,7 @@ def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, f
     """
     size = max(scene.a, scene.b)
     farthest = max(float(np.max(np.abs(x))), float(np.max(np.abs(z))))
-    if not size > 1e3 * np.spacing(farthest):
-        raise ValueError(
-            "trajectory must stay where a double still knows a thousandth of its body of "
-            f"{size:.6g} m, got a centre {farthest:.6g} m away"
-        )
+    require_near("trajectory", size, farthest)
     top_z = z + np.minimum(z, size)  # on the ground G is midway up
     corners = [
         tilted(scene).transform(np.column_stack([x + dx, height]))

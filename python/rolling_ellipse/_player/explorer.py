@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import FloatArray, file_name, positive
+from .._check import FloatArray, file_name, positive, require_near
 from .._export.atomic import replacing
 from .._fields import FieldsOnly
 from .._scene import Impulse, Scene, require_scene
@@ -48,9 +48,11 @@ def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
     TypeError
         If `scene` is no Scene, or `t_end` no number.
     ValueError
-        If `t_end` is out of range.
+        If `t_end` is out of range, or the body so far away that a double does not know a
+        thousandth of it there.
     """
     require_scene(scene)
+    require_near("scene", max(scene.a, scene.b), max(abs(scene.x), scene.initial_state.z))
     unit = math.sqrt(max(scene.a, scene.b) / scene.gravity)
     longest = LONGEST * unit
     chosen = float(f"{12 * unit:.2g}") if t_end is None else positive("t_end", t_end)

@@ -51,7 +51,6 @@ PARTS: list[Refusal] = [
     (r"^t must be a time or a 1-D array", lambda _: MOTION.sol([[0.1]])),
     (r"^t must lie in \[0, 0\.5\], got 1\.0", lambda _: MOTION.sol(1.0)),
     (r"^t must be within \[0, 0\.5\] \[s\]", lambda _: MOTION._solution.sample_rolling(np.ones(1))),
-    (r"^t must be empty, for the motion ended before it began: ", lambda _: ended_at_once()),
     (r"^direction must be 1, -1 or 0", lambda _: MOTION.when(theta=0.1, direction=2)),
     (r"^exactly one of theta, .* must be given, got none", lambda _: MOTION.when()),
     (r"^function must be a function of a Traj", lambda _: MOTION.when(function=1)),  # type: ignore[arg-type]
@@ -70,12 +69,6 @@ PARTS: list[Refusal] = [
     (r"module 'rolling_ellipse' has no attribute 'nothing'", lambda _: rl.nothing),
     (r"^to_xarray needs xarray: pip install", lambda _: without("xarray", MOTION.to_xarray)),
 ]  # fmt: skip
-
-
-def ended_at_once() -> Any:
-    too_quick = Scene(1.0, 0.5, theta=1e-310, x_dot=-1.0)
-    found = rl.simulate(too_quick, [0.0, 1.0], raise_on_failure=False)
-    return found._solution.sample_contact(np.zeros(1))
 
 
 def without(package: str, call: Callable[[], Any]) -> Any:

@@ -143,6 +143,10 @@ PLAYERS: list[Refusal] = [
     (r"^t_end must be shown by a player in at most", long_film),
     (r"^t_end must be at most .* s for this body", lambda _: rl.explore(scenes.report, t_end=1e9)),
     (
+        r"^scene must stay where a double still knows a thousandth of its body of 2 m, got a",
+        lambda _: rl.explore(scenes.report.replace(x=1e30)),
+    ),
+    (
         r"^path must end in \.html",
         lambda folder: rl.explore(scenes.report).to_html(folder / "a.gif"),
     ),
