@@ -54,22 +54,29 @@ bool holds_at_start(const EnergyRange& range, double friction, const Start& star
     return margin_at(range, friction, next) > 0;
 }
 
-// A zero of the law, found in its squared form, refined in the plain one: near the tip both forces
-// may be small, and their squares know half their digits only. It lies between the angles given.
-double refined_zero(const EnergyRange& range, double friction, double angle, double from,
-                    double to) {
+// The zeros of the law about one that was found in its squared form, refined in the plain one: near
+// the tip both forces may be small, and their squares know half their digits only. They lie between
+// the angles given; where F vanishes, too, the law may hold at what was found and be broken on both
+// sides.
+void add_refined(std::vector<double>& angles, const EnergyRange& range, double friction,
+                 double angle, double from, double to) {
+    const auto holds = [&](double at) { return margin_at(range, friction, at) > 0; };
+    const auto add_between = [&](double low, double high) {
+        const bool rises = holds(high);
+        const Bracket zero = bisect(low, high, [&](double at) { return holds(at) == rises; });
+        angles.push_back(0.5 * (zero.low + zero.high));
+    };
     double low = angle;
     double high = angle;
+    const double scale = angle > 0 ? angle : to;
     for (double reach = epsilon; reach < 1; reach *= 4) {
-        low = std::max(angle * (1 - reach), from);
-        high = std::min(angle * (1 + reach), to);
-        if ((margin_at(range, friction, low) > 0) != (margin_at(range, friction, high) > 0)) break;
+        low = std::max(angle - reach * scale, from);
+        high = std::min(angle + reach * scale, to);
+        if (holds(low) != holds(high)) return add_between(low, high);
     }
-    const bool falls = margin_at(range, friction, low) > 0;
-    if (falls == (margin_at(range, friction, high) > 0)) return angle;
-    const auto is_high = [&](double at) { return (margin_at(range, friction, at) > 0) != falls; };
-    const Bracket zero = bisect(low, high, is_high);
-    return 0.5 * (zero.low + zero.high);
+    if (holds(low) == holds(angle)) return angles.push_back(angle);
+    add_between(low, angle);
+    add_between(angle, high);
 }
 
 // Where the law may be broken, as angles from the flat position, ascending: its zeros, and those of
@@ -84,11 +91,27 @@ std::vector<double> breaking_angles(const EnergyRange& range, const Bernstein<5>
     for (std::size_t i = 0; i < roots.size(); ++i) {
         const double from = i == 0 ? 0.0 : 0.5 * (roots[i - 1] + roots[i]);
         const double to = i + 1 == roots.size() ? 1.0 : 0.5 * (roots[i] + roots[i + 1]);
-        angles.push_back(
-            refined_zero(range, friction, angle_at(roots[i]), angle_at(from), angle_at(to)));
+        add_refined(angles, range, friction, angle_at(roots[i]), angle_at(from), angle_at(to));
     }
     std::sort(angles.begin(), angles.end());
     return angles;
+}
+
+// Adds the ends of the part about the start on which the law holds. Next to no friction will do
+// where none is needed, flat and on the tip and wherever F vanishes: such a part may be narrower
+// than the roots of the squared form can tell.
+void add_ends_about(std::vector<double>& angles, double start, const EnergyRange& range,
+                    double friction) {
+    const auto holds = [&](double angle) { return margin_at(range, friction, angle) > 0; };
+    const auto broken = [&](double angle) { return !holds(angle); };
+    const auto above = std::upper_bound(angles.begin(), angles.end(), start);
+    const double next = above != angles.end() ? *above : rolling_forces(range, 1.0).angle;
+    const double last = above != angles.begin() ? above[-1] : 0.0;
+    const double on_the_way_up = 0.5 * (start + next);
+    const double on_the_way_down = 0.5 * (last + start);
+    if (broken(on_the_way_up)) angles.push_back(bisect(start, on_the_way_up, broken).high);
+    if (broken(on_the_way_down)) angles.push_back(bisect(on_the_way_down, start, holds).low);
+    std::sort(angles.begin(), angles.end());
 }
 
 // How far the body turns until the first of the angles (ascending, at least one) is met on one side
@@ -128,6 +151,7 @@ EndOfRolling end_under_law(const EnergyRange& range, const ForcePolynomials& pol
     EndOfRolling end{broken ? Validity::invalid : Validity::edge, theta, start.direction};
     if (!holds_at_start(range, friction, start)) return end;
     std::vector<double> angles = breaking_angles(range, contact, law, friction);
+    add_ends_about(angles, std::abs(start.angle), range, friction);
     if (angles.empty()) {  // on the edge: the least margin is where the law may be broken
         const ForceExtremes extremes = force_extremes(range, polynomials);
         angles.push_back(std::isinf(friction) ? extremes.least_normal.angle

@@ -452,6 +452,58 @@ def test_ends_at_beside_the_tip_with_little_weight() -> None:
     assert certify(scene).ends_at == scene.theta
 
 
+def grip(scene: Scene, gyration2: Any, theta: Any) -> Any:
+    """mu N - |F| per mass where the motion is at `theta`, to 40 digits."""
+    a, b, gravity = scene.a, scene.b, scene.gravity
+    h, slope, _ = oracles.geometry.height_slopes(mp.mpf(scene.theta), a, b)
+    energy = (gyration2 + h**2 + slope**2) * mp.mpf(scene.omega) ** 2 / 2 + gravity * h
+    normal, friction = oracles.rolling.forces_by_differentiation(
+        theta, a, b, gyration2, gravity, energy
+    )
+    return scene.friction * normal - abs(friction)
+
+
+@pytest.mark.parametrize("friction", [1e-4, 1e-8, 1e-12, 1e-15])
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(
+    ("a", "b", "theta"),
+    [
+        (2.0, 1.0, 0.0),
+        (1.2, 1.0, math.pi / 2),
+        (0.90625, 1.0, 0.0),
+        (1.0, 30.0, math.pi / 2),
+        (2.0, 1.0, 0.9),
+        (1.0, 1.9, 0.8),
+    ],
+    ids=["flat", "tip", "standing axes, tip", "standing axes, flat", "F = 0", "standing, F = 0"],
+)
+def test_next_to_no_friction_will_do_where_none_is_needed(
+    a: float, b: float, theta: float, side: int, friction: float
+) -> None:
+    """Flat, on the tip, and in between where F vanishes: for a way that is as short as the friction
+    is small, and far below what the squared law can tell from a double root."""
+    with mp.workdps(DIGITS):
+        gyration2 = (mp.mpf(a) ** 2 + mp.mpf(b) ** 2) / 4
+        h, slope, _ = oracles.geometry.height_slopes(mp.mpf(theta), a, b)
+        omega = mp.mpf(side)
+        if theta not in (0.0, math.pi / 2):
+            # F = h theta'' + h' omega^2 with theta'' = -h' (g + rho omega^2)/D
+            radius = (a * b) ** 2 / h**3
+            omega = side * mp.sqrt(h / (gyration2 + h**2 + slope**2 - h * radius))
+        scene = Scene(a, b, gravity=1.0, friction=friction, theta=theta, omega=float(omega))
+        found = certify(scene)
+        assert found.validity is Validity.INVALID
+        assert found.ends_at is not None
+        way = side * (mp.mpf(found.ends_at) - theta)
+        assert way < 1e3 * friction
+        # from the flat position on, at most half a turn, an angle is counted in doubles, as theta
+        # is; 1e-12 of the forces, as the oracle allows double arithmetic
+        near = 4 * EPS * math.pi + 1e-12 * abs(way)
+        for share in (0, 0.01, 0.5, 1):
+            assert grip(scene, gyration2, theta + side * share * max(way - near, 0)) > 0
+        assert grip(scene, gyration2, theta + side * (way + near)) < 0
+
+
 @pytest.mark.parametrize("shift", [1e-3, -1e-3])
 def test_a_wrong_end_is_noticed(shift: float) -> None:
     """The tester tested: grip is lost at 0.2488 rad here, and nowhere near."""

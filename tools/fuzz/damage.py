@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import pickle
+import pickletools
+import re
 import struct
 import warnings
 import zipfile
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -93,10 +96,14 @@ def line(path: str, share: float, old: str, new: str) -> None:
 def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
     """Whether a pickle with some bits turned over still makes something that says what it is.
 
-    Pickles may raise anything when they are spoiled; here they must not end the interpreter.
+    Pickles may raise anything when they are spoiled; here they must not end the interpreter. The
+    state of a dtype is left whole: what NumPy does with another one is not bounded.
     """
     data = bytearray(pickle.dumps(value, protocol))
-    data[int(share * len(data))] ^= mask
+    place = int(share * len(data))
+    if any(place in state for state in _dtype_states(data)):
+        return False
+    data[place] ^= mask
     with (
         suppress(Exception),
         np.errstate(all="ignore"),  # a number may be any other now
@@ -109,6 +116,18 @@ def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
             getattr(found, name, None)
         return bool(repr(found))
     return False
+
+
+def _dtype_states(data: bytes | bytearray) -> Iterator[range]:
+    """Where a pickle says what a dtype is: from its short name on until it is set up."""
+    begin = None
+    for opcode, argument, position in pickletools.genops(bytes(data)):
+        if isinstance(argument, str) and re.fullmatch(r"[biufcmMOSUV]\d+", argument):
+            begin = position
+        elif opcode.name == "BUILD" and begin is not None:
+            assert position is not None
+            yield range(begin, position + 1)
+            begin = None
 
 
 def _raw(path: str, name: str, content: bytes, compresslevel: int | None = None) -> None:
