@@ -254,6 +254,7 @@ class ContactRun {
         State moving = state_;
         double lasts = 0.0;
         double turned = 0.0;
+        double moved = 0.0;
         double speed = rebound;
         while (speed > negligible_share * rebound) {
             const double hop = 2 * speed / c;
@@ -261,7 +262,7 @@ class ContactRun {
                 (gravity.along - at.dh * square(moving.omega)) * hop;  // slip in flight
             // of the centre, which moves as the slip and (h + h' turned) omega say
             const double velocity = moving.x_dot + at.dh * turned * moving.omega;
-            moving.x += (velocity + 0.5 * gravity.along * hop) * hop;
+            moved += (velocity + 0.5 * gravity.along * hop) * hop;
             lasts += hop;
             turned += moving.omega * hop;
             moving.x_dot += gained;
@@ -273,8 +274,8 @@ class ContactRun {
         }
         const double theta = state_.theta + turned;
         const State settled =
-            in_contact(geometry(axes_, theta), theta, zero_if_negligible(moving.omega), moving.x,
-                       slip_beyond_rounding(moving, at), Mode::flight);
+            in_contact(geometry(axes_, theta), theta, zero_if_negligible(moving.omega),
+                       state_.x + moved, slip_beyond_rounding(moving, at), Mode::flight);
         add_segment(Settling{lasts, state_, settled});
         if (t_ + lasts > t_end_) return finish();
         t_ += lasts;

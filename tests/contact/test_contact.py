@@ -132,6 +132,20 @@ def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> No
     assert np.array_equal(inside.z, at.h) and np.all(inside.normal_force == 0)
 
 
+def test_where_bounces_settle_along_the_ground_is_known_to_a_rounding() -> None:
+    """A thousand of them, and x may be far greater than the way that they take together."""
+    scene = Scene(
+        0.03, 1.0, gravity=1.0, inertia=0.001, theta=1.5718, omega=1.0,
+        impulse=Impulse(jz=1e-7), restitution=1.0,
+    )  # fmt: skip
+    away = dataclasses.replace(scene, x=1.0)
+    here, there = (simulate(each, 1e-4, model="contact") for each in (scene, away))
+    assert kinds(here) == kinds(there) == [EventKind.IMPACT, EventKind.STICK]
+    gone = here.events[-1].state_after.x
+    assert abs(gone) < 1e-5
+    assert there.events[-1].state_after.x == 1.0 + gone
+
+
 @pytest.mark.parametrize("tilt", [1e-3, 1e-5, 1e-7])
 def test_bounces_on_a_wall_are_too_long_to_settle(tilt: float) -> None:
     """Where next to nothing presses the body to its ground, a slow rebound is a long one: the body

@@ -34,9 +34,12 @@ def path_grain(motion: dict[str, float]) -> Floats:
     return np.array([0.0, 0.0, ROUNDINGS * EPS * max(motion["a"], motion["b"])])
 
 
-def shift_grain(motion: dict[str, float], shift: float) -> Floats:
-    """An angle to which another is added, and from which it is taken again: four roundings."""
-    return np.array([2 * EPS * (abs(motion["theta"]) + abs(shift)), 0.0, 0.0])
+def known_to_where_shifted(t: float, turned: dict[str, float], shift: float) -> Floats:
+    """An angle to which another is added, and from which it is taken again, twice two roundings:
+    of the angle that the motion starts from, too."""
+    error = 2 * EPS * (abs(turned["theta"] - shift) + abs(shift))
+    moved = spread(state, {"t": t} | turned, {"theta": error})
+    return known_to(state, {"t": t} | turned) + moved + np.array([error, 0.0, 0.0])
 
 
 @given(st.data())
@@ -106,8 +109,7 @@ def test_axes_may_change_their_names(data: Any) -> None:
         "a": motion["b"], "b": motion["a"], "theta": motion["theta"] + math.pi / 2
     }  # fmt: skip
     found = state(t, **turned) - [math.pi / 2, 0, 0]
-    allowed = known_to(state, {"t": t} | turned) + path_grain(motion)
-    allowed += shift_grain(motion, math.pi / 2)
+    allowed = known_to_where_shifted(t, turned, math.pi / 2) + path_grain(motion)
     assert np.all(np.abs(found - state(t, **motion)) <= allowed)
 
 
@@ -119,8 +121,7 @@ def test_half_a_turn_shows_the_same_body(data: Any) -> None:
     turns = data.draw(st.integers(-1000, 1000))
     turned = motion | {"theta": motion["theta"] + turns * math.pi}
     found = state(t, **turned) - [turns * math.pi, 0, 0]
-    allowed = known_to(state, {"t": t} | turned) + path_grain(motion)
-    allowed += shift_grain(motion, turns * math.pi)
+    allowed = known_to_where_shifted(t, turned, turns * math.pi) + path_grain(motion)
     assert np.all(np.abs(found - state(t, **motion)) <= allowed)
 
 

@@ -150,6 +150,11 @@ def blur(scene: Scene, state: InitialState) -> float:
     return EPS * (scene.gravity * heights + speeds)
 
 
+def surface_speed(scene: Scene, state: InitialState) -> float:
+    """What a slip is the difference of."""
+    return abs(state.x_dot) + abs(state.omega) * max(scene.a, scene.b)
+
+
 def numbers(state: InitialState) -> dict[str, float]:
     return {name: getattr(state, name) for name in ("theta", "omega", "x", "z", "x_dot", "z_dot")}
 
@@ -158,11 +163,11 @@ def numbers(state: InitialState) -> dict[str, float]:
 def test_energy_never_grows_in_contact(data: Any) -> None:
     """Through no event, and in no arc; the work of the slope is in the potential energy.
 
-    An event rounds each number of its state a few times, the end of a slip every term of it. An
-    arc is known to rounding of the scales that it has passed: of the energies at both ends and, of
-    a flight, of its height between them. Bounces that settle take place under the forces of their
-    beginning: an error of the square of how long they last, beside the time in which a body falls,
-    turns by b/a, or a force turns it.
+    An event rounds each number of its state a few times, and a slip ends within rounding of the
+    speeds that it began with. An arc is known to rounding of the scales that it has passed: of the
+    energies at both ends and, of a flight, of its height between them. Bounces that settle take
+    place under the forces of their beginning: an error of the square of how long they last, beside
+    the time in which a body falls, turns by b/a, or a force turns it.
     """
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 1.5)) * clock(scene)
@@ -173,8 +178,9 @@ def test_energy_never_grows_in_contact(data: Any) -> None:
         start, end = each.state_before, each.state_after
         allowed = blur(scene, start) + blur(scene, end)
         lost = energy(scene, **numbers(start)) - energy(scene, **numbers(end))
-        slip_ends = start.mode is Mode.SLIDING and each.kind is not EventKind.LIFT_OFF
-        assert lost >= -(16 if slip_ends else 8) * allowed, (each, lost / allowed)
+        if start.mode is Mode.SLIDING and each.kind is not EventKind.LIFT_OFF:
+            allowed += EPS * surface_speed(scene, before) * surface_speed(scene, start)
+        assert lost >= -8 * allowed, (each, lost / allowed)
         lost = energy(scene, **numbers(before)) - energy(scene, **numbers(start))
         sizes = (blur(scene, before) + blur(scene, start)) / EPS
         allowed = 64 * EPS * sizes
