@@ -191,7 +191,7 @@ class ContactRun {
 
     void fly() {
         const Flight flight{axes_, scene_.ground_gravity(), state_};
-        const double lasts = touch_down(flight);
+        const auto [lasts, grazes] = touch_down(flight);
         const bool lands = t_ + lasts <= t_end_;
         State before = state_at(flight, lands ? lasts : t_end_ - t_);
         if (!is_known(before)) {
@@ -201,7 +201,9 @@ class ContactRun {
         }
         add_segment(flight);
         if (!lands) return finish();
-        before.z = geometry(axes_, before.theta).h;
+        const Geometry at = geometry(axes_, before.theta);
+        before.z = at.h;
+        if (grazes) before.z_dot = at.dh * before.omega;
         t_ += lasts;
         hit(before);
     }

@@ -42,6 +42,9 @@ class Gap {
         return s.z_dot - flight_.gravity.into * t - at(t).dh * s.omega;
     }
 
+    // From the ground, by its acceleration at most.
+    bool leaves_slowly() const { return value(0.0) <= 0 && rate(0.0) <= 0; }
+
     // When the centre comes down to a height.
     double falls_to(double height) const {
         const double drop = flight_.start.z - height;
@@ -134,21 +137,7 @@ class Curvature {
     double convex_time_ = infinity;
 };
 
-}  // namespace
-
-State state_at(const Flight& flight, double t) {
-    const State& s = flight.start;
-    return {s.theta + s.omega * t,
-            s.omega,
-            s.x + t * (s.x_dot + 0.5 * flight.gravity.along * t),
-            s.z + t * (s.z_dot - 0.5 * flight.gravity.into * t),
-            s.x_dot + flight.gravity.along * t,
-            s.z_dot - flight.gravity.into * t,
-            Mode::flight};
-}
-
-double touch_down(const Flight& flight) {
-    const Gap gap(flight);
+double first_touch(const Flight& flight, const Gap& gap) {
     const Curvature curvature(flight);
     // Above that it does not touch, however h is rounded.
     const double tall = std::max(flight.axes.a, flight.axes.b) * (1 + equal_ulps * epsilon);
@@ -160,8 +149,12 @@ double touch_down(const Flight& flight) {
 
     Curvature::Interval now = curvature.first();
     // A body that leaves by its acceleration does so where the gap becomes convex.
-    const bool leaves_slowly = gap.value(0.0) <= 0 && gap.rate(0.0) <= 0;
-    if (leaves_slowly && !now.convex) now = curvature.after(now);
+    const bool leaves_slowly = gap.leaves_slowly();
+    if (leaves_slowly && !now.convex) {
+        now = curvature.after(now);
+        // At once, or not at all.
+        if (!(gap.value(now.begin) >= -equal_ulps * epsilon * tall)) return 0.0;
+    }
     double before = leaves_slowly ? 0.0 : gap.rate(now.begin);  // rate at the interval's begin
     for (;;) {
         if (gap.height(now.begin) > tall) {
@@ -191,6 +184,29 @@ double touch_down(const Flight& flight) {
         before = after;
         now = next;
     }
+}
+
+}  // namespace
+
+State state_at(const Flight& flight, double t) {
+    const State& s = flight.start;
+    return {s.theta + s.omega * t,
+            s.omega,
+            s.x + t * (s.x_dot + 0.5 * flight.gravity.along * t),
+            s.z + t * (s.z_dot - 0.5 * flight.gravity.into * t),
+            s.x_dot + flight.gravity.along * t,
+            s.z_dot - flight.gravity.into * t,
+            Mode::flight};
+}
+
+Landing touch_down(const Flight& flight) {
+    constexpr double turned_by_a_graze = 0x1p-22;
+    const Gap gap(flight);
+    const double after = first_touch(flight, gap);
+    const double omega = flight.start.omega;
+    if (omega == 0 || !gap.leaves_slowly()) return {after, false};
+    const double least = turned_by_a_graze / std::abs(omega);
+    return after < least ? Landing{least, true} : Landing{after, false};
 }
 
 }  // namespace rolling_ellipse

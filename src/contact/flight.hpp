@@ -14,8 +14,16 @@ struct Flight {
 
 State state_at(const Flight& flight, double t);
 
-// The time of the first contact after the start, infinite where there is none. A start in contact
+// The first contact after the start, after infinite time where there is none. A start in contact
 // counts as leaving the ground: with the velocity, or the acceleration, that it has.
-double touch_down(const Flight& flight);
+//
+// A body that is free but for rounding, as on a tip that is just not thrown off, may stay on the
+// ground, or hop lower than numbers tell: it grazes. That lasts until the free acceleration c into
+// the ground is clear of its rounding again, and ends without an impact.
+struct Landing {
+    double after;
+    bool grazes;
+};
+Landing touch_down(const Flight& flight);
 
 }  // namespace rolling_ellipse

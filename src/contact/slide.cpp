@@ -167,9 +167,12 @@ class Follower {
                                         2 * std::abs(body.gravity.along * series.time[k]);
                 });
         }
+        const double cancelled =
+            grazes_ ? 2 * body.gravity.into * series.height2[0] * std::sqrt(series.height2[0])
+                    : 0.0;
         look(
             End::pressure, [&](int k) { return series.pressure[k]; },
-            [&](int k) { return 3 * std::abs(series.pressure[k]); });
+            [&](int k) { return 3 * std::abs(series.pressure[k]) + (k == 0 ? cancelled : 0.0); });
         if (clock_ == SlideClock::slowed) {
             look_at_response(End::response, 1.0, no_response);
             look_at_response(End::recovery, -1.0, 2 * small_response);
@@ -193,7 +196,9 @@ class Follower {
             case End::slip:
                 return SlideStop::slip_vanishes;
             case End::pressure:
-                return SlideStop::pressure_vanishes;
+                if (grazes_ || leaves()) return SlideStop::pressure_vanishes;
+                grazes_ = true;
+                return std::nullopt;
             case End::theta:
                 return SlideStop::passes_theta;
             case End::turning_back:
@@ -208,6 +213,19 @@ class Follower {
         if (clock_ == SlideClock::slowed) return last_moment();
         clock_ = SlideClock::slowed;
         return std::nullopt;
+    }
+
+    // Whether c goes on to fall where it is its rounding: h'' is least on the tip, so that c < 0,
+    // if at all, on the way there.
+    bool leaves() const {
+        const auto [sin, cos] = sin_cos(slide_.last.angle);
+        const Axes& axes = slide_.body.axes;
+        const Geometry at = geometry(axes, sin, cos);
+        const Geometry tip = axes.a > axes.b ? geometry(axes, 1.0, 0.0) : geometry(axes, 0.0, 1.0);
+        const double omega = double(slide_.last.omega);
+        const double gravity = slide_.body.gravity.into;
+        return free_acceleration(tip, gravity, omega) < 0 && !is_weightless(tip, gravity, omega) &&
+               at.dh * omega > 0;
     }
 
     // B = 0: in a moment, N = c/B ends it.
@@ -230,6 +248,9 @@ class Follower {
     SlideClock clock_ = SlideClock::time;
     double reach_ = 0.0;
     std::optional<End> end_;
+    // c has come to its rounding and does not vanish: beside B = 0 that is how friction without end
+    // begins. From there on it counts as what is left of gravity and h'' omega^2.
+    bool grazes_ = false;
 };
 
 // The clock of a piece at a time since its centre.

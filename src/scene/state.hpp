@@ -58,4 +58,9 @@ inline double free_acceleration(const Geometry& at, double gravity_into_ground, 
     return gravity_into_ground + at.ddh * omega * omega;
 }
 
+// Whether that is 0 but for rounding.
+inline bool is_weightless(const Geometry& at, double gravity_into_ground, double omega) {
+    return nearly_equal(-at.ddh * omega * omega, gravity_into_ground);
+}
+
 }  // namespace rolling_ellipse

@@ -1,0 +1,103 @@
+"""Where a body in contact is weightless but for rounding: it neither takes off nor sinks.
+
+The free acceleration into the ground, c = g cos(alpha) + h'' omega^2, is least on the tip. Spun
+there with omega^2 = g cos(alpha)/|h''| a body is free for an instant, and pressed before and after;
+at an angle at which c = 0 it leaves on the way to the tip, and stays on the way from it.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.numbers import EPS
+from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, geometry, simulate
+
+BODIES = [(2.0, 1.0), (1.0, 1.3), (1.0, 30.0)]
+ULPS = [-3, -1, 0, 1, 3]  # of omega^2, beside which c is 0
+GRAZES = 2.0**-21  # [rad], twice the way that is less than numbers tell
+
+
+def weightless_spin(a: float, b: float, theta: float, gravity: float = 9.81) -> float:
+    """omega at which c = 0."""
+    h = float(geometry.support(theta, a=a, b=b))
+    return math.sqrt(gravity / (h - (a * b) ** 2 / h**3))
+
+
+def tip(a: float, b: float) -> float:
+    return math.pi / 2 if a > b else 0.0
+
+
+def lowest(moving: Trajectory) -> float:
+    """The gap where it is least, in the size of the body."""
+    a, b = moving.scene.a, moving.scene.b
+    return float(np.min(moving.z - geometry.support(moving.theta, a=a, b=b))) / max(a, b)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 1.0])
+@pytest.mark.parametrize("ulps", ULPS)
+@pytest.mark.parametrize(("a", "b"), BODIES)
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_tip_that_is_just_not_thrown_off_stays_on_ice(
+    a: float, b: float, ulps: int, side: int, restitution: float
+) -> None:
+    """Without friction what is left is (k^2 + h'^2) omega^2/2 + g h."""
+    start = weightless_spin(a, b, tip(a, b)) * (1 + ulps * EPS / 2)
+    scene = Scene(a, b, friction=0.0, theta=tip(a, b), omega=side * start, restitution=restitution)
+    moving = simulate(scene, np.linspace(0.0, 1.0 / start, 200))
+    assert moving.status is Status.COMPLETED
+    on_the_ground = np.abs(moving.theta - scene.theta) > GRAZES
+    assert np.all(moving.mode[on_the_ground] == Mode.SLIDING)
+    assert lowest(moving) >= -8 * EPS
+    h = geometry.support(moving.theta, a=a, b=b)
+    slope = geometry.support_slope(moving.theta, a=a, b=b)
+    energy = (scene.gyration2 + slope**2) * moving.omega**2 / 2 + scene.gravity * h
+    assert np.ptp(energy) <= 32 * EPS * energy[0]
+
+
+@pytest.mark.parametrize("ulps", ULPS)
+@pytest.mark.parametrize(("a", "b"), BODIES)
+@pytest.mark.parametrize("friction", [0.3, math.inf])
+def test_a_rough_ground_keeps_a_weightless_tip_as_well(
+    a: float, b: float, friction: float, ulps: int
+) -> None:
+    """It slips or rolls on from there, and no event lasts less than can be told."""
+    start = weightless_spin(a, b, tip(a, b)) * (1 + ulps * EPS / 2)
+    scene = Scene(a, b, friction=friction, theta=tip(a, b), omega=start)
+    moving = simulate(scene, np.linspace(0.0, 0.5 / start, 200), model="contact")
+    assert moving.status is Status.COMPLETED
+    assert np.all(moving.mode[np.abs(moving.theta - scene.theta) > GRAZES] != Mode.FLIGHT)
+    assert lowest(moving) >= -8 * EPS
+    assert np.max(np.diff(moving.energy)) <= 32 * EPS * moving.energy[0]
+    assert len(moving.events) <= 3
+
+
+@pytest.mark.parametrize("ulps", ULPS)
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("from_the_tip", [True, False])
+def test_beside_the_tip_c_decides_by_where_it_goes(
+    friction: float, from_the_tip: bool, ulps: int
+) -> None:
+    away = 0.6  # from the tip at pi/2
+    theta = math.pi / 2 - away
+    omega = weightless_spin(2.0, 1.0, theta) * (1 + ulps * EPS / 2) * (-1 if from_the_tip else 1)
+    scene = Scene(2.0, 1.0, friction=friction, theta=theta, omega=omega, x_dot=1.0)
+    moving = simulate(scene, np.linspace(0.0, 0.4 / abs(omega), 50))
+    later = np.abs(moving.theta - theta) > GRAZES
+    assert np.all((moving.mode[later] == Mode.FLIGHT) != from_the_tip)
+    assert lowest(moving) >= -8 * EPS
+
+
+def test_friction_without_end_makes_a_tip_weightless_and_keeps_it_so() -> None:
+    """A tip that slips on it is spun up in no time until c = 0. From there on friction keeps the
+    gap closed without a normal force: the centre falls freely, h = a - g t^2/2, and c comes back
+    as the square of the angle, from below its rounding."""
+    scene = Scene(75.0, 50.0, gravity=1.0, theta=-math.pi / 2, x_dot=17.0)
+    moving = simulate(scene, np.linspace(0.0, 4.0, 60), model="contact")
+    assert all(each.kind is not EventKind.LIFT_OFF for each in moving.events)
+    sliding = moving.mode == Mode.SLIDING
+    assert np.count_nonzero(sliding) > 30
+    fallen = 75.0 - moving.t**2 / 2
+    h = geometry.support(moving.theta, a=75.0, b=50.0)
+    assert np.all(np.abs(h - fallen)[sliding] <= 32 * EPS * 75.0)
+    spin = weightless_spin(75.0, 50.0, scene.theta, 1.0)
+    assert moving.omega[1] == pytest.approx(spin, rel=1e-2)
