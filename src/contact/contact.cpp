@@ -8,6 +8,7 @@
 #include "contact/continuation.hpp"
 #include "geometry/half_turns.hpp"
 #include "proof/certificate.hpp"
+#include "proof/law.hpp"
 #include "proof/slope_end.hpp"
 #include "scene/impact.hpp"
 #include "scene/refuse.hpp"
@@ -119,8 +120,7 @@ class ContactRun {
     void roll_exactly() {
         const RollingStart start = rolling_start(scene_.body(), state_.theta, state_.omega);
         const RollingFlow flow = rolling_flow(start, state_.x);
-        const bool is_first = motion_.segments.empty() && turned_.high == 0;
-        const EndOfRolling end = is_first ? first_end_ : end_of_rolling(start, scene_.friction);
+        const EndOfRolling end = end_of_this_rolling(start);
         const double lasts = end.validity == Validity::invalid ? time_of_end(flow, end) : infinity;
         if (lasts == infinity) {
             validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
@@ -131,11 +131,23 @@ class ContactRun {
         stop_rolling(lasts, last.theta, last.omega, last.x);
     }
 
+    EndOfRolling end_of_this_rolling(const RollingStart& start) const {
+        const bool is_first = motion_.segments.empty() && turned_.high == 0;
+        const double friction = friction_to_roll();
+        if (friction == scene_.friction) {
+            return is_first ? first_end_ : end_of_rolling(start, friction);
+        }
+        EndOfRolling end = end_of_rolling(start, friction);
+        // With less friction than angles tell from none it ends where it starts.
+        if (end.angle == start.theta) *end.angle += end.heading * epsilon;
+        return end;
+    }
+
     void roll_on_slope() {
         SlopeFlow flow =
             slope_flow(scene_.body(), scene_.slope, state_.theta, state_.omega, state_.x);
         const double left = t_end_ - t_;
-        const LawMeetings met = law_meetings(flow, scene_.friction, left);
+        const LawMeetings met = law_meetings(flow, friction_to_roll(), left);
         const double lasts = met.broken ? met.broken->time : infinity;
         prepare(flow, std::min(lasts, left));
         if (lasts == infinity) {
@@ -145,6 +157,14 @@ class ContactRun {
         if (lasts > 0) add_segment(std::make_shared<const SlopeFlow>(std::move(flow)));
         if (t_ + lasts > t_end_) return finish();
         stop_rolling(lasts, last.theta, last.omega, last.x);
+    }
+
+    // At the limit but for rounding it may be that the ground holds the body, and that it slips:
+    // it rolls until that is clear.
+    double friction_to_roll() const {
+        const ContactForce force = rolling_force(scene_, state_.theta, state_.omega);
+        return at_the_limit(force, scene_.friction) ? beyond_the_limit(scene_.friction)
+                                                    : scene_.friction;
     }
 
     void stop_rolling(double after, double theta, double omega, double x) {

@@ -66,9 +66,8 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     if (slip != 0) return sliding(scene, at, state.omega, side_of(slip));
     if (rests(scene, state, at)) return {Mode::rest};
     const ContactForce force = rolling_force(scene, state.theta, state.omega);
-    if (may_roll && force.normal > 0 && law_margin(force, scene.friction) >= 0) {
-        return {Mode::rolling};
-    }
+    const bool held = law_margin(force, scene.friction) >= 0 || at_the_limit(force, scene.friction);
+    if (may_roll && force.normal > 0 && held) return {Mode::rolling};
     return starting_to_slide(scene, at, state, force);
 }
 

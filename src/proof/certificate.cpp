@@ -30,28 +30,25 @@ Start start_on_range(const RollingStart& from, const EnergyRange& range) {
             rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
 }
 
-double margin(const RollingForces& forces, double friction) {
-    return law_margin({forces.normal, forces.friction}, friction);
-}
+ContactForce contact_force(const RollingForces& forces) { return {forces.normal, forces.friction}; }
 
 double margin_at(const EnergyRange& range, double friction, double angle) {
-    return margin(rolling_forces_at_angle(range, angle), friction);
+    return law_margin(contact_force(rolling_forces_at_angle(range, angle)), friction);
 }
 
-// Does the law hold at the start? Within rounding of its end what counts is where the motion goes.
-bool holds_at_start(const EnergyRange& range, double friction, const Start& start) {
-    if (friction == 0) return false;
-    const double here = margin(start.forces, friction);
-    const double scale = std::isinf(friction)
-                             ? std::abs(start.forces.normal)
-                             : friction * std::abs(start.forces.normal) + start.forces.friction;
-    constexpr double roundings = 64;  // behind a margin, of the operations from the angle on
-    constexpr double ahead = 1e-8;    // of the way: sqrt(epsilon), where the margin is beyond them
-    if (std::abs(here) > roundings * epsilon * scale) return here > 0;
-    const double angle = std::abs(start.angle);
+// The angle from which on the law holds: that of the start; ahead of it, where it is within
+// rounding of its end there, and what counts is where the motion goes; nothing where it is broken.
+std::optional<double> holds_from(const EnergyRange& range, double friction, const Start& start) {
+    if (friction == 0) return std::nullopt;
+    constexpr double ahead = 1e-8;  // of the way: sqrt(epsilon), where rounding is overcome
+    const ContactForce force = contact_force(start.forces);
+    if (!at_the_limit(force, friction)) {
+        return law_margin(force, friction) > 0 ? std::optional(start.angle) : std::nullopt;
+    }
     const double top = rolling_forces(range, 1.0).angle;
-    const double next = start.angle >= 0 ? angle + ahead * (top - angle) : angle * (1 - ahead);
-    return margin_at(range, friction, next) > 0;
+    const double next =
+        start.angle >= 0 ? start.angle + ahead * (top - start.angle) : start.angle * (1 - ahead);
+    return margin_at(range, friction, std::abs(next)) > 0 ? std::optional(next) : std::nullopt;
 }
 
 // The zeros of the law about one that was found in its squared form, refined in the plain one: near
@@ -114,18 +111,18 @@ void add_ends_about(std::vector<double>& angles, double start, const EnergyRange
     std::sort(angles.begin(), angles.end());
 }
 
-// How far the body turns until the first of the angles (ascending, at least one) is met on one side
-// or the other of the flat position, and which way it then moves; nothing where it never gets
-// there: on the separatrix the tip is the end.
+// How far the body turns until, behind the angle `from` on its way, the first of the angles
+// (ascending, at least one) is met on one side or the other of the flat position, and which way it
+// then moves; nothing where it never gets there: on the separatrix the tip is the end.
 struct Turn {
     double angle;
     double heading;
 };
 
-std::optional<Turn> first_meeting(const EnergyRange& range, const Start& start,
+std::optional<Turn> first_meeting(const EnergyRange& range, const Start& start, double from,
                                   const std::vector<double>& angles) {
     const double on = start.direction;
-    const auto above = std::upper_bound(angles.begin(), angles.end(), std::abs(start.angle));
+    const auto above = std::upper_bound(angles.begin(), angles.end(), std::abs(from));
     const bool rising = start.angle >= 0;
     if (!rising && above != angles.begin()) return Turn{on * (-above[-1] - start.angle), on};
     if (rising && above != angles.end()) return Turn{on * (*above - start.angle), on};
@@ -149,15 +146,16 @@ EndOfRolling end_under_law(const EnergyRange& range, const ForcePolynomials& pol
 
     const bool broken = contact_sign == Sign::negative || law_sign == Sign::negative;
     EndOfRolling end{broken ? Validity::invalid : Validity::edge, theta, start.direction};
-    if (!holds_at_start(range, friction, start)) return end;
+    const std::optional<double> from = holds_from(range, friction, start);
+    if (!from) return end;
     std::vector<double> angles = breaking_angles(range, contact, law, friction);
-    add_ends_about(angles, std::abs(start.angle), range, friction);
+    add_ends_about(angles, std::abs(*from), range, friction);
     if (angles.empty()) {  // on the edge: the least margin is where the law may be broken
         const ForceExtremes extremes = force_extremes(range, polynomials);
         angles.push_back(std::isinf(friction) ? extremes.least_normal.angle
                                               : extremes.most_friction.angle);
     }
-    const std::optional<Turn> turn = first_meeting(range, start, angles);
+    const std::optional<Turn> turn = first_meeting(range, start, *from, angles);
     if (!turn) return {end.validity};
     return {end.validity, theta + turn->angle, turn->heading};
 }

@@ -14,6 +14,20 @@ inline double law_margin(const ContactForce& force, double friction) {
     return friction * force.normal - std::abs(force.friction);
 }
 
+// Behind a margin, of the operations from the angle on; beside the sum of its terms.
+inline constexpr double law_rounding = 64 * epsilon;
+
+// Whether the law is at its limit, but for that.
+inline bool at_the_limit(const ContactForce& force, double friction) {
+    const double size = std::isinf(friction)
+                            ? std::abs(force.normal)
+                            : friction * std::abs(force.normal) + std::abs(force.friction);
+    return std::abs(law_margin(force, friction)) <= law_rounding * size;
+}
+
+// A coefficient with which the law holds there, beyond rounding.
+inline double beyond_the_limit(double friction) { return friction * (1 + 8 * law_rounding); }
+
 // The friction coefficient that the forces need, |F|/N; infinite where N <= 0, unless both vanish.
 inline double friction_needed(const ContactForce& force) {
     if (force.normal > 0) return std::abs(force.friction) / force.normal;

@@ -16,8 +16,6 @@ constexpr int degree = long_order - 2;
 // Beside the sum of the sizes of all terms. The series end where their last terms are a rounding,
 // and the second derivative of what they leave out is up to some thousand of them.
 constexpr double rounding = 1e-12;
-// Of the operations from the angle on, as on level ground.
-constexpr double finest_rounding = 64 * epsilon;
 
 // A law on 0 <= x <= 1, with the parts it is weighed from.
 struct LawPolynomial {
@@ -240,7 +238,7 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, double tolerance
             near = {};
         } else if (here >= -tolerance) {
             // The forces themselves know it better than the series of their polynomials.
-            const double fine = finest_rounding * law.size;
+            const double fine = law_rounding * law.size;
             const double low = places[i];
             const double high = places[i + 1];
             const auto at = [&](double share) { return margin(piece, share, side); };

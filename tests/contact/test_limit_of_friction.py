@@ -1,0 +1,77 @@
+"""Friction that is what a start without slip needs, but for rounding.
+
+Whether such a body rolls or slips is for its next moment to say. What matters is that it does one
+of them, as with a little more friction or a little less.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.geometry import reduced
+from oracles.numbers import EPS
+from oracles.rolling import forces, motion
+from rolling_ellipse import Mode, Scene, Status, simulate
+
+PLACES = [  # theta, omega: rising, sinking, at rest, turning back at once, from beside the tip
+    (0.4, 1.0),
+    (-0.4, 1.0),
+    (0.4, 0.0),
+    (-0.7, -1e-6),
+    (0.2, 1e-9),
+    (math.pi / 2, 0.1),
+    (math.pi / 2 - 1e-9, -0.5),
+    (1e-10, -5e-5),
+]
+
+
+def needed(a: float, b: float, theta: float, omega: float) -> float:
+    """|F|/N at the start, by the oracle."""
+    on = motion(*(np.array([value]) for value in (a, b, (a * a + b * b) / 4, 9.81, theta, omega)))
+    found = forces(on, *reduced([theta], a, b))
+    return float(abs(found.friction[0]) / found.normal[0])
+
+
+@pytest.mark.parametrize("ulps", [-2, -1, 0, 1, 2])
+@pytest.mark.parametrize(("theta", "omega"), PLACES)
+@pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.2, 1.0), (3.0, 1.0)])
+def test_at_the_limit_a_body_moves_as_beside_it(
+    a: float, b: float, theta: float, omega: float, ulps: int
+) -> None:
+    limit = needed(a, b, theta, omega) * (1 + ulps * EPS / 2)
+    times = np.linspace(0.0, 0.1, 40)
+    scene = Scene(a, b, theta=theta, omega=omega, friction=limit)
+    moving = simulate(scene, times, model="contact", max_events=12)
+    assert moving.status is Status.COMPLETED
+    assert np.max(np.diff(moving.energy)) <= 32 * EPS * moving.energy[0]
+    # of the friction, and beside the tip, where none is needed, of an angle that takes as much
+    beside = 1e-9
+    near = [
+        simulate(
+            scene.replace(friction=limit + side * (limit + 1e-3) * beside), times, model="contact"
+        )
+        for side in (1, 0 if limit < 1e-9 else -1)
+    ]
+    off = [np.max(np.abs(moving.omega - other.omega)) for other in near]
+    assert min(off) <= 1e3 * beside * (1 + np.max(np.abs(moving.omega)))
+
+
+@pytest.mark.parametrize("ulps", [-2, -1, 0, 1, 2])
+@pytest.mark.parametrize("slope", [0.2, -0.9])
+@pytest.mark.parametrize("omega", [0.0, 1e-9, -1e-9])
+def test_an_equilibrium_on_a_slope_with_just_enough_friction(
+    slope: float, omega: float, ulps: int
+) -> None:
+    """h' = h tan(alpha): it stays where it is, or rocks there, and slips by next to nothing."""
+    a, b, incline = 9.0, 1.0, math.tan(slope)
+    c2 = a * a - b * b
+    theta = math.atan(2 * incline * b * b / (c2 + math.sqrt(c2**2 - (2 * a * b * incline) ** 2)))
+    scene = Scene(
+        a, b, slope=slope, theta=theta, omega=omega,
+        friction=abs(incline) * (1 + ulps * EPS / 2),
+    )  # fmt: skip
+    moving = simulate(scene, 10.0, model="contact", max_events=100)
+    assert moving.status is Status.COMPLETED
+    # 1e-9 rad/s over the rate of rocking, some 1/s; and 10 s of it, did nothing hold it
+    assert np.max(np.abs(moving.theta - theta)) <= 1e-8
+    assert np.all(np.isin(moving.mode, [Mode.ROLLING, Mode.SLIDING, Mode.REST]))
