@@ -6,6 +6,8 @@ from typing import Any
 from hypothesis import strategies as st
 from rolling_ellipse import Impulse, Scene, geometry
 
+from oracles.numbers import EPS
+
 Draw = Any  # what st.composite passes
 
 #: Angles that are hard: on and beside the quarter turns, and thousands of turns away.
@@ -77,9 +79,26 @@ def spans(draw: Draw, motion: dict[str, float], most: float) -> float:
     return float(half_turns * math.pi / max(abs(motion["omega"]), rate(motion)))
 
 
+def at_its_limit(values: dict[str, Any]) -> dict[str, Any]:
+    """The spin at which gravity just does not press a body any more (h'' omega^2 = -g cos(alpha)),
+    if there is one, or else the friction that it needs to roll: to rounding."""
+    a, b, theta, slope = (values[name] for name in ("a", "b", "theta", "slope"))
+    h, tilt = geometry.support(theta, a=a, b=b), geometry.support_slope(theta, a=a, b=b)
+    radius = (a * b) ** 2 / h**3
+    into, along = values["gravity"] * math.cos(slope), values["gravity"] * math.sin(slope)
+    if radius < h and values["friction"] < 1:
+        return {"omega": math.copysign(math.sqrt(into / (h - radius)), values["omega"])}
+    spin2 = values["omega"] ** 2
+    inertia = values["inertia"] / values["mass"] + h**2 + tilt**2
+    acceleration = (along * h - tilt * (into + radius * spin2)) / inertia
+    normal = into + tilt * acceleration + (radius - h) * spin2
+    needed = abs(h * acceleration + tilt * spin2 - along)
+    return {"friction": needed / normal} if 0 < needed < 1e4 * normal else {}
+
+
 @st.composite
 def scenes(draw: Draw, /, **given: Any) -> Scene:
-    """On every ground, rolling, sliding or in the air, some of them struck."""
+    """On every ground, rolling, sliding or in the air, some of them struck, some at a limit."""
     of = draw(motions(thinnest=1.5))
     mass = draw(powers(-2, 2))
     values = {
@@ -95,6 +114,10 @@ def scenes(draw: Draw, /, **given: Any) -> Scene:
         "restitution": draw(st.one_of(st.sampled_from([0.0, 1.0]), numbers(0.0, 1.0))),
         **given,
     }
+    if draw(st.integers(0, 7)) == 7:
+        for name, value in at_its_limit(values).items():
+            if name not in given:
+                values[name] = value * (1 + draw(st.integers(-3, 3)) * EPS / 2)
     start = draw(st.sampled_from(["rolling", "sliding", "air", "struck"]))
     speed = rate(of) * max(of["a"], of["b"])
     if start == "sliding":

@@ -145,7 +145,31 @@ def options(draw: Draw, of: Body) -> dict[str, float | None]:
             found["z_dot"] = size * draw.pick(0.0, draw.between(-3, 3), draw.power(-20, 20))
     if draw.chance(0.2):
         found["x_dot"] = size * draw.pick(0.0, draw.between(-3, 3), draw.power(-20, 20))
+    if draw.chance(0.1):
+        at_its_limit(draw, of, found)
     return found
+
+
+def at_its_limit(draw: Draw, of: Body, found: dict[str, float | None]) -> None:
+    """The spin at which gravity just does not press a body any more (h'' omega^2 = -g cos(alpha)),
+    if there is one, or else the friction that it needs to roll: to rounding."""
+    theta, omega = found["theta"] or 0.0, found["omega"] or 0.0
+    slope = found.get("slope") or 0.0
+    into, along = of.gravity * math.cos(slope), of.gravity * math.sin(slope)
+    h = of.height(theta)
+    tilt = (of.a - of.b) * (of.a + of.b) * math.sin(theta) * math.cos(theta) / h
+    radius = of.a * of.b / h * (of.a / h) * (of.b / h)
+    if radius < h and into > 0 and draw.chance(0.5):
+        found["omega"] = draw.pick(-1, 1) * draw.beside(math.sqrt(into / (h - radius)))
+        return
+    inertia = found.get("inertia")
+    gyration2 = (of.a**2 + of.b**2) / 4 if inertia is None else inertia / (found.get("mass") or 1.0)
+    turning = radius * omega * omega
+    acceleration = (along * h - tilt * (into + turning)) / (gyration2 + h * h + tilt * tilt)
+    normal = into + tilt * acceleration + turning - h * omega * omega
+    needed = abs(h * acceleration + tilt * omega * omega - along)
+    if 0 < needed < 1e49 * normal:
+        found["friction"] = draw.beside(needed / normal)
 
 
 def impulse(draw: Draw, of: Body) -> str:
