@@ -130,12 +130,13 @@ void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, Sta
     const double largest = 2 * (std::abs(state.z_dot) + kick);
     if (reaction.sticks) {
         const double k2 = scene.inertia / scene.mass;
-        state.omega =
+        state.omega = zero_if_negligible(
             (k2 * state.omega + at.h * state.x_dot + at.dh * (state.z_dot - reaction.rebound)) /
-            inertia_about_contact(k2, at);
+            inertia_about_contact(k2, at));
         state.x_dot = at.h * state.omega;
     } else {
-        state.omega -= (at.h * reaction.tangential + at.dh * reaction.normal) / scene.inertia;
+        const double angular = at.h * reaction.tangential + at.dh * reaction.normal;
+        state.omega = zero_if_negligible(state.omega - angular / scene.inertia);
         state.x_dot += reaction.tangential / scene.mass;
     }
     const double turning = at.dh * state.omega;
@@ -183,7 +184,6 @@ InitialState initial_state(const Scene& scene) {
     result.reaction_x = reaction.tangential;
     result.reaction_z = reaction.normal;
     apply(scene, at, reaction, state);
-    state.omega = zero_if_negligible(state.omega);
     state.mode = reaction.sticks ? Mode::rolling : Mode::sliding;
     if (state.mode == Mode::rolling && state.omega == 0 &&
         is_equilibrium(at, std::tan(scene.slope))) {

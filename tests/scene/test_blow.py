@@ -378,3 +378,11 @@ def test_no_impulse_changes_nothing() -> None:
     assert found.reaction_x == found.reaction_z == 0 and found.x == 4.0
     zero = Scene(2.0, 1.0, theta=0.3, omega=1.7, x=4.0, impulse=Impulse()).initial_state
     assert (zero.omega, zero.x_dot, zero.z_dot) == (found.omega, found.x_dot, found.z_dot)
+
+
+@pytest.mark.parametrize("friction", [0.5, math.inf])
+def test_a_spin_that_counts_as_none_leaves_no_slip(friction: float) -> None:
+    blow = Impulse(0.0, -1.0, dx=1e-169)
+    found = Scene(1.0, 1.0, friction=friction, impulse=blow).initial_state
+    assert (found.omega, found.x_dot) == (0.0, 0.0)
+    assert found.mode == Mode.REST

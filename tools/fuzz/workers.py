@@ -205,7 +205,7 @@ class Worker:
         if "line" in self._now and not (self.findings and self._is_reported()):
             complaints = self._complaints.read_text(errors="replace")
             self._report("crash", f"ended the interpreter, status {status}: {_gist(complaints)}")
-        elif "line" not in self._now and status != 0:  # before its first line, or between cases
+        elif not {"line", "done"} & self._now.keys():  # before its first line
             raise RuntimeError(f"a worker cannot go on:\n{self._complaints.read_text()}")
         if self._next >= self.task.stop:
             self._folder.cleanup()

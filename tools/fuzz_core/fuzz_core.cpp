@@ -17,6 +17,8 @@
 #include "outcome/blow.hpp"
 #include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
+#include "proof/law.hpp"
+#include "rolling/equation.hpp"
 #include "rolling/flow_lanes.hpp"
 #include "scene/impact.hpp"
 #include "simulate.hpp"
@@ -71,6 +73,17 @@ Checkpoint patience(int looks) {
     };
 }
 
+// Weightless, or with just the friction that it needs to roll: to rounding.
+void put_at_its_limit(Scene& scene, Bytes& bytes) {
+    const Geometry at = geometry(scene.axes(), scene.theta);
+    const double beside = 1 + 0.5 * epsilon * (bytes.choice(7) - 3);
+    if (at.ddh < 0 && bytes.chance(128)) {
+        scene.omega = bytes.sign() * beside * std::sqrt(scene.ground_gravity().into / -at.ddh);
+    } else {
+        scene.friction = beside * friction_needed(rolling_force(scene, scene.theta, scene.omega));
+    }
+}
+
 Scene scene_from(Bytes& bytes) {
     Scene scene{};
     scene.a = bytes.power(-2, 2);
@@ -91,6 +104,7 @@ Scene scene_from(Bytes& bytes) {
     const double rate = std::sqrt(scene.gravity / longer);
     scene.theta = bytes.chance(64) ? half_pi * bytes.choice(8) : bytes.between(-7, 7);
     scene.omega = bytes.sign() * (bytes.chance(32) ? 0.0 : rate * bytes.power(-4, 1.5));
+    if (bytes.chance(24)) put_at_its_limit(scene, bytes);
     scene.x = bytes.chance(200) ? 0.0 : bytes.between(-1e3, 1e3);
     const double speed = rate * longer;
     if (bytes.chance(64)) scene.z = longer * bytes.power(-1, 1.5);

@@ -141,6 +141,7 @@ FILMS: list[Refusal] = [
 
 PLAYERS: list[Refusal] = [
     (r"^t_end must be shown by a player in at most", long_film),
+    (r"^scene must turn by at most", lambda _: rl.explore(scenes.report.replace(omega=1e20))),
     (r"^t_end must be at most .* s for this body", lambda _: rl.explore(scenes.report, t_end=1e9)),
     (
         r"^scene must stay where a double still knows a thousandth of its body of 2 m, got a",
