@@ -147,7 +147,7 @@ class _Search:
         """Add the minima of the size between looks where they may reach nothing: golden section."""
         sizes, sign = np.abs(measures), np.sign(measures)
         before, here, after = sizes[:-2], sizes[1:-1], sizes[2:]
-        dips = (here <= before) & (here <= after) & (2 * here <= np.maximum(before, after))
+        dips = (here <= before) & (here <= after) & (here <= 0.5 * np.maximum(before, after))
         dips &= (sign[:-2] == sign[1:-1]) & (sign[2:] == sign[1:-1]) & (here > 0)
         middle = np.flatnonzero(dips) + 1
         if middle.size == 0:

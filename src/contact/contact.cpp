@@ -80,16 +80,10 @@ class ContactRun {
         turn_off(half_turn * half_turns + rest.low, rest.high);
     }
 
-    // Leave the rest of the angle in the state. What touches, or has no slip, goes on to do so.
+    // Leave the rest of the angle in the state.
     void turn_off(const DoubleDouble& turned, double rest) {
         turned_ = turned_ + turned;
-        const Geometry before = geometry(axes_, state_.theta);
-        const Geometry after = geometry(axes_, rest);
-        state_.theta = rest;
-        const double omega = state_.omega;
-        if (state_.z == before.h) state_.z = after.h;
-        if (state_.x_dot == before.h * omega) state_.x_dot = after.h * omega;
-        if (state_.z_dot == before.dh * omega) state_.z_dot = after.dh * omega;
+        state_ = with_angle(axes_, state_, rest);
     }
 
     void follow() {
@@ -139,7 +133,9 @@ class ContactRun {
         }
         EndOfRolling end = end_of_rolling(start, friction);
         // With less friction than angles tell from none it ends where it starts.
-        if (end.angle == start.theta) *end.angle += end.heading * epsilon;
+        if (end.angle && std::abs(*end.angle - start.theta) < epsilon) {
+            end.angle = start.theta + end.heading * epsilon;
+        }
         return end;
     }
 

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "contact/sliding.hpp"
+#include "contact/units.hpp"
+#include "geometry/half_turns.hpp"
 #include "proof/law.hpp"
 #include "rolling/equation.hpp"
 
@@ -72,7 +74,11 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
 }
 
 Continuation first_continuation(const Scene& scene, const State& start) {
-    return start.mode == Mode::flight ? Continuation{Mode::flight} : continuation(scene, start);
+    if (start.mode == Mode::flight) return {Mode::flight};
+    const Units units = natural_units(scene);
+    const Scene body = body_in_units(scene, units);
+    const State state = in_units(start, units);
+    return continuation(body, with_angle(body.axes(), state, resolved(state.theta)));
 }
 
 }  // namespace rolling_ellipse

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "scene/state.hpp"
 
@@ -16,17 +17,21 @@ inline double law_margin(const ContactForce& force, double friction) {
 
 // Behind a margin, of the operations from the angle on; beside the sum of its terms.
 inline constexpr double law_rounding = 64 * epsilon;
+// Of friction, below which numbers have fewer digits.
+inline constexpr double least_friction = std::numeric_limits<double>::min();
 
 // Whether the law is at its limit, but for that.
 inline bool at_the_limit(const ContactForce& force, double friction) {
-    const double size = std::isinf(friction)
-                            ? std::abs(force.normal)
-                            : friction * std::abs(force.normal) + std::abs(force.friction);
-    return std::abs(law_margin(force, friction)) <= law_rounding * size;
+    const double normal = std::abs(force.normal);
+    const double size =
+        std::isinf(friction) ? normal : friction * normal + std::abs(force.friction);
+    return std::abs(law_margin(force, friction)) <= law_rounding * size + least_friction * normal;
 }
 
 // A coefficient with which the law holds there, beyond rounding.
-inline double beyond_the_limit(double friction) { return friction * (1 + 8 * law_rounding); }
+inline double beyond_the_limit(double friction) {
+    return friction * (1 + 8 * law_rounding) + 8 * least_friction;
+}
 
 // The friction coefficient that the forces need, |F|/N; infinite where N <= 0, unless both vanish.
 inline double friction_needed(const ContactForce& force) {

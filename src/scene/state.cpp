@@ -21,6 +21,17 @@ double slip_beyond_rounding(const State& state, const Geometry& at) {
     return std::abs(slip) <= equal_ulps * epsilon * std::abs(state.x_dot) ? 0.0 : slip;
 }
 
+State with_angle(const Axes& axes, State state, double theta) {
+    const Geometry before = geometry(axes, state.theta);
+    const Geometry after = geometry(axes, theta);
+    const double omega = state.omega;
+    state.theta = theta;
+    if (state.z == before.h) state.z = after.h;
+    if (state.x_dot == before.h * omega) state.x_dot = after.h * omega;
+    if (state.z_dot == before.dh * omega) state.z_dot = after.dh * omega;
+    return state;
+}
+
 State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode) {
     return {theta, omega, x, at.h, slip + at.h * omega, at.dh * omega, mode};
 }

@@ -75,3 +75,22 @@ def test_an_equilibrium_on_a_slope_with_just_enough_friction(
     # 1e-9 rad/s over the rate of rocking, some 1/s; and 10 s of it, did nothing hold it
     assert np.max(np.abs(moving.theta - theta)) <= 1e-8
     assert np.all(np.isin(moving.mode, [Mode.ROLLING, Mode.SLIDING, Mode.REST]))
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        Scene(0.32, 0.32, theta=math.pi / 2, friction=5e-324, slope=5e-324),
+        Scene(0.83, 1.18, omega=2.9, friction=5e-324, slope=5e-324),
+        Scene(0.06400022489353206, 0.06400022489353203, theta=-1.4143205127226005e-298,
+              omega=14.145314686983891, friction=2.8403454507e-314),
+        Scene(1e-30, 2.0594538486234975e-30, theta=3.7790765262199764e-238,
+              omega=1.7718209100766364e19, friction=1.2274468255057179e-238,
+              gravity=944282577.0208454),
+    ],
+    ids=["circle", "slope", "subnormal friction", "far from a metre"],
+)  # fmt: skip
+def test_what_numbers_without_digits_ask_for_is_the_same_in_all_units(scene: Scene) -> None:
+    moving = simulate(scene, [0.0], model="contact", max_events=12)
+    assert moving.status is Status.COMPLETED
+    assert moving.mode[0] == scene.initial_state.mode

@@ -1,6 +1,7 @@
 """`Trajectory.at` and `Trajectory.when` against dense samples, formulas and known cases."""
 
 import math
+import sys
 import warnings
 from typing import Any
 
@@ -296,3 +297,9 @@ def test_at_refuses_times_outside(t: float) -> None:
         simulate(rl.scenes.report, 3.0).at(t)
     with pytest.raises(TypeError, match=r"^t must be a number, got 'now'"):
         simulate(rl.scenes.report, 3.0).at("now")  # type: ignore[arg-type]
+
+
+def test_a_value_as_large_as_numbers_get_is_never_passed() -> None:
+    moving = simulate(Scene(2.0, 1.0, omega=3.0), 1.0, model="multipliers")
+    with pytest.warns(CompletenessWarning):
+        assert moving.when(theta=sys.float_info.max).size == 0
