@@ -299,7 +299,11 @@ def test_at_refuses_times_outside(t: float) -> None:
         simulate(rl.scenes.report, 3.0).at("now")  # type: ignore[arg-type]
 
 
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 def test_a_value_as_large_as_numbers_get_is_never_passed() -> None:
-    moving = simulate(Scene(2.0, 1.0, omega=3.0), 1.0, model="multipliers")
+    coarse = simulate(
+        Scene(0.5, 1.0, omega=-8.0), 1.8, model="multipliers", method="dopri5", step=0.1,
+        raise_on_failure=False,
+    )  # fmt: skip
     with pytest.warns(CompletenessWarning):
-        assert moving.when(theta=sys.float_info.max).size == 0
+        assert coarse.when(theta=sys.float_info.max).size == 0
