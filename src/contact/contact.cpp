@@ -128,12 +128,11 @@ class ContactRun {
     EndOfRolling end_of_this_rolling(const RollingStart& start) const {
         const bool is_first = motion_.segments.empty() && turned_.high == 0;
         const double friction = friction_to_roll();
-        if (friction == scene_.friction) {
-            return is_first ? first_end_ : end_of_rolling(start, friction);
-        }
+        const bool at_limit = friction != scene_.friction;
+        if (is_first && !at_limit) return first_end_;
         EndOfRolling end = end_of_rolling(start, friction);
         // With less friction than angles tell from none it ends where it starts.
-        if (end.angle && std::abs(*end.angle - start.theta) < epsilon) {
+        if (at_limit && end.angle && std::abs(*end.angle - start.theta) < epsilon) {
             end.angle = start.theta + end.heading * epsilon;
         }
         return end;

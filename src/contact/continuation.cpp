@@ -19,12 +19,19 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
     return state.omega == 0 && is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
 }
 
-// It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52). Within
-// rounding of c = 0 it is as free, and its flight finds out for how long.
-Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side) {
+// Within rounding of c = 0 a body is free, and its flight finds out for how long.
+Response response_beyond_rounding(const Scene& scene, const Geometry& at, double omega,
+                                  double side) {
     const SlidingBody body = sliding_body(scene, side);
-    const auto [c, b] = response(body, at, omega);
-    if (c <= 0 || is_weightless(at, body.gravity.into, omega)) return {Mode::flight};
+    Response found = response(body, at, omega);
+    if (is_weightless(at, body.gravity.into, omega)) found.c = 0.0;
+    return found;
+}
+
+// It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52).
+Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side) {
+    const auto [c, b] = response_beyond_rounding(scene, at, omega, side);
+    if (c <= 0) return {Mode::flight};
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
 }
 
@@ -33,11 +40,8 @@ Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega
 // starts to the side that this slide is for. A body may be put there, but no motion leads there: a
 // slide ends before, where c or B vanishes, and an impact goes on while B < 0 until the slip stops.
 Continuation sliding(const Scene& scene, const Geometry& at, double omega, double side) {
-    const SlidingBody body = sliding_body(scene, side);
-    const auto [c, b] = response(body, at, omega);
-    if (c < 0 && b < 0 && !is_weightless(at, body.gravity.into, omega)) {
-        return {Mode::sliding, side, Painleve::two_motions};
-    }
+    const auto [c, b] = response_beyond_rounding(scene, at, omega, side);
+    if (c < 0 && b < 0) return {Mode::sliding, side, Painleve::two_motions};
     return slide_or_leave(scene, at, omega, side);
 }
 

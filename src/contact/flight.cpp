@@ -137,7 +137,7 @@ class Curvature {
     double convex_time_ = infinity;
 };
 
-double first_touch(const Flight& flight, const Gap& gap) {
+double first_touch(const Flight& flight, const Gap& gap, bool leaves_slowly) {
     const Curvature curvature(flight);
     // Above that it does not touch, however h is rounded.
     const double tall = std::max(flight.axes.a, flight.axes.b) * (1 + equal_ulps * epsilon);
@@ -149,7 +149,6 @@ double first_touch(const Flight& flight, const Gap& gap) {
 
     Curvature::Interval now = curvature.first();
     // A body that leaves by its acceleration does so where the gap becomes convex.
-    const bool leaves_slowly = gap.leaves_slowly();
     if (leaves_slowly && !now.convex) {
         now = curvature.after(now);
         // At once, or not at all.
@@ -202,9 +201,10 @@ State state_at(const Flight& flight, double t) {
 Landing touch_down(const Flight& flight) {
     constexpr double turned_by_a_graze = 0x1p-22;
     const Gap gap(flight);
-    const double after = first_touch(flight, gap);
+    const bool leaves_slowly = gap.leaves_slowly();
+    const double after = first_touch(flight, gap, leaves_slowly);
     const double omega = flight.start.omega;
-    if (omega == 0 || !gap.leaves_slowly()) return {after, false};
+    if (omega == 0 || !leaves_slowly) return {after, false};
     const double least = turned_by_a_graze / std::abs(omega);
     return after < least ? Landing{least, true} : Landing{after, false};
 }

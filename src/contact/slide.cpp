@@ -67,9 +67,7 @@ class Follower {
         : slide_(slide),
           bounds_(bounds),
           angle_bound_(bounds.theta - static_cast<double>(slide.theta_base)) {
-        const auto [sin, cos] = sin_cos(slide.last.angle);
-        const Geometry at = geometry(slide.body.axes, sin, cos);
-        const double b = response(slide.body, at, slide.last.omega.high).b;
+        const double b = response(slide.body, geometry_here(), slide.last.omega.high).b;
         if (slide.body.may_jam() && b < small_response) clock_ = SlideClock::slowed;
     }
 
@@ -113,6 +111,11 @@ class Follower {
     }
 
   private:
+    Geometry geometry_here() const {
+        const auto [sin, cos] = sin_cos(slide_.last.angle);
+        return geometry(slide_.body.axes, sin, cos);
+    }
+
     // As fast as it turns, and as its response changes, where that is next to none: no power of the
     // rate is to leave the doubles.
     double rate(const Geometry& at) const {
@@ -218,14 +221,12 @@ class Follower {
     // Whether c goes on to fall where it is its rounding: h'' is least on the tip, so that c < 0,
     // if at all, on the way there.
     bool leaves() const {
-        const auto [sin, cos] = sin_cos(slide_.last.angle);
         const Axes& axes = slide_.body.axes;
-        const Geometry at = geometry(axes, sin, cos);
         const Geometry tip = axes.a > axes.b ? geometry(axes, 1.0, 0.0) : geometry(axes, 0.0, 1.0);
         const double omega = double(slide_.last.omega);
         const double gravity = slide_.body.gravity.into;
         return free_acceleration(tip, gravity, omega) < 0 && !is_weightless(tip, gravity, omega) &&
-               at.dh * omega > 0;
+               geometry_here().dh * omega > 0;
     }
 
     // B = 0: in a moment, N = c/B ends it.
