@@ -48,7 +48,23 @@ def even_times(begin: float, end: float, count: int) -> FloatArray:
 
 
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
-    """Return the arrays that a Trajectory holds, at so many times."""
+    """Return the arrays that a Trajectory holds; their bits do not depend on the order of times."""
+    if _core.are_sample_times(times):
+        return _ascending(solution, times)
+    order = np.argsort(times, kind="stable")
+    place = np.argsort(order)
+
+    def put_back(values: Any) -> Any:
+        if isinstance(values, ContactSamples):
+            return ContactSamples._make(map(put_back, values))
+        if isinstance(values, tuple):
+            return tuple(map(put_back, values))
+        return frozen(values[place])
+
+    return {name: put_back(values) for name, values in _ascending(solution, times[order]).items()}
+
+
+def _ascending(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
     found: dict[str, Any] = {"t": frozen(np.array(times))}
     if solution.model == "rolling":
         found["theta"], found["omega"], found["x"] = solution.sample_rolling(times)

@@ -306,13 +306,14 @@ SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& ch
 ContactSample end_of(const Slide& slide) { return sample_at(slide, slide.last); }
 
 void sample(const Slide& slide, const double* times, std::size_t n, ContactSample* samples) {
-    auto piece = slide.pieces.begin();
+    const auto first = slide.pieces.begin();
     for (std::size_t i = 0; i < n; ++i) {
-        while (piece + 1 != slide.pieces.end() && times[i] >= (piece + 1)->centre.time.high) {
-            ++piece;
-        }
-        const double since = (times[i] - piece->centre.time.high) - piece->centre.time.low;
-        samples[i] = sample_at(slide, moved(*piece, clock_at(*piece, since)));
+        const auto later = std::upper_bound(
+            first + 1, slide.pieces.end(), times[i],
+            [](double t, const SlidePiece& piece) { return t < piece.centre.time.high; });
+        const SlidePiece& piece = *(later - 1);
+        const double since = (times[i] - piece.centre.time.high) - piece.centre.time.low;
+        samples[i] = sample_at(slide, moved(piece, clock_at(piece, since)));
     }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/ellipse.hpp"
 #include "numerics/quadrature.hpp"
 
 namespace rolling_ellipse {
@@ -171,6 +172,10 @@ void integrate_quarter(PhaseTime& phase) {
     f[n + 1] = f[n - 1];
     if (map.has_tail) {
         phase.quarter_turn = sum * map.step + two_product(map.quarter, beyond);
+        // The steps end 1e-9 of the path before the tip.
+        const double short_axis = phase.rate.short_axis;
+        const double long_axis = std::sqrt(square(short_axis) + phase.rate.c2);
+        phase.quarter_path = path_from_flat(long_axis, short_axis, 1.0, 0.0);
     } else {
         phase.quarter_turn = sum * map.step;
     }

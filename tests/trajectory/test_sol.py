@@ -2,11 +2,13 @@
 
 import dataclasses
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from oracles.contact import random_scenes
 from oracles.flow import carried
 from oracles.numbers import EPS
 from oracles.trajectory import SCENES
@@ -27,6 +29,62 @@ def test_sol_in_any_order(report: Trajectory) -> None:
     assert np.array_equal(again.theta, report.theta) and np.array_equal(again.x, report.x)
     assert np.array_equal(found.sol(report.t).omega, report.omega)
     assert not np.shares_memory(again.t, report.t)
+
+
+ROLLED = rl.Scene(2.0, 1.0, theta=0.2, omega=3.2)
+STEPPED = [
+    {"model": "rolling", "method": "rk4", "step": 0.02},
+    {"model": "rolling", "method": "gauss", "step": 0.02},
+    {"model": "rolling", "method": "dopri5"},
+    {"model": "multipliers", "method": "rk4", "step": 0.02},
+    {"model": "multipliers", "method": "dop853", "stabilization": "none"},
+    {"model": "multipliers", "method": "radau", "step": 0.02, "stabilization": "ggl"},
+]
+
+
+def every_law() -> Iterator[Trajectory]:
+    """Slides, flights, bounces, rest and rolling; exact rolling on slopes; methods with steps."""
+    for slope, seed in [(0.0, 5), (0.3, 6)]:
+        for scene in random_scenes(30, seed, slope=slope):
+            yield simulate(scene, 5.0, model="contact", raise_on_failure=False)
+    for scene in [ROLLED, ROLLED.replace(slope=0.1), ROLLED.replace(slope=0.2, omega=-1.0)]:
+        yield simulate(scene, 20.0, model="rolling", raise_on_failure=False)
+    for how in STEPPED:
+        yield simulate(ROLLED, 5.0, **how)
+
+
+def columns(motion: Trajectory) -> list[np.ndarray]:
+    """Every array that is sampled."""
+    found = [motion.t, motion.theta, motion.omega, motion.x]
+    return [*found, *(motion.contact or ()), *(motion.coordinates or ())]
+
+
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
+def test_the_order_of_times_changes_no_bit() -> None:
+    """Reversed, shuffled and repeated times, many of them (in tables), and few (none in tables)."""
+    rng = np.random.default_rng(30)
+    few = 39  # of 40 times and more a table of exact rolling is made, within 8 units of one alone
+    looked_at = 0
+    for motion in every_law():
+        if motion.t.size == 0:  # jams at once
+            continue
+        looked_at += 1
+        times = rng.uniform(0.0, motion.t_end, 120)
+        times[:10] = times[10:20]
+        ascending = np.argsort(times, kind="stable")
+        expected = columns(motion.sol(times[ascending]))
+        for order in [np.arange(120), np.argsort(-times), rng.permutation(120)]:
+            found = columns(motion.sol(times[order]))
+            for values, sorted_values in zip(found, expected, strict=True):
+                given = np.empty_like(values)
+                given[order] = values
+                assert np.array_equal(given[ascending], sorted_values), motion
+        some = rng.permutation(times)[:few]
+        together = columns(motion.sol(some))
+        for i, t in enumerate(some):
+            alone = columns(motion.sol(t))
+            assert all(np.array_equal(x[i], y[0]) for x, y in zip(together, alone, strict=True))
+    assert looked_at > 50
 
 
 @pytest.mark.parametrize("t", [-1e-9, 6.000001, math.nan, [0.0, 7.5], math.inf])
