@@ -18,11 +18,11 @@ constexpr double small_response = 1e-2;
 constexpr double no_response = 1e-13;
 
 SlidePoint moved(const SlidePiece& piece, double clock) {
-    const auto& [centre, kind, unit, reach, angle, omega, slip, path, time] = piece;
+    const auto& [centre, kind, unit, reach, angle, omega, x_dot, path, time] = piece;
     const auto change = [clock](const LongSeries& series) { return value(series, clock); };
     const double lasts = kind == SlideClock::time ? clock : change(time);
     return {centre.angle + change(angle), centre.omega + change(omega) / unit,
-            centre.slip + change(slip) / unit, centre.path + change(path),
+            centre.x_dot + change(x_dot) / unit, centre.path + change(path),
             centre.time + lasts * unit};
 }
 
@@ -79,7 +79,8 @@ class Follower {
             std::ldexp(1.0, -std::ilogb(rate(geometry(slide_.body.axes, sin, cos))));
         SlidingBody body = slide_.body;
         body.gravity = {body.gravity.into * square(unit), body.gravity.along * square(unit)};
-        const SlideState start{0.0, double(from.omega) * unit, double(from.slip) * unit, 0.0, 0.0};
+        const SlideState start{0.0, double(from.omega) * unit, double(slide_.slip) * unit,
+                               double(from.x_dot) * unit, 0.0, 0.0};
         SlideSeries series = slide_series(body, start, sin, cos, clock_);
         // What reaches for ever may grow with what there is. The path and the pressure vary by more
         // of themselves than angle and speed do where the body is nearly round.
@@ -88,7 +89,7 @@ class Follower {
                            reach(series.pressure), most});
         if (!(reach_ > 0)) return SlideStop::no_progress;
         examine(body, series);
-        series.omega[0] = series.slip[0] = 0.0;
+        series.omega[0] = series.slip[0] = series.x_dot[0] = 0.0;
         SlidePiece& piece = slide_.pieces.emplace_back();
         piece.centre = from;
         piece.clock = clock_;
@@ -96,7 +97,7 @@ class Follower {
         piece.reach = reach_;
         piece.angle = series.angle;
         piece.omega = series.omega;
-        piece.slip = series.slip;
+        piece.x_dot = series.x_dot;
         piece.path = series.path;
         piece.time = series.time;
         const SlidePoint next = moved(piece, reach_);
@@ -106,6 +107,7 @@ class Follower {
         }
         const bool stands_still = clock_ == SlideClock::time && next.time.high == from.time.high;
         slide_.last = next;
+        slide_.slip = slide_.slip + value(series.slip, reach_) / unit;
         if (!end_) return stands_still ? std::optional(SlideStop::no_progress) : std::nullopt;
         return end();
     }
@@ -130,7 +132,7 @@ class Follower {
     // Beyond some 1e100 powers of the rate leave the doubles all the same.
     static bool is_known(const SlidePoint& point) {
         return std::isfinite(double(point.angle)) && std::isfinite(double(point.omega)) &&
-               std::isfinite(double(point.slip)) && std::isfinite(double(point.path)) &&
+               std::isfinite(double(point.x_dot)) && std::isfinite(double(point.path)) &&
                std::isfinite(double(point.time));
     }
 
@@ -231,14 +233,16 @@ class Follower {
 
     // B = 0: in a moment, N = c/B ends it.
     SlideStop last_moment() {
-        const auto& [angle, omega, slip, path, time] = slide_.last;
+        const auto& [angle, omega, x_dot, path, time] = slide_.last;
         const auto [stops, state] = rolling_ellipse::last_moment(
-            slide_.body, {double(angle), double(omega), double(slip), double(path), double(time)});
+            slide_.body, {double(angle), double(omega), double(slide_.slip), double(x_dot),
+                          double(path), double(time)});
         slide_.last = {{state.angle, 0.0},
                        {state.omega, 0.0},
-                       {state.slip, 0.0},
+                       {state.x_dot, 0.0},
                        {state.path, 0.0},
                        {state.time, 0.0}};
+        slide_.slip = {state.slip, 0.0};
         slide_.pieces.push_back({slide_.last, SlideClock::time, 1.0, 0.0, {}, {}, {}, {}, {}});
         return stops ? SlideStop::slip_vanishes : SlideStop::jams;
     }
@@ -266,8 +270,8 @@ ContactSample sample_at(const Slide& slide, const SlidePoint& point) {
     const double theta = double(slide.theta_base + point.angle);
     const double omega = double(point.omega);
     const Geometry at = geometry(slide.axes, theta);
-    return {in_contact(at, theta, omega, slide.x_base + double(point.path), double(point.slip),
-                       Mode::sliding),
+    const double x = slide.x_base + double(point.path);
+    return {{theta, omega, x, at.h, double(point.x_dot), at.dh * omega, Mode::sliding},
             sliding_force(slide.body, at, omega)};
 }
 
@@ -285,7 +289,8 @@ Slide slide_from(const Scene& scene, const State& start, double side) {
                 axes,
                 half_pi_exact * quarters,
                 start.x,
-                {rest, {start.omega, 0.0}, {slip, 0.0}, {0.0, 0.0}, {0.0, 0.0}},
+                {rest, {start.omega, 0.0}, {start.x_dot, 0.0}, {0.0, 0.0}, {0.0, 0.0}},
+                {slip, 0.0},
                 {}};
     slide.pieces.reserve(usual_pieces);
     return slide;

@@ -15,11 +15,12 @@ namespace rolling_ellipse {
 
 // The angle is counted from the quarter turn next to the start, where a thin body is the most
 // sensitive to it: there it keeps digits that the whole angle has no room for. Path and time are
-// those since the start.
+// those since the start. The velocity of the centre is a number of its own: as the sum of slip and
+// h omega it would have their rounding, where friction hardly changes it.
 struct SlidePoint {
     DoubleDouble angle;
     DoubleDouble omega;
-    DoubleDouble slip;
+    DoubleDouble x_dot;
     DoubleDouble path;
     DoubleDouble time;
 };
@@ -33,7 +34,7 @@ struct SlidePiece {
     double reach;  // of the clock
     LongSeries angle;
     LongSeries omega;
-    LongSeries slip;
+    LongSeries x_dot;
     LongSeries path;
     LongSeries time;
 };
@@ -43,7 +44,8 @@ struct Slide {
     Axes axes;
     DoubleDouble theta_base;
     double x_base;
-    SlidePoint last;  // where the pieces end
+    SlidePoint last;    // where the pieces end
+    DoubleDouble slip;  // there
     std::vector<SlidePiece> pieces;
 };
 

@@ -16,7 +16,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
     const bool slowed = clock == SlideClock::slowed;
 
     SlideSeries slide;
-    auto& [angle, w, slip, path, rolled, time, pressure, response, u] = slide;
+    auto& [angle, w, slip, x_dot, path, rolled, time, pressure, response, u] = slide;
     // Side by side: what is multiplied at once.
     TwoSeries p_q, spread;   // p angle', q angle'
     TwoSeries w_u;           // omega^2, u^2
@@ -26,7 +26,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
     TwoSeries l_h, c_w;      // L C, h omega
     TwoSeries loads, gains;  // (u V) omega', (h V) impulse'
     TwoSeries rate_c, w_h;   // dt/dtau omega, C h
-    LongSeries h, rate, velocity, impulse;
+    LongSeries h, rate, impulse;
     angle[0] = at.angle;
     w[0] = at.omega;
     path[0] = at.path;
@@ -87,8 +87,8 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
             gains[k] = gain;
             spread[k] = pair(w[k], w[k]);
         }
-        slip[k] = k == 0 ? at.slip : impulse[k] + body.gravity.along * time[k] - rolled[k];
-        velocity[k] = slip[k] + rolled[k];
+        x_dot[k] = k == 0 ? at.x_dot : impulse[k] + body.gravity.along * time[k];
+        slip[k] = k == 0 ? at.slip : x_dot[k] - rolled[k];
         if (k == long_order) break;
         const Pair turns =
             (known_spread + outer(p_q, spread, k)) * pair(over_next[k], over_next[k]);
@@ -98,10 +98,10 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
         w[k + 1] = gain[0] * over_next[k];
         impulse[k + 1] = gain[1] * over_next[k];
         if (slowed) {
-            path[k + 1] = (inner(rate, velocity, k) + outer(rate, velocity, k)) * over_next[k];
+            path[k + 1] = (inner(rate, x_dot, k) + outer(rate, x_dot, k)) * over_next[k];
             time[k + 1] = rate[k] * over_next[k];
         } else {
-            path[k + 1] = velocity[k] * over_next[k];
+            path[k + 1] = x_dot[k] * over_next[k];
             time[k + 1] = k == 0 ? 1.0 : 0.0;
         }
     }

@@ -21,6 +21,7 @@ struct SlideSeries {
     LongSeries angle;
     LongSeries omega;
     LongSeries slip;
+    LongSeries x_dot;
     LongSeries path;
     LongSeries rolled;  // h omega
     LongSeries time;

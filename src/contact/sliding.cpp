@@ -58,7 +58,7 @@ double slowed_response_rate(const SlidingBody& body, const Geometry& at, double 
 
 // The impulse of N changes omega and slip in a fixed ratio, physics (54).
 LastMoment last_moment(const SlidingBody& body, const SlideState& state) {
-    const auto [angle, omega, slip, path, time] = state;
+    const auto [angle, omega, slip, x_dot, path, time] = state;
     const Geometry at = geometry(body.axes, angle);
     const double b_derivative = response_derivative(body, at);
     const auto [c, b] = response(body, at, omega);
@@ -80,8 +80,8 @@ LastMoment last_moment(const SlidingBody& body, const SlideState& state) {
     const double least = std::min(until_no_b, until_made >= 0 ? until_made : infinity);
     const double after = least < infinity ? least : 0.0;
     return {stops,
-            {angle + omega * after, omega_after, slip_after, path + (slip + at.h * omega) * after,
-             time + after}};
+            {angle + omega * after, omega_after, slip_after, slip_after + at.h * omega_after,
+             path + x_dot * after, time + after}};
 }
 
 }  // namespace rolling_ellipse

@@ -10,6 +10,7 @@ struct SlideState {
     double angle;
     double omega;
     double slip;
+    double x_dot;
     double path;
     double time;
 };
