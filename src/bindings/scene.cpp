@@ -30,7 +30,9 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
             scene.z_dot = z_dot[i];
             validate(scene.body());  // by its own names: k^2 is no inertia
             validate(scene);
-            const State after = after_collision(scene, state_before_impulse(scene));
+            const State before = state_before_impulse(scene);
+            const double approach = gap_rate(before, geometry(scene.axes(), before.theta));
+            const State after = collision(scene, before, approach).after;
             columns[0][i] = after.x_dot;
             columns[1][i] = after.z_dot;
             columns[2][i] = after.omega;

@@ -37,7 +37,6 @@ class ContactRun {
                const Settings& settings, double t_end, const Checkpoint& checkpoint)
         : units_(natural_units(scene)),
           scene_(body_in_units(scene, units_)),
-          axes_(scene_.axes()),
           settings_(settings),
           t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
           checkpoint_(checkpoint),
@@ -47,13 +46,15 @@ class ContactRun {
           motion_{units_, scene_, {}, {}} {}
 
     Integration<Motion> run() {
-        resolve_angle();
+        const Axes given = axes();
+        const double theta = count_from_quarter({state_.theta, 0.0});
+        gap_rate_ = gap_rate(state_, geometry(given, state_.theta));
+        state_ = with_angle(given, state_, axes(), theta);
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
         while (!ending_) {
             checkpoint_();
             state_.mode = next_.mode;
-            take_half_turns_off();
             if (is_stuck()) {
                 stop_stuck();
             } else {
@@ -64,26 +65,22 @@ class ContactRun {
     }
 
   private:
-    // At the start, and where a flight or a slide turned the body so often.
-    void resolve_angle() {
-        const double rest = resolved(state_.theta);
-        if (rest != state_.theta) turn_off(two_sum(state_.theta, -rest), rest);
-    }
+    Axes axes() const { return scene_.axes(); }
 
-    // From an event on: the ellipse is the same after half a turn, and near a flat position its
-    // angle has more digits.
-    void take_half_turns_off() {
-        resolve_angle();
-        const double half_turns = std::nearbyint(state_.theta / pi);
-        if (half_turns == 0 || motion_.segments.empty()) return;
-        const DoubleDouble rest = DoubleDouble{state_.theta, 0.0} - half_turn * half_turns;
-        turn_off(half_turn * half_turns + rest.low, rest.high);
-    }
-
-    // Leave the rest of the angle in the state.
-    void turn_off(const DoubleDouble& turned, double rest) {
-        turned_ = turned_ + turned;
-        state_ = with_angle(axes_, state_, rest);
+    // Where a segment begins, its angle is counted from the flat position or tip beside it, where a
+    // thin body is the most sensitive to it: returns that angle.
+    double count_from_quarter(DoubleDouble theta) {
+        if (const double rest = resolved(theta.high); rest != theta.high) {
+            turned_ = turned_ + two_sum(theta.high, -rest) + theta.low;
+            theta = {rest, 0.0};
+        }
+        const QuarterView angle = quarter_view(theta);
+        turned_ = turned_ + half_pi_exact * angle.quarters + angle.rest.low;
+        if (angle.is_odd()) {
+            std::swap(scene_.a, scene_.b);
+            axes_exchanged_ = !axes_exchanged_;
+        }
+        return angle.rest.high;
     }
 
     void follow() {
@@ -93,7 +90,7 @@ class ContactRun {
             case Mode::rolling:
                 return scene_.slope == 0 ? roll_exactly() : roll_on_slope();
             case Mode::sliding:
-                return slide();
+                return next_.grazes ? graze() : slide();
             case Mode::flight:
                 return fly();
         }
@@ -162,9 +159,10 @@ class ContactRun {
                                                     : scene_.friction;
     }
 
-    void stop_rolling(double after, double theta, double omega, double x) {
-        const Geometry at = geometry(axes_, theta);
-        const State before = in_contact(at, theta, omega, x, 0.0, Mode::rolling);
+    void stop_rolling(double after, double end, double omega, double x) {
+        const double theta = count_from_quarter({end, 0.0});
+        const State before =
+            in_contact(geometry(axes(), theta), theta, omega, x, 0.0, Mode::rolling);
         t_ += after;
         state_ = before;
         const Continuation next = continuation(scene_, before, false);
@@ -173,9 +171,13 @@ class ContactRun {
 
     void slide() {
         Slide slide = slide_from(scene_, state_, next_.side);
+        if (sliding_on_) slide.last.x_dot = *sliding_on_;
+        sliding_on_.reset();
         const SlideStop stop = slide_on(slide, {t_end_ - t_, steps_left()}, checkpoint_);
         const double lasts = double(slide.last.time);
-        const ContactSample last = end_of(slide);
+        const State last = end_of(slide).state;
+        const DoubleDouble theta = angle_at_end(slide);
+        const DoubleDouble x_dot = slide.last.x_dot;
         counts_.steps += static_cast<long>(slide.pieces.size());
         if (!slide.pieces.empty()) add_segment(std::move(slide));
         if (stop == SlideStop::too_many_pieces || stop == SlideStop::no_progress) {
@@ -186,8 +188,23 @@ class ContactRun {
         }
         if (stop == SlideStop::time_is_over || t_ + lasts > t_end_) return finish();
         t_ += lasts;
-        state_ = last.state;
-        end_slide(stop, last.state);
+        const Axes axes_before = axes();
+        state_ = with_angle(axes_before, last, axes(), count_from_quarter(theta));
+        end_slide(stop, State(state_));
+        if (next_.mode == Mode::sliding) sliding_on_ = x_dot;
+    }
+
+    void graze() {
+        const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, Mode::sliding};
+        const double lasts = turn_of_grazing / std::abs(state_.omega);
+        add_segment(free);
+        if (t_ + lasts > t_end_) return finish();
+        t_ += lasts;
+        const State moved = state_at(free, lasts);
+        const Geometry at = geometry(axes(), moved.theta);
+        state_ = in_contact(at, moved.theta, moved.omega, moved.x, slip_velocity(moved, at),
+                            Mode::sliding);
+        next_ = continuation(scene_, state_);
     }
 
     void end_slide(SlideStop stop, const State& before) {
@@ -198,15 +215,15 @@ class ContactRun {
         if (stop == SlideStop::pressure_vanishes) {
             return go_on_with({Mode::flight}, EventKind::lift_off, before);
         }
-        const Geometry at = geometry(axes_, before.theta);
+        const Geometry at = geometry(axes(), before.theta);
         state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
         go_on_with(next, kind_of(next.mode, EventKind::reverse), before);
     }
 
     void fly() {
-        const Flight flight{axes_, scene_.ground_gravity(), state_};
-        const auto [lasts, grazes] = touch_down(flight);
+        const Flight flight{axes(), scene_.ground_gravity(), state_, gap_rate_};
+        const auto [lasts, small_rate] = touch_down(flight);
         const bool lands = t_ + lasts <= t_end_;
         State before = state_at(flight, lands ? lasts : t_end_ - t_);
         if (!is_known(before)) {
@@ -216,11 +233,11 @@ class ContactRun {
         }
         add_segment(flight);
         if (!lands) return finish();
-        const Geometry at = geometry(axes_, before.theta);
+        before.theta = count_from_quarter(two_product(state_.omega, lasts) + state_.theta);
+        const Geometry at = geometry(axes(), before.theta);
         before.z = at.h;
-        if (grazes) before.z_dot = at.dh * before.omega;
         t_ += lasts;
-        hit(before);
+        hit(before, small_rate ? *small_rate : gap_rate(before, at));
     }
 
     // Down a wall a body flies farther than doubles reach, if it is let for long enough.
@@ -229,14 +246,17 @@ class ContactRun {
                std::isfinite(state.x_dot) && std::isfinite(state.z_dot);
     }
 
-    void hit(const State& before) {
-        const Geometry at = geometry(axes_, before.theta);
-        state_ = after_collision(scene_, before);
-        const double rebound = std::max(state_.z_dot - at.dh * state_.omega, 0.0);
+    void hit(const State& before, double approach) {
+        const auto [after, rebound_or_less] = collision(scene_, before, approach);
+        state_ = after;
+        // Below a rounding of the speed of a fall it is none.
+        const double rebound =
+            rebound_or_less > epsilon * speed_of_fall() ? rebound_or_less : 0.0;
+        const Geometry at = geometry(axes(), before.theta);
         const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
-        const double ratio = rebound / (at.dh * before.omega - before.z_dot);
+        const double ratio = rebound / -approach;
         if (rebound > 0 && !settles(rebound, ratio, c)) {
-            return go_on_with({Mode::flight}, EventKind::impact, before);
+            return go_on_with({Mode::flight}, EventKind::impact, before, rebound);
         }
         if (rebound > 0) {
             state_.mode = Mode::flight;
@@ -250,23 +270,21 @@ class ContactRun {
     // Whether a rebound is the first of bounces that are too small and too short to tell apart.
     // They take place under one c and h', an error of the square of how long they last beside the
     // time in which a body falls or turns by b/a: no more than the share of the speed at which it
-    // rests. Those that do not shrink are none where each is less than a rounding.
+    // rests.
     bool settles(double rebound, double ratio, double c) const {
-        if (rebound > rest_speed_ || c <= 0) return false;
+        if (rebound > rest_speed_ || c <= 0 || !(ratio < largest_ratio_that_settles)) return false;
         const auto [least, most] = std::minmax(scene_.a, scene_.b);
         const double rate =
             std::max(std::sqrt(scene_.gravity / least), std::abs(state_.omega) * most / least);
         const double longest = std::sqrt(rest_speed_ / speed_of_fall());
-        const bool shrinks = ratio < largest_ratio_that_settles;
-        if (!shrinks && rebound > epsilon * speed_of_fall()) return false;
-        return 2 * rebound * rate <= longest * c * (shrinks ? 1 - ratio : 1.0);
+        return 2 * rebound * rate <= longest * c * (1 - ratio);
     }
 
     // Infinitely many bounces that shrink by a ratio take a finite time, physics (57); so small
     // ones do it in place, under the c of their beginning.
     void settle(double rebound, double c) {
         constexpr double negligible_share = 1e-12;  // of the rebound: what is left adds no digit
-        const Geometry at = geometry(axes_, state_.theta);
+        const Geometry at = geometry(axes(), state_.theta);
         const GroundGravity gravity = scene_.ground_gravity();
         State moving = state_;
         double lasts = 0.0;
@@ -284,26 +302,30 @@ class ContactRun {
             turned += moving.omega * hop;
             moving.x_dot += gained;
             moving.z_dot = at.dh * moving.omega - speed;
-            moving = after_collision(scene_, moving);
-            const double next = moving.z_dot - at.dh * moving.omega;
+            const auto [after, next] = collision(scene_, moving, -speed);
+            moving = after;
             if (!(next < largest_ratio_that_settles * speed)) break;
             speed = std::max(next, 0.0);
         }
-        const double theta = state_.theta + turned;
+        const DoubleDouble end = two_sum(state_.theta, turned);
+        const double theta = end.high;
         const State settled =
-            in_contact(geometry(axes_, theta), theta, zero_if_negligible(moving.omega),
+            in_contact(geometry(axes(), theta), theta, zero_if_negligible(moving.omega),
                        state_.x + moved, slip_beyond_rounding(moving, at), Mode::flight);
         add_segment(Settling{lasts, state_, settled});
         if (t_ + lasts > t_end_) return finish();
         t_ += lasts;
-        state_ = settled;
+        const Axes axes_before = axes();
+        state_ = with_angle(axes_before, settled, axes(), count_from_quarter(end));
         const State before = state_;
         const Continuation next = continuation(scene_, state_);
         go_on_with(next, kind_of(next.mode, EventKind::slip), before);
     }
 
-    void go_on_with(const Continuation& next, EventKind kind, const State& before) {
+    void go_on_with(const Continuation& next, EventKind kind, const State& before,
+                    double rebound = 0.0) {
         next_ = next;
+        gap_rate_ = rebound;
         state_.mode = next.mode;
         note(kind, before);
         if (is_stuck() && !ending_) note(EventKind::jam, state_);
@@ -324,7 +346,7 @@ class ContactRun {
 
     template <class Law>
     void add_segment(Law law) {
-        motion_.segments.push_back({t_, std::move(law), turned_});
+        motion_.segments.push_back({t_, std::move(law), turned_, axes_exchanged_});
     }
 
     void finish() {
@@ -359,13 +381,15 @@ class ContactRun {
 
     // Times, states and segments are in units, which the settings are not.
     const Units units_;
-    const Scene scene_;
-    const Axes axes_;
+    Scene scene_;  // with its axes exchanged after an odd number of quarter turns
     const Settings& settings_;
     double t_end_;
     const Checkpoint& checkpoint_;
     State state_;
+    double gap_rate_ = 0.0;
+    std::optional<DoubleDouble> sliding_on_;  // x_dot, where one slide follows another
     DoubleDouble turned_;  // beside the angle of the state
+    bool axes_exchanged_ = false;
     const EndOfRolling first_end_;
     const double rest_speed_;
     Continuation next_{Mode::flight};

@@ -1,6 +1,7 @@
 #include "contact/continuation.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "contact/sliding.hpp"
 #include "contact/units.hpp"
@@ -19,18 +20,13 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
     return state.omega == 0 && is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
 }
 
-// Within rounding of c = 0 a body is free, and its flight finds out for how long.
-Response response_beyond_rounding(const Scene& scene, const Geometry& at, double omega,
-                                  double side) {
-    const SlidingBody body = sliding_body(scene, side);
-    Response found = response(body, at, omega);
-    if (is_weightless(at, body.gravity.into, omega)) found.c = 0.0;
-    return found;
-}
+// Whether a body whose c, physics (53), is 0 but for rounding leaves the ground: h'' is least on the
+// tip, so that c falls on the way up to it, and grows from there on.
+bool takes_off(const Geometry& at, double omega) { return at.dh * omega > 0 && !is_equilibrium(at); }
 
 // It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52).
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side) {
-    const auto [c, b] = response_beyond_rounding(scene, at, omega, side);
+    const auto [c, b] = response(sliding_body(scene, side), at, omega);
     if (c <= 0) return {Mode::flight};
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
 }
@@ -40,7 +36,7 @@ Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega
 // starts to the side that this slide is for. A body may be put there, but no motion leads there: a
 // slide ends before, where c or B vanishes, and an impact goes on while B < 0 until the slip stops.
 Continuation sliding(const Scene& scene, const Geometry& at, double omega, double side) {
-    const auto [c, b] = response_beyond_rounding(scene, at, omega, side);
+    const auto [c, b] = response(sliding_body(scene, side), at, omega);
     if (c < 0 && b < 0) return {Mode::sliding, side, Painleve::two_motions};
     return slide_or_leave(scene, at, omega, side);
 }
@@ -60,11 +56,9 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
     return {Mode::sliding, 0.0, Painleve::no_motion};
 }
 
-}  // namespace
-
-Continuation continuation(const Scene& scene, const State& state, bool may_roll) {
-    const Geometry at = geometry(scene.axes(), state.theta);
-    const double slip = slip_velocity(state, at);
+// After the geometry and the slip that are given, which may be those a moment later.
+Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
+                             double slip, bool may_roll) {
     if (scene.friction == 0) {
         const bool stays = slip == 0 && scene.slope == 0 && rests(scene, state, at);
         return stays ? Continuation{Mode::rest} : slide_or_leave(scene, at, state.omega, 0.0);
@@ -77,12 +71,31 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     return starting_to_slide(scene, at, state, force);
 }
 
+}  // namespace
+
+Continuation continuation(const Scene& scene, const State& state, bool may_roll) {
+    const Geometry at = geometry(scene.axes(), state.theta);
+    const double slip = slip_velocity(state, at);
+    const bool weightless = is_weightless(at, scene.ground_gravity().into, state.omega);
+    if (!weightless) return continuation_at(scene, state, at, slip, may_roll);
+    if (takes_off(at, state.omega)) return {Mode::flight};
+    State later = state;
+    later.theta += std::copysign(turn_of_grazing, state.omega);
+    Continuation next =
+        continuation_at(scene, later, geometry(scene.axes(), later.theta), slip, may_roll);
+    next.grazes = next.mode == Mode::sliding && std::isinf(scene.friction);
+    return next;
+}
+
 Continuation first_continuation(const Scene& scene, const State& start) {
     if (start.mode == Mode::flight) return {Mode::flight};
     const Units units = natural_units(scene);
     const Scene body = body_in_units(scene, units);
     const State state = in_units(start, units);
-    return continuation(body, with_angle(body.axes(), state, resolved(state.theta)));
+    const QuarterView angle = quarter_view({resolved(state.theta), 0.0});
+    Scene seen = body;
+    if (angle.is_odd()) std::swap(seen.a, seen.b);
+    return continuation(seen, with_angle(body.axes(), state, seen.axes(), angle.rest.high));
 }
 
 }  // namespace rolling_ellipse

@@ -14,7 +14,12 @@ struct Continuation {
     Mode mode;
     double side = 0.0;  // sign of the slip
     Painleve paradox = Painleve::determined;
+    // Sliding with friction without end from where c = 0 but for rounding: as the tip is near, so is
+    // B = 0, and the body moves freely until it has turned so far that both have digits.
+    bool grazes = false;
 };
+
+inline constexpr double turn_of_grazing = 0x1p-22;  // [rad]
 
 // The mode that the forces allow. Without slip it rolls where it may and can; else it starts to
 // slide, or leaves the ground where its contact is not pressed any more.

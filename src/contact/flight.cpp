@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "numerics/bisect.hpp"
 
@@ -14,11 +15,27 @@ double root_between(const Function& f, double low, double high) {
     return bisect_root(low, high, f).high;
 }
 
+// sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, as series in which nothing cancels.
+struct BeyondSmall {
+    double sine;
+    double square;
+};
+BeyondSmall beyond_small(double x) {
+    const double y2 = square(2 * x);
+    double sine = 1.0;
+    double squared = 1.0;
+    for (int k = 8; k > 1; --k) {
+        sine = 1 - sine * y2 / ((2 * k) * (2 * k + 1));
+        squared = 1 - squared * y2 / ((2 * k + 1) * (2 * k + 2));
+    }
+    return {-x * y2 / 6 * sine, -square(x) * y2 / 12 * squared};
+}
+
 // Height of the body over the ground.
 class Gap {
   public:
     explicit Gap(const Flight& flight)
-        : flight_(flight), h0_(geometry(flight.axes, flight.start.theta).h) {}
+        : flight_(flight), start_(geometry(flight.axes, flight.start.theta)) {}
 
     double height(double t) const {
         const State& s = flight_.start;
@@ -30,16 +47,28 @@ class Gap {
     // physics (55).
     double value(double t) const {
         const State& s = flight_.start;
+        const double fallen = 0.5 * flight_.gravity.into * t;
+        if (const auto rise = rise_over_tangent(t)) {
+            return (s.z - start_.h) + (t * (flight_.gap_rate - fallen) - rise->height);
+        }
         const auto [a, b] = flight_.axes;
         const double turned = s.omega * t;
-        const double rise =
-            (a - b) * (a + b) * std::sin(2 * s.theta + turned) * std::sin(turned) / (at(t).h + h0_);
-        return (s.z - h0_) + (t * (s.z_dot - 0.5 * flight_.gravity.into * t) - rise);
+        const double rise = (a - b) * (a + b) * std::sin(2 * s.theta + turned) * std::sin(turned) /
+                            (at(t).h + start_.h);
+        return (s.z - start_.h) + (t * (s.z_dot - fallen) - rise);
     }
 
     double rate(double t) const {
         const State& s = flight_.start;
+        if (const auto small = rate_after_small_turn(t)) return *small;
         return s.z_dot - flight_.gravity.into * t - at(t).dh * s.omega;
+    }
+
+    std::optional<double> rate_after_small_turn(double t) const {
+        const auto rise = rise_over_tangent(t);
+        if (!rise) return std::nullopt;
+        const double fallen = flight_.gravity.into * t;
+        return (flight_.gap_rate - fallen) - rise->slope * flight_.start.omega;
     }
 
     // From the ground, by its acceleration at most.
@@ -59,8 +88,33 @@ class Gap {
         return geometry(flight_.axes, flight_.start.theta + flight_.start.omega * t);
     }
 
+    // h - (h0 + h0' phi) after a small turn phi, and its derivative h' - h0', from what h^2 rises
+    // over the square of the tangent: all terms are of the order of phi^2, and the first, with the
+    // h'' of the start, keeps its digits for every body.
+    struct Rise {
+        double height;
+        double slope;
+    };
+    std::optional<Rise> rise_over_tangent(double t) const {
+        constexpr double small_turn = 0.25;
+        const double phi = flight_.start.omega * t;
+        const double tangent = start_.h + start_.dh * phi;
+        if (!(std::abs(phi) <= small_turn && tangent > 0)) return std::nullopt;
+        const auto [a, b] = flight_.axes;
+        const double c2 = (a - b) * (a + b);
+        const double sin_twice = 2 * start_.sin * start_.cos;
+        const double cos_twice = (start_.cos - start_.sin) * (start_.cos + start_.sin);
+        const auto [sine, squared] = beyond_small(phi);
+        const double h = at(t).h;
+        const double bend = start_.h * start_.ddh * phi;
+        const double height =
+            (bend * phi + c2 * (cos_twice * squared + sin_twice * sine)) / (h + tangent);
+        const double gained = bend + c2 * (cos_twice * sine - sin_twice * square(std::sin(phi)));
+        return Rise{height, (gained - start_.dh * height) / h};
+    }
+
     const Flight& flight_;
-    double h0_;
+    const Geometry start_;
 };
 
 // The second derivative of the gap, -(g cos(alpha) + h'' omega^2) with h'' = a^2 b^2/h^3 - h, is
@@ -195,18 +249,13 @@ State state_at(const Flight& flight, double t) {
             s.z + t * (s.z_dot - 0.5 * flight.gravity.into * t),
             s.x_dot + flight.gravity.along * t,
             s.z_dot - flight.gravity.into * t,
-            Mode::flight};
+            flight.mode};
 }
 
 Landing touch_down(const Flight& flight) {
-    constexpr double turned_by_a_graze = 0x1p-22;
     const Gap gap(flight);
-    const bool leaves_slowly = gap.leaves_slowly();
-    const double after = first_touch(flight, gap, leaves_slowly);
-    const double omega = flight.start.omega;
-    if (omega == 0 || !leaves_slowly) return {after, false};
-    const double least = turned_by_a_graze / std::abs(omega);
-    return after < least ? Landing{least, true} : Landing{after, false};
+    const double after = first_touch(flight, gap, gap.leaves_slowly());
+    return {after, gap.rate_after_small_turn(after)};
 }
 
 }  // namespace rolling_ellipse

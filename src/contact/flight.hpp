@@ -1,6 +1,8 @@
 // Flight: centre on a parabola, angular velocity constant; exact. And its end: physics (55).
 #pragma once
 
+#include <optional>
+
 #include "geometry/ellipse.hpp"
 #include "scene/scene.hpp"
 
@@ -10,19 +12,18 @@ struct Flight {
     Axes axes;
     GroundGravity gravity;
     State start;
+    double gap_rate;  // at the start: z_dot - h' omega has less digits of a low hop
+    Mode mode = Mode::flight;
 };
 
 State state_at(const Flight& flight, double t);
 
 // The first contact after the start, after infinite time where there is none. A start in contact
-// counts as leaving the ground: with the velocity, or the acceleration, that it has.
-//
-// A body that is free but for rounding, as on a tip that is just not thrown off, may stay on the
-// ground, or hop lower than numbers tell: it grazes. That lasts until the free acceleration c into
-// the ground is clear of its rounding again, and ends without an impact.
+// counts as leaving the ground: with the velocity, or the acceleration, that it has. After a small
+// turn the rate of the gap has digits that the velocities there do not have.
 struct Landing {
     double after;
-    bool grazes;
+    std::optional<double> gap_rate;
 };
 Landing touch_down(const Flight& flight);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace rolling_ellipse {
 namespace {
@@ -167,6 +168,8 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
     }
     const Units& units = motion_.units;
     const std::vector<Segment>& segments = motion_.segments;
+    Scene exchanged = motion_.scene;
+    std::swap(exchanged.a, exchanged.b);
     std::vector<double> since;
     since.reserve(n);
     for (std::size_t i = 0; i < n;) {
@@ -183,9 +186,10 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
         for (std::size_t j = i; j < n && time(j) >= segment.begin && time(j) < end; ++j) {
             since.push_back(time(j) - segment.begin);
         }
+        const Scene& scene = segment.axes_exchanged ? exchanged : motion_.scene;
         std::visit(
             [&](const auto& law) {
-                look_at(motion_.scene, itself(law), since.data(), since.size(), samples + i);
+                look_at(scene, itself(law), since.data(), since.size(), samples + i);
             },
             segment.law);
         const std::size_t last = i + since.size();

@@ -53,7 +53,8 @@ struct Segment {
     std::variant<Apart<RollingFlow>, Apart<SlopeFlow>, SteppedRolling, SteppedMultipliers, Slide,
                  Flight, Settling, Resting, Jam>
         law;
-    DoubleDouble turned{};  // beside the angles of the law
+    DoubleDouble turned{};        // beside the angles of the law
+    bool axes_exchanged = false;  // in the law: after an odd number of quarter turns
 };
 
 struct Motion {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/half_turns.hpp"
 #include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
 
@@ -280,16 +281,15 @@ ContactSample sample_at(const Slide& slide, const SlidePoint& point) {
 Slide slide_from(const Scene& scene, const State& start, double side) {
     const Axes axes = scene.axes();
     const double slip = slip_velocity(start, geometry(axes, start.theta));
-    const double quarters = std::nearbyint(start.theta / half_pi);
-    const DoubleDouble rest = DoubleDouble{start.theta, 0.0} - half_pi_exact * quarters;
+    const QuarterView angle = quarter_view({start.theta, 0.0});
     Scene seen = scene;
-    if (std::fmod(quarters, 2.0) != 0.0) std::swap(seen.a, seen.b);
+    if (angle.is_odd()) std::swap(seen.a, seen.b);
     constexpr std::size_t usual_pieces = 16;
     Slide slide{sliding_body(seen, side),
                 axes,
-                half_pi_exact * quarters,
+                half_pi_exact * angle.quarters,
                 start.x,
-                {rest, {start.omega, 0.0}, {start.x_dot, 0.0}, {0.0, 0.0}, {0.0, 0.0}},
+                {angle.rest, {start.omega, 0.0}, {start.x_dot, 0.0}, {0.0, 0.0}, {0.0, 0.0}},
                 {slip, 0.0},
                 {}};
     slide.pieces.reserve(usual_pieces);
@@ -309,6 +309,8 @@ SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& ch
 }
 
 ContactSample end_of(const Slide& slide) { return sample_at(slide, slide.last); }
+
+DoubleDouble angle_at_end(const Slide& slide) { return slide.theta_base + slide.last.angle; }
 
 void sample(const Slide& slide, const double* times, std::size_t n, ContactSample* samples) {
     const auto first = slide.pieces.begin();

@@ -73,8 +73,9 @@ enum class SlideStop {
 // Slide on from the start until something stops it, at the time of the last point.
 SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& checkpoint);
 
-// State and force at the last point.
+// State and force at the last point; its angle with all its digits.
 ContactSample end_of(const Slide& slide);
+DoubleDouble angle_at_end(const Slide& slide);
 
 // States and forces at n times since the start, ascending.
 void sample(const Slide& slide, const double* times, std::size_t n, ContactSample* samples);

@@ -12,6 +12,19 @@ inline double within_a_turn(double angle) {
     return std::abs(angle) > pi ? std::atan2(std::sin(angle), std::cos(angle)) : angle;
 }
 
+// An angle from the flat position or tip beside it, where it has the most digits.
+struct QuarterView {
+    double quarters;
+    DoubleDouble rest;
+
+    bool is_odd() const { return std::fmod(quarters, 2.0) != 0.0; }
+};
+
+inline QuarterView quarter_view(const DoubleDouble& angle) {
+    const double quarters = std::nearbyint(angle.high / half_pi);
+    return {quarters, angle - half_pi_exact * quarters};
+}
+
 // An angle of which sums with others still see a part of a turn: itself up to 1e15, where a double
 // has 0.1 rad, and what is left of it without full turns beyond.
 inline double resolved(double angle) {

@@ -26,7 +26,7 @@ Contact contact(const Scene& scene, const Geometry& at, const State& state) {
     const double inverse_mass = 1 / scene.mass;
     const double inverse_inertia = 1 / scene.inertia;
     return {state.x_dot - at.h * state.omega,
-            state.z_dot - at.dh * state.omega,
+            gap_rate(state, at),
             inverse_mass + at.h * at.h * inverse_inertia,
             at.h * at.dh * inverse_inertia,
             inverse_mass + at.dh * at.dh * inverse_inertia,
@@ -211,12 +211,19 @@ double sticking_friction(const Scene& scene) {
     return std::fmax(c.v == 0 ? 0.0 : tangential / normal, to_stay);
 }
 
-State after_collision(const Scene& scene, const State& before) {
+double gap_rate(const State& state, const Geometry& at) {
+    return state.z_dot - at.dh * state.omega;
+}
+
+Collision collision(const Scene& scene, const State& before, double gap_rate) {
     const Geometry at = geometry(scene.axes(), before.theta);
-    State after = before;
-    const Contact c = contact(scene, at, before);
-    if (c.u < 0) apply(scene, at, reaction_to(scene, c, scene.restitution), after);
-    return after;
+    Contact c = contact(scene, at, before);
+    c.u = gap_rate;
+    if (!(c.u < 0)) return {before, c.u};
+    const Reaction reaction = reaction_to(scene, c, scene.restitution);
+    Collision found{before, reaction.rebound};
+    apply(scene, at, reaction, found.after);
+    return found;
 }
 
 }  // namespace rolling_ellipse

@@ -23,7 +23,15 @@ InitialState initial_state(const Scene& scene);
 // either, and the state then is the same.
 double sticking_friction(const Scene& scene);
 
-// A body that touches the ground and moves into it, just after the collision; its mode is left.
-State after_collision(const Scene& scene, const State& before);
+// The rate of the gap, which is what the lowest point moves away from the ground with.
+double gap_rate(const State& state, const Geometry& at);
+
+// A body that touches the ground, just after the collision, and the rate of its gap; its mode is
+// left. The rate before is a number of its own, since a low hop has more digits of it than z_dot.
+struct Collision {
+    State after;
+    double rebound;
+};
+Collision collision(const Scene& scene, const State& before, double gap_rate);
 
 }  // namespace rolling_ellipse

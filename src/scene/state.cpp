@@ -21,9 +21,9 @@ double slip_beyond_rounding(const State& state, const Geometry& at) {
     return std::abs(slip) <= equal_ulps * epsilon * std::abs(state.x_dot) ? 0.0 : slip;
 }
 
-State with_angle(const Axes& axes, State state, double theta) {
+State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta) {
     const Geometry before = geometry(axes, state.theta);
-    const Geometry after = geometry(axes, theta);
+    const Geometry after = geometry(new_axes, theta);
     const double omega = state.omega;
     state.theta = theta;
     if (state.z == before.h) state.z = after.h;

@@ -49,8 +49,9 @@ double slip_velocity(const State& state, const Geometry& at);
 // The slip velocity, and zero where it is rounding beside the velocity of the centre.
 double slip_beyond_rounding(const State& state, const Geometry& at);
 
-// A state whose angle is told otherwise. What touches, or has no slip, goes on to do so.
-State with_angle(const Axes& axes, State state, double theta);
+// The same state by other axes and the angle that belongs to them. What touches, or has no slip,
+// goes on to do so.
+State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta);
 
 // The state of a body that keeps to the ground.
 State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode);

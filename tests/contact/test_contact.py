@@ -129,7 +129,9 @@ def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> No
         most = 1e-9 * abs(end - start) + 4 * EPS * abs(start)
         assert np.all(np.abs(getattr(inside, name) - expected) <= most), name
     at = support(inside.theta, scene.a, scene.b)
-    assert np.array_equal(inside.z, at.h) and np.all(inside.normal_force == 0)
+    # The height is that of an angle from the next quarter turn, which is the same but for rounding.
+    assert np.all(np.abs(inside.z - at.h) <= 2 * EPS * at.h)
+    assert np.all(inside.normal_force == 0)
 
 
 def test_where_bounces_settle_along_the_ground_is_known_to_a_rounding() -> None:

@@ -196,7 +196,7 @@ void check_collision(const Scene& scene, Bytes& bytes) {
     before.z_dot = at.dh * before.omega - speed * bytes.power(-6, 1);
     validate_velocity(scene.body(), before.x_dot, before.z_dot);
     if (!(before.z_dot < at.dh * before.omega)) return;
-    const State after = after_collision(scene, before);
+    const State after = collision(scene, before, gap_rate(before, at)).after;
     CHECK(is_finite(after));
     CHECK(after.theta == before.theta && after.x == before.x);
     check_no_gain(scene, before, after);
