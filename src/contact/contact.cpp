@@ -84,13 +84,14 @@ class ContactRun {
     }
 
     void follow() {
+        if (next_.grazes) return graze();
         switch (next_.mode) {
             case Mode::rest:
                 return rest();
             case Mode::rolling:
                 return scene_.slope == 0 ? roll_exactly() : roll_on_slope();
             case Mode::sliding:
-                return next_.grazes ? graze() : slide();
+                return slide();
             case Mode::flight:
                 return fly();
         }
@@ -195,15 +196,15 @@ class ContactRun {
     }
 
     void graze() {
-        const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, Mode::sliding};
+        const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, next_.mode};
         const double lasts = turn_of_grazing / std::abs(state_.omega);
         add_segment(free);
         if (t_ + lasts > t_end_) return finish();
         t_ += lasts;
         const State moved = state_at(free, lasts);
         const Geometry at = geometry(axes(), moved.theta);
-        state_ = in_contact(at, moved.theta, moved.omega, moved.x, slip_velocity(moved, at),
-                            Mode::sliding);
+        const double slip = next_.mode == Mode::sliding ? slip_velocity(moved, at) : 0.0;
+        state_ = in_contact(at, moved.theta, moved.omega, moved.x, slip, next_.mode);
         next_ = continuation(scene_, state_);
     }
 

@@ -83,7 +83,7 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     later.theta += std::copysign(turn_of_grazing, state.omega);
     Continuation next =
         continuation_at(scene, later, geometry(scene.axes(), later.theta), slip, may_roll);
-    next.grazes = next.mode == Mode::sliding && std::isinf(scene.friction);
+    next.grazes = std::isinf(scene.friction);
     return next;
 }
 

@@ -712,8 +712,9 @@ def random_axes(rng: random.Random, shape: str) -> tuple[float, float]:
     longer = log_uniform(rng, 0.3, 3.0)
     if shape == "circle":
         return longer, longer
-    ratio = log_uniform(rng, 10, 50) if shape == "thin" else log_uniform(rng, 1.1, 4.0)
-    lying = rng.random() < 0.6 and shape != "standing"
+    ratios = {"thin": (10, 50), "thin standing": (10, 500)}
+    ratio = log_uniform(rng, *ratios.get(shape, (1.1, 4.0)))
+    lying = rng.random() < 0.6 and not shape.endswith("standing")
     return (longer, longer / ratio) if lying else (longer / ratio, longer)
 
 
@@ -822,6 +823,13 @@ FAMILIES = [
         for e, shape in ((0.3, "any"), (0.5, "standing"), (0.3, "circle"))
     ),
     Family("rest", 1, "air", ("impact",), "any", {**FLAT, "above": 0.6, "restitution": 0.0}),
+    Family("upright", 4, "roll", ("slip", "stick"), "thin standing"),
+    Family("upright", 4, "roll", ("slip", "lift_off"), "thin standing"),
+    *(
+        Family("ice", 1, "slide", ("reverse", "reverse"), given={"friction": mu, "slope": 0.0})
+        for mu in (1e-300, 1e-12, 1e-8, 1e-5, 1e-3)
+    ),
+    Family("hops", 3, "roll", 30 * ("impact",), given={"restitution": 1.0}, most_events=40),
 ]
 EXPLICIT = [
     ("jump", Scene(2.0, 1.0, omega=4.7, friction=0.5)),
