@@ -18,8 +18,9 @@ void normalize(SlopePlace& place) {
     place.angle = place.angle - half_pi_exact * over;
 }
 
-// h times the moment of gravity about the contact, per unit mass: physics (62), where there are
-// equilibria, as the difference of its two terms would be a rounding next to them.
+// h times the moment of gravity about the contact, per unit mass. Next to an equilibrium the
+// difference of its terms would be a rounding: it is the product of physics (62) wherever there is
+// one on the slope.
 double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, double c) {
     if (!body.equilibria) {
         const double h2 = square(body.short_axis) + body.c2 * square(s);

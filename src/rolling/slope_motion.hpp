@@ -12,8 +12,8 @@
 
 namespace rolling_ellipse {
 
-// The equilibria of a body on a slope that falls to growing angles, h' = h tan(slope), physics (62):
-// stable next to the flat position, unstable next to the tip.
+// The equilibria of a body on a slope that falls to growing angles, h' = h tan(slope), physics
+// (62): stable next to the flat position, unstable next to the tip.
 struct Equilibria {
     double lying;    // the angle from the flat position, 0 or more
     double upright;  // the angle from the tip, 0 or less
