@@ -29,16 +29,12 @@ class Well {
         : axes_(scene.axes()),
           gravity_(scene.ground_gravity()),
           gyration2_(scene.body().gyration2),
+          pull_(scene.gravity * (scene.a - scene.b) * (scene.a + scene.b)),
           dynamics_(scene) {
-        const auto [a, b] = axes_;
-        const double c2 = (a - b) * (a + b);
-        const double incline = std::tan(scene.slope);
-        // h' = h tan(alpha) is a quadratic equation in tan(theta).
-        const double root = (c2 - 2 * a * b * incline) * (c2 + 2 * a * b * incline);
-        if (root <= 0) return;
-        const double sum = c2 + std::sqrt(root);
-        upright_ = std::atan2(sum, 2 * a * a * incline);
-        lying_ = std::atan2(2 * b * b * incline, sum);
+        const auto found = equilibria(axes_.a, axes_.b, std::tan(scene.slope));
+        if (!found) return;
+        upright_ = half_pi + found->upright;
+        lying_ = found->lying;
         start_ = angle < upright_ ? angle : angle - pi;
         energy_ = 0.5 * inertia(geometry(axes_, start_)) * square(omega);
         holds_ = energy(upright_) < 0;
@@ -65,16 +61,16 @@ class Well {
 
     double energy(double angle) const { return energy_ + gained(angle); }
 
-    // W at an angle less that of the start: short ways by quadrature, as the difference of two
-    // heights, or of two paths, would have lost its digits.
+    // W at an angle less that of the start: short ways by quadrature of physics (62), as the
+    // difference of two heights, or of two paths, would have lost its digits.
     double gained(double angle) const {
         const double way = angle - start_;
         const Geometry from = geometry(axes_, start_);
         const auto [a, b] = axes_;
         if (std::abs(way) < 0.1 * b / a) {
             const auto rate = [&](double at) {
-                const Geometry here = geometry(axes_, at);
-                return gravity_.along * here.h - gravity_.into * here.dh;
+                const double swung = std::sin(at - lying_) * std::sin(upright_ - at);
+                return -pull_ * swung / geometry(axes_, at).h;
             };
             return double(integrate(gauss_rule(20), start_, angle, rate));
         }
@@ -138,6 +134,7 @@ class Well {
     const Axes axes_;
     const GroundGravity gravity_;
     const double gyration2_;
+    const double pull_;  // g (a^2 - b^2)
     const RollingDynamics dynamics_;
     double upright_ = 0.0;
     double lying_ = 0.0;

@@ -18,7 +18,32 @@ void normalize(SlopePlace& place) {
     place.angle = place.angle - half_pi_exact * over;
 }
 
+// h times the moment of gravity about the contact, per unit mass. Next to an equilibrium the
+// difference of its terms would be a rounding: it is the product of physics (62) wherever there is
+// one on the slope.
+double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, double c) {
+    if (!body.equilibria) {
+        const double h2 = square(body.short_axis) + body.c2 * square(s);
+        return body.gravity.along * h2 - body.gravity.into * body.c2 * s * c;
+    }
+    const double over_lying = double(at.angle + -body.equilibria->lying);
+    const double over_upright = double(at.angle + -body.equilibria->upright);
+    return at_tip(at.quarters) ? body.pull * std::sin(over_upright) * std::cos(over_lying)
+                               : -body.pull * std::sin(over_lying) * std::cos(over_upright);
+}
+
 }  // namespace
+
+std::optional<Equilibria> equilibria(double long_axis, double short_axis, double incline) {
+    // A quadratic equation in the tangent of the angle, whose product of roots is known.
+    const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
+    const double both = 2 * long_axis * short_axis * incline;
+    const double root = (c2 - both) * (c2 + both);
+    if (root <= 0) return std::nullopt;
+    const double sum = c2 + std::sqrt(root);
+    return Equilibria{std::atan2(2 * square(short_axis) * incline, sum),
+                      -std::atan2(2 * square(long_axis) * incline, sum)};
+}
 
 SlopeBody slope_body(const Body& from, double slope) {
     const Axes axes = from.axes();
@@ -33,6 +58,9 @@ SlopeBody slope_body(const Body& from, double slope) {
     body.gyration2 = from.gyration2 / body.length / body.length;
     const double gravity = from.gravity / body.length * body.time * body.time;
     body.gravity = ground_gravity(gravity, std::abs(slope));
+    body.equilibria =
+        equilibria(body.long_axis, body.short_axis, body.gravity.along / body.gravity.into);
+    body.pull = gravity * body.c2;
     const double s2 = square(body.short_axis);
     const double l2 = square(body.long_axis);
     body.series = {s2,
@@ -94,7 +122,10 @@ SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
     constants.gravity.into *= square(piece.unit);
     constants.gravity.along *= square(piece.unit);
     const bool tip = at_tip(from.quarters);
-    piece.series = slope_series(constants, tip ? c : s, tip ? -s : c, from.omega * piece.unit);
+    const double sin = tip ? c : s;
+    const double cos = tip ? -s : c;
+    const double drive = square(piece.unit) * gravity_drive(body, from, sin, cos);
+    piece.series = slope_series(constants, sin, cos, from.omega * piece.unit, drive);
     piece.lasts = piece.unit * std::min(reach(piece.series.omega), reach(piece.series.path));
     return piece;
 }

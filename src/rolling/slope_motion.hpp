@@ -2,6 +2,7 @@
 // points as any other place, and the next one begins where the last has lost its digits.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "numerics/double_double.hpp"
@@ -10,6 +11,16 @@
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {
+
+// The equilibria of a body on a slope that falls to growing angles, h' = h tan(slope), physics
+// (62): stable next to the flat position, unstable next to the tip.
+struct Equilibria {
+    double lying;    // the angle from the flat position, 0 or more
+    double upright;  // the angle from the tip, 0 or less
+};
+
+// Nothing where the slope is too steep for them. `incline` is its tangent.
+std::optional<Equilibria> equilibria(double long_axis, double short_axis, double incline);
 
 // Body and ground in units of their own, powers of two. The slope falls to the side of growing
 // angles: one that falls to the other side is looked at from behind.
@@ -22,6 +33,8 @@ struct SlopeBody {
     double c2;
     double gyration2;
     GroundGravity gravity;  // along > 0
+    std::optional<Equilibria> equilibria;
+    double pull;            // (along^2 + into^2)^(1/2) c2
     SlopeConstants series;  // for a time unit of 1
     double slowest;         // rate of what gravity does from rest
     double quarter_path;    // of the centre, in a quarter turn

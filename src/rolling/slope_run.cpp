@@ -57,15 +57,6 @@ struct Centre {
     double at() const { return quarters * half_pi + angle; }
 };
 
-// Where W is least: physics (58) with h' = h tan(slope), beyond the well; the tip if there is none.
-double hill_angle(const SlopeBody& body) {
-    const double incline = body.gravity.along / body.gravity.into;
-    const double both = 2 * body.long_axis * body.short_axis * incline;
-    const double root = (body.c2 - both) * (body.c2 + both);
-    if (root <= 0) return 0.0;
-    return -std::atan2(2 * square(body.long_axis) * incline, body.c2 + std::sqrt(root));
-}
-
 // No singularity is closer to a part than pi/2, five times half of one.
 constexpr double widest_part = 0.6;
 
@@ -100,7 +91,8 @@ class RunMaker {
         run_.path = path_at(body, from.quarters - run_.turns, double(from.angle));
         run_.at = geometry(body, from);
         const double lost = run_.heading < 0 ? (half_turns - 1) * body.gain : 0.0;
-        const double hill = hill_angle(body);
+        // Where W is least: beyond the well, or the tip if there is none.
+        const double hill = body.equilibria ? body.equilibria->upright : 0.0;
         const Geometry top = geometry(body, 1.0, hill);
         const double curvature = body.gravity.along * top.dh - body.gravity.into * top.ddh;
         const double least =

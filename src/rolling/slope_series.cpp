@@ -5,8 +5,10 @@ namespace rolling_ellipse {
 // Physics (18) with D h^2 = d0 + d1 sin^2 phi, u = h^2 and p = h h' = c2 sin phi cos phi:
 //     omega' u (d0 + d1 sin^2 phi) = u h (g_along u - g_into p) - L^2 S^2 p omega^2
 //     u' = 2 p omega,   p' = q omega,   q' = -4 p omega
-// Near an equilibrium what drives is a small difference: it is formed first.
-SlopeSeries slope_series(const SlopeConstants& body, double sin, double cos, double omega) {
+// Near an equilibrium g_along u - g_into p is a small difference: the caller knows its first
+// coefficient with all digits, and the others do not cancel.
+SlopeSeries slope_series(const SlopeConstants& body, double sin, double cos, double omega,
+                         double drive) {
     SlopeSeries motion;
     auto& [angle, w, path, h] = motion;
     // Side by side: what is multiplied at once.
@@ -43,7 +45,8 @@ SlopeSeries slope_series(const SlopeConstants& body, double sin, double cos, dou
         const double w2 = k == 0 ? square(omega) : known_squares[0] + 2 * omega * w[k];
         const double p = p_q[k][0];
         p_uh[k] = pair(p, masses[1]);
-        load_drive[k] = pair(centrifugal * w2, body.gravity.along * u - body.gravity.into * p);
+        if (k > 0) drive = body.gravity.along * u - body.gravity.into * p;
+        load_drive[k] = pair(centrifugal * w2, drive);
         const Pair forces = known_forces + outer(p_uh, load_drive, k);
         mass_h[k] = pair(masses[0], h[k]);
         double rest = forces[0] + forces[1];

@@ -23,7 +23,9 @@ struct SlopeSeries {
     LongSeries height;
 };
 
-// The series from the sine and cosine of the angle from the flat position and the angular velocity.
-SlopeSeries slope_series(const SlopeConstants& body, double sin, double cos, double omega);
+// The series from the sine and cosine of the angle from the flat position, the angular velocity and
+// h times the moment of gravity there.
+SlopeSeries slope_series(const SlopeConstants& body, double sin, double cos, double omega,
+                         double drive);
 
 }  // namespace rolling_ellipse
