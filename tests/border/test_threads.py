@@ -4,7 +4,6 @@ import random
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from functools import cached_property
 from threading import Barrier
 from typing import Any
 
@@ -13,6 +12,7 @@ import pytest
 import rolling_ellipse as rl
 from oracles.pickles import require_same
 from rolling_ellipse import Scene, _core, scenes, simulate
+from rolling_ellipse._fields import cached_property
 
 THREADS, CALLS_EACH = 8, 1000
 PLACES = 5  # of each kind of call as many different ones, so that neighbours do different work
