@@ -92,8 +92,6 @@ class RollingAnimation(FuncAnimation):
             A page needs no figure. The reference cycles of a figure take long to collect, and a
             Ctrl-C that comes meanwhile is lost in the callback of some weak reference.
             """
-            if name.startswith("__"):
-                raise AttributeError(name)
             with _drawing_late():
                 if (undrawn := self.__dict__.pop("_undrawn", None)) is not None:
                     try:
@@ -101,9 +99,7 @@ class RollingAnimation(FuncAnimation):
                     except BaseException:
                         self._undrawn = undrawn
                         raise
-            if name not in self.__dict__:
-                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-            return self.__dict__[name]
+            return object.__getattribute__(self, name)
 
     def _make_picture(
         self,
