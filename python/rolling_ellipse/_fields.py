@@ -1,13 +1,38 @@
-"""What dataclasses hold: their pickles and copies, and fields that are found late."""
+"""Dataclass helpers: pickles of fields only, and what is computed when first asked for."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields
-from functools import cached_property
-from typing import Any, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar, overload
 
 _Owner = TypeVar("_Owner")
+_Value = TypeVar("_Value")
+
+
+class cached_property(Generic[_Value]):
+    """A property that is computed when first asked for, and then kept in the object's `__dict__`.
+
+    That of functools has one lock for all objects up to Python 3.11: threads would wait for each
+    other, and a process forked meanwhile for ever. Here two threads may compute the same; both get
+    what the first one has kept.
+    """
+
+    def __init__(self, compute: Callable[[Any], _Value]) -> None:
+        self._compute, self.__doc__ = compute, compute.__doc__
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, instance: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, instance: object, owner: type) -> _Value: ...
+    def __get__(self, instance: object | None, owner: type) -> Self | _Value:
+        if instance is None:
+            return self
+        value: _Value = instance.__dict__.setdefault(self._name, self._compute(instance))
+        return value
 
 
 class FieldsOnly:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,7 +13,7 @@ from . import _core
 from ._check import evaluate, number, optional_number
 from ._core import Outcome
 from ._faces import Listed, with_unit
-from ._fields import FieldsOnly, find_late, trusted
+from ._fields import FieldsOnly, cached_property, find_late, trusted
 from ._workers import shared
 
 

@@ -6,7 +6,6 @@ import dataclasses
 import math
 from collections.abc import Iterable
 from dataclasses import KW_ONLY, dataclass, fields
-from functools import cached_property
 from typing import Any, ClassVar
 
 from . import _core
@@ -14,7 +13,7 @@ from . import _start_words as words
 from ._check import number, shown
 from ._core import Mode
 from ._faces import Listed, Row, brief, with_unit
-from ._fields import FieldsOnly
+from ._fields import FieldsOnly, cached_property
 from ._impulse import Impulse as Impulse
 
 _OPTIONAL = ("inertia", "z", "x_dot", "z_dot")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from operator import is_
 from typing import Any, Literal, get_args
 
 from . import _core
 from ._check import choice, number, optional_number, shown, whole
-from ._fields import FieldsOnly
+from ._fields import FieldsOnly, cached_property
 
 Model = Literal["auto", "rolling", "multipliers", "contact"]
 Method = Literal["auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"]

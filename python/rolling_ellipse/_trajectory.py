@@ -6,7 +6,6 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -16,7 +15,7 @@ from . import _core
 from ._check import FloatArray, array, number
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
 from ._events import Event, Events, events
-from ._fields import FieldsOnly, find_late, trusted
+from ._fields import FieldsOnly, cached_property, find_late, trusted
 from ._quantities import MODE, QUANTITIES
 from ._samples import (
     ContactSamples,

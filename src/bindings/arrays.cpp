@@ -27,19 +27,10 @@ std::string shape_of(const Array& array) {
 
 }  // namespace
 
-void SignalWatch::operator()() {
-    constexpr std::chrono::milliseconds between_looks(50);
-    const Clock::time_point now = Clock::now();
-    if (now - last_look_ < between_looks) return;
-    const py::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    last_look_ = Clock::now();
-}
-
 void run_interruptible(py::ssize_t n, int workers, const Range& body) {
     if (n <= chunk) return body(0, n);
     workers = static_cast<int>(std::min<py::ssize_t>(workers, n / chunk + 1));
-    const py::gil_scoped_release release;
+    const GilRelease release;
     std::atomic<py::ssize_t> next{0};
     // The failure of the earliest chunk is the one told: all chunks before it have been begun, and
     // what is begun is ended.
@@ -80,7 +71,7 @@ void run_interruptible(py::ssize_t n, int workers, const Range& body) {
 void run_each(py::ssize_t n, int workers, const Piece& body) {
     workers = static_cast<int>(std::min<py::ssize_t>(workers, n));
     if (workers == 0) return;
-    const py::gil_scoped_release release;
+    const GilRelease release;
     struct Stopped {};
     std::atomic<py::ssize_t> next{0};
     std::atomic<bool> stopped{false};

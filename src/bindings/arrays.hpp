@@ -5,11 +5,12 @@
 #include <pybind11/pybind11.h>
 
 #include <array>
-#include <chrono>
 #include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "bindings/gil.hpp"
 
 namespace rolling_ellipse::bindings {
 
@@ -18,18 +19,6 @@ using namespace pybind11::literals;
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Range = std::function<void(py::ssize_t, py::ssize_t)>;
-
-// Looks for Ctrl-C whenever 50 ms have passed since it last did, and throws it as the exception
-// that Python knows. It asks by time, because a look takes the GIL, for which a busy Python thread
-// makes it wait 5 ms.
-class SignalWatch {
-  public:
-    void operator()();
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point last_look_ = Clock::now();
-};
 
 // Run body(begin, end) over 0 .. n in chunks, without the GIL; Ctrl-C stops it between chunks.
 // What a chunk computes does not depend on which thread takes it: where fewer threads can be

@@ -61,7 +61,7 @@ py::array_t<std::int8_t> outcome_array(const Scene& scene, py::ssize_t n,
 }
 
 Outcome outcome_interruptible(const Scene& scene) {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     return outcome(scene, SignalWatch());
 }
 
@@ -112,7 +112,7 @@ py::tuple lift_off_interruptible(double a, double b, double gravity,
     const Body of = valid_body(a, b, gravity, gyration2);
     LiftOff found;
     {
-        const py::gil_scoped_release release;
+        const GilRelease release;
         found = lift_off(of, friction, slip_speed, painleve_friction, SignalWatch());
     }
     py::tuple jams(found.jam_speeds.size());

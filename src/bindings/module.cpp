@@ -7,6 +7,7 @@
 PYBIND11_MODULE(_core, m) {
     using namespace rolling_ellipse::bindings;
     m.doc() = "C++ core of rolling_ellipse; see the Python package for the documented interface.";
+    watch_main_thread();
     bind_geometry(m);
     bind_scene(m);
     bind_certificate(m);

@@ -123,14 +123,14 @@ py::dict sample_contact(const Solution& solution, const Array& t) {
 }
 
 Solution simulate_interruptible(const Scene& scene, const Settings& settings, double t_end) {
-    const py::gil_scoped_release release;
+    const GilRelease release;
     return simulate(scene, settings, t_end, SignalWatch());
 }
 
 Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q_dot,
                               const Settings& settings, double t_end) {
     const CoordinateState start = single_state(q, q_dot);
-    const py::gil_scoped_release release;
+    const GilRelease release;
     return simulate(scene, start, settings, t_end, SignalWatch());
 }
 

@@ -1,7 +1,6 @@
 """Pictures, films and the report's functions name the argument that they cannot use, and a picture
 that fails leaves nothing behind."""
 
-import functools
 import inspect
 import itertools
 import math
@@ -27,6 +26,7 @@ from oracles.pictures import frames_of
 from PIL import Image
 from rolling_ellipse import _core, report
 from rolling_ellipse import _settings as settings
+from rolling_ellipse._fields import cached_property
 from rolling_ellipse._pictures.animation import movies as movies
 
 MOTION = rl.simulate(rl.scenes.report, np.linspace(0.0, 1.0, 26))
@@ -153,7 +153,7 @@ def test_help_tells_units() -> None:
     properties = {
         name: inspect.getdoc(each)
         for name, each in vars(rl.Trajectory).items()
-        if not name.startswith("_") and isinstance(each, (property, functools.cached_property))
+        if not name.startswith("_") and isinstance(each, (property, cached_property))
     }
     assert len(properties) > 25
     for name, text in properties.items():

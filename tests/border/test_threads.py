@@ -1,18 +1,19 @@
 """Several Python threads at once: the bits of one thread alone, also where they share objects."""
 
+import pickle
 import random
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from functools import cached_property
-from threading import Barrier
+from threading import Barrier, Event
 from typing import Any
 
 import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.pickles import require_same
-from rolling_ellipse import Scene, _core, scenes, simulate
+from rolling_ellipse import Scene, _core, _trajectory, scenes, simulate
+from rolling_ellipse._fields import cached_property
 
 THREADS, CALLS_EACH = 8, 1000
 PLACES = 5  # of each kind of call as many different ones, so that neighbours do different work
@@ -182,3 +183,35 @@ def test_the_names_that_a_trajectory_keeps_are_seen() -> None:
     """The test above asks for what follows from the samples, and for what the solver says late."""
     seen = {"events", "psi", "energy", "normal_force", "turns", "reason", "stats"}
     assert seen <= set(late_names(ROLLED))
+
+
+READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
+    "energy": ("kind_of", lambda motion: motion.energy),
+    "q": ("kind_of", lambda motion: motion.q),
+    "sol": ("solve", lambda motion: motion.sol([1.0])),
+}
+
+
+@pytest.mark.parametrize(("within", "read"), READS.values(), ids=READS)
+def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
+    within: str, read: Callable[[rl.Trajectory], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One thread is held in the midst of it for as long as the other one takes."""
+    held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
+    begun, go_on, usual = Event(), Event(), getattr(_trajectory, within)
+
+    def slowly(of: Any, *more: Any) -> Any:
+        if of is held or of is held.scene:
+            begun.set()
+            go_on.wait()
+        return usual(of, *more)
+
+    monkeypatch.setattr(_trajectory, within, slowly)
+    with ThreadPoolExecutor(2) as pool:
+        first = pool.submit(read, held)
+        begun.wait()
+        try:
+            found = pool.submit(read, other).result(timeout=60)
+        finally:
+            go_on.set()
+        require_same(found, first.result())

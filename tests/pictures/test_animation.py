@@ -19,6 +19,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import rolling_ellipse as rl
 from matplotlib.animation import FFMpegWriter, HTMLWriter
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from oracles.geometry import support as outline_support
@@ -648,3 +649,48 @@ def test_a_window_shows_it_and_a_notebook_does_not_show_it_twice(
     with pytest.raises(ValueError, match="labels must be 1"):
         rl.animate(report, labels=["one", "two"])
     assert plt.get_fignums() == []
+
+
+def test_a_page_leaves_nothing_to_collect(report: rl.Trajectory, tmp_path: Path) -> None:
+    """Ctrl-C is lost where cycles are collected: what is only written has none."""
+    rl.animate(report, tmp_path / "roll.html")  # all is loaded
+    gc.collect()
+    gc.disable()
+    try:
+        film = weakref.ref(rl.animate([report, report], tmp_path / "roll.html"))
+        assert film() is None
+        assert gc.collect() == 0
+    finally:
+        gc.enable()
+
+
+def pixels(film: RollingAnimation) -> Any:
+    canvas = FigureCanvasAgg(only(film).ax.get_figure(root=True))
+    canvas.draw()
+    return np.array(canvas.buffer_rgba())
+
+
+def test_a_film_that_was_written_as_a_page_is_drawn_when_asked_for(
+    report: rl.Trajectory, tmp_path: Path
+) -> None:
+    """With the pixels of one that was drawn at once, and as the same animation of matplotlib's."""
+    page = rl.animate(report, tmp_path / "roll.html", width=200)
+    drawn = rl.animate(report, width=200, fps=60)
+    assert not hasattr(page, "no_such_name")
+    for film in (page, drawn):
+        film.draw(7)
+        assert only(film).ax.figure is film.figure
+        assert vars(film.figure)["_rolling_animation"] is film
+    assert np.array_equal(pixels(page), pixels(drawn))
+
+
+def test_a_page_whose_picture_fails_tries_again(
+    report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As after a Ctrl-C, which may come anywhere."""
+    film = rl.animate(report, tmp_path / "roll.html")
+    with monkeypatch.context() as patched:
+        patched.setattr(Figure, "add_axes", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+        with pytest.raises(KeyboardInterrupt):
+            film.draw(0)
+    assert film.draw(0)[0] is film.clock

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextvars import ContextVar
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
@@ -13,23 +14,29 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from .._check import shown
+from .alone import with_figures
 
 _Given = ParamSpec("_Given")
 _Drawn = TypeVar("_Drawn")
+_opened: ContextVar[list[Figure]] = ContextVar("_opened")  # by the plot function that is at work
 
 
 def leaving_no_figure(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
-    """Make a plot function close the pyplot figure that it has opened if it fails."""
+    """Make a plot function close the pyplot figures that it has opened if it fails."""
 
     @wraps(draw)
     def drawn(*args: _Given.args, **options: _Given.kwargs) -> _Drawn:
-        before = plt.get_fignums()
+        figures: list[Figure] = []
+        before = _opened.set(figures)
         try:
             return draw(*args, **options)
         except BaseException:
-            for number in set(plt.get_fignums()).difference(before):
-                plt.close(number)
+            with with_figures():
+                for figure in figures:
+                    plt.close(figure)
             raise
+        finally:
+            _opened.reset(before)
 
     return drawn
 
@@ -74,7 +81,15 @@ def figure_of(figure: Any, size: tuple[float, float]) -> Figure:
     return figure  # type: ignore[return-value]
 
 
+def pyplot_figure(**options: Any) -> Figure:
+    """Open a pyplot figure: one thread at a time, or two could get the same number."""
+    with with_figures():
+        figure = plt.figure(**options)
+        _opened.get().append(figure)
+    return figure
+
+
 def _new_figure(size: tuple[float, float]) -> Figure:
     """Open a pyplot figure of a size [inch], or of the one that the style asks for."""
     asked = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
-    return plt.figure(figsize=None if asked else size, layout="constrained")
+    return pyplot_figure(figsize=None if asked else size, layout="constrained")

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .._check import choice, shown
 from .._quantities import QUANTITIES as UNITS_AND_MEANINGS
-from .._simulate import simulate
+from .._settings import DEFAULTS
 from .._trajectory import Trajectory
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
@@ -130,9 +129,7 @@ def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajector
     how: dict[str, Any] = {"model": "contact"}
     if motion.model != "contact":
         how = {"model": "rolling", "method": "exact"}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of the model: the motion itself has been warned of
-        return simulate(motion.scene, [last], raise_on_failure=False, **how)
+    return Trajectory.computed(motion.scene, replace(DEFAULTS, **how), np.array([last]))
 
 
 def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:

@@ -7,12 +7,13 @@ with colours of its own, as "dark_background" or "grayscale", gives them instead
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import rcParams, rcParamsDefault
 from matplotlib.colors import LinearSegmentedColormap, is_color_like, to_hex, to_rgb, to_rgba
+
+from .._fields import cached_property
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,15 +14,15 @@ from .._outcome import thresholds
 from .._pictures.phase_map import COLOURS
 from .._samples import even_times
 from .._scene import Impulse, Scene
-from .._simulate import simulate
+from .._settings import DEFAULTS
 from .._status import Status
+from .._trajectory import Trajectory
 from ..geometry import support
 from .film import body, events
 from .tracks import columns, sample_times
 
 if TYPE_CHECKING:
     from .._check import FloatArray
-    from .._trajectory import Trajectory
 
 NAMES = {
     Outcome.RESTS: "rests",
@@ -67,10 +67,8 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
     """Return all blows as JSON knows them, those of one place after the other."""
     wide = WIDE * max(scene.a, scene.b)
     blows = [Impulse.press(force, place) for place in d for force in F]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the sentences say it
-        motions = [struck(scene, blow, t_end) for blow in blows]
-        sampled = [_sampled(motion, _PIXEL * wide) for motion in motions]
+    motions = [struck(scene, blow, t_end) for blow in blows]
+    sampled = [_sampled(motion, _PIXEL * wide) for motion in motions]
     return {
         "columns": columns(sampled, _PIXEL * wide),
         "ends": np.cumsum([each.t.size for each in sampled]).tolist(),
@@ -86,14 +84,9 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
-    """Return the motion that a blow makes of a scene."""
-    return simulate(
-        scene.replace(impulse=blow),
-        [0.0, t_end],
-        max_steps=_STEPS,
-        max_events=_EVENTS,
-        raise_on_failure=False,
-    )
+    """Return the motion that a blow makes of a scene; its sentences say what is to be warned of."""
+    how = replace(DEFAULTS, max_steps=_STEPS, max_events=_EVENTS)
+    return Trajectory.computed(scene.replace(impulse=blow), how, np.array([0.0, t_end]))
 
 
 def _sampled(motion: Trajectory, tolerance: float) -> Trajectory:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from os import PathLike
 from typing import Any
 
@@ -12,7 +11,7 @@ import numpy as np
 
 from .._check import FloatArray, file_name, positive, require_near
 from .._export.atomic import replacing
-from .._fields import FieldsOnly
+from .._fields import FieldsOnly, cached_property
 from .._scene import Impulse, Scene, require_scene
 from . import blows
 from .page import document, fragment

@@ -30,7 +30,7 @@ def film_page(animation: RollingAnimation) -> str:
 
 def film_html(animation: RollingAnimation) -> str:
     """Return the player of an animation as a fragment of HTML."""
-    motions = [strip.motion for strip in animation.strips]
+    motions = list(animation.motions)
     last = float(animation.t[-1])
     ends = [min(last, float(motion.t[-1])) for motion in motions]
     seen = cameras(motions, None, _HEAD, _FOOT)

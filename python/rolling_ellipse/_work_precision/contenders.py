@@ -12,8 +12,9 @@ import numpy as np
 from .._check import FloatArray, choice, shown
 from .._flow import arguments_of, flow, period
 from .._scene import Scene
-from .._settings import DEFAULTS, METHODS, MODELS, STABILIZATIONS
-from .._simulate import simulate
+from .._settings import DEFAULTS, METHODS, MODELS, STABILIZATIONS, settings
+from .._simulate import sample_times
+from .._stability import advice
 from .._status import Status
 from .._trajectory import Trajectory
 
@@ -52,7 +53,9 @@ class Stopped(Exception):
 
 
 class Runner:
-    """A contender at one setting, ready to run."""
+    """A contender at one setting, ready to run; `advice` is that of `simulate` on its motion."""
+
+    advice = ""
 
     def end(self) -> State:
         """Return the state at the end: what is timed."""
@@ -103,7 +106,7 @@ class _Flow(Runner):
 class _Simulation(Runner):
     def __init__(self, scene: Scene, t_end: float, arguments: dict[str, Any]) -> None:
         self.scene = replace(scene)  # a new one, whose own set-up is paid for again
-        self.arguments = arguments
+        self.settings = tuple((DEFAULTS.__getstate__() | arguments).values())
         self.times = np.array([t_end])
         self.last: Trajectory | None = None
 
@@ -119,10 +122,13 @@ class _Simulation(Runner):
         return stats | {"rejected": stats.get("rejected_steps", 0)}
 
     def _run(self, times: FloatArray) -> Trajectory:
-        motion = simulate(self.scene, times, raise_on_failure=False, **self.arguments)
+        """Do all that `simulate` does but warn."""
+        how = settings(*self.settings)
+        motion = Trajectory.computed(self.scene, how, sample_times(times))
         if motion.status is not Status.COMPLETED:
             raise Stopped(motion.status.name, motion.message)
-        self.last = motion
+        told = advice(motion)
+        self.advice, self.last = self.advice or told or "", motion
         return motion
 
 

@@ -6,13 +6,11 @@ import gc
 import math
 import statistics
 import time
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from .._scene import Scene
-from .._status import StabilityWarning, ValidityWarning
 from .contenders import Contender, Runner, Stopped
 from .progress import Progress
 from .run import COMPLETED, Errors, Run
@@ -38,25 +36,14 @@ class Lap:
     def judge_once(self, scene: Scene) -> None:
         """Set it up, run it and judge it; what goes wrong is kept as its status."""
         begin = time.perf_counter()
-        with warnings.catch_warnings(record=True) as told:
-            for known in (StabilityWarning, ValidityWarning):
-                warnings.simplefilter("always", known)
-            try:
-                self._run(scene)
-            except Stopped as stopped:
-                self._stop(stopped.status, str(stopped))
-            except ValueError as refusal:
-                self._stop("REFUSED", str(refusal))
-            except Exception as failure:  # whatever a peer may raise
-                self._stop("FAILED", f"{type(failure).__name__}: {failure}")
-        advice = [w for w in told if issubclass(w.category, StabilityWarning)]
-        if advice and not self.reason:
-            self.reason = str(advice[0].message)
-        for other in told:
-            if not issubclass(other.category, (StabilityWarning, ValidityWarning)):
-                warnings.warn_explicit(
-                    other.message, other.category, other.filename, other.lineno, source=other.source
-                )
+        try:
+            self._run(scene)
+        except Stopped as stopped:
+            self._stop(stopped.status, str(stopped))
+        except ValueError as refusal:
+            self._stop("REFUSED", str(refusal))
+        except Exception as failure:  # whatever a peer may raise
+            self._stop("FAILED", f"{type(failure).__name__}: {failure}")
         self.cost = time.perf_counter() - begin
 
     def _run(self, scene: Scene) -> None:
@@ -76,7 +63,7 @@ class Lap:
             self.errors = Errors(final=self.judge.final_error(end))
         else:
             self.errors = self.judge.errors(motion, end)
-        self.runner = runner
+        self.runner, self.reason = runner, runner.advice
 
     def _stop(self, status: str, reason: str) -> None:
         self.status, self.reason = status, reason
@@ -173,14 +160,11 @@ def _timed(call: Callable[[], Any]) -> tuple[float, Any]:
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
-    """Keep the garbage collector out of the timings, as timeit does, and silence what is known."""
+    """Keep the garbage collector out of the timings, as timeit does."""
     was = gc.isenabled()
     gc.disable()
     try:
-        with warnings.catch_warnings():
-            for known in (StabilityWarning, ValidityWarning):
-                warnings.simplefilter("ignore", known)
-            yield
+        yield
     finally:
         if was:
             gc.enable()

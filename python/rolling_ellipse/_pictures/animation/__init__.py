@@ -6,13 +6,12 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import matplotlib
-import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.backends.registry import backend_registry
 from matplotlib.figure import Figure, SubFigure
 
 from ..._check import flag, number, shown
-from ..axes import leaving_no_figure, require_axes
+from ..axes import leaving_no_figure, pyplot_figure, require_axes
 from ..comparison import Comparison
 from .film import RollingAnimation
 from .movies import movie_writer
@@ -123,8 +122,7 @@ def animate(
     if not 0 <= last <= latest:
         raise ValueError(f"t_end must be within [0, {latest:g}] s, got {t_end!r}")
     shown_at = pace(path, last, fps=fps, speed=speed, max_frames=max_frames)
-    if path is not None:
-        movie_writer(path, shown_at.fps)  # a wrong path is refused before any work
+    page = path is not None and movie_writer(path, shown_at.fps) is None  # or it is refused
     animation = RollingAnimation(
         motions,
         shown_at,
@@ -132,7 +130,8 @@ def animate(
         width=width,
         dpi=dpi,
         place=figure if ax is None else ax,
-        new_figure=plt.figure if path is None and _has_windows() else Figure,
+        new_figure=pyplot_figure if path is None and _has_windows() else Figure,
+        drawn=not page,
     )
     if path is not None:
         animation.save(path, progress=progress)

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from ..._check import choice, file_name, flag, shown, whole
 from ..._export.atomic import replacing
+from ..alone import Alone, with_settings
 from ..palette import palette_of
 from .camera import cameras
 from .movies import ffmpeg, movie_writer, progress_bar, told
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
+_drawing_late = Alone()
 
 
 class RollingAnimation(FuncAnimation):
@@ -50,7 +52,8 @@ class RollingAnimation(FuncAnimation):
     clock : Text
         The time.
     figure : Figure or SubFigure
-        Where it is drawn; it keeps the animation alive.
+        Where it is drawn; it keeps the animation alive. A film that `animate` has written as .html
+        is drawn when this, or another of the artists, is first asked for.
     """
 
     def __init__(
@@ -63,9 +66,10 @@ class RollingAnimation(FuncAnimation):
         dpi: float,
         place: Figure | SubFigure | Axes | None = None,
         new_figure: Callable[..., Figure] = Figure,
+        drawn: bool = True,
     ) -> None:
         self.t, self.fps, self.speed, self.labels = pace.t, pace.fps, pace.speed, tuple(labels)
-        seen = [motion.sol(np.minimum(self.t, motion.t[-1])) for motion in motions]
+        self.motions = tuple(motion.sol(np.minimum(self.t, motion.t[-1])) for motion in motions)
         self.decimals = _decimals(self.speed / self.fps)
         shape, inches = None, width / dpi
         if place is not None:
@@ -74,7 +78,37 @@ class RollingAnimation(FuncAnimation):
                 place.bbox.width / _root(place).dpi,
             )
         head = CAPTION / inches if any(labels) else 0.0
-        self.cameras = cameras(seen, shape, head, TICKS + FIGURES / inches)
+        self.cameras = cameras(self.motions, shape, head, TICKS + FIGURES / inches)
+        if drawn or place is not None:
+            self._make_picture(place, new_figure, width, dpi)
+        else:
+            self._undrawn = (place, new_figure, width, dpi)
+
+    if not TYPE_CHECKING:  # or every name would be known
+
+        def __getattr__(self, name: str) -> Any:
+            """Draw a film that has only been written, when an artist of it is first asked for.
+
+            A page needs no figure. The reference cycles of a figure take long to collect, and a
+            Ctrl-C that comes meanwhile is lost in the callback of some weak reference.
+            """
+            with _drawing_late():
+                if (undrawn := self.__dict__.pop("_undrawn", None)) is not None:
+                    try:
+                        self._make_picture(*undrawn)
+                    except BaseException:
+                        self._undrawn = undrawn
+                        raise
+            return object.__getattribute__(self, name)
+
+    def _make_picture(
+        self,
+        place: Figure | SubFigure | Axes | None,
+        new_figure: Callable[..., Figure],
+        width: int,
+        dpi: float,
+    ) -> None:
+        """Draw the first frame, and become matplotlib's animation of its figure."""
         if place is None:
             height = 2 * math.ceil(width * self.cameras.shape / 2)  # video wants even numbers
             place = new_figure(figsize=(width / dpi, height / dpi), dpi=dpi)
@@ -83,7 +117,7 @@ class RollingAnimation(FuncAnimation):
         self.strips = tuple(
             Strip(ax, motion, self.t, views, label, not self.cameras.together)
             for ax, motion, views, label in zip(
-                self._axes(place), seen, self.cameras.views, labels, strict=True
+                self._axes(place), self.motions, self.cameras.views, self.labels, strict=True
             )
         )
         top = self.strips[0].ax
@@ -158,11 +192,12 @@ class RollingAnimation(FuncAnimation):
         if progress:
             options["progress_callback"] = progress_bar(path)
         if writer is not None:
-            super().save(path, writer=_known(writer), **options)
+            with with_settings():
+                super().save(path, writer=_known(writer), **options)
             return
-        chosen, settings = movie_writer(path, self.fps, "filename")
+        chosen = movie_writer(path, self.fps, "filename")
         self.draw(self.t.size - 1)  # of which a GIF takes its colours
-        with replacing(path) as film, rc_context(settings), told(path):
+        with replacing(path) as film, told(path):
             super().save(str(film), writer=chosen, **options)
 
     def _save_page(self, path: str, options: dict[str, Any]) -> None:
@@ -196,7 +231,7 @@ class RollingAnimation(FuncAnimation):
             except ValueError as error:
                 return f"<p>{escape(str(error))}</p>"
         settings = {"animation.ffmpeg_path": ffmpeg()} if wanted == "html5" else {}
-        with rc_context(settings):  # type: ignore[arg-type]
+        with with_settings(), rc_context(settings):  # type: ignore[arg-type]
             return str(super()._repr_html_())
 
 

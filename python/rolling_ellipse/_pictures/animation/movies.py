@@ -9,12 +9,12 @@ import math
 import os
 import sys
 from contextlib import contextmanager, suppress
+from io import BytesIO
 from os import PathLike, fspath
 from pathlib import Path
 from subprocess import CalledProcessError
 from typing import TYPE_CHECKING, Any
 
-from matplotlib import rc_context
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from PIL import Image
 
@@ -28,7 +28,24 @@ if TYPE_CHECKING:
 SUFFIXES = (".gif", ".mp4", ".html")
 
 
-class GifWriter(PillowWriter):
+class _FilmWriter(AbstractMovieWriter):
+    """A writer that changes no settings of matplotlib's, which all threads share."""
+
+    @contextmanager
+    def saving(self, fig: Figure, outfile: Any, dpi: float | None, *args: Any) -> Iterator[Any]:
+        """Set it up, and finish whatever happens."""
+        self.setup(fig, outfile, dpi)
+        try:
+            yield self
+        finally:
+            self.finish()
+
+    def _write_frame(self, to: Any, options: dict[str, Any]) -> None:
+        """Write the pixels of the whole figure, whatever "savefig.bbox" says."""
+        self.fig.savefig(to, format="rgba", dpi=self.dpi, bbox_inches=False, **options)
+
+
+class GifWriter(_FilmWriter, PillowWriter):
     """Exact delays, and one palette for all frames: much smaller than matplotlib's GIF.
 
     The palette is that of what the figure shows before the first frame is drawn: the last frame
@@ -39,15 +56,17 @@ class GifWriter(PillowWriter):
 
     def setup(self, fig: Figure, outfile: Any, dpi: float | None = None) -> None:
         super().setup(fig, outfile, dpi)
-        with rc_context({"savefig.bbox": None}):  # as matplotlib has it for the frames
-            super().grab_frame()
         # this choice spares the colours of thin lines
-        self._palette = self._frames.pop().convert("RGB").quantize(64, Image.Quantize.MAXCOVERAGE)
+        self._palette = self._picture({}).quantize(64, Image.Quantize.MAXCOVERAGE)
 
     def grab_frame(self, **options: Any) -> None:
-        super().grab_frame(**options)
-        frame = self._frames.pop().convert("RGB")  # in RGB they would fill the memory
+        frame = self._picture(options)  # in RGB they would fill the memory
         self._frames.append(frame.quantize(palette=self._palette, dither=Image.Dither.NONE))
+
+    def _picture(self, options: dict[str, Any]) -> Image.Image:
+        pixels = BytesIO()
+        self._write_frame(pixels, options)
+        return Image.frombytes("RGBA", self.frame_size, pixels.getvalue()).convert("RGB")
 
     def finish(self) -> None:
         if not self._frames:  # interrupted before the first: matplotlib finishes all the same
@@ -56,6 +75,18 @@ class GifWriter(PillowWriter):
         delay = gif_delay(self.fps)
         assert delay is not None
         first.save(self.outfile, save_all=True, append_images=rest, duration=10 * delay, loop=0)
+
+
+class Mp4Writer(_FilmWriter, FFMpegWriter):
+    """Matplotlib's, with the ffmpeg that is found."""
+
+    @classmethod
+    def bin_path(cls) -> str:
+        return ffmpeg()
+
+    def grab_frame(self, **options: Any) -> None:
+        self.fig.set_size_inches(self._w, self._h)  # type: ignore[attr-defined]
+        self._write_frame(self._proc.stdin, options)  # type: ignore[attr-defined]
 
 
 def gif_delay(fps: float) -> int | None:
@@ -69,10 +100,8 @@ def gif_delay(fps: float) -> int | None:
 
 def movie_writer(
     path: str | PathLike[str], fps: float, argument: str = "path"
-) -> tuple[AbstractMovieWriter | None, Any]:
-    """Return what writes the file, and the matplotlib settings to do so under.
-
-    An .html holds a player, which needs no writer of frames: there it is None.
+) -> AbstractMovieWriter | None:
+    """Return what writes the frames to the file; None for an .html, whose player needs none.
 
     Raises
     ------
@@ -98,11 +127,12 @@ def movie_writer(
                 "fps must be 100 over a whole number of at least 2 for a .gif, whose delays are "
                 f"counted in 1/100 s; got {fps!r}, near it is 100 / {delay} = {100 / delay:.4g}"
             )
-        return GifWriter(fps=fps), {}  # type: ignore[arg-type]
+        return GifWriter(fps=fps)  # type: ignore[arg-type]
     if suffix == ".mp4":
-        return FFMpegWriter(fps=fps), {"animation.ffmpeg_path": ffmpeg()}  # type: ignore[arg-type]
+        ffmpeg()  # or it is refused
+        return Mp4Writer(fps=fps)  # type: ignore[arg-type]
     if suffix == ".html":
-        return None, {}
+        return None
     raise ValueError(f"{argument} must end in one of {', '.join(SUFFIXES)}, got {str(target)!r}")
 
 

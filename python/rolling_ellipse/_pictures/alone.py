@@ -1,0 +1,23 @@
+"""Locks around what matplotlib has one of in a process."""
+
+import os
+from threading import RLock
+
+
+class Alone:
+    """A lock for all threads, of which a forked process has a free one: `with alone(): ...`."""
+
+    def __init__(self) -> None:
+        self._renew()
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._renew)
+
+    def _renew(self) -> None:
+        self._lock = RLock()
+
+    def __call__(self) -> RLock:
+        return self._lock
+
+
+with_figures = Alone()  # pyplot numbers its figures
+with_settings = Alone()  # rcParams while some of matplotlib's own writers work

@@ -1,0 +1,43 @@
+#include "bindings/gil.hpp"
+
+#include <atomic>
+#include <thread>
+
+namespace rolling_ellipse::bindings {
+
+namespace {
+
+std::atomic<unsigned long> main_thread;
+
+}  // namespace
+
+GilRelease::~GilRelease() {
+    try {
+        PyEval_RestoreThread(state_);
+    } catch (...) {  // only pthread_exit comes here, and it may not be stopped
+        for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+}
+
+SignalWatch::SignalWatch() : in_main_thread_(PyThread_get_thread_ident() == main_thread) {}
+
+void SignalWatch::operator()() {
+    if (!in_main_thread_) return;
+    constexpr std::chrono::milliseconds between_looks(50);
+    const Clock::time_point now = Clock::now();
+    if (now - last_look_ < between_looks) return;
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    last_look_ = Clock::now();
+}
+
+void watch_main_thread() {
+    const py::object found = py::module_::import("threading").attr("main_thread")();
+    main_thread = found.attr("ident").cast<unsigned long>();
+    const py::module_ os = py::module_::import("os");
+    if (!py::hasattr(os, "register_at_fork")) return;  // no system but Unix forks
+    const py::cpp_function forked([] { main_thread = PyThread_get_thread_ident(); });
+    os.attr("register_at_fork")(py::arg("after_in_child") = forked);
+}
+
+}  // namespace rolling_ellipse::bindings

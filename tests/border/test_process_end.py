@@ -1,0 +1,149 @@
+"""A process that ends or forks while a thread of it is at work: as if the thread were not there."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+# Every kind of call that is long, or is made again and again while the main thread ends; but for
+# what matplotlib draws, whose own code aborts there (a static map of ft2font outlives Python).
+LONG = {
+    "rk4": "simulate(R, [1e5], model='rolling', method='rk4', step=1e-4, **ON)",
+    "gauss": "simulate(R, [1e5], model='rolling', method='gauss', step=1e-4, **ON)",
+    "radau": "simulate(R, [1e5], model='rolling', method='radau', step=1e-4, **ON)",
+    "dop853": "simulate(R, [1e7], model='rolling', rtol=1e-13, method='dop853', **ON)",
+    "projection": "simulate(R, [1e6], model='multipliers', **ON)",
+    "projection+energy": "simulate(R, [1e6], **M, stabilization='projection+energy')",
+    "none": "simulate(R, [1e6], **M, stabilization='none')",
+    "baumgarte": "simulate(R, [1e6], **M, stabilization='baumgarte')",
+    "ggl": "simulate(R, [1e5], **M, method='radau', stabilization='ggl', step=1e-3)",
+    "contact": "simulate(FREE, [1e7], model='contact', **ON)",
+    "thresholds": "rl.thresholds(2., 1., gyration2=.0435, friction=.25).lift_off_speed",
+    "classify": "rl.classify(a=2., b=1., theta=ANGLES, omega=3.2, friction=.4, workers=2)",
+    "blows": "rl.outcome(rl.scenes.report, rl.Impulse(ANGLES[:5000]))",
+    "flow, times": "rl.flow(TIMES, a=2., b=1., theta=.1, omega=3.2)",
+    "flow, bodies": "rl.flow(5., a=2., b=1., theta=ANGLES, omega=3.2, workers=2)",
+    "exact": "simulate(R, TIMES)",
+    "simulate_many": "simulate_many([R, FREE] * 50, 2., workers=1)",
+    "simulate_many, 2 workers": "simulate_many([R, FREE] * 50, 2., workers=2)",
+    "simulate_many, all workers": "simulate_many([R, FREE] * 50, 2., workers=-1)",
+    "simulate_many, out": "simulate_many([R, FREE] * 50, 2., workers=2, out=f'out{next(COUNT)}')",
+    "sol": "DROP.sol(np.linspace(0., 2., 10**5)).energy",
+    "sol, loaded": "pickle.loads(LOADED).sol([1.])",
+    "when": "(DROP.when(z=1.), DROP.scene_at(1.))",
+    "residuals": "DROP.sol(np.linspace(0., 2., 50000)).constraint_residuals()",
+    "work_precision": "rl.work_precision(R, 4., rounds=2, max_seconds=3)",
+    "explore": "rl.explore(rl.scenes.report).to_html('explorer.html')",
+    "film": "DROP.animate('film.html')",
+}
+DAEMON = """
+import itertools, pickle, sys, threading, time, warnings
+import numpy as np, rolling_ellipse as rl
+from rolling_ellipse import simulate, simulate_many
+warnings.simplefilter("ignore")
+ON = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
+M = {"model": "multipliers", **ON}
+R, FREE = rl.scenes.rolling, rl.Scene(2., 1., friction=0., omega=3., x_dot=1.)
+TIMES, ANGLES = np.linspace(0., 500., 10**6), np.linspace(.1, 1.4, 20000)
+DROP, COUNT = simulate(rl.scenes.drop, 2.), itertools.count()
+LOADED = pickle.dumps(DROP)
+
+def work():
+    while True:
+        {call}
+
+thread = threading.Thread(target=work, daemon=True)
+thread.start()
+time.sleep({seconds})
+assert thread.is_alive()
+"""
+
+
+@pytest.mark.parametrize("call", LONG.values(), ids=LONG)
+def test_a_daemon_thread_does_not_hinder_the_end(call: str, tmp_path: Path) -> None:
+    """The main thread ends in the midst of it, at two moments; so does the process, with 0."""
+    for seconds in ("0.15", "0.22"):
+        script = DAEMON.replace("{call}", call).replace("{seconds}", seconds)
+        done = subprocess.run(
+            [sys.executable, "-c", script], cwd=tmp_path,
+            env=os.environ | {"MPLBACKEND": "agg"}, capture_output=True, text=True, timeout=300,
+        )  # fmt: skip
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+# A thread is held in the midst of a property; a child is forked meanwhile, and reads the same of
+# another motion. A child that waits for the thread, which it has not got, is ended by the alarm.
+FORK = """
+import os, pickle, signal, threading, warnings
+import rolling_ellipse as rl
+from rolling_ellipse import _trajectory
+warnings.simplefilter("ignore")  # newer Pythons warn of a fork beside threads
+file = pickle.dumps(rl.simulate(rl.scenes.drop, 2.0))
+held, other = pickle.loads(file), pickle.loads(file)
+begun, go_on = threading.Event(), threading.Event()
+usual = _trajectory.{within}
+
+def slowly(of, *more):
+    if of is held or of is held.scene:
+        begun.set()
+        go_on.wait()
+    return usual(of, *more)
+
+_trajectory.{within} = slowly
+thread = threading.Thread(target=lambda: held{read})
+thread.start()
+begun.wait()
+child = os.fork()
+if child == 0:
+    signal.alarm(30)
+    other{read}
+    os._exit(0)
+code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+go_on.set()
+thread.join()
+raise SystemExit(code)
+"""
+READS = {"energy": ".energy", "q": ".q", "sol": ".sol([1.0])"}
+
+
+@pytest.mark.parametrize("name", READS)
+def test_a_fork_beside_a_property_goes_on(name: str) -> None:
+    within = "solve" if name == "sol" else "kind_of"
+    script = FORK.replace("{read}", READS[name]).replace("{within}", within)
+    done = subprocess.run([sys.executable, "-c", script], timeout=300, check=False)
+    assert done.returncode == 0
+
+
+# The forking thread is the main thread of the child, where Ctrl-C comes.
+FORKED_BY_A_THREAD = """
+import os, signal, threading, warnings
+import rolling_ellipse as rl
+warnings.simplefilter("ignore")
+
+def fork():
+    global code
+    child = os.fork()
+    if child == 0:
+        threading.Timer(60.0, os._exit, [2]).start()
+        signal.signal(signal.SIGALRM, signal.default_int_handler)
+        signal.setitimer(signal.ITIMER_REAL, 0.25)
+        try:
+            rl.simulate(rl.scenes.rolling, [1e6], model="rolling", method="rk4", step=1e-4,
+                        max_steps=2**31 - 1)
+        except KeyboardInterrupt:
+            os._exit(0)
+        os._exit(1)
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+thread = threading.Thread(target=fork)
+thread.start()
+thread.join()
+raise SystemExit(code)
+"""
+
+
+def test_ctrl_c_ends_long_work_of_a_child_that_a_thread_forked() -> None:
+    done = subprocess.run([sys.executable, "-c", FORKED_BY_A_THREAD], timeout=300, check=False)
+    assert done.returncode == 0

@@ -1,0 +1,144 @@
+"""Films, pictures, pages and races: what all threads share is never changed, not even meanwhile."""
+
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Barrier
+from typing import Any
+
+import matplotlib
+import matplotlib.pyplot as plt
+import pytest
+import rolling_ellipse as rl
+from matplotlib.figure import Figure
+from rolling_ellipse import scenes, simulate
+
+ROLLED, DROPPED = simulate(scenes.rolling, 1.0), simulate(scenes.drop, 1.0)
+COARSE = simulate(scenes.rolling, 1.0, model="rolling", method="rk4", step=0.02)
+SLIPPING = scenes.rolling.replace(omega=6.0, friction=0.1)
+HOPPING: dict[str, Any] = {"methods": ["exact", "multipliers/rk4/none"], "steps": [0.4, 0.2]}
+WARNED = 100
+
+
+@pytest.fixture(autouse=True)
+def style_of_a_user() -> Iterator[None]:
+    """Settings that films have to do without."""
+    with matplotlib.rc_context({"savefig.bbox": "tight", "animation.ffmpeg_path": "elsewhere"}):
+        yield
+    plt.close("all")
+
+
+def film(path: Path) -> None:
+    ROLLED.animate(path, width=64, fps=10)
+
+
+def pictures() -> list[Any]:
+    return [
+        rl.plot_strobe(ROLLED).ax.figure,
+        rl.plot_forces(DROPPED).axes[0].figure,
+        rl.plot_energy(ROLLED).ax.figure,
+        rl.plot_error(COARSE).ax.figure,
+        ROLLED.plot().figure,
+    ]
+
+
+def race() -> rl.WorkPrecision:
+    return rl.work_precision(scenes.rolling, 1.0, rounds=2, max_seconds=60, **HOPPING)
+
+
+def explorer(path: Path) -> None:
+    rl.explore(scenes.report, t_end=1.0).to_html(path)
+
+
+def refused_pictures() -> None:
+    """Five that fail when their figure is open."""
+    for _ in range(5):
+        with pytest.raises(ValueError):
+            rl.plot_energy(ROLLED, color="no such colour")
+
+
+def warned() -> None:
+    for _ in range(WARNED):
+        simulate(SLIPPING, [0.0, 2.0], model="rolling")
+
+
+def test_threads_leave_what_they_share(tmp_path: Path) -> None:
+    """Nine at once. Each warning is shown, and each figure is there under a number of its own."""
+    films = [lambda i=i: film(tmp_path / f"film{i}.{'gif' if i else 'mp4'}") for i in range(3)]
+    work: list[Callable[[], Any]] = [
+        *films, pictures, pictures, race, lambda: explorer(tmp_path / "explorer.html"), warned,
+        refused_pictures,
+    ]  # fmt: skip
+    start, usual = Barrier(len(work)), sys.getswitchinterval()
+
+    def begin(each: Callable[[], Any]) -> Any:
+        start.wait()
+        return each()
+
+    with warnings.catch_warnings(record=True) as shown:
+        warnings.simplefilter("always")
+        before = list(warnings.filters), dict(matplotlib.rcParams)
+        sys.setswitchinterval(5e-6)
+        try:
+            with ThreadPoolExecutor(len(work)) as pool:
+                found = [*pool.map(begin, work)]
+        finally:
+            sys.setswitchinterval(usual)
+        assert (list(warnings.filters), dict(matplotlib.rcParams)) == before
+    assert [each.category for each in shown] == [rl.ValidityWarning] * WARNED
+    figures = [figure for drawn in found if isinstance(drawn, list) for figure in drawn]
+    assert len(figures) == 10
+    assert sorted(figure.number for figure in figures) == plt.get_fignums()
+    assert all(plt.figure(figure.number) is figure for figure in figures)
+
+
+@pytest.mark.parametrize(
+    "deed",
+    [lambda path: explorer(path / "page.html"), lambda _: rl.plot_error(COARSE), lambda _: race()],
+    ids=["explorer", "error", "race"],
+)
+def test_warnings_are_not_caught(
+    deed: Callable[[Path], Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Python's way to silence them silences all threads."""
+
+    def caught(*_: Any, **__: Any) -> None:
+        raise AssertionError("warnings are caught")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(warnings, "catch_warnings", caught)
+        deed(tmp_path)
+
+
+@pytest.mark.parametrize("suffix", ["gif", "mp4"])
+def test_a_film_leaves_settings_alone_while_it_is_written(
+    suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As seen from within each frame, where other threads are at work."""
+    before, seen, usual = dict(matplotlib.rcParams), [], Figure.savefig
+
+    def looked(self: Figure, *args: Any, **options: Any) -> None:
+        seen.append(dict(matplotlib.rcParams) == before)
+        usual(self, *args, **options)
+
+    monkeypatch.setattr(Figure, "savefig", looked)
+    film(tmp_path / f"film.{suffix}")
+    assert len(seen) >= 11  # 1 s, 10 frames a second
+    assert all(seen)
+
+
+def test_a_picture_that_fails_closes_its_own_figure_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Others open theirs meanwhile."""
+    mine, usual = [], plt.figure
+
+    def beside(**options: Any) -> Figure:
+        figure = usual(**options)
+        mine.append(usual())
+        return figure
+
+    monkeypatch.setattr(plt, "figure", beside)
+    with pytest.raises(ValueError):
+        rl.plot_energy(ROLLED, color="no such colour")
+    assert plt.get_fignums() == [each.number for each in mine]
