@@ -19,13 +19,15 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
     return state.omega == 0 && is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
 }
 
-// Within rounding of c = 0 a body is free, and its flight finds out for how long.
+// c; 0 within rounding of it: such a body is free, and its flight finds out for how long.
+double pressure(const Scene& scene, const Geometry& at, double omega) {
+    const double into = scene.ground_gravity().into;
+    return is_weightless(at, into, omega) ? 0.0 : free_acceleration(at, into, omega);
+}
+
 Response response_beyond_rounding(const Scene& scene, const Geometry& at, double omega,
                                   double side) {
-    const SlidingBody body = sliding_body(scene, side);
-    Response found = response(body, at, omega);
-    if (is_weightless(at, body.gravity.into, omega)) found.c = 0.0;
-    return found;
+    return {pressure(scene, at, omega), response(sliding_body(scene, side), at, omega).b};
 }
 
 // It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52).
@@ -73,16 +75,18 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     if (rests(scene, state, at)) return {Mode::rest};
     const ContactForce force = rolling_force(scene, state.theta, state.omega);
     const bool held = law_margin(force, scene.friction) >= 0 || at_the_limit(force, scene.friction);
-    if (may_roll && force.normal > 0 && held) return {Mode::rolling};
+    if (may_roll && force.normal > 0 && held) {
+        return {Mode::rolling, 0.0, Painleve::determined, pressure(scene, at, state.omega) < 0};
+    }
     return starting_to_slide(scene, at, state, force);
 }
 
-Continuation first_continuation(const Scene& scene, const State& start) {
+Continuation first_continuation(const Scene& scene, const State& start, bool may_roll) {
     if (start.mode == Mode::flight) return {Mode::flight};
     const Units units = natural_units(scene);
     const Scene body = body_in_units(scene, units);
     const State state = in_units(start, units);
-    return continuation(body, with_angle(body.axes(), state, resolved(state.theta)));
+    return continuation(body, with_angle(body.axes(), state, resolved(state.theta)), may_roll);
 }
 
 }  // namespace rolling_ellipse

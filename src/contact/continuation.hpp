@@ -14,13 +14,15 @@ struct Continuation {
     Mode mode;
     double side = 0.0;  // sign of the slip
     Painleve paradox = Painleve::determined;
+    bool may_fly = false;  // it rolls, and flight would obey the laws as well
 };
 
 // The mode that the forces allow. Without slip it rolls where it may and can; else it starts to
-// slide, or leaves the ground where its contact is not pressed any more.
+// slide, or leaves the ground where its contact is not pressed any more. On slopes the forces may
+// allow it to roll and to fly (c < 0 < N): it rolls, as a body does that has come there rolling.
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true);
 
 // What a body does from its start on, which may be in the air.
-Continuation first_continuation(const Scene& scene, const State& start);
+Continuation first_continuation(const Scene& scene, const State& start, bool may_roll = true);
 
 }  // namespace rolling_ellipse
