@@ -116,7 +116,8 @@ class Events(tuple[Event, ...]):
         """Return a pandas DataFrame with a row for each event.
 
         Columns are t, kind, the states as ``theta_before``, ``theta_after`` and so on, the
-        reaction impulses, the energy lost and the reason. ``attrs["units"]`` has the units by column.
+        reaction impulses, the energy lost and the reason. ``attrs["units"]`` has the units by
+        column.
 
         Raises
         ------

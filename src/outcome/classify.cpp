@@ -133,11 +133,11 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     if (pressed == Sign::undecided) return Outcome::edge;
     if (friction == 0) return Outcome::slips;
 
-    // On its way up it meets the heights above the start only; on its way down, and from the very
-    // tip, all of them, flat position and all, before it is at the top.
+    // On its way up it meets the heights above the start only; on its way down, and from the tip
+    // (to rounding), all of them, flat position and all, before it is at the top.
     const EnergyRange range = energy_range(from);
     const ForcePolynomials forces = force_polynomials(range);
-    const bool rises = at.sin * from.omega > 0 && at.cos > 0;
+    const bool rises = at.sin * from.omega > 0 && at.cos > equal_ulps * epsilon;
     const double over_flat = at.c2 * square(at.sin) / (here.h + at.short_axis) / at.long_axis;
     const double start = rises ? std::min(over_flat / range.width, 1.0) : 0.0;
     const bool grips_always = std::isinf(friction);

@@ -13,7 +13,7 @@ struct InitialState {
     State state;
     double reaction_x;  // impulse of the ground [N s]
     double reaction_z;
-    double free_omega;  // without the ground's reaction: the report's eq 48
+    double free_omega;          // without the ground's reaction: the report's eq 48
     double slip_removed = 0.0;  // a given one, that infinite friction takes off at once [m/s]
     double energy_lost = 0.0;   // with that slip [J]
     bool touching = false;      // whether the body was on the ground before

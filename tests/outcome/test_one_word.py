@@ -6,9 +6,9 @@ takes, the first event and the first mode of the contact motion, and the sentenc
 
 import math
 from collections import Counter
+from collections.abc import Iterator
 
 import numpy as np
-import pytest
 from oracles.blows import met_first
 from rolling_ellipse import (
     Impulse,
@@ -23,6 +23,7 @@ from rolling_ellipse import (
     geometry,
     outcome,
     required_friction,
+    scenes,
     simulate,
 )
 
@@ -120,16 +121,16 @@ def contradictions(scene: Scene) -> list[str]:
             )
         ),
         "no friction never rolls": scene.friction > 0
-        or (start.mode is not Mode.ROLLING and auto.model == "contact") != (start.mode is Mode.REST),
+        or (start.mode is not Mode.ROLLING and auto.model == "contact")
+        != (start.mode is Mode.REST),
         "the sentence has the mode": DOES[start.mode] in words or jams,
         "an impulse of the ground is told": not struck
         or (
             "no impulse" not in words
             and all(f"{each:.6g} N s" in words for each in (start.reaction_x, start.reaction_z))
         ),
-        "energy that is lost is told": getattr(start, "energy_lost", 0.0) > 0
-        if struck and start.mode is Mode.ROLLING and scene.impulse is None
-        else True,
+        "energy that is lost is told": not (struck and scene.impulse is None)
+        or f" and {getattr(start, 'energy_lost', 0.0):.6g} J are lost" in words,
         "what is in the air does not leave the ground": not in_the_air
         or ("ground" not in words.replace("reaction of the ground", "") and flies),
         "pull": "pull" not in words + why or scene.friction == math.inf or flies,
@@ -151,14 +152,96 @@ def contradictions(scene: Scene) -> list[str]:
     return [rule for rule, holds in rules.items() if not holds]
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_no_two_words_contradict_each_other(seed: int) -> None:
-    rng = np.random.default_rng(seed)
+def test_no_two_words_contradict_each_other() -> None:
+    rng = np.random.default_rng(7)
     met: Counter[Outcome] = Counter()
-    for _ in range(500):
+    for _ in range(2000):
         scene = drawn_scene(rng)
         assert not contradictions(scene), scene
-        met[outcome(scene)] += 1
-    assert met[Outcome.EDGE] <= 5, met
+        met[Outcome(int(outcome(scene)))] += 1
+    assert met[Outcome.EDGE] <= 2, met
     for each in Outcome:
-        assert each is Outcome.EDGE or met[each] >= 5, met
+        assert each is Outcome.EDGE or met[each] >= 10, met
+
+
+def test_scenes_of_which_two_things_were_said() -> None:
+    for scene, said in (
+        (Scene(1.3, 1.0, slope=1.2e-5, theta=-0.92381, omega=6.3787), Outcome.SLIPS),
+        (
+            Scene(
+                1.3, 1.0, inertia=0.6725, slope=-1.2439551437770637, friction=2.773495812440026,
+                theta=0.04687884550533283, omega=-1.7582109078026955,
+            ),
+            Outcome.LOSES_CONTACT,
+        ),
+        (Scene(1.0, 1.0, friction=0.0, omega=3.0), Outcome.SLIPS),
+        (Scene(1.0, 1.0, friction=0.0), Outcome.RESTS),
+        (Scene(2.0, 1.0, theta=0.5, x_dot=3.0), Outcome.ROCKS),
+        (Scene(2.0, 1.0, theta=math.pi / 2, omega=0.3, friction=0.1), Outcome.SLIPS),
+        (Scene(2.0, 1.0, theta=math.pi / 2, omega=-0.3, friction=0.1), Outcome.SLIPS),
+    ):  # fmt: skip
+        assert outcome(scene) is said, scene
+        assert not contradictions(scene), scene
+
+
+def wedged_scenes(count: int) -> Iterator[tuple[Scene, float]]:
+    """Starts without slip with c < 0 < N, and the friction that rolling needs: h'' < 0 as on the
+    tip, the speed so that c is what is wanted, N and F by Newton's law."""
+    rng = np.random.default_rng(3)
+    while count:
+        a, b = 10 ** rng.uniform(-0.4, 0.4, 2)
+        slope, theta = rng.uniform(-1.45, 1.45), rng.uniform(-math.pi, math.pi)
+        h = float(geometry.support(theta, a=a, b=b))
+        lead = float(geometry.support_slope(theta, a=a, b=b))
+        radius = (a * b) ** 2 / h**3
+        into, along = GRAVITY * math.cos(slope), GRAVITY * math.sin(slope)
+        if radius >= 0.99 * h:
+            continue
+        spin2 = (1 + rng.uniform(0, 0.5)) * into / (h - radius)
+        inertia = (a * a + b * b) / 4 + h * h + lead * lead
+        acceleration = (along * h - lead * (into + radius * spin2)) / inertia
+        normal = into + lead * acceleration + (radius - h) * spin2
+        if normal < 0.01 * GRAVITY:
+            continue
+        needed = abs(h * acceleration + lead * spin2 - along) / normal
+        omega = rng.choice([-1.0, 1.0]) * math.sqrt(spin2)
+        count -= 1
+        yield Scene(a, b, slope=slope, theta=theta, omega=omega), needed
+
+
+def test_where_a_body_may_roll_and_fly_both_are_told() -> None:
+    """It rolls with the friction that this takes, and with less it flies."""
+    told = "both are possible"
+    for scene, needed in wedged_scenes(300):
+        for friction in (1.01 * needed, 10 * needed, math.inf):
+            held = scene.replace(friction=friction)
+            assert held.initial_state.mode is Mode.ROLLING, held
+            motion = simulate(held, [0.0])
+            for words in (held.initial_state.reason, certify(held).reason, motion.reason):
+                assert told in words, held
+            assert not contradictions(held), held
+        flies = scene.replace(friction=0.99 * needed)
+        assert flies.initial_state.mode is Mode.FLIGHT and told not in certify(flies).reason
+        assert not contradictions(flies), flies
+
+
+def test_what_infinite_friction_does_to_a_slip_is_told() -> None:
+    scene = Scene(2.0, 1.0, theta=0.5, x_dot=3.0)
+    told = (
+        "infinite friction takes the slip of 3 m/s off at t = 0: the ground gives -1.69449 N s "
+        "along and 0.975304 N s away from it, and 2.54174 J are lost"
+    )
+    assert scene.initial_state.reason == f"{told}; the body rolls"
+    assert certify(scene).reason.endswith(told)
+    assert simulate(scene, [0.0]).reason.endswith(told)
+    other_way = scene.replace(x_dot=-3.0).initial_state
+    assert other_way.mode is Mode.SLIDING and other_way.energy_lost == 0
+    assert other_way.reason == "no impulse; the body slides"
+
+
+def test_a_blow_in_the_air_lifts_nothing() -> None:
+    pressed = scenes.drop.replace(impulse=Impulse.press(6.17, 1.36)).initial_state
+    told = "the body is in the air, and the blow changes its flight only; the body flies"
+    assert pressed.reason == told
+    lifted = Scene(2.0, 1.0, impulse=Impulse(0.0, 1.0)).initial_state
+    assert lifted.reason == "with the blow the body leaves the ground; the body flies"
