@@ -18,12 +18,60 @@ std::string extremes_of(const Certificate& c) {
            " (theta = " + in_degrees(*c.largest_friction_needed_angle) + ")";
 }
 
+std::string why_it_ends(double friction) {
+    if (std::isinf(friction)) return "N would have to pull";
+    if (friction == 0) return "its contact slides, without friction";
+    return "it would need more than the friction";
+}
+
+std::string of_the_motion(const Scene& scene, const State& start, const Certificate& c) {
+    if (c.end.validity == Validity::no_proof) {
+        return "rolling: nothing to prove, " + why_not_rolling(scene, start);
+    }
+    const std::string extremes =
+        extremes_of(c) + ", the friction coefficient " + brief(scene.friction);
+    if (c.end.validity != Validity::valid && !c.end.angle) {
+        return "rolling: holds from the start on, towards the tip it never reaches; before the "
+               "start the same motion would break it; on the whole motion " +
+               extremes;
+    }
+    switch (c.end.validity) {
+        case Validity::valid:
+            return (start.mode == Mode::rest ? "rest: in equilibrium, "
+                                             : "rolling: proved valid for the whole motion, ") +
+                   extremes;
+        case Validity::edge:
+            return "rolling: on the edge of its validity at theta = " + brief(*c.end.angle) +
+                   " rad, closer than rounding can tell; " + extremes;
+        default:
+            break;
+    }
+    const bool at_once = *c.end.angle == start.theta;
+    return (at_once ? "rolling: cannot start at theta = " : "rolling: ends at theta = ") +
+           brief(*c.end.angle) + " rad, where " + why_it_ends(scene.friction) +
+           "; on the whole motion " + extremes;
+}
+
 }  // namespace
 
 std::string brief(double value) {
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, "%.6g", value);
     return buffer;
+}
+
+std::string slip_removal(const InitialState& start) {
+    if (start.slip_removed == 0) return {};
+    return "infinite friction takes the slip of " + brief(start.slip_removed) +
+           " m/s off at t = 0: the ground gives " + brief(start.reaction_x) + " N s along and " +
+           brief(start.reaction_z) + " N s away from it, and " + brief(start.energy_lost) +
+           " J are lost";
+}
+
+std::string why_it_rolls(const Continuation& next) {
+    if (!next.may_fly) return {};
+    return "at the start both are possible, to roll, wedged by friction, and to fly, as it turns "
+           "too fast for its weight (Painleve): it goes on rolling";
 }
 
 std::string why_not_rolling(const Scene& scene, const State& start) {
@@ -82,33 +130,14 @@ std::string reason(const Scene& scene, const ContactWatch& watch) {
            brief(scene.friction);
 }
 
-std::string reason(const Scene& scene, const State& start, const Certificate& c) {
-    if (c.end.validity == Validity::no_proof) {
-        return "rolling: nothing to prove, " + why_not_rolling(scene, start);
+std::string reason(const Scene& scene, const InitialState& start, const Certificate& c) {
+    std::string found = of_the_motion(scene, start.state, c);
+    const std::string more[] = {slip_removal(start),
+                                why_it_rolls(first_continuation(scene, start.state))};
+    for (const std::string& each : more) {
+        if (!each.empty()) found += "; " + each;
     }
-    const std::string extremes =
-        extremes_of(c) + ", the friction coefficient " + brief(scene.friction);
-    if (c.end.validity != Validity::valid && !c.end.angle) {
-        return "rolling: holds from the start on, towards the tip it never reaches; before the "
-               "start the same motion would break it; on the whole motion " +
-               extremes;
-    }
-    switch (c.end.validity) {
-        case Validity::valid:
-            return (start.mode == Mode::rest ? "rest: in equilibrium, "
-                                             : "rolling: proved valid for the whole motion, ") +
-                   extremes;
-        case Validity::edge:
-            return "rolling: on the edge of its validity at theta = " + brief(*c.end.angle) +
-                   " rad, closer than rounding can tell; " + extremes;
-        default:
-            break;
-    }
-    const bool at_once = *c.end.angle == start.theta;
-    const std::string what = std::isinf(scene.friction) ? "N would have to pull"
-                                                        : "it would need more than the friction";
-    return (at_once ? "rolling: cannot start at theta = " : "rolling: ends at theta = ") +
-           brief(*c.end.angle) + " rad, where " + what + "; on the whole motion " + extremes;
+    return found;
 }
 
 }  // namespace rolling_ellipse

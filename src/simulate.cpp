@@ -170,7 +170,7 @@ CertifiedScene certify(const Scene& scene) {
         const LawMeetings met = law_meetings(*from.on_slope, scene.friction);
         result.certificate = certify_on_slope(scene, from.state, met);
     }
-    result.reason = reason(scene, from.state, result.certificate);
+    result.reason = reason(scene, initial_state(scene), result.certificate);
     return result;
 }
 

@@ -18,10 +18,11 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     """Tell what a body comes to first, from the blow on.
 
     ==================  ==========================================================================
-    ``SLIPS``           the contact slides just after the blow (without friction as well), or the
-                        body rolls until it would need more friction than there is
+    ``SLIPS``           the contact slides just after the blow (without friction whenever the body
+                        moves), or the body rolls until it slips, as in `classify`
     ``LOSES_CONTACT``   the blow lifts the body off the ground, or the body is in the air; or it
-                        is too fast for the ground, as in `classify`
+                        is too fast for the ground, as in `classify`; or, on a slope, it rolls
+                        until it flies
     ``JAMS``            the contact slides, and no motion of a rigid body goes on, or two do
                         (Painlevé)
     ``RESTS``           it is in equilibrium and stays
@@ -34,8 +35,8 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     it is for the proofs of `classify`. On a slope the rolling motion is followed by the power
     series of `certify` to the first of these events: ``ROCKS`` is the first instant without
     rotation, ``ROLLS_OVER`` the first passage of a position with the long axis at right angles to
-    the ground (of a circle: half a turn), ``SLIPS`` or (with infinite friction) ``LOSES_CONTACT``
-    the end of rolling.
+    the ground (of a circle: half a turn), ``SLIPS`` or ``LOSES_CONTACT`` the end of rolling, which
+    is a flight where the body turns too fast for its weight by then (c < 0 < N).
 
     Parameters
     ----------
@@ -89,7 +90,8 @@ def required_friction(scene: Scene) -> float:
     float
         Infinite where no finite coefficient does: the blow lifts the body, or it is in the air; it
         slides by its velocities; N vanishes; or it is no circle and runs down a slope for ever. An
-        infinite friction may hold some of these: see `certify`.
+        infinite friction may hold some of these: see `certify`. 0 where any friction will do: with
+        none at all a contact that moves slides.
 
     Raises
     ------

@@ -35,7 +35,8 @@ class Certificate(Listed):
     largest_friction_needed_angle : float or None
         Where, as above.
     ends_at : float or None
-        The angle theta (unwrapped) at which rolling ends, forwards in time; None when VALID.
+        The angle theta (unwrapped) at which rolling ends, forwards in time; None when VALID. That
+        of the start where the body moves without friction, a circle, too: its contact slides.
     reason : str
         One sentence with the numbers.
     """

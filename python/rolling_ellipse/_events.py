@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
+from . import _core
 from ._core import EventKind, Mode
 from ._faces import Row, brief, html_table, text_table
 from ._fields import FieldsOnly, find_late, trusted
@@ -47,7 +48,8 @@ class Event(FieldsOnly):
     kind : EventKind
         SLIP, STICK, REVERSE, LIFT_OFF, IMPACT, REST or JAM.
     state_before, state_after : InitialState
-        The body just before and just after; the reaction impulse of an impact is in the latter.
+        The body just before and just after; the reaction impulse of an impact and the energy that
+        it takes are in the latter.
     """
 
     t: float
@@ -66,6 +68,7 @@ class Event(FieldsOnly):
         change = f"{before.mode.name} → {after.mode.name}"
         if self.kind is EventKind.IMPACT:
             change += f", {after.reaction_x:.4g} N s along, {after.reaction_z:.4g} N s up"
+            change += f", {after.energy_lost:.4g} J lost"
         return change
 
     def __repr__(self) -> str:
@@ -113,7 +116,8 @@ class Events(tuple[Event, ...]):
         """Return a pandas DataFrame with a row for each event.
 
         Columns are t, kind, the states as ``theta_before``, ``theta_after`` and so on, the
-        reaction impulses and the reason. ``attrs["units"]`` has the units by column.
+        reaction impulses, the energy lost and the reason. ``attrs["units"]`` has the units by
+        column.
 
         Raises
         ------
@@ -140,7 +144,7 @@ def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:
 
 
 def _before(event: Any) -> InitialState:
-    return _state(event._found[2:9], event._found[3], "just before", 0.0, 0.0)
+    return _state(event._found[2:9], event._found[3], "just before", 0.0, 0.0, 0.0)
 
 
 def _after(event: Any) -> InitialState:
@@ -149,16 +153,23 @@ def _after(event: Any) -> InitialState:
     pulled = kind is EventKind.SLIP and math.isinf(scene.friction)
     reaction_x = scene.mass * (row[13] - row[6]) if hit else 0.0
     reaction_z = scene.mass * (row[14] - row[7]) if hit else 0.0
+    lost = _core.energy_lost(scene.core, row[2:8], row[9:15]) if hit else 0.0
     says = _SLIP_WITHOUT_LIMIT if pulled else _SENTENCES[kind]
-    return _state(row[9:16], row[3], says, reaction_x, reaction_z)
+    return _state(row[9:16], row[3], says, reaction_x, reaction_z, lost)
 
 
 def _state(
-    numbers: Sequence[float], free_omega: float, reason: str, reaction_x: float, reaction_z: float
+    numbers: Sequence[float],
+    free_omega: float,
+    reason: str,
+    reaction_x: float,
+    reaction_z: float,
+    energy_lost: float,
 ) -> InitialState:
     values: dict[str, Any] = dict(zip(_STATE, numbers, strict=True))
     values |= {"mode": _MODES[values["mode"]], "reaction_x": reaction_x, "reaction_z": reaction_z}
-    return trusted(InitialState, values | {"free_omega": free_omega, "reason": reason})
+    values |= {"free_omega": free_omega, "energy_lost": energy_lost, "reason": reason}
+    return trusted(InitialState, values)
 
 
 find_late(Event, state_before=_before, state_after=_after)

@@ -115,9 +115,11 @@ def classify(
     ``RESTS``           nothing: it is in equilibrium and stays
     ``ROCKS``           it turns back
     ``ROLLS_OVER``      it passes the tip; a circle, which has none, rolls on for ever
-    ``SLIPS``           it would need more friction than there is
-    ``LOSES_CONTACT``   infinite friction: the ground would have to pull (N < 0); any friction: the
-                        start itself is too fast for the ground, and the body leaves it at once
+    ``SLIPS``           it would need more friction than there is (at once, where it moves and
+                        there is none); infinite friction: the ground would have to pull (N < 0),
+                        and the body slides, not pressed
+    ``LOSES_CONTACT``   the start itself is too fast for the ground, and the body leaves it at once;
+                        a body that rolls slips first
     ``JAMS``            a slip begins inside the Painleve region. It never does: what ends rolling
                         can always go on as sliding. The code is kept for completeness.
     ``EDGE``            rounding cannot tell, as on the separatrix

@@ -38,15 +38,19 @@ class InitialState(Listed):
         What the body does from now on, as the contact with its friction allows it: ROLLING,
         SLIDING, FLIGHT or REST.
     reaction_x, reaction_z : float
-        Impulse of the ground on the body during the blow [N s].
+        Impulse of the ground on the body at t = 0 [N s]: against a blow, or (with infinite
+        friction) against a slip.
     free_omega : float
         Angular velocity without the ground's reaction, the report's eq 48 [rad/s].
+    energy_lost : float
+        Energy that the ground's reaction takes [J].
     reason : str
         One sentence on what the blow did, what the body then does, and why.
     """
 
     _units: ClassVar[dict[str, str]] = {
         **STATE_UNITS, "reaction_x": "N s", "reaction_z": "N s", "free_omega": "rad/s",
+        "energy_lost": "J",
     }  # fmt: skip
 
     theta: float
@@ -59,6 +63,7 @@ class InitialState(Listed):
     reaction_x: float
     reaction_z: float
     free_omega: float
+    energy_lost: float
     reason: str
 
     def __repr__(self) -> str:
@@ -87,7 +92,13 @@ class Scene(FieldsOnly, Listed):
     slope : float
         Angle of the ground [rad], downwards in x; |slope| < pi/2.
     friction : float
-        Coefficient of friction, up to 1e50 or infinite.
+        Coefficient of friction, up to 1e50 or infinite. Infinite friction holds a rolling contact
+        as long as it is pressed (N > 0); from then on the body slides with N = 0, the limit of
+        large coefficients. For a slip that is given it is not: where a large coefficient presses
+        the body into the ground until it jams, the slip is taken off by an impulse of the ground
+        at t = 0, which costs energy (`initial_state` tells how much). A slip the other way goes on
+        with N = 0. Without friction a contact that moves is SLIDING,
+        that of a circle, too.
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     theta, omega : float
@@ -213,6 +224,7 @@ class Scene(FieldsOnly, Listed):
             reaction_x=start.reaction_x,
             reaction_z=start.reaction_z,
             free_omega=start.free_omega,
+            energy_lost=start.energy_lost,
             reason=f"{did}; {then}",
         )
 

@@ -103,11 +103,14 @@ def simulate(
         beyond ``valid_until``: the arrays are complete and obey the rolling equation, and a
         ValidityWarning is issued; or JAMMED, where a slide comes to a place from which no motion
         of a rigid body goes on, or starts at one from which two do (Painleve): the arrays end
-        there. At an event samples show what holds after it. Samples between steps have the
-        accuracy of the method. A StabilityWarning is issued where an integrated motion has lost
-        what it should keep: a hundredth of its energy (or ten times rtol, if that is more), a
-        thousandth of the long semi-axis in its constraints; and where Baumgarte's gains are more
-        than the method bears at the step given.
+        there. Infinite friction is not the limit of large coefficients here: a slip that would jam
+        it takes off by an impulse at t = 0 (see `Scene`). A start without slip that may roll and
+        may fly (on a slope, turning too fast for its weight, wedged by friction) goes on rolling.
+        ``reason`` tells both. At an event samples show what holds after it. Samples between steps
+        have the accuracy of the method. A StabilityWarning is issued where an integrated motion
+        has lost what it should keep: a hundredth of its energy (or ten times rtol, if that is
+        more), a thousandth of the long semi-axis in its constraints; and where Baumgarte's gains
+        are more than the method bears at the step given.
 
     Raises
     ------

@@ -35,10 +35,14 @@ def blow(impulse: Impulse) -> str:
 
 def what_the_blow_did(scene: Scene, start: _core.InitialState) -> str:
     """Say how the contact took it."""
+    if start.slip_removal:
+        return start.slip_removal
     if scene.impulse is None:
         return "no impulse"
+    if not start.touching:
+        return "the body is in the air, and the blow changes its flight only"
     if start.state.mode is Mode.FLIGHT:
-        return "the blow lifts the body off the ground"
+        return "with the blow the body leaves the ground"
     if start.state.mode is Mode.SLIDING:
         return (
             f"the blow makes the contact slip: friction {scene.friction:g} gives an impulse of "
@@ -54,6 +58,8 @@ def what_the_blow_did(scene: Scene, start: _core.InitialState) -> str:
 def what_follows(scene: Scene, start: _core.InitialState, follows: _core.Continuation) -> str:
     """Say what the body does, and why where its velocities alone look like something else."""
     mode, paradox = follows.mode, follows.paradox
+    if follows.why_it_rolls:
+        return f"the body rolls; {follows.why_it_rolls}"
     if paradox is _core.Painleve.NO_MOTION:
         return "the contact slides and jams: no motion of a rigid body goes on (Painleve)"
     if paradox is _core.Painleve.TWO_MOTIONS:

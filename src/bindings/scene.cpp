@@ -1,6 +1,5 @@
 #include "bindings/bindings.hpp"
-#include "contact/continuation.hpp"
-#include "scene/impact.hpp"
+#include "reason.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {
@@ -39,6 +38,15 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
         }
     });
     return py::make_tuple(out[0], out[1], out[2]);
+}
+
+// By theta, omega, x, z, x_dot, z_dot just before and just after a collision.
+double energy_lost_between(const Scene& scene, const std::array<double, 6>& before,
+                           const std::array<double, 6>& after) {
+    const auto state = [](const std::array<double, 6>& of) {
+        return State{of[0], of[1], of[2], of[3], of[4], of[5], Mode::flight};
+    };
+    return energy_lost(scene, state(before), state(after));
 }
 
 }  // namespace
@@ -102,12 +110,20 @@ void bind_scene(py::module_& m) {
         .def_readonly("state", &InitialState::state)
         .def_readonly("reaction_x", &InitialState::reaction_x)
         .def_readonly("reaction_z", &InitialState::reaction_z)
-        .def_readonly("free_omega", &InitialState::free_omega);
+        .def_readonly("free_omega", &InitialState::free_omega)
+        .def_readonly("energy_lost", &InitialState::energy_lost)
+        .def_readonly("touching", &InitialState::touching)
+        .def_property_readonly("slip_removal", slip_removal);
     bind_class<Continuation>(m, "Continuation")
         .def_readonly("mode", &Continuation::mode)
-        .def_readonly("paradox", &Continuation::paradox);
+        .def_readonly("paradox", &Continuation::paradox)
+        .def_property_readonly("why_it_rolls", why_it_rolls);
     m.def("initial_state", initial_state, "scene"_a);
-    m.def("first_continuation", first_continuation, "scene"_a, "start"_a);
+    m.def(
+        "first_continuation",
+        [](const Scene& scene, const State& start) { return first_continuation(scene, start); },
+        "scene"_a, "start"_a);
+    m.def("energy_lost", energy_lost_between, "scene"_a, "before"_a, "after"_a);
     m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a);
 }
 

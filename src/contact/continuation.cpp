@@ -67,7 +67,11 @@ Continuation continuation_at(const Scene& scene, const State& state, const Geome
     if (rests(scene, state, at)) return {Mode::rest};
     const ContactForce force = rolling_force(scene, state.theta, state.omega);
     const bool held = law_margin(force, scene.friction) >= 0 || at_the_limit(force, scene.friction);
-    if (may_roll && force.normal > 0 && held) return {Mode::rolling};
+    if (may_roll && force.normal > 0 && held) {
+        Continuation next{Mode::rolling};
+        next.may_fly = free_acceleration(at, scene.ground_gravity().into, state.omega) < 0;
+        return next;
+    }
     return starting_to_slide(scene, at, state, force);
 }
 
@@ -87,7 +91,7 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     return next;
 }
 
-Continuation first_continuation(const Scene& scene, const State& start) {
+Continuation first_continuation(const Scene& scene, const State& start, bool may_roll) {
     if (start.mode == Mode::flight) return {Mode::flight};
     const Units units = natural_units(scene);
     const Scene body = body_in_units(scene, units);
@@ -95,7 +99,8 @@ Continuation first_continuation(const Scene& scene, const State& start) {
     const QuarterView angle = quarter_view({resolved(state.theta), 0.0});
     Scene seen = body;
     if (angle.is_odd()) std::swap(seen.a, seen.b);
-    return continuation(seen, with_angle(body.axes(), state, seen.axes(), angle.rest.high));
+    return continuation(seen, with_angle(body.axes(), state, seen.axes(), angle.rest.high),
+                        may_roll);
 }
 
 }  // namespace rolling_ellipse

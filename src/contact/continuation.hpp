@@ -17,15 +17,17 @@ struct Continuation {
     // Friction without end where c = 0 but for rounding: N is then rounding as well, and next to the
     // tip so is B. The body moves freely until it has turned so far that they have digits.
     bool grazes = false;
+    bool may_fly = false;  // it rolls, and flight would obey the laws as well
 };
 
 inline constexpr double turn_of_grazing = 0x1p-22;  // [rad]
 
 // The mode that the forces allow. Without slip it rolls where it may and can; else it starts to
-// slide, or leaves the ground where its contact is not pressed any more.
+// slide, or leaves the ground where its contact is not pressed any more. On slopes the forces may
+// allow it to roll and to fly (c < 0 < N): it rolls, as a body does that has come there rolling.
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true);
 
 // What a body does from its start on, which may be in the air.
-Continuation first_continuation(const Scene& scene, const State& start);
+Continuation first_continuation(const Scene& scene, const State& start, bool may_roll = true);
 
 }  // namespace rolling_ellipse

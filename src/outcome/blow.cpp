@@ -12,9 +12,15 @@
 namespace rolling_ellipse {
 namespace {
 
-// How rolling ends that the ground cannot hold any longer.
-Outcome broken(double friction) {
-    return std::isinf(friction) ? Outcome::loses_contact : Outcome::slips;
+// What a body that rolls on a slope does from the time [s] on at which the ground does not hold it
+// any longer.
+Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
+    prepare(flow, time);
+    const FlowSample last = sample(flow, time);
+    const State state = in_contact(geometry(scene.axes(), last.theta), last.theta, last.omega,
+                                   last.x, 0.0, Mode::rolling);
+    const Mode next = first_continuation(scene, state, false).mode;
+    return next == Mode::flight ? Outcome::loses_contact : Outcome::slips;
 }
 
 // Of a circle, which has no tip: what becomes of it in half a turn.
@@ -31,7 +37,7 @@ Outcome followed(const Scene& scene, const State& start, const Checkpoint& check
     if (flow.kind == MotionKind::uniform) {
         const LawMeetings met = law_meetings(flow, scene.friction);
         if (met.touched) return Outcome::edge;
-        return met.broken ? broken(scene.friction) : of_circle(flow);
+        return met.broken ? Outcome::slips : of_circle(flow);
     }
     LawWatch watch(flow, scene.friction);
     SlopePlace place = flow.start;
@@ -49,23 +55,11 @@ Outcome followed(const Scene& scene, const State& start, const Checkpoint& check
             return meeting && meeting->time <= first * flow.body.time;
         };
         if (before(met.touched)) return Outcome::edge;
-        if (breaks && before(met.broken)) return broken(scene.friction);
+        if (breaks && before(met.broken)) return after_rolling(scene, flow, met.broken->time);
         if (first < infinity) return turns < tips ? Outcome::rocks : Outcome::rolls_over;
         place = next;
     }
     return Outcome::edge;
-}
-
-Outcome outcome_on_slope(const Scene& scene, const State& start, Mode mode,
-                         const Checkpoint& checkpoint) {
-    switch (mode) {
-        case Mode::rest:
-            return Outcome::rests;
-        case Mode::rolling:
-            return followed(scene, start, checkpoint);
-        default:
-            return broken(scene.friction);
-    }
 }
 
 }  // namespace
@@ -75,10 +69,17 @@ Outcome outcome(const Scene& scene, const Checkpoint& checkpoint) {
     validate_motion(scene.body(), start.theta, start.omega);
     validate_velocity(scene.body(), start.x_dot, start.z_dot);
     const Continuation next = first_continuation(scene, start);
-    if (next.mode == Mode::flight) return Outcome::loses_contact;
-    if (next.paradox != Painleve::determined) return Outcome::jams;
-    if (!rolls(start) && next.mode == Mode::sliding) return Outcome::slips;
-    if (scene.slope != 0) return outcome_on_slope(scene, start, next.mode, checkpoint);
+    switch (next.mode) {
+        case Mode::rest:
+            return Outcome::rests;
+        case Mode::flight:
+            return Outcome::loses_contact;
+        case Mode::sliding:
+            return next.paradox == Painleve::determined ? Outcome::slips : Outcome::jams;
+        case Mode::rolling:
+            break;
+    }
+    if (scene.slope != 0) return followed(scene, start, checkpoint);
     return classify(scene.body(), scene.friction, start.theta, start.omega);
 }
 

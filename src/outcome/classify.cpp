@@ -13,6 +13,8 @@ namespace {
 // B = Gnn - mu s Gtn is positive: if s Gtn <= 0 as a sum of positive terms, else because of
 // c <= N B with c > 0, which N > 0 implies (N D = c (k^2 + h^2) - omega^2 h h'^2 per mass). Where
 // N <= 0 and c > 0, a body without slip finds a side on which B > 0. So `jams` is not returned.
+// Nor does a body that rolls on level ground leave it before it slips: the same c is positive where
+// N vanishes, so that with infinite friction, too, it goes on as a slide.
 
 // The acceleration of the gap into the ground of a free body, c = g + h'' omega^2, physics (43);
 // h'' = rho - h.
@@ -120,7 +122,7 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     const RollingStart from = rolling_start(body, theta, omega);
     const FlatView& at = from.view;
     if (from.rests) return Outcome::rests;
-    if (at.c2 == 0) return Outcome::rolls_over;
+    if (at.c2 == 0) return friction > 0 ? Outcome::rolls_over : Outcome::slips;
 
     // Folded by half turns, which changes signs of sin and cos alone: h, h'' and rho are even.
     const bool a_is_long = body.a >= body.b;
@@ -129,12 +131,13 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     const Sign pressed = pressed_by_gravity(body, here, from.omega);
     if (pressed == Sign::negative) return Outcome::loses_contact;
     if (pressed == Sign::undecided) return Outcome::edge;
+    if (friction == 0) return Outcome::slips;
 
-    // On its way up it meets the heights above the start only; on its way down, and from the very
-    // tip, all of them, flat position and all, before it is at the top.
+    // On its way up it meets the heights above the start only; on its way down, and from the tip
+    // (to rounding), all of them, flat position and all, before it is at the top.
     const EnergyRange range = energy_range(from);
     const ForcePolynomials forces = force_polynomials(range);
-    const bool rises = at.sin * from.omega > 0 && at.cos > 0;
+    const bool rises = at.sin * from.omega > 0 && at.cos > equal_ulps * epsilon;
     const double over_flat = at.c2 * square(at.sin) / (here.h + at.short_axis) / at.long_axis;
     const double start = rises ? std::min(over_flat / range.width, 1.0) : 0.0;
     const bool grips_always = std::isinf(friction);
@@ -143,7 +146,7 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     const Sign grip = grips_always || contact == Sign::negative
                           ? contact
                           : grip_sign(forces, normal, friction, start);
-    if (grip == Sign::negative) return grips_always ? Outcome::loses_contact : Outcome::slips;
+    if (grip == Sign::negative) return Outcome::slips;
     if (contact == Sign::undecided || grip == Sign::undecided) return Outcome::edge;
     return at_the_top(from);
 }

@@ -11,8 +11,8 @@ enum class Outcome : std::int8_t {
     rests,
     rocks,          // it turns back before anything else happens
     rolls_over,     // it passes the tip before anything else happens
-    slips,          // rolling would need more friction than there is
-    loses_contact,  // the ground would have to pull
+    slips,          // its contact slides
+    loses_contact,  // it leaves the ground, or is in the air
     jams,           // not out of rolling, see outcome/classify.cpp
     edge,           // rounding cannot tell
 };

@@ -20,12 +20,15 @@ struct Start {
     RollingForces forces;
 };
 
+// At a turning point the body falls back towards the flat position.
+double direction_of(const RollingStart& from) {
+    return from.omega != 0 ? std::copysign(1.0, from.omega) : -std::copysign(1.0, from.view.sin);
+}
+
 Start start_on_range(const RollingStart& from, const EnergyRange& range) {
     const FlatView& at = from.view;
-    const double omega = from.omega;
-    // At a turning point the body falls back towards the flat position.
-    const double direction = omega != 0 ? std::copysign(1.0, omega) : -std::copysign(1.0, at.sin);
-    const double omega2 = omega * omega * at.long_axis / from.body.gravity;
+    const double direction = direction_of(from);
+    const double omega2 = from.omega * from.omega * at.long_axis / from.body.gravity;
     return {direction * std::atan2(at.sin, at.cos), direction,
             rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
 }
@@ -39,7 +42,6 @@ double margin_at(const EnergyRange& range, double friction, double angle) {
 // The angle from which on the law holds: that of the start; ahead of it, where it is within
 // rounding of its end there, and what counts is where the motion goes; nothing where it is broken.
 std::optional<double> holds_from(const EnergyRange& range, double friction, const Start& start) {
-    if (friction == 0) return std::nullopt;
     constexpr double ahead = 1e-8;  // of the way: sqrt(epsilon), where rounding is overcome
     const ContactForce force = contact_force(start.forces);
     if (!at_the_limit(force, friction)) {
@@ -160,16 +162,24 @@ EndOfRolling end_under_law(const EnergyRange& range, const ForcePolynomials& pol
     return {end.validity, theta + turn->angle, turn->heading};
 }
 
-EndOfRolling end_of_rolling(const EnergyRange& range, const ForcePolynomials& polynomials,
-                            double friction, double theta, const Start& start) {
-    return std::isinf(friction)
-               ? end_under_law(range, polynomials, polynomials.normal, friction, theta, start)
-               : end_under_law(range, polynomials, grip_polynomial(polynomials, friction), friction,
-                               theta, start);
+// A body that stays where it is needs no friction. Nor does a circle, but a contact without any is
+// one that slides.
+std::optional<EndOfRolling> end_without_forces(const RollingStart& from, double friction) {
+    if (from.rests) return EndOfRolling{Validity::valid};
+    if (friction == 0) return EndOfRolling{Validity::invalid, from.theta, direction_of(from)};
+    if (from.view.c2 == 0) return EndOfRolling{Validity::valid};
+    return std::nullopt;
 }
 
-// A circle, or a body that stays where it is, needs no friction.
-bool rolls_freely(const RollingStart& from) { return from.view.c2 == 0 || from.rests; }
+EndOfRolling end_of_rolling(const RollingStart& from, const EnergyRange& range,
+                            const ForcePolynomials& polynomials, double friction) {
+    if (const auto end = end_without_forces(from, friction)) return *end;
+    const Start start = start_on_range(from, range);
+    return std::isinf(friction)
+               ? end_under_law(range, polynomials, polynomials.normal, friction, from.theta, start)
+               : end_under_law(range, polynomials, grip_polynomial(polynomials, friction), friction,
+                               from.theta, start);
+}
 
 }  // namespace
 
@@ -181,10 +191,9 @@ Polynomial<10> grip_polynomial(const ForcePolynomials& p, double friction) {
 }
 
 EndOfRolling end_of_rolling(const RollingStart& from, double friction) {
-    if (rolls_freely(from)) return {Validity::valid};
+    if (const auto end = end_without_forces(from, friction)) return *end;
     const EnergyRange range = energy_range(from);
-    return end_of_rolling(range, force_polynomials(range), friction, from.theta,
-                          start_on_range(from, range));
+    return end_of_rolling(from, range, force_polynomials(range), friction);
 }
 
 double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
@@ -198,14 +207,14 @@ double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
 Certificate certify_rolling(const RollingStart& from, double mass, double friction) {
     const Body& body = from.body;
     const double weight = mass * body.gravity;
-    if (rolls_freely(from)) {
+    if (from.view.c2 == 0 || from.rests) {
         const double angle = theta_of(body, std::atan2(std::abs(from.view.sin), from.view.cos));
-        return {{Validity::valid}, weight, angle, 0.0, angle};
+        return {*end_without_forces(from, friction), weight, angle, 0.0, angle};
     }
     const EnergyRange range = energy_range(from);
     const ForcePolynomials polynomials = force_polynomials(range);
     const ForceExtremes extremes = force_extremes(range, polynomials);
-    return {end_of_rolling(range, polynomials, friction, from.theta, start_on_range(from, range)),
+    return {end_of_rolling(from, range, polynomials, friction),
             weight * extremes.least_normal.normal, theta_of(body, extremes.least_normal.angle),
             extremes.most_friction.needed(), theta_of(body, extremes.most_friction.angle)};
 }

@@ -149,19 +149,31 @@ double acceleration_in(const SlopePiece& piece, double since) {
     return derivative(piece.series.omega, since / piece.unit) / square(piece.unit);
 }
 
-DoubleDouble time_of_turning(const SlopePiece& piece) {
+namespace {
+
+// The time since the begin of the piece at which it turns back; infinite if it does not.
+double turning_in(const SlopePiece& piece) {
     const double before = piece.from.omega;
     const auto turned = [&](double since) {
         return value(piece.series.omega, since / piece.unit) * before <= 0;
     };
-    if (before == 0 || std::isinf(piece.lasts) || !turned(piece.lasts)) return {infinity, 0.0};
-    return piece.from.time + bisect(0.0, piece.lasts, turned).high;
+    if (before == 0 || std::isinf(piece.lasts) || !turned(piece.lasts)) return infinity;
+    return bisect(0.0, piece.lasts, turned).high;
 }
 
+}  // namespace
+
+DoubleDouble time_of_turning(const SlopePiece& piece) {
+    const double since = turning_in(piece);
+    return since < infinity ? piece.from.time + since : DoubleDouble{infinity, 0.0};
+}
+
+// A piece may pass the tip and come back: what counts is the way to where it turns.
 double time_of_tip(const SlopePiece& piece) {
-    if (std::isinf(piece.lasts)) return infinity;
+    const double until = std::min(piece.lasts, turning_in(piece));
+    if (std::isinf(until)) return infinity;
     const double from = double(piece.from.angle);
-    const double to = angle_in(piece, piece.lasts);
+    const double to = angle_in(piece, until);
     double first = infinity;
     for (const double tip : {-half_pi, 0.0, half_pi}) {
         const bool is_tip = (tip == 0) == at_tip(piece.from.quarters);
@@ -170,7 +182,7 @@ double time_of_tip(const SlopePiece& piece) {
         const auto passed = [&](double since) {
             return (angle_in(piece, since) < tip) != (from < tip);
         };
-        first = std::min(first, double(piece.from.time + bisect(0.0, piece.lasts, passed).high));
+        first = std::min(first, double(piece.from.time + bisect(0.0, until, passed).high));
     }
     return first;
 }

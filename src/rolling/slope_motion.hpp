@@ -91,8 +91,8 @@ SlopePlace place_in(const SlopePiece& piece, double since);
 double angle_in(const SlopePiece& piece, double since);
 double acceleration_in(const SlopePiece& piece, double since);
 
-// Times of the motion at which it turns back in the piece, or passes the tip; infinite if it does
-// not. What it begins with does not count.
+// Times of the motion at which it turns back in the piece, or passes the tip on its way there;
+// infinite if it does not. What it begins with does not count.
 DoubleDouble time_of_turning(const SlopePiece& piece);
 double time_of_tip(const SlopePiece& piece);
 

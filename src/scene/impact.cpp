@@ -165,13 +165,13 @@ InitialState initial_state(const Scene& scene) {
     InitialState result{state_before_impulse(scene), 0.0, 0.0, scene.omega};
     State& state = result.state;
     const Geometry at = geometry(scene.axes(), state.theta);
-    const bool touching = state.z == at.h;
+    result.touching = state.z == at.h;
     if (scene.impulse) {
         strike(scene, *scene.impulse, state);
         result.free_omega = state.omega;
     }
     const bool slip_removed = state.mode == Mode::sliding && std::isinf(scene.friction);
-    if (!touching || !(is_struck(scene) || slip_removed)) return result;
+    if (!result.touching || !(is_struck(scene) || slip_removed)) return result;
 
     Contact c = contact(scene, at, state);
     // Next to the flat position a slide would end before doubles tell its time from 0.
@@ -183,7 +183,10 @@ InitialState initial_state(const Scene& scene) {
     const Reaction reaction = reaction_to(scene, c, 0.0);
     result.reaction_x = reaction.tangential;
     result.reaction_z = reaction.normal;
+    const State free = state;
     apply(scene, at, reaction, state);
+    result.energy_lost = energy_lost(scene, free, state);
+    if (!is_struck(scene) && reaction.sticks) result.slip_removed = c.v;
     state.mode = reaction.sticks ? Mode::rolling : Mode::sliding;
     if (state.mode == Mode::rolling && state.omega == 0 &&
         is_equilibrium(at, std::tan(scene.slope))) {
@@ -209,6 +212,13 @@ double sticking_friction(const Scene& scene) {
     const double tangential = std::abs(c.v) * c.gnn + std::abs(c.u) * towards;
     if (normal <= 0) return infinity;
     return std::fmax(c.v == 0 ? 0.0 : tangential / normal, to_stay);
+}
+
+double energy_lost(const Scene& scene, const State& before, const State& after) {
+    const auto of = [](double was, double is) { return 0.5 * (was - is) * (was + is); };
+    const double by_moving = of(before.x_dot, after.x_dot) + of(before.z_dot, after.z_dot);
+    const double by_turning = of(before.omega, after.omega);
+    return std::fmax(scene.mass * by_moving + scene.inertia * by_turning, 0.0);
 }
 
 double gap_rate(const State& state, const Geometry& at) {

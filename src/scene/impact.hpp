@@ -13,7 +13,10 @@ struct InitialState {
     State state;
     double reaction_x;  // impulse of the ground [N s]
     double reaction_z;
-    double free_omega;  // without the ground's reaction: the report's eq 48
+    double free_omega;          // without the ground's reaction: the report's eq 48
+    double slip_removed = 0.0;  // a given one, that infinite friction takes off at once [m/s]
+    double energy_lost = 0.0;   // with that slip [J]
+    bool touching = false;      // whether the body was on the ground before
 };
 
 InitialState initial_state(const Scene& scene);
@@ -22,6 +25,9 @@ InitialState initial_state(const Scene& scene);
 // whatever the scene's own; infinite where no finite one does that. With any larger one it does not
 // either, and the state then is the same.
 double sticking_friction(const Scene& scene);
+
+// The kinetic energy [J] that a collision takes; not negative for rounding.
+double energy_lost(const Scene& scene, const State& before, const State& after);
 
 // The rate of the gap, which is what the lowest point moves away from the ground with.
 double gap_rate(const State& state, const Geometry& at);

@@ -196,7 +196,8 @@ def test_a_row_says_what_an_impact_did() -> None:
     row = repr(hit)
     assert row.startswith(f"<Event IMPACT at t = {hit.t:.9g} s, theta = ")
     after = hit.state_after
-    assert row.endswith(f", {after.reaction_x:.4g} N s along, {after.reaction_z:.4g} N s up>")
+    told = f"{after.reaction_x:.4g} N s along, {after.reaction_z:.4g} N s up"
+    assert row.endswith(f", {told}, {after.energy_lost:.4g} J lost>")
 
 
 @pytest.mark.parametrize(("count", "rows"), [(0, 0), (1, 1), (16, 16), (17, 17), (18, 17)])
@@ -230,6 +231,7 @@ def test_events_as_a_dataframe() -> None:
             assert np.array_equal(frame[f"{name}_{when}"], values)
     assert list(frame["mode_after"]) == [each.state_after.mode.name for each in events]
     assert np.array_equal(frame["reaction_z"], [each.state_after.reaction_z for each in events])
+    assert np.array_equal(frame["energy_lost"], [each.state_after.energy_lost for each in events])
     units = frame.attrs["units"]
     assert set(units) == set(frame.columns)
     assert (units["t"], units["omega_before"], units["reaction_x"]) == ("s", "rad/s", "N s")

@@ -14,6 +14,7 @@ import oracles.geometry
 import oracles.rolling
 import pytest
 from numpy.typing import NDArray
+from oracles.blows import AT_ONCE
 from oracles.numbers import PI, Long
 from oracles.outcome import Codes, Sample, random_sample
 from oracles.rolling import Motion
@@ -107,15 +108,10 @@ def walk(sample: Sample) -> Walk:
     over = (moving.lift - barrier) / (moving.lift + barrier)
     rolls = least_slack(sample)
     rests = at_rest(sample)
+    slips = (rolls < 0) | (sample.friction == 0)
     outcome = np.select(
-        [rests, pressed < 0, (rolls < 0) & np.isinf(sample.friction), rolls < 0, over < 0],
-        [
-            Outcome.RESTS,
-            Outcome.LOSES_CONTACT,
-            Outcome.LOSES_CONTACT,
-            Outcome.SLIPS,
-            Outcome.ROCKS,
-        ],
+        [rests, pressed < 0, slips, over < 0],
+        [Outcome.RESTS, Outcome.LOSES_CONTACT, Outcome.SLIPS, Outcome.ROCKS],
         Outcome.ROLLS_OVER,
     ).astype(np.int8)
     nearest = np.minimum(np.abs(pressed), np.minimum(np.abs(rolls), np.abs(over)))
@@ -220,14 +216,12 @@ def test_agreement_with_the_certificate() -> None:
 
 def first_of(scene: Scene, start: float, direction: float) -> Outcome:
     """What the contact motion comes to first; `start` is the angle from the flat, that way."""
-    broken = Outcome.LOSES_CONTACT if math.isinf(scene.friction) else Outcome.SLIPS
     span = 4 * math.sqrt(max(scene.a, scene.b) / scene.gravity)
     for _ in range(12):
         times = np.linspace(0, span, 300)
         motion = simulate(scene, times, model="contact", max_events=1, raise_on_failure=False)
         if motion.mode[0] != Mode.ROLLING:
-            others = {Mode.REST: Outcome.RESTS, Mode.FLIGHT: Outcome.LOSES_CONTACT}
-            return others.get(Mode(int(motion.mode[0])), broken)
+            return AT_ONCE[Mode(int(motion.mode[0]))]
         event = motion.events[0] if motion.events else None
         rolled = motion.t <= (event.t if event else math.inf)
         theta, omega = motion.theta[rolled], motion.omega[rolled]
@@ -240,7 +234,7 @@ def first_of(scene: Scene, start: float, direction: float) -> Outcome:
             return Outcome.ROCKS
         if event:
             assert event.kind is EventKind.SLIP
-            return broken
+            return Outcome.SLIPS
         span *= 2
     raise AssertionError(f"nothing happens: {scene}")
 

@@ -105,7 +105,7 @@ def test_cells_are_what_classify_says_at_their_middles(x: str, y: str, swapped: 
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
-        ({}, ["rocks", "rolls over", "loses contact"]),
+        ({}, ["rocks", "rolls over", "slips"]),
         ({"friction": 0.5}, ["rocks", "rolls over", "slips"]),
         ({"friction": 5.0, "x_range": (1.2, 1.5), "y_range": (0.2, 0.9)}, ["rocks"]),
         ({"y": "friction", "energy": 0.0}, ["rests"]),
@@ -209,7 +209,7 @@ def test_colours_change_at_the_lines() -> None:
     lost = energies[:, None] > limit
     over = np.broadcast_to(energies[:, None] > 1, codes.shape)
     expected = np.where(
-        lost, rl.Outcome.LOSES_CONTACT, np.where(over, rl.Outcome.ROLLS_OVER, rl.Outcome.ROCKS)
+        lost, rl.Outcome.SLIPS, np.where(over, rl.Outcome.ROLLS_OVER, rl.Outcome.ROCKS)
     )
     assert np.mean(near) < 0.05 and np.array_equal(codes[~near], expected[~near])
 

@@ -49,7 +49,7 @@ def test_the_table_is_in_the_order_of_its_places_and_strengths() -> None:
     assert len(ends) == 10 and all(b > a for a, b in itertools.pairwise(ends))
     expected = {
         (0, 0): Outcome.ROCKS, (1, 1): Outcome.RESTS, (2, 0): Outcome.ROCKS,
-        (2, 1): Outcome.ROLLS_OVER, (2, 2): Outcome.LOSES_CONTACT,
+        (2, 1): Outcome.ROLLS_OVER, (2, 2): Outcome.SLIPS,
     }  # fmt: skip
     for (i, j), outcome in expected.items():
         assert found["outcomes"][3 * i + j] == outcome
@@ -63,6 +63,15 @@ def test_the_table_says_what_comes_first(slope: float) -> None:
     struck = [scene.replace(impulse=rl.Impulse.press(force, place)) for place in d for force in F]
     assert found == [rl.outcome(each) for each in struck]
     assert len(set(found)) > 1
+
+
+def test_a_body_in_the_air_does_not_leave_the_ground() -> None:
+    one = np.array([1.0])
+    in_the_air, on_the_ground = (
+        blows.table(scene, 1.0, one, one)["names"][Outcome.LOSES_CONTACT]
+        for scene in (rl.scenes.drop, rl.scenes.report)
+    )
+    assert (in_the_air, on_the_ground) == ("is in the air", "leaves the ground")
 
 
 def test_every_outcome_has_a_name_and_a_colour() -> None:

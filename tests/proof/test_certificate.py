@@ -549,8 +549,14 @@ def test_a_circle_rolls_for_ever(friction: float, omega: float) -> None:
     assert found.largest_friction_needed == pytest.approx(0.0, abs=rounding / 9.81)
 
 
-def test_a_circle_needs_no_friction() -> None:
-    assert certify(Scene(1.5, 1.5, omega=2.0, friction=0.0)).validity is not Validity.INVALID
+def test_a_circle_needs_next_to_no_friction() -> None:
+    """But without any its contact slides, from the start on."""
+    scene = Scene(1.5, 1.5, omega=2.0, theta=0.7, friction=1e-300)
+    assert certify(scene).validity is Validity.VALID
+    slides = certify(scene.replace(friction=0.0))
+    assert slides.validity is Validity.INVALID and slides.ends_at == 0.7
+    assert "its contact slides, without friction" in slides.reason
+    assert certify(scene.replace(friction=0.0, omega=0.0)).validity is Validity.VALID
 
 
 @pytest.mark.parametrize("friction", [math.inf, 0.8])

@@ -295,6 +295,8 @@ def test_unlimited_friction_takes_a_given_slip_at_once() -> None:
     assert found.x_dot == found.omega * 1.0
     assert found.reaction_x == pytest.approx(2 * (2.0 - 4.5), rel=8 * EPS)
     assert found.reaction_z == 0
+    # m x_dot^2/2 less m D omega^2/2
+    assert found.energy_lost == pytest.approx(20.25 - 9.0, rel=8 * EPS)
 
 
 def test_a_press_that_pulls_is_said_so() -> None:

@@ -280,3 +280,19 @@ def test_the_reaction_of_an_event_is_what_the_centre_gains() -> None:
     after = hit.event.state_after
     assert (after.reaction_x, after.reaction_z) == pytest.approx(impulses(hit), rel=4 * EPS)
     assert after.free_omega == hit.event.state_before.omega
+
+
+def test_the_energy_lost_is_the_work_of_the_reaction() -> None:
+    """The impulse times the mean velocity of the contact, which rounding knows beside the kinetic
+    energy."""
+    lossless = 0
+    for hit in hits(300, 19):
+        along, away = impulses(hit)
+        work = 0.5 * along * (hit.before.slip + hit.after.slip)
+        work += 0.5 * away * (hit.before.gap_rate + hit.after.gap_rate)
+        state = hit.event.state_before
+        rounding = (100 + abs(state.theta)) * EPS * kinetic_energy(hit.scene, state)
+        assert hit.event.state_after.energy_lost == pytest.approx(-work, abs=rounding)
+        assert hit.event.state_after.energy_lost >= 0 == hit.event.state_before.energy_lost
+        lossless += abs(work) < rounding
+    assert 0 < lossless < 150

@@ -74,9 +74,9 @@ def events_dataframe(events: Events) -> DataFrame:
             columns[f"{name}_{when}"] = np.array([getattr(each, name) for each in states], float)
             units[f"{name}_{when}"] = unit
         columns[f"mode_{when}"] = [each.mode.name for each in states]
-    for name in ("reaction_x", "reaction_z"):
+    for name, unit in (("reaction_x", "N s"), ("reaction_z", "N s"), ("energy_lost", "J")):
         columns[name] = np.array([getattr(found.state_after, name) for found in events], float)
-        units[name] = "N s"
+        units[name] = unit
     columns["reason"] = [found.state_after.reason for found in events]
     frame: DataFrame = pandas.DataFrame(columns)
     frame.attrs = {"units": {name: units.get(name, "1") for name in columns}}

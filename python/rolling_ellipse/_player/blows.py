@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .. import _core
 from .._blows import outcome
 from .._core import Outcome
 from .._outcome import thresholds
@@ -66,6 +67,8 @@ def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
 def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str, Any]:
     """Return all blows as JSON knows them, those of one place after the other."""
     wide = WIDE * max(scene.a, scene.b)
+    touching = _core.initial_state(scene.core).touching
+    names = NAMES if touching else NAMES | {Outcome.LOSES_CONTACT: "is in the air"}
     blows = [Impulse.press(force, place) for place in d for force in F]
     motions = [struck(scene, blow, t_end) for blow in blows]
     sampled = [_sampled(motion, _PIXEL * wide) for motion in motions]
@@ -77,7 +80,7 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
         "outcomes": np.ravel(outcome(scene, Impulse.press(F, d[:, np.newaxis]))).tolist(),
         "reasons": [_reason(motion) for motion in motions],
         "events": [events(motion, motion.t_end) for motion in motions],
-        "names": [NAMES[outcome] for outcome in Outcome],
+        "names": [names[outcome] for outcome in Outcome],
         "colours": [COLOURS[outcome] for outcome in Outcome],
         "code": code(scene, t_end),
     }

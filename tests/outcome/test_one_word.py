@@ -1,0 +1,253 @@
+"""What the package says of a start, in all its words: they never contradict each other.
+
+`outcome`, `classify`, `certify`, `required_friction`, `initial_state`, the model that "auto"
+takes, the first event and the first mode of the contact motion, and the sentences.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+from oracles.blows import met_first
+from rolling_ellipse import (
+    Impulse,
+    InitialState,
+    Mode,
+    Outcome,
+    Scene,
+    Status,
+    Validity,
+    certify,
+    classify,
+    geometry,
+    outcome,
+    required_friction,
+    scenes,
+    simulate,
+)
+
+GRAVITY = 9.81
+HELD = (Outcome.RESTS, Outcome.ROCKS, Outcome.ROLLS_OVER)
+DOES = {
+    Mode.ROLLING: "the body rolls",
+    Mode.SLIDING: "the body slides",
+    Mode.FLIGHT: "the body flies",
+    Mode.REST: "the body rests",
+}
+
+
+def drawn_scene(rng: np.random.Generator) -> Scene:
+    """Circles, both names of the long axis, every friction; rolling, slipping, in the air, at rest,
+    turning too fast for the ground; struck or not."""
+    a, b = 10 ** rng.uniform(-0.7, 0.7, 2)
+    b = a if rng.random() < 0.12 else b
+    inertia = (a * a + b * b) / 4 * rng.choice([1.0, 10 ** rng.uniform(-1, 1)])
+    friction = rng.choice(
+        [0.0, 10 ** rng.uniform(-6, -1), rng.uniform(0.1, 4.0), 10 ** rng.uniform(1, 6), math.inf]
+    )
+    slope = rng.choice([0.0, 0.0, rng.uniform(-1.45, 1.45)])
+    theta = rng.choice([0.0, math.pi / 2, rng.uniform(-4, 4), rng.uniform(-4, 4)])
+    rate = math.sqrt(GRAVITY / max(a, b))
+    omega = rng.choice([0.0, rate * rng.normal(), 5 * rate * rng.normal()], p=[0.15, 0.45, 0.4])
+    values = {"friction": friction, "slope": slope, "theta": theta, "omega": omega}
+    start = rng.integers(8)
+    if start == 0:
+        height = float(geometry.support(theta, a=a, b=b))
+        values |= {"z": height + abs(rng.normal()), "z_dot": rng.normal()}
+    elif start <= 2:
+        values |= {"x_dot": 3 * rng.normal()}
+    if rng.random() < 0.25:
+        strength = math.sqrt(GRAVITY * max(a, b)) * 10 ** rng.uniform(-1.5, 0.7)
+        push = rng.choice([0.0, rng.normal()])
+        share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
+        along, across = a * share * math.cos(at), b * share * math.sin(at)  # a point of the body
+        values["impulse"] = Impulse(
+            strength * push,
+            strength * rng.choice([-1.0, -1.0, 1.0]),
+            dx=along * math.cos(theta) + across * math.sin(theta),
+            dz=across * math.cos(theta) - along * math.sin(theta),
+        )
+    return Scene(a, b, inertia=inertia, **values)
+
+
+def pressed_by_gravity(scene: Scene, start: InitialState) -> float:
+    """c = g cos(slope) + h'' omega^2 over the size of its terms, h'' = (a b)^2/h^3 - h."""
+    h = float(geometry.support(start.theta, a=scene.a, b=scene.b))
+    turning = ((scene.a * scene.b) ** 2 / h**3 - h) * start.omega**2
+    gravity = scene.gravity * math.cos(scene.slope)
+    return (gravity + turning) / (gravity + abs(turning))
+
+
+def contradictions(scene: Scene) -> list[str]:
+    """What is said of the scene and cannot all be true, as names of the rules that are broken."""
+    start, proof = scene.initial_state, certify(scene)
+    contact = simulate(scene, [0.0], model="contact", raise_on_failure=False)
+    auto = simulate(scene, [0.0], raise_on_failure=False)
+    said, first = outcome(scene), met_first(scene)
+    height = float(geometry.support(scene.theta, a=scene.a, b=scene.b))
+    in_the_air = scene.z is not None and scene.z > height
+    jams = contact.status is Status.JAMMED
+    needed = required_friction(scene)
+    words, why = start.reason, proof.reason
+    struck = start.reaction_x != 0 or start.reaction_z != 0
+    at_once = proof.ends_at == start.theta
+    flies = start.mode is Mode.FLIGHT
+    held = start.mode in (Mode.ROLLING, Mode.REST)
+    both = start.mode is Mode.ROLLING and pressed_by_gravity(scene, start) < -1e-12
+    rules = {
+        "initial_state.mode is the first mode": contact.mode[0] == start.mode == auto.mode[0],
+        "auto rolls where that is proved": (
+            (auto.model == "rolling") == (proof.validity is Validity.VALID)
+        ),
+        "outcome is the first event": said is Outcome.EDGE or said is first,
+        "outcome RESTS is REST": (said is Outcome.RESTS) == (start.mode is Mode.REST),
+        "outcome JAMS is the status": (said is Outcome.JAMS) == jams,
+        "a proof is for what holds": (
+            proof.validity is not Validity.VALID
+            or (held and said in (*HELD, Outcome.EDGE) and first in (*HELD, None))
+        ),
+        "rolling that ends at its start does not begin": (
+            proof.validity is not Validity.INVALID or at_once == (not held)
+        ),
+        "no proof where nothing rolls": (proof.validity is Validity.NO_PROOF)
+        <= (start.mode in (Mode.SLIDING, Mode.FLIGHT)),
+        "friction that is needed": (
+            (proof.validity is not Validity.VALID or scene.friction >= needed * (1 - 1e-5))
+            and (
+                not 0 < scene.friction < math.inf
+                or scene.friction <= needed * (1 + 1e-5)
+                or proof.validity is Validity.VALID
+            )
+        ),
+        "no friction never rolls": scene.friction > 0
+        or (start.mode is not Mode.ROLLING and auto.model == "contact")
+        != (start.mode is Mode.REST),
+        "the sentence has the mode": DOES[start.mode] in words or jams,
+        "an impulse of the ground is told": not struck
+        or (
+            "no impulse" not in words
+            and all(f"{each:.6g} N s" in words for each in (start.reaction_x, start.reaction_z))
+        ),
+        "energy that is lost is told": not (struck and scene.impulse is None)
+        or f" and {getattr(start, 'energy_lost', 0.0):.6g} J are lost" in words,
+        "what is in the air does not leave the ground": not in_the_air
+        or ("ground" not in words.replace("reaction of the ground", "") and flies),
+        "pull": "pull" not in words + why or scene.friction == math.inf or flies,
+        "cannot start": ("cannot start" in why) == (at_once and proof.ends_at is not None),
+        "friction 0": scene.friction > 0 or "more than the friction" not in words + why,
+        "the impulse is in every reason": not (struck and scene.impulse is None)
+        or all(f"{start.reaction_x:.6g}" in each for each in (words, why, auto.reason)),
+        "both motions are told": all(
+            ("both" in each and "Painleve" in each) == both for each in (words, why)
+        )
+        or jams,
+    }
+    if scene.slope == 0 and proof.validity is not Validity.NO_PROOF:
+        of = {"a": scene.a, "b": scene.b, "theta": start.theta, "omega": start.omega}
+        code = classify(
+            **of, friction=scene.friction, gravity=scene.gravity, gyration2=scene.gyration2
+        )
+        rules["classify is outcome"] = code is said
+    return [rule for rule, holds in rules.items() if not holds]
+
+
+def test_no_two_words_contradict_each_other() -> None:
+    rng = np.random.default_rng(7)
+    met: Counter[Outcome] = Counter()
+    for _ in range(2000):
+        scene = drawn_scene(rng)
+        assert not contradictions(scene), scene
+        met[Outcome(int(outcome(scene)))] += 1
+    assert met[Outcome.EDGE] <= 2, met
+    for each in Outcome:
+        assert each is Outcome.EDGE or met[each] >= 10, met
+
+
+def test_scenes_of_which_two_things_were_said() -> None:
+    for scene, said in (
+        (Scene(1.3, 1.0, slope=1.2e-5, theta=-0.92381, omega=6.3787), Outcome.SLIPS),
+        (
+            Scene(
+                1.3, 1.0, inertia=0.6725, slope=-1.2439551437770637, friction=2.773495812440026,
+                theta=0.04687884550533283, omega=-1.7582109078026955,
+            ),
+            Outcome.LOSES_CONTACT,
+        ),
+        (Scene(1.0, 1.0, friction=0.0, omega=3.0), Outcome.SLIPS),
+        (Scene(1.0, 1.0, friction=0.0), Outcome.RESTS),
+        (Scene(2.0, 1.0, theta=0.5, x_dot=3.0), Outcome.ROCKS),
+        (  # over the tip by 0.8 degrees, and back
+            Scene(
+                0.2521, 0.249, slope=-0.79, omega=8.591, inertia=0.01358, friction=1e3
+            ),
+            Outcome.ROLLS_OVER,
+        ),
+        (Scene(2.0, 1.0, theta=math.pi / 2, omega=0.3, friction=0.1), Outcome.SLIPS),
+        (Scene(2.0, 1.0, theta=math.pi / 2, omega=-0.3, friction=0.1), Outcome.SLIPS),
+    ):  # fmt: skip
+        assert outcome(scene) is said, scene
+        assert not contradictions(scene), scene
+
+
+def wedged_scenes(count: int) -> Iterator[tuple[Scene, float]]:
+    """Starts without slip with c < 0 < N, and the friction that rolling needs: h'' < 0 as on the
+    tip, the speed so that c is what is wanted, N and F by Newton's law."""
+    rng = np.random.default_rng(3)
+    while count:
+        a, b = 10 ** rng.uniform(-0.4, 0.4, 2)
+        slope, theta = rng.uniform(-1.45, 1.45), rng.uniform(-math.pi, math.pi)
+        h = float(geometry.support(theta, a=a, b=b))
+        lead = float(geometry.support_slope(theta, a=a, b=b))
+        radius = (a * b) ** 2 / h**3
+        into, along = GRAVITY * math.cos(slope), GRAVITY * math.sin(slope)
+        if radius >= 0.99 * h:
+            continue
+        spin2 = (1 + rng.uniform(0, 0.5)) * into / (h - radius)
+        inertia = (a * a + b * b) / 4 + h * h + lead * lead
+        acceleration = (along * h - lead * (into + radius * spin2)) / inertia
+        normal = into + lead * acceleration + (radius - h) * spin2
+        if normal < 0.01 * GRAVITY:
+            continue
+        needed = abs(h * acceleration + lead * spin2 - along) / normal
+        omega = rng.choice([-1.0, 1.0]) * math.sqrt(spin2)
+        count -= 1
+        yield Scene(a, b, slope=slope, theta=theta, omega=omega), needed
+
+
+def test_where_a_body_may_roll_and_fly_both_are_told() -> None:
+    """It rolls with the friction that this takes, and with less it flies."""
+    told = "both are possible"
+    for scene, needed in wedged_scenes(300):
+        for friction in (1.01 * needed, 10 * needed, math.inf):
+            held = scene.replace(friction=friction)
+            assert held.initial_state.mode is Mode.ROLLING, held
+            motion = simulate(held, [0.0])
+            for words in (held.initial_state.reason, certify(held).reason, motion.reason):
+                assert told in words, held
+            assert not contradictions(held), held
+        flies = scene.replace(friction=0.99 * needed)
+        assert flies.initial_state.mode is Mode.FLIGHT and told not in certify(flies).reason
+        assert not contradictions(flies), flies
+
+
+def test_what_infinite_friction_does_to_a_slip_is_told() -> None:
+    scene = Scene(2.0, 1.0, theta=0.5, x_dot=3.0)
+    told = (
+        "infinite friction takes the slip of 3 m/s off at t = 0: the ground gives -1.69449 N s "
+        "along and 0.975304 N s away from it, and 2.54174 J are lost"
+    )
+    assert scene.initial_state.reason == f"{told}; the body rolls"
+    assert certify(scene).reason.endswith(told)
+    assert simulate(scene, [0.0]).reason.endswith(told)
+    other_way = scene.replace(x_dot=-3.0).initial_state
+    assert other_way.mode is Mode.SLIDING and other_way.energy_lost == 0
+    assert other_way.reason == "no impulse; the body slides"
+
+
+def test_a_blow_in_the_air_lifts_nothing() -> None:
+    pressed = scenes.drop.replace(impulse=Impulse.press(6.17, 1.36)).initial_state
+    told = "the body is in the air, and the blow changes its flight only; the body flies"
+    assert pressed.reason == told
+    lifted = Scene(2.0, 1.0, impulse=Impulse(0.0, 1.0)).initial_state
+    assert lifted.reason == "with the blow the body leaves the ground; the body flies"
