@@ -185,8 +185,10 @@ InitialState initial_state(const Scene& scene) {
     result.reaction_z = reaction.normal;
     const State free = state;
     apply(scene, at, reaction, state);
-    result.energy_lost = energy_lost(scene, free, state);
-    if (!is_struck(scene) && reaction.sticks) result.slip_removed = c.v;
+    if (!is_struck(scene) && reaction.sticks) {
+        result.slip_removed = c.v;
+        result.energy_lost = energy_lost(scene, free, state);
+    }
     state.mode = reaction.sticks ? Mode::rolling : Mode::sliding;
     if (state.mode == Mode::rolling && state.omega == 0 &&
         is_equilibrium(at, std::tan(scene.slope))) {
