@@ -19,7 +19,7 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
     return state.omega == 0 && is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
 }
 
-// c; 0 within rounding of it: such a body is free, and its flight finds out for how long.
+// The acceleration c; within rounding of 0 the body is free, and its flight finds out for how long.
 double pressure(const Scene& scene, const Geometry& at, double omega) {
     const double into = scene.ground_gravity().into;
     return is_weightless(at, into, omega) ? 0.0 : free_acceleration(at, into, omega);
