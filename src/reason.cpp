@@ -18,13 +18,13 @@ std::string extremes_of(const Certificate& c) {
            " (theta = " + in_degrees(*c.largest_friction_needed_angle) + ")";
 }
 
-std::string why_it_ends(double friction) {
+std::string why_rolling_ends(double friction) {
     if (std::isinf(friction)) return "N would have to pull";
     if (friction == 0) return "its contact slides, without friction";
     return "it would need more than the friction";
 }
 
-std::string of_the_motion(const Scene& scene, const State& start, const Certificate& c) {
+std::string why_rolling(const Scene& scene, const State& start, const Certificate& c) {
     if (c.end.validity == Validity::no_proof) {
         return "rolling: nothing to prove, " + why_not_rolling(scene, start);
     }
@@ -48,7 +48,7 @@ std::string of_the_motion(const Scene& scene, const State& start, const Certific
     }
     const bool at_once = *c.end.angle == start.theta;
     return (at_once ? "rolling: cannot start at theta = " : "rolling: ends at theta = ") +
-           brief(*c.end.angle) + " rad, where " + why_it_ends(scene.friction) +
+           brief(*c.end.angle) + " rad, where " + why_rolling_ends(scene.friction) +
            "; on the whole motion " + extremes;
 }
 
@@ -131,7 +131,7 @@ std::string reason(const Scene& scene, const ContactWatch& watch) {
 }
 
 std::string reason(const Scene& scene, const InitialState& start, const Certificate& c) {
-    std::string found = of_the_motion(scene, start.state, c);
+    std::string found = why_rolling(scene, start.state, c);
     const std::string more[] = {slip_removal(start),
                                 why_it_rolls(first_continuation(scene, start.state))};
     for (const std::string& each : more) {

@@ -14,10 +14,10 @@ namespace rolling_ellipse {
 // A number with six digits.
 std::string brief(double value);
 
-// That infinite friction takes a given slip off, with the impulse and the energy; else empty.
+// The impulse by which infinite friction takes a given slip off, and the energy; else empty.
 std::string slip_removal(const InitialState& start);
 
-// That a body that rolls might fly as well, and why it rolls; else empty.
+// The choice for a body that may roll and may fly; else empty.
 std::string why_it_rolls(const Continuation& next);
 
 // Why a start does not roll, so that nothing is proved of its motion.

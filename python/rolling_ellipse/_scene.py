@@ -43,7 +43,8 @@ class InitialState(Listed):
     free_omega : float
         Angular velocity without the ground's reaction, the report's eq 48 [rad/s].
     energy_lost : float
-        Energy that the ground's reaction takes [J].
+        Energy that goes with a slip which infinite friction takes off, or in an impact [J]. 0 for
+        a blow: its work depends on how it and the ground act in time.
     reason : str
         One sentence on what the blow did, what the body then does, and why.
     """
@@ -97,8 +98,7 @@ class Scene(FieldsOnly, Listed):
         large coefficients. For a slip that is given it is not: where a large coefficient presses
         the body into the ground until it jams, the slip is taken off by an impulse of the ground
         at t = 0, which costs energy (`initial_state` tells how much). A slip the other way goes on
-        with N = 0. Without friction a contact that moves is SLIDING,
-        that of a circle, too.
+        with N = 0. Without friction a contact that moves is SLIDING, that of a circle, too.
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     theta, omega : float

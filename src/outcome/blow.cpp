@@ -12,8 +12,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// What a body that rolls on a slope does from the time [s] on at which the ground does not hold it
-// any longer.
+// The outcome for a body on a slope whose rolling ends at a time [s]: it slides or flies.
 Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
     prepare(flow, time);
     const FlowSample last = sample(flow, time);
