@@ -5,6 +5,7 @@ scene, with a unit for each: what a relative change of 2.2e-16 of every input do
 """
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,9 @@ def test_rocking_is_right_to_a_few_roundings(row: dict[str, str]) -> None:
     gravity as a difference of two terms half of the scenes were off by more than 8, up to 1e8.
     """
     scene, t = scene_of(row), float(row["t"])
-    state = rl.simulate(scene, [t], model="rolling")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rl.ValidityWarning)  # on the way N may become negative
+        state = rl.simulate(scene, [t], model="rolling")
     found = (rl.period(scene), state.theta[0], state.omega[0], state.x[0])
     for name, value in zip(ANSWERS, found, strict=True):
         unit = float(row[f"unit_{name}"]) + 2 * np.spacing(abs(float(row[name])))
