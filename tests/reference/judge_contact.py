@@ -60,6 +60,7 @@ ROUNDING = 2.2e-16
 EXACT_ROAD = Road(42, 30, 1e-31)
 CHECK_ROAD = Road(56, 42, 1e-42)
 CHANGED_ROAD = Road(34, 23, 1e-23)
+LEAST_UNIT = 1e-3 * ROUNDING  # of the size: some values are zero whatever the inputs are
 RATE_STEP = 1e-8  # of a step, for rates
 UNIT_LIMIT = 1e-9  # of the size of the scene: beyond, the inputs do not fix the answer
 MOST_STEPS = 260  # of the first look
@@ -124,6 +125,11 @@ class Judge(Follower):
         body = self.body
         unlimited = not gmpy2.is_finite(body.mu)
         touch = body.touch(self.state.phi)
+        if slip != 0 and not self.blow and not unlimited:
+            side = 1 if slip > 0 else -1
+            c = body.level + (body.ab**2 / touch.h**3 - touch.h) * self.state.omega**2
+            if c < 0 and touch.normal < body.mu * side * touch.coupling:
+                return None  # it may slide on or fly: two motions, no one
         if self.blow is None and not (unlimited and slip * touch.coupling >= 0 and slip != 0):
             return standing(body, self.state, slip)
         self.strike()
@@ -152,10 +158,15 @@ class Judge(Follower):
         self.state = s._replace(omega=omega, x_dot=x_dot, z_dot=touch.o * omega)
         return standing(body, self.state, hit.slip)
 
+    def step(self, end: Any) -> None:
+        """Keep the state at the start of the step."""
+        self.started = self.state
+        super().step(end)
+
     def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
         """Note how fast the state changes before what happens."""
         now, row, short = self.state, self.now(what), mpfr(RATE_STEP) * step  # t stays
-        self.arc = arc
+        self.state, self.arc = self.started, arc
         self.move(found, step - short)
         rates = [(p - q) / short for p, q in zip(row[1:], self.now(what)[1:], strict=True)]
         self.state, self.arc = now, arc._replace(zeros=0)
@@ -608,6 +619,7 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
     record |= {"end": end, "kinds": known.kinds, "why": why, "at_limit": known.at_limit}
     record |= {"status": found.status, "own_error": known.own_error}
     if not known.judged:
+        record["why"] = why or "not fixed by the inputs"
         return record | {"verdict": "at a limit" if known.at_limit else "undecided"}
     judged_kinds = known.kinds
     wrong = next(
@@ -638,8 +650,9 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
                 if name == "t" and route != "event":
                     continue
                 key = f"{route} {name}"
-                units = errors[i] / floor(one.unit[i]) if one.unit[i] < math.inf else 0.0
-                fine = errors[i] / floor(one.strict[i])
+                least = LEAST_UNIT * scale[i]
+                units = errors[i] / max(one.unit[i], least) if one.unit[i] < math.inf else 0.0
+                fine = errors[i] / max(one.strict[i], least)
                 loose[key] = max(loose.get(key, 0.0), units)
                 strict[key] = max(strict.get(key, 0.0), fine)
                 if units > 4 or fine > 4 or tell:
@@ -663,11 +676,6 @@ def worst(record: dict[str, Any], key: str = "by", sol: bool = False) -> float:
     """Most units by `sol`, or by any other route."""
     found = [value for name, value in record[key].items() if name.startswith("sol") == sol]
     return max(found, default=0.0)
-
-
-def floor(unit: float) -> float:
-    """Not zero: an exact zero has no unit."""
-    return max(unit, 1e-300)
 
 
 # ---------------------------------------------------------------- the scenes
@@ -822,8 +830,8 @@ def blow(rng: random.Random, v: Values) -> None:
 
 def tip(rng: random.Random, v: Values) -> None:
     """On the tip with hardly any spin, at most the doubles beside it."""
-    if v["a"] == v["b"]:
-        v["a"] *= 2
+    if v["a"] == v["b"] or rng.random() < 0.6:  # which rolls on over its flat side
+        v["a"] = v["b"] * rng.uniform(1.05, 3.0) ** sign(rng)
     v["theta"] = rng.choice([-1, 1]) * math.pi / 2 if v["a"] > v["b"] else 0.0
     if rng.random() < 0.2:
         v["theta"] = math.nextafter(v["theta"], sign(rng))
