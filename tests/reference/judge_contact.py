@@ -57,9 +57,11 @@ from make_contact_reference import (
 from series import Road
 
 ROUNDING = 2.2e-16
-EXACT_ROAD = Road(42, 30, 1e-31)
-CHECK_ROAD = Road(56, 42, 1e-42)
-CHANGED_ROAD = Road(34, 23, 1e-23)
+# Units are told by one of them, values by the next; a check is done by the one after that.
+ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
+CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
+CHECKED = 20  # each such scene has its values checked, and not only its units
+FARTHEST = 0.1  # units that two roads may be apart; then the finer is millions of times better
 LEAST_UNIT = 1e-3 * ROUNDING  # of the size: some values are zero whatever the inputs are
 RATE_STEP = 1e-8  # of a step, for rates
 UNIT_LIMIT = 1e-9  # of the size of the scene: beyond, the inputs do not fix the answer
@@ -294,7 +296,8 @@ def long_answer(case: Case, road: Road, times: list[float]) -> list[Row]:
             row = state_of(follower)
             if follower.rows:
                 raise Undecided("not rolling for ever")
-            rows.append(row._replace(theta=row.theta + whole * turn, x=row.x + whole * way))
+            theta, x = row.theta + whole * turn, row.x + whole * way
+            rows.append(row._replace(t=mpfr(time_), theta=theta, x=x))
         return rows
 
 
@@ -302,16 +305,15 @@ def long_answer(case: Case, road: Road, times: list[float]) -> list[Row]:
 
 
 def distance_from_quarter_turn(theta: float) -> Any:
-    """From the nearest multiple of pi/2."""
-    with EXACT_ROAD.context():
-        quarter = gmpy2.const_pi() / 2
-        return abs(mpfr(theta) - gmpy2.rint(mpfr(theta) / quarter) * quarter)
+    """From the nearest multiple of pi/2; working precision."""
+    quarter = gmpy2.const_pi() / 2
+    return abs(mpfr(theta) - gmpy2.rint(mpfr(theta) / quarter) * quarter)
 
 
 def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
     """All inputs, one after the other, changed by 2.2e-16; and how often each counts."""
     scene = case.scene
-    with CHANGED_ROAD.context():
+    with ROADS[-1].context():
         k2 = Body(scene).k2
         for name in Scene._fields:
             old = mpfr(scene.mass) * k2 if name == "inertia" else getattr(scene, name)
@@ -360,7 +362,7 @@ class Reference(NamedTuple):
     judged: list[Judged]
     kinds: list[str]  # of the events that are judged
     at_limit: str  # the input by which events change, or ""
-    own_error: float  # in units
+    apart: float  # from another road, in units
 
 
 def natural(scene: Scene) -> tuple[float, float]:
@@ -375,19 +377,41 @@ def sizes(scene: Scene) -> list[float]:
     return [tau, 1.0, 1 / tau, length, length, length / tau, length / tau]
 
 
+def distance(judged: list[Judged], case: Case, other: Answer, long_rows: list[Row]) -> float:
+    """From the rows of another road, in units."""
+    rows = {f"event {i}": row for i, row in enumerate(other.events)}
+    rows |= {f"sample {i}": one.row for i, one in enumerate(other.samples) if one}
+    rows |= {f"long {i}": row for i, row in enumerate(long_rows)}
+    least = [LEAST_UNIT * size for size in sizes(case.scene)]
+    shares = [
+        apart / max(unit, smallest)
+        for one in judged
+        if one.what in rows
+        for apart, unit, smallest in zip(
+            differences(rows[one.what], one.row), one.strict, least, strict=True
+        )
+    ]
+    return max(shares, default=0.0)
+
+
 def reference(
-    case: Case, times: list[float], end: float, long_times: list[float], check: bool
+    case: Case,
+    times: list[float],
+    end: float,
+    long_times: list[float],
+    check: bool,
+    level: int = 0,
 ) -> Reference:
-    """Events, samples and their units."""
-    exact = answer(case, EXACT_ROAD, times, end)
-    base = answer(case, CHANGED_ROAD, times, end)
-    if check:
-        fine = answer(case, CHECK_ROAD, times, end)
-    long_rows = long_base = []
+    """Events, samples and their units; by a finer road where this one is not fine enough."""
+    road, finer = ROADS[level : level + 2]
+    exact = answer(case, finer, times, end)
+    base = answer(case, road, times, end)
+    long_rows: list[Row] = []
+    long_base: list[Row] = []
     if long_times:
         try:
-            long_rows = long_answer(case, EXACT_ROAD, long_times)
-            long_base = long_answer(case, CHANGED_ROAD, long_times)
+            long_rows = long_answer(case, finer, long_times)
+            long_base = long_answer(case, road, long_times)
         except Undecided:
             long_times = []
     kept = len(exact.events)
@@ -411,7 +435,7 @@ def reference(
         at_limit = at_limit or f"{name} at {key} ({kind})"
 
     for name, count, changed in changed_cases(case):
-        again = answer(changed, CHANGED_ROAD, times, end)
+        again = answer(changed, road, times, end)
         same = True
         for i, row in enumerate(exact.events):
             reached = i < min(len(again.events), len(base.events))
@@ -428,20 +452,16 @@ def reference(
                 add(name, f"sample {i}", count, None)
         if long_times:
             try:
-                far = long_answer(changed, CHANGED_ROAD, long_times)
+                far = long_answer(changed, road, long_times)
             except Undecided:
                 far = []
             for i, row in enumerate(long_base):
                 add(name, f"long {i}", count, differences(far[i], row) if far else None)
-    judged, own_error = [], 0.0
+    judged = []
     limits = [UNIT_LIMIT * size for size in sizes(case.scene)]
     rows = [(f"event {i}", row) for i, row in enumerate(exact.events)]
     rows += [(f"sample {i}", one.row) for i, one in enumerate(exact.samples) if one]
     rows += [(f"long {i}", row) for i, row in enumerate(long_rows)]
-    checks: dict[str, Row] = {}
-    if check:
-        checks = {f"event {i}": row for i, row in enumerate(fine.events)}
-        checks |= {f"sample {i}": one.row for i, one in enumerate(fine.samples) if one}
     rates = {f"event {i}": one for i, one in enumerate(exact.rates)}
     fixed_until = mpfr("inf")
     for key, row in rows:
@@ -462,11 +482,13 @@ def reference(
         if not alive[key] or (row.t >= fixed_until and not key.startswith("long")):
             continue
         judged.append(Judged(key, row, loose[key], strict[key]))
-        if key in checks:
-            apart = differences(checks[key], row)
-            own_error = max(own_error, *(p / q for p, q in zip(apart, strict[key], strict=True)))
+    apart = distance(judged, case, base, long_base)
+    if apart > FARTHEST and level + 3 < len(ROADS):
+        return reference(case, times, end, long_times, check, level + 1)
+    if check:
+        apart = distance(judged, case, answer(case, ROADS[level + 2], times, end), [])
     kinds = [one.row.kind for one in judged if one.what.startswith("event")]
-    return Reference(judged, kinds, at_limit, own_error)
+    return Reference(judged, kinds, at_limit, apart)
 
 
 # ---------------------------------------------------------------- the package
@@ -590,7 +612,7 @@ def judge(seed: int, number: int, family: str | None = None, tell: bool = False)
     signal.setitimer(signal.ITIMER_REAL, MOST_SECONDS * 5)
     began = time.process_time()
     try:
-        record |= judged(case, rng, check=number % 20 == 0, tell=tell)
+        record |= judged(case, rng, check=number % CHECKED == 0, tell=tell)
     except ValueError as error:
         record |= {"verdict": "refused", "why": str(error)}
     except Undecided as error:
@@ -617,7 +639,7 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
     known = reference(case, times, end, long_times, check)
     found = found_by_package(case, times, end, long_times, rng)
     record |= {"end": end, "kinds": known.kinds, "why": why, "at_limit": known.at_limit}
-    record |= {"status": found.status, "own_error": known.own_error}
+    record |= {"status": found.status, "apart": known.apart}
     if not known.judged:
         record["why"] = why or "not fixed by the inputs"
         return record | {"verdict": "at a limit" if known.at_limit else "undecided"}
@@ -1049,8 +1071,9 @@ def report(records: list[dict[str, Any]], limit: float) -> None:
                 reasons[one.get("why", "")[:70]] += 1
         print(f"  {word}:", dict(sorted(reasons.items(), key=lambda item: -item[1])[:8]))
     judged_ones = [one for one in records if one["verdict"] == "judged"]
-    own = [one["own_error"] for one in judged_ones if one["own_error"]]
-    print(f"own error, of {len(own)} scenes done in 56 digits: {max(own, default=0):.1e} units")
+    for word, which in (("in units", 0), ("of values", 1)):
+        own = [one["apart"] for one in judged_ones if (one["number"] % CHECKED == 0) == which]
+        print(f"differences of two roads {word}: {max(own, default=0):.1e} units")
     events = sum(len(one["kinds"]) for one in judged_ones)
     print(f"{events} events, {sum(one['rows'] for one in judged_ones)} rows")
     for title, key in (("family", lambda one: one["family"]), ("aspect", aspect), ("mu", mu)):
