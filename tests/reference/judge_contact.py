@@ -65,6 +65,7 @@ FARTHEST = 0.1  # units that two roads may be apart; then the finer is millions 
 LEAST_UNIT = 1e-3 * ROUNDING  # of the size: some values are zero whatever the inputs are
 RATE_STEP = 1e-8  # of a step, for rates
 UNIT_LIMIT = 1e-9  # of the size of the scene: beyond, the inputs do not fix the answer
+KIND_LIMIT = 1e-4  # of its time: until then they fix which event comes
 MOST_STEPS = 260  # of the first look
 MOST_SECONDS = 60.0  # for one scene
 LEAST_REBOUND = 2e-5  # times sqrt(g min(a, b)): below, the package may sum bounces
@@ -360,7 +361,8 @@ class Reference(NamedTuple):
     """What the package has to answer, as far as the inputs fix it."""
 
     judged: list[Judged]
-    kinds: list[str]  # of the events that are judged
+    kinds: list[str]  # of the events that the inputs fix
+    times: list[Any]  # of all events
     at_limit: str  # the input by which events change, or ""
     apart: float  # from another road, in units
 
@@ -421,7 +423,6 @@ def reference(
     loose |= {f"long {i}": [0.0] * len(VALUES) for i in range(len(long_times))}
     strict = {name: list(row) for name, row in loose.items()}
     at_limit = ""
-    alive = dict.fromkeys(loose, True)
 
     def add(name: str, key: str, times_: int, found: list[float] | None) -> None:
         for which, table in (("theta", loose), ("strict", strict)):
@@ -463,32 +464,30 @@ def reference(
     rows += [(f"sample {i}", one.row) for i, one in enumerate(exact.samples) if one]
     rows += [(f"long {i}", row) for i, row in enumerate(long_rows)]
     rates = {f"event {i}": one for i, one in enumerate(exact.rates)}
-    fixed_until = mpfr("inf")
+    shift = ROUNDING * abs(case.scene.x)
     for key, row in rows:
-        for i in range(len(VALUES)):
-            ulp = 2 * float(np.spacing(abs(float(row[1 + i]))))
-            shift = ROUNDING * abs(case.scene.x) if VALUES[i] == "x" else 0.0
-            loose[key][i] += ulp + shift
-            strict[key][i] += ulp + shift
+        for i, name in enumerate(VALUES):
+            rounding = 2 * float(np.spacing(abs(float(row[1 + i])))) + (shift if name == "x" else 0)
+            loose[key][i] += rounding
+            strict[key][i] += rounding
         if key in rates:
-            late = 2 * float(np.spacing(abs(float(row.t))))
-            for i, rate_ in enumerate(rates[key]):
-                loose[key][i] += late * float(abs(rate_)) if i else 0.0
-        if not all(u <= limit for u, limit in zip(strict[key], limits, strict=True)):
-            alive[key] = False
-            if key.startswith("event"):
-                fixed_until = min(fixed_until, row.t)
-    for key, row in rows:
-        if not alive[key] or (row.t >= fixed_until and not key.startswith("long")):
-            continue
-        judged.append(Judged(key, row, loose[key], strict[key]))
+            late = 2 * float(np.spacing(float(row.t)))
+            loose[key] = [
+                u + late * float(abs(v)) for u, v in zip(loose[key], rates[key], strict=True)
+            ]
+        if all(unit <= limit for unit, limit in zip(strict[key], limits, strict=True)):
+            judged.append(Judged(key, row, loose[key], strict[key]))
     apart = distance(judged, case, base, long_base)
     if apart > FARTHEST and level + 3 < len(ROADS):
         return reference(case, times, end, long_times, check, level + 1)
     if check:
         apart = distance(judged, case, answer(case, ROADS[level + 2], times, end), [])
-    kinds = [one.row.kind for one in judged if one.what.startswith("event")]
-    return Reference(judged, kinds, at_limit, apart)
+    kinds: list[str] = []
+    for i, row in enumerate(exact.events):
+        if not strict[f"event {i}"][0] <= KIND_LIMIT * natural(case.scene)[1]:
+            break
+        kinds.append(row.kind)
+    return Reference(judged, kinds, [one.t for one in exact.events], at_limit, apart)
 
 
 # ---------------------------------------------------------------- the package
@@ -627,6 +626,18 @@ def judge(seed: int, number: int, family: str | None = None, tell: bool = False)
     return record
 
 
+def first_wrong(known: Reference, found: Found, end: float) -> int | None:
+    """The first event that is of another kind, missing or invented."""
+    for i, kind in enumerate(known.kinds):
+        if [kind] != found.kinds[i : i + 1]:
+            return i
+    count = len(known.kinds)
+    one_more = count == len(known.times) < len(found.kinds)
+    if one_more and found.values[f"event {count}", "event"][0] < end * (1 - 1e-9):
+        return count
+    return None
+
+
 def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str, Any]:
     """The verdict on a case."""
     words = in_words(case)  # refuses what is no scene
@@ -640,20 +651,18 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
     found = found_by_package(case, times, end, long_times, rng)
     record |= {"end": end, "kinds": known.kinds, "why": why, "at_limit": known.at_limit}
     record |= {"status": found.status, "apart": known.apart}
-    if not known.judged:
+    if not known.judged and not known.kinds:
         record["why"] = why or "not fixed by the inputs"
         return record | {"verdict": "at a limit" if known.at_limit else "undecided"}
-    judged_kinds = known.kinds
-    wrong = next(
-        (i for i, kind in enumerate(judged_kinds) if [kind] != found.kinds[i : i + 1]), None
-    )
+    wrong = first_wrong(known, found, end)
     cut = math.inf
     if wrong is not None:
-        cut = float(next(one.row.t for one in known.judged if one.what == f"event {wrong}"))
+        alike = [float(one) for one in known.times[wrong : wrong + 1]]
         if wrong < len(found.kinds):
-            cut = min(cut, found.values[f"event {wrong}", "event"][0])
-        record |= {"wrong_event": wrong, "found_kinds": found.kinds[: wrong + 3]}
+            alike.append(found.values[f"event {wrong}", "event"][0])
+        cut = min(alike)
         near = leads_to(case, end, found.kinds[: wrong + 1], rng)
+        record |= {"wrong_event": wrong, "found_kinds": found.kinds[: wrong + 3]}
         record["wrong"] = "limit" if near else "fault"
     loose: dict[str, float] = {}
     strict: dict[str, float] = {}
