@@ -61,6 +61,7 @@ ROUNDING = 2.2e-16
 ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
 CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
 CHECKED = 20  # each such scene has its values checked, and not only its units
+APART = 1.0  # units that the finest roads may be apart
 FARTHEST = 0.1  # units that two roads may be apart; then the finer is millions of times better
 LEAST_UNIT = 1e-3 * ROUNDING  # of the size: some values are zero whatever the inputs are
 RATE_STEP = 1e-8  # of a step, for rates
@@ -577,9 +578,14 @@ def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bo
     """Whether a scene changed by a few roundings has these events."""
     for _ in range(NEARBY):
         near = case
+        v = case.scene._asdict()
+        if v["x_dot"] is not None and v["z"] is None:
+            rolls = support(v["a"], v["b"], v["theta"])[0] * v["omega"]
+            if abs(v["x_dot"] - rolls) < 1e-14 * abs(rolls):  # and is said to roll
+                near = with_input(near, "x_dot", rng.choice([None, v["x_dot"]]))
         with CHANGED_ROAD.context():
             for name in ("a", "b", "gravity", "friction", "theta", "omega", "x_dot", "slope"):
-                old = getattr(case.scene, name)
+                old = getattr(near.scene, name)
                 if old is not None and math.isfinite(old):
                     off = rng.uniform(-4, 4) * ROUNDING
                     new = mpfr(old) + off if name == "theta" else mpfr(old) * (1 + mpfr(off))
@@ -651,6 +657,8 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
     found = found_by_package(case, times, end, long_times, rng)
     record |= {"end": end, "kinds": known.kinds, "why": why, "at_limit": known.at_limit}
     record |= {"status": found.status, "apart": known.apart}
+    if known.apart > APART:
+        return record | {"verdict": "undecided", "why": "two roads apart"}
     if not known.judged and not known.kinds:
         record["why"] = why or "not fixed by the inputs"
         return record | {"verdict": "at a limit" if known.at_limit else "undecided"}
