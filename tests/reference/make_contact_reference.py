@@ -460,6 +460,9 @@ class Followed(NamedTuple):
 class Follower:
     """One motion, followed from event to event."""
 
+    most_steps = MOST_STEPS
+    least_rebound = LEAST_REBOUND
+
     def __init__(self, scene: Scene, road: Road) -> None:
         self.body = body = Body(scene)
         self.road = road
@@ -479,10 +482,14 @@ class Follower:
         self.arc: Arc | None = Arc(FLIGHT)
         if on_ground:
             slip = mpfr(0) if scene.x_dot is None else x_dot - touch.h * omega
-            self.arc = standing(body, self.state, slip)
+            self.arc = self.first_arc(slip)
         self.size = self.energy() + 2 * body.g * max(body.a, body.b)
         if self.arc is None:
             self.happens("jam")
+
+    def first_arc(self, slip: Any) -> Arc | None:
+        """How a body that starts on the ground goes on; None if it jams."""
+        return standing(self.body, self.state, slip)
 
     def energy(self) -> Any:
         """Per mass."""
@@ -512,7 +519,7 @@ class Follower:
         arc, body = self.arc, self.body
         assert arc is not None
         self.steps += 1
-        if self.steps > MOST_STEPS:
+        if self.steps > self.most_steps:
             raise Undecided("too many steps")
         found = motion(body, self.state, arc, self.road.order)
         step, what = min(end - self.t, self.reach(found)), ""
@@ -629,7 +636,7 @@ class Follower:
         self.energy_error += abs(self.energy() - before - work)
         natural = gmpy2.sqrt(body.g * min(body.a, body.b))
         flat = body.down == 0 and touch.o == 0 and omega == 0 and x_dot == 0
-        if hit.rebound > 0 and not flat and hit.rebound < LEAST_REBOUND * natural:
+        if hit.rebound > 0 and not flat and hit.rebound < self.least_rebound * natural:
             self.lost = self.t
             return
         self.happens("impact")

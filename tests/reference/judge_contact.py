@@ -1,0 +1,1177 @@
+"""Judge `simulate(model="contact")` by random scenes, followed by make_contact_reference.py.
+
+    python tests/reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
+
+About an hour on two cores. A file that is there is gone on with; `--only 17` judges one scene of a
+seed and prints all of its values. It ends with what was judged, by family and component, and a
+reproduction of each scene above `--limit` units.
+
+Scenes are drawn from the families below: aspects from 1e-3 to 1e3, friction from none to
+unlimited, inertia, mass, gravity and lengths over many powers of ten. Each is followed with 42
+digits until the inputs do not fix the answer any more, there were enough events, or a kind of event
+is undecided. Events, the states after them, and states at times between are compared with those of
+the package, asked in a table, alone, and by `sol` in any order.
+
+Units. The error of a value is measured by the sum of what 2.2e-16 of each input does to it, each
+in a run of its own, two ulp of the value, and, at events, what two ulp of their time do. theta0
+counts as 2.2e-16 rad. The strict unit has 2.2e-16 of its distance from the nearest quarter turn
+instead, and no ulp of times: near a tip, or lying, a double is more than its ulp says.
+
+Scenes whose events change with 2.2e-16 of an input are at a limit and are not judged from there on.
+Where the package comes to other events, the inputs are changed by a few 2.2e-16 at random: if that
+leads to its events, the scene is at a limit as well; if not, it is a fault.
+"""
+
+import argparse
+import json
+import math
+import multiprocessing
+import random
+import signal
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import gmpy2
+import numpy as np
+import rolling_ellipse as rl
+from gmpy2 import mpfr
+from make_contact_reference import (
+    FLIGHT,
+    VALUES,
+    Arc,
+    Body,
+    Follower,
+    Row,
+    Scene,
+    Series,
+    Undecided,
+    collide,
+    log_uniform,
+    peak_of_friction,
+    standing,
+)
+from series import Road
+
+ROUNDING = 2.2e-16
+# Units are told by one of them, values by the next; a check is done by the one after that.
+ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
+CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
+CHECKED = 20  # each such scene has its values checked, and not only its units
+APART = 1.0  # units that the finest roads may be apart
+FARTHEST = 0.1  # units that two roads may be apart; then the finer is millions of times better
+LEAST_UNIT = 1e-3 * ROUNDING  # of the size: some values are zero whatever the inputs are
+RATE_STEP = 1e-8  # of a step, for rates
+UNIT_LIMIT = 1e-9  # of the size of the scene: beyond, the inputs do not fix the answer
+KIND_LIMIT = 1e-4  # of its time: until then they fix which event comes
+MOST_STEPS = 260  # of the first look
+MOST_SECONDS = 60.0  # for one scene
+LEAST_REBOUND = 2e-5  # times sqrt(g min(a, b)): below, the package may sum bounces
+NEARBY = 12  # scenes drawn to tell a limit from a fault
+ROUTES = ("event", "table", "alone", "sol", "long")
+
+
+class Blow(NamedTuple):
+    """An impulse at t = 0: its components and where it acts, seen from the centre."""
+
+    jx: Any
+    jz: Any
+    dx: Any
+    dz: Any
+
+
+class Case(NamedTuple):
+    """A scene of a family, how long to follow it, and how."""
+
+    family: str
+    scene: Scene
+    blow: Blow | None = None
+    longest: float = 1.0  # [s]
+    most_events: int = 8
+    long_turns: float = 0.0  # swings or half turns after which it is looked at again
+
+
+# ---------------------------------------------------------------- the reference
+
+
+class Judge(Follower):
+    """A motion followed by the maker: also after blows, and slip that the ground takes off."""
+
+    most_steps = 4000
+
+    def __init__(self, case: Case, road: Road) -> None:
+        self.blow = case.blow and Blow(*map(mpfr, case.blow))
+        # without loss bounces are never summed
+        self.least_rebound = 0.0 if case.scene.restitution == 1 else LEAST_REBOUND
+        self.rates: list[list[Any]] = []  # of what a row has, just before each event
+        a, b, gravity = case.scene.a, case.scene.b, case.scene.gravity
+        self.natural_time = gmpy2.sqrt(max(mpfr(a), mpfr(b)) / mpfr(gravity))
+        super().__init__(case.scene, road)
+        if self.arc == Arc(FLIGHT) and self.blow and case.scene.z is not None:
+            self.strike()
+
+    def strike(self) -> None:
+        """What the blow makes of a body that nothing holds."""
+        if self.blow is None:
+            return
+        s, body, (jx, jz, dx, dz) = self.state, self.body, self.blow
+        self.state = s._replace(
+            omega=s.omega + (jx * dz - jz * dx) / (body.mass * body.k2),
+            x_dot=s.x_dot + jx / body.mass,
+            z_dot=s.z_dot + jz / body.mass,
+        )
+
+    def first_arc(self, slip: Any) -> Arc | None:
+        """After the blow, and the ground's answer to it without restitution."""
+        body = self.body
+        unlimited = not gmpy2.is_finite(body.mu)
+        touch = body.touch(self.state.phi)
+        if slip != 0 and not self.blow and not unlimited:
+            side = 1 if slip > 0 else -1
+            c = body.level + (body.ab**2 / touch.h**3 - touch.h) * self.state.omega**2
+            if c < 0 and touch.normal < body.mu * side * touch.coupling:
+                return None  # it may slide on or fly: two motions, no one
+        if self.blow is None and not (unlimited and slip * touch.coupling >= 0 and slip != 0):
+            return standing(body, self.state, slip)
+        self.strike()
+        s = self.state
+        v, u = s.x_dot - touch.h * s.omega, s.z_dot - touch.o * s.omega
+        if self.blow is None:
+            v, u = slip, mpfr(0)
+        if abs(u) < 1e-30 * (abs(s.z_dot) + abs(touch.o * s.omega)):
+            u = mpfr(0)
+        if u > 0:
+            return Arc(FLIGHT, zeros=1)
+        if u == 0 and not unlimited:
+            self.state = s._replace(z_dot=touch.o * s.omega)
+            return standing(body, self.state, v)
+        if u == 0 and v * touch.coupling < 0:
+            self.state = s._replace(z_dot=touch.o * s.omega)
+            return standing(body, self.state, v)
+        restitution, body.e = body.e, mpfr(0)
+        hit = collide(body, touch, v, u)
+        body.e = restitution
+        omega = s.omega - (touch.h * hit.along + touch.o * hit.away) / body.k2
+        x_dot = touch.h * omega if hit.slip == 0 else s.x_dot + hit.along
+        if hit.rebound > 0:
+            self.state = s._replace(omega=omega, x_dot=x_dot, z_dot=s.z_dot + hit.away)
+            return Arc(FLIGHT, zeros=1)
+        self.state = s._replace(omega=omega, x_dot=x_dot, z_dot=touch.o * omega)
+        return standing(body, self.state, hit.slip)
+
+    def step(self, end: Any) -> None:
+        """Keep the state at the start of the step."""
+        self.started = self.state
+        super().step(end)
+
+    def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
+        """Note how fast the state changes before what happens."""
+        now, row, short = self.state, self.now(what), mpfr(RATE_STEP) * step  # t stays
+        self.state, self.arc = self.started, arc
+        self.move(found, step - short)
+        rates = [(p - q) / short for p, q in zip(row[1:], self.now(what)[1:], strict=True)]
+        self.state, self.arc = now, arc._replace(zeros=0)
+        super().change(what, arc, found, step)
+        self.rates += [rates] * (len(self.rows) - len(self.rates))
+
+    def reach(self, found: Series) -> Any:
+        """The step whose last terms are as small as the tolerance beside the first three."""
+        columns = (found.phi, found.omega, found.h, found.x_dot)
+        last, tau = self.road.order - 1, self.natural_time
+        growth = mpfr(0)
+        for column in columns:
+            size = max(abs(column[0]), abs(column[1]) * tau, abs(column[2]) * tau**2)
+            if size > 0:
+                for n in (last - 1, last):
+                    growth = max(growth, (abs(column[n]) / size) ** (mpfr(1) / n))
+        reach = mpfr(self.road.tolerance) ** (mpfr(1) / self.road.order)
+        return reach / growth if growth > 0 else mpfr("inf")
+
+
+class Turning(Judge):
+    """Rolling until it has swung back and forth, or made half a turn: one period."""
+
+    def __init__(self, case: Case, road: Road) -> None:
+        super().__init__(case, road)
+        self.turns: list[Any] = []
+        self.start = self.state
+        self.fresh = self.state.omega == 0
+
+    def watched(self, found: Series, arc: Arc) -> list[tuple[str, list[Any]]]:
+        """Also where omega changes its sign, and the end of half a turn."""
+        omega = found.omega[1:] if self.fresh else found.omega
+        side = 1 if omega[0] > 0 else -1
+        self.fresh = False
+        left = [side * one for one in found.theta]
+        way = -side * self.start.theta - gmpy2.const_pi()
+        rest = [-one for one in left]
+        rest[0] -= way
+        watched = [("turn", [side * one for one in omega])]
+        if rest[0] > 0:
+            watched.append(("half turn", rest))
+        return [*super().watched(found, arc), *watched]
+
+    def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
+        """Note turning points; the period is twice the time between two of them."""
+        if what == "turn":
+            self.state = self.state._replace(omega=mpfr(0))
+            self.fresh = True
+            self.turns.append(self.t)
+        elif what == "half turn":
+            self.turns = [mpfr(0), self.t / 2, self.t]
+        else:
+            raise Undecided("not rolling for ever")
+
+    def period(self) -> tuple[Any, Any, Any]:
+        """Time of a swing or half turn, and what it adds to theta and x."""
+        starts_at_rest = self.fresh
+        while len(self.turns) < (2 if starts_at_rest else 3):
+            if self.steps > self.most_steps:
+                raise Undecided("too many steps")
+            self.step(mpfr("inf"))
+        if len(self.turns) == 3 and self.turns[0] == 0:
+            s = self.start
+            return self.t, self.state.theta - s.theta, self.state.x - s.x
+        span = self.turns[-1] - (0 if starts_at_rest else self.turns[0])
+        return span, mpfr(0), mpfr(0)
+
+
+class Sample(NamedTuple):
+    """A state, and the kinds of events before it."""
+
+    before: list[str]
+    row: Row
+
+
+class Answer(NamedTuple):
+    """Rows of events and samples; samples that were not reached are None."""
+
+    events: list[Row]
+    samples: list[Sample | None]
+    rates: list[list[Any]]  # of the events
+    stopped: Any  # where it could not be followed on, or None
+    why: str
+
+
+def state_of(follower: Follower) -> Row:
+    """The state as a row."""
+    return follower.now("state")
+
+
+def answer(case: Case, road: Road, times: list[Any], end: Any, most_steps: int = 0) -> Answer:
+    """The motion up to an end."""
+    with road.context():
+        samples: list[Sample | None] = [None] * len(times)
+        try:
+            follower = Judge(case, road)
+        except Undecided as error:
+            return Answer([], samples, [], mpfr(0), str(error))
+        if most_steps:
+            follower.most_steps = most_steps
+        stopped, why = None, ""
+        try:
+            for i, time_ in enumerate([*times, end]):
+                follower.follow(mpfr(time_), case.most_events + 1)
+                if follower.t < time_:
+                    break
+                if i < len(times):
+                    samples[i] = Sample([one.kind for one in follower.rows], state_of(follower))
+        except Undecided as error:
+            stopped, why = follower.t, str(error)
+        if follower.lost is not None:
+            stopped, why = follower.lost, "bounces too low"
+        return Answer(follower.rows, samples, follower.rates, stopped, why)
+
+
+def long_answer(case: Case, road: Road, times: list[float]) -> list[Row]:
+    """The state after many swings or half turns, by the period; of rolling for ever."""
+    with road.context():
+        span, turn, way = Turning(case, road).period()
+        rows = []
+        for time_ in times:
+            whole = gmpy2.floor(mpfr(time_) / span)
+            follower = Judge(case, road)
+            follower.follow(mpfr(time_) - whole * span, 1)
+            row = state_of(follower)
+            if follower.rows:
+                raise Undecided("not rolling for ever")
+            theta, x = row.theta + whole * turn, row.x + whole * way
+            rows.append(row._replace(t=mpfr(time_), theta=theta, x=x))
+        return rows
+
+
+# ---------------------------------------------------------------- units
+
+
+def distance_from_quarter_turn(theta: float) -> Any:
+    """From the nearest multiple of pi/2; working precision."""
+    quarter = gmpy2.const_pi() / 2
+    return abs(mpfr(theta) - gmpy2.rint(mpfr(theta) / quarter) * quarter)
+
+
+def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
+    """All inputs, one after the other, changed by 2.2e-16; and how often each counts."""
+    scene = case.scene
+    with ROADS[-1].context():
+        k2 = Body(scene).k2
+        for name in Scene._fields:
+            old = mpfr(scene.mass) * k2 if name == "inertia" else getattr(scene, name)
+            if name in ("mass", "x") and (name == "x" or case.blow is None):
+                continue
+            if name == "theta":
+                aside = distance_from_quarter_turn(scene.theta)
+                yield "theta", 1, with_input(case, name, mpfr(old) + ROUNDING)
+                yield "strict", 1, with_input(case, name, mpfr(old) + ROUNDING * aside)
+                continue
+            if old is None or not gmpy2.is_finite(mpfr(old)) or old == 0:
+                continue
+            # the mass enters k^2 = I/m as the inertia does
+            both = name == "inertia" and scene.inertia is not None and case.blow is None
+            yield name, 2 if both else 1, with_input(case, name, mpfr(old) * (1 + mpfr(ROUNDING)))
+        for name in Blow._fields if case.blow else ():
+            old = getattr(case.blow, name)
+            if old != 0:
+                assert case.blow is not None
+                new = mpfr(old) * (1 + mpfr(ROUNDING))
+                yield name, 1, case._replace(blow=case.blow._replace(**{name: new}))
+
+
+def with_input(case: Case, name: str, value: Any) -> Case:
+    """One input changed."""
+    return case._replace(scene=case.scene._replace(**{name: value}))
+
+
+class Judged(NamedTuple):
+    """A row of the reference with its units."""
+
+    what: str  # "event 3", "sample 0", "long 1"
+    row: Row
+    unit: list[float]
+    strict: list[float]
+
+
+def differences(new: Row, old: Row) -> list[float]:
+    """Sizes of the differences."""
+    return [float(abs(p - q)) for p, q in zip(new[1:], old[1:], strict=True)]
+
+
+class Reference(NamedTuple):
+    """What the package has to answer, as far as the inputs fix it."""
+
+    judged: list[Judged]
+    kinds: list[str]  # of the events that the inputs fix
+    times: list[Any]  # of all events
+    at_limit: str  # the input by which events change, or ""
+    apart: float  # from another road, in units
+
+
+def natural(scene: Scene) -> tuple[float, float]:
+    """Length and time of a scene's own size."""
+    length = max(scene.a, scene.b)
+    return length, math.sqrt(length / scene.gravity)
+
+
+def sizes(scene: Scene) -> list[float]:
+    """What a component is measured by where it says that the inputs do not fix an answer."""
+    length, tau = natural(scene)
+    return [tau, 1.0, 1 / tau, length, length, length / tau, length / tau]
+
+
+def distance(judged: list[Judged], case: Case, other: Answer, long_rows: list[Row]) -> float:
+    """From the rows of another road, in units."""
+    rows = {f"event {i}": row for i, row in enumerate(other.events)}
+    rows |= {f"sample {i}": one.row for i, one in enumerate(other.samples) if one}
+    rows |= {f"long {i}": row for i, row in enumerate(long_rows)}
+    least = [LEAST_UNIT * size for size in sizes(case.scene)]
+    shares = [
+        apart / max(unit, smallest)
+        for one in judged
+        if one.what in rows
+        for apart, unit, smallest in zip(
+            differences(rows[one.what], one.row), one.strict, least, strict=True
+        )
+    ]
+    return max(shares, default=0.0)
+
+
+def reference(
+    case: Case,
+    times: list[float],
+    end: float,
+    long_times: list[float],
+    check: bool,
+    level: int = 0,
+) -> Reference:
+    """Events, samples and their units; by a finer road where this one is not fine enough."""
+    road, finer = ROADS[level : level + 2]
+    exact = answer(case, finer, times, end)
+    base = answer(case, road, times, end)
+    long_rows: list[Row] = []
+    long_base: list[Row] = []
+    if long_times:
+        try:
+            long_rows = long_answer(case, finer, long_times)
+            long_base = long_answer(case, road, long_times)
+        except Undecided:
+            long_times = []
+    kept = len(exact.events)
+    names = [f"event {i}" for i in range(kept)]
+    loose = {name: [0.0] * len(VALUES) for name in names}
+    loose |= {f"sample {i}": [0.0] * len(VALUES) for i in range(len(times))}
+    loose |= {f"long {i}": [0.0] * len(VALUES) for i in range(len(long_times))}
+    strict = {name: list(row) for name, row in loose.items()}
+    at_limit = ""
+
+    def add(name: str, key: str, times_: int, found: list[float] | None) -> None:
+        for which, table in (("theta", loose), ("strict", strict)):
+            if name in ("theta", "strict") and name != which:
+                continue
+            for i in range(len(VALUES)):
+                table[key][i] += math.inf if found is None else times_ * found[i]
+
+    def note(name: str, key: str, kind: str) -> None:
+        nonlocal at_limit
+        at_limit = at_limit or f"{name} at {key} ({kind})"
+
+    for name, count, changed in changed_cases(case):
+        again = answer(changed, road, times, end)
+        same = True
+        for i, row in enumerate(exact.events):
+            reached = i < min(len(again.events), len(base.events))
+            same = same and reached and again.events[i].kind == row.kind == base.events[i].kind
+            if not same:
+                note(name, f"event {i}", row.kind)
+            add(name, f"event {i}", count,
+                differences(again.events[i], base.events[i]) if same else None)  # fmt: skip
+        for i, sample in enumerate(exact.samples):
+            new, old = again.samples[i], base.samples[i]
+            if sample and new and old and sample.before == new.before == old.before:
+                add(name, f"sample {i}", count, differences(new.row, old.row))
+            else:
+                add(name, f"sample {i}", count, None)
+        if long_times:
+            try:
+                far = long_answer(changed, road, long_times)
+            except Undecided:
+                far = []
+            for i, row in enumerate(long_base):
+                add(name, f"long {i}", count, differences(far[i], row) if far else None)
+    judged = []
+    limits = [UNIT_LIMIT * size for size in sizes(case.scene)]
+    rows = [(f"event {i}", row) for i, row in enumerate(exact.events)]
+    rows += [(f"sample {i}", one.row) for i, one in enumerate(exact.samples) if one]
+    rows += [(f"long {i}", row) for i, row in enumerate(long_rows)]
+    rates = {f"event {i}": one for i, one in enumerate(exact.rates)}
+    shift = ROUNDING * abs(case.scene.x)
+    for key, row in rows:
+        for i, name in enumerate(VALUES):
+            rounding = 2 * float(np.spacing(abs(float(row[1 + i])))) + (shift if name == "x" else 0)
+            loose[key][i] += rounding
+            strict[key][i] += rounding
+        if key in rates:
+            late = 2 * float(np.spacing(float(row.t)))
+            loose[key] = [
+                u + late * float(abs(v)) for u, v in zip(loose[key], rates[key], strict=True)
+            ]
+        if all(unit <= limit for unit, limit in zip(strict[key], limits, strict=True)):
+            judged.append(Judged(key, row, loose[key], strict[key]))
+    apart = distance(judged, case, base, long_base)
+    if apart > FARTHEST and level + 3 < len(ROADS):
+        return reference(case, times, end, long_times, check, level + 1)
+    if check:
+        apart = distance(judged, case, answer(case, ROADS[level + 2], times, end), [])
+    kinds: list[str] = []
+    for i, row in enumerate(exact.events):
+        if not strict[f"event {i}"][0] <= KIND_LIMIT * natural(case.scene)[1]:
+            break
+        kinds.append(row.kind)
+    return Reference(judged, kinds, [one.t for one in exact.events], at_limit, apart)
+
+
+# ---------------------------------------------------------------- the package
+
+
+def in_words(case: Case) -> rl.Scene:
+    """The scene as the package has it."""
+    given = {name: value for name, value in case.scene._asdict().items() if value is not None}
+    if case.blow:
+        given["impulse"] = rl.Impulse(case.blow.jx, case.blow.jz, dx=case.blow.dx, dz=case.blow.dz)
+    return rl.Scene(given.pop("a"), given.pop("b"), **given)
+
+
+class Found(NamedTuple):
+    """The package's answers: by what was asked and by which route."""
+
+    kinds: list[str]
+    values: dict[tuple[str, str], list[float]]  # (what, route): t, theta, ...
+    status: str
+
+
+def states(motion: rl.Trajectory, count: int) -> list[list[float]]:
+    """Samples as rows."""
+    return [[float(getattr(motion, name)[i]) for name in VALUES] for i in range(count)]
+
+
+def found_by_package(
+    case: Case, times: list[float], end: float, long_times: list[float], rng: random.Random
+) -> Found:
+    """Events, and samples by every route."""
+    scene = in_words(case)
+    asked = sorted({*times, end})
+    motion = rl.simulate(scene, asked, model="contact", raise_on_failure=False)
+    values: dict[tuple[str, str], list[float]] = {}
+    kinds = []
+    for i, event in enumerate(motion.events):
+        after = event.state_after
+        values[f"event {i}", "event"] = [event.t, *(getattr(after, name) for name in VALUES[1:])]
+        kinds.append(event.kind.name.lower())
+    reached = [one for one in asked if one <= float(motion.t[-1])] if len(motion.t) else []
+    table = dict(zip(reached, states(motion, len(reached)), strict=True))
+    for i, one in enumerate(times):
+        if one in table:
+            values[f"sample {i}", "table"] = table[one]
+    known = [i for i, one in enumerate(times) if one in table]
+    if known:
+        order = rng.sample(known, len(known))
+        shuffled = states(motion.sol([times[i] for i in order]), len(order))
+        for i, row in zip(order, shuffled, strict=True):
+            values[f"sample {i}", "sol"] = row
+        for i in rng.sample(known, min(2, len(known))):
+            alone = rl.simulate(scene, [times[i]], model="contact", raise_on_failure=False)
+            if len(alone.t):
+                values[f"sample {i}", "alone"] = states(alone, 1)[0]
+    for i, one in enumerate(long_times):
+        far = rl.simulate(scene, [one], model="contact", raise_on_failure=False)
+        if len(far.t):
+            values[f"long {i}", "long"] = states(far, 1)[0]
+    return Found(kinds, values, motion.status.name)
+
+
+# ---------------------------------------------------------------- one scene
+
+
+def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
+    """Times between events to ask for, and an end; why it ends there."""
+    first = answer(case, CHANGED_ROAD, [], case.longest, MOST_STEPS)
+    ends = [float(one.t) for one in first.events]
+    if first.events and first.events[-1].kind == "jam":
+        return [], max(ends[-1], 1e-3 * case.longest), "jam"
+    stop = case.longest if first.stopped is None else float(first.stopped)
+    if len(ends) > case.most_events:
+        stop = ends.pop()
+    last = ends[-1] if ends else 0.0
+    end = last + (stop - last) * (0.6 if stop < case.longest else 1.0)
+    times = []
+    bounds = [0.0, *ends, end]
+    for low, high in pairwise(bounds):
+        if high - low > 1e6 * ROUNDING * high:
+            times += [low + (high - low) * rng.uniform(0.05, 0.95) for _ in range(2)]
+    if len(times) > 12:
+        times = rng.sample(times, 12)
+    return sorted({*times, *([0.0] if case.blow else [])}), end, first.why
+
+
+def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bool:
+    """Whether a scene changed by a few roundings has these events."""
+    for _ in range(NEARBY):
+        near = case
+        v = case.scene._asdict()
+        if v["x_dot"] is not None and v["z"] is None:
+            rolls = support(v["a"], v["b"], v["theta"])[0] * v["omega"]
+            if abs(v["x_dot"] - rolls) < 1e-14 * abs(rolls):  # and is said to roll
+                near = with_input(near, "x_dot", rng.choice([None, v["x_dot"]]))
+        with CHANGED_ROAD.context():
+            for name in ("a", "b", "gravity", "friction", "theta", "omega", "x_dot", "slope"):
+                old = getattr(near.scene, name)
+                if old is not None and math.isfinite(old):
+                    off = rng.uniform(-4, 4) * ROUNDING
+                    new = mpfr(old) + off if name == "theta" else mpfr(old) * (1 + mpfr(off))
+                    near = with_input(near, name, new)
+        again = answer(near, CHANGED_ROAD, [], end)
+        if [one.kind for one in again.events][: len(kinds)] == kinds[: len(again.events)]:
+            return True
+    return False
+
+
+class TooSlow(Exception):
+    """The scene takes longer than `MOST_SECONDS`."""
+
+
+def too_slow(*_: Any) -> None:
+    """Answer of the alarm."""
+    raise TooSlow
+
+
+def judge(seed: int, number: int, family: str | None = None, tell: bool = False) -> dict[str, Any]:
+    """Judge one scene."""
+    rng = random.Random(f"{seed}-{number}")
+    case = drawn(rng, family)
+    record: dict[str, Any] = {"number": number, "family": case.family}
+    record["inputs"] = {k: v for k, v in case.scene._asdict().items() if v is not None}
+    if case.blow:
+        record["blow"] = list(case.blow)
+    signal.signal(signal.SIGALRM, too_slow)
+    signal.setitimer(signal.ITIMER_REAL, MOST_SECONDS * 5)
+    began = time.process_time()
+    try:
+        record |= judged(case, rng, check=number % CHECKED == 0, tell=tell)
+    except ValueError as error:
+        record |= {"verdict": "refused", "why": str(error)}
+    except Undecided as error:
+        record |= {"verdict": "undecided", "why": str(error)}
+    except TooSlow:
+        record |= {"verdict": "too slow", "why": ""}
+    except Exception as error:
+        record |= {"verdict": "failed", "why": repr(error)}
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+    record["seconds"] = round(time.process_time() - began, 2)
+    return record
+
+
+def first_wrong(known: Reference, found: Found, end: float) -> int | None:
+    """The first event that is of another kind, missing or invented."""
+    for i, kind in enumerate(known.kinds):
+        if [kind] != found.kinds[i : i + 1]:
+            return i
+    count = len(known.kinds)
+    one_more = count == len(known.times) < len(found.kinds)
+    if one_more and found.values[f"event {count}", "event"][0] < end * (1 - 1e-9):
+        return count
+    return None
+
+
+def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str, Any]:
+    """The verdict on a case."""
+    words = in_words(case)  # refuses what is no scene
+    record: dict[str, Any] = {"scene": repr(words)}
+    times, end, why = plan(case, rng)
+    long_times = []
+    if case.long_turns:
+        tau = natural(case.scene)[1]
+        long_times = [tau * case.long_turns, tau * case.long_turns * rng.uniform(0.5, 1.5)]
+    known = reference(case, times, end, long_times, check)
+    found = found_by_package(case, times, end, long_times, rng)
+    record |= {"end": end, "kinds": known.kinds, "why": why, "at_limit": known.at_limit}
+    record |= {"status": found.status, "apart": known.apart}
+    if known.apart > APART:
+        return record | {"verdict": "undecided", "why": "two roads apart"}
+    if not known.judged and not known.kinds:
+        record["why"] = why or "not fixed by the inputs"
+        return record | {"verdict": "at a limit" if known.at_limit else "undecided"}
+    wrong = first_wrong(known, found, end)
+    cut = math.inf
+    if wrong is not None:
+        alike = [float(one) for one in known.times[wrong : wrong + 1]]
+        if wrong < len(found.kinds):
+            alike.append(found.values[f"event {wrong}", "event"][0])
+        cut = min(alike)
+        near = leads_to(case, end, found.kinds[: wrong + 1], rng)
+        record |= {"wrong_event": wrong, "found_kinds": found.kinds[: wrong + 3]}
+        record["wrong"] = "limit" if near else "fault"
+    loose: dict[str, float] = {}
+    strict: dict[str, float] = {}
+    tops: list[Any] = []
+    scale, seen = sizes(case.scene), 0.0
+    for one in known.judged:
+        if float(one.row.t) >= cut:
+            continue
+        for route in ROUTES:
+            values = found.values.get((one.what, route))
+            if values is None:
+                continue
+            with EXACT_ROAD.context():
+                errors = [float(abs(mpfr(v) - e)) for v, e in zip(values, one.row[1:], strict=True)]
+            for i, name in enumerate(VALUES):
+                if name == "t" and route != "event":
+                    continue
+                key = f"{route} {name}"
+                least = LEAST_UNIT * scale[i]
+                units = errors[i] / max(one.unit[i], least) if one.unit[i] < math.inf else 0.0
+                fine = errors[i] / max(one.strict[i], least)
+                loose[key] = max(loose.get(key, 0.0), units)
+                strict[key] = max(strict.get(key, 0.0), fine)
+                if units > 4 or fine > 4 or tell:
+                    true = f"{one.row[1 + i]:.25e}"
+                    tops.append([units, fine, one.what, route, name, float(one.row.t), values[i],
+                                 true, errors[i] / scale[i], one.unit[i]])  # fmt: skip
+                if units > 8:
+                    seen = max(seen, errors[i] / scale[i]) if route != "sol" else seen
+        if tell:
+            print(one.what, [f"{float(v):.17g}" for v in one.row[1:]], one.unit)
+    tops.sort(key=lambda top: -max(top[0], 1e-3 * top[1]))
+    firsts = {(top[3], top[4]): top for top in reversed(tops)}  # the worst of each
+    record |= {"verdict": "judged", "rows": len(known.judged), "seen": seen}
+    for key, by in (("by", loose), ("strict_by", strict)):
+        record[key] = {name: round(value, 3) for name, value in by.items() if value > 1}
+    record["tops"] = tops if tell else [top for top in tops if top in firsts.values()]
+    return record
+
+
+def worst(record: dict[str, Any], key: str = "by", sol: bool = False) -> float:
+    """Most units by `sol`, or by any other route."""
+    found = [value for name, value in record[key].items() if name.startswith("sol") == sol]
+    return max(found, default=0.0)
+
+
+# ---------------------------------------------------------------- the scenes
+
+
+def support(a: float, b: float, theta: float) -> tuple[float, float, float]:
+    """h, h' and h'' at theta, to draw with."""
+    h = math.hypot(a * math.sin(theta), b * math.cos(theta))
+    slope = (a - b) * (a + b) * math.sin(theta) * math.cos(theta) / h
+    return h, slope, (a * b) ** 2 / h**3 - h
+
+
+def power(rng: random.Random, low: float, high: float) -> float:
+    """A power of ten between two."""
+    return math.exp(math.log(10) * rng.uniform(low, high))
+
+
+def sign(rng: random.Random) -> int:
+    """Either."""
+    return rng.choice([-1, 1])
+
+
+def drawn_axes(rng: random.Random) -> tuple[float, float]:
+    """Semi-axes: the longer between a millimetre and a kilometre, but mostly near a metre."""
+    longer = power(rng, -3, 3) if rng.random() < 0.2 else power(rng, -0.5, 0.5)
+    what = rng.random()
+    if what < 0.07:
+        return longer, longer
+    if what < 0.18:
+        ratio = 1 + power(rng, -12, -1)
+    elif what < 0.45:
+        ratio = rng.uniform(1.1, 4.0)
+    else:
+        ratio = power(rng, 0.05, 2.999)
+    shorter = longer / ratio
+    return (longer, shorter) if rng.random() < 0.5 else (shorter, longer)
+
+
+def drawn_friction(rng: random.Random) -> float:
+    """From none over tiny, common and large ones to unlimited."""
+    what = rng.random()
+    if what < 0.1:
+        return 0.0
+    if what < 0.25:
+        return power(rng, -300, -3) if rng.random() < 0.3 else power(rng, -20, -3)
+    if what < 0.7:
+        return power(rng, -2, 0.5)
+    return power(rng, 0.3, 6) if what < 0.82 else math.inf
+
+
+def drawn_slope(rng: random.Random) -> float:
+    """Level, gentle or steep, up or down."""
+    what = rng.random()
+    if what < 0.45:
+        return 0.0
+    if what < 0.6:
+        return sign(rng) * power(rng, -12, -1)
+    return sign(rng) * rng.uniform(0.02, 0.6 if what < 0.8 else 1.5)
+
+
+def drawn_body(rng: random.Random) -> dict[str, Any]:
+    """A body on its ground, not yet put anywhere."""
+    a, b = drawn_axes(rng)
+    longer = max(a, b)
+    mass = 1.0 if rng.random() < 0.4 else power(rng, -3, 3)
+    what = rng.random()
+    inertia = None
+    if what < 0.25:
+        inertia = mass * longer**2 * power(rng, -6, 6)
+    elif what < 0.5:
+        inertia = mass * longer**2 * power(rng, -1.5, 0.5)
+    restitution = rng.choice([0.0, 0.0, 1.0, rng.uniform(0, 1), power(rng, -8, -1)])
+    return {
+        "a": a,
+        "b": b,
+        "mass": mass,
+        "gravity": 9.81 if rng.random() < 0.6 else power(rng, -3, 3),
+        "inertia": inertia,
+        "slope": drawn_slope(rng),
+        "friction": drawn_friction(rng),
+        "restitution": restitution,
+        "x": 0.0 if rng.random() < 0.6 else longer * rng.uniform(-2, 2),
+    }
+
+
+Values = dict[str, Any]
+
+
+def rate(v: Values) -> float:
+    """Of falling over."""
+    return math.sqrt(v["gravity"] / max(v["a"], v["b"]))
+
+
+def speed(v: Values) -> float:
+    """Of falling as deep as the body is long."""
+    return math.sqrt(v["gravity"] * max(v["a"], v["b"]))
+
+
+def pose(rng: random.Random, v: Values) -> None:
+    """Any angle and spin."""
+    v["theta"] = rng.uniform(-math.pi, math.pi)
+    v["omega"] = rate(v) * rng.uniform(-2.5, 2.5)
+
+
+def slide(rng: random.Random, v: Values) -> None:
+    """Sliding."""
+    pose(rng, v)
+    v["omega"] = rng.choice([v["omega"], v["omega"], 0.0])
+    v["x_dot"] = speed(v) * rng.choice([rng.uniform(-2, 2), sign(rng) * power(rng, -8, 0)])
+
+
+def frictionless(rng: random.Random, v: Values) -> None:
+    """Sliding for long with next to no friction."""
+    slide(rng, v)
+    v["friction"] = rng.choice([0.0, power(rng, -20, -6)])
+    v["omega"] = rate(v) * rng.uniform(-1, 1)
+
+
+def roll(rng: random.Random, v: Values) -> None:
+    """Rolling; it will slip."""
+    pose(rng, v)
+    v["friction"] = rng.choice([v["friction"], rng.uniform(0.02, 1), math.inf])
+
+
+def short_slip(rng: random.Random, v: Values) -> None:
+    """Rolling that needs hardly more friction than there is."""
+    pose(rng, v)
+    peak = peak_of_friction(Scene(**v))
+    if peak > 1e-6:
+        v["friction"] = peak * (1 - power(rng, -6, -1))
+
+
+def toss(rng: random.Random, v: Values) -> None:
+    """In flight."""
+    pose(rng, v)
+    a, b = v["a"], v["b"]
+    above = rng.choice([rng.uniform(0.02, 1.0) * min(a, b), max(a, b) * power(rng, -12, 0)])
+    v["z"] = support(a, b, v["theta"])[0] + above
+    v["x_dot"], v["z_dot"] = speed(v) * rng.uniform(-1, 1), speed(v) * rng.uniform(-1, 0.5)
+
+
+def drop(rng: random.Random, v: Values) -> None:
+    """Dropped at rest; low or high."""
+    toss(rng, v)
+    v["omega"] = v["x_dot"] = v["z_dot"] = 0.0
+
+
+def blow(rng: random.Random, v: Values) -> None:
+    """Struck, rolling, lying, sliding or in flight; the blow is drawn with the case."""
+    rng.choice([roll, roll, slide, lying, toss])(rng, v)
+
+
+def tip(rng: random.Random, v: Values) -> None:
+    """On the tip with hardly any spin, at most the doubles beside it."""
+    if v["a"] == v["b"] or rng.random() < 0.6:  # which rolls on over its flat side
+        v["a"] = v["b"] * rng.uniform(1.05, 3.0) ** sign(rng)
+    v["theta"] = rng.choice([-1, 1]) * math.pi / 2 if v["a"] > v["b"] else 0.0
+    if rng.random() < 0.2:
+        v["theta"] = math.nextafter(v["theta"], sign(rng))
+    v["omega"] = sign(rng) * rate(v) * power(rng, *rng.choice([(-99, 0), (-16, -6), (-3, 0)]))
+    v["slope"] = 0.0
+    v["friction"] = rng.choice([math.inf, math.inf, v["friction"], rng.uniform(0.1, 2)])
+
+
+def beside_tip(rng: random.Random, v: Values) -> None:
+    """Falling over from beside the tip."""
+    tip(rng, v)
+    v["theta"] += sign(rng) * power(rng, -13, -1)
+    v["omega"] = rng.choice([0.0, v["omega"]])
+
+
+def lying(rng: random.Random, v: Values) -> None:
+    """Lying beside the flat position, at rest or nearly so."""
+    if v["a"] == v["b"]:
+        v["a"] *= 2
+    v["theta"] = 0.0 if v["a"] > v["b"] else rng.choice([-1, 1]) * math.pi / 2
+    v["theta"] += sign(rng) * power(rng, -13, -0.5)
+    v["omega"] = rng.choice([0.0, 0.0, rate(v) * sign(rng) * power(rng, -12, -1)])
+    v["slope"] = 0.0
+    v["friction"] = rng.choice([math.inf, v["friction"], rng.uniform(0.2, 3)])
+
+
+def well(rng: random.Random, v: Values) -> None:
+    """Small rocking where a slope holds a body that is not round."""
+    a, b = drawn_axes(rng)
+    while max(a, b) / min(a, b) < 1.01:
+        a, b = drawn_axes(rng)
+    v["a"], v["b"] = a, b
+    ratio = max(a, b) / min(a, b)
+    steepest = (ratio - 1 / ratio) / 2  # of h'/h
+    v["slope"] = sign(rng) * math.atan(steepest) * rng.uniform(0.05, 0.95)
+    # tan(slope) = h'/h has its stable root between the flat position and the steepest
+    incline = abs(math.tan(v["slope"]))
+    low, high = 0.0, math.atan2(min(a, b), max(a, b))
+    for _ in range(100):
+        middle = (low + high) / 2
+        h, lever, _ = support(max(a, b), min(a, b), middle)
+        low, high = (low, middle) if lever / h > incline else (middle, high)
+    lies = math.copysign(low, v["slope"])
+    v["theta"] = lies if a > b else lies + sign(rng) * math.pi / 2
+    v["theta"] += sign(rng) * low * power(rng, -10, -0.7)
+    v["omega"] = 0.0
+    v["friction"] = rng.choice([math.inf, math.inf, 1e6, incline * rng.uniform(1.5, 10)])
+
+
+def light(rng: random.Random, v: Values) -> float:
+    """Turned to where a spin can take the weight off, and that spin."""
+    if v["a"] == v["b"]:
+        v["a"] *= 2
+    for _ in range(1000):
+        v["theta"] = rng.uniform(-math.pi, math.pi)
+        bend = support(v["a"], v["b"], v["theta"])[2]
+        if bend < 0:
+            return math.sqrt(-v["gravity"] * math.cos(v["slope"]) / bend)
+    return 0.0
+
+
+def weightless(rng: random.Random, v: Values) -> None:
+    """On the ground, hardly pressed to it or hardly free of it."""
+    spin = light(rng, v) * sign(rng)
+    v["omega"] = spin * (1 + sign(rng) * power(rng, -13, -0.5))
+    if rng.random() < 0.3:
+        v["x_dot"] = speed(v) * rng.uniform(-2, 2)
+
+
+def skips(rng: random.Random, v: Values) -> None:
+    """Many low hops, without loss."""
+    v["restitution"] = 1.0
+    if rng.random() < 0.5:
+        weightless(rng, v)
+        v["omega"] *= rng.uniform(0.7, 1.3)
+    else:
+        toss(rng, v)
+        h = support(v["a"], v["b"], v["theta"])[0]
+        v["z"] = h * (1 + power(rng, -9, -1))
+        v["omega"] = rate(v) * rng.choice([0.0, rng.uniform(-0.5, 0.5)])
+        v["z_dot"] = support(v["a"], v["b"], v["theta"])[1] * v["omega"]
+        v["x_dot"] *= rng.choice([0.0, 1.0])
+
+
+def limits(rng: random.Random, v: Values) -> None:
+    """Within a few roundings of a limit."""
+    off = 1 + rng.choice([0, 1, -1, 3, -3, 40, -40]) * 1.1e-16
+    what = rng.choice(["weightless", "friction", "grip", "tip", "level"])
+    if what == "weightless":
+        v["omega"] = light(rng, v) * sign(rng) * off
+    elif what == "friction":
+        pose(rng, v)
+        v["slope"] = 0.0
+        v["omega"] = 0.0
+        v["friction"] = needed_friction(v) * off
+    elif what == "grip":
+        pose(rng, v)
+        v["x_dot"] = support(v["a"], v["b"], v["theta"])[0] * v["omega"] * off
+    elif what == "tip":
+        tip(rng, v)
+        v["theta"] = v["theta"] * off if v["theta"] else off - 1
+        v["omega"] = rng.choice([0.0, v["omega"]])
+    else:
+        well(rng, v)
+        v["friction"] = math.tan(abs(v["slope"])) * off
+
+
+def needed_friction(v: Values) -> float:
+    """|F|/N of rolling from rest on level ground."""
+    h, lever, _ = support(v["a"], v["b"], v["theta"])
+    disc = (v["a"] ** 2 + v["b"] ** 2) / 4
+    k2 = disc if v["inertia"] is None else v["inertia"] / v["mass"]
+    needed: float = abs(h * lever) / (k2 + h * h)
+    return needed
+
+
+class Family(NamedTuple):
+    """How to draw its scenes, its share, how many events at most, and for how long."""
+
+    draw: Callable[[random.Random, Values], None]
+    share: float
+    most_events: int = 8
+    spans: tuple[float, float] = (3.0, 12.0)  # natural times
+
+
+FAMILIES = {
+    "slide": Family(slide, 16),
+    "frictionless": Family(frictionless, 6, 8, (10.0, 40.0)),
+    "roll": Family(roll, 12),
+    "short slip": Family(short_slip, 5),
+    "toss": Family(toss, 10),
+    "drop": Family(drop, 6),
+    "blow": Family(blow, 10),
+    "tip": Family(tip, 7, 4, (10.0, 40.0)),
+    "beside tip": Family(beside_tip, 4, 4, (10.0, 40.0)),
+    "lying": Family(lying, 5, 4),
+    "well": Family(well, 6, 4),
+    "weightless": Family(weightless, 6),
+    "skips": Family(skips, 7, 40, (10.0, 40.0)),
+    "limits": Family(limits, 6),
+}
+
+
+def drawn_blow(rng: random.Random, v: Values) -> Blow:
+    """At a point of the body, inwards."""
+    mass, fall = v["mass"], speed(v)
+    size = mass * fall * power(rng, -3, 0.5)
+    angle = rng.uniform(-math.pi, math.pi)
+    if rng.random() < 0.4:  # pressed down
+        reach = math.hypot(v["a"] * math.cos(v["theta"]), v["b"] * math.sin(v["theta"]))
+        return Blow(0.0, -size, rng.uniform(-0.9, 0.9) * reach, 0.0)
+    shorter = min(v["a"], v["b"])
+    arm, at = rng.uniform(-0.9, 0.9) * shorter, rng.uniform(-math.pi, math.pi)
+    return Blow(
+        size * math.cos(angle), size * math.sin(angle), arm * math.cos(at), arm * math.sin(at)
+    )
+
+
+def drawn(rng: random.Random, name: str | None = None) -> Case:
+    """A case of a family."""
+    shares = [family.share for family in FAMILIES.values()]
+    name = name or rng.choices(list(FAMILIES), shares)[0]
+    family = FAMILIES[name]
+    v = drawn_body(rng)
+    family.draw(rng, v)
+    struck = drawn_blow(rng, v) if name == "blow" else None
+    scene = Scene(**v)
+    long_turns = 0.0
+    if name in ("well", "lying", "tip", "beside tip"):
+        long_turns = power(rng, 1, 7)
+    longest = natural(scene)[1] * log_uniform(rng, *family.spans)
+    return Case(name, scene, struck, longest, family.most_events, long_turns)
+
+
+# ---------------------------------------------------------------- the run
+
+
+def read(file: Path) -> list[dict[str, Any]]:
+    """Records of a run so far; a line that was not finished is left out."""
+    records = []
+    for line in file.read_text().splitlines() if file.exists() else []:
+        try:
+            records.append(json.loads(line))
+        except json.JSONDecodeError:
+            continue
+    return records
+
+
+def aspect(record: dict[str, Any]) -> str:
+    """The power of ten of a/b, or round."""
+    a, b = record["inputs"]["a"], record["inputs"]["b"]
+    if abs(a / b - 1) < 0.1:
+        return "round"
+    thin = "thin " if max(a / b, b / a) > 10 else ""
+    return thin + ("a > b" if a > b else "a < b")
+
+
+def mu(record: dict[str, Any]) -> str:
+    """A word for the friction."""
+    value = record["inputs"]["friction"]
+    words = ((0, "0"), (1e-3, "tiny"), (3, "common"), (1e7, "large"))
+    return next((word for most, word in words if value <= most), "unlimited")
+
+
+def report(records: list[dict[str, Any]], limit: float) -> None:
+    """Print what a run has found."""
+    verdicts: dict[str, int] = defaultdict(int)
+    for one in records:
+        verdicts[one["verdict"]] += 1
+    print(len(records), "scenes:", dict(verdicts), f"{sum(o['seconds'] for o in records):.0f} s")
+    for word in ("refused", "undecided", "failed"):
+        reasons: dict[str, int] = defaultdict(int)
+        for one in records:
+            if one["verdict"] == word:
+                reasons[one.get("why", "")[:70]] += 1
+        print(f"  {word}:", dict(sorted(reasons.items(), key=lambda item: -item[1])[:8]))
+    judged_ones = [one for one in records if one["verdict"] == "judged"]
+    for word, which in (("in units", 0), ("of values", 1)):
+        own = [one["apart"] for one in judged_ones if (one["number"] % CHECKED == 0) == which]
+        print(f"differences of two roads {word}: {max(own, default=0):.1e} units")
+    events = sum(len(one["kinds"]) for one in judged_ones)
+    print(f"{events} events, {sum(one['rows'] for one in judged_ones)} rows")
+    for title, key in (("family", lambda one: one["family"]), ("aspect", aspect), ("mu", mu)):
+        print(f"\n{title:14} judged  worst units  > 4   > 8  > 8 and an ulp of the size  "
+              "by sol: worst  > 8   strict  > 8  wrong events (at a limit)")  # fmt: skip
+        groups = defaultdict(list)
+        for one in judged_ones:
+            groups[key(one)].append(one)
+        for name, group in sorted(groups.items()):
+            most = [worst(one) for one in group]
+            sol = [worst(one, sol=True) for one in group]
+            fine = [worst(one, "strict_by") for one in group]
+            wrong = [one.get("wrong") for one in group]
+            print(f"{name:14} {len(group):6} {max(most):12.3g} {sum(w > 4 for w in most):4} "
+                  f"{sum(w > 8 for w in most):5} {sum(o['seen'] > ROUNDING for o in group):25} "
+                  f"{max(sol):15.3g} {sum(w > 8 for w in sol):4} "
+                  f"{max(fine):8.2g} {sum(w > 8 for w in fine):4} "
+                  f"{wrong.count('fault'):6} ({wrong.count('limit')})")  # fmt: skip
+    parts: dict[str, list[float]] = defaultdict(list)
+    for one in judged_ones:
+        for name, value in one["by"].items():
+            parts[name].append(value)
+    print("\nworst by route and component")
+    for name, values in sorted(parts.items()):
+        print(f"  {name:14} {max(values):10.3g}   > 8 in {sum(v > 8 for v in values)} scenes")
+    print(f"\nscenes above {limit} units, or with wrong events")
+    bad = [
+        one for one in judged_ones if one.get("wrong") or max(one["by"].values(), default=0) > limit
+    ]
+    for one in sorted(bad, key=lambda one: (one["family"], -worst(one))):
+        print(f"\n# {one['number']} {one['family']}, {aspect(one)}, mu {mu(one)}: worst "
+              f"{worst(one):.3g}, by sol {worst(one, sol=True):.3g}, strict "
+              f"{worst(one, 'strict_by'):.3g} units; {' '.join(one['kinds'])}")  # fmt: skip
+        if one.get("wrong"):
+            print(f"#   {one['wrong']}: event {one['wrong_event']}, found {one['found_kinds']}")
+        print(f"{one['scene']}  # to {one['end']!r}")
+        told: set[tuple[str, str]] = set()
+        for units, _, what, route, name, t, value, true, off, unit in one["tops"]:
+            if units > limit and (what, name) not in told and len(told) < 8:
+                told.add((what, name))
+                print(f"#   {what} at t = {t!r} by {route}: {name} = {value!r}, true {true}, "
+                      f"{units:.3g} units of {unit:.1e}, {off:.1e} of the size")  # fmt: skip
+
+
+def work(task: tuple[int, int, str | None]) -> dict[str, Any]:
+    """One scene, in a process of its own."""
+    return judge(*task)
+
+
+def main() -> None:
+    """Judge scenes that are not in the file yet, and report."""
+    asked = argparse.ArgumentParser(description="Judge the contact model by random scenes.")
+    asked.add_argument("--scenes", type=int, default=200)
+    asked.add_argument("--seed", type=int, default=1)
+    asked.add_argument("--workers", type=int, default=1)
+    asked.add_argument("--family", choices=list(FAMILIES))
+    asked.add_argument("--file", type=Path)
+    asked.add_argument("--limit", type=float, default=8.0)
+    asked.add_argument("--only", type=int)
+    asked.add_argument("--report", action="store_true", help="only print what the file says")
+    given = asked.parse_args()
+    if given.only is not None:
+        record = judge(given.seed, given.only, given.family, tell=True)
+        print(json.dumps(record, indent=1))
+        return
+    file = given.file or Path(f"judged-{given.seed}.jsonl")
+    records = read(file)
+    done = {one["number"] for one in records}
+    tasks = [(given.seed, i, given.family) for i in range(given.scenes) if i not in done]
+    began = time.perf_counter()
+    if not given.report:
+        with multiprocessing.Pool(given.workers) as pool, file.open("a") as out:
+            for count, record in enumerate(pool.imap_unordered(work, tasks), 1):
+                print(json.dumps(record), file=out, flush=True)
+                records.append(record)
+                if count % 25 == 0:
+                    print(
+                        f"{count} of {len(tasks)}, {time.perf_counter() - began:.0f} s", flush=True
+                    )
+    report(records, given.limit)
+
+
+if __name__ == "__main__":
+    main()
