@@ -49,8 +49,9 @@ class Impulse:
         _ = self.shape  # arrays must broadcast
         if not self._arrays:
             _ = self.core  # the core validates
-        for name, values in self._arrays.items():
-            _let_the_core_refuse(name, values, name)
+            return
+        for name, values in vars(self).items():
+            _let_the_core_refuse(name, np.asarray(values), name)
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -158,7 +158,7 @@ def test_another_version_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) 
         simulate_many(GRID, TIMES, out=out)
     list(load_many(out))  # which another version can read
     monkeypatch.setattr(folders, "_SCHEMA", 99)
-    with pytest.raises(ValueError, match=r"^path must be a folder of schema 99, got .* of 1"):
+    with pytest.raises(ValueError, match=r"^path must be a folder of schema 99, got .* of 2"):
         load_many(out)
 
 

@@ -75,7 +75,7 @@ SCENES: list[Refusal] = [
     ),
     (r"^changes must be of a, b, .*, got color", lambda _: ROLLING.replace(color=1)),
     (r"^jx must be a finite number \[N s\] of", lambda _: Impulse(1e51)),
-    (r"^F must be finite, got nan", lambda _: Impulse.press(math.nan, 1.0)),
+    (r"^F must be a finite number \[N s\] .*, got nan", lambda _: Impulse.press(math.nan, 1.0)),
     (r"^jx must be .* at most 1e50, got 1e\+60 at index 1", lambda _: Impulse([1.0, 1e60])),
 ]  # fmt: skip
 
