@@ -297,15 +297,13 @@ def test_a_message_forms_no_more_of_a_value_than_it_shows() -> None:
             return "entry"
 
     entry = Entry()
-    for value in (
-        [entry] * 1000,
-        {i: entry for i in range(1000)},
-        [[entry] * 1000],
-        (entry,) * 900,
-    ):
+    many = [entry] * 1000
+    each: list[Any] = [many, tuple(many), [many], dict.fromkeys(range(1000), entry)]
+    for value in each:
         asked = 0
         assert len(_check.shown(value)) == 301 and asked <= 300
-    for value in ([1, (2,), {}, {3}, {"a": [1.5]}, (), "x" * 3, b"b", None], "x" * 298, 1.5):
+    short: list[Any] = [[1, (2,), {}, {3}, {"a": [1.5]}, (), "x" * 3, b"b", None], "x" * 298, 1.5]
+    for value in short:
         assert _check.shown(value) == repr(value)
     assert _check.shown("x" * 1000) == "'" + "x" * 299 + "…"
     assert _check.shown(deque(range(200_000))) == "an object of type deque"

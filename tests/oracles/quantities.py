@@ -35,7 +35,7 @@ class Unyt(np.ndarray):
 class Brian(np.ndarray):
     """A subclass of arrays that says dimensions, as Quantity of brian2."""
 
-    dimensions = {"length": 1}
+    dimensions = frozenset({"length"})
 
 
 class OpenMM:
