@@ -120,7 +120,9 @@ def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator
     held: dict[int, Chunk] = {}
     samples = request.times.size
     _, scenes = next(sizes(samples))
-    each = samples * SAMPLE_BYTES[request.settings.model]  # bytes of a scene; its events are seen
+    each = (
+        samples * SAMPLE_BYTES[request.settings.model]
+    )  # bytes of a scene; events: as many as seen
 
     def tasks() -> Iterator[bytes]:
         nonlocal scenes
