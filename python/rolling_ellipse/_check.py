@@ -229,7 +229,7 @@ def _double(name: str, value: Any) -> float:
 
 def _require_plain(name: str, value: Any) -> None:
     """Raise an error if a value is masked, or has units, which its numbers do not tell."""
-    if type(value).__module__ == "builtins" or isinstance(value, np.generic):
+    if getattr(type(value), "__module__", "") == "builtins" or isinstance(value, np.generic):
         return
     masked = sys.modules.get("numpy.ma")  # which is slow to load: without it, nothing is masked
     if masked and isinstance(value, masked.MaskedArray) and masked.is_masked(value):

@@ -340,7 +340,8 @@ def test_names_of_any_kind_of_text_become_plain() -> None:
             raise TypeError("cannot be pickled")
 
     how: dict[str, Any] = {"model": Mine("rolling"), "method": Mine("dop853")}
-    motion = simulate(rl.scenes.report, [0.0, 0.5], **how, stabilization=Mine("projection"))
+    stabilization: Any = Mine("projection")
+    motion = simulate(rl.scenes.report, [0.0, 0.5], **how, stabilization=stabilization)
     told = dataclasses.replace(motion, message=Mine("message"), reason=Mine("reason"), **how)
     assert pickle.loads(pickle.dumps(told)) == told
     assert pickle.loads(pickle.dumps(motion)) == motion

@@ -63,7 +63,8 @@ def simulate_many(
     out : str or path-like, optional
         Folder that takes the motions, as plain .npz files of a chunk each; nothing is kept in
         memory. It is made if it is not there. One that an interrupted call has left is gone on
-        with, by any workers: the chunks in it are not computed again. `load_many` reads it.
+        with, by any workers: the chunks in it are not computed again, but for damaged ones.
+        `load_many` reads it.
     model, method, rtol, atol, step, stages, stabilization, baumgarte : as of `simulate`
     max_steps, max_events, rest_speed, raise_on_failure : as of `simulate`
 
@@ -120,9 +121,8 @@ def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator
     held: dict[int, Chunk] = {}
     samples = request.times.size
     _, scenes = next(sizes(samples))
-    each = (
-        samples * SAMPLE_BYTES[request.settings.model]
-    )  # bytes of a scene; events: as many as seen
+    # bytes of a scene: of its samples, and of events as many as were seen
+    each = samples * SAMPLE_BYTES[request.settings.model]
 
     def tasks() -> Iterator[bytes]:
         nonlocal scenes
