@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._check import broadcast
+from ._check import broadcast, shown
 from ._core import Outcome
 from ._impulse import Impulse
 from ._scene import Scene, require_scene
@@ -59,7 +59,7 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     if impulse is None:
         return _core.outcome(scene.core)
     if not isinstance(impulse, Impulse):
-        raise TypeError(f"impulse must be an Impulse or None, got {impulse!r}")
+        raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
     if impulse.shape == ():
         return _core.outcome(scene.replace(impulse=impulse).core)
     names = ("jx", "jz", "dx", "dz")

@@ -1,8 +1,8 @@
 """Conversion of arguments: numbers stay numbers, everything else is refused by name.
 
 A number is real and within the doubles, of whatever kind: Python's, NumPy's (an array without axes
-as well), a Decimal or a Fraction. Text, complex numbers, times and masked entries are none, nor is
-an array of one number.
+as well), a Decimal or a Fraction. Text, complex numbers, times, masked entries and quantities with
+units are none, nor is an array of one number.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ import math
 import os
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
 from contextlib import suppress
+from itertools import chain, islice
 from operator import index
 from typing import Any
 
@@ -26,6 +27,14 @@ _DOUBLE = np.dtype(np.float64)
 _MOST_WORKERS = 1024
 _PLACE = r"\[(\d+)\]"
 _LONGEST = 300  # characters of a value in a message
+_MOST_AXES = 32  # NumPy's broadcasting knows no more
+_PIECE = 2**17  # numbers converted at a time: 10 ms at most, between which Ctrl-C is answered
+_SLICED = (list, tuple, range)
+_PLAIN = frozenset({float, int, bool, np.float64})  # types of nearly all entries of lists
+_UNITS = ("unit", "units", "dimensions")
+_BRACKETS: dict[type[Any], tuple[str, str]] = {
+    list: ("[", "]"), tuple: ("(", ")"), dict: ("{", "}"), set: ("{", "}"),
+}  # fmt: skip
 
 
 def number(name: str, value: Any) -> float:
@@ -34,7 +43,7 @@ def number(name: str, value: Any) -> float:
     Raises
     ------
     TypeError
-        If it is no number.
+        If it is no number, or has units.
     ValueError
         If it is beyond the doubles, or masked.
     """
@@ -50,6 +59,7 @@ def number(name: str, value: Any) -> float:
         if found is not None and found.ndim == 0:
             return float(found)
     elif hasattr(kind, "__float__") or hasattr(kind, "__index__"):  # text has neither
+        _require_plain(name, value)
         with suppress(TypeError):
             return _double(name, value)
     raise TypeError(f"{name} must be a number, got {shown(value)}")
@@ -63,7 +73,8 @@ def whole(name: str, value: Any) -> int:
     """Return ``value`` as an int, or raise TypeError naming the argument."""
     if type(value) is int:  # nearly always
         return value
-    if not isinstance(value, (bool, np.bool_)) and not _is_masked(value):
+    _require_plain(name, value)
+    if not isinstance(value, (bool, np.bool_)):
         with suppress(TypeError):
             return index(value)
     raise TypeError(f"{name} must be a whole number, got {shown(value)}")
@@ -118,26 +129,89 @@ def array(name: str, value: Any) -> FloatArray:
 
 def _doubles(name: str, value: Any) -> FloatArray | None:
     """``value`` as a float64 array, or None if it is nothing of the kind."""
-    if type(value) is np.ndarray and value.dtype is _DOUBLE:
-        return value
-    if _is_masked(value):
-        raise ValueError(f"{name} must have no masked entries, got {shown(value)}")
+    if type(value) is np.ndarray:
+        return _of_array(name, value)
+    if type(value) is float:
+        return np.array(value)
+    _require_plain(name, value)
+    if hasattr(type(value), "__array__"):
+        return _of_array(name, _converted(value))
+    if _is_sequence(value):
+        _require_plain_entries(name, value, value)
+    return _of_sequence(name, value)
+
+
+def _converted(value: Any) -> npt.NDArray[Any] | None:
     try:
-        found = np.asarray(value)
+        return np.asarray(value)
     except (TypeError, ValueError):  # ragged sequences
         return None
+
+
+def _of_array(name: str, found: npt.NDArray[Any] | None) -> FloatArray | None:
+    if found is None or found.dtype.kind not in "biuf":
+        return None
+    if found.ndim > _MOST_AXES:
+        raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {found.ndim}")
     if found.dtype is _DOUBLE:
         return found
-    if found.dtype.kind in "biuf":
-        if found.dtype.itemsize > _DOUBLE.itemsize:
-            beyond = np.isfinite(found) & (abs(found) > np.finfo(np.float64).max)
-            require(name, "within the range of doubles", found, ~beyond)
-        return found.astype(np.float64, copy=False)
-    if found.dtype.kind == "O" and not hasattr(type(value), "__array__"):
-        with suppress(TypeError):  # a list of Decimals, or of ints of more than 64 bits
-            entries = [number(name, entry) for entry in found.ravel().tolist()]
-            return np.array(entries, dtype=np.float64).reshape(found.shape)
+    if found.dtype.itemsize > _DOUBLE.itemsize:
+        beyond = np.isfinite(found) & (abs(found) > np.finfo(np.float64).max)
+        require(name, "within the range of doubles", found, ~beyond)
+    return copied(found)
+
+
+def _of_list(name: str, found: npt.NDArray[Any] | None) -> FloatArray | None:
+    """As `_of_array`, also of what NumPy has made of Decimals, or ints of more than 64 bits."""
+    if found is None or found.dtype.kind != "O":
+        return _of_array(name, found)
+    with suppress(TypeError):
+        entries = [number(name, entry) for entry in found.ravel().tolist()]
+        return np.array(entries, dtype=np.float64).reshape(found.shape)
     return None
+
+
+def _of_sequence(name: str, entries: Any) -> FloatArray | None:
+    """The numbers of a sequence, of a long list piece by piece."""
+    size = _size(entries)
+    if size <= _PIECE:
+        return _of_list(name, _converted(entries))
+    step = len(entries) * _PIECE // size
+    parts = (
+        [_of_sequence(name, entries[k : k + step]) for k in range(0, len(entries), step)]
+        if step > 1
+        else [_doubles(name, entry) for entry in entries]
+    )
+    known = [part for part in parts if part is not None]
+    shapes = {part.shape[1:] if step > 1 else part.shape for part in known}
+    if len(known) < len(parts) or len(shapes) > 1:  # ragged
+        return None
+    found = np.empty((len(entries), *shapes.pop()))
+    for k, part in enumerate(known):
+        found[k * max(step, 1) : (k + 1) * max(step, 1)] = part
+    return found
+
+
+def _size(value: Any) -> int:
+    """How many numbers there are if each entry of a list is like its first."""
+    if isinstance(value, _SLICED):
+        return len(value) * _size(value[0]) if value else 0
+    return value.size if type(value) is np.ndarray else 1
+
+
+def pieces(values: npt.NDArray[Any]) -> Iterator[tuple[int, npt.NDArray[Any]]]:
+    """Yield the place and the numbers of one piece of an array after the other, in C order."""
+    flat: Any = values.reshape(-1) if values.flags.c_contiguous else values.flat
+    for begin in range(0, values.size, _PIECE):
+        yield begin, flat[begin : begin + _PIECE]
+
+
+def copied(values: npt.NDArray[Any]) -> FloatArray:
+    """Return a float64 copy of an array, in C order."""
+    found = np.empty(values.size)
+    for begin, piece in pieces(values):
+        found[begin : begin + piece.size] = piece
+    return found.reshape(values.shape)
 
 
 def _double(name: str, value: Any) -> float:
@@ -153,23 +227,85 @@ def _double(name: str, value: Any) -> float:
     return found
 
 
-def _is_masked(value: Any) -> bool:
+def _require_plain(name: str, value: Any) -> None:
+    """Raise an error if a value is masked, or has units, which its numbers do not tell."""
+    if getattr(type(value), "__module__", "") == "builtins" or isinstance(value, np.generic):
+        return
     masked = sys.modules.get("numpy.ma")  # which is slow to load: without it, nothing is masked
-    if masked is None:
-        return False
-    if isinstance(value, (list, tuple)):
-        may_be = (list, tuple, masked.MaskedArray)
-        return any(_is_masked(entry) for entry in value if isinstance(entry, may_be))
-    return isinstance(value, masked.MaskedArray) and bool(masked.is_masked(value))
+    if masked and isinstance(value, masked.MaskedArray) and masked.is_masked(value):
+        raise ValueError(f"{name} must have no masked entries, got {shown(value)}")
+    held = None if isinstance(value, np.ndarray) else getattr(value, "data", None)  # of xarray
+    if _has_units(value) or _has_units(held):
+        raise TypeError(f"{name} must be plain numbers in SI units, got {shown(value)}")
+
+
+def _has_units(value: Any) -> bool:
+    """Whether an object carries units, as those of pint, astropy, unyt and brian2 do.
+
+    It is its class that says so, or an attribute of its own: those of pandas and xarray have the
+    names of labels and notes. A plain tuple names the axes of a variable of netCDF4.
+    """
+    own = getattr(value, "__dict__", ())
+    return any(
+        (hasattr(type(value), name) or name in own)
+        and type(getattr(value, name, None)) not in (type(None), tuple)
+        for name in _UNITS
+    )
+
+
+def _is_sequence(value: Any) -> bool:
+    """Whether NumPy takes it as a sequence of entries."""
+    known = isinstance(value, (list, tuple)) or (
+        isinstance(value, Sequence) and not isinstance(value, (str, bytes, bytearray, memoryview))
+    )
+    return known and not hasattr(type(value), "__array__")
+
+
+def _require_plain_entries(name: str, value: Any, entries: Iterable[Any], axes: int = 1) -> None:
+    """`_require_plain` of all that lists in lists hold; `entries` are those at one depth."""
+    if axes > _MOST_AXES:
+        raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {shown(value)}")
+    each = iter(entries)
+    while piece := list(islice(each, _PIECE)):
+        if _PLAIN.issuperset(map(type, piece)):
+            continue
+        nested = [entry for entry in piece if _is_sequence(entry)]
+        if len(nested) < len(piece):
+            for entry in piece:
+                _require_plain(name, entry)
+        if nested:
+            _require_plain_entries(name, value, chain.from_iterable(nested), axes + 1)
 
 
 def shown(value: Any) -> str:
     """Return ``repr(value)``, cut to what a message has room for."""
     try:
-        text = repr(value)
+        text = "".join(islice(_parts(value), _LONGEST + 1))
     except Exception:  # an int of more digits than Python writes, an object that is broken
         return f"an object of type {type(value).__name__}"
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
+
+
+def _parts(value: Any) -> Iterator[str]:
+    """The text of a value part by part: of a large one, a message needs the first parts only."""
+    kind: type[Any] = type(value)
+    if kind in _BRACKETS and value:
+        opening, closing = _BRACKETS[kind]
+        yield opening
+        for place, entry in enumerate(value):
+            if place:
+                yield ", "
+            yield from _parts(entry)
+            if kind is dict:
+                yield ": "
+                yield from _parts(value[entry])
+        yield f",{closing}" if kind is tuple and len(value) == 1 else closing
+    elif kind in (str, bytes, bytearray):
+        yield repr(value[: _LONGEST + 1])
+    elif not hasattr(kind, "__array__") and isinstance(value, Sized) and len(value) > _PIECE:
+        yield f"an object of type {kind.__name__}"
+    else:
+        yield repr(value)
 
 
 def require(name: str, requirement: str, values: Any, holds: Any) -> None:
@@ -300,6 +436,6 @@ def file_name(name: str, value: Any) -> str:
 def choice(name: str, value: Any, valid: tuple[str, ...]) -> str:
     """Return ``value`` if it is one of the valid names, or raise ValueError listing them."""
     if isinstance(value, str) and value in valid:
-        return value
+        return valid[valid.index(value)]  # a str, whatever kind of str was given
     names = ", ".join(repr(v) for v in valid)
     raise ValueError(f"{name} must be one of {names}, got {shown(value)}")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, array, common_shape
+from ._check import FloatArray, array, common_shape, copied, pieces
 from ._status import ValidityWarning
 
 
@@ -49,9 +49,9 @@ class Impulse:
         _ = self.shape  # arrays must broadcast
         if not self._arrays:
             _ = self.core  # the core validates
-        for name, values in self._arrays.items():
-            if values.size:
-                _let_the_core_refuse(name, values)
+            return
+        for name, values in vars(self).items():
+            _let_the_core_refuse(name, np.asarray(values), name)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -79,12 +79,19 @@ class Impulse:
         F, d : float or array_like
             Arrays that broadcast make many blows.
         """
-        force, distance = _finite("F", F), _finite("d", d)
+        force, distance = array("F", F), array("d", d)
+        push = copied(force)
+        try:
+            found = cls(0.0, np.negative(push, out=push), dx=distance)
+        except ValueError:
+            _let_the_core_refuse("jz", force, "F")
+            _let_the_core_refuse("dx", distance, "d")
+            raise
         pull = float(np.min(force, initial=0.0))
         if pull < 0:
             said = f"F = {pull!r} N s pulls the body upwards: a press has a positive F"
             warnings.warn(said, ValidityWarning, stacklevel=2)
-        return cls(0.0, -force, dx=distance)
+        return found
 
     def _values(self) -> tuple[Any, ...]:
         """What two impulses are compared by: floats, and the shape and bits of arrays."""
@@ -107,35 +114,39 @@ class Impulse:
             values.flags.writeable = False
 
 
-def _finite(name: str, value: Any) -> FloatArray:
-    found = array(name, value)
-    if not np.isfinite(found).all():
-        index = _worst(found)
-        raise ValueError(f"{name} must be finite, got {found[index]!s}{_at(index)}")
-    return found
-
-
 def numbers(name: str, value: Any) -> Any:
     """Return a number as a float, and an array of numbers as a read-only copy."""
     found = array(name, value)
     if found.ndim == 0:
         return float(found)
-    copied = found.copy()
-    copied.flags.writeable = False
-    return copied
+    kept = copied(found)
+    kept.flags.writeable = False
+    return kept
 
 
 def _worst(values: FloatArray) -> tuple[int, ...]:
     """Return the index of the number that is refused if any is: NaN, or else the largest."""
-    return tuple(int(i) for i in np.unravel_index(np.argmax(np.abs(values)), values.shape))
+    place, size = 0, -1.0
+    for begin, piece in pieces(values):
+        sizes = np.abs(piece)
+        worst = int(sizes.argmax())
+        if not sizes[worst] <= size:
+            place, size = begin + worst, float(sizes[worst])
+        if np.isnan(size):
+            break
+    return tuple(int(i) for i in np.unravel_index(place, values.shape))
 
 
-def _let_the_core_refuse(name: str, values: FloatArray) -> None:
+def _let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
+    """Raise what the core says of the worst number, by the name of the argument that it came as."""
+    if not values.size:
+        return
     index = _worst(values)
     try:
         _core.Impulse(**({"jx": 0.0, "jz": 0.0, "dx": 0.0, "dz": 0.0} | {name: values[index]}))
     except ValueError as error:
-        raise ValueError(f"{error}{_at(index)}") from None
+        said = str(error).replace(name, argument, 1)
+        raise ValueError(f"{said}{_at(index)}") from None
 
 
 def _at(index: tuple[int, ...]) -> str:

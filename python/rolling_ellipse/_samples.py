@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._check import FloatArray, array
+from ._check import FloatArray, array, shown
 
 if TYPE_CHECKING:
     from ._trajectory import Trajectory
@@ -180,7 +180,7 @@ def coordinate_pair(
     try:
         q, q_dot = values
     except (TypeError, ValueError):
-        raise ValueError(f"{required}, got {values!r}") from None
+        raise ValueError(f"{required}, got {shown(values)}") from None
     pair = array(f"{name}[0]", q), array(f"{name}[1]", q_dot)
     if any(found.shape != shape for found in pair):
         raise ValueError(f"{required}, got shapes {pair[0].shape} and {pair[1].shape}")
@@ -190,7 +190,7 @@ def coordinate_pair(
 def contact_samples(values: Any, size: int) -> ContactSamples:
     """Return the samples of a contact motion; `vector` says what is raised."""
     if not isinstance(values, ContactSamples):
-        raise TypeError(f"contact must be ContactSamples or None, got {values!r}")
+        raise TypeError(f"contact must be ContactSamples or None, got {shown(values)}")
     *columns, mode = ContactSamples._fields
     found = [vector(name, getattr(values, name), size) for name in columns]
     return ContactSamples._make([*found, _codes(mode, values.mode, size)])

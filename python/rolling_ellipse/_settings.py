@@ -36,10 +36,10 @@ class Settings(FieldsOnly):
     rest_speed: float | None
 
     def __post_init__(self) -> None:
-        choice("model", self.model, MODELS)
-        choice("method", self.method, METHODS)
-        choice("stabilization", self.stabilization, STABILIZATIONS)
         checked = {
+            "model": choice("model", self.model, MODELS),
+            "method": choice("method", self.method, METHODS),
+            "stabilization": choice("stabilization", self.stabilization, STABILIZATIONS),
             "rtol": number("rtol", self.rtol),
             "atol": number("atol", self.atol),
             "step": optional_number("step", self.step),

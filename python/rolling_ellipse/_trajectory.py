@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._check import FloatArray, array, number
+from ._check import FloatArray, array, choice, number, shown
 from ._constraints import COORDINATES, ConstraintResiduals, constraints
 from ._events import Event, Events, events
 from ._fields import FieldsOnly, cached_property, find_late, trusted
@@ -26,8 +26,8 @@ from ._samples import (
     sampled,
     vector,
 )
-from ._scene import Scene
-from ._settings import Method, Model, Settings
+from ._scene import Scene, require_scene
+from ._settings import METHODS, MODELS, Method, Model, Settings
 from ._status import COMPLETED, STATUSES, Status
 from .geometry import support_slope
 
@@ -47,6 +47,10 @@ if TYPE_CHECKING:
     from ._pictures.strobe import Strobe
 
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
+
+_MODELS = tuple(model for model in MODELS if model != "auto")  # which a motion has
+_METHODS = tuple(method for method in METHODS if method != "auto")
+STATS = ("segments", "steps", "rejected_steps", "evaluations")
 
 
 def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Values]:
@@ -161,6 +165,16 @@ class Trajectory(FieldsOnly):
             checked["contact"] = contact_samples(self.contact, t.size)
         for name in ("valid_until", "t_end", "span"):
             checked[name] = number(name, getattr(self, name))
+        for name in ("message", "reason"):
+            checked[name] = _sentence(name, getattr(self, name))
+        checked["model"] = choice("model", self.model, _MODELS)
+        checked["method"] = choice("method", self.method, _METHODS)
+        require_scene(self.scene)
+        for name, kind in (("settings", Settings), ("status", Status)):
+            if not isinstance(value := getattr(self, name), kind):
+                raise TypeError(f"{name} must be of the class {kind.__name__}, got {shown(value)}")
+        checked["kept_events"] = _kept(self.kept_events)
+        _require_counts(self.stats)
         self.__dict__.update(checked)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -559,6 +573,28 @@ class Trajectory(FieldsOnly):
             f"t = {self.t[0]:g} ... {self.t[-1]:g} s, {self.turns[-1]:.3g} turns, "
             f"{self.status.name}>"
         )
+
+
+def _sentence(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be a sentence, got {shown(value)}")
+    return str.__str__(value)  # a str, whatever kind of str was given
+
+
+def _kept(found: Any) -> tuple[Event, ...] | None:
+    if found is not None and not (
+        isinstance(found, tuple) and all(isinstance(each, Event) for each in found)
+    ):
+        raise TypeError(f"kept_events must be a tuple of Event or None, got {shown(found)}")
+    return found
+
+
+def _require_counts(stats: Any) -> None:
+    if not (isinstance(stats, dict) and set(stats) <= set(STATS)):
+        raise ValueError(f"stats must have no names but {STATS}, got {shown(stats)}")
+    for name, count in stats.items():
+        if type(count) is not int or not 0 <= count < 2**63:
+            raise ValueError(f"{name} must be a count, got {shown(count)}")
 
 
 def _reason(self: Trajectory) -> str:

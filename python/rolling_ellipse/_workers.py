@@ -11,7 +11,6 @@ import pickle
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from ._check import FloatArray, shown, worker_count
 Columns = list[FloatArray]
 
 _IN_FLIGHT = 128  # tasks at most: they wait beside their results
+_HELD = 96 * 2**20  # bytes at most of results that wait for their turn, unless one has more
 _ELEMENTS = 2**16  # of a task; a multiple of the core's own parts, so that lanes stay the same
 
 
@@ -56,21 +56,26 @@ def threads_of(workers: Any) -> int | None:
 
 
 def in_order(
-    executor: Any, function: Callable[[bytes], Any], tasks: Iterable[bytes]
+    executor: Any,
+    function: Callable[[bytes], Any],
+    tasks: Iterable[bytes],
+    size: Callable[[], int] = lambda: 0,
 ) -> Iterator[tuple[int, Any]]:
     """Yield place and result of each task, in order; `Lost` where a worker died or none was left.
 
-    Tasks are taken as results are asked for. An interrupt cancels what has not begun; what is done
-    by then is yielded before it goes on.
+    Tasks are taken as results are asked for, so many that the results that wait have no more than
+    `_HELD` bytes, if none has more than `size` says after its task was taken. An interrupt cancels
+    what has not begun; what is done by then is yielded before it goes on.
     """
+    places = enumerate(tasks)
     if not _can(executor, "submit"):
-        yield from _mapped(executor, function, tasks)
+        yield from _mapped(executor, function, places, size)
         return
     waiting: deque[tuple[int, Any]] = deque()
-    places = enumerate(tasks)
     try:
         while True:
-            for place, task in islice(places, _IN_FLIGHT - len(waiting)):
+            while taken := _next(places, len(waiting), size):
+                place, task = taken
                 waiting.append((place, _submitted(executor, function, task)))
             if not waiting:
                 return
@@ -124,12 +129,27 @@ def _is_pool(workers: Any) -> bool:
     return _can(workers, "map") and (_can(workers, "close") or _can(workers, "shutdown"))
 
 
+def _next(
+    places: Iterator[tuple[int, bytes]], waiting: int, size: Callable[[], int]
+) -> tuple[int, bytes] | None:
+    """The next task, unless as many wait as may."""
+    most = min(_IN_FLIGHT, _HELD // max(1, size()))
+    return None if waiting and waiting >= most else next(places, None)
+
+
 def _mapped(
-    pool: Any, function: Callable[[bytes], Any], tasks: Iterable[bytes]
+    pool: Any,
+    function: Callable[[bytes], Any],
+    places: Iterator[tuple[int, bytes]],
+    size: Callable[[], int],
 ) -> Iterator[tuple[int, Any]]:
     """By pools that cannot be given one task: a part is lost together."""
-    places = enumerate(tasks)
-    while part := list(islice(places, _IN_FLIGHT)):
+    while True:
+        part: list[tuple[int, bytes]] = []
+        while taken := _next(places, len(part), size):
+            part.append(taken)
+        if not part:
+            return
         try:
             found: list[Any] = list(pool.map(function, [task for _, task in part]))
         except Exception as error:

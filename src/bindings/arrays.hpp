@@ -17,7 +17,10 @@ namespace rolling_ellipse::bindings {
 namespace py = pybind11;
 using namespace pybind11::literals;
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+// An argument that is not aligned (a field of a record, part of a buffer) is copied on its way in:
+// loads through a `const double*` may count on it.
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
+                                      py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 using Range = std::function<void(py::ssize_t, py::ssize_t)>;
 
 // Run body(begin, end) over 0 .. n in chunks, without the GIL; Ctrl-C stops it between chunks.

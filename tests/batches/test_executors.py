@@ -168,6 +168,64 @@ def test_what_is_asked_of_an_executor_is_no_more_than_it_can_take() -> None:
     assert next(taken) == sum(size for _, size in itertools.islice(sizes(1), 128))
 
 
+class Heavy(Here):
+    """Counts the bytes of results that nobody has asked for."""
+
+    held = most = largest = 0
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future = super().submit(fn, *args, **kwargs)
+        size = sum(table.nbytes for table in future.result().values())
+        self.held += size
+        self.most, self.largest = max(self.most, self.held), max(self.largest, size)
+        ask = future.result
+
+        def result(timeout: float | None = None) -> Any:
+            self.held -= size
+            return ask(timeout)
+
+        future.result = result  # type: ignore[method-assign]
+        return future
+
+
+class HeavyMap:
+    """A pool that gives back all that it was given at once."""
+
+    most = largest = 0
+
+    def map(self, function: Any, tasks: list[bytes]) -> list[Any]:
+        found = [function(task) for task in tasks]
+        sizes = [sum(table.nbytes for table in tables.values()) for tables in found]
+        self.most, self.largest = max(self.most, sum(sizes)), max(self.largest, *sizes)
+        return found
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.mark.parametrize("pool", [Heavy, HeavyMap])
+@pytest.mark.parametrize(
+    ("samples", "bytes_held", "way"),
+    [
+        (2000, 2**20, {}), (60_000, 2**20, {}),
+        (200, 2**18, {"model": "multipliers", "method": "rk4", "step": 0.5}),
+    ],
+)  # fmt: skip
+def test_results_that_wait_have_few_bytes(
+    samples: int,
+    bytes_held: int,
+    way: dict[str, Any],
+    pool: Any,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """No more than are allowed, or one result. That chunks grow by up to a sixteenth is seen a task
+    late."""
+    monkeypatch.setattr(_workers, "_HELD", bytes_held)
+    executor = pool()
+    simulate_many([scenes.rocking] * 100, np.linspace(0.0, 3.0, samples), workers=executor, **way)
+    assert executor.most <= max(17 / 16 * bytes_held, executor.largest)
+
+
 # ------------------------------------------------------------------------- workers that get lost
 
 

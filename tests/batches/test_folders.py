@@ -4,6 +4,7 @@ import errno
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -99,7 +100,6 @@ def test_what_is_there_is_not_computed_again(out: Path) -> None:
     first, *_, last = chunks(out)
     first.unlink()
     (out / "end.json").unlink()
-    (out / ".rolling_ellipse_0123").write_bytes(b"of a process that was killed")
     told: list[int] = []
     simulate_many(GRID, TIMES, out=out, workers=2, progress=lambda n, of: told.append(n))
     now = states(out)
@@ -158,13 +158,15 @@ def test_another_version_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) 
         simulate_many(GRID, TIMES, out=out)
     list(load_many(out))  # which another version can read
     monkeypatch.setattr(folders, "_SCHEMA", 99)
-    with pytest.raises(ValueError, match=r"^path must be a folder of schema 99, got .* of 1"):
+    with pytest.raises(ValueError, match=r"^path must be a folder of schema 99, got .* of 2"):
         load_many(out)
 
 
 def test_what_is_no_folder_of_motions(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("kept")
-    with pytest.raises(ValueError, match=r"^out must be a new or empty folder, or one of simulate"):
+    (tmp_path / "lost+found").mkdir()
+    (tmp_path / ".DS_Store").write_text("kept")
+    with pytest.raises(ValueError, match=r"^out must be a new or empty .* with 'mine.txt' in it$"):
         simulate_many(GRID, TIMES, out=tmp_path)
     with pytest.raises(ValueError, match=r"^path must be a folder written by simulate_many"):
         load_many(tmp_path)
@@ -176,7 +178,10 @@ def test_what_is_no_folder_of_motions(tmp_path: Path) -> None:
         load_many(tmp_path / "none")
     with pytest.raises(TypeError, match=r"^path must be a path"):
         load_many(3)  # type: ignore[arg-type]
-    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+    assert sorted(os.listdir(tmp_path)) == [".DS_Store", "lost+found", "mine.txt"]
+    (tmp_path / "mine.txt").unlink()
+    simulate_many(GRID, TIMES, out=tmp_path)  # beside what is nobody's work
+    require_equal(load_many(tmp_path), simulate_many(GRID, TIMES))
 
 
 # -------------------------------------------------------------------------------------- damage
@@ -184,28 +189,53 @@ def test_what_is_no_folder_of_motions(tmp_path: Path) -> None:
 
 @pytest.fixture
 def small(out: Path) -> Path:
-    simulate_many([scenes.jump, scenes.report, scenes.slip], [0.5, 1.5], out=out)
+    remake(out)
     return out
 
 
-def test_every_damaged_byte_is_found_or_harmless(small: Path) -> None:
-    """A byte changed anywhere in a file of numbers: refused by the name of the file, or in a place
-    that says nothing, as the dates of a zip archive do."""
-    (path,) = chunks(small)
+def remake(folder: Path) -> None:
+    simulate_many([scenes.jump, scenes.report, scenes.slip], [0.5, 1.5], out=folder)
+
+
+@pytest.mark.parametrize(("name", "stride"), [("chunk", 17), ("request.npz", 17), ("end.json", 1)])
+def test_every_damaged_byte_is_found_or_harmless(name: str, stride: int, small: Path) -> None:
+    """A byte changed anywhere: refused by the name of the file, or in a place that says nothing, as
+    the dates of a zip archive do. The same call of simulate_many then mends it, but for the
+    request, which it refuses; without that file it goes on."""
+    path = chunks(small)[0] if name == "chunk" else small / name
     whole, expected = path.read_bytes(), list(load_many(small))
     refused = 0
-    for place in range(0, len(whole), 17):
+    for place in range(0, len(whole), stride):
         path.write_bytes(whole[:place] + bytes([whole[place] ^ 0x11]) + whole[place + 1 :])
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of the headers of NumPy's files
             try:
                 found = list(load_many(small))
             except ValueError as error:
-                assert path.name in str(error)
+                assert path.name in str(error) and "simulate_many with the same" in str(error)
                 refused += 1
+                if name == "request.npz":
+                    with pytest.raises(ValueError, match=rf"{path.name}.*: delete it, and call"):
+                        remake(small)
+                    path.unlink()
             else:
                 require_equal(found, expected)
-    assert refused > len(whole) / 17 / 2
+            remake(small)
+        require_equal(load_many(small), expected)
+    assert refused > len(whole) / stride / 2
+
+
+def test_a_truncated_chunk_is_computed_anew(out: Path) -> None:
+    simulate_many(GRID, TIMES, out=out)
+    before, (_, cut, *_) = states(out), chunks(out)
+    with open(cut, "r+b") as file:
+        file.truncate(cut.stat().st_size // 2)
+    with pytest.raises(ValueError, match=rf"{cut.name}.*: simulate_many with the same .* anew$"):
+        list(load_many(out))
+    simulate_many(GRID, TIMES, out=out)
+    now = states(out)
+    assert {name for name in now if now[name] != before[name]} == {cut.name}
+    require_equal(load_many(out), simulate_many(GRID, TIMES))
 
 
 @pytest.mark.parametrize("name", ["request.npz", "end.json", "chunk"])
@@ -261,10 +291,7 @@ def test_tables_that_do_not_fit(name: str, change: Any, small: Path) -> None:
 
 def test_what_is_missing(small: Path) -> None:
     (path,) = chunks(small)
-    path.rename(path.with_name("00000000-0123456789abcdef.npz"))
-    with pytest.raises(ValueError, match="scenes must be those of the name of the file"):
-        list(load_many(small))
-    chunks(small)[0].unlink()
+    path.unlink()
     with pytest.raises(ValueError, match=r"^path must have the file 00000000-….npz"):
         list(load_many(small))
     (small / "end.json").unlink()
@@ -272,11 +299,116 @@ def test_what_is_missing(small: Path) -> None:
         load_many(small)
 
 
-@pytest.mark.parametrize("end", [{"scenes": -1, "chunks": 1}, {"scenes": 1}, {"scenes": "3"}])
-def test_a_forged_end(end: dict[str, Any], small: Path) -> None:
-    (small / "end.json").write_text(json.dumps(end))
-    with pytest.raises(ValueError, match=r"end\.json"):
+@pytest.mark.parametrize("count", [-1, 0, 2, 4, 49, 10**6, 10**18, "3", 3.0, True, None])
+def test_an_end_that_tells_of_other_scenes(count: Any, small: Path) -> None:
+    """They are three: with fewer, or more, there would be other chunks."""
+    end = json.loads((small / "end.json").read_text())
+    (small / "end.json").write_text(json.dumps(end | {"scenes": count}))
+    with pytest.raises(ValueError, match=r"end\.json|the file 00000001-"):
         load_many(small)
+    remake(small)
+    assert len(list(load_many(small))) == 3
+
+
+# ------------------------------------------------------------------------------ folders in one
+
+
+def merged(folder: Path, other: Path) -> None:
+    """As by cp -r other/* folder."""
+    for path in other.iterdir():
+        shutil.copy(path, folder)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"t": np.array([1.0, 5.0])}, {"model": "rolling", "method": "rk4", "step": 0.1},
+        {"scenes": GRID | {"b": 1.1}},
+    ],
+    ids=["times", "settings", "scenes"],
+)  # fmt: skip
+def test_two_folders_in_one_are_refused(changes: Any, out: Path, tmp_path: Path) -> None:
+    asked: dict[str, Any] = {"scenes": GRID, "t": np.array([2.0, 6.0])}
+    simulate_many(**asked, out=out)
+    simulate_many(**(asked | changes), out=tmp_path / "other")
+    theirs = {path.name for path in chunks(tmp_path / "other")} - {p.name for p in chunks(out)}
+    merged(out, tmp_path / "other")
+    with pytest.raises(ValueError, match=r"^path must have just the files that its end\.json"):
+        load_many(out)
+    for call in (asked, asked | changes):
+        with pytest.raises(ValueError, match=r"^out must be a folder of the same"):
+            simulate_many(**call, out=out)
+    for name in theirs:  # as is said
+        (out / name).unlink()
+    for name in ("request.npz", "end.json"):
+        (out / name).unlink()
+    simulate_many(**asked, out=out)
+    require_equal(load_many(out), simulate_many(**asked))
+
+
+def test_parts_of_one_folder_make_it_whole(out: Path, tmp_path: Path) -> None:
+    simulate_many(GRID, TIMES, out=out)
+    shutil.copytree(out, tmp_path / "other")
+    for place, path in enumerate(chunks(out)):
+        ((out if place % 2 else tmp_path / "other") / path.name).unlink()
+    merged(out, tmp_path / "other")
+    require_equal(load_many(out), simulate_many(GRID, TIMES))
+    simulate_many(GRID | {"omega": GRID["omega"][:49]}, TIMES, out=tmp_path / "first")
+    merged(out, tmp_path / "first")  # whose end is another one
+    with pytest.raises(ValueError, match=r"^path must have just the files that its end\.json"):
+        load_many(out)
+    simulate_many(GRID, TIMES, out=out)
+    require_equal(load_many(out), simulate_many(GRID, TIMES))
+
+
+def test_a_chunk_under_the_name_of_another_request(out: Path, tmp_path: Path) -> None:
+    """Its numbers would be states at other times."""
+    simulate_many(GRID, [2.0, 6.0], out=out)
+    simulate_many(GRID, [1.0, 5.0], out=tmp_path / "other")
+    for mine, other in zip(chunks(out), chunks(tmp_path / "other"), strict=True):
+        shutil.copy(other, mine)
+    with pytest.raises(ValueError, match="request and scenes must be those of the name"):
+        list(load_many(out))
+    simulate_many(GRID, [2.0, 6.0], out=out)
+    require_equal(load_many(out), simulate_many(GRID, [2.0, 6.0]))
+
+
+# ------------------------------------------------------------------------- links, what was left
+
+
+def test_links_lead_to_no_file_outside(out: Path, tmp_path: Path) -> None:
+    out.mkdir()
+    for name in ("end.json", "request.npz"):
+        (out / name).symlink_to(tmp_path / "outside" / name)
+    (tmp_path / "outside").mkdir()
+    simulate_many(GRID, TIMES, out=out)
+    assert list((tmp_path / "outside").iterdir()) == []
+    require_equal(load_many(out), simulate_many(GRID, TIMES))
+
+
+LIVES = """
+import sys
+from rolling_ellipse._export.atomic import replacing
+with replacing(sys.argv[1]) as new:
+    print(new.name, flush=True)
+    input()
+    new.write_text("whole")
+"""
+
+
+def test_what_killed_runs_have_left_is_removed_and_what_is_written_now_is_not(out: Path) -> None:
+    out.mkdir()
+    with subprocess.Popen(
+        [sys.executable, "-c", LIVES, os.fspath(out / "note.txt")],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    ) as living:  # fmt: skip
+        assert living.stdin and living.stdout
+        name = living.stdout.readline().strip()
+        (out / ".rolling_ellipse_0123.npz").write_bytes(b"of a process that was killed")
+        simulate_many(GRID, TIMES, out=out)
+        assert [path.name for path in out.glob(".rolling_ellipse_*")] == [name]
+        living.communicate("go on")
+    assert (out / "note.txt").read_text() == "whole"
 
 
 # ---------------------------------------------------------------------- full disks, interrupts

@@ -22,7 +22,16 @@ from typing import Any
 import numpy as np
 from bench_company import company
 from jupyter_client.manager import start_new_kernel
-from rolling_ellipse import Scene, classify, flow, scenes, simulate, simulate_many, thresholds
+from rolling_ellipse import (
+    Impulse,
+    Scene,
+    classify,
+    flow,
+    scenes,
+    simulate,
+    simulate_many,
+    thresholds,
+)
 
 MOST = 0.2  # [s]
 ANGLES = np.linspace(0.1, 1.4, 200_000)
@@ -71,12 +80,16 @@ WORK: dict[str, Callable[[], Any]] = {
     "classify, 2 workers": again(
         lambda: classify(a=2.0, b=1.0, theta=ANGLES, omega=3.2, friction=0.4, workers=2)
     ),
+    "Impulse.press of 20 million": again(lambda: Impulse.press(FORCES, 0.1)),
+    "Impulse of a list of 10 million": again(lambda: Impulse(LISTED)),
     "thresholds above Painlevé's friction": lambda: [
         thresholds(2.0, 1.0, gyration2=0.0435, friction=0.25 + 1e-4 * i).lift_off_speed
         for i in range(20_000)
     ],
 }
 TIMES = np.linspace(0.0, 500.0, 2_000_000)
+FORCES = np.linspace(1.0, 2.0, 20_000_000)
+LISTED = FORCES[::2].tolist()
 IN_NOTEBOOK = {  # the first is what Jupyter itself takes
     "notebook, a loop of Python": "while True: pass",
     "notebook, rk4": "rl.simulate(rl.scenes.rolling, [1e5], model='rolling', method='rk4', "

@@ -113,6 +113,26 @@ def test_one_place_is_wanted_or_one_motion() -> None:
     assert [len(panel.get_children()) for panel in several] == drawn
 
 
+class Lying:
+    """It says that it is an array, and is none."""
+
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        return "no array"
+
+
+@pytest.mark.parametrize("value", [[[1], [2, 3]], [[[1]], 2], Lying(), [Lying()]], ids=repr)
+def test_places_that_are_no_array(value: Any) -> None:
+    for draw in CURVES:
+        refused("ax", lambda ax, draw=draw: draw(MOTION, ax=ax), value)
+
+
+def test_places_in_rows() -> None:
+    figure = Figure()
+    two: Any = figure.subplots(1, 2, squeeze=False)
+    for given in (two, two.tolist(), list(two), (two[0, 0], two[0, 1])):
+        assert len(rl.plot_forces(MOTION, ax=given).axes) == 2
+
+
 SPANS = [((0, 6), "6"), ((0.0, 2.5), "2.5"), ((-0.0, 1e9), "1000000000.0")]
 TIMES = [[0.0, 6.0], np.array([0.0, 6.0]), (1.0, 6.0), (0.0, 3.0, 6.0), (6.0,)]
 

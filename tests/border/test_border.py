@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import tracemalloc
 from collections.abc import Callable
 from typing import Any
 
@@ -117,6 +118,20 @@ def test_times_that_a_solution_does_not_know_are_refused(t: float) -> None:
     ):
         with pytest.raises(ValueError, match=r"^t must be within \[0, "):
             sample(np.array([0.0, t]))
+
+
+def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
+    """A `const double*` to them would be undefined behaviour, wherever the core reads them: all its
+    arguments are of one type, which is seen here to copy."""
+    aligned = np.linspace(0.0, 1.0, 100_001)
+    there = np.frombuffer(b"-" + aligned.tobytes(), float, aligned.size, offset=1)
+    copied = []
+    for times in (aligned, there):
+        tracemalloc.start()
+        assert _core.are_sample_times(times)
+        copied.append(tracemalloc.get_traced_memory()[1] >= aligned.nbytes)
+        tracemalloc.stop()
+    assert not there.flags.aligned and copied == [False, True]
 
 
 # --------------------------------------------------------------------------------- threads

@@ -1,5 +1,6 @@
 """One rule for numbers, whatever takes them: what is none is refused by name, and nothing warns."""
 
+from collections import deque
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
@@ -9,7 +10,8 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from numpy.testing import assert_array_equal
-from rolling_ellipse import geometry, impacts, report
+from oracles.quantities import plain, quantities
+from rolling_ellipse import _check, geometry, impacts, report
 
 SCENE = rl.Scene(2.0, 1.0, omega=1.0)
 MOTION = rl.simulate(SCENE, 1.0)
@@ -33,6 +35,9 @@ SCALAR_DOORS: list[tuple[str, Door]] = [
     ("b", lambda v: rl.constraints(Q, Q_DOT, a=2.0, b=v)),
     ("b", lambda v: rl.kinematics(0.3, 1.0, a=2.0, b=v)),
     ("t", lambda v: MOTION.scene_at(v)),
+    ("t", lambda v: MOTION.at(v)),
+    ("x", lambda v: MOTION.when(x=v)),
+    ("distance", lambda v: rl.blow_to(SCENE, omega=2.0, distance=v)),
     ("b", lambda v: rl.plot_phase_map(resolution=2, b=v)),
     ("a", lambda v: impacts.fit([[0.0]] + [[-1.0]] * 3, [[0.0]] * 3, a=v, b=1.0)),
     ("gyration2", lambda v: impacts.fit([[0.0]] * 4, [[0.0]] * 3, a=2.0, b=1.0, gyration2=v)),
@@ -50,6 +55,8 @@ ARRAY_DOORS: list[tuple[str, Door]] = [
     ("gravity", lambda v: rl.classify(**AXES, omega=1.0, gravity=v)),
     ("t", lambda v: rl.simulate(SCENE, v)),
     ("t", lambda v: MOTION.sol(v)),
+    ("scenes['theta']", lambda v: rl.simulate_many({**AXES, "theta": v}, 1.0)),
+    ("q", lambda v: rl.constraints(v, Q_DOT, **AXES)),
     ("theta", lambda v: geometry.support(v, **AXES)),
     ("b", lambda v: geometry.arc_length(0.3, a=2.0, b=v)),
     ("omega", lambda v: rl.kinematics(0.3, v, **AXES)),
@@ -99,7 +106,7 @@ def refused(error: type[Exception], name: str, requirement: str, door: Door, val
 @names(SCALAR_DOORS + ARRAY_DOORS)
 def test_what_is_no_number(name: str, door: Door) -> None:
     for value in NO_NUMBERS:
-        if value is not None or name not in ("z", "inertia", "gyration2"):
+        if value is not None or name not in ("z", "inertia", "gyration2", "x"):
             refused(TypeError, name, "a number", door, value)
 
 
@@ -131,6 +138,33 @@ def test_masked_entries(name: str, door: Door) -> None:
         refused(ValueError, name, "no masked entries", door, value)
 
 
+@names(SCALAR_DOORS + ARRAY_DOORS)
+def test_what_has_units(name: str, door: Door) -> None:
+    """They are never taken off; SI units are required, whatever the units are."""
+    for value in quantities(2.0):
+        refused(TypeError, name, "plain numbers in SI units", door, value)
+
+
+@names(ARRAY_DOORS)
+def test_arrays_that_have_units(name: str, door: Door) -> None:
+    many = quantities([0.25, 0.5])
+    two: list[Any] = [[many[0], 1.0], (1.0, [many[2]]), deque(quantities(2.0)[:2])]
+    for value in (*many, *two):
+        refused(TypeError, name, "plain numbers in SI units", door, value)
+
+
+@names(ARRAY_DOORS)
+def test_more_axes_than_numpy_broadcasts(name: str, door: Door) -> None:
+    endless: list[Any] = []
+    endless += [endless, endless]
+    deep: list[Any] = []
+    for _ in range(1000):
+        deep = [deep]
+    refused(ValueError, name, "at most 32 axes, got 33", door, np.zeros((1,) * 33))
+    for value in (deep, endless):
+        refused(ValueError, name, "at most 32 axes, got [[[[", door, value)
+
+
 def test_masked_columns_of_a_series() -> None:
     column = np.ma.array([-1.0, -1.0], mask=[False, True])
     before: list[Any] = [[0.0, 0.0], column, [-1.0, -1.0], [0.0, 0.0]]
@@ -160,6 +194,11 @@ def test_numbers_of_every_kind() -> None:
         np.array(times, dtype=np.longdouble),
         np.ma.array(times, mask=[False, False]),
         np.array(times, dtype=">f8"),
+        deque(times),
+        np.frombuffer(b"-" + np.array(times).tobytes(), float, 2, offset=1),
+        np.array([(1, t) for t in times], dtype="i1,f8")["f1"],
+        np.repeat(times, 2)[::2],
+        *plain(times),
     ):
         assert_array_equal(rl.flow(given, **AXES, theta=0.2, omega=1.0), expected)
     assert rl.Scene(2.0, 1.0, x=2**70).x == 2.0**70
@@ -202,3 +241,69 @@ def test_what_must_be_finite(name: str, door: Door) -> None:
 def test_one_infinite_angle_of_many() -> None:
     with pytest.raises(ValueError, match=r"^theta must be finite, got inf"):
         geometry.support(np.array([[0.0, 1.0], [np.inf, 2.0]]), **AXES)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        np.arange(100.0).tolist(), [*range(50), *np.arange(50.0)], range(100), [[1.0] * 30] * 4,
+        tuple([1.0, 2] for _ in range(40)), [[1.0] * 3, [1.0] * 60], [[[1.0]] * 40] * 2,
+        [*range(50), 10**30, Decimal("0.5")], [True] * 40, [*range(40), "a"], [*range(40), [1.0]],
+        [[1.0] * 20, *[[1.0] * 19] * 3], [np.arange(40.0), np.arange(40)], [[]] * 40,
+        np.arange(100, dtype=">i4"), np.arange(200.0, dtype="f4")[::-2].reshape(10, 10),
+        np.asfortranarray(np.arange(60).reshape(20, 3)), [[1.0] * 40, 1.0],
+    ],
+    ids=lambda value: f"{_check.shown(value):.20}",
+)  # fmt: skip
+def test_what_is_converted_in_pieces_is_what_is_converted_at_once(
+    value: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 16 numbers instead of 131072. No call of NumPy takes more of a list, so that Ctrl-C is
+    answered in between."""
+
+    def found() -> Any:
+        try:
+            return _check.array("t", value)
+        except TypeError as error:
+            return str(error)
+
+    expected = found()
+    monkeypatch.setattr(_check, "_PIECE", 16)
+    taken: list[int] = []
+    usual = np.asarray
+
+    def counted(some: Any) -> Any:
+        made = usual(some)
+        taken.append(made.size)
+        return made
+
+    monkeypatch.setattr(np, "asarray", counted)
+    again = found()
+    monkeypatch.undo()
+    if isinstance(expected, str):
+        assert again == expected
+    else:
+        assert_array_equal(again, expected, strict=True)
+        assert max(taken, default=0) <= 16
+
+
+def test_a_message_forms_no_more_of_a_value_than_it_shows() -> None:
+    asked = 0
+
+    class Entry:
+        def __repr__(self) -> str:
+            nonlocal asked
+            asked += 1
+            return "entry"
+
+    entry = Entry()
+    many = [entry] * 1000
+    each: list[Any] = [many, tuple(many), [many], dict.fromkeys(range(1000), entry)]
+    for value in each:
+        asked = 0
+        assert len(_check.shown(value)) == 301 and asked <= 300
+    short: list[Any] = [[1, (2,), {}, {3}, {"a": [1.5]}, (), "x" * 3, b"b", None], "x" * 298, 1.5]
+    for value in short:
+        assert _check.shown(value) == repr(value)
+    assert _check.shown("x" * 1000) == "'" + "x" * 299 + "…"
+    assert _check.shown(deque(range(200_000))) == "an object of type deque"

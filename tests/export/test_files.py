@@ -12,6 +12,7 @@ import resource
 import signal
 import subprocess
 import sys
+import tracemalloc
 import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -436,6 +437,7 @@ HEADERS = {
     "deep": header("(" * 500 + "12" + ",)" * 500),
     "another version": header("(12,)").replace(b"\x01\x00", b"\x09\x00", 1),
     "no header": b"",
+    "more signs than a parser stacks": header("-" * 7000 + "1"),
     "a pickle": pickle.dumps(Harmful()),
 }
 
@@ -459,6 +461,27 @@ def test_a_member_is_read_once(contents: dict[str, bytes], tmp_path: Path) -> No
     with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
         archive.writestr("x.npy", archive.read("x.npy"))
     refusal(path.read_bytes(), path, "it must hold known arrays, once each, got 'x.npy'")
+
+
+@pytest.mark.parametrize("begin", [b"", b"PK\x03\x04"])
+def test_a_huge_file_is_not_read_to_be_refused(begin: bytes, tmp_path: Path) -> None:
+    """Of 6 GiB, with other first bytes or without the end of an archive, and an endless one."""
+    huge, many = tmp_path / "motion.npz", tmp_path / "many"
+    many.mkdir()
+    (many / "request.npz").symlink_to(huge)
+    with open(huge, "wb") as file:
+        file.write(begin)
+        file.truncate(6 * 2**30)
+    reads: list[tuple[Callable[[Any], Any], Any]] = [
+        (rl.load, huge), (rl.load, "/dev/zero"), (rl.WorkPrecision.load, huge),
+        (rl.load_many, many),
+    ]  # fmt: skip
+    tracemalloc.start()
+    for read, path in reads:
+        with pytest.raises(ValueError, match=r"^path must name a file .*: it begins with b'"):
+            read(path)
+    assert tracemalloc.get_traced_memory()[1] < 2**24
+    tracemalloc.stop()
 
 
 @pytest.mark.parametrize("name", ["folder", "folder/motion.npz", "text/motion.npz"])

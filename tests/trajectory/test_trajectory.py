@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import pickle
 from typing import Any
 
 import numpy as np
@@ -314,3 +315,33 @@ def test_reason_and_stats_are_found_when_asked_for() -> None:
     assert motion.reason == rl.certify(motion.scene).reason
     assert motion.stats == {"segments": 1, "steps": 0, "rejected_steps": 0, "evaluations": 0}
     assert motion.sol(0.5).reason is motion.reason
+
+
+@pytest.mark.parametrize(
+    ("part", "value"),
+    [
+        ("scene", None), ("settings", 1), ("status", None), ("status", "COMPLETED"),
+        ("reason", 3.5), ("message", None), ("model", "auto"), ("method", None),
+        ("kept_events", (1,)), ("kept_events", []), ("stats", None), ("t_end", None),
+        ("contact", 1), ("start", 1), ("coordinates", 1),
+    ],
+)  # fmt: skip
+def test_a_part_of_another_kind_is_refused(part: str, value: Any) -> None:
+    motion = simulate(rl.scenes.report, [0.0, 0.5])
+    with pytest.raises((TypeError, ValueError), match=f"^{part} must .*, got "):
+        dataclasses.replace(motion, **{part: value})
+
+
+def test_names_of_any_kind_of_text_become_plain() -> None:
+    """As a pickle would hold the kind, which who reads it need not have."""
+
+    class Mine(str):
+        def __reduce__(self) -> Any:
+            raise TypeError("cannot be pickled")
+
+    how: dict[str, Any] = {"model": Mine("rolling"), "method": Mine("dop853")}
+    stabilization: Any = Mine("projection")
+    motion = simulate(rl.scenes.report, [0.0, 0.5], **how, stabilization=stabilization)
+    told = dataclasses.replace(motion, message=Mine("message"), reason=Mine("reason"), **how)
+    assert pickle.loads(pickle.dumps(told)) == told
+    assert pickle.loads(pickle.dumps(motion)) == motion

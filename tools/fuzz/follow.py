@@ -63,6 +63,16 @@ def sol_at_samples(_draw: Draw, _: Body) -> Iterator[Line]:
     yield Line(code, "again", "Trajectory.sol", promises.same_at_samples)
 
 
+def sol_in_any_order(draw: Draw, _: Body) -> Iterator[Line]:
+    """Times shuffled, and some of them twice."""
+    ascending = f"np.sort([*trajectory.t, *trajectory.t[::{draw.count(9)}]])"
+    yield Line(f"trajectory.sol({ascending})", "ascending", "Trajectory.sol")
+    order = f"np.random.default_rng({draw.count(1000)}).permutation(ascending.t.size)"
+    yield Line(order, "order", "permutation")
+    code = "trajectory.sol(ascending.t[order])"
+    yield Line(code, "again", "Trajectory.sol", promises.same_in_any_order)
+
+
 def scene_at(draw: Draw, _: Body) -> Iterator[Line]:
     share = draw.pick("0.0", "1.0", repr(draw.random.random()), repr(draw.random.random()))
     code = f"{share} * trajectory.t_end" if draw.chance(0.9) else draw.hostile()
@@ -256,6 +266,7 @@ FOLLOWS: tuple[tuple[Follow, float], ...] = (
     (arrays, 10),
     (sol, 5),
     (sol_at_samples, 2),
+    (sol_in_any_order, 1),
     (scene_at, 3),
     (when, 3),
     (residuals, 2),

@@ -129,6 +129,14 @@ def same_at_samples(values: dict[str, Any]) -> Broken:
                 yield "sol", f"sol misses the samples of {name}"
 
 
+def same_in_any_order(values: dict[str, Any]) -> Broken:
+    """`sol` at shuffled times against those in order: bit for bit."""
+    one, other, order = values["ascending"], values["again"], values["order"]
+    for name in _ONE_EACH:
+        if getattr(one, name)[order].tobytes() != getattr(other, name).tobytes():
+            yield "sol", f"{name} depends on the order of times"
+
+
 def same_as_trajectory(values: dict[str, Any]) -> Broken:
     """A copy, or what was read back, against the original: bit for bit."""
     one, other = values["trajectory"], values[""]

@@ -44,7 +44,11 @@ WRONG = (
     "range(3)", "slice(3)", "...", "NotImplemented", "np.void(b'abc')", "memoryview(b'abc')",
     "np.array([(1.0, 2.0)], dtype='f8,f8')", "np.empty(0)", "np.empty((2, 0))", "np.ones((2, 3))",
     "np.ones((1, 1, 1, 1))", "np.array([1.0, 2.0, 3.0])", "np.array(['NaT'], dtype='M8[s]')",
-    "[1.0, 'a']", "np.array([10**400])", "'\\ud800'", "'a' * 10000",
+    "[1.0, 'a']", "np.array([10**400])", "'\\ud800'", "'a' * 10000", "np.ones((1,) * 40)",
+    "eval('[' * 90 + ']' * 90)", "type('Mine', (str,), {})('auto')",
+    "type('Metre', (), {'unit': 'm', '__float__': lambda self: 2.0})()",
+    "np.ones(3).view(type('Metres', (np.ndarray,), {'units': 'm'}))",
+    "[np.array(1.0).view(type('Metres', (np.ndarray,), {'units': 'm'}))] * 2",
 )  # fmt: skip
 
 SHAPES = ((), (), (), (1,), (3,), (7,), (0,), (2, 3), (2, 1), (1, 1), (2, 0), (40,))
@@ -118,8 +122,10 @@ class Draw:
                 "np.array({0}, dtype=np.longdouble)", "np.array({0}, dtype=np.float32)",
                 "np.array({0}).astype(np.int64)", "np.array({0}).astype(bool)",
                 "np.frombuffer(np.array({0}).tobytes())",
+                "np.frombuffer(b'-' + np.array({0}).tobytes(), float, offset=1)",
+                "np.array([(1, v) for v in {0}], dtype='i1,f8')['f1']",
             ),
-            (8, 3, 1, 1, 1, 1, 1, 0.5, 0.2, 0.2, 1),
+            (8, 3, 1, 1, 1, 1, 1, 0.5, 0.2, 0.2, 1, 1, 1),
         )  # fmt: skip
         if not all(abs(v) < 1e9 for v in values) and ("astype" in make or "32" in make):
             make = "np.array({0})"

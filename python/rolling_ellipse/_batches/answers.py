@@ -19,7 +19,7 @@ from .._samples import ContactSamples, frozen
 from .._scene import Scene
 from .._settings import Settings
 from .._status import STATUSES, IntegrationError, Status
-from .._trajectory import Trajectory
+from .._trajectory import STATS, Trajectory
 
 Tables = dict[str, npt.NDArray[Any]]
 Answer = Trajectory | Exception
@@ -27,7 +27,7 @@ Answer = Trajectory | Exception
 REFUSED = -1  # in the place of an ending
 MODELS = {model.value: model.name.lower() for model in _core.Model}
 METHODS = {method.value: method.name.lower() for method in _core.Method}
-STATS = ("segments", "steps", "rejected_steps", "evaluations")
+SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}  # in the tables
 _AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
 
 

@@ -1,8 +1,8 @@
 """A folder of motions: what was asked of all, and a file for each chunk of scenes.
 
-``request.npz`` holds the settings, the times and the version; ``00000007-1f….npz`` the seventh
-chunk, named by the hash of its scenes; ``end.json``, which is written last, how many there are. A
-file is there when it is whole, and none is ever changed.
+``request.npz`` holds the settings, the times and the version; ``00000007-1f…-a3….npz`` the seventh
+chunk, named by the hashes of that request and of its scenes; ``end.json``, which is written last,
+how many scenes there are and the hash of the names of all chunks. A file is there when it is whole.
 """
 
 from __future__ import annotations
@@ -13,17 +13,19 @@ import math
 import os
 import re
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict
 from importlib.metadata import version
+from itertools import chain
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 import numpy as np
 
 from .. import _core
-from .._check import FloatArray, file_name, flag
-from .._export.about import field_names, parsed, require_names, restored
-from .._export.atomic import UNFINISHED, replacing
+from .._check import FloatArray, file_name, flag, shown
+from .._export.about import ARCHIVE, OBJECT, field_names, parsed, require_names, restored
+from .._export.atomic import remove_unfinished, replacing
 from .._export.npz import arrays as npz_arrays
 from .._settings import Settings
 from .answers import Answer, Request, Tables, answers
@@ -31,10 +33,14 @@ from .asked import Chunk, sizes
 from .checked import NAMES, require_tables
 from .tables import scenes_of
 
-_SCHEMA = 1
+_SCHEMA = 2
 _SAME = "a folder of the same request"
 _REQUEST, _END = "request.npz", "end.json"
-_CHUNK = re.compile(r"(\d{8})-([0-9a-f]{16})\.npz")
+_CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
+_AGAIN = "simulate_many with the same arguments"
+_OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")  # or of nobody
+
+_Names = dict[int, list[str]]  # of the chunks that are there, by their places, in order
 
 _Made = TypeVar("_Made")
 
@@ -53,44 +59,70 @@ class Folder:
     def __init__(self, path: Any, request: Request) -> None:
         self.path = Path(file_name("out", path))
         about = _about(request)
-        if (self.path / _REQUEST).exists():
-            self._require_same(about, request.times)
-        else:
+        self._request, self._samples = _digest_of(about, request.times), request.times.size
+        is_new = not (self.path / _REQUEST).exists()
+        if is_new:
             self.path.mkdir(exist_ok=True)
-            if any(not entry.name.startswith(UNFINISHED) for entry in self.path.iterdir()):
-                self._refuse("a new or empty folder, or one of simulate_many", "")
-            with replacing(self.path / _REQUEST) as new, open(new, "wb") as file:
+            self._require_new()
+        else:
+            self._require_same(about, request.times)
+        self._names = _chunks(self.path)
+        for name in chain.from_iterable(self._names.values()):
+            if name.split("-")[1] != self._request:
+                self._refuse(_SAME, f" with {name!r} of another one")
+        if is_new:
+            with _replacing(self.path / _REQUEST) as new, open(new, "wb") as file:
                 np.savez(file, about=np.array(json.dumps(about)), t=request.times)
-        self._done = _chunks(self.path)
-        end = self.path / _END
-        self._scenes = _restored(end, _of_end)["scenes"] if end.exists() else math.inf
+        remove_unfinished(self.path)
+        self._scenes: float = math.inf
+        with suppress(FileNotFoundError, ValueError):  # what is damaged is written again
+            self._scenes = _scenes_in(self.path, self._request, self._names, self._samples)
 
     def has(self, chunk: Chunk) -> bool:
-        """Whether a chunk is there; one of other scenes is refused."""
-        there = self._done.get(chunk.index)
-        if there not in (None, _digest(chunk.table)):
+        """Whether a chunk is there and whole; one of other scenes is refused."""
+        name = _name(chunk.index, self._request, chunk.table)
+        there = self._names.get(chunk.index, [])
+        if others := [each for each in there if each != name]:
             last = chunk.begin + len(chunk.table) - 1
-            self._refuse_scenes(f"whose scenes {chunk.begin} to {last} are others")
+            self._refuse_scenes(f"whose scenes {chunk.begin} to {last} are others: {others[0]!r}")
         if chunk.begin >= self._scenes:
             self._refuse_scenes(f"which has {self._scenes}")
-        return there is not None
+        if not there:
+            return False
+
+        def read(content: bytes) -> Tables:
+            return _tables(content, name, len(chunk.table), self._samples)
+
+        try:
+            _chunk(self.path / name, read)
+        except (FileNotFoundError, ValueError):
+            return False
+        return True
 
     def store(self, chunk: Chunk, tables: Tables) -> None:
-        digest = _digest(chunk.table)
-        path = self.path / f"{chunk.index:08d}-{digest}.npz"
-        with replacing(path) as new, open(new, "wb") as file:
-            np.savez(file, scenes=chunk.table, **tables)  # type: ignore[arg-type]
-        self._done[chunk.index] = digest
+        name = _name(chunk.index, self._request, chunk.table)
+        with _replacing(self.path / name) as new, open(new, "wb") as file:
+            np.savez(file, request=np.array(self._request), scenes=chunk.table, **tables)  # type: ignore[arg-type]
+        self._names[chunk.index] = [name]
 
     def end(self, scenes: int, chunks: int) -> None:
         """Say that it is complete."""
-        if max(self._done, default=-1) >= chunks:
+        if max(self._names, default=-1) >= chunks:
             self._refuse_scenes(f"which has more than {scenes}")
-        with replacing(self.path / _END) as new:
-            new.write_text(json.dumps({"scenes": scenes, "chunks": chunks}))
+        digest = _digest_of_all(self._request, scenes, self._names)
+        with _replacing(self.path / _END) as new:
+            new.write_text(json.dumps({"scenes": scenes, "digest": digest}))
+
+    def _require_new(self) -> None:
+        """Refuse files of others; chunks that have lost their request are told by their names."""
+        for name in sorted(os.listdir(self.path)):
+            if not _OURS.fullmatch(name):
+                self._refuse(
+                    "a new or empty folder, or one of simulate_many", f" with {name!r} in it"
+                )
 
     def _require_same(self, about: dict[str, Any], times: FloatArray) -> None:
-        there, t = _restored(self.path / _REQUEST, _of_request)
+        there, t = _request_in(self.path)
         for name, value in about.items():
             if there[name] != value:
                 self._refuse(_SAME, f" with the {name} {there[name]!r}, not {value!r}")
@@ -123,8 +155,8 @@ def load_many(path: str | os.PathLike[str]) -> Iterator[Answer]:
     Raises
     ------
     ValueError
-        If it is no such folder, of another schema version, or not complete; while it is read: if a
-        file is missing or damaged, by its name.
+        If it is no such folder, of another schema version, not complete, or if its files are not
+        those of one call; while it is read: if a file is damaged, by its name.
     OSError
         If something cannot be read.
     """
@@ -132,43 +164,74 @@ def load_many(path: str | os.PathLike[str]) -> Iterator[Answer]:
     if not (folder / _REQUEST).exists():
         os.listdir(folder)  # says if there is none
         raise ValueError(f"path must be a folder written by simulate_many, got {str(folder)!r}")
-    about, times = _restored(folder / _REQUEST, _of_request)
+    about, times = _request_in(folder)
     if about["schema"] != _SCHEMA:
         raise ValueError(
             f"path must be a folder of schema {_SCHEMA}, got {str(folder)!r} of {about['schema']!r}"
         )
     if not (folder / _END).exists():
         raise ValueError(
-            f"path must be a complete folder, got {str(folder)!r}: call simulate_many with the "
-            "same arguments to go on with it"
+            f"path must be a complete folder, got {str(folder)!r}: call {_AGAIN} to go on with it"
         )
-    end = _restored(folder / _END, _of_end)
-    request = Request(Settings(**about["settings"]), times, about["raise_on_failure"])
-    return _all(folder, request, end["scenes"], end["chunks"])
-
-
-def _all(folder: Path, request: Request, scenes: int, chunks: int) -> Iterator[Answer]:
     names = _chunks(folder)
-    for index, (begin, size) in zip(range(chunks), sizes(request.times.size), strict=False):
+    scenes = _scenes_in(folder, _digest_of(about, times), names, times.size)
+    request = Request(Settings(**about["settings"]), times, about["raise_on_failure"])
+    return _all(folder, request, list(chain.from_iterable(names.values())), scenes)
+
+
+def _all(folder: Path, request: Request, names: list[str], scenes: int) -> Iterator[Answer]:
+    samples = request.times.size
+    for name, (begin, size) in zip(names, sizes(samples), strict=False):
+
+        def read(content: bytes, name: str = name, n: int = min(size, scenes - begin)) -> Any:
+            tables = _tables(content, name, n, samples)
+            found = scenes_of(tables.pop("scenes"))
+            return answers(request, found, tables, keep_events=True)
+
+        yield from _chunk(folder / name, read)
+
+
+def _scenes_in(folder: Path, request: str, names: _Names, samples: int) -> int:
+    """Return how many scenes a complete folder has.
+
+    Raises
+    ------
+    ValueError
+        If its end is damaged, or tells of other chunks than there are.
+    """
+    cure = f": {_AGAIN} writes it anew"
+    end = restored(folder / _END, _of_end, OBJECT, "simulate_many", cure)
+    scenes: int = end["scenes"]
+    for index, (begin, _) in enumerate(sizes(samples)):
+        if begin >= scenes:
+            break
         if index not in names:
-            raise ValueError(f"path must have the file {index:08d}-….npz, got {str(folder)!r}")
-        digest, size = names[index], min(size, scenes - begin)
+            raise ValueError(
+                f"path must have the file {index:08d}-….npz, got {str(folder)!r}: {_AGAIN} makes it"
+            )
+    if end["digest"] != _digest_of_all(request, scenes, names):
+        raise ValueError(
+            f"path must have just the files that its {_END} tells of, got others in "
+            f"{str(folder)!r}: {_AGAIN} names one of other scenes, or completes the folder"
+        )
+    return scenes
 
-        def read(content: bytes, digest: str = digest, size: int = size) -> list[Answer]:
-            return _of_chunk(content, request, digest, size)
 
-        yield from _restored(folder / f"{index:08d}-{digest}.npz", read)
+def _digest_of_all(request: str, scenes: int, names: _Names) -> str:
+    each = sorted(chain.from_iterable(names.values()))
+    return _digest(json.dumps([request, scenes, each]).encode())
 
 
-def _of_chunk(content: bytes, request: Request, digest: str, size: int) -> list[Answer]:
-    tables = npz_arrays(content, {"scenes", *NAMES})
-    scenes = tables.pop("scenes", np.empty((0, 0)))
-    require_tables(scenes, tables, size, request.times.size)
-    if _digest(scenes) != digest:
-        raise ValueError("scenes must be those of the name of the file")
+def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
+    """The tables of a chunk of n scenes, and these themselves, as its name says they are."""
+    tables = npz_arrays(content, {"request", "scenes", *NAMES})
+    scenes = tables.get("scenes", np.empty((0, 0)))
+    require_tables(scenes, tables, n, samples)
+    if name != _name(int(name[:8]), str(tables.pop("request", "")), scenes):
+        raise ValueError("request and scenes must be those of the name of the file")
     if (refused := _core.first_refused(scenes)) is not None:
         raise ValueError(f"scenes must be valid, got row {refused[0]}: {refused[1]}")
-    return answers(request, scenes_of(scenes), tables, keep_events=True)
+    return tables
 
 
 def _about(request: Request) -> dict[str, Any]:
@@ -200,24 +263,46 @@ def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
     return about, t
 
 
-def _of_end(content: bytes) -> dict[str, int]:
-    found: dict[str, int] = parsed("end", content.decode())
-    require_names("end", found, ("scenes", "chunks"))
-    for name, count in found.items():
-        if type(count) is not int or count < 0:
-            raise ValueError(f"{name} must be a count, got {count!r}")
+def _of_end(content: bytes) -> dict[str, Any]:
+    found: dict[str, Any] = parsed("end", content.decode())
+    require_names("end", found, ("scenes", "digest"))
+    if type(count := found["scenes"]) is not int or count < 0:
+        raise ValueError(f"scenes must be a count, got {shown(count)}")
     return found
 
 
-def _restored(path: Path, restore: Callable[[bytes], _Made]) -> _Made:
-    return restored(path, restore, "simulate_many")
+def _request_in(folder: Path) -> tuple[dict[str, Any], FloatArray]:
+    cure = f": delete it, and call {_AGAIN}"
+    return restored(folder / _REQUEST, _of_request, ARCHIVE, "simulate_many", cure)
 
 
-def _chunks(folder: Path) -> dict[int, str]:
-    """The digests of the chunks that are there, by their places."""
-    found = (_CHUNK.fullmatch(entry.name) for entry in os.scandir(folder))
-    return {int(match[1]): match[2] for match in found if match}
+def _chunk(path: Path, restore: Callable[[bytes], _Made]) -> _Made:
+    return restored(path, restore, ARCHIVE, "simulate_many", f": {_AGAIN} computes it anew")
 
 
-def _digest(table: FloatArray) -> str:
-    return hashlib.sha256(np.ascontiguousarray(table).tobytes()).hexdigest()[:16]
+def _replacing(path: Path) -> AbstractContextManager[Path]:
+    """`replacing` within the folder: a link would lead out of it."""
+    if path.is_symlink():
+        path.unlink()
+    return replacing(path)
+
+
+def _chunks(folder: Path) -> _Names:
+    found: _Names = {}
+    for name in sorted(filter(_CHUNK.fullmatch, os.listdir(folder))):
+        found.setdefault(int(name[:8]), []).append(name)
+    return found
+
+
+def _name(index: int, request: str, scenes: FloatArray) -> str:
+    return f"{index:08d}-{request}-{_digest(np.ascontiguousarray(scenes).tobytes())}.npz"
+
+
+def _digest_of(about: dict[str, Any], times: FloatArray) -> str:
+    """The hash of all that changes what is computed of a scene."""
+    said = {name: about[name] for name in ("schema", "version", "settings")}
+    return _digest(json.dumps(said, sort_keys=True).encode() + times.tobytes())
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:16]

@@ -13,8 +13,8 @@ from .._settings import DEFAULTS, Method, Model, Stabilization, settings
 from .._simulate import sample_times
 from .._status import WorkerError
 from .._workers import Lost, in_order, threads_of
-from .answers import Answer, Request, answers, solve, solve_task
-from .asked import Chunk, Grid, Listed, asked
+from .answers import SAMPLE_BYTES, Answer, Request, answers, solve, solve_task
+from .asked import Chunk, Grid, Listed, asked, sizes
 from .folders import Folder
 from .progress import told
 
@@ -63,7 +63,8 @@ def simulate_many(
     out : str or path-like, optional
         Folder that takes the motions, as plain .npz files of a chunk each; nothing is kept in
         memory. It is made if it is not there. One that an interrupted call has left is gone on
-        with, by any workers: the chunks in it are not computed again. `load_many` reads it.
+        with, by any workers: the chunks in it are not computed again, but for damaged ones.
+        `load_many` reads it.
     model, method, rtol, atol, step, stages, stabilization, baumgarte : as of `simulate`
     max_steps, max_events, rest_speed, raise_on_failure : as of `simulate`
 
@@ -118,14 +119,26 @@ def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator
             yield chunk, solve(request, chunk.table, threads)
         return
     held: dict[int, Chunk] = {}
+    samples = request.times.size
+    _, scenes = next(sizes(samples))
+    # bytes of a scene: of its samples, and of events as many as were seen
+    each = samples * SAMPLE_BYTES[request.settings.model]
 
     def tasks() -> Iterator[bytes]:
+        nonlocal scenes
         for place, chunk in enumerate(chunks):
-            held[place] = chunk
+            held[place], scenes = chunk, len(chunk.table)
             yield request.task(chunk.table)
 
-    for place, tables in in_order(workers, solve_task, tasks()):
-        yield held.pop(place), tables
+    def size() -> int:
+        return scenes * each
+
+    for place, tables in in_order(workers, solve_task, tasks(), size):
+        chunk = held.pop(place)
+        if not isinstance(tables, Lost):
+            there = sum(table.nbytes for table in tables.values())
+            each = max(each, there // len(chunk.table))
+        yield chunk, tables
 
 
 def _to_folder(

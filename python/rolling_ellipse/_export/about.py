@@ -7,36 +7,55 @@ import os
 from collections.abc import Callable, Iterable
 from dataclasses import fields
 from typing import Any, TypeVar
+from zipfile import is_zipfile
 
 from .._check import file_name
 from .._scene import Impulse, Scene
+
+ARCHIVE, OBJECT = b"PK\x03\x04", b"{"  # first bytes of .npz files, and of JSON
 
 _Made = TypeVar("_Made")
 
 
 def restored(
-    path: str | os.PathLike[str], restore: Callable[[bytes], _Made], writer: str = "save"
+    path: str | os.PathLike[str],
+    restore: Callable[[bytes], _Made],
+    begins: bytes,
+    writer: str = "save",
+    cure: str = "",
 ) -> _Made:
     """Return what a function makes of the bytes of a file that its writer is to have written.
+
+    Only a file with the right first bytes, and of an archive the end, is read: others may have any
+    size.
 
     Raises
     ------
     ValueError
-        If it raises anything; the file is named, and what is wrong.
+        If the function raises anything; the file is named, what is wrong, and what to do, if
+        anything.
     OSError
         If the file cannot be read.
     """
     name = file_name("path", path)
     with open(name, "rb") as file:
-        content = file.read()
+        content = file.read(len(begins))
+        is_whole = content == begins
+        if is_whole and begins == ARCHIVE and file.seekable():
+            is_whole = is_zipfile(file)
+            file.seek(len(begins))
+        if is_whole:
+            content += file.read()
     try:
+        if not is_whole:
+            raise ValueError(f"it begins with {content!r}, or it is cut short")
         return restore(content)
     except MemoryError:
         raise
     except Exception as error:  # damaged bytes raise about every kind there is, on their way here
         wrong = str(error) or type(error).__name__
         raise ValueError(
-            f"path must name a file written by {writer}, got {name!r}: {wrong}"
+            f"path must name a file written by {writer}, got {name!r}: {wrong}{cure}"
         ) from error
 
 

@@ -7,9 +7,13 @@ import os
 import re
 import secrets
 import stat
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+if sys.platform != "win32":
+    import fcntl
 
 UNFINISHED = ".rolling_ellipse_"  # begins the names of files that are not whole
 
@@ -39,16 +43,46 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         yield Path(name)
         return
     try:
-        yield new
-        _store(new)
-        if old is not None:
-            with suppress(PermissionError):  # only root can give files away
-                os.chown(new, old.st_uid, old.st_gid)
-            new.chmod(stat.S_IMODE(old.st_mode))
-        os.replace(new, target)
+        with _locked(new):
+            yield new
+            _store(new)
+            if old is not None:
+                with suppress(PermissionError):  # only root can give files away
+                    os.chown(new, old.st_uid, old.st_gid)
+                new.chmod(stat.S_IMODE(old.st_mode))
+            os.replace(new, target)
     except BaseException:
         new.unlink(missing_ok=True)
         raise
+
+
+def remove_unfinished(folder: Path) -> None:
+    """Remove the new files of killed processes from a folder; those still written to are locked."""
+    for path in folder.glob(f"{UNFINISHED}*"):
+        with suppress(OSError), _locked(path) as is_free:
+            if is_free:
+                path.unlink()
+
+
+@contextmanager
+def _locked(path: Path) -> Iterator[bool]:
+    """Hold the lock of a file, which ends with the process; yield whether it was to be had.
+
+    Windows needs none: what is open there cannot be removed.
+    """
+    if sys.platform == "win32":
+        yield True
+        return
+    descriptor = os.open(path, os.O_RDWR | os.O_NOFOLLOW)
+    try:
+        is_free = True
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:  # another process has it, or there are no locks on this file system
+            is_free = False
+        yield is_free
+    finally:
+        os.close(descriptor)
 
 
 def _target(name: str) -> tuple[Path, os.stat_result | None]:

@@ -18,8 +18,8 @@ from .._check import choice, file_name
 from .._core import EventKind
 from .._events import as_numbers, events, from_numbers
 from .._samples import ContactSamples
-from .._settings import METHODS, MODELS, Settings
-from .about import field_names, parsed, require_names, restored, scene_of
+from .._settings import Settings
+from .about import ARCHIVE, field_names, parsed, require_names, restored, scene_of
 from .atomic import replacing
 from .npz import arrays as npz_arrays
 
@@ -32,7 +32,6 @@ _SCHEMA = 4
 _VECTORS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")
 _FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
-_STATS = ("segments", "steps", "rejected_steps", "evaluations")
 
 
 def write(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
@@ -62,7 +61,7 @@ def read(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
     OSError
         If it cannot be read.
     """
-    return restored(path, lambda content: _of_bytes(kind, content))
+    return restored(path, lambda content: _of_bytes(kind, content), ARCHIVE)
 
 
 def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
@@ -161,11 +160,8 @@ def _require_consistent(trajectory: Trajectory) -> None:
     from .._trajectory import solve
 
     asked, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
-    _require_choice("model", trajectory.model, asked.model, MODELS)
-    _require_choice("method", trajectory.method, asked.method, METHODS)
-    for name in ("message", "reason"):
-        if not isinstance(value := getattr(trajectory, name), str):
-            raise ValueError(f"{name} must be a sentence, got {value!r}")
+    _require_asked("model", trajectory.model, asked.model)
+    _require_asked("method", trajectory.method, asked.method)
     _require_within("span", [span], 0.0, sys.float_info.max)
     _require_within("t_end", [t_end], 0.0, span)
     _require_within("valid_until", [trajectory.valid_until], 0.0, math.inf)
@@ -174,19 +170,11 @@ def _require_consistent(trajectory: Trajectory) -> None:
     _require_within("times of events", times, 0.0, t_end)
     if times != sorted(times):
         raise ValueError(f"times of events must not fall, got {times}")
-    stats = trajectory.stats
-    if not (isinstance(stats, dict) and set(stats) <= set(_STATS)):
-        raise ValueError(f"stats must have no names but {_STATS}, got {stats!r}")
-    for name, count in stats.items():
-        if type(count) is not int or not 0 <= count < 2**63:
-            raise ValueError(f"{name} must be a count, got {count!r}")
     _core.validate_settings(asked.core, span)
     solve(trajectory.scene, asked, 0.0, trajectory.start)  # the core checks what was asked for
 
 
-def _require_choice(name: str, value: Any, asked: str, valid: tuple[str, ...]) -> None:
-    """What was asked for, or any of the valid names but "auto" itself."""
-    choice(name, value, tuple(known for known in valid if known != "auto"))
+def _require_asked(name: str, value: str, asked: str) -> None:
     if asked not in ("auto", value):
         raise ValueError(f"{name} must be that of the settings, {asked!r}, got {value!r}")
 

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 _VERSION = 1, 0  # of the format that NumPy writes unless a header is very long
+_HEADER = 256  # bytes that it may have: those of numbers and text have 118
 
 
 def arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[Any]]:
@@ -37,7 +38,7 @@ def _array(name: str, content: bytes) -> npt.NDArray[Any]:
     file = io.BytesIO(content)
     if (version := np.lib.format.read_magic(file)) != _VERSION:
         raise ValueError(f"{name} must be of version {_VERSION}, got {version}")
-    shape, fortran_order, dtype = np.lib.format.read_array_header_1_0(file)
+    shape, fortran_order, dtype = np.lib.format.read_array_header_1_0(file, _HEADER)
     if dtype.kind not in "fiU" or fortran_order:
         raise ValueError(f"{name} must hold numbers or text row by row, got {dtype}")
     size, start = math.prod(shape) * dtype.itemsize, file.tell()

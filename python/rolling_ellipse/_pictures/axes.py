@@ -61,12 +61,23 @@ def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
         figure = _new_figure((7, 5))
         upper, lower = figure.subplots(2, sharex=True)
         return [upper, lower]
-    panels = [ax] if isinstance(ax, Axes) else list(np.ravel(np.asarray(ax, dtype=object)))
+    panels = listed(ax)
     if not all(isinstance(panel, Axes) for panel in panels):
         raise TypeError(f"ax must be one matplotlib Axes or two, got {shown(ax)}")
     if len(panels) not in (1, 2):
         raise ValueError(f"ax must be one matplotlib Axes or two, got {len(panels)} of them")
     return panels
+
+
+def listed(ax: Any) -> list[Any]:
+    """Return the entries of a list or an array, also of those in rows, or what else was given."""
+
+    def entries(value: Any) -> list[Any]:
+        if isinstance(value, np.ndarray):
+            return list(value.ravel())
+        return list(value) if isinstance(value, (list, tuple)) else [value]
+
+    return [each for row in entries(ax) for each in entries(row)]
 
 
 def figure_of(figure: Any, size: tuple[float, float]) -> Figure:

@@ -18,6 +18,7 @@ from matplotlib.lines import Line2D
 from .._check import shown
 from .._trajectory import Trajectory
 from . import sampling
+from .axes import listed
 from .labels import labels_of
 from .legends import quantity_handles, some_of
 from .palette import palette_of
@@ -173,7 +174,7 @@ def colors_of(colors: Any, count: int) -> tuple[Any, ...] | None:
 
 
 def _first_axes(ax: Any) -> Axes | None:
-    first = ax if isinstance(ax, Axes) or ax is None else next(iter(np.ravel(ax)), None)
+    first = next(iter(listed(ax)), None)
     return first if isinstance(first, Axes) else None
 
 

@@ -45,7 +45,7 @@ def _given(labels: Sequence[str], count: int) -> list[str]:
         raise ValueError(f"labels must be a sequence of strings, got {shown(labels)}")
     if len(labels) != count:
         raise ValueError(
-            f"labels must be {count}, one for each trajectory, got {len(labels)}: {labels!r}"
+            f"labels must be {count}, one for each trajectory, got {len(labels)}: {shown(labels)}"
         )
     return list(labels)
 

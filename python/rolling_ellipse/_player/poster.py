@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from html import escape
 from typing import TYPE_CHECKING
 
 from .._samples import even_times
@@ -94,4 +95,4 @@ def _style(look: dict[str, str]) -> str:
 def _escaped(text: str) -> str:
     """As XML knows it: without control characters and half surrogates, which end it."""
     known = "".join(letter if letter.isprintable() else " " for letter in text)
-    return known.replace("&", "&amp;").replace("<", "&lt;")
+    return escape(known)

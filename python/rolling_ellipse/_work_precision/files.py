@@ -12,7 +12,7 @@ from dataclasses import asdict
 from typing import Any
 
 from .._check import file_name
-from .._export.about import field_names, parsed, require_names, restored, scene_of
+from .._export.about import OBJECT, field_names, parsed, require_names, restored, scene_of
 from .._export.atomic import replacing
 from .results import WorkPrecision
 from .run import Errors, Run
@@ -48,7 +48,7 @@ def read(path: str | os.PathLike[str]) -> WorkPrecision:
     OSError
         If it cannot be read.
     """
-    return restored(path, lambda content: _restored(content.decode("utf-8")))
+    return restored(path, lambda content: _restored(content.decode("utf-8")), OBJECT)
 
 
 def _about(found: WorkPrecision) -> dict[str, Any]:

@@ -190,8 +190,9 @@ def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -
 def _blow(impulse: Any, d: Any) -> tuple[float, float]:
     blow = number("impulse", impulse), number("d", d)
     for name, value in zip(("impulse", "d"), blow, strict=True):
-        if not math.isfinite(value):
-            raise ValueError(f"{name} must be finite, got {value}")
+        if not abs(value) <= 1e50:  # as of an Impulse
+            wanted = "at most 1e50 in size" if math.isfinite(value) else "finite"
+            raise ValueError(f"{name} must be {wanted}, got {value}")
     return blow
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import Impulse, Scene, _core, geometry, impacts, scenes
 
+from oracles.quantities import Pint
 from oracles.refusals import Refusal
 
 ROLLING = Scene(2.0, 1.0, omega=1.0)
@@ -24,6 +25,13 @@ HIT: dict[str, Any] = {
 MASKED: Any = np.ma.array([1.0, 2.0], mask=[True, False])
 SEVEN = [np.array([value]) for value in (1.0, 2.0, 1.0, 0.2, 1.0, 9.81, 1.25)]  # of the core
 TEXT: Any = "x"
+DEEP: list[Any] = []
+DEEP.append(DEEP)
+
+
+def axes(theta: Any) -> Any:
+    return geometry.support(theta, **AXES)
+
 
 SCENES: list[Refusal] = [
     (r"^a must be a number, got 'x'", lambda _: Scene(TEXT, 1.0)),
@@ -75,7 +83,7 @@ SCENES: list[Refusal] = [
     ),
     (r"^changes must be of a, b, .*, got color", lambda _: ROLLING.replace(color=1)),
     (r"^jx must be a finite number \[N s\] of", lambda _: Impulse(1e51)),
-    (r"^F must be finite, got nan", lambda _: Impulse.press(math.nan, 1.0)),
+    (r"^F must be a finite number \[N s\] .*, got nan", lambda _: Impulse.press(math.nan, 1.0)),
     (r"^jx must be .* at most 1e50, got 1e\+60 at index 1", lambda _: Impulse([1.0, 1e60])),
 ]  # fmt: skip
 
@@ -91,6 +99,9 @@ NUMBERS: list[Refusal] = [
     (r"^trajectories must have angles of which a double", lambda _: rl.plot_phase(FAR)),
     (r"^t must be a number or an array of numbers", lambda _: rl.flow(**{**FLOW, "t": "x"})),
     (r"^t must have no masked entries", lambda _: rl.flow(**{**FLOW, "t": MASKED})),
+    (r"^t must be plain numbers in SI units", lambda _: rl.flow(**{**FLOW, "t": Pint(1.0)})),
+    (r"^theta must have at most 32 axes, got 33", lambda _: axes(np.zeros((1,) * 33))),
+    (r"^theta must have at most 32 axes, got \[\[", lambda _: axes([DEEP])),
     (r"^t must be within the range of doubles", lambda _: rl.flow(**{**FLOW, "t": 10**400})),
     (
         r"^t must be within the range of doubles",

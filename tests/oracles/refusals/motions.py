@@ -38,6 +38,10 @@ def contact(**changes: Any) -> Any:
     return replace(CONTACT, contact=CONTACT.contact._replace(**changes))
 
 
+def changed(**parts: Any) -> Any:
+    return replace(MOTION, **parts)
+
+
 PARTS: list[Refusal] = [
     (r"^t must be a 1-D array, got shape", lambda _: replace(MOTION, t=np.zeros((2, 2)))),
     (r"^x must have the length of t, 6, got 2", lambda _: replace(MOTION, x=np.zeros(2))),
@@ -48,6 +52,8 @@ PARTS: list[Refusal] = [
     ),
     (r"^contact must be ContactSamples or None", lambda _: replace(CONTACT, contact=1)),  # type: ignore[arg-type]
     (r"^mode must hold codes of Mode, got 9", lambda _: contact(mode=np.full(N, 9))),
+    (r"^settings must be of the class Settings, got 1", lambda _: changed(settings=1)),
+    (r"^kept_events must be a tuple of Event or None", lambda _: changed(kept_events=(1,))),
     (r"^t must be a time or a 1-D array", lambda _: MOTION.sol([[0.1]])),
     (r"^t must lie in \[0, 0\.5\], got 1\.0", lambda _: MOTION.sol(1.0)),
     (r"^t must be within \[0, 0\.5\] \[s\]", lambda _: MOTION._solution.sample_rolling(np.ones(1))),
@@ -151,7 +157,10 @@ def backwards(_: Any, known: Any) -> None:
 
 
 FILES: list[Refusal] = [
-    (r"^path must name a file written by save, got .*it must hold the array 'about'", members()),
+    (
+        r"^path must name a file written by save, got .*it must hold the array 'about'",
+        members(t=npy(np.zeros(9))),
+    ),
     (r"it must hold known arrays, once each, got 'z1\.npy'", members(z1=npy(1.0))),
     (r"t must not be compressed", members(zipfile.ZIP_DEFLATED, t=npy(np.zeros(9)))),
     (r"t must be of version \(1, 0\), got \(2, 0\)", members(t=npy(np.zeros(9), (2, 0)))),
@@ -168,6 +177,7 @@ FILES: list[Refusal] = [
     (r"message must be a sentence, got 1", about(message=1)),
     (r"stats must have no names but", about(stats={"more": 1})),
     (r"segments must be a count, got -1", about(stats={"segments": -1})),
+    (r"it begins with b'PK\\x05\\x06', or it is cut short", members()),
     (r"method must be that of the settings", about(STEPPED, method="dopri5", settings=as_set())),
     (r"t_end must lie in \[0\.0, 0\.5\], got 9", about(t_end=9.0)),
     (r"span must be what save writes", about(span=1)),

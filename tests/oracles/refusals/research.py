@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import Scene, WorkPrecision, report, scenes
-from rolling_ellipse._batches.folders import _digest
+from rolling_ellipse._batches.folders import _chunks, _digest_of_all, _name
 
 from oracles.refusals import Refusal
 
@@ -44,7 +44,8 @@ BATCHES: list[Refusal] = [
     (r"^out must be .*, got .* with the settings", lambda folder: again(folder, rtol=1e-3)),
     (r"^out must be .* with other times", lambda folder: again(folder, t=[0.0, 1.0])),
     (r"^out must be .*whose scenes 0 to 1", lambda folder: again(folder, omega=9.0)),
-    (r"^out must be .*which has 2", lambda folder: again(folder, count=3000)),
+    (r"^out must be .*which has 16", lambda folder: more(folder)),
+    (r"^out must be .* with '00000007-0+-0+.npz' of another", lambda folder: mixed(folder)),
     (r"^out must be .*which has more than", lambda folder: fewer(folder)),
     (r"chunks are missing: the same call goes on", lambda folder: broken(folder)),
     (r"a positive", lambda _: rl.flow([1.0, 1.0], a=[2.0, -1.0], **FLOW, workers=Pool())),
@@ -71,21 +72,29 @@ def other_folder(folder: Path) -> None:
     made(folder)
 
 
-def again(folder: Path, t: Any = TIMES, omega: float = 1.0, count: int = 2, **options: Any) -> None:
+def again(folder: Path, t: Any = TIMES, omega: float = 1.0, **options: Any) -> None:
     path = made(folder)
-    scenes = {"a": 2.0, "b": 1.0, "omega": [1.0, 2.0]}
-    if count > 2:
-        scenes = {"a": 2.0, "b": 1.0, "omega": np.r_[1.0, 2.0, np.ones(count - 2)]}
-        (next(path.glob("0*.npz"))).unlink()
-    elif omega != 1.0:
-        scenes = {"a": 2.0, "b": 1.0, "omega": [omega, 2.0]}
-    rl.simulate_many(scenes, t, out=path, **options)
+    rl.simulate_many({"a": 2.0, "b": 1.0, "omega": [omega, 2.0]}, t, out=path, **options)
+
+
+def more(folder: Path) -> None:
+    """A scene behind a chunk that was full."""
+    path = made(folder, [SCENE] * 16)
+    rl.simulate_many([SCENE] * 17, TIMES, out=path)
+
+
+def mixed(folder: Path) -> None:
+    """A chunk of another request."""
+    path = made(folder)
+    shutil.copy(next(path.glob("0*.npz")), path / f"{7:08d}-{'0' * 16}-{'0' * 16}.npz")
+    rl.simulate_many(MANY, TIMES, out=path)
 
 
 def fewer(folder: Path) -> None:
     path = made(folder)
     (path / "end.json").unlink()
-    shutil.copy(next(path.glob("0*.npz")), path / f"{7:08d}-{'0' * 16}.npz")
+    chunk = next(path.glob("0*.npz"))
+    shutil.copy(chunk, path / f"{7:08d}-{chunk.name[9:]}")
     rl.simulate_many(MANY, TIMES, out=path)
 
 
@@ -149,7 +158,11 @@ def with_entry(name: str, place: Any, value: float) -> Callable[[Path], Any]:
 
 
 def negative_count(path: Path) -> None:
-    (path / "end.json").write_text('{"scenes": -1, "chunks": 1}')
+    (path / "end.json").write_text('{"scenes": -1, "digest": ""}')
+
+
+def another_digest(path: Path) -> None:
+    (path / "end.json").write_text('{"scenes": 2, "digest": ""}')
 
 
 FOLDERS: list[Refusal] = [
@@ -159,13 +172,14 @@ FOLDERS: list[Refusal] = [
     (r"^path must have the file 0+-", spoilt(lambda path: next(path.glob("0*.npz")).unlink())),
     (r"t must hold times that do not fall", table(chunk=False, t=np.array([1.0, 0.0]))),
     (r"scenes must be a count, got -1", spoilt(negative_count)),
+    (r"^path must have just the files that its end\.json tells", spoilt(another_digest)),
     (r"it must hold the array 'mode'", table(mode=None)),
     (r"codes must be of type int64 and shape", table(codes=np.zeros(3))),
     (r"codes of models must be of \[", with_entry("codes", (0, 1), 99)),
     (r"codes must hold counts, of samples at most 2", with_entry("codes", (0, 3), -1)),
     (r"rolling must hold finite numbers", with_entry("rolling", 0, math.nan)),
     (r"numbers must be none but numbers", with_entry("numbers", 0, math.nan)),
-    (r"scenes must be those of the name", with_entry("scenes", (0, 0), 3.0)),
+    (r"request and scenes must be those of the", with_entry("scenes", (0, 0), 3.0)),
     (r"scenes must be valid, got row 0: a must", lambda folder: renamed(folder)),
 ]  # fmt: skip
 
@@ -177,9 +191,12 @@ def renamed(folder: Path) -> Any:
     with np.load(file) as data:
         arrays = dict(data)
     arrays["scenes"][0, 0] = -1.0
-    with (path / f"{0:08d}-{_digest(arrays['scenes'])}.npz").open("wb") as new:
-        np.savez(new, **arrays)
+    request = str(arrays["request"])
     file.unlink()
+    with (path / _name(0, request, arrays["scenes"])).open("wb") as new:
+        np.savez(new, **arrays)
+    digest = _digest_of_all(request, 2, _chunks(path))
+    (path / "end.json").write_text(json.dumps({"scenes": 2, "digest": digest}))
     return list(rl.load_many(path))
 
 

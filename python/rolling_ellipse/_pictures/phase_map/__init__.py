@@ -11,7 +11,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 
-from ..._check import whole
+from ..._check import shown, whole
 from ..._core import Outcome
 from ..._outcome import classify
 from ..artists import Artists
@@ -159,7 +159,7 @@ def _count(resolution: Any) -> int:
     with suppress(TypeError):
         if 1 <= (count := whole("resolution", resolution)) <= _FINEST:
             return count
-    raise ValueError(f"resolution must be an int from 1 to {_FINEST}, got {resolution!r}")
+    raise ValueError(f"resolution must be an int from 1 to {_FINEST}, got {shown(resolution)}")
 
 
 def _edges(plane: Plane, axis: str, count: int) -> FloatArray:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ..._check import FloatArray, choice, number, positive
+from ..._check import FloatArray, choice, number, positive, shown
 from .discs import roll_over_speed
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")
@@ -145,7 +145,7 @@ def _limits(argument: str, axis: str, given: Any) -> tuple[float, float]:
     try:
         low, high = (number(argument, end) for end in given)
     except (TypeError, ValueError):
-        raise ValueError(f"{wanted}, got {given!r}") from None
+        raise ValueError(f"{wanted}, got {shown(given)}") from None
     if not (least <= low < high <= most and high < math.inf):
-        raise ValueError(f"{wanted}, got {given!r}")
+        raise ValueError(f"{wanted}, got {shown(given)}")
     return low, high
