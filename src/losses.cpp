@@ -4,20 +4,71 @@
 #include <cmath>
 
 namespace rolling_ellipse {
+namespace {
 
-Losses losses(const Solution& solution) {
-    const Scene& scene = solution.motion.scene;
-    const double times[] = {0.0, solution.followed_until};
-    CoordinateState ends[2];
-    Sampler(solution.motion, 2)(times, 2, ends);
-    const ConstrainedBody body(scene);
-    const SpecificEnergy before = body.specific_energy(ends[0].q, ends[0].q_dot);
-    const SpecificEnergy after = body.specific_energy(ends[1].q, ends[1].q_dot);
-    const auto size = [](const SpecificEnergy& e) { return e.kinetic + std::abs(e.potential); };
-    const Eigen::Vector3d missed = position_residuals(scene.axes(), ends[1].q).cwiseAbs();
-    const double longer = std::max(scene.a, scene.b);
-    return {std::abs(after.total() - before.total()) / std::max(size(before), size(after)),
-            std::max(std::max(missed[0], missed[1]) / longer, missed[2])};
+// Times of looks: knots, evenly over the motion, and the middles of the steps after some of them.
+// A look at a knot costs as much as two evaluations of the equation of rolling, one at a middle as
+// a step: each kind makes a fortieth of the steps.
+template <class Steps>
+std::vector<double> times_of_looks(const Steps& steps, std::size_t evaluations) {
+    constexpr std::size_t least = 4;
+    constexpr std::size_t evaluations_per_knot = 80;
+    constexpr std::size_t steps_per_middle = 40;
+    const auto& knots = steps.knots;
+    const std::size_t n = knots.size() - 1;
+    const std::size_t looks = std::min(n, least + evaluations / evaluations_per_knot);
+    const std::size_t middles = std::min(looks, least + n / steps_per_middle);
+    std::vector<double> times;
+    times.reserve(looks + middles + 1);
+    for (std::size_t i = 0; i < looks; ++i) {
+        const auto& knot = knots[i * n / looks];
+        times.push_back(knot.t);
+        if ((i + 1) * middles / looks > i * middles / looks) {
+            times.push_back(knot.t + 0.5 * ((&knot)[1].t - knot.t));
+        }
+    }
+    times.push_back(knots.back().t);
+    return times;
+}
+
+// What is not a number is lost altogether.
+void note(double value, double& worst) {
+    if (!(value <= worst)) worst = std::isnan(value) ? infinity : value;
+}
+
+template <class Law>
+Losses losses_at(const Law& motion, const std::vector<double>& times) {
+    std::vector<Invariants> found(times.size());
+    sample(motion, times.data(), times.size(), found.data());
+    const double start = found.front().energy.total();
+    Losses worst;
+    double size = 0.0;
+    for (const auto& [energy, residual] : found) {
+        size = std::max(size, energy.kinetic + std::abs(energy.potential));
+        note(std::abs(energy.total() - start), worst.energy);
+        note(residual, worst.constraints);
+    }
+    worst.energy /= size;
+    return worst;
+}
+
+}  // namespace
+
+std::optional<Losses> losses(const Solution& solution) {
+    if (solution.motion.segments.empty()) return {};
+    const auto& law = solution.motion.segments.front().law;
+    const auto times = [&](const auto& steps) {
+        return times_of_looks(steps, static_cast<std::size_t>(solution.counts.evaluations));
+    };
+    if (const auto* rolling = std::get_if<SteppedRolling>(&law)) {
+        return losses_at(*rolling, times(rolling->steps));
+    }
+    if (const auto* multipliers = std::get_if<SteppedMultipliers>(&law)) {
+        Losses found = losses_at(*multipliers, std::visit(times, multipliers->steps));
+        found.projected = multipliers->most_projected;
+        return found;
+    }
+    return {};
 }
 
 }  // namespace rolling_ellipse

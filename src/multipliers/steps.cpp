@@ -107,8 +107,8 @@ SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
                                const Settings& settings) {
     const ConstrainedBody body(scene);
     const auto& [q, q_dot] = start.state;
-    SteppedMultipliers motion{
-        body, settings, body.specific_energy(q, q_dot).total(), start.angle_base, {}};
+    SteppedMultipliers motion{body,    settings,         body.specific_energy(q, q_dot).total(),
+                              start.x, start.angle_base, {}};
     const double size = settings.step.value_or(0.0);
     if (settings.stabilization == Stabilization::ggl) {
         Vector<17> y;
@@ -122,24 +122,25 @@ SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
     return motion;
 }
 
-// Project a state as the stabilization asks for it; says whether it does.
-bool project(const SteppedMultipliers& motion, Coordinates& q, Coordinates& q_dot) {
-    if (motion.settings.stabilization == Stabilization::projection) {
-        motion.body.project(q, q_dot);
-        return true;
-    }
+bool projects(Stabilization stabilization) {
+    return stabilization == Stabilization::projection ||
+           stabilization == Stabilization::projection_energy;
+}
+
+// Project a state as the stabilization asks for it; returns by how much it missed the constraints.
+double project(const SteppedMultipliers& motion, Coordinates& q, Coordinates& q_dot) {
     if (motion.settings.stabilization == Stabilization::projection_energy) {
-        motion.body.project(q, q_dot, motion.specific_energy);
-        return true;
+        return motion.body.project(q, q_dot, motion.specific_energy);
     }
-    return false;
+    return motion.body.project(q, q_dot);
 }
 
 template <int N>
-AfterStep adjust(const SteppedMultipliers& motion, Point<N>& point) {
+AfterStep adjust(SteppedMultipliers& motion, Point<N>& point) {
+    if (!projects(motion.settings.stabilization)) return AfterStep::go_on;
     Coordinates q = point.y.template head<5>();
     Coordinates q_dot = point.y.template segment<5>(5);
-    if (!project(motion, q, q_dot)) return AfterStep::go_on;
+    motion.most_projected = std::fmax(motion.most_projected, project(motion, q, q_dot));
     point.y.template head<5>() = q;
     point.y.template segment<5>(5) = q_dot;
     point.carry.setZero();
@@ -159,20 +160,35 @@ double reduce(Point<N>& point) {
     return half_turns;
 }
 
+// Show take(i, state, half_turns) for each time the state, its angles without the half turns.
+template <class Take>
+void look_at(const SteppedMultipliers& motion, const double* times, std::size_t n, Take take) {
+    const bool projected = projects(motion.settings.stabilization);
+    with_integrator(motion, [&](auto integrator, const auto& steps) {
+        look(integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
+            const auto y = (knot.y + (knot.carry + change)).eval();
+            CoordinateState state{y.template head<5>(), y.template segment<5>(5)};
+            if (projected && !change.isZero(0)) project(motion, state.q, state.q_dot);
+            take(i, state, knot.periods);
+        });
+    });
+}
+
 }  // namespace
 
 CoordinateStart coordinate_start(const Scene& scene, const State& start) {
     const double rest = within_a_turn(start.theta);
     const CoordinateState state = kinematics(scene.axes(), rest, start.omega);
-    CoordinateStart result{state, two_sum(start.theta, -rest), start.mode == Mode::rest};
-    result.state.q[coordinate::x] = start.x;
+    CoordinateStart result{state, start.x, two_sum(start.theta, -rest), start.mode == Mode::rest};
+    result.state.q[coordinate::x] = 0.0;
     return result;
 }
 
 CoordinateStart coordinate_start(const CoordinateState& state) {
     const double theta = state.q[coordinate::theta];
     const double rest = within_a_turn(theta);
-    CoordinateStart result{state, two_sum(theta, -rest)};
+    CoordinateStart result{state, state.q[coordinate::x], two_sum(theta, -rest)};
+    result.state.q[coordinate::x] = 0.0;
     result.state.q[coordinate::theta] = rest;
     result.state.q[coordinate::psi] =
         static_cast<double>(DoubleDouble{state.q[coordinate::psi], 0.0} - result.angle_base);
@@ -201,18 +217,21 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples) {
-    with_integrator(motion, [&](auto integrator, const auto& steps) {
-        look(integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
-            const auto y = (knot.y + (knot.carry + change)).eval();
-            CoordinateState state{y.template head<5>(), y.template segment<5>(5)};
-            if (!change.isZero(0)) project(motion, state.q, state.q_dot);
-            for (const int angle : {coordinate::theta, coordinate::psi}) {
-                const DoubleDouble rest = two_sum(state.q[angle], 0.0);
-                state.q[angle] =
-                    static_cast<double>(motion.angle_base + half_turn * knot.periods + rest);
-            }
-            samples[i] = state;
-        });
+    look_at(motion, times, n, [&](std::size_t i, CoordinateState state, double half_turns) {
+        for (const int angle : {coordinate::theta, coordinate::psi}) {
+            const DoubleDouble rest = two_sum(state.q[angle], 0.0);
+            state.q[angle] = static_cast<double>(motion.angle_base + half_turn * half_turns + rest);
+        }
+        state.q[coordinate::x] += motion.x_base;
+        samples[i] = state;
+    });
+}
+
+void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
+            Invariants* samples) {
+    look_at(motion, times, n, [&](std::size_t i, const CoordinateState& state, double) {
+        samples[i] = {motion.body.specific_energy(state.q, state.q_dot),
+                      motion.body.largest_residual(state.q)};
     });
 }
 
