@@ -15,8 +15,7 @@ struct Losses {
     double projected = 0.0;    // the same of a step before its projection
 };
 
-// The losses along a motion: seen at steps from the first to the last and in the middle of some, as
-// many as cost about a twentieth of what the steps have cost. Empty where nothing was stepped.
+// The losses along a motion, as `survey` sees them. Empty where nothing was stepped.
 std::optional<Losses> losses(const Solution& solution);
 
 }  // namespace rolling_ellipse

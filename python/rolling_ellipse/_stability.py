@@ -34,7 +34,8 @@ def advice(motion: Trajectory) -> str | None:
     settings = motion.settings
     step = settings.step
     if settings.stabilization == "baumgarte" and step is not None:
-        settings = replace(settings, method=motion.method)  # not "auto"
+        if settings.method == "auto":
+            settings = replace(settings, method=motion.method)
         if (growth := _core.feedback_growth(settings.core)) > 1:
             return _too_stiff(settings, step, growth)
     if losses.projected > _MOVED:

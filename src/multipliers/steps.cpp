@@ -160,18 +160,16 @@ double reduce(Point<N>& point) {
     return half_turns;
 }
 
-// Show take(i, state, half_turns) for each time the state, its angles without the half turns.
-template <class Take>
-void look_at(const SteppedMultipliers& motion, const double* times, std::size_t n, Take take) {
-    const bool projected = projects(motion.settings.stabilization);
-    with_integrator(motion, [&](auto integrator, const auto& steps) {
-        look(integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
-            const auto y = (knot.y + (knot.carry + change)).eval();
-            CoordinateState state{y.template head<5>(), y.template segment<5>(5)};
-            if (projected && !change.isZero(0)) project(motion, state.q, state.q_dot);
-            take(i, state, knot.periods);
-        });
-    });
+// The state at a knot or between two, its angles without the half turns of the knot.
+template <int N>
+CoordinateState state_at(const SteppedMultipliers& motion, const Knot<N>& knot,
+                         const Vector<N>& change) {
+    const Vector<N> y = knot.y + (knot.carry + change);
+    CoordinateState state{y.template head<5>(), y.template segment<5>(5)};
+    if (projects(motion.settings.stabilization) && !change.isZero(0)) {
+        project(motion, state.q, state.q_dot);
+    }
+    return state;
 }
 
 }  // namespace
@@ -217,22 +215,30 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples) {
-    look_at(motion, times, n, [&](std::size_t i, CoordinateState state, double half_turns) {
-        for (const int angle : {coordinate::theta, coordinate::psi}) {
-            const DoubleDouble rest = two_sum(state.q[angle], 0.0);
-            state.q[angle] = static_cast<double>(motion.angle_base + half_turn * half_turns + rest);
-        }
-        state.q[coordinate::x] += motion.x_base;
-        samples[i] = state;
+    with_integrator(motion, [&](auto integrator, const auto& steps) {
+        look(integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
+            CoordinateState state = state_at(motion, knot, change);
+            for (const int angle : {coordinate::theta, coordinate::psi}) {
+                const DoubleDouble rest = two_sum(state.q[angle], 0.0);
+                state.q[angle] =
+                    static_cast<double>(motion.angle_base + half_turn * knot.periods + rest);
+            }
+            state.q[coordinate::x] += motion.x_base;
+            samples[i] = state;
+        });
     });
 }
 
-void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
-            Invariants* samples) {
-    look_at(motion, times, n, [&](std::size_t i, const CoordinateState& state, double) {
-        samples[i] = {motion.body.specific_energy(state.q, state.q_dot),
-                      motion.body.largest_residual(state.q)};
+std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations) {
+    std::vector<Invariants> found;
+    with_integrator(motion, [&](auto integrator, const auto& steps) {
+        survey(integrator, steps, evaluations, [&](const auto& knot, const auto& change) {
+            const auto [q, q_dot] = state_at(motion, knot, change);
+            found.push_back(
+                {motion.body.specific_energy(q, q_dot), motion.body.largest_residual(q)});
+        });
     });
+    return found;
 }
 
 // J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1: f'' + 2 alpha f' + beta^2 f = 0 for

@@ -41,9 +41,8 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples);
 
-// Energy and constraints at n times between the first and the last knot.
-void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
-            Invariants* samples);
+// Energies and constraints along the motion, which has taken so many evaluations.
+std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations);
 
 // Accelerations and multipliers of a state, with Baumgarte's feedback where it is asked for.
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
