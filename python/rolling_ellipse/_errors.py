@@ -41,7 +41,9 @@ def energy_error(motion: Trajectory) -> FloatArray:
     height = motion.z * math.cos(scene.slope) - along * math.sin(scene.slope)
     potential = scene.mass * scene.gravity * height
     energy = motion.kinetic_energy + potential
-    error: FloatArray = np.abs(energy - energy[0]) / np.max(motion.kinetic_energy + np.abs(potential))
+    error: FloatArray = np.abs(energy - energy[0]) / np.max(
+        motion.kinetic_energy + np.abs(potential)
+    )
     return error
 
 
