@@ -4,20 +4,41 @@
 #include <cmath>
 
 namespace rolling_ellipse {
+namespace {
 
-Losses losses(const Solution& solution) {
-    const Scene& scene = solution.motion.scene;
-    const double times[] = {0.0, solution.followed_until};
-    CoordinateState ends[2];
-    Sampler(solution.motion, 2)(times, 2, ends);
-    const ConstrainedBody body(scene);
-    const SpecificEnergy before = body.specific_energy(ends[0].q, ends[0].q_dot);
-    const SpecificEnergy after = body.specific_energy(ends[1].q, ends[1].q_dot);
-    const auto size = [](const SpecificEnergy& e) { return e.kinetic + std::abs(e.potential); };
-    const Eigen::Vector3d missed = position_residuals(scene.axes(), ends[1].q).cwiseAbs();
-    const double longer = std::max(scene.a, scene.b);
-    return {std::abs(after.total() - before.total()) / std::max(size(before), size(after)),
-            std::max(std::max(missed[0], missed[1]) / longer, missed[2])};
+// What is not a number is lost altogether.
+void note(double value, double& worst) {
+    if (!(value <= worst)) worst = std::isnan(value) ? infinity : value;
+}
+
+Losses losses_in(const std::vector<Invariants>& found) {
+    const double start = found.front().energy.total();
+    Losses worst;
+    double size = 0.0;
+    for (const auto& [energy, residual] : found) {
+        size = std::max(size, energy.kinetic + std::abs(energy.potential));
+        note(std::abs(energy.total() - start), worst.energy);
+        note(residual, worst.constraints);
+    }
+    worst.energy /= size;
+    return worst;
+}
+
+}  // namespace
+
+std::optional<Losses> losses(const Solution& solution) {
+    if (solution.motion.segments.empty()) return {};
+    const auto& law = solution.motion.segments.front().law;
+    const long evaluations = solution.counts.evaluations;
+    if (const auto* rolling = std::get_if<SteppedRolling>(&law)) {
+        return losses_in(invariants(*rolling, evaluations));
+    }
+    if (const auto* multipliers = std::get_if<SteppedMultipliers>(&law)) {
+        Losses found = losses_in(invariants(*multipliers, evaluations));
+        found.projected = multipliers->most_projected;
+        return found;
+    }
+    return {};
 }
 
 }  // namespace rolling_ellipse

@@ -1,16 +1,21 @@
-// What a computed motion has lost of what the body keeps.
+// What an integrated motion has lost of what the body keeps.
 #pragma once
+
+#include <optional>
 
 #include "solution.hpp"
 
 namespace rolling_ellipse {
 
 struct Losses {
-    double energy = 0.0;       // its change, beside kinetic and potential energy in size
+    // The largest change of the energy, over the largest kinetic and |potential| energy; the height
+    // is 0 on the ground where the motion starts, so that x may be 0 anywhere.
+    double energy = 0.0;
     double constraints = 0.0;  // largest of |f2|, |f3| over the long semi-axis, and |f4|
+    double projected = 0.0;    // the same of a step before its projection
 };
 
-// Those at the end of a motion that only rolls.
-Losses losses(const Solution& solution);
+// The losses along a motion, as `survey` sees them. Empty where nothing was stepped.
+std::optional<Losses> losses(const Solution& solution);
 
 }  // namespace rolling_ellipse

@@ -32,9 +32,18 @@ def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
 
 
 def energy_error(motion: Trajectory) -> FloatArray:
-    """Return |E - E(first sample)| over the largest |kinetic| + |potential| energy, (n,)."""
-    scale = np.max(np.abs(motion.kinetic_energy) + np.abs(motion.potential_energy))
-    error: FloatArray = np.abs(motion.energy - motion.energy[0]) / scale
+    """Return |E - E(first sample)| over the largest kinetic + |potential| energy, (n,).
+
+    Heights are measured from the ground at the first sample, so that x may be 0 anywhere.
+    """
+    scene = motion.scene
+    along = motion.x - motion.x[0]
+    height = motion.z * math.cos(scene.slope) - along * math.sin(scene.slope)
+    potential = scene.mass * scene.gravity * height
+    energy = motion.kinetic_energy + potential
+    error: FloatArray = np.abs(energy - energy[0]) / np.max(
+        motion.kinetic_energy + np.abs(potential)
+    )
     return error
 
 

@@ -108,9 +108,12 @@ def simulate(
         may fly (on a slope, turning too fast for its weight, wedged by friction) goes on rolling.
         ``reason`` tells both. At an event samples show what holds after it. Samples between steps
         have the accuracy of the method. A StabilityWarning is issued where an integrated motion
-        has lost what it should keep: a hundredth of its energy (or ten times rtol, if that is
-        more), a thousandth of the long semi-axis in its constraints; and where Baumgarte's gains
-        are more than the method bears at the step given.
+        has lost what it should keep, as looked at along all of it, at steps and between some of
+        them: a hundredth of its energy (or ten times rtol, if that is more), measured by the
+        largest kinetic plus |potential| energy, with x from the start; a thousandth of the long
+        semi-axis in its constraints; a tenth of it in those of any single step before its
+        projection, which then moves the body elsewhere; and where Baumgarte's gains are more than
+        the method bears at the step given.
 
     Raises
     ------

@@ -14,34 +14,52 @@ if TYPE_CHECKING:
 
 _LOST_ENERGY = 1e-2  # beside the energy itself
 _MISSED = 1e-3  # of the constraints, in long semi-axes and rad: a pixel of a picture of the body
+_MOVED = 0.1  # the same by one step, as far as its projection then moves the body
 _OF_RTOL = 10.0  # times rtol are no surprise
 
 
 def advice(motion: Trajectory) -> str | None:
-    """Return a sentence on what to use instead, where a motion has lost what it should keep."""
-    if motion.method == "exact" or motion.model == "contact" or motion.t.size == 0:
+    """Return a sentence on what to use instead, where a motion has lost what it should keep.
+
+    That is looked at along the motion, at steps and between them. The energy, which rolling
+    conserves, is measured by the largest kinetic plus |potential| energy, the latter with x = 0 at
+    the start. A projection keeps constraints and energy whatever the steps are; what it hides is
+    told by how far it moves a state: the constraints missed by a step are a part of its local
+    error, and of the size of the whole. Where that is a tenth of the body, the projected state is
+    another motion's.
+    """
+    losses = motion._solution.losses()
+    if losses is None:
         return None
     settings = motion.settings
     step = settings.step
     if settings.stabilization == "baumgarte" and step is not None:
-        settings = replace(settings, method=motion.method)  # not "auto"
+        if settings.method == "auto":
+            settings = replace(settings, method=motion.method)
         if (growth := _core.feedback_growth(settings.core)) > 1:
             return _too_stiff(settings, step, growth)
-    losses = motion._solution.losses()
-    if motion.model == "multipliers" and losses["constraints"] > _MISSED:
+    if losses.projected > _MOVED:
         return (
-            f"the constraints are missed by {losses['constraints']:.2g} of the long semi-axis "
+            f"a step has missed the constraints by {losses.projected:.2g} of the long semi-axis "
+            f"before stabilization {settings.stabilization!r}, which moves the body elsewhere: "
+            f"take {_finer(settings)}"
+        )
+    if losses.constraints > _MISSED:
+        return (
+            f"the constraints are missed by {losses.constraints:.2g} of the long semi-axis "
             f"{_when(motion)} with stabilization {settings.stabilization!r}: use 'projection', "
             "which keeps them, or the model 'rolling', which has none to miss"
         )
-    expected = 0.0 if settings.step else _OF_RTOL * settings.rtol
-    if losses["energy"] > max(_LOST_ENERGY, expected):
-        finer = "smaller steps" if settings.step else "smaller rtol and atol"
+    if losses.energy > max(_LOST_ENERGY, 0.0 if step else _OF_RTOL * settings.rtol):
         return (
-            f"the energy has changed by {losses['energy']:.2g} of itself {_when(motion)} with "
-            f"method {settings.method!r}: take {finer}, {_better(motion)}"
+            f"the energy has changed by {losses.energy:.2g} of itself {_when(motion)} with "
+            f"method {settings.method!r}: take {_finer(settings)}, {_better(motion)}"
         )
     return None
+
+
+def _finer(settings: Settings) -> str:
+    return "smaller steps" if settings.step else "smaller rtol and atol"
 
 
 def _when(motion: Trajectory) -> str:

@@ -134,11 +134,6 @@ Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q
     return simulate(scene, start, settings, t_end, SignalWatch());
 }
 
-py::dict losses_by_name(const Solution& solution) {
-    const Losses found = losses(solution);
-    return py::dict("energy"_a = found.energy, "constraints"_a = found.constraints);
-}
-
 // A row an event.
 Array events(const Solution& solution) {
     const std::vector<Event>& found = solution.motion.events;
@@ -199,6 +194,10 @@ void bind_solution(py::module_& m) {
         .def_readonly("end", &Arc::end)
         .def_readonly("period", &Arc::period)
         .def_property_readonly("marks", marks);
+    bind_class<Losses>(m, "Losses")
+        .def_readonly("energy", &Losses::energy)
+        .def_readonly("constraints", &Losses::constraints)
+        .def_readonly("projected", &Losses::projected);
     bind_class<Solution>(m, "Solution")
         .def_property_readonly("ending",
                                [](const Solution& s) { return static_cast<int>(s.ending); })
@@ -212,7 +211,7 @@ void bind_solution(py::module_& m) {
         .def(
             "reason", [](const Solution& s, const Scene& scene) { return reason(scene, s); },
             "scene"_a)
-        .def("losses", losses_by_name)
+        .def("losses", losses)
         .def("arcs", arcs)
         .def("sample_rolling", sample_rolling, "t"_a)
         .def("sample_coordinates", sample_coordinates, "t"_a)

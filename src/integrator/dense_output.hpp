@@ -11,6 +11,8 @@ namespace rolling_ellipse {
 //     y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))),   0 <= s <= 1.
 template <int N, int Terms>
 struct DenseOutput {
+    static constexpr bool of_full_order = false;
+
     std::array<Vector<N>, 3 + Terms> terms;
 
     Vector<N> change(double s) const {

@@ -70,6 +70,7 @@ inline constexpr int most_iterations = 200;
 template <class Method, class System>
 struct PartialStep {
     static constexpr int N = System::size;
+    static constexpr bool of_full_order = true;
 
     const System& f;
     Point<N> from;

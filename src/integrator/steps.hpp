@@ -142,4 +142,34 @@ void look(Integrator& integrator, const Steps<N>& steps, const double* times, st
     }
 }
 
+// Show take(knot, change) knots, evenly from the first to the last one, and the middles of some of
+// the steps after them: a look at a knot costs less than three evaluations of f, one at a middle up
+// to two steps, both together about a twentieth of the integration. The dense output of implicit
+// methods is a step itself, and no worse than the steps: they are seen at knots.
+template <class Integrator, int N, class Take>
+void survey(Integrator& integrator, const Steps<N>& steps, long evaluations, Take take) {
+    constexpr std::size_t least_knots = 8;
+    constexpr std::size_t evaluations_per_knot = 128;
+    constexpr std::size_t steps_per_middle = 64;
+    using Dense = decltype(integrator.dense_output({}, 0.0));
+    constexpr bool has_middles = !Dense::of_full_order;
+    const std::vector<Knot<N>>& knots = steps.knots;
+    const std::size_t n = knots.size() - 1;
+    const std::size_t seen =
+        std::min(n, least_knots + static_cast<std::size_t>(evaluations) / evaluations_per_knot);
+    const std::size_t middles = std::min(seen, (n + steps_per_middle - 1) / steps_per_middle);
+    for (std::size_t i = 0; i < seen; ++i) {
+        const std::size_t k = i * n / seen;
+        take(knots[k], Vector<N>(Vector<N>::Zero()));
+        if (!has_middles || (i + 1) * middles / seen == i * middles / seen) continue;
+        if (k < steps.dense.size()) {
+            take(knots[k], steps.dense[k].change(0.5));
+        } else {
+            const double size = knots[k + 1].t - knots[k].t;
+            take(knots[k], integrator.dense_output(knots[k].point(), size).change(0.5));
+        }
+    }
+    take(knots.back(), Vector<N>(Vector<N>::Zero()));
+}
+
 }  // namespace rolling_ellipse

@@ -94,54 +94,63 @@ SpecificEnergy ConstrainedBody::specific_energy(const Coordinates& q,
     return {0.5 * q_dot.dot(specific_mass().cwiseProduct(q_dot)), -specific_force().dot(q)};
 }
 
-void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
-    project_position(q);
+double ConstrainedBody::largest_residual(const Coordinates& q) const {
+    return as_length(position_residuals(axes_, q)) / length_;
+}
+
+double ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
+    const double missed = project_position(q);
     project_velocity(q, q_dot);
+    return missed;
 }
 
 // Along the rolling direction the energy changes by D (omega domega - pull dtheta), pull the part
 // of the force in it over D, for a velocity that is projected with its kinetic energy; the
 // correction is the least in domega^2 + (g/L) dtheta^2, which is regular at turning points, too.
 // Newton's method, until the excess stops shrinking.
-void ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy) const {
+double ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy) const {
     constexpr int most_iterations = 20;
     const double rate2 = root_of_squares(gravity_.into, gravity_.along) / length_;
-    project(q, q_dot);
+    const double missed = project(q, q_dot);
     double last = infinity;
     for (int i = 0; i < most_iterations; ++i) {
         const double excess = specific_energy(q, q_dot).total() - energy;
-        if (excess == 0 || !(std::abs(excess) < last)) return;
+        if (excess == 0 || !(std::abs(excess) < last)) return missed;
         last = std::abs(excess);
         const double omega = q_dot[coordinate::theta];
         const Coordinates along = rolling_direction(constraint_matrix(axes_, q));
         const double inertia = along.dot(specific_mass().cwiseProduct(along));
         const double pull = specific_force().dot(along) / inertia;
         const double steepness = inertia * (pull * pull / rate2 + omega * omega);
-        if (steepness == 0) return;
+        if (steepness == 0) return missed;
         q += excess / steepness * pull / rate2 * along;
         q_dot -= excess / steepness * omega * along;
         project(q, q_dot);
     }
+    return missed;
+}
+
+double ConstrainedBody::as_length(const Eigen::Vector3d& residuals) const {
+    return residuals.cwiseProduct(Eigen::Vector3d{1.0, 1.0, length_}).cwiseAbs().maxCoeff();
 }
 
 // Newton's method; where rounding is reached the residuals stop shrinking. What psi and r are makes
 // no difference, as they have no mass: far off they follow from theta first, lest their digits take
 // the place of its own.
-void ConstrainedBody::project_position(Coordinates& q) const {
+double ConstrainedBody::project_position(Coordinates& q) const {
     constexpr int most_iterations = 20;
-    const Eigen::Vector3d row_unit{1.0, 1.0, length_};
-    if (!(position_residuals(axes_, q).cwiseProduct(row_unit).cwiseAbs().maxCoeff() <= length_)) {
-        q.tail<2>() = kinematics(axes_, q[coordinate::theta], 0.0).q.tail<2>();
-    }
+    const double missed = largest_residual(q);
+    if (!(missed <= 1)) q.tail<2>() = kinematics(axes_, q[coordinate::theta], 0.0).q.tail<2>();
     double last = infinity;
     for (int i = 0; i < most_iterations; ++i) {
         const Eigen::Vector3d residuals = position_residuals(axes_, q);
-        const double size = residuals.cwiseProduct(row_unit).cwiseAbs().maxCoeff();
-        if (size == 0 || !(size < last)) return;
+        const double size = as_length(residuals);
+        if (size == 0 || !(size < last)) break;
         last = size;
         const Eigen::Matrix<double, 3, 5> rows = constraint_matrix(axes_, q).bottomRows<3>();
         q += solve_saddle<3>(rows, Coordinates::Zero(), -residuals).change;
     }
+    return missed;
 }
 
 void ConstrainedBody::project_velocity(const Coordinates& q, Coordinates& q_dot) const {

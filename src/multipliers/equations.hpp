@@ -23,14 +23,6 @@ CoordinateState coordinate_state(const Axes& axes, const State& state);
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force);
 
-// Energy per mass [J/kg].
-struct SpecificEnergy {
-    double kinetic;
-    double potential;
-
-    double total() const { return kinetic + potential; }
-};
-
 class ConstrainedBody {
   public:
     explicit ConstrainedBody(const Scene& scene);
@@ -49,12 +41,15 @@ class ConstrainedBody {
     Coordinates specific_mass() const { return {1.0, 1.0, gyration2_, 0.0, 0.0}; }
     Coordinates specific_force() const { return {gravity_.along, -gravity_.into, 0.0, 0.0, 0.0}; }
 
-    // The nearest state, in the kinetic metric, that meets the constraints.
-    void project(Coordinates& q, Coordinates& q_dot) const;
+    // The largest of |f2|, |f3| over the long semi-axis, and |f4|.
+    double largest_residual(const Coordinates& q) const;
 
-    // The nearest state, in the kinetic metric, that meets the constraints and has the given energy
-    // per mass.
-    void project(Coordinates& q, Coordinates& q_dot, double energy) const;
+    // The nearest state, in the kinetic metric, that meets the constraints; returns the largest
+    // residual before.
+    double project(Coordinates& q, Coordinates& q_dot) const;
+
+    // The same, with the given energy per mass.
+    double project(Coordinates& q, Coordinates& q_dot, double energy) const;
 
   private:
     template <int Rows>
@@ -68,7 +63,8 @@ class ConstrainedBody {
     Saddle<Rows> solve_saddle(const Eigen::Matrix<double, Rows, 5>& a, const Coordinates& force,
                               const Eigen::Matrix<double, Rows, 1>& demand) const;
 
-    void project_position(Coordinates& q) const;
+    double as_length(const Eigen::Vector3d& residuals) const;  // the largest
+    double project_position(Coordinates& q) const;
     void project_velocity(const Coordinates& q, Coordinates& q_dot) const;
 
     Axes axes_;

@@ -107,8 +107,8 @@ SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
                                const Settings& settings) {
     const ConstrainedBody body(scene);
     const auto& [q, q_dot] = start.state;
-    SteppedMultipliers motion{
-        body, settings, body.specific_energy(q, q_dot).total(), start.angle_base, {}};
+    SteppedMultipliers motion{body,    settings,         body.specific_energy(q, q_dot).total(),
+                              start.x, start.angle_base, {}};
     const double size = settings.step.value_or(0.0);
     if (settings.stabilization == Stabilization::ggl) {
         Vector<17> y;
@@ -122,24 +122,25 @@ SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
     return motion;
 }
 
-// Project a state as the stabilization asks for it; says whether it does.
-bool project(const SteppedMultipliers& motion, Coordinates& q, Coordinates& q_dot) {
-    if (motion.settings.stabilization == Stabilization::projection) {
-        motion.body.project(q, q_dot);
-        return true;
-    }
+bool projects(Stabilization stabilization) {
+    return stabilization == Stabilization::projection ||
+           stabilization == Stabilization::projection_energy;
+}
+
+// Project a state as the stabilization asks for it; returns by how much it missed the constraints.
+double project(const SteppedMultipliers& motion, Coordinates& q, Coordinates& q_dot) {
     if (motion.settings.stabilization == Stabilization::projection_energy) {
-        motion.body.project(q, q_dot, motion.specific_energy);
-        return true;
+        return motion.body.project(q, q_dot, motion.specific_energy);
     }
-    return false;
+    return motion.body.project(q, q_dot);
 }
 
 template <int N>
-AfterStep adjust(const SteppedMultipliers& motion, Point<N>& point) {
+AfterStep adjust(SteppedMultipliers& motion, Point<N>& point) {
+    if (!projects(motion.settings.stabilization)) return AfterStep::go_on;
     Coordinates q = point.y.template head<5>();
     Coordinates q_dot = point.y.template segment<5>(5);
-    if (!project(motion, q, q_dot)) return AfterStep::go_on;
+    motion.most_projected = std::fmax(motion.most_projected, project(motion, q, q_dot));
     point.y.template head<5>() = q;
     point.y.template segment<5>(5) = q_dot;
     point.carry.setZero();
@@ -159,20 +160,33 @@ double reduce(Point<N>& point) {
     return half_turns;
 }
 
+// The state at a knot or between two, its angles without the half turns of the knot.
+template <int N>
+CoordinateState state_at(const SteppedMultipliers& motion, const Knot<N>& knot,
+                         const Vector<N>& change) {
+    const Vector<N> y = knot.y + (knot.carry + change);
+    CoordinateState state{y.template head<5>(), y.template segment<5>(5)};
+    if (projects(motion.settings.stabilization) && !change.isZero(0)) {
+        project(motion, state.q, state.q_dot);
+    }
+    return state;
+}
+
 }  // namespace
 
 CoordinateStart coordinate_start(const Scene& scene, const State& start) {
     const double rest = within_a_turn(start.theta);
     const CoordinateState state = kinematics(scene.axes(), rest, start.omega);
-    CoordinateStart result{state, two_sum(start.theta, -rest), start.mode == Mode::rest};
-    result.state.q[coordinate::x] = start.x;
+    CoordinateStart result{state, start.x, two_sum(start.theta, -rest), start.mode == Mode::rest};
+    result.state.q[coordinate::x] = 0.0;
     return result;
 }
 
 CoordinateStart coordinate_start(const CoordinateState& state) {
     const double theta = state.q[coordinate::theta];
     const double rest = within_a_turn(theta);
-    CoordinateStart result{state, two_sum(theta, -rest)};
+    CoordinateStart result{state, state.q[coordinate::x], two_sum(theta, -rest)};
+    result.state.q[coordinate::x] = 0.0;
     result.state.q[coordinate::theta] = rest;
     result.state.q[coordinate::psi] =
         static_cast<double>(DoubleDouble{state.q[coordinate::psi], 0.0} - result.angle_base);
@@ -203,17 +217,28 @@ void sample(const SteppedMultipliers& motion, const double* times, std::size_t n
             CoordinateState* samples) {
     with_integrator(motion, [&](auto integrator, const auto& steps) {
         look(integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
-            const auto y = (knot.y + (knot.carry + change)).eval();
-            CoordinateState state{y.template head<5>(), y.template segment<5>(5)};
-            if (!change.isZero(0)) project(motion, state.q, state.q_dot);
+            CoordinateState state = state_at(motion, knot, change);
             for (const int angle : {coordinate::theta, coordinate::psi}) {
                 const DoubleDouble rest = two_sum(state.q[angle], 0.0);
                 state.q[angle] =
                     static_cast<double>(motion.angle_base + half_turn * knot.periods + rest);
             }
+            state.q[coordinate::x] += motion.x_base;
             samples[i] = state;
         });
     });
+}
+
+std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations) {
+    std::vector<Invariants> found;
+    with_integrator(motion, [&](auto integrator, const auto& steps) {
+        survey(integrator, steps, evaluations, [&](const auto& knot, const auto& change) {
+            const auto [q, q_dot] = state_at(motion, knot, change);
+            found.push_back(
+                {motion.body.specific_energy(q, q_dot), motion.body.largest_residual(q)});
+        });
+    });
+    return found;
 }
 
 // J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1: f'' + 2 alpha f' + beta^2 f = 0 for

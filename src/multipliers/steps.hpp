@@ -9,9 +9,10 @@
 
 namespace rolling_ellipse {
 
-// A start whose angles are measured from a base.
+// A start whose x is 0 and whose angles are measured from a base.
 struct CoordinateStart {
     CoordinateState state;
+    double x;
     DoubleDouble angle_base;
     bool rests = false;  // for ever
 };
@@ -20,9 +21,11 @@ struct SteppedMultipliers {
     ConstrainedBody body;
     Settings settings;
     double specific_energy;   // of the start [J/kg]
+    double x_base;            // x at the start: the motion is the same wherever x = 0 is
     DoubleDouble angle_base;  // angle at which half turns and rest are 0
     // (q, q_dot); of the index-2 system, then lambda per mass and the multipliers of the positions.
     std::variant<Steps<10>, Steps<17>> steps;
+    double most_projected = 0.0;  // largest residual of a step before its projection
 };
 
 // The start of a body that rolls, and that from any coordinates and velocities.
@@ -37,6 +40,9 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 // The state at n times between the first and the last knot.
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples);
+
+// Energies and constraints along the motion, which has taken so many evaluations.
+std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations);
 
 // Accelerations and multipliers of a state, with Baumgarte's feedback where it is asked for.
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,

@@ -28,6 +28,12 @@ Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {
     return jacobian;
 }
 
+// physics (17)
+SpecificEnergy RollingEquation::energy(const Geometry& at, double omega, double x) const {
+    return {0.5 * inertia_about_contact(gyration2_, at) * omega * omega,
+            gravity_.into * at.h - gravity_.along * x};
+}
+
 RollingDynamics::RollingDynamics(const Scene& scene)
     : equation_(scene.body(), scene.slope), mass_(scene.mass), gravity_(scene.ground_gravity()) {}
 

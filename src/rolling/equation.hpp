@@ -11,6 +11,21 @@
 
 namespace rolling_ellipse {
 
+// Energy per mass [J/kg].
+struct SpecificEnergy {
+    double kinetic;
+    double potential;
+
+    double total() const { return kinetic + potential; }
+};
+
+// What a motion keeps: its energy, with x = 0 at its start, and its constraints, of which it is the
+// largest of |f2|, |f3| over the long semi-axis, and |f4|.
+struct Invariants {
+    SpecificEnergy energy;
+    double residual;
+};
+
 // D theta'' + h' (g cos(alpha) + rho omega^2) - h g sin(alpha) = 0, physics (18), for
 // y = (theta, omega), alpha the slope, D = k^2 + h^2 + h'^2.
 class RollingEquation {
@@ -25,6 +40,8 @@ class RollingEquation {
 
     Vector<2> operator()(double t, const Vector<2>& y) const;
     Matrix<2> jacobian(double t, const Vector<2>& y) const;
+    SpecificEnergy energy(const Geometry& at, double omega, double x) const;
+    bool is_level() const { return gravity_.along == 0; }
     Vector<2> mass() const { return Vector<2>::Ones(); }
     Vector<2> typical() const {
         return {1.0, std::sqrt(root_of_squares(gravity_.into, gravity_.along) / long_axis_)};

@@ -113,4 +113,23 @@ void sample(const SteppedRolling& motion, const double* times, std::size_t n, Fl
     });
 }
 
+std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations) {
+    const RollingEquation& f = motion.equation;
+    PathSeries path(motion.axes);
+    const double path_before = f.is_level() ? 0.0 : path(motion.steps.knots.front().y[0]);
+    std::vector<Invariants> found;
+    with_integrator(motion, [&](auto integrator) {
+        survey(integrator, motion.steps, evaluations,
+               [&](const Knot<2>& knot, const Vector<2>& change) {
+                   const Vector<2> y = knot.y + (knot.carry + change);
+                   double x = 0.0;
+                   if (!f.is_level()) {
+                       x = knot.periods * motion.half_turn_path + (path(y[0]) - path_before);
+                   }
+                   found.push_back({f.energy(geometry(motion.axes, y[0]), y[1], x), 0.0});
+               });
+    });
+    return found;
+}
+
 }  // namespace rolling_ellipse

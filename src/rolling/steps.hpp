@@ -30,4 +30,7 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 // The state at n times between the first and the last knot.
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples);
 
+// Energies along the motion, which has taken so many evaluations; no constraints can be missed.
+std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations);
+
 }  // namespace rolling_ellipse
