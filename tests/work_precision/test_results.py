@@ -148,10 +148,10 @@ def test_who_was_not_run_is_not_beaten() -> None:
     assert lines[-7:] == [
         "lost reached nothing so far: MAX_STEPS, too many steps",
         "poor came no nearer than 3.0e+00",
-        "fast was not run beyond 1e-09: no time left",
+        "fast was not run beyond 1e-09: no time left (200 µs a call so far)",
         "lost was not run beyond 1e-01: no time left",
-        "late was not run beyond 1e-02: no time left",
-        "rough was not run beyond 5e-01: no time left",
+        "late was not run beyond 1e-02: no time left (1 ms a call so far)",
+        "rough was not run beyond 5e-01: no time left (100 ns a call so far)",
         "never was not run at all: no time left",
     ]
     assert not any(word in CUT.verdict() for word in ("unbeaten", "rough came", "never reached"))

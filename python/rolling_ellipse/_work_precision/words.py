@@ -145,7 +145,9 @@ def _without_answer(runs: Sequence[Run]) -> list[str]:
         made = [run for run in found if run.status != NOT_RUN]
         errors = [run.errors.largest for run in made if run.completed]
         if len(made) < len(found):
-            late.append(f"{name} was not run {beyond(made)}: no time left")
+            took = [run.time for run in made if run.completed][-1:]
+            so_far = f" ({_time(took[0])} a call so far)" if took else ""
+            late.append(f"{name} was not run {beyond(made)}: no time left{so_far}")
         if made and not errors:
             so_far = "nothing" if len(made) == len(found) else "nothing so far"
             lines.append(f"{name} reached {so_far}: {made[0].status}, {made[0].reason}")
