@@ -9,6 +9,7 @@ it, too, is timed apart. Machines differ and so does their load: compare the rat
 
 import argparse
 import math
+import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -57,6 +58,14 @@ def race(
         max_seconds=max_seconds, tolerances=tolerances, samples=16, reference=in_40_digits(scene),
         steps=[half_turn / 2**k for k in range(1, 12) if half_turn / 2**k < half_turns * half_turn],
     )  # fmt: skip
+
+
+def commit() -> str:
+    """Short name of the commit that is checked out."""
+    folder = Path(__file__).parent
+    command = ["git", "describe", "--always", "--dirty"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return done.stdout.strip() or "unknown"
 
 
 def microseconds(seconds: float) -> str:
@@ -125,7 +134,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     for name in chosen.scenes:
         for half_turns in chosen.half_turns:
             result = race(name, half_turns, found, **how)
-            result = replace(result, machine=result.machine | {"peers": libraries})
+            stamp = {"peers": libraries, "commit": commit()}
+            result = replace(result, machine=result.machine | stamp)
             races[name, half_turns] = result
             print(f"\n{name}: end state after {half_turns} half turns or swings")
             print(f"{table(result)}\n{result.verdict()}")
