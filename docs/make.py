@@ -107,7 +107,7 @@ def speed() -> str:
     head = ["best peer's time / package's best, error up to", *(f"{d:.0e}" for d in COLUMNS)]
     lines = [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *rows)]
     if any("*" in line for line in lines[2:]):
-        lines.append("\n\\* so far as there was time to run all of them")
+        lines.append("\n\\* of those that were run")
     on = drawn.machine
     stamp = f"Least of {on['rounds']} rounds on {on['processor']}, {on['vectors']}, {on['date']}"
     beside = "".join(f"{word} {on[of]}" for of, word in STAMPS.items() if of in on)

@@ -18,6 +18,19 @@ FOUND = work_precision(
     SCENE, [1.0, 3.0], rounds=2, samples=8, tolerances=[1e-2, 1e-6, 1e-10], steps=[0.4, 0.02],
     methods=["flow", "dop853", "rk4", "multipliers/rk4/none", "multipliers/radau/ggl"],
 )  # fmt: skip
+# no picture depends on how busy the machine is; NaN stays NaN
+TIMES = {"flow": 2e-6, "dop853": 2e-5, "rk4": 1e-5}
+FOUND = replace(
+    FOUND,
+    runs=tuple(
+        replace(
+            run,
+            time=TIMES.get(run.name, 1e-3) * (1 + run.steps / 100) + 0 * run.time,
+            setup=1e-5 + 0 * run.setup,
+        )
+        for run in FOUND.runs
+    ),
+)
 FAILED = {run.name for run in FOUND.of() if not run.completed}
 
 

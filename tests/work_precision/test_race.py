@@ -319,7 +319,7 @@ def test_time_that_is_short_leaves_out_the_dearest_and_says_so(clock: Clock) -> 
     states = [(run.status, run.reason) for run in found.runs if run.name == "slow"]
     assert [status for status, _ in states] == ["COMPLETED"] * 2 + ["NOT_RUN"] * 5
     assert {reason for _, reason in states[2:]} == {
-        "max_seconds: 0.46 s were left for a run that may take 0.71 s"
+        "max_seconds: a run that may take 0.71 s is more than its share"
     }
     assert slow.prepared == [1e-4, 1e-5]
     assert only(found, "flow").completed
@@ -341,6 +341,17 @@ def test_each_of_many_has_its_share(clock: Clock) -> None:
     alone = raced(*dear[:5], *cheap, tolerances=LADDER, max_seconds=30.0, methods=[])
     for peer in dear[:5]:
         assert sum(run.completed for run in alone.runs if run.name == peer.name) > max(counts)
+
+
+def test_one_that_takes_all_the_time_takes_nothing_from_the_others(clock: Clock) -> None:
+    """Its first call is longer than the race; the others have a third of the time each."""
+    hog = Timed("hog", clock, call=100.0)
+    others = [Timed(f"way {i}", clock, call=1e-2) for i in range(2)]
+    found = raced(hog, *others, tolerances=LADDER, max_seconds=10.0, methods=[], rounds=5)
+    for peer in others:
+        assert all(run.completed for run in found.runs if run.name == peer.name)
+    assert [run.completed for run in found.runs if run.name == "hog"] == [True] + 12 * [False]
+    assert "hog was not run beyond 1e-02: no time left (100 s a call so far)" in found.verdict()
 
 
 def test_everybody_runs_at_the_coarsest_setting(clock: Clock) -> None:

@@ -125,23 +125,23 @@ def judge_all(laps: Sequence[Lap], scene: Scene, seconds: float, progress: Progr
     """Judge the runs that `seconds` allow, and return the time spent on them [s].
 
     Every contender runs at its coarsest setting for each end. Then the next run is always one of
-    the contender and end that will have had the least time with it, so that all get equal shares,
-    and what one does not need is left to the others. Set-up is not counted. A run that may need
-    more than is left is not made, nor are finer ones.
+    the contender and end that will have had the least time with it. It is made if it keeps within
+    an equal share of `seconds`, whatever the others have used, or within what they have left;
+    otherwise it is not made, nor are finer ones. Set-up is not counted.
     """
     ladders: dict[tuple[Contender, float], list[Lap]] = {}
     for lap in laps:
         ladders.setdefault((lap.contender, lap.judge.t_end), []).append(lap)
     waiting = [(0.0, i, 0, ladder) for i, ladder in enumerate(ladders.values())]
-    spent = 0.0
+    share, spent = seconds / max(1, len(waiting)), 0.0
     while waiting:
         total, i, rung, ladder = heapq.heappop(waiting)
         before = sum(lap.cost for lap in ladder[:rung])
         expected, left = total - before, max(0.0, seconds - spent)
-        if rung and expected >= left:
+        if rung and total > share and expected >= left:
             for lap in ladder[rung:]:
                 lap.leave_out(
-                    f"max_seconds: {left:.2g} s were left for a run that may take {expected:.2g} s"
+                    f"max_seconds: a run that may take {expected:.2g} s is more than its share"
                 )
                 progress.advance(lap.contender.name)
             continue

@@ -71,9 +71,9 @@ def work_precision(
         How often each run is timed, unless it is so slow that `max_seconds` allow fewer.
     max_seconds : float
         Time for all runs [s], in equal shares; what one does not need is left to the others. Each
-        way runs at its coarsest setting, and finer ones as far as its share goes; a call that is
-        on its way is not cut. Not counted are the reference, and what `prepare` and first calls
-        take longer: compiling, loading.
+        way runs at its coarsest setting, and finer ones as far as its share goes. A call that is
+        on its way is not cut, and takes nothing from the others' shares. Not counted are the
+        reference, and what `prepare` and first calls take longer: compiling, loading.
     peers : sequence
         Other programs: objects with a ``name`` and ``prepare(scene, t_end, setting)``, which
         returns a function of nothing that returns theta, omega, x at the end. They may have
@@ -121,7 +121,8 @@ def work_precision(
     ]
     with Progress(len(laps) + rounds) as progress:
         spent = judge_all(laps, scene, _JUDGING * seconds, progress)
-        made = time_all(laps, rounds, seconds - spent, progress)
+        left = seconds - min(spent, _JUDGING * seconds)  # one that took long takes none of it
+        made = time_all(laps, rounds, left, progress)
     return WorkPrecision(
         scene=scene,
         runs=tuple(lap.run() for lap in laps),

@@ -127,8 +127,9 @@ def _beside_peers(table: Table, opened: Open, peers: set[str]) -> list[str]:
         else:
             ahead = "" if peer >= own else " (the peer is ahead)"
             part = f"{decade:.0e} {peer / own:.3g}{ahead}"
-        parts.append(part + (" (not all were run)" if opened[decade] else ""))
-    return ["time of the best peer over the package's best:", "    " + ", ".join(parts)]
+        parts.append(part + "*" * bool(opened[decade]))
+    some = " (* of those that were run)" if any(opened.values()) else ""
+    return [f"time of the best peer over the package's best{some}:", "    " + ", ".join(parts)]
 
 
 def own_and_peer(least: dict[str, float], peers: set[str]) -> tuple[float, float]:
