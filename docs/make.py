@@ -112,9 +112,9 @@ def speed() -> str:
     stamp = f"Least of {on['rounds']} rounds on {on['processor']}, {on['vectors']}, {on['date']}"
     beside = "".join(f"{word} {on[of]}" for of, word in STAMPS.items() if of in on)
     told = [line for line in drawn.verdict().splitlines() if line[0] != " "]
-    verdict = "\n".join(f"> {line}" for line in told if not line.startswith("time of"))
+    verdict = "\n".join(f"* {line}" for line in told[1:] if not line.startswith("time of"))
     table = "\n".join(lines)
-    return f"{verdict}\n\n{table}\n\n{stamp}{beside}.\n"
+    return f"{told[0]}\n\n{verdict}\n\n{table}\n\n{stamp}{beside}.\n"
 
 
 def half_turns(path: Path) -> float:
@@ -135,7 +135,7 @@ def throughput() -> str:
         f"{exact['bytes']:.0f} bytes, and {exact['bytes a sample']:.0f} for each further sample; "
         f"one with slips and jumps\n{1e3 * contact['seconds']:.2g} ms, {contact['bytes']:.0f} "
         f"bytes, and {contact['bytes a sample']:.0f}. A pool of {pool['processes']} processes "
-        f"wrote {pool['motions a second']:.2g} exact motions a second.\n"
+        f"wrote {round(pool['motions a second'], -3):,.0f} exact motions a second.\n"
     )
 
 

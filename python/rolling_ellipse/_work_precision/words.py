@@ -58,12 +58,12 @@ def _leaders(
 ) -> list[str]:
     lines = []
 
-    def leader(decade: float) -> tuple[str, tuple[str, ...]]:
-        return _first(table[decade]), opened[decade]
+    def leader(decade: float) -> tuple[str, bool]:
+        return _first(table[decade]), bool(opened[decade])
 
     for decades in _stretches(table, leader):
-        name, others = leader(decades[0])
-        rank = "the fastest that was run" if others else "unbeaten"
+        name, more = leader(decades[0])
+        rank = "the fastest that was run" if more else "unbeaten"
         best = found.best(decades[-1], t_end=reference.t_end)
         assert best is not None
         cost = f"{_time(best.time)}, set-up {_time(best.setup)}"
@@ -72,9 +72,7 @@ def _leaders(
             {decade: table[decade] for decade in decades},
             lambda decade: _second(table[decade], ways),
         ):
-            lines.append("    " + _factors(table, same, ways, others))
-        if others:
-            lines.append(f"    not run there, for want of time: {', '.join(others)}")
+            lines.append("    " + _factors(table, same, ways, more))
     none = [decade for decade, least in table.items() if not least]
     if none:
         why = ", which the reference could not tell" if none[0] < reference.floor else ""
@@ -82,11 +80,11 @@ def _leaders(
     return lines
 
 
-def _factors(table: Table, decades: list[float], ways: Ways, others: Sequence[str]) -> str:
-    """By how much the next one is behind at each of the decades."""
+def _factors(table: Table, decades: list[float], ways: Ways, more: bool) -> str:
+    """By how much the next one is behind at each of the decades; `more` were not run there."""
     following = _second(table[decades[0]], ways)
     if following is None:
-        return f"no other {'was seen' if others else 'gets'} there {_span(decades)}"
+        return f"no other {'was seen' if more else 'gets'} there {_span(decades)}"
     factors = [table[decade][following] / min(table[decade].values()) for decade in decades]
     equal = " (as good as equal)" if max(factors) <= _MARGIN else ""
     told = ", ".join(f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, decades, strict=True))
