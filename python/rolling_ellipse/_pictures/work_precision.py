@@ -112,7 +112,11 @@ def draw(
     ax = axes_of(ax, (9.5, 5.4))
     ax.set(xscale="log", yscale="log", xlabel=_NAMES[x], ylabel=_NAMES[y])
     looks = _looks(found, palette_of(ax))
-    floors = {each.t_end: each.floor for each in found.references}
+    floors = {
+        (each.t_end, error): each.limits(error)[0]
+        for each in found.references
+        for error in OF_STATES
+    }
     groups: dict[Any, list[Run]] = {}
     for run in runs:
         setting = None if math.isnan(run.setting) else run.setting  # NaN is no key
@@ -137,11 +141,11 @@ def draw(
             setups[key] = hollow
     floor = attainable = None
     drawn = [np.asarray(line.get_xydata()) for line in (*lines.values(), *setups.values())]
-    known = [reference.floor, reference.attainable] if x in OF_STATES else []
-    for axis, column, more in ((ax.xaxis, 0, known), (ax.yaxis, 1, [])):
+    known = reference.limits(x) if x in OF_STATES else ()
+    for axis, column, more in ((ax.xaxis, 0, known), (ax.yaxis, 1, ())):
         _show_all(axis, [*np.concatenate([[], *(xy[:, column] for xy in drawn)]), *more])
     if x in OF_STATES:
-        floor, attainable = _mark_limits(ax, reference)
+        floor, attainable = _mark_limits(ax, *known)
     if x in ERRORS:
         ax.invert_xaxis()
     failures, why = _rim(ax, groups, looks, x)
@@ -196,12 +200,12 @@ def _kind(run: Run, palette: Palette) -> tuple[str, float]:
     return (palette.plum, 1.0) if run.model == "multipliers" else (palette.blue, 1.2)
 
 
-def _place(run: Run, quantity: str, floors: dict[float, float]) -> float:
+def _place(run: Run, quantity: str, floors: dict[tuple[float, str], float]) -> float:
     """Where a run is drawn along an axis; NaN or 0 where it is not."""
     value = run.value(quantity)
     if quantity not in ERRORS or math.isnan(value):
         return value
-    least = floors[run.t_end] if quantity in OF_STATES else 0.0
+    least = floors.get((run.t_end, quantity), 0.0)
     return min(max(value, least or _LEAST), _MOST)
 
 
@@ -228,17 +232,19 @@ def _show_all(axis: Axis, values: list[float]) -> None:
     _set_limits(axis, middle - half, middle + half)
 
 
-def _mark_limits(ax: Axes, reference: Any) -> tuple[Artist | None, Line2D | None]:
+def _mark_limits(
+    ax: Axes, its_own: float, attainable: float
+) -> tuple[Artist | None, Line2D | None]:
     words: dict[float, tuple[str, int, str]] = {}
     line = floor = None
     grey = palette_of(ax).grey
-    if reference.attainable > 0:
-        line = ax.axvline(reference.attainable, color=grey, lw=1, ls=(0, (4, 2)), zorder=1)
-        words[reference.attainable] = ("attainable", -2, "right")
-    if reference.floor > 0:
+    if attainable > 0:
+        line = ax.axvline(attainable, color=grey, lw=1, ls=(0, (4, 2)), zorder=1)
+        words[attainable] = ("attainable", -2, "right")
+    if its_own > 0:
         least = ax.get_xlim()[0]
-        floor = ax.axvspan(least, reference.floor, color=grey, alpha=0.18, lw=0, zorder=0)
-        words[reference.floor] = ("reference's own error", 2, "left")
+        floor = ax.axvspan(least, its_own, color=grey, alpha=0.18, lw=0, zorder=0)
+        words[its_own] = ("reference's own error", 2, "left")
     for place, (word, off, side) in words.items():
         ax.annotate(
             word, (place, 1), xycoords=("data", "axes fraction"), xytext=(off, -3),

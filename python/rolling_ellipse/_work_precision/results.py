@@ -243,7 +243,7 @@ class WorkPrecision:
         if require_quantity("x", x) not in ERRORS:
             raise ValueError(f"x must be an error, one of {', '.join(ERRORS)}, got {x!r}")
         require_quantity("y", y)
-        floor = self._reference(t_end).floor if x in OF_STATES else 0.0
+        floor = self._reference(t_end).limits(x)[0] if x in OF_STATES else 0.0
         runs = [run for run in self.of(t_end) if run.completed and not math.isnan(run.value(y))]
         return [run for run in runs if max(run.value(x), floor) <= at]
 

@@ -27,11 +27,12 @@ def verdict(found: WorkPrecision, reference: Reference) -> str:
     table = {decade: found.least(decade, t_end=end) for decade in DECADES}
     opened = {decade: found.not_run(decade, t_end=end) for decade in DECADES}
     ways = {run.name: (run.model, run.method) for run in runs}
-    limits = [f"its own error {reference.floor:.1e}"] if reference.floor else []
-    if math.isnan(reference.attainable):
+    floor, attainable = reference.limits("largest")
+    limits = [f"its own error {floor:.1e}"] if floor else []
+    if math.isnan(attainable):
         limits.append("no time was left to find what is attainable")
     else:
-        limits.append(f"attainable {reference.attainable:.1e}")
+        limits.append(f"attainable {attainable:.1e}")
     lines = [
         f"To t = {end:.6g} s, judged by {reference.name} ({'; '.join(limits)}), {_judged(runs)}:"
     ]
@@ -75,7 +76,8 @@ def _leaders(
             lines.append("    " + _factors(table, same, ways, more))
     none = [decade for decade, least in table.items() if not least]
     if none:
-        why = ", which the reference could not tell" if none[0] < reference.floor else ""
+        unknown = none[0] < reference.limits("largest")[0]
+        why = ", which the reference could not tell" if unknown else ""
         lines.append(f"nobody has reached an error {_span(none)}{why}")
     return lines
 
