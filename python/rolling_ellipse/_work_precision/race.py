@@ -66,7 +66,8 @@ def work_precision(
     steps : sequence of float, optional
         Of methods that do not [s]; default a quarter to a 2048th of a half turn or half swing.
     samples : int
-        Number of times at which the errors "l2" and "linf" are taken: no parts of any period.
+        Number of times at which the errors "l2" and "linf" are taken: no parts of any period. The
+        larger of "linf" and the error at the end is what counts.
     rounds : int
         How often each run is timed, unless it is so slow that `max_seconds` allow fewer.
     max_seconds : float
@@ -78,8 +79,9 @@ def work_precision(
         Other programs: objects with a ``name`` and ``prepare(scene, t_end, setting)``, which
         returns a function of nothing that returns theta, omega, x at the end. They may have
         ``ladder`` ("tolerances", the default, or "steps") and ``tags``; the function may have
-        ``sample(t)``, which returns the arrays at sorted times, and ``counts``, a mapping with
-        "steps", "rejected", "evaluations". A ValueError refuses, any other exception is a failure.
+        ``sample(t)``, which returns the arrays at sorted times, without which its end alone is
+        judged, and ``counts``, a mapping with "steps", "rejected", "evaluations". A ValueError
+        refuses, any other exception is a failure.
     reference : callable, optional
         theta, omega, x at increasing times, in any arithmetic, from elsewhere: without it, exact
         rolling, or the contact motion, by whose own error nothing else can be judged.
