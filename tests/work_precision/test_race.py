@@ -5,6 +5,7 @@ No test looks at how long something took: only at who was timed, and at errors t
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -309,6 +310,8 @@ def test_set_up_leaves_nothing_out(how: dict[str, float], clock: Clock) -> None:
     assert [run.status for run in late] == ["COMPLETED"] * len(LADDER)
     assert late[0].setup == pytest.approx(4.0, rel=1e-4) and late[0].time < 1e-5
     assert all(run.setup < 1e-4 for run in late[1:]) == ("once" in how)
+    alone = replace(found, runs=tuple(late)).verdict()
+    assert "late is unbeaten from 1e-02" in alone and ", set-up 4 s);" in alone
 
 
 def test_time_that_is_short_leaves_out_the_dearest_and_says_so(clock: Clock) -> None:
