@@ -1,10 +1,9 @@
-"""Make the pictures of the README beside this file.
+"""Make the pictures of the README beside this file; a step of `make.py`.
 
-The chart of speed against accuracy is drawn from `peers_R_10.37.json`, which
-`tests/benchmarks/bench_peers.py --scenes R --half-turns 10.37 --save docs` writes where
-other people's integrators are installed.
+The chart of speed against accuracy is drawn from `peers_R_10.37.json`, whose digest it carries.
 """
 
+import hashlib
 import warnings
 from dataclasses import replace
 from io import BytesIO
@@ -15,10 +14,11 @@ import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Ellipse
-from PIL import Image
+from PIL import Image, PngImagePlugin
 from rolling_ellipse._pictures.palette import BLUE, EARTH, GREY, INK, ORANGE, PLUM
 
 HERE = Path(__file__).parent
+RACE = HERE / "peers_R_10.37.json"
 METHODS = {
     "rk4, 0.02 s": {"method": "rk4", "step": 0.02},
     "dop853, rtol 1e-10": {"method": "dop853"},
@@ -37,7 +37,7 @@ def main() -> None:
     rl.animate(rl.simulate(rl.scenes.report, 6.0), HERE / "roll.gif", fps=25)
     friction()
     save(methods(), "methods.png")
-    save(speed(), "speed.png")
+    save(speed(), "speed.png", RACE)
     save(stability(), "stability.png")
     save(phase_map(), "phase_map.png")
     save(strobe(), "strobe.png")
@@ -64,7 +64,7 @@ def methods() -> Figure:
 
 def speed() -> Figure:
     """The package beside its peers, as they were raced."""
-    chart = rl.WorkPrecision.load(HERE / "peers_R_10.37.json").plot()
+    chart = rl.WorkPrecision.load(RACE).plot()
     figure = chart.ax.figure
     assert isinstance(figure, Figure)
     return figure
@@ -154,11 +154,15 @@ def arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], colour
     ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.6})
 
 
-def save(figure: Figure, name: str) -> None:
+def save(figure: Figure, name: str, source: Path | None = None) -> None:
+    """Write a picture, with the digest of the file that it shows."""
+    facts = PngImagePlugin.PngInfo()
+    if source is not None:
+        facts.add_text("Source", hashlib.sha256(source.read_bytes()).hexdigest())
     picture = BytesIO()
     figure.savefig(picture, dpi=120)
     colours = Image.open(picture).convert("RGB").quantize(128)  # a third of the bytes
-    colours.save(HERE / name, optimize=True)
+    colours.save(HERE / name, optimize=True, pnginfo=facts)
 
 
 if __name__ == "__main__":

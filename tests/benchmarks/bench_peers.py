@@ -2,15 +2,17 @@
 
 Who is installed takes part (the extra "peers"; Boost.odeint needs g++ and its headers), who is
 missing is named. Everybody integrates theta, omega and x with compiled right-hand sides, from a
-ladder of tolerances or steps, in turns (`rolling_ellipse.work_precision`). What counts is the error
-that was reached, against 40 digits. What prepares a new scene, compiling it, too, is timed apart.
-Machines differ and so does their load: compare the ratios of one run.
+ladder of tolerances or steps, in turns (`rolling_ellipse.work_precision`). What counts is the
+largest error, at samples and at the end, against 40 digits. What prepares a new scene, compiling
+it, too, is timed apart. Machines differ and so does their load: compare the ratios of one run.
 """
 
 import argparse
 import math
+import subprocess
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +60,14 @@ def race(
     )  # fmt: skip
 
 
+def commit() -> str:
+    """Short name of the commit that is checked out."""
+    folder = Path(__file__).parent
+    command = ["git", "describe", "--always", "--dirty"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return done.stdout.strip() or "unknown"
+
+
 def microseconds(seconds: float) -> str:
     """Three digits or more, never as a power of ten."""
     return f"{seconds * 1e6:.3g}" if seconds < 1e-3 else f"{seconds * 1e6:.0f}"
@@ -70,26 +80,32 @@ def table(found: WorkPrecision) -> str:
     lines[0] += f"{'best error':>12}{'set-up [ms]':>13}"
     for name in found.names:
         runs = [run for run in found.runs if run.name == name and run.completed]
-        cells = (microseconds(least[d][name]) if name in least[d] else "-" for d in DECADES)
+        cells = (
+            microseconds(least[d][name]) if name in least[d]
+            else "not run" if name in found.not_run(d) else "-" for d in DECADES
+        )  # fmt: skip
         line = f"{name:28}" + "".join(f"{cell:>{WIDTH}}" for cell in cells)
         if runs:
-            best, setup = min(r.errors.final for r in runs), max(r.setup for r in runs)
+            best, setup = min(r.errors.largest for r in runs), max(r.setup for r in runs)
             line += f"{best:12.1e}{setup * 1e3:13.3g}"
         lines.append(line)
-    return "\n".join([*lines, factors(found, least)])
+    return "\n".join([*lines, factors(found)])
 
 
-def factors(found: WorkPrecision, least: dict[float, dict[str, float]]) -> str:
+def factors(found: WorkPrecision) -> str:
     """The best peer's time over the package's best, at each error."""
-    others = {run.name for run in found.runs if "peer" in run.tags}
     line = f"{'best peer / best of package':28}"
-    for decade in DECADES:
-        mine, best = own_and_peer(least[decade], others)
-        if math.isinf(mine) or math.isinf(best):
-            line += f"{'no peer' if math.isfinite(mine) else '-':>{WIDTH}}"
-        else:
-            line += f"{best / mine:{WIDTH}.2f}"
-    return line
+    return line + "".join(f"{factor(found, decade):>{WIDTH}}" for decade in DECADES)
+
+
+def factor(found: WorkPrecision, decade: float) -> str:
+    """The best peer's time over the package's best; a star where not everybody was run."""
+    others = {run.name for run in found.runs if "peer" in run.tags}
+    mine, best = own_and_peer(found.least(decade), others)
+    star = "*" if found.not_run(decade) else ""
+    if math.isinf(mine) or math.isinf(best):
+        return ("no peer" if math.isfinite(mine) else "-") + star
+    return f"{best / mine:.3g}{star}"
 
 
 def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], WorkPrecision]:
@@ -110,14 +126,17 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
         how |= {"rounds": 2, "tolerances": [1e-2, 1e-6, 1e-10, 1e-14]}
         chosen.scenes, chosen.half_turns = ["R"], HALF_TURNS[:1]
     found, missing = peers.available()
-    print(", ".join(dict.fromkeys(peer.library for peer in found)))
+    libraries = ", ".join(dict.fromkeys(peer.library for peer in found))
+    print(libraries)
     for library, reason in missing.items():
         print(f"missing: {library}: {reason}")
     races = {}
     for name in chosen.scenes:
         for half_turns in chosen.half_turns:
-            races[name, half_turns] = race(name, half_turns, found, **how)
-            result = races[name, half_turns]
+            result = race(name, half_turns, found, **how)
+            stamp = {"peers": libraries, "commit": commit()}
+            result = replace(result, machine=result.machine | stamp)
+            races[name, half_turns] = result
             print(f"\n{name}: end state after {half_turns} half turns or swings")
             print(f"{table(result)}\n{result.verdict()}")
             if chosen.save:

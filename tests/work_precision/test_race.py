@@ -4,8 +4,8 @@ No test looks at how long something took: only at who was timed, and at errors t
 """
 
 import math
-import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -64,7 +64,7 @@ def only(found: WorkPrecision, name: str) -> Any:
 def test_an_error_is_seen_as_large_as_it_is(off: float) -> None:
     """Of theta, by the same at all times: so far off at the end, in the mean, and at worst."""
     errors = only(raced(Peer(off=off)), "toy").errors
-    for name in ("final", "l2", "linf"):
+    for name in ("largest", "final", "l2", "linf"):
         assert errors[name] == pytest.approx(off, rel=1e-6)
     assert errors.energy > 0.01 * off  # h' is not 0 at the end
 
@@ -127,7 +127,9 @@ def test_the_constraints_of_what_drifts_are_missed() -> None:
 def test_a_peer_that_gives_the_end_alone_has_no_other_errors() -> None:
     errors = only(raced(Peer(off=1e-3, sampled=False)), "toy").errors
     assert errors.final == pytest.approx(1e-3, rel=1e-6)
-    assert all(math.isnan(errors[name]) for name in errors if name != "final")
+    assert errors.largest == errors.final
+    others = [name for name in errors if name not in ("final", "largest")]
+    assert all(math.isnan(errors[name]) for name in others)
 
 
 # -------------------------------------------------------------------------------- who runs
@@ -237,30 +239,135 @@ def test_what_stops_has_its_status_and_sentence() -> None:
     assert found.best(1e-8).name == "flow"  # type: ignore[union-attr]
 
 
-class Slow(Peer):
-    """Takes ten times as long for each finer setting, and would take hours at the last."""
+class Clock:
+    """A clock of its own, which goes on by 1 us a look and by what is spent."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def perf_counter(self) -> float:
+        self.now += 1e-6
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    made = Clock()
+    for module in ("race", "laps", "truth"):
+        monkeypatch.setattr(f"rolling_ellipse._work_precision.{module}.time", made)
+    return made
+
+
+class Timed(Peer):
+    """Exact but for its setting; spends time on a clock when prepared, first called and called."""
+
+    def __init__(
+        self, name: str, clock: Clock, *, once: float = 0.0, always: float = 0.0,
+        first: float = 0.0, call: float = 1e-6, power: float = 0.0,
+    ) -> None:  # fmt: skip
+        super().__init__(name)
+        self.clock, self.once, self.always, self.first = clock, once, always, first
+        self.call, self.power = call, power
 
     def prepare(self, scene: Scene, t_end: float, setting: float) -> Callable[[], Any]:
-        run = super().prepare(scene, t_end, setting)
+        self.off = setting
+        exact = super().prepare(scene, t_end, setting)
+        self.clock.now += self.always + (0.0 if len(self.prepared) > 1 else self.once)
+        called: set[str] = set()
 
-        def slow() -> Any:
-            time.sleep(1e-6 / setting)
-            return run()
+        def spend(what: str) -> None:
+            self.clock.now += self.call * setting**-self.power
+            self.clock.now += 0.0 if what in called else self.first
+            called.add(what)
 
-        return slow
+        def run() -> Any:
+            spend("end")
+            theta, omega, x = flow(t_end, a=2.0, b=1.0, theta=0.2, omega=3.2)
+            return theta + setting, omega, x
+
+        def sample(t: Any) -> Any:
+            spend("samples")
+            theta, omega, x = exact.sample(t)  # type: ignore[attr-defined]
+            return theta - self.off + setting, omega, x
+
+        run.sample = sample  # type: ignore[attr-defined]
+        return run
 
 
-def test_time_that_is_short_leaves_out_the_dearest_and_says_so() -> None:
-    found = raced(
-        Slow("slow"), tolerances=[10.0**-k for k in range(4, 11)], max_seconds=1.0, rounds=3
-    )
-    slow = [run for run in found.runs if run.name == "slow"]
-    states = [run.status for run in slow]
-    told(states)
-    first = states.index("SKIPPED")
-    assert first >= 1 and set(states[first:]) == {"SKIPPED"}
-    assert all("max_seconds" in run.reason for run in slow[first:])
+LADDER = [10.0**-k for k in range(2, 15)]
+SET_UPS = {
+    "compiles or imports once": {"once": 4.0},
+    "compiles for each setting": {"always": 4.0},
+    "compiles when it is first called": {"first": 4.0},
+}
+
+
+@pytest.mark.parametrize("how", SET_UPS.values(), ids=SET_UPS)
+def test_set_up_leaves_nothing_out(how: dict[str, float], clock: Clock) -> None:
+    """4 s of it, and 2 s for all runs: each run of 1 us is made, and the set-up is told apart."""
+    found = raced(Timed("late", clock, **how), tolerances=LADDER, max_seconds=2.0)
+    late = [run for run in found.runs if run.name == "late"]
+    assert [run.status for run in late] == ["COMPLETED"] * len(LADDER)
+    assert late[0].setup == pytest.approx(4.0, rel=1e-4) and late[0].time < 1e-5
+    assert all(run.setup < 1e-4 for run in late[1:]) == ("once" in how)
+    alone = replace(found, runs=tuple(late)).verdict()
+    assert "late is unbeaten from 1e-02" in alone and ", set-up 4 s);" in alone
+
+
+def test_time_that_is_short_leaves_out_the_dearest_and_says_so(clock: Clock) -> None:
+    """A call takes 10, 100, 1000 ms, …, and a run is four of them: of 0.6 x 1.5 s two runs leave
+    0.46 s, and the third is taken to need 0.4 s x 10^(1/4)."""
+    slow = Timed("slow", clock, call=1e-6, power=1.0)
+    found = raced(slow, tolerances=[10.0**-k for k in range(4, 11)], max_seconds=1.5, rounds=3)
+    states = [(run.status, run.reason) for run in found.runs if run.name == "slow"]
+    assert [status for status, _ in states] == ["COMPLETED"] * 2 + ["NOT_RUN"] * 5
+    assert {reason for _, reason in states[2:]} == {
+        "max_seconds: a run that may take 0.71 s is more than its share"
+    }
+    assert slow.prepared == [1e-4, 1e-5]
     assert only(found, "flow").completed
+
+
+def test_each_of_many_has_its_share(clock: Clock) -> None:
+    """The first one and the last one of 30 that cost the same are run equally far, whoever
+    stands before them; what cheap ones do not need is left to the dear ones."""
+    dear = [Timed(f"dear {i}", clock, call=1e-3, power=0.25) for i in range(30)]
+    cheap = [Timed(f"cheap {i}", clock) for i in range(3)]
+    found = raced(*dear, *cheap, tolerances=LADDER, max_seconds=30.0, methods=[])
+    made = {
+        name: sum(run.completed for run in found.runs if run.name == name) for name in found.names
+    }
+    told(made)
+    counts = [made[peer.name] for peer in dear]
+    assert 1 < min(counts) < len(LADDER) and max(counts) - min(counts) <= 1
+    assert {made[peer.name] for peer in cheap} == {len(LADDER)}
+    alone = raced(*dear[:5], *cheap, tolerances=LADDER, max_seconds=30.0, methods=[])
+    for peer in dear[:5]:
+        assert sum(run.completed for run in alone.runs if run.name == peer.name) > max(counts)
+
+
+def test_one_that_takes_all_the_time_takes_nothing_from_the_others(clock: Clock) -> None:
+    """Its first call is longer than the race; the others have a third of the time each."""
+    hog = Timed("hog", clock, call=100.0)
+    others = [Timed(f"way {i}", clock, call=1e-2) for i in range(2)]
+    found = raced(hog, *others, tolerances=LADDER, max_seconds=10.0, methods=[], rounds=5)
+    for peer in others:
+        assert all(run.completed for run in found.runs if run.name == peer.name)
+    assert [run.completed for run in found.runs if run.name == "hog"] == [True] + 12 * [False]
+    assert "hog was not run beyond 1e-02: no time left (100 s a call so far)" in found.verdict()
+
+
+def test_everybody_runs_at_the_coarsest_setting(clock: Clock) -> None:
+    """However little time there is, and to every end."""
+    peers = [Timed(f"way {i}", clock, call=1.0) for i in range(5)]
+    found = work_precision(
+        ROTATION, [1.0, 2.0], peers=peers, methods=[], tolerances=[1e-2, 1e-3], rounds=2,
+        max_seconds=0.1,
+    )  # fmt: skip
+    states = [(run.setting, run.status) for run in found.runs]
+    assert states == [(1e-2, "COMPLETED"), (1e-3, "NOT_RUN")] * 10
+    assert all(run.time == pytest.approx(1.0, rel=1e-4) for run in found.runs if run.completed)
+    assert found.machine["rounds"] == "1"
 
 
 def test_the_dearest_take_part_in_fewer_rounds() -> None:
@@ -270,6 +377,67 @@ def test_the_dearest_take_part_in_fewer_rounds() -> None:
     assert _shares([1e-3, 2.0, 0.5], 10, 10.0) == [10, 2, 9]
     assert _shares([1e-3, 2.0], 10, 100.0) == [10, 10]
     assert _shares([5.0, 5.0], 10, 0.0) == [1, 1]
+
+
+# ------------------------------------------------------------------------------ what is judged
+
+
+class Cheat(Peer):
+    """Knows the end before the clock runs, and nothing else."""
+
+    def __init__(self, name: str, sample: Callable[[Any], Any]) -> None:
+        super().__init__(name)
+        self.sample = sample
+
+    def prepare(self, scene: Scene, t_end: float, setting: float) -> Callable[[], Any]:
+        end = super().prepare(scene, t_end, setting)()
+
+        def run() -> Any:
+            return end
+
+        run.sample = self.sample  # type: ignore[attr-defined]
+        return run
+
+
+def test_an_end_known_before_does_not_win() -> None:
+    """Rubbish at the samples is its error; samples that are no numbers are no answer."""
+    rubbish = Cheat("rubbish", lambda t: (0 * t + 32, 0 * t, 0 * t))
+    nothing = Cheat("nothing", lambda t: (t * math.nan, 0 * t, 0 * t))
+    found = raced(rubbish, nothing)
+    first = only(found, "rubbish").errors
+    assert first.final <= 1e-15 and first.largest == first.linf > 30
+    assert not only(found, "nothing").completed and "nan" in only(found, "nothing").reason
+    assert set(found.unbeaten()) == {"flow"}
+    text = found.verdict()
+    assert "rubbish came no nearer than 3" in text and "rubbish is unbeaten" not in text
+    assert found.best(1e-2).name == "flow"  # type: ignore[union-attr]
+
+
+def test_a_lucky_end_counts_as_the_rest_of_the_motion() -> None:
+    """1e-3 off on the way and right at the end: it reaches 1e-3, not 1e-13."""
+
+    class Lucky(Peer):
+        def prepare(self, scene: Scene, t_end: float, setting: float) -> Callable[[], Any]:
+            run = super().prepare(scene, t_end, setting)
+            sample = run.sample  # type: ignore[attr-defined]
+
+            def off(t: Any) -> Any:
+                theta, omega, x = sample(t)
+                return theta + 1e-3 * (t < t_end), omega, x
+
+            run.sample = off  # type: ignore[attr-defined]
+            return run
+
+    found = raced(Lucky("lucky"))
+    assert only(found, "lucky").errors.final <= 1e-15
+    assert only(found, "lucky").errors.largest == pytest.approx(1e-3, rel=1e-6)
+    assert "lucky" in found.least(1.01e-3) and "lucky" not in found.least(0.99e-3)
+    assert "lucky" in found.least(1e-12, x="final")
+
+
+def test_the_verdict_says_what_was_judged() -> None:
+    text = raced(Peer("whole"), Peer("silent", sampled=False)).verdict()
+    assert ", at the sample times and the end (of silent at the end alone):\n" in text
 
 
 # ------------------------------------------------------------------------------- refusals

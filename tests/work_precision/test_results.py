@@ -16,7 +16,7 @@ from rolling_ellipse._work_precision.truth import Reference
 
 
 def run(name: str, error: float, time: float, **other: Any) -> Run:
-    errors = Errors(final=error, l2=error / 2, linf=2 * error, energy=error / 10)
+    errors = Errors(final=error / 2, l2=error / 4, linf=error, energy=error / 10)
     facts: dict[str, Any] = {
         "model": "rolling", "method": name, "stabilization": "", "setting": error,
         "errors": errors, "time": time,
@@ -52,7 +52,7 @@ def test_best_is_the_fastest_of_those_that_are_good_enough() -> None:
     assert FOUND.best(9.9e-4) is RUNS[0] and FOUND.best(1e-8) is RUNS[0]
     assert FOUND.best() is RUNS[0]
     assert FOUND.best(1e-13) is None  # the reference cannot tell
-    assert FOUND.best(1e-3, x="linf") is RUNS[0]  # twice the error at the end
+    assert FOUND.best(9.9e-4, x="final") is RUNS[2]  # half the error at the end
     assert FOUND.best(1e-2, y="evaluations") is RUNS[0]  # all take 100: the first
 
 
@@ -87,16 +87,17 @@ def test_the_verdict_gives_no_number_for_what_nobody_has_computed() -> None:
     unknown = replace(FOUND.references[0], floor=0.0, attainable=float("nan"))
     said = replace(FOUND, references=(unknown,)).verdict().splitlines()[0]
     assert said == (
-        "To t = 2 s, judged by exact rolling (no time was left to find what is attainable):"
+        "To t = 2 s, judged by exact rolling (no time was left to find what is attainable), "
+        "at the sample times and the end:"
     )
 
 
 def test_the_verdict_says_what_the_table_says() -> None:
     lines = FOUND.verdict().splitlines()
     assert lines[0].startswith("To t = 2 s, judged by exact rolling (its own error 4.0e-13;")
-    assert lines[1] == "fast is unbeaten from 1e-02 to 1e-03 (4 µs);"
+    assert lines[1] == "fast is unbeaten from 1e-02 to 1e-03 (4 µs, set-up 10 µs);"
     assert lines[2] == "    sure takes 2.5 × at 1e-02, 2.5 × at 1e-03"
-    assert lines[3] == "sure is unbeaten from 1e-04 to 1e-12 (10 µs);"
+    assert lines[3] == "sure is unbeaten from 1e-04 to 1e-12 (10 µs, set-up 10 µs);"
     assert lines[4] == (
         "    fast takes 5 × at 1e-04, 5 × at 1e-05, 5 × at 1e-06, 20 × at 1e-07, 20 × at 1e-08, "
         "20 × at 1e-09"
@@ -115,14 +116,65 @@ def test_the_verdict_says_what_the_table_says() -> None:
     assert len(lines) == 11
 
 
+LATE: dict[str, Any] = {"status": "NOT_RUN", "reason": "max_seconds", "errors": Errors()}
+CUT = replace(
+    FOUND,
+    runs=(
+        *RUNS,
+        run("late", 1e-5, 1e-3, setting=1e-2),
+        run("late", 1e-7, math.nan, setting=1e-3, **LATE),
+        run("fast", 1e-11, math.nan, **LATE),
+        run("rough", 7.9e2, 1e-7, setting=0.5),
+        run("rough", 1.0, math.nan, setting=0.25, **LATE),
+        run("lost", 0.01, math.nan, **LATE),
+        run("never", 0.1, math.nan, **LATE),
+    ),
+)
+
+
+def test_who_was_not_run_is_not_beaten() -> None:
+    """Nor has it come no nearer, nor reached nothing: nobody knows."""
+    assert CUT.not_run(1e-2) == ("rough", "lost", "never")
+    assert CUT.not_run(1e-5) == ("rough", "lost", "never")
+    assert CUT.not_run(1e-6) == ("late", "rough", "lost", "never")
+    assert CUT.not_run(1e-10) == ("late", "fast", "rough", "lost", "never")
+    assert CUT.unbeaten() == {} and FOUND.not_run(1e-10) == ()
+    lines = CUT.verdict().splitlines()
+    assert lines[1] == "fast is the fastest that was run from 1e-02 to 1e-03 (4 µs, set-up 10 µs);"
+    assert "sure is the fastest that was run from 1e-04 to 1e-12 (10 µs, set-up 10 µs);" in lines
+    assert "    no other was seen there from 1e-10 to 1e-12" in lines
+    assert "1e-12 no peer*" in CUT.verdict()
+    assert lines[-7:] == [
+        "lost reached nothing so far: MAX_STEPS, too many steps",
+        "poor came no nearer than 3.0e+00",
+        "fast was not run beyond 1e-09: no time left (200 µs a call so far)",
+        "lost was not run beyond 1e-01: no time left",
+        "late was not run beyond 1e-02: no time left (1 ms a call so far)",
+        "rough was not run beyond 5e-01: no time left (100 ns a call so far)",
+        "never was not run at all: no time left",
+    ]
+    assert not any(word in CUT.verdict() for word in ("unbeaten", "rough came", "never reached"))
+
+
+def test_where_all_were_run_one_is_unbeaten() -> None:
+    """Of the ways that are cut, one that has reached an error counts there."""
+    found = replace(FOUND, runs=(*RUNS, *CUT.runs[9:12]))
+    decades = [10.0**-k for k in range(2, 15)]
+    assert found.unbeaten() == {"fast": tuple(decades[:2]), "sure": tuple(decades[2:4])}
+    text = found.verdict()
+    assert "sure is unbeaten from 1e-04 to 1e-05" in text
+    assert "sure is the fastest that was run from 1e-06 to 1e-12" in text
+
+
 def test_the_verdict_of_a_race_agrees_with_its_rows() -> None:
     """Names and factors of the sentences, made again from the runs."""
     scene = Scene(2.0, 1.0, theta=0.2, omega=1.0)
     found = rl.work_precision(
         scene, 3.0, methods=["flow", "dop853", "rk4"], rounds=2, tolerances=[1e-3, 1e-7]
     )
-    floor = found.reference.floor
-    able = [r for r in found.runs if r.completed and max(r.errors.final, floor) <= 1e-6]
+    floor, _ = found.reference.limits("largest")
+    worst = [max(r.errors.final, r.errors.linf, floor) for r in found.runs]
+    able = [r for r, error in zip(found.runs, worst, strict=True) if r.completed and error <= 1e-6]
     fastest = min(able, key=lambda each: each.time)
     rival = min((r for r in able if r.name != fastest.name), key=lambda each: each.time)
     text = found.verdict()
@@ -134,7 +186,7 @@ def test_the_verdict_of_a_race_agrees_with_its_rows() -> None:
 def test_a_table_has_a_row_for_each_run() -> None:
     frame = FOUND.to_dataframe()
     assert list(frame["name"]) == [each.name for each in RUNS]
-    assert list(frame["final"])[:3] == [1e-13, 1e-13, 1e-3] and math.isnan(frame["final"][7])
+    assert list(frame["largest"])[:3] == [1e-13, 1e-13, 1e-3] and math.isnan(frame["final"][7])
     assert frame["tags"][2] == "peer"
 
 
@@ -148,7 +200,7 @@ def test_copies_are_equal(make: Any) -> None:
 def test_errors_are_attributes_and_items() -> None:
     errors = RUNS[0].errors
     assert errors["final"] == errors.final and set(errors) == {
-        "final", "l2", "linf", "energy", "gap", "slip",
+        "largest", "final", "l2", "linf", "energy", "gap", "slip",
     }  # fmt: skip
     with pytest.raises(KeyError):
         errors["median"]
@@ -186,7 +238,7 @@ def changes() -> dict[str, Any]:
         return change
 
     return {
-        "schema": at("schema", to=2),
+        "schema": at("schema", to=1),
         "no runs": at("runs", to=[]),
         "runs": at("runs", to={}),
         "references": at("references", to=[]),

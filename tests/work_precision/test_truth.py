@@ -3,8 +3,10 @@
 import math
 from typing import Any
 
+import make_rolling_reference as reference
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 from oracles import table
 from oracles.margins import told
 from rolling_ellipse import Scene, Validity, certify, flow, period, work_precision
@@ -73,3 +75,29 @@ def test_near_the_separatrix_less_is_attainable() -> None:
     told(found)
     growth = np.diff(np.log10(found)) / 3
     assert np.all(np.abs(growth - 0.9) < 0.01)
+
+
+def test_in_the_middle_less_may_be_attainable_than_at_the_end() -> None:
+    """Beside derivatives in 40 digits at the same times, by a quadrature of another kind."""
+    scene = Scene(2.0, 1.0, omega=math.sqrt(2 * 9.81 / 2.25) * (1 + 1e-9))
+    t_end = 0.72 * period(scene)
+    judge = Judge(scene, t_end, 12, None, math.inf)
+    numbers = (scene.a, scene.b, scene.gyration2, scene.gravity, scene.theta, scene.omega)
+    with mp.workdps(40):
+
+        def states(changed: int, share: float) -> Any:
+            start = [mpf(number) for number in numbers]
+            start[changed] += share * (start[changed] if changed != 4 else 1)
+            motion = reference.motion(reference.Scene(*start), reference.gauss_rule(28, 1.8))
+            return np.array([motion.state(mpf(t)) for t in judge.times[1:].tolist()]).T
+
+        exact = states(0, 0.0)
+        sizes = np.array([1.0, scene.omega, scene.a])[:, None]  # which is fastest at the start
+        carried = sum(abs(states(i, 1e-20) - exact) / 1e-20 for i in range(6)).astype(float) / sizes
+    known = np.max(2.2e-16 * carried + 2 * np.spacing(np.abs(exact.astype(float))) / sizes, axis=0)
+    told(judge.reference, known.max() / known[-1])
+    assert known.max() > 100 * known[-1]
+    assert judge.reference.attainable == pytest.approx(known[-1], rel=0.05)
+    assert judge.reference.limits("final") == (judge.reference.floor, judge.reference.attainable)
+    assert judge.reference.limits("largest")[1] == pytest.approx(known.max(), rel=0.05)
+    assert judge.reference.limits("linf")[0] == pytest.approx(4 * known.max(), rel=0.05)

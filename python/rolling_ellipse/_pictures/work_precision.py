@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,8 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from .._check import shown
 from .._work_precision.results import require_quantity
-from .._work_precision.run import ERRORS
+from .._work_precision.run import ERRORS, NOT_RUN, OF_STATES
+from .._work_precision.words import beyond, end_alone
 from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .margin import label_ends
@@ -31,11 +33,11 @@ if TYPE_CHECKING:
     from .._work_precision.run import Run
     from .palette import Palette
 
-_OF_STATES = ("final", "l2", "linf")
 _NAMES = {
+    "largest": "largest error of the state, samples and end",
     "final": "error of the state at the end",
     "l2": "root mean square error of the state",
-    "linf": "largest error of the state",
+    "linf": "largest error of the state at the samples",
     "energy": "error of the energy",
     "gap": "distance from the ground / long semi-axis",
     "slip": "slip / (long semi-axis × largest ω)",
@@ -54,7 +56,7 @@ _DASHES = ("-", "--", "-.", ":")
 _LEAST = 1e-17  # where an exact zero is drawn
 _MOST = 10.0  # errors above are no answer: drawn there, on the rim
 _REASONS = 12  # lines of those that have no answer
-_LISTED = 8  # names in a line
+_LINE = 110  # characters
 _FEW = 2.0  # decades of an axis
 _PITCH = 36.0  # of ticks, at least [points]
 _FLATTEST = 3.0  # width over height
@@ -68,8 +70,8 @@ class WorkPrecisionChart(Artists):
 
     By name of the way, or (name, setting) over "t_end": `lines` through the runs, `setups` (hollow,
     at time + set-up of the most accurate run), `names` in the margin, and `failures` on the rim;
-    `reasons` is the text that explains the latter. `floor` and `attainable` are there over errors
-    of the state, `stamp` in a figure of its own.
+    `reasons` is the text that explains the latter, and says who was not run at all settings.
+    `floor` and `attainable` are there over errors of the state, `stamp` in a figure of its own.
     """
 
     ax: Axes
@@ -110,7 +112,11 @@ def draw(
     ax = axes_of(ax, (9.5, 5.4))
     ax.set(xscale="log", yscale="log", xlabel=_NAMES[x], ylabel=_NAMES[y])
     looks = _looks(found, palette_of(ax))
-    floors = {each.t_end: each.floor for each in found.references}
+    floors = {
+        (each.t_end, error): each.limits(error)[0]
+        for each in found.references
+        for error in OF_STATES
+    }
     groups: dict[Any, list[Run]] = {}
     for run in runs:
         setting = None if math.isnan(run.setting) else run.setting  # NaN is no key
@@ -135,19 +141,27 @@ def draw(
             setups[key] = hollow
     floor = attainable = None
     drawn = [np.asarray(line.get_xydata()) for line in (*lines.values(), *setups.values())]
-    known = [reference.floor, reference.attainable] if x in _OF_STATES else []
-    for axis, column, more in ((ax.xaxis, 0, known), (ax.yaxis, 1, [])):
+    known = reference.limits(x) if x in OF_STATES else ()
+    for axis, column, more in ((ax.xaxis, 0, known), (ax.yaxis, 1, ())):
         _show_all(axis, [*np.concatenate([[], *(xy[:, column] for xy in drawn)]), *more])
-    if x in _OF_STATES:
-        floor, attainable = _mark_limits(ax, reference)
+    if x in OF_STATES:
+        floor, attainable = _mark_limits(ax, *known)
     if x in ERRORS:
         ax.invert_xaxis()
     failures, why = _rim(ax, groups, looks, x)
+    late = _late(groups)
+    if late:
+        why += wrap(f"→ not run, for want of time: {', '.join(late.values())}", _LINE)
     _dress(ax)
     told = _stamp(found) if own_figure else []
     if own_figure:
         _shape(ax, len(why) + len(told))
-    names = label_ends(ax, {key: (line, _title(key)) for key, line in lines.items()}, own_figure)
+    alone = end_alone(runs) if x == "largest" else []
+    titles = {
+        key: _title(key) + " (end alone)" * (groups[key][0].name in alone) + " →" * (key in late)
+        for key in lines
+    }
+    names = label_ends(ax, {key: (line, titles[key]) for key, line in lines.items()}, own_figure)
     reasons = _below(ax, why, 0)
     stamp = _below(ax, told, len(why))
     return WorkPrecisionChart(ax, lines, setups, failures, names, reasons, floor, attainable, stamp)
@@ -186,12 +200,12 @@ def _kind(run: Run, palette: Palette) -> tuple[str, float]:
     return (palette.plum, 1.0) if run.model == "multipliers" else (palette.blue, 1.2)
 
 
-def _place(run: Run, quantity: str, floors: dict[float, float]) -> float:
+def _place(run: Run, quantity: str, floors: dict[tuple[float, str], float]) -> float:
     """Where a run is drawn along an axis; NaN or 0 where it is not."""
     value = run.value(quantity)
     if quantity not in ERRORS or math.isnan(value):
         return value
-    least = floors[run.t_end] if quantity in _OF_STATES else 0.0
+    least = floors.get((run.t_end, quantity), 0.0)
     return min(max(value, least or _LEAST), _MOST)
 
 
@@ -218,17 +232,19 @@ def _show_all(axis: Axis, values: list[float]) -> None:
     _set_limits(axis, middle - half, middle + half)
 
 
-def _mark_limits(ax: Axes, reference: Any) -> tuple[Artist | None, Line2D | None]:
+def _mark_limits(
+    ax: Axes, its_own: float, attainable: float
+) -> tuple[Artist | None, Line2D | None]:
     words: dict[float, tuple[str, int, str]] = {}
     line = floor = None
     grey = palette_of(ax).grey
-    if reference.attainable > 0:
-        line = ax.axvline(reference.attainable, color=grey, lw=1, ls=(0, (4, 2)), zorder=1)
-        words[reference.attainable] = ("attainable", -2, "right")
-    if reference.floor > 0:
+    if attainable > 0:
+        line = ax.axvline(attainable, color=grey, lw=1, ls=(0, (4, 2)), zorder=1)
+        words[attainable] = ("attainable", -2, "right")
+    if its_own > 0:
         least = ax.get_xlim()[0]
-        floor = ax.axvspan(least, reference.floor, color=grey, alpha=0.18, lw=0, zorder=0)
-        words[reference.floor] = ("reference's own error", 2, "left")
+        floor = ax.axvspan(least, its_own, color=grey, alpha=0.18, lw=0, zorder=0)
+        words[its_own] = ("reference's own error", 2, "left")
     for place, (word, off, side) in words.items():
         ax.annotate(
             word, (place, 1), xycoords=("data", "axes fraction"), xytext=(off, -3),
@@ -242,10 +258,11 @@ def _rim(
     ax: Axes, groups: dict[Any, list[Run]], looks: dict[str, _Look], x: str
 ) -> tuple[dict[Any, Line2D], list[str]]:
     """Mark the runs without an answer on the rim; return the marks, and why they have none."""
-    gaps = {key: [r for r in runs if not r.completed] for key, runs in groups.items()}
-    late = [key for key, runs in gaps.items() if runs and len(runs) < len(groups[key])
-            and all(run.status == "SKIPPED" for run in runs)]  # fmt: skip
-    failed = {key: runs for key, runs in gaps.items() if runs and key not in late}
+    gaps = {
+        key: [run for run in runs if not run.completed and run.status != NOT_RUN]
+        for key, runs in groups.items()
+    }
+    failed = {key: runs for key, runs in gaps.items() if runs}
     marks: dict[Any, Line2D] = {}
     lines = []
     pitch = min(0.04, 0.95 / max(1, len(failed)))
@@ -269,16 +286,17 @@ def _rim(
         lines.append(_why(key, runs))
     if len(lines) > _REASONS:
         lines = [*lines[: _REASONS - 1], f"… and {len(lines) - _REASONS + 1} more"]
-    if late:
-        lines.append(f"finer settings left out for want of time: {_listed(late)}")
     return marks, lines
 
 
-def _listed(keys: list[Any]) -> str:
-    """Return names, as far as a line has room."""
-    names = list(dict.fromkeys(_title(key) for key in keys))
-    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-    return ", ".join(names[:_LISTED]) + more
+def _late(groups: dict[Any, list[Run]]) -> dict[Any, str]:
+    """Say how far those were run for which there was no time."""
+    found = {}
+    for key, runs in groups.items():
+        made = [run for run in runs if run.status != NOT_RUN]
+        if len(made) < len(runs):
+            found[key] = f"{key} {beyond(made)}" if isinstance(key, str) else _title(key)
+    return found
 
 
 def _why(key: Any, runs: list[Run]) -> str:

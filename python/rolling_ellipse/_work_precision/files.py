@@ -18,7 +18,7 @@ from .results import WorkPrecision
 from .run import Errors, Run
 from .truth import Reference
 
-_SCHEMA = 1
+_SCHEMA = 2
 _TEXTS = ("name", "model", "method", "stabilization", "status", "reason")
 _COUNTS = ("steps", "rejected", "evaluations")
 
@@ -116,7 +116,7 @@ def _run(found: Any) -> Run:
 
 def _reference(found: Any) -> Reference:
     require_names("a reference", found, field_names(Reference))
-    numbers = {name: _number(name, found[name]) for name in ("t_end", "floor", "attainable")}
+    numbers = {name: _number(name, value) for name, value in found.items() if name != "name"}
     if any(value < 0 for value in numbers.values()) or not numbers["t_end"] > 0:
         raise ValueError(f"a reference must have numbers of at least 0, got {found!r}")
     return Reference(name=_text("name", found["name"]), **numbers)

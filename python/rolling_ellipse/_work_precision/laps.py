@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import heapq
 import math
 import statistics
 import time
@@ -11,13 +12,13 @@ from contextlib import contextmanager
 from typing import Any
 
 from .._scene import Scene
-from .contenders import Contender, Runner, Stopped
+from .contenders import STEPS, Contender, Runner, Stopped
 from .progress import Progress
-from .run import COMPLETED, Errors, Run
+from .run import COMPLETED, NOT_RUN, Errors, Run
 from .truth import Judge
 
 _SHORTEST = 1e-3  # of a timing [s]: shorter calls are repeated
-_FINER = 4.0  # a run is taken to cost so many times the coarser one before
+_POWER_OF_TOLERANCES = 0.25  # number of steps ~ rtol^-power, for pairs of order 3 and more
 
 
 class Lap:
@@ -29,7 +30,8 @@ class Lap:
         self.errors = Errors()
         self.status, self.reason = COMPLETED, ""
         self.setup = self.once = self.samples_time = math.nan
-        self.cost = 0.0  # of being judged [s]
+        self.preparing = 0.0  # what all first calls take longer, with `prepare` [s]
+        self.cost = 0.0  # of being judged, without that [s]
         self.times: list[float] = []
         self.counts: dict[str, int] = {}
 
@@ -44,20 +46,24 @@ class Lap:
             self._stop("REFUSED", str(refusal))
         except Exception as failure:  # whatever a peer may raise
             self._stop("FAILED", f"{type(failure).__name__}: {failure}")
-        self.cost = time.perf_counter() - begin
+        self.cost = time.perf_counter() - begin - self.preparing
 
     def _run(self, scene: Scene) -> None:
         begin = time.perf_counter()
-        runner = self.contender.prepare(scene, self.judge.t_end, self.setting)
-        runner.end()
-        first = time.perf_counter() - begin
+        try:
+            runner = self.contender.prepare(scene, self.judge.t_end, self.setting)
+        finally:
+            self.preparing = time.perf_counter() - begin
+        first, _ = _timed(runner.end)
         self.once, end = _timed(runner.end)
+        self.preparing += max(0.0, first - self.once)
+        self.setup = self.preparing
         self.counts = dict(runner.counts())
         if not all(math.isfinite(value) for value in end):
             raise ArithmeticError(f"it returned theta, omega, x = {end}")
-        runner.sampled(self.judge.times)
+        first, _ = _timed(lambda: runner.sampled(self.judge.times))
         self.samples_time, motion = _timed(lambda: runner.sampled(self.judge.times))
-        self.setup = max(0.0, first - self.once)
+        self.preparing += max(0.0, first - self.samples_time)
         if motion is None:
             self.samples_time = math.nan
             self.errors = Errors(final=self.judge.final_error(end))
@@ -68,9 +74,9 @@ class Lap:
     def _stop(self, status: str, reason: str) -> None:
         self.status, self.reason = status, reason
 
-    def skip(self, reason: str) -> None:
-        """Leave it out for want of time."""
-        self._stop("SKIPPED", reason)
+    def leave_out(self, reason: str) -> None:
+        """Do not run it, for want of time."""
+        self._stop(NOT_RUN, reason)
 
     @property
     def repeats(self) -> int:
@@ -102,38 +108,58 @@ class Lap:
         )  # fmt: skip
 
 
-def judge_all(laps: Sequence[Lap], scene: Scene, deadline: float, progress: Progress) -> None:
-    """Judge each run, as far as the time allows; the laps of a contender come coarse to fine."""
-    before: dict[tuple[Contender, float], Lap] = {}
+def judge_all(laps: Sequence[Lap], scene: Scene, seconds: float, progress: Progress) -> float:
+    """Judge the runs that `seconds` allow, and return the time spent on them [s].
+
+    Every contender runs at its coarsest setting for each end. Then the next run is always one of
+    the contender and end that will have had the least time with it. It is made if it keeps within
+    an equal share of `seconds`, whatever the others have used, or within what they have left;
+    otherwise it is not made, nor are finer ones. Set-up is not counted.
+    """
+    ladders: dict[tuple[Contender, float], list[Lap]] = {}
     for lap in laps:
-        coarser = before.get((lap.contender, lap.judge.t_end))
-        left = max(0.0, deadline - time.perf_counter())
-        expected = _FINER * coarser.cost if coarser else 0.0
-        if coarser and coarser.status == "SKIPPED":
-            lap.skip(coarser.reason)
-        elif left == 0 or expected > left:
-            lap.skip(
-                f"max_seconds: {left:.2g} s were left for a run that may take {expected:.2g} s"
-                if left
-                else "max_seconds had passed"
-            )
-        else:
-            lap.judge_once(scene)
-        before[lap.contender, lap.judge.t_end] = lap
-        progress.advance(lap.contender.name)
+        ladders.setdefault((lap.contender, lap.judge.t_end), []).append(lap)
+    waiting = [(0.0, i, 0, ladder) for i, ladder in enumerate(ladders.values())]
+    share, spent = seconds / max(1, len(waiting)), 0.0
+    while waiting:
+        total, i, rung, ladder = heapq.heappop(waiting)
+        before = sum(lap.cost for lap in ladder[:rung])
+        expected, left = total - before, max(0.0, seconds - spent)
+        if rung and total > share and expected >= left:
+            for lap in ladder[rung:]:
+                lap.leave_out(
+                    f"max_seconds: a run that may take {expected:.2g} s is more than its share"
+                )
+                progress.advance(lap.contender.name)
+            continue
+        ladder[rung].judge_once(scene)
+        progress.advance(ladder[rung].contender.name)
+        spent += ladder[rung].cost
+        if rung + 1 < len(ladder):
+            total = before + ladder[rung].cost + _expected(ladder, rung + 1)
+            heapq.heappush(waiting, (total, i, rung + 1, ladder))
+    return spent
 
 
-def time_all(laps: Sequence[Lap], rounds: int, deadline: float, progress: Progress) -> int:
-    """Time all that have an answer, in turns; return how many rounds were made."""
+def _expected(ladder: Sequence[Lap], rung: int) -> float:
+    """Return what a run may cost, from the cost of the coarser ones [s]."""
+    last, setting = ladder[rung - 1], ladder[rung].setting
+    power = 1.0 if last.contender.ladder == STEPS else _POWER_OF_TOLERANCES
+    return last.cost * math.pow(last.setting / setting, power)
+
+
+def time_all(laps: Sequence[Lap], rounds: int, seconds: float, progress: Progress) -> int:
+    """Time all that have an answer, in turns, once at least; return how many rounds were made."""
     running = [lap for lap in laps if lap.runner is not None]
     costs = [lap.repeats * lap.once for lap in running]
-    shares = _shares(costs, rounds, deadline - time.perf_counter())
+    shares = _shares(costs, rounds, seconds)
+    deadline = time.perf_counter() + seconds
     with _no_collection():
         for i in range(rounds):
+            if i and time.perf_counter() >= deadline:
+                return i
             for lap, share in zip(running, shares, strict=True):
-                if (i + 1) * share // rounds > i * share // rounds:
-                    if time.perf_counter() >= deadline:
-                        return i
+                if i * share // rounds > (i - 1) * share // rounds:
                     lap.time_once()
             progress.advance(f"round {i + 1}")
     return rounds

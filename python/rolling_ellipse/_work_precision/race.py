@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -26,8 +27,8 @@ from .results import WorkPrecision
 from .truth import Judge, Truth, rolls_for_certain
 
 _MOST = 1_000_000  # rounds, samples
-_KNOWING = 0.2  # share of the time after which no more is asked of what is attainable
-_JUDGING = 0.6  # share of the time in which every run is made once
+_KNOWING = 0.2  # times max_seconds: the longest search for what is attainable
+_JUDGING = 0.6  # share of max_seconds in which every run is made once
 
 
 def work_precision(
@@ -47,8 +48,8 @@ def work_precision(
 
     Every way is tried at every setting of its ladder. Each run is judged once, against the exact
     motion; then all are timed in rounds, one after the other, so that they share what else the
-    machine does, and the least time of each counts. What cannot be run, stops on its way or would
-    take too long stays among the runs, with its reason.
+    machine does, and the least time of each counts. What cannot be run, stops on its way or is not
+    run for want of time stays among the runs, with its reason.
 
     Parameters
     ----------
@@ -65,17 +66,22 @@ def work_precision(
     steps : sequence of float, optional
         Of methods that do not [s]; default a quarter to a 2048th of a half turn or half swing.
     samples : int
-        Number of times at which the errors "l2" and "linf" are taken: no parts of any period.
+        Number of times at which the errors "l2" and "linf" are taken: no parts of any period. The
+        larger of "linf" and the error at the end is what counts.
     rounds : int
         How often each run is timed, unless it is so slow that `max_seconds` allow fewer.
     max_seconds : float
-        After so much time [s] it ends with what it has; a call that is on its way is not cut.
+        Time for all runs [s], in equal shares; what one does not need is left to the others. Each
+        way runs at its coarsest setting, and finer ones as far as its share goes. A call that is
+        on its way is not cut, and takes nothing from the others' shares. Not counted are the
+        reference, and what `prepare` and first calls take longer: compiling, loading.
     peers : sequence
         Other programs: objects with a ``name`` and ``prepare(scene, t_end, setting)``, which
         returns a function of nothing that returns theta, omega, x at the end. They may have
         ``ladder`` ("tolerances", the default, or "steps") and ``tags``; the function may have
-        ``sample(t)``, which returns the arrays at sorted times, and ``counts``, a mapping with
-        "steps", "rejected", "evaluations". A ValueError refuses, any other exception is a failure.
+        ``sample(t)``, which returns the arrays at sorted times, without which its end alone is
+        judged, and ``counts``, a mapping with "steps", "rejected", "evaluations". A ValueError
+        refuses, any other exception is a failure.
     reference : callable, optional
         theta, omega, x at increasing times, in any arithmetic, from elsewhere: without it, exact
         rolling, or the contact motion, by whose own error nothing else can be judged.
@@ -94,7 +100,6 @@ def work_precision(
     The diagrams are those of E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential
     Equations I, 2nd ed., Springer 1993, II.10.
     """
-    begin = time.perf_counter()
     require_scene(scene)
     ends = _increasing("t_end", t_end)
     ladders = {
@@ -109,15 +114,17 @@ def work_precision(
     rivals = peer_contenders(_listed("peers", peers))
     contenders = [*own_contenders(methods, scene, rolls_for_certain(scene)), *rivals]
     _require_apart(contenders)
-    judges = [Judge(scene, end, samples, reference, begin + _KNOWING * seconds) for end in ends]
+    known_by = time.perf_counter() + _KNOWING * seconds
+    judges = [Judge(scene, end, samples, reference, known_by) for end in ends]
     laps = [
         Lap(contender, judge, setting)
         for judge in judges
         for contender, setting in _rungs(contenders, ladders, scene, judge.t_end)
     ]
     with Progress(len(laps) + rounds) as progress:
-        judge_all(laps, scene, begin + _JUDGING * seconds, progress)
-        made = time_all(laps, rounds, begin + seconds, progress)
+        spent = judge_all(laps, scene, _JUDGING * seconds, progress)
+        left = seconds - min(spent, _JUDGING * seconds)  # one that took long takes none of it
+        made = time_all(laps, rounds, left, progress)
     return WorkPrecision(
         scene=scene,
         runs=tuple(lap.run() for lap in laps),
@@ -129,13 +136,11 @@ def work_precision(
 def _rungs(
     contenders: Sequence[Contender], ladders: dict[str, list[float]], scene: Scene, t_end: float
 ) -> Iterator[tuple[Contender, float]]:
-    """Go up all ladders together, from coarse to fine: a race that is cut has something of all."""
+    """Yield the settings of every contender, all from coarse to fine."""
     at = ladders | {STEPS: ladders[STEPS] or default_steps(scene, t_end)}
-    columns = [at[c.ladder] if c.ladder else [float("nan")] for c in contenders]
-    for i in range(max(map(len, columns), default=0)):
-        for contender, settings in zip(contenders, columns, strict=True):
-            if i < len(settings):
-                yield contender, settings[i]
+    for contender in contenders:
+        for setting in at[contender.ladder] if contender.ladder else [math.nan]:
+            yield contender, setting
 
 
 def _ladder(name: str, values: Any) -> list[float]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .._check import number, shown
 from .._faces import Row, html_table
 from .._scene import Scene
-from .run import ERRORS, FIGURES, Run
+from .run import ERRORS, FIGURES, NOT_RUN, OF_STATES, Run
 from .truth import Reference
 
 if TYPE_CHECKING:
@@ -66,14 +66,14 @@ class WorkPrecision:
         return tuple(run for run in self.runs if run.t_end == end)
 
     def best(
-        self, at: float = 1e-8, *, x: str = "final", y: str = "time", t_end: float | None = None
+        self, at: float = 1e-8, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> Run | None:
         """Return the run that takes least among those with an error of at most `at`, or None.
 
         Parameters
         ----------
         at : float
-            Largest error allowed; a `final` error below the reference's own counts as that.
+            Largest error allowed; one of the state below the reference's own counts as that.
         x, y : str
             The error, and what is to be least.
         t_end : float, optional
@@ -83,7 +83,7 @@ class WorkPrecision:
         return min(able, key=lambda run: run.value(y), default=None)
 
     def least(
-        self, at: float, *, x: str = "final", y: str = "time", t_end: float | None = None
+        self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> dict[str, float]:
         """Return for each way that reaches an error of at most `at` the least it takes, by name."""
         found: dict[str, float] = {}
@@ -91,10 +91,26 @@ class WorkPrecision:
             found[run.name] = min(found.get(run.name, math.inf), run.value(y))
         return found
 
+    def not_run(
+        self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
+    ) -> tuple[str, ...]:
+        """Return the ways that have not reached an error of at most `at`, but were not run at all
+        their settings for want of time, by name."""
+        reached = self.least(at, x=x, y=y, t_end=t_end)
+        runs = [run for run in self.of(t_end) if run.status == NOT_RUN and run.name not in reached]
+        return tuple(dict.fromkeys(run.name for run in runs))
+
     def unbeaten(
-        self, margin: float = 1.2, *, x: str = "final", y: str = "time", t_end: float | None = None
+        self,
+        margin: float = 1.2,
+        *,
+        x: str = "largest",
+        y: str = "time",
+        t_end: float | None = None,
     ) -> dict[str, tuple[float, ...]]:
         """Return the ways that no other beats by more than `margin`, with the errors where so.
+
+        Errors at which another way has settings that were not run (`not_run`) are left out.
 
         Parameters
         ----------
@@ -111,20 +127,26 @@ class WorkPrecision:
         found: dict[str, tuple[float, ...]] = {}
         for decade in DECADES:
             least = self.least(decade, x=x, y=y, t_end=t_end)
+            if self.not_run(decade, x=x, y=y, t_end=t_end):
+                continue
             for name, value in least.items():
                 if value <= margin * min(least.values()):
                     found[name] = (*found.get(name, ()), decade)
         return found
 
     def verdict(self, *, t_end: float | None = None) -> str:
-        """Say in words who is fastest at which error, by which factor, and who reached nothing."""
+        """Say in words who is fastest at which error, by which factor, and who reached nothing.
+
+        Judged is the largest error of the state, at the samples and at the end. A way is called
+        unbeaten only where all others have reached the error, too, or have run all their settings.
+        """
         from .words import verdict
 
         return verdict(self, self._reference(t_end))
 
     def plot(
         self,
-        x: str = "final",
+        x: str = "largest",
         y: str = "time",
         tags: Sequence[str] | None = None,
         ax: Axes | None = None,
@@ -134,13 +156,14 @@ class WorkPrecision:
         """Draw one quantity of the runs over another, both on logarithmic axes.
 
         Every run is drawn, joined along its ladder; those without an answer are on the rim, with
-        their reasons below.
+        their reasons below. The name of a line that ends for want of time has an arrow.
 
         Parameters
         ----------
         x, y : str
-            "final", "l2", "linf", "energy", "gap", "slip" of the errors; "time", "samples_time",
-            "setup", "spread", "steps", "rejected", "evaluations", "setting" or "t_end".
+            "largest", "final", "l2", "linf", "energy", "gap", "slip" of the errors; "time",
+            "samples_time", "setup", "spread", "steps", "rejected", "evaluations", "setting" or
+            "t_end".
         tags : sequence of str, optional
             Draw runs with one of these tags (or names) only.
         ax : matplotlib Axes, optional
@@ -171,7 +194,8 @@ class WorkPrecision:
         rows = []
         for run in self.runs:
             row = asdict(run)
-            rows.append(row | row.pop("errors") | {"tags": " ".join(run.tags)})
+            del row["errors"]
+            rows.append(row | dict(run.errors) | {"tags": " ".join(run.tags)})
         frame: DataFrame = pandas.DataFrame(rows)
         return frame
 
@@ -209,17 +233,17 @@ class WorkPrecision:
         for name in self.names:
             answers = [run for run in self.of() if run.name == name and run.completed]
             if answers:
-                error, time = (min(run.value(of) for run in answers) for of in ("final", "time"))
+                error, time = (min(run.value(of) for run in answers) for of in ("largest", "time"))
                 rows.append((name, f"{error:.2g}", f"{1e6 * time:.3g} µs"))
             else:
                 rows.append((name, "no answer", ""))
-        return html_table(repr(self)[1:-1], rows, ("way", "least final error", "least time"))
+        return html_table(repr(self)[1:-1], rows, ("way", "least error", "least time"))
 
     def _able(self, at: float, x: str, y: str, t_end: float | None) -> list[Run]:
         if require_quantity("x", x) not in ERRORS:
             raise ValueError(f"x must be an error, one of {', '.join(ERRORS)}, got {x!r}")
         require_quantity("y", y)
-        floor = self._reference(t_end).floor if x in ("final", "l2", "linf") else 0.0
+        floor = self._reference(t_end).limits(x)[0] if x in OF_STATES else 0.0
         runs = [run for run in self.of(t_end) if run.completed and not math.isnan(run.value(y))]
         return [run for run in runs if max(run.value(x), floor) <= at]
 

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-COMPLETED = "COMPLETED"
-ERRORS = ("final", "l2", "linf", "energy", "gap", "slip")
+COMPLETED, NOT_RUN = "COMPLETED", "NOT_RUN"
+ERRORS = ("largest", "final", "l2", "linf", "energy", "gap", "slip")
+OF_STATES = ERRORS[:4]
 FIGURES = (
     "setting", "time", "samples_time", "setup", "spread", "steps", "rejected", "evaluations",
     "t_end",
@@ -27,6 +28,8 @@ class Errors(Mapping[str, float]):
         Of the state at the end.
     l2, linf : float
         Root mean square and largest of the states at the sample times.
+    largest : float
+        The larger of `linf` and `final`; `final` alone of a run that gives no samples.
     energy : float
         Largest change of the energy over |kinetic| + |potential|.
     gap, slip : float
@@ -41,6 +44,10 @@ class Errors(Mapping[str, float]):
     energy: float = math.nan
     gap: float = math.nan
     slip: float = math.nan
+
+    @property
+    def largest(self) -> float:
+        return self.final if math.isnan(self.linf) else max(self.final, self.linf)
 
     def __getitem__(self, name: str) -> float:
         if name not in ERRORS:
@@ -78,7 +85,7 @@ class Run:
     steps, rejected, evaluations : int
         Steps, those rejected and evaluations of the right-hand side of that call, 0 where unknown.
     status : str
-        "COMPLETED", a name of `Status`, or "REFUSED", "FAILED" or "SKIPPED".
+        "COMPLETED", a name of `Status`, "REFUSED", "FAILED", or "NOT_RUN" for want of time.
     reason : str
         What a run says that has no answer, or that should be known of one that has.
     tags : tuple of str

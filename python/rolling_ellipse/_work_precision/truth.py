@@ -26,6 +26,7 @@ Truth = Callable[[FloatArray], Columns]
 
 ROUNDING = 2.2e-16
 _MANY = 20_000  # times that are asked for one by one
+_ASKED = 500  # times at which what is attainable is asked for
 _GOLDEN = (math.sqrt(5) - 1) / 2
 _STILL = 1e-100  # of the rate of falling: slower turning is none
 _LARGEST_CHANGE, _SMALLEST_CHANGE, _AGREED = 2.0**-20, 2.0**-44, 0.02
@@ -47,12 +48,20 @@ class Reference:
         What a relative change of 2.2e-16 of every number of the scene, one after the other, does
         to the state at the end, and two units in the last place of theta: nobody who computes with
         doubles can promise less. NaN where there was no time to find out.
+    growth : float
+        Factor by which both are larger at the worst of the sample times than at the end; 1 or more.
     """
 
     name: str
     t_end: float
     floor: float
     attainable: float
+    growth: float = 1.0
+
+    def limits(self, error: str) -> tuple[float, float]:
+        """Return floor and attainable for an error of the state, by its name."""
+        factor = 1.0 if error == "final" else self.growth
+        return factor * self.floor, factor * self.attainable
 
 
 class Judge:
@@ -65,13 +74,15 @@ class Judge:
         self.times = np.concatenate([[0.0], inner, [t_end]])
         self.t_end = t_end
         rolls = rolls_for_certain(scene)
-        own: _Own = _Exact(scene, t_end) if rolls else _Contact(scene, t_end)
+        own: _Own = _Exact(scene) if rolls else _Contact(scene)
         self._truth = _columns(own.known if given is None else given, self.times)
         self._sizes = self._units_of_states(scene)
-        attainable = self._attainable(own, deadline)
+        known = self._attainable(own, deadline)
+        attainable = float(known[-1])
+        growth = float(np.max(known)) / attainable if math.isfinite(attainable) else 1.0
         name = own.name if given is None else getattr(given, "__name__", type(given).__name__)
         floor = own.floor(attainable) if given is None else float(getattr(given, "floor", 0.0))
-        self.reference = Reference(name, t_end, floor, attainable)
+        self.reference = Reference(name, t_end, floor, attainable, growth)
 
     def final_error(self, state: tuple[float, float, float]) -> float:
         """Return the error of a state at the end."""
@@ -111,35 +122,41 @@ class Judge:
         falls = math.sqrt(scene.gravity / length)
         return 1.0, fastest if fastest > _STILL * falls else falls, length
 
-    def _attainable(self, own: _Own, deadline: float) -> float:
-        ends = [float(column[-1]) for column in self._truth]
-        digits = np.array([math.ulp(end) for end in ends]) / self._sizes
-        middle = own.end(own.inputs[0], 0.0)
-        carried = np.zeros(3)
+    def _attainable(self, own: _Own, deadline: float) -> FloatArray:
+        """Return what is attainable at up to so many of the times, the end last, (n,)."""
+        places = np.unique(np.linspace(1, self.times.size - 1, _ASKED).round().astype(int))
+        states = [np.array(column[places], dtype=np.float64) for column in self._truth]
+        digits = np.spacing(np.abs(states)) / np.array(self._sizes)[:, None]
+        times = self.times[places]
+        middle = own.states(times, own.inputs[0], 0.0)
+        carried = np.zeros_like(digits)
         for name in own.inputs:
-            carried += self._carried(own, name, middle, deadline)
-        return float(np.max(2 * digits + carried))
+            carried += self._carried(own, times, name, middle, deadline)
+        largest: FloatArray = np.max(2 * digits + carried, axis=0)
+        return largest
 
-    def _carried(self, own: _Own, name: str, middle: Columns | None, deadline: float) -> FloatArray:
-        """How far the end goes when a number of the scene changes by 2.2e-16 of itself, (3,).
+    def _carried(
+        self, own: _Own, times: FloatArray, name: str, middle: Columns | None, deadline: float
+    ) -> FloatArray:
+        """How far states go when a number of the scene changes by 2.2e-16 of itself, (3, n).
 
         From ever smaller changes: of the rates, that which differs least from the one before and
         between its two sides. Before it the motion is not linear, after it rounding rules.
         """
-        rate, least = np.zeros(3), math.inf
-        before, change = np.full(3, math.inf), _LARGEST_CHANGE
-        while change >= _SMALLEST_CHANGE and least > _AGREED:
+        rate, before = np.zeros((3, times.size)), np.full((3, times.size), math.inf)
+        least, change = np.full(times.size, math.inf), _LARGEST_CHANGE
+        while change >= _SMALLEST_CHANGE and np.any(least > _AGREED):
             if time.perf_counter() > deadline:
-                return np.full(3, math.nan)
-            sides = [own.end(name, change), own.end(name, -change)]
-            away = [self._parts(s, middle).ravel() / change for s in sides if s is not None]
+                return np.full_like(rate, math.nan)
+            sides = [own.states(times, name, change), own.states(times, name, -change)]
+            away = [self._parts(s, middle) / change for s in sides if s is not None]
             if away:
                 here = np.max(away, axis=0)
-                apart = float(np.max(np.abs(here - before) + np.abs(away[0] - away[-1])))
-                size = float(np.max(here))
-                share = apart / size if size else 0.0
-                if share <= least:
-                    rate, least = here, share
+                apart = np.max(np.abs(here - before) + np.abs(away[0] - away[-1]), axis=0)
+                size = np.max(here, axis=0)
+                share = np.divide(apart, size, out=np.zeros_like(size), where=size > 0)
+                better = (share <= least) & (least > _AGREED)
+                rate[:, better], least[better] = here[:, better], share[better]
                 before = here
             change /= 16
         return rate * ROUNDING
@@ -169,8 +186,8 @@ class _Own:
         """theta, omega, x at increasing times."""
         raise NotImplementedError
 
-    def end(self, name: str, change: float) -> Columns | None:
-        """The state at the end with a number changed by a share of it; None if there is none."""
+    def states(self, times: FloatArray, name: str, change: float) -> Columns | None:
+        """The states with a number changed by a share of it; None if it does not go so far."""
         raise NotImplementedError
 
 
@@ -178,8 +195,8 @@ class _Exact(_Own):
     name = "exact rolling"
     inputs = ("a", "b", "gyration2", "gravity", "theta", "omega")
 
-    def __init__(self, scene: Scene, t_end: float) -> None:
-        self.t_end, self.x = t_end, scene.initial_state.x
+    def __init__(self, scene: Scene) -> None:
+        self.x = scene.initial_state.x
         self.numbers = arguments_of(scene)
 
     def truth(self, times: FloatArray) -> Columns:
@@ -190,18 +207,17 @@ class _Exact(_Own):
             theta, omega, x = flow(times, **self.numbers)
         return theta, omega, self.x + x
 
-    def end(self, name: str, change: float) -> Columns | None:
+    def states(self, times: FloatArray, name: str, change: float) -> Columns | None:
         share = change if name == "theta" else change * self.numbers[name]
-        theta, omega, x = flow(self.t_end, **(self.numbers | {name: self.numbers[name] + share}))
+        theta, omega, x = flow(times, **(self.numbers | {name: self.numbers[name] + share}))
         return theta, omega, self.x + x
 
 
 class _Contact(_Own):
     name = "contact motion at rounding level"
 
-    def __init__(self, scene: Scene, t_end: float) -> None:
+    def __init__(self, scene: Scene) -> None:
         self.scene = replace(scene, inertia=scene.mass * scene.gyration2)
-        self.t_end = t_end
         self.inputs = ("theta", *self._numbers())
 
     def _numbers(self) -> list[str]:
@@ -216,14 +232,14 @@ class _Contact(_Own):
             raise ValueError(f"it ends at {found.t_end!r} s, as {found.message}")
         return found.theta, found.omega, found.x
 
-    def end(self, name: str, change: float) -> Columns | None:
+    def states(self, times: FloatArray, name: str, change: float) -> Columns | None:
         value = getattr(self.scene, name)
         other = value + (change if name == "theta" else change * value)
         with suppress(ValueError):  # as friction or the height above the ground forbid it
             scene = replace(self.scene, **{name: other})
-            found = simulate(scene, [self.t_end], model="contact", raise_on_failure=False)
-            if found.t.size:
-                return float(found.theta[0]), float(found.omega[0]), float(found.x[0])
+            found = simulate(scene, times, model="contact", raise_on_failure=False)
+            if found.t.size == times.size:
+                return found.theta, found.omega, found.x
         return None
 
 

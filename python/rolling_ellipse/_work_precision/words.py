@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from .run import Run
+from .run import NOT_RUN, Run
 from .truth import Reference
 
 if TYPE_CHECKING:
@@ -16,59 +16,89 @@ if TYPE_CHECKING:
 _MARGIN = 1.2  # of times that are called equal
 Table = dict[float, dict[str, float]]  # the least time by decade and name
 Ways = dict[str, tuple[str, str]]  # model and method by name
+Open = dict[float, tuple[str, ...]]  # names not run at all settings and not there yet, by decade
 
 
 def verdict(found: WorkPrecision, reference: Reference) -> str:
-    """Return who is fastest at each decade, and who reached nothing."""
+    """Return who is fastest at each decade, who reached nothing, and who was not run."""
     from .results import DECADES
 
     end, runs = reference.t_end, found.of(reference.t_end)
     table = {decade: found.least(decade, t_end=end) for decade in DECADES}
+    opened = {decade: found.not_run(decade, t_end=end) for decade in DECADES}
     ways = {run.name: (run.model, run.method) for run in runs}
-    limits = [f"its own error {reference.floor:.1e}"] if reference.floor else []
-    if math.isnan(reference.attainable):
+    floor, attainable = reference.limits("largest")
+    limits = [f"its own error {floor:.1e}"] if floor else []
+    if math.isnan(attainable):
         limits.append("no time was left to find what is attainable")
     else:
-        limits.append(f"attainable {reference.attainable:.1e}")
-    lines = [f"To t = {end:.6g} s, judged by {reference.name} ({'; '.join(limits)}):"]
-    lines += _leaders(table, ways, reference)
-    lines += _beside_peers(table, {run.name for run in runs if "peer" in run.tags})
+        limits.append(f"attainable {attainable:.1e}")
+    lines = [
+        f"To t = {end:.6g} s, judged by {reference.name} ({'; '.join(limits)}), {_judged(runs)}:"
+    ]
+    setups: dict[str, float] = {}  # the longest: what compiles does so once
+    for run in runs:
+        if run.completed:
+            setups[run.name] = max(setups.get(run.name, 0.0), run.setup)
+    lines += _leaders(table, opened, ways, setups, reference)
+    lines += _beside_peers(table, opened, {run.name for run in runs if "peer" in run.tags})
     lines += _without_answer(runs)
     return "\n".join(lines)
 
 
-def _leaders(table: Table, ways: Ways, reference: Reference) -> list[str]:
+def end_alone(runs: Sequence[Run]) -> list[str]:
+    """Return the names of those whose samples are not known, so that their end alone is judged."""
+    alone = (run.name for run in runs if run.completed and math.isnan(run.errors.linf))
+    return list(dict.fromkeys(alone))
+
+
+def _judged(runs: Sequence[Run]) -> str:
+    alone = end_alone(runs)
+    but = f" (of {', '.join(alone)} at the end alone)" if alone else ""
+    return f"at the sample times and the end{but}"
+
+
+def _leaders(
+    table: Table, opened: Open, ways: Ways, setups: dict[str, float], reference: Reference
+) -> list[str]:
     lines = []
-    for decades in _stretches(table, _first):
-        name = _first(table[decades[0]])
-        lines.append(f"{name} is unbeaten {_span(decades)} ({_time(table[decades[-1]][name])});")
-        part = {decade: table[decade] for decade in decades}
-        for same in _stretches(part, lambda least: _second(least, ways)):
-            lines.append("    " + _factors(part, same, ways))
+
+    def leader(decade: float) -> tuple[str, bool]:
+        return _first(table[decade]), bool(opened[decade])
+
+    for decades in _stretches(table, leader):
+        name, more = leader(decades[0])
+        rank = "the fastest that was run" if more else "unbeaten"
+        cost = f"{_time(table[decades[-1]][name])}, set-up {_time(setups[name])}"
+        lines.append(f"{name} is {rank} {_span(decades)} ({cost});")
+        for same in _stretches(
+            {decade: table[decade] for decade in decades},
+            lambda decade: _second(table[decade], ways),
+        ):
+            lines.append("    " + _factors(table, same, ways, more))
     none = [decade for decade, least in table.items() if not least]
     if none:
-        why = ", which the reference could not tell" if none[0] < reference.floor else ""
+        unknown = none[0] < reference.limits("largest")[0]
+        why = ", which the reference could not tell" if unknown else ""
         lines.append(f"nobody has reached an error {_span(none)}{why}")
     return lines
 
 
-def _factors(table: Table, decades: list[float], ways: Ways) -> str:
-    """By how much the next one is behind at each of the decades."""
+def _factors(table: Table, decades: list[float], ways: Ways, more: bool) -> str:
+    """By how much the next one is behind at each of the decades; `more` were not run there."""
     following = _second(table[decades[0]], ways)
     if following is None:
-        return f"no other gets there {_span(decades)}"
+        return f"no other {'was seen' if more else 'gets'} there {_span(decades)}"
     factors = [table[decade][following] / min(table[decade].values()) for decade in decades]
     equal = " (as good as equal)" if max(factors) <= _MARGIN else ""
     told = ", ".join(f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, decades, strict=True))
     return f"{following} takes {told}{equal}"
 
 
-def _stretches(
-    table: Table, who: Callable[[dict[str, float]], str | None]
-) -> Iterator[list[float]]:
+def _stretches(table: Table, who: Callable[[float], Any]) -> Iterator[list[float]]:
     """Decades that follow one another and have the same name, of those that anybody reached."""
     reached = [decade for decade, least in table.items() if least]
-    for _, decades in groupby(reached, lambda decade: who(table[decade])):
+    for _, decades in groupby(reached, who):
         yield list(decades)
 
 
@@ -83,7 +113,7 @@ def _second(least: dict[str, float], ways: Ways) -> str | None:
     return _first(others) if others else None
 
 
-def _beside_peers(table: Table, peers: set[str]) -> list[str]:
+def _beside_peers(table: Table, opened: Open, peers: set[str]) -> list[str]:
     """The package's best beside the best peer, decade by decade."""
     if not peers:
         return []
@@ -93,13 +123,15 @@ def _beside_peers(table: Table, peers: set[str]) -> list[str]:
         if math.isinf(own) and math.isinf(peer):
             continue
         if math.isinf(peer):
-            parts.append(f"{decade:.0e} no peer")
+            part = f"{decade:.0e} no peer"
         elif math.isinf(own):
-            parts.append(f"{decade:.0e} peers only")
+            part = f"{decade:.0e} peers only"
         else:
             ahead = "" if peer >= own else " (the peer is ahead)"
-            parts.append(f"{decade:.0e} {peer / own:.3g}{ahead}")
-    return ["time of the best peer over the package's best:", "    " + ", ".join(parts)]
+            part = f"{decade:.0e} {peer / own:.3g}{ahead}"
+        parts.append(part + "*" * bool(opened[decade]))
+    some = " (* of those that were run)" if any(opened.values()) else ""
+    return [f"time of the best peer over the package's best{some}:", "    " + ", ".join(parts)]
 
 
 def own_and_peer(least: dict[str, float], peers: set[str]) -> tuple[float, float]:
@@ -110,25 +142,32 @@ def own_and_peer(least: dict[str, float], peers: set[str]) -> tuple[float, float
 
 
 def _without_answer(runs: Sequence[Run]) -> list[str]:
-    """Those that have no answer at any setting, with the reason of the first."""
-    answered = {run.name for run in runs if run.completed}
-    lines: dict[str, str] = {}
-    for run in runs:
-        if run.name not in answered:
-            lines.setdefault(run.name, f"{run.name} reached nothing: {run.status}, {run.reason}")
-    coarse = [
-        f"{name} came no nearer than {error:.1e}"
-        for name, error in _nearest(runs).items()
-        if error > 1e-2
-    ]
-    return [*lines.values(), *coarse]
+    """Those without an answer, with the first reason, or a poor one; and what was not run."""
+    lines, late = [], []
+    for name, found in _by_name(runs).items():
+        made = [run for run in found if run.status != NOT_RUN]
+        errors = [run.errors.largest for run in made if run.completed]
+        if len(made) < len(found):
+            took = [run.time for run in made if run.completed][-1:]
+            so_far = f" ({_time(took[0])} a call so far)" if took else ""
+            late.append(f"{name} was not run {beyond(made)}: no time left{so_far}")
+        if made and not errors:
+            so_far = "nothing" if len(made) == len(found) else "nothing so far"
+            lines.append(f"{name} reached {so_far}: {made[0].status}, {made[0].reason}")
+        elif errors and min(errors) > 1e-2 and len(made) == len(found):
+            lines.append(f"{name} came no nearer than {min(errors):.1e}")
+    return lines + late
 
 
-def _nearest(runs: Sequence[Run]) -> dict[str, float]:
-    found: dict[str, float] = {}
+def beyond(made: Sequence[Run]) -> str:
+    """Say how far a way was run."""
+    return f"beyond {made[-1].setting:.0e}" if made else "at all"
+
+
+def _by_name(runs: Sequence[Run]) -> dict[str, list[Run]]:
+    found: dict[str, list[Run]] = {}
     for run in runs:
-        if run.completed:
-            found[run.name] = min(found.get(run.name, math.inf), run.errors.final)
+        found.setdefault(run.name, []).append(run)
     return found
 
 

@@ -1,0 +1,68 @@
+"""What many motions cost in files: python tests/benchmarks/bench_batches.py
+
+Figures to plan a large run by: time of one core and bytes for a motion, exact or with slips and
+jumps, and what processes of a pool write side by side.
+"""
+
+import argparse
+import json
+import os
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+from rolling_ellipse import simulate_many
+from rolling_ellipse._work_precision.machine import machine
+
+ROUNDS = 3
+T_END = 3.0  # [s]
+STARTS = {  # friction and speeds [rad/s] that only rock or roll, and that slip and jump
+    "exact": (10.0, np.linspace(0.5, 3.0, 200_000)),
+    "contact": (1.0, np.linspace(5.5, 6.5, 5_000)),
+}
+MORE = 101  # samples
+
+
+def written(kind: str, samples: int = 1, workers: Any = 1) -> tuple[float, float]:
+    """Least time of a few calls [s] and bytes, for each motion."""
+    friction, speeds = STARTS[kind]
+    if samples > 1:
+        speeds = speeds[:: samples // 2]
+    grid = {"a": 2.0, "b": 1.0, "friction": friction, "omega": speeds}
+    times = np.linspace(0.0, T_END, samples) if samples > 1 else [T_END]
+    took = []
+    for _ in range(ROUNDS):
+        with TemporaryDirectory() as folder:
+            begin = time.perf_counter()
+            simulate_many(grid, times, workers=workers, out=Path(folder) / "motions")
+            took.append(time.perf_counter() - begin)
+            size = sum(file.stat().st_size for file in Path(folder).glob("motions/*"))
+    return min(took) / speeds.size, size / speeds.size
+
+
+def main() -> None:
+    """Measure, print and save the figures."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--save", type=Path, help="folder for the figures, as JSON")
+    chosen = options.parse_args()
+    figures: dict[str, Any] = {"machine": machine()}
+    for kind in STARTS:
+        seconds, size = written(kind)
+        _, longer = written(kind, MORE)
+        figures[kind] = {
+            "seconds": seconds, "bytes": size, "bytes a sample": (longer - size) / (MORE - 1),
+        }  # fmt: skip
+    cores = os.cpu_count() or 1
+    with ProcessPoolExecutor(cores) as pool:
+        figures["pool"] = {"processes": cores, "motions a second": 1 / written("exact", 1, pool)[0]}
+    text = json.dumps(figures, indent=1) + "\n"
+    print(text, end="")
+    if chosen.save:
+        (chosen.save / "batches.json").write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+"""Measured figures in prose, charts and notebooks are those of the data in docs."""
+
+import hashlib
+import json
+import re
+import runpy
+from pathlib import Path
+from typing import Any
+
+import pytest
+from oracles.paths import ROOT
+from PIL import Image
+from rolling_ellipse import WorkPrecision
+
+DOCS = ROOT / "docs"
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+RACE = DOCS / "peers_R_10.37.json"
+NOTEBOOK = ROOT / "notebooks" / "06_speed_and_accuracy.ipynb"
+# a time below a second, or a ratio ("25 × 16" is a size)
+MEASURED = re.compile(r"\d\s*(?:µs|us|ms|ns|microseconds?|nanoseconds?)\b|\d\s*×(?!\s*\d)")
+MARKED = re.compile(r"<!-- (\w+): made by .*?<!-- end of \1 -->", flags=re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def make() -> dict[str, Any]:
+    return runpy.run_path(str(DOCS / "make.py"))
+
+
+def cells(path: Path, kind: str) -> list[Any]:
+    found = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    return [cell for cell in found if cell["cell_type"] == kind]
+
+
+def printed(path: Path) -> str:
+    outputs = [output for cell in cells(path, "code") for output in cell["outputs"]]
+    return "".join("".join(output.get("text", "")) for output in outputs)
+
+
+def test_the_figures_of_the_readme_are_those_of_the_data(make: dict[str, Any]) -> None:
+    assert make["quoted"](README) == README, "python docs/make.py text"
+
+
+def test_a_figure_changed_by_hand_is_seen(make: dict[str, Any]) -> None:
+    part = next(found.group() for found in MARKED.finditer(README))
+    digit = re.search(r"(\d)(?=\.\d)", part)
+    assert digit is not None
+    changed = part[: digit.start()] + str(9 - int(digit.group())) + part[digit.end() :]
+    page = README.replace(part, changed)
+    assert page != README and make["quoted"](page) == README
+
+
+def test_every_race_of_the_data_is_quoted(make: dict[str, Any]) -> None:
+    rows = make["speed"]().count("| rolling over,") + make["speed"]().count("| rocking,")
+    assert rows == len(list(DOCS.glob("peers_*.json"))) > 0
+
+
+def test_the_chart_shows_the_data() -> None:
+    with Image.open(DOCS / "speed.png") as picture:
+        source = picture.info["Source"]
+    assert source == hashlib.sha256(RACE.read_bytes()).hexdigest(), "python docs/make.py pictures"
+
+
+def test_the_notebook_shows_the_data() -> None:
+    assert WorkPrecision.load(RACE).verdict() in printed(NOTEBOOK), "python docs/make.py notebooks"
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda p: p.stem)
+def test_no_measured_figure_is_typed_into_a_notebook(path: Path) -> None:
+    prose = "\n".join("".join(cell["source"]) for cell in cells(path, "markdown"))
+    assert MEASURED.search(prose) is None
+
+
+def test_no_measured_figure_is_typed_into_the_readme() -> None:
+    unmarked = MARKED.sub("", README)
+    assert len(MARKED.findall(README)) == 2 and MEASURED.search(unmarked) is None
+
+
+@pytest.mark.parametrize("text", ["takes 3.1 µs", "12.9 × at 1e-02", "14 ns a sample", "0.2 ms"])
+def test_a_measured_figure_is_known(text: str) -> None:
+    assert MEASURED.search(text) and not MEASURED.search("25 × 16 blows in 6 s, 450 bytes, 1e-9 m")
