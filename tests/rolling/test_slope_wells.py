@@ -62,8 +62,8 @@ def test_rocking_is_right_to_a_few_roundings(row: dict[str, str]) -> None:
     """Eight units, and two ulp of each answer.
 
     A half swing is a few series, each with a few roundings of its own in the time, the angle and
-    omega; the phase after any number of swings has those of the period. Found: 1 at most; with
-    gravity as a difference of two terms half of the scenes were off by more than 8, up to 1e8.
+    omega; the phase after any number of swings has those of the period. Found: 0.6 at most; with
+    gravity as a difference of two terms a third of the scenes was off by more than 8, up to 3e7.
     """
     scene, t = scene_of(row), float(row["t"])
     with warnings.catch_warnings():
