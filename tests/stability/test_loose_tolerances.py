@@ -40,7 +40,8 @@ class Found(NamedTuple):
     motion: Trajectory
     missed: float  # largest of the motion, in long semi-axes and rad
     missed_last: float  # at its end
-    energy: float  # lost at the end
+    energy: float  # largest change of the motion, beside its largest size
+    energy_last: float  # that at its end
     phase: float  # rad, largest of the last ten seconds: at one time two swings may meet by chance
     texts: list[str]
 
@@ -54,12 +55,14 @@ def run(scene_name: str, name: str) -> Found:
     position = np.abs(motion.constraint_residuals().position)
     missed = (position / [scene.a, scene.a, 1]).max(1)
     weight = scene.mass * scene.gravity
-    sizes = [motion.kinetic_energy[i] + weight * abs(motion.z[i]) for i in (0, -1)]
+    size = float(np.max(motion.kinetic_energy + weight * np.abs(motion.z)))
+    changes = np.abs(motion.energy - motion.energy[0]) / size
     found = Found(
         motion,
         float(missed.max()),
         float(missed[-1]),
-        float(abs(motion.energy[-1] - motion.energy[0]) / max(sizes)),
+        float(changes.max()),
+        float(changes[-1]),
         float(np.abs(motion.theta - simulate(scene, motion.t).theta)[motion.t > END - 10].max()),
         [str(w.message) for w in caught if w.category is rl.StabilityWarning],
     )
@@ -124,24 +127,20 @@ def test_constraints_do_not_make_a_motion_right(scene: str) -> None:
 
 @pytest.mark.parametrize(("scene", "name"), RUNS)
 def test_the_warning_comes_where_too_much_is_lost(scene: str, name: str) -> None:
-    """Its own thresholds, at the end of the motion: a thousandth of the long semi-axis in the
+    """Its own thresholds, anywhere on the way: a thousandth of the long semi-axis in the
     constraints; ten times rtol of the energy, a hundredth where steps are given. One warning, on
-    what is asked first, with a way out."""
+    what is asked first, with a way out. It comes where the end is beyond them, which is looked at,
+    and not where no sample is: what it names lies between these two, but for the tenth by which
+    samples 0.03 s apart miss the largest."""
     found = run(scene, name)
     allowed = 1e-2 if "step" in HOW[name] else 10 * RTOL
-    constraints, energy = found.missed_last > 1e-3, found.energy > allowed
-    assert len(found.texts) == (constraints or energy)
-    if constraints:
-        assert f"missed by {found.missed_last:.2g} of the long semi-axis" in found.texts[0]
-        assert "use 'projection'" in found.texts[0]
-    elif energy:
-        assert f"energy has changed by {found.energy:.2g} of itself" in found.texts[0]
-        assert "smaller rtol and atol" in found.texts[0]
-
-
-def test_some_are_warned_of_and_some_are_not() -> None:
-    """Free constraints always, kept energy never."""
-    warned = {(scene, kind(name)) for scene, name in RUNS if run(scene, name).texts}
-    for scene in SCENES:
-        assert (scene, "none") in warned
-        assert not {(scene, kept) for kept in ("exact", "projection+energy", "ggl")} & warned
+    assert len(found.texts) >= (found.missed_last > 1e-3 or found.energy_last > allowed)
+    assert len(found.texts) <= (1.1 * found.missed > 1e-3 or 1.1 * found.energy > allowed)
+    for text in found.texts:
+        named = float(text.split(" by ")[1].split()[0])
+        if "constraints" in text:
+            assert max(1e-3, found.missed_last / 1.1) <= named <= 1.1 * found.missed
+            assert "use 'projection'" in text
+        else:
+            assert max(allowed, found.energy_last / 1.1) <= named <= 1.1 * found.energy
+            assert "the energy has changed by" in text and "smaller rtol and atol" in text
