@@ -803,6 +803,13 @@ def drawn_body(rng: random.Random) -> dict[str, Any]:
 Values = dict[str, Any]
 
 
+def with_axes(v: Values, a: float, b: float) -> None:
+    """Of another shape, with an inertia of the same share."""
+    if v["inertia"] is not None:
+        v["inertia"] *= (max(a, b) / max(v["a"], v["b"])) ** 2
+    v["a"], v["b"] = a, b
+
+
 def rate(v: Values) -> float:
     """Of falling over."""
     return math.sqrt(v["gravity"] / max(v["a"], v["b"]))
@@ -870,7 +877,7 @@ def blow(rng: random.Random, v: Values) -> None:
 def tip(rng: random.Random, v: Values) -> None:
     """On the tip with hardly any spin, at most the doubles beside it."""
     if v["a"] == v["b"] or rng.random() < 0.6:  # which rolls on over its flat side
-        v["a"] = v["b"] * rng.uniform(1.05, 3.0) ** sign(rng)
+        with_axes(v, v["b"] * rng.uniform(1.05, 3.0) ** sign(rng), v["b"])
     v["theta"] = rng.choice([-1, 1]) * math.pi / 2 if v["a"] > v["b"] else 0.0
     if rng.random() < 0.2:
         v["theta"] = math.nextafter(v["theta"], sign(rng))
@@ -902,7 +909,7 @@ def well(rng: random.Random, v: Values) -> None:
     a, b = drawn_axes(rng)
     while max(a, b) / min(a, b) < 1.01:
         a, b = drawn_axes(rng)
-    v["a"], v["b"] = a, b
+    with_axes(v, a, b)
     ratio = max(a, b) / min(a, b)
     steepest = (ratio - 1 / ratio) / 2  # of h'/h
     v["slope"] = sign(rng) * math.atan(steepest) * rng.uniform(0.05, 0.95)
