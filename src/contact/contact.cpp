@@ -251,8 +251,7 @@ class ContactRun {
         const auto [after, rebound_or_less] = collision(scene_, before, approach);
         state_ = after;
         // Below a rounding of the speed of a fall it is none.
-        const double rebound =
-            rebound_or_less > epsilon * speed_of_fall() ? rebound_or_less : 0.0;
+        const double rebound = rebound_or_less > epsilon * speed_of_fall() ? rebound_or_less : 0.0;
         const Geometry at = geometry(axes(), before.theta);
         const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
         const double ratio = rebound / -approach;
@@ -389,7 +388,7 @@ class ContactRun {
     State state_;
     double gap_rate_ = 0.0;
     std::optional<DoubleDouble> sliding_on_;  // x_dot, where one slide follows another
-    DoubleDouble turned_;  // beside the angle of the state
+    DoubleDouble turned_;                     // beside the angle of the state
     bool axes_exchanged_ = false;
     const EndOfRolling first_end_;
     const double rest_speed_;

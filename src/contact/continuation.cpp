@@ -20,9 +20,11 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
     return state.omega == 0 && is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
 }
 
-// Whether a body whose c, physics (53), is 0 but for rounding leaves the ground: h'' is least on the
-// tip, so that c falls on the way up to it, and grows from there on.
-bool takes_off(const Geometry& at, double omega) { return at.dh * omega > 0 && !is_equilibrium(at); }
+// Whether a body whose c, physics (53), is 0 but for rounding leaves the ground: h'' is least on
+// the tip, so that c falls on the way up to it, and grows from there on.
+bool takes_off(const Geometry& at, double omega) {
+    return at.dh * omega > 0 && !is_equilibrium(at);
+}
 
 // It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52).
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side) {

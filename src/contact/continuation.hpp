@@ -14,8 +14,8 @@ struct Continuation {
     Mode mode;
     double side = 0.0;  // sign of the slip
     Painleve paradox = Painleve::determined;
-    // Friction without end where c = 0 but for rounding: N is then rounding as well, and next to the
-    // tip so is B. The body moves freely until it has turned so far that they have digits.
+    // Friction without end where c = 0 but for rounding: N is then rounding as well, and next to
+    // the tip so is B. The body moves freely until it has turned so far that they have digits.
     bool grazes = false;
     bool may_fly = false;  // it rolls, and flight would obey the laws as well
 };

@@ -80,8 +80,12 @@ class Follower {
             std::ldexp(1.0, -std::ilogb(rate(geometry(slide_.body.axes, sin, cos))));
         SlidingBody body = slide_.body;
         body.gravity = {body.gravity.into * square(unit), body.gravity.along * square(unit)};
-        const SlideState start{0.0, double(from.omega) * unit, double(slide_.slip) * unit,
-                               double(from.x_dot) * unit, 0.0, 0.0};
+        const SlideState start{0.0,
+                               double(from.omega) * unit,
+                               double(slide_.slip) * unit,
+                               double(from.x_dot) * unit,
+                               0.0,
+                               0.0};
         SlideSeries series = slide_series(body, start, sin, cos, clock_);
         // What reaches for ever may grow with what there is. The path and the pressure vary by more
         // of themselves than angle and speed do where the body is nearly round.

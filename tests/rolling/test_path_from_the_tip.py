@@ -7,6 +7,7 @@ by Legendre's elliptic integral in 30 digits, whatever the motion between them.
 import math
 import random
 from collections.abc import Iterator
+from typing import Any
 
 import mpmath as mp
 import numpy as np
@@ -73,7 +74,7 @@ def test_x_is_the_path_to_the_angle() -> None:
     worst = {name: 0.0 for name in ("one", "few", "many", "bodies", "rolling", "contact")}
     for start in starts(120):
         a, b, theta, omega = start
-        motion = {"a": a, "b": b, "theta": theta, "omega": omega}
+        motion: dict[str, Any] = {"a": a, "b": b, "theta": theta, "omega": omega}
         times = times_past_a_tip(start, rng)
 
         def judge(name: str, t: float, *state: float, start: Start = start) -> None:

@@ -32,7 +32,7 @@ def test_sol_in_any_order(report: Trajectory) -> None:
 
 
 ROLLED = rl.Scene(2.0, 1.0, theta=0.2, omega=3.2)
-STEPPED = [
+STEPPED: list[dict[str, Any]] = [
     {"model": "rolling", "method": "rk4", "step": 0.02},
     {"model": "rolling", "method": "gauss", "step": 0.02},
     {"model": "rolling", "method": "dopri5"},
