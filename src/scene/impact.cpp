@@ -16,21 +16,34 @@ constexpr double practically_infinite = 1e20;
 struct Contact {
     double v;
     double u;
+    double u_without_slip;  // u - v gtn/gtt, what a tangential impulse that stops v makes of u
     double gtt;
     double gtn;
     double gnn;
     double determinant;  // gtt gnn - gtn^2 = (1/m) (1/m + (h^2 + h'^2)/I)
 };
 
-Contact contact(const Scene& scene, const Geometry& at, const State& state) {
+// u_without_slip = (z_dot (k^2 + h^2) - x_dot h h' - k^2 h' omega)/(k^2 + h^2): a light body that
+// turns fast keeps its digits so, a body that hardly moves into the ground those of the difference.
+Contact contact(const Scene& scene, const Geometry& at, const State& state, double gap_rate) {
     const double inverse_mass = 1 / scene.mass;
     const double inverse_inertia = 1 / scene.inertia;
-    return {state.x_dot - at.h * state.omega,
-            gap_rate(state, at),
-            inverse_mass + at.h * at.h * inverse_inertia,
-            at.h * at.dh * inverse_inertia,
-            inverse_mass + at.dh * at.dh * inverse_inertia,
-            inverse_mass * (inverse_mass + (at.h * at.h + at.dh * at.dh) * inverse_inertia)};
+    Contact c{state.x_dot - at.h * state.omega,
+              gap_rate,
+              0.0,
+              inverse_mass + at.h * at.h * inverse_inertia,
+              at.h * at.dh * inverse_inertia,
+              inverse_mass + at.dh * at.dh * inverse_inertia,
+              inverse_mass * (inverse_mass + (at.h * at.h + at.dh * at.dh) * inverse_inertia)};
+    const double k2 = scene.inertia / scene.mass;
+    const double by_slip = c.v * (c.gtn / c.gtt);
+    const double x_share = at.h * at.dh / (k2 + at.h * at.h);
+    const double by_x = state.x_dot * x_share;
+    const double by_omega = k2 * at.dh / (k2 + at.h * at.h) * state.omega;
+    const bool by_velocities = std::abs(state.z_dot) + std::abs(by_x) + std::abs(by_omega) <
+                               std::abs(c.u) + std::abs(by_slip);
+    c.u_without_slip = by_velocities ? state.z_dot - by_x - by_omega : c.u - by_slip;
+    return c;
 }
 
 struct Reaction {
@@ -42,7 +55,7 @@ struct Reaction {
 
 // mu = infinity: the limit of the law below, physics (42) (no product infinity * 0 is ever formed).
 Reaction unlimited_friction(const Contact& c, double restitution) {
-    const double u_without_slip = c.u - c.v * c.gtn / c.gtt;
+    const double u_without_slip = c.u_without_slip;
     const double rebound = -restitution * c.u;
     if (u_without_slip <= 0) {
         // v = 0 and u = -e times that without slip: the full 2 x 2 system.
@@ -84,6 +97,11 @@ class ImpulsePath {
         return true;
     }
 
+    // The slip has stopped: u is what it is without slip, and what the normal impulse adds to that.
+    void stop_slip(const Contact& c) {
+        u_ = c.u_without_slip + normal_ * (c.determinant / c.gtt);
+    }
+
     Reaction result(bool sticks) const { return {tangential_, normal_, u_, sticks}; }
 
   private:
@@ -109,6 +127,7 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution)
         if (!path.go_on(c.gnn - friction * side * c.gtn, -friction * side, to_stick)) {
             return path.result(false);
         }
+        path.stop_slip(c);
     }
     const bool sticks = std::abs(c.gtn) <= friction * c.gtt;
     if (sticks) {
@@ -173,9 +192,12 @@ InitialState initial_state(const Scene& scene) {
     const bool slip_removed = state.mode == Mode::sliding && std::isinf(scene.friction);
     if (!result.touching || !(is_struck(scene) || slip_removed)) return result;
 
-    Contact c = contact(scene, at, state);
+    Contact c = contact(scene, at, state, gap_rate(state, at));
     // Next to the flat position a slide would end before doubles tell its time from 0.
-    if (slip_removed && zero_if_negligible(state.theta) == 0) c.gtn = 0.0;
+    if (slip_removed && zero_if_negligible(state.theta) == 0) {
+        c.gtn = 0.0;
+        c.u_without_slip = c.u;
+    }
     if (c.u > 0) {
         state.mode = Mode::flight;
         return result;
@@ -205,7 +227,7 @@ double sticking_friction(const Scene& scene) {
     if (state.z != at.h) return infinity;
     if (!is_struck(scene)) return rolls(state) ? 0.0 : infinity;
     strike(scene, *scene.impulse, state);
-    const Contact c = contact(scene, at, state);
+    const Contact c = contact(scene, at, state, gap_rate(state, at));
     if (c.u > 0) return infinity;
     if (c.u == 0) return c.v == 0 ? 0.0 : infinity;  // no pressure, no friction
     const double to_stay = std::abs(c.gtn) / c.gtt;
@@ -229,8 +251,7 @@ double gap_rate(const State& state, const Geometry& at) {
 
 Collision collision(const Scene& scene, const State& before, double gap_rate) {
     const Geometry at = geometry(scene.axes(), before.theta);
-    Contact c = contact(scene, at, before);
-    c.u = gap_rate;
+    const Contact c = contact(scene, at, before, gap_rate);
     if (!(c.u < 0)) return {before, c.u};
     const Reaction reaction = reaction_to(scene, c, scene.restitution);
     Collision found{before, reaction.rebound};

@@ -120,7 +120,11 @@ class Lying:
         return "no array"
 
 
-@pytest.mark.parametrize("value", [[[1], [2, 3]], [[[1]], 2], Lying(), [Lying()]], ids=repr)
+@pytest.mark.parametrize(
+    "value",
+    [[[1], [2, 3]], [[[1]], 2], Lying(), [Lying()]],
+    ids=["ragged", "deep", "lying", "lies"],
+)
 def test_places_that_are_no_array(value: Any) -> None:
     for draw in CURVES:
         refused("ax", lambda ax, draw=draw: draw(MOTION, ax=ax), value)
