@@ -98,9 +98,7 @@ class ImpulsePath {
     }
 
     // The slip has stopped: u is what it is without slip, and what the normal impulse adds to that.
-    void stop_slip(const Contact& c) {
-        u_ = c.u_without_slip + normal_ * (c.determinant / c.gtt);
-    }
+    void stop_slip(const Contact& c) { u_ = c.u_without_slip + normal_ * (c.determinant / c.gtt); }
 
     Reaction result(bool sticks) const { return {tangential_, normal_, u_, sticks}; }
 
@@ -141,23 +139,33 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution)
 
 // The gap rate is the rebound afterwards, and v = 0 where it sticks, exactly. The angular momentum
 // about the contact, which no reaction changes, gives the sticking angular velocity, physics (40):
-// k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega + rebound. Where a light
-// body turns so fast that little is left of that sum, its z_dot is what the impulse makes of it.
+// k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega + rebound. Where it slips
+// on, x_dot and omega are what the impulse makes of them; of a body so light and fast that little
+// is left of omega, what z_dot, omega and the rebound are by an impulse of the given direction has
+// more digits. z_dot is what the impulse makes of it where little is left of h' omega.
 void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, State& state) {
+    const double k2 = scene.inertia / scene.mass;
+    const double pull = reaction.tangential / scene.mass;
     const double kick = reaction.normal / scene.mass;
     const double pushed = state.z_dot + kick;
     const double largest = 2 * (std::abs(state.z_dot) + kick);
     if (reaction.sticks) {
-        const double k2 = scene.inertia / scene.mass;
-        state.omega = zero_if_negligible(
+        state.omega =
             (k2 * state.omega + at.h * state.x_dot + at.dh * (state.z_dot - reaction.rebound)) /
-            inertia_about_contact(k2, at));
+            inertia_about_contact(k2, at);
         state.x_dot = at.h * state.omega;
     } else {
-        const double angular = at.h * reaction.tangential + at.dh * reaction.normal;
-        state.omega = zero_if_negligible(state.omega - angular / scene.inertia);
-        state.x_dot += reaction.tangential / scene.mass;
+        const double lever = at.dh + at.h * (pull / kick);
+        const double turned = (at.h * pull + at.dh * kick) / k2;
+        const double about = k2 + at.dh * lever;
+        const double terms = k2 * std::abs(state.omega) +
+                             std::abs(lever) * (std::abs(state.z_dot) + reaction.rebound);
+        state.omega = terms < std::abs(about) * (std::abs(state.omega) + std::abs(turned))
+                          ? (k2 * state.omega + lever * (state.z_dot - reaction.rebound)) / about
+                          : state.omega - turned;
+        state.x_dot += pull;
     }
+    state.omega = zero_if_negligible(state.omega);
     const double turning = at.dh * state.omega;
     state.z_dot = std::abs(turning) > largest ? pushed : turning + reaction.rebound;
 }
