@@ -6,7 +6,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// What is not a number is lost altogether.
+// A value that is not a number counts as infinite.
 void note(double value, double& worst) {
     if (!(value <= worst)) worst = std::isnan(value) ? infinity : value;
 }

@@ -1,4 +1,4 @@
-// What an integrated motion has lost of what the body keeps.
+// Energy and constraints lost by an integrated motion.
 #pragma once
 
 #include <optional>

@@ -118,9 +118,9 @@ def arguments_of(scene: Scene) -> dict[str, Any]:
 def period(scene: Scene) -> float:
     """Return the time of a full swing, or of one full turn, of the rolling motion [s].
 
-    Infinite for a body at rest. By the graded quadrature of the energy integral, with an error of
-    a few units in the last place; on a slope, where only a swing repeats itself, from its turning
-    points, by power series in time.
+    Infinite for a body at rest. By the trapezoidal rule for the energy integral, as in `flow`, with
+    an error of a few units in the last place; on a slope, where only a swing repeats itself, from
+    its turning points, by power series in time.
 
     Parameters
     ----------

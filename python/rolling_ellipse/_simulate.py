@@ -89,9 +89,10 @@ def simulate(
         Most events of "contact" before it ends with the status MAX_EVENTS.
     rest_speed : float, optional
         Rebound speed [m/s] under which "contact" sums the infinitely many bounces that are left,
-        with a relative error of its own size beside sqrt(g min(a, b)); default a millionth of
-        that, at most a hundredth. Bounces that would take longer than that allows are not summed:
-        where next to nothing presses the body to its ground, or restitution is near 1.
+        with a relative error of the order of the square of its ratio to sqrt(g min(a, b)), which
+        is a millionth by default and a hundredth at most. Bounces that would take longer than that
+        allows are not summed: where next to nothing presses the body to its ground, or restitution
+        is near 1.
     raise_on_failure : bool
         Whether an integration that stops before the last time raises; otherwise it returns what
         there is up to then.

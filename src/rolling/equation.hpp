@@ -19,8 +19,8 @@ struct SpecificEnergy {
     double total() const { return kinetic + potential; }
 };
 
-// What a motion keeps: its energy, with x = 0 at its start, and its constraints, of which it is the
-// largest of |f2|, |f3| over the long semi-axis, and |f4|.
+// A state's energy, with x = 0 at the start of its motion, and its largest constraint residual:
+// |f2| or |f3| over the long semi-axis, or |f4|.
 struct Invariants {
     SpecificEnergy energy;
     double residual;

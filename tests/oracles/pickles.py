@@ -59,6 +59,9 @@ def core_objects() -> dict[str, Any]:
         "Settings": motion.settings.core,
         "Solution": motion._solution,
         "Arc": motion._solution.arcs()[0],
+        "Losses": rl.simulate(
+            rl.scenes.rolling, 1.0, model="rolling", method="dop853"
+        )._solution.losses(),
         "State": _core.initial_state(motion.scene.core).state,
         "InitialState": _core.initial_state(motion.scene.core),
         "Continuation": _core.first_continuation(

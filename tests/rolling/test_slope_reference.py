@@ -170,13 +170,13 @@ def test_table_keeps_the_energy_and_newtons_law(motion: Motion) -> None:
 
 @each_motion
 def test_exact_is_right_to_a_few_roundings(motion: Motion) -> None:
-    """Eight units, for theta, omega and x; the forces follow from the first two.
+    """Four units, for theta, omega and x; the forces follow from the first two.
 
     A state is some hundred series, each with a rounding of its own, of which the energy keeps the
     angular velocity; the sum over half turns has a few roundings of its time. Found: 1.1 at most,
     0.1 in the median.
     """
-    assert errors(motion, method="exact")[:, :3].max() < 8
+    assert errors(motion, method="exact")[:, :3].max() < 4
 
 
 def dop853_errors(motion: Motion) -> NDArray[np.float64]:

@@ -178,10 +178,10 @@ def test_too_large_gains_are_told(method: str, gains: tuple[float, float]) -> No
     assert growth(method, *gains, 1.01 * suggested) > 1
     assert suggested == pytest.approx(limit, rel=1e-4)
     # Steps so large may miss the constraints in between, of which another sentence warns.
-    with warnings.catch_warnings(record=True) as other:
+    with warnings.catch_warnings(record=True) as then:
         warnings.simplefilter("always", rl.StabilityWarning)
         fed_back(SLOW, [2 * suggested], step=suggested, **how)
-    assert not any("gains" in str(warning.message) for warning in other)
+    assert not any("gains" in str(warning.message) for warning in then)
 
 
 def test_controlled_steps_find_the_limit_themselves() -> None:
