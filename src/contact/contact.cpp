@@ -47,7 +47,7 @@ class ContactRun {
 
     Integration<Motion> run() {
         const Axes given = axes();
-        const double theta = count_from_quarter({state_.theta, 0.0});
+        const double theta = count_from_quarter({state_.theta, 0.0}).high;
         gap_rate_ = gap_rate(state_, geometry(given, state_.theta));
         state_ = with_angle(given, state_, axes(), theta);
         next_ = first_continuation(scene_, state_);
@@ -68,8 +68,9 @@ class ContactRun {
     Axes axes() const { return scene_.axes(); }
 
     // Where a segment begins, its angle is counted from the flat position or tip beside it, where a
-    // thin body is the most sensitive to it: returns that angle.
-    double count_from_quarter(DoubleDouble theta) {
+    // thin body is the most sensitive to it: returns that angle, of which states have the high
+    // part.
+    DoubleDouble count_from_quarter(DoubleDouble theta) {
         if (const double rest = resolved(theta.high); rest != theta.high) {
             turned_ = turned_ + two_sum(theta.high, -rest) + theta.low;
             theta = {rest, 0.0};
@@ -80,7 +81,7 @@ class ContactRun {
             std::swap(scene_.a, scene_.b);
             axes_exchanged_ = !axes_exchanged_;
         }
-        return angle.rest.high;
+        return angle.rest;
     }
 
     void follow() {
@@ -161,7 +162,7 @@ class ContactRun {
     }
 
     void stop_rolling(double after, double end, double omega, double x) {
-        const double theta = count_from_quarter({end, 0.0});
+        const double theta = count_from_quarter({end, 0.0}).high;
         const State before =
             in_contact(geometry(axes(), theta), theta, omega, x, 0.0, Mode::rolling);
         t_ += after;
@@ -172,13 +173,13 @@ class ContactRun {
 
     void slide() {
         Slide slide = slide_from(scene_, state_, next_.side);
-        if (sliding_on_) slide.last.x_dot = *sliding_on_;
+        if (sliding_on_) go_on_from(*sliding_on_, slide);
         sliding_on_.reset();
         const SlideStop stop = slide_on(slide, {t_end_ - t_, steps_left()}, checkpoint_);
         const double lasts = double(slide.last.time);
         const State last = end_of(slide).state;
         const DoubleDouble theta = angle_at_end(slide);
-        const DoubleDouble x_dot = slide.last.x_dot;
+        SlidePoint end = slide.last;
         counts_.steps += static_cast<long>(slide.pieces.size());
         if (!slide.pieces.empty()) add_segment(std::move(slide));
         if (stop == SlideStop::too_many_pieces || stop == SlideStop::no_progress) {
@@ -190,9 +191,10 @@ class ContactRun {
         if (stop == SlideStop::time_is_over || t_ + lasts > t_end_) return finish();
         t_ += lasts;
         const Axes axes_before = axes();
-        state_ = with_angle(axes_before, last, axes(), count_from_quarter(theta));
+        end.angle = count_from_quarter(theta);
+        state_ = with_angle(axes_before, last, axes(), end.angle.high);
         end_slide(stop, State(state_));
-        if (next_.mode == Mode::sliding) sliding_on_ = x_dot;
+        if (next_.mode == Mode::sliding) sliding_on_ = end;
     }
 
     void graze() {
@@ -234,7 +236,7 @@ class ContactRun {
         }
         add_segment(flight);
         if (!lands) return finish();
-        before.theta = count_from_quarter(two_product(state_.omega, lasts) + state_.theta);
+        before.theta = count_from_quarter(two_product(state_.omega, lasts) + state_.theta).high;
         const Geometry at = geometry(axes(), before.theta);
         before.z = at.h;
         t_ += lasts;
@@ -316,7 +318,7 @@ class ContactRun {
         if (t_ + lasts > t_end_) return finish();
         t_ += lasts;
         const Axes axes_before = axes();
-        state_ = with_angle(axes_before, settled, axes(), count_from_quarter(end));
+        state_ = with_angle(axes_before, settled, axes(), count_from_quarter(end).high);
         const State before = state_;
         const Continuation next = continuation(scene_, state_);
         go_on_with(next, kind_of(next.mode, EventKind::slip), before);
@@ -387,8 +389,8 @@ class ContactRun {
     const Checkpoint& checkpoint_;
     State state_;
     double gap_rate_ = 0.0;
-    std::optional<DoubleDouble> sliding_on_;  // x_dot, where one slide follows another
-    DoubleDouble turned_;                     // beside the angle of the state
+    std::optional<SlidePoint> sliding_on_;  // the end of a slide that another one follows
+    DoubleDouble turned_;                   // beside the angle of the state
     bool axes_exchanged_ = false;
     const EndOfRolling first_end_;
     const double rest_speed_;

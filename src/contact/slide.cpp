@@ -300,6 +300,14 @@ Slide slide_from(const Scene& scene, const State& start, double side) {
     return slide;
 }
 
+void go_on_from(const SlidePoint& end, Slide& slide) {
+    slide.last.angle = slide.last.angle + end.angle.low;
+    slide.theta_base = slide.theta_base + -end.angle.low;
+    slide.last.omega = end.omega;
+    slide.last.x_dot = end.x_dot;
+    slide.slip = {0.0, 0.0};
+}
+
 SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& checkpoint) {
     Follower follower(slide, bounds);
     do {

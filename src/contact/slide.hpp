@@ -52,6 +52,10 @@ struct Slide {
 // The start of sliding, with the slip to the given side (0: without friction there is none).
 Slide slide_from(const Scene& scene, const State& start, double side);
 
+// Let it start where another slide ended, with all digits of that, as the states have them rounded:
+// its slip starts from 0.
+void go_on_from(const SlidePoint& end, Slide& slide);
+
 struct SlideBounds {
     double t_end = infinity;
     long most_pieces = 0;

@@ -4,7 +4,6 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Callable
-from types import SimpleNamespace
 from typing import Any
 
 import matplotlib
@@ -58,7 +57,7 @@ def test_every_motion_has_its_name(
 def test_without_labels_the_name_is_what_differs(
     picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:
-    several[1] = dataclasses.replace(several[1], method="another")  # type: ignore[arg-type]
+    several[1] = dataclasses.replace(several[1], method="rk4")
     ax = new_axes()
     picture(several, ax=ax)
     assert legend_of(ax)[:3] == labels_of(several, None)
@@ -191,8 +190,9 @@ def lightness(colour: str) -> float:
 
 @pytest.mark.parametrize("picture", OVER_TIME)
 def test_events_are_dotted_lines(picture: Callable[..., Any], report: rl.Trajectory) -> None:
-    events = tuple(SimpleNamespace(t=t, kind="slip") for t in (1.5, 4.0))
-    shown = picture(dataclasses.replace(report, kept_events=events), ax=new_axes())  # type: ignore[arg-type]
+    state = report.scene.initial_state
+    events = tuple(rl.Event(t, rl.EventKind.SLIP, state, state) for t in (1.5, 4.0))
+    shown = picture(dataclasses.replace(report, kept_events=events), ax=new_axes())
     (mark,) = shown.marks
     assert [segment[0, 0] for segment in mark.get_segments()] == [1.5, 4.0]
 

@@ -207,11 +207,11 @@ def test_light_bodies_that_turn_fast_keep_the_digits_of_their_impact() -> None:
     with mp.workdps(40):
         while seen < 300:
             a, b = (10 ** rng.uniform(-1, 0, 2)).tolist()
-            hit = Blow(
-                a, b, max(a, b) ** 2 * 10 ** rng.uniform(-6, -1), rng.uniform(-1.5, 1.5),
-                *rng.normal(size=2), 10 ** rng.uniform(0, 4) * rng.normal(),
-                10 ** rng.uniform(-1, 5), float(rng.choice([0.0, 0.5, 1.0])),
-            )  # fmt: skip
+            gyration2, theta = max(a, b) ** 2 * 10 ** rng.uniform(-6, -1), rng.uniform(-1.5, 1.5)
+            x_dot, z_dot = rng.normal(size=2).tolist()
+            omega, friction = 10 ** rng.uniform(0, 4) * rng.normal(), 10 ** rng.uniform(-1, 5)
+            e = float(rng.choice([0.0, 0.5, 1.0]))
+            hit = Blow(a, b, gyration2, theta, x_dot, z_dot, omega, friction, e)
             at = support(hit.theta, a, b)
             if not hit.z_dot < at.slope * hit.omega:
                 continue
