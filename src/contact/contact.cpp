@@ -197,6 +197,7 @@ class ContactRun {
         if (next_.mode == Mode::sliding) sliding_on_ = end;
     }
 
+    // By a free motion, which is that of the contact to 1e-14 until it is turned on so far.
     void graze() {
         const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, next_.mode};
         const double lasts = turn_of_grazing / std::abs(state_.omega);
