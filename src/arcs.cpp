@@ -55,8 +55,10 @@ Arc swing(const SlopeFlow& flow) {
     Arc arc{ArcKind::swinging, 0.0, 0.0, period, {}};
     for (const double mark : found) {
         if (mark > last) continue;
-        for (const double time : {mark, 2 * last - mark, mark + period, 2 * last - mark - period}) {
-            if (time > 0 && time <= period) arc.marks.push_back(time);
+        for (const double alike : {mark, 2 * first - mark, 2 * last - mark}) {
+            for (const double time : {alike - period, alike, alike + period}) {
+                if (time > 0 && time <= period) arc.marks.push_back(time);
+            }
         }
     }
     return arc;
@@ -85,7 +87,14 @@ Arc arc(const SlopeFlow& flow) {
         }
     };
     if (flow.climb) mark_run(*flow.climb, flow.climbed);
-    for (const SlopePiece& piece : flow.pieces) found.marks.push_back(double(piece.from.time));
+    for (const SlopePiece& piece : flow.pieces) {
+        const double begin = double(piece.from.time);
+        found.marks.push_back(begin);
+        if (flow.turnings.empty()) continue;
+        const double turning = double(flow.turnings.front());
+        if (begin < turning) found.marks.push_back(2 * turning - begin);
+    }
+    for (const DoubleDouble& turning : flow.turnings) found.marks.push_back(double(turning));
     if (flow.run) {
         const SlopePlace last = RunReader(*flow.run)({flow.until, 0.0});
         mark_run(*flow.run, (last.quarters - flow.run->from.quarters) / 2 + 1);

@@ -79,17 +79,45 @@ SlopePlace place_in_pieces(const std::vector<SlopePiece>& pieces, DoubleDouble t
     return place_in(piece, double(time - piece.from.time));
 }
 
-// A swing is symmetric about its turning points.
+// The way back from the first turning point to where the pieces began is a mirror image.
+SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
+    if (!flow.turnings.empty()) {
+        const DoubleDouble turning = flow.turnings.front();
+        const DoubleDouble mirrored = turning * 2.0 - time;
+        const bool is_later = double(mirrored - turning) < 0;
+        if (is_later && double(mirrored - first_of_pieces(flow).time) > 0) {
+            SlopePlace place = place_in_pieces(flow.pieces, mirrored);
+            place.omega = -place.omega;
+            return place;
+        }
+    }
+    return place_in_pieces(flow.pieces, time);
+}
+
+// The next piece begins where the last one ends, and after a turning point at the first place,
+// reversed: next to the rim of a well no series would come back to it.
+SlopePlace next_place(const SlopeFlow& flow) {
+    const SlopePiece& last = flow.pieces.back();
+    const bool turned =
+        flow.turnings.size() == 1 && double(flow.turnings.front() - last.from.time) > 0;
+    if (!turned) return place_after(flow.body, flow.energy, last);
+    SlopePlace place = first_of_pieces(flow);
+    place.time = flow.turnings.front() * 2.0 - place.time;
+    place.omega = -place.omega;
+    return place;
+}
+
+// A swing is symmetric about both of its turning points.
 SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
     const DoubleDouble first = flow.turnings[0];
     const DoubleDouble last = flow.turnings[1];
     const DoubleDouble half = last - first;
     const DoubleDouble since = -last + t;
-    if (double(since) <= 0) return place_in_pieces(flow.pieces, {t, 0.0});
+    if (double(since) <= 0) return place_about_turning(flow, {t, 0.0});
     const double swings = std::floor(double(since) / double(half));
     const DoubleDouble rest = since - half * swings;
     const bool back = std::fmod(swings, 2.0) == 0;
-    SlopePlace place = place_in_pieces(flow.pieces, back ? last - rest : first + rest);
+    SlopePlace place = place_about_turning(flow, back ? last - rest : first + rest);
     if (back) place.omega = -place.omega;
     return place;
 }
@@ -108,7 +136,7 @@ class SlopeReader {
             return read(climb_, *flow_.climb, time);
         }
         if (flow_.run && time > known_until(flow_)) return read(run_, *flow_.run, time);
-        return place_in_pieces(flow_.pieces, {time, 0.0});
+        return place_about_turning(flow_, {time, 0.0});
     }
 
   private:
@@ -149,8 +177,7 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
 bool grow(SlopeFlow& flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return false;
     if (is_followed(flow)) return false;
-    const SlopePlace from =
-        flow.pieces.empty() ? begin(flow) : place_after(flow.body, flow.energy, flow.pieces.back());
+    const SlopePlace from = flow.pieces.empty() ? begin(flow) : next_place(flow);
     if (!flow.downhill && from.omega > 0) {
         const Geometry here = geometry(flow.body, from);
         const Tracked w = energy_at(flow.body, flow.energy, from, here);

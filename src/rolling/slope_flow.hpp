@@ -1,10 +1,11 @@
 // Exact rolling on a slope: the state at any time.
 //
-// The motion begins with power series about its start (`pieces`). Where it rocks between two
-// turning points they are followed up to the second one, and all else is their repetition. Where it
-// runs uphill for many half turns, all but the first (`foot`) are a sum (`climb`), and the series
-// go on near its top; once it runs downhill for good, the rest is one (`run`). So neither cost nor
-// error grow with the time.
+// The motion begins with power series about its start (`pieces`). A way back from a turning point
+// is the mirror image of the way there, so that the series go on from the start, reversed, at twice
+// the time of the first turning point. Where the body rocks between two of them they are followed
+// up to the second one, and all else is their repetition. Where it runs uphill for many half turns,
+// all but the first (`foot`) are a sum (`climb`), and the series go on near its top; once it runs
+// downhill for good, the rest is one (`run`). So neither cost nor error grow with the time.
 #pragma once
 
 #include <optional>

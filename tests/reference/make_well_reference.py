@@ -41,7 +41,7 @@ UNIT_ROAD = Road(60, 30, 1e-30)
 CHANGE = 1e-24
 AGREEMENT = 1e-30
 UNIT_LIMIT = 1e-3
-COUNT = 72
+COUNT = 80
 MOST_STAGES = 400
 ANSWERS = ("period", "theta", "omega", "x")
 COLUMNS = [*Scene._fields, "t", *ANSWERS, *(f"unit_{name}" for name in ANSWERS)]
@@ -195,9 +195,10 @@ def random_body(rng: random.Random) -> Scene:
 def random_start(rng: random.Random, body: Scene) -> Scene:
     """At rest, or on the way, with an amplitude up to the rim; some are next to the rim."""
     at = well(body)
-    if rng.random() < 0.15:
-        theta = at.rim + (at.lying - at.rim) * log_uniform(rng, 1e-12, 0.1)
-        return body._replace(theta0=float(theta))
+    if rng.random() < 0.3:
+        inside = (at.lying - at.rim) * log_uniform(rng, 1e-12, 0.1)
+        omega = rng.choice([0.0, rng.uniform(-0.7, 0.7)]) * inside * at.frequency
+        return body._replace(theta0=float(at.rim + inside), omega0=float(omega))
     amplitude = min(log_uniform(rng, 1e-12, 2.0), 0.999 * abs(at.rim - at.lying))
     kind = rng.random()
     if kind < 0.4:
