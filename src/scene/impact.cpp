@@ -150,9 +150,9 @@ void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, Sta
     const double pushed = state.z_dot + kick;
     const double largest = 2 * (std::abs(state.z_dot) + kick);
     if (reaction.sticks) {
-        state.omega =
+        state.omega = zero_if_negligible(
             (k2 * state.omega + at.h * state.x_dot + at.dh * (state.z_dot - reaction.rebound)) /
-            inertia_about_contact(k2, at);
+            inertia_about_contact(k2, at));
         state.x_dot = at.h * state.omega;
     } else {
         const double lever = at.dh + at.h * (pull / kick);
@@ -160,12 +160,12 @@ void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, Sta
         const double about = k2 + at.dh * lever;
         const double terms = k2 * std::abs(state.omega) +
                              std::abs(lever) * (std::abs(state.z_dot) + reaction.rebound);
-        state.omega = terms < std::abs(about) * (std::abs(state.omega) + std::abs(turned))
-                          ? (k2 * state.omega + lever * (state.z_dot - reaction.rebound)) / about
-                          : state.omega - turned;
+        state.omega = zero_if_negligible(
+            terms < std::abs(about) * (std::abs(state.omega) + std::abs(turned))
+                ? (k2 * state.omega + lever * (state.z_dot - reaction.rebound)) / about
+                : state.omega - turned);
         state.x_dot += pull;
     }
-    state.omega = zero_if_negligible(state.omega);
     const double turning = at.dh * state.omega;
     state.z_dot = std::abs(turning) > largest ? pushed : turning + reaction.rebound;
 }
