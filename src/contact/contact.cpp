@@ -49,7 +49,9 @@ class ContactRun {
         const Axes given = axes();
         const double theta = count_from_quarter({state_.theta, 0.0}).high;
         gap_rate_ = gap_rate(state_, geometry(given, state_.theta));
+        const double x_dot = state_.x_dot;
         state_ = with_angle(given, state_, axes(), theta);
+        if (scene_.friction == 0) state_.x_dot = x_dot;  // which nothing but gravity changes
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
         while (!ending_) {
@@ -222,6 +224,8 @@ class ContactRun {
         const Geometry at = geometry(axes(), before.theta);
         state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
+        if (next.mode == Mode::sliding)
+            state_.x_dot = before.x_dot;  // without the rounding of h omega
         go_on_with(next, kind_of(next.mode, EventKind::reverse), before);
     }
 

@@ -89,7 +89,8 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     later.theta += std::copysign(turn_of_grazing, state.omega);
     Continuation next =
         continuation_at(scene, later, geometry(scene.axes(), later.theta), slip, may_roll);
-    next.grazes = std::isinf(scene.friction);
+    const bool needs_force = next.mode == Mode::rolling && scene.slope != 0;
+    next.grazes = std::isinf(scene.friction) && !needs_force;
     return next;
 }
 

@@ -88,6 +88,20 @@ def test_beside_the_tip_c_decides_by_where_it_goes(
     assert lowest(moving) >= -8 * EPS
 
 
+@pytest.mark.parametrize("slope", [-1.4, -0.2, 0.2, 1.4])
+@pytest.mark.parametrize(("a", "b"), BODIES)
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_weightless_tip_on_a_rough_slope_gains_no_energy(
+    a: float, b: float, side: int, slope: float
+) -> None:
+    omega = side * weightless_spin(a, b, tip(a, b), 9.81 * math.cos(slope))
+    scene = Scene(a, b, theta=tip(a, b), omega=omega, slope=slope)
+    moving = simulate(scene, np.linspace(0.0, 0.2 / abs(omega), 50), model="contact")
+    size = moving.kinetic_energy[0] + abs(moving.potential_energy).max()
+    assert moving.t.size == 0 or np.max(np.diff(moving.energy)) <= 32 * EPS * size
+    assert moving.t.size == 0 or lowest(moving) >= -8 * EPS
+
+
 def test_friction_without_end_makes_a_tip_weightless_and_keeps_it_so() -> None:
     """A tip that slips on it is spun up in no time until c = 0. From there on friction keeps the
     gap closed without a normal force: the centre falls freely, h = a - g t^2/2, and c comes back

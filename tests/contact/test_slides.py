@@ -257,3 +257,27 @@ def test_a_ball_of_next_to_no_inertia_keeps_no_energy_of_its_spin() -> None:
     end = slip / (GRAVITY * (1 + 0.39**2 / 4.5e-14))
     assert abs(stick.t - end) <= 16 * EPSILON * end
     assert np.all(np.diff(motion.energy) <= 4 * EPSILON * motion.energy[0])
+
+
+def test_without_friction_the_centre_moves_uniformly() -> None:
+    """To the last bit of x_dot, and to that of x = x0 + x_dot t: no sum with h omega is in it."""
+    found = slides(40, 31, friction=0.0, slope=0.0)
+    for scene, motion in found:
+        start = scene.initial_state.x_dot
+        on_the_ground = motion.mode == Mode.SLIDING
+        assert np.all(motion.x_dot[on_the_ground] == start)
+        expected = scene.x + start * motion.t
+        assert np.all(
+            np.abs(motion.x - expected)[on_the_ground] <= np.spacing(np.abs(expected).max())
+        )
+    assert len(found) == 40
+
+
+def test_a_reversed_slip_changes_no_velocity() -> None:
+    scene = Scene(3.84, 1.0, friction=1e-8, omega=1.0, x_dot=0.4, theta=0.3)
+    motion = simulate(scene, 20.0, model="contact")
+    reversals = [event for event in motion.events if event.kind is EventKind.REVERSE]
+    assert len(reversals) > 10
+    for event in reversals:
+        assert event.state_after.x_dot == event.state_before.x_dot
+        assert motion.at(event.t).x_dot == pytest.approx(event.state_after.x_dot, rel=4 * EPSILON)
