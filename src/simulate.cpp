@@ -28,12 +28,14 @@ Settings chosen(Settings settings, Validity validity) {
 // What a motion starts from, and its rolling, on level ground or on a slope.
 struct Beginning {
     State state;
+    double gap_rate;
     std::optional<RollingStart> rolling;
     std::optional<SlopeFlow> on_slope;
 };
 
 Beginning beginning(const Scene& scene) {
-    Beginning found{initial_state(scene).state, {}, {}};
+    const InitialState initial = initial_state(scene);
+    Beginning found{initial.state, initial.gap_rate, {}, {}};
     const State& start = found.state;
     validate_motion(scene.body(), start.theta, start.omega);
     validate_velocity(scene.body(), start.x_dot, start.z_dot);
@@ -140,8 +142,9 @@ Solution solved(const Scene& scene, const Beginning& from, const EndOfRolling& e
                 const Settings& settings, double t_end, const Checkpoint& checkpoint) {
     const State& start = from.state;
     if (settings.model == Model::contact) {
-        return integrated(integrate_contact(scene, start, end, settings, t_end, checkpoint),
-                          settings, t_end);
+        return integrated(
+            integrate_contact(scene, start, from.gap_rate, end, settings, t_end, checkpoint),
+            settings, t_end);
     }
     if (!rolls(start)) {
         throw std::invalid_argument("model '" + name(settings.model) +

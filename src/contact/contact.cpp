@@ -33,8 +33,9 @@ EventKind kind_of(Mode next, EventKind sliding) {
 
 class ContactRun {
   public:
-    ContactRun(const Scene& scene, const State& start, const EndOfRolling& end_of_rolling,
-               const Settings& settings, double t_end, const Checkpoint& checkpoint)
+    ContactRun(const Scene& scene, const State& start, double gap_rate,
+               const EndOfRolling& end_of_rolling, const Settings& settings, double t_end,
+               const Checkpoint& checkpoint)
         : units_(natural_units(scene)),
           scene_(body_in_units(scene, units_)),
           settings_(settings),
@@ -43,12 +44,12 @@ class ContactRun {
           state_(in_units(start, units_)),
           first_end_(end_of_rolling),
           rest_speed_(rest_speed()),
+          gap_rate_(gap_rate / units_.speed()),
           motion_{units_, scene_, {}, {}} {}
 
     Integration<Motion> run() {
         const Axes given = axes();
         const double theta = count_from_quarter({state_.theta, 0.0}).high;
-        gap_rate_ = gap_rate(state_, geometry(given, state_.theta));
         const double x_dot = state_.x_dot;
         state_ = with_angle(given, state_, axes(), theta);
         if (scene_.friction == 0) state_.x_dot = x_dot;  // which nothing but gravity changes
@@ -393,7 +394,7 @@ class ContactRun {
     double t_end_;
     const Checkpoint& checkpoint_;
     State state_;
-    double gap_rate_ = 0.0;
+    double gap_rate_;
     std::optional<SlidePoint> sliding_on_;  // the end of a slide that another one follows
     DoubleDouble turned_;                   // beside the angle of the state
     bool axes_exchanged_ = false;
@@ -408,11 +409,11 @@ class ContactRun {
 
 }  // namespace
 
-Integration<Motion> integrate_contact(const Scene& scene, const State& start,
+Integration<Motion> integrate_contact(const Scene& scene, const State& start, double gap_rate,
                                       const EndOfRolling& end_of_rolling, const Settings& settings,
                                       double t_end, const Checkpoint& checkpoint) {
     Integration<Motion> found =
-        ContactRun(scene, start, end_of_rolling, settings, t_end, checkpoint).run();
+        ContactRun(scene, start, gap_rate, end_of_rolling, settings, t_end, checkpoint).run();
     if (found.ending == Ending::completed) found.followed_until = t_end;
     return found;
 }

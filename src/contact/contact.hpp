@@ -8,8 +8,9 @@
 
 namespace rolling_ellipse {
 
-// From a start, whose rolling ends as known where it begins with it.
-Integration<Motion> integrate_contact(const Scene& scene, const State& start,
+// From a start, whose rolling ends as known where it begins with it; the rate of its gap [m/s]
+// counts where it flies.
+Integration<Motion> integrate_contact(const Scene& scene, const State& start, double gap_rate,
                                       const EndOfRolling& end_of_rolling, const Settings& settings,
                                       double t_end, const Checkpoint& checkpoint);
 

@@ -179,11 +179,16 @@ bool is_struck(const Scene& scene) {
     return scene.impulse && (scene.impulse->jx != 0 || scene.impulse->jz != 0);
 }
 
-// What the impulse makes of a body that nothing holds: physics (38).
-void strike(const Scene& scene, const Impulse& j, State& state) {
+// Let the impulse act on a body that nothing holds, physics (38); returns the rate of its gap. The
+// difference of the new velocities would have less digits of it.
+double strike(const Scene& scene, const Impulse& j, const Geometry& at, State& state) {
+    const double lifted = j.jz / scene.mass;
+    const double spun = (j.jx * j.dz - j.jz * j.dx) / scene.inertia;
+    const double rate = gap_rate(state, at) + (lifted - at.dh * spun);
     state.x_dot += j.jx / scene.mass;
-    state.z_dot += j.jz / scene.mass;
-    state.omega += (j.jx * j.dz - j.jz * j.dx) / scene.inertia;
+    state.z_dot += lifted;
+    state.omega += spun;
+    return rate;
 }
 
 }  // namespace
@@ -193,14 +198,15 @@ InitialState initial_state(const Scene& scene) {
     State& state = result.state;
     const Geometry at = geometry(scene.axes(), state.theta);
     result.touching = state.z == at.h;
+    result.gap_rate = gap_rate(state, at);
     if (scene.impulse) {
-        strike(scene, *scene.impulse, state);
+        result.gap_rate = strike(scene, *scene.impulse, at, state);
         result.free_omega = state.omega;
     }
     const bool slip_removed = state.mode == Mode::sliding && std::isinf(scene.friction);
     if (!result.touching || !(is_struck(scene) || slip_removed)) return result;
 
-    Contact c = contact(scene, at, state, gap_rate(state, at));
+    Contact c = contact(scene, at, state, result.gap_rate);
     // Next to the flat position a slide would end before doubles tell its time from 0.
     if (slip_removed && zero_if_negligible(state.theta) == 0) {
         c.gtn = 0.0;
@@ -234,8 +240,8 @@ double sticking_friction(const Scene& scene) {
     const Geometry at = geometry(scene.axes(), state.theta);
     if (state.z != at.h) return infinity;
     if (!is_struck(scene)) return rolls(state) ? 0.0 : infinity;
-    strike(scene, *scene.impulse, state);
-    const Contact c = contact(scene, at, state, gap_rate(state, at));
+    const double rate = strike(scene, *scene.impulse, at, state);
+    const Contact c = contact(scene, at, state, rate);
     if (c.u > 0) return infinity;
     if (c.u == 0) return c.v == 0 ? 0.0 : infinity;  // no pressure, no friction
     const double to_stay = std::abs(c.gtn) / c.gtt;

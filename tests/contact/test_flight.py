@@ -3,11 +3,12 @@
 import math
 from typing import Any
 
+import mpmath as mp
 import numpy as np
 import pytest
 from oracles.geometry import support
 from oracles.numbers import EPS
-from rolling_ellipse import EventKind, Mode, Scene, simulate
+from rolling_ellipse import EventKind, Impulse, Mode, Scene, simulate
 
 Long = Any  # arrays of np.longdouble
 GRAVITY = 9.81
@@ -190,3 +191,28 @@ def test_an_angle_that_a_double_does_not_resolve_ends_no_loop() -> None:
     for scene, end in ((nearly_round, 2.76), (thin, 58.0)):
         motion = simulate(scene, end, model="contact", max_events=50, raise_on_failure=False)
         assert motion.events and np.all(np.isfinite(motion.x))
+
+
+@pytest.mark.parametrize("strength", [1e-3, 1e-6, 1e-9])
+def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) -> None:
+    """The speed off the ground is what the blow gives, and not a difference of velocities that are
+    1e9 times as fast. Judged in 40 digits: speed and time take some ten operations each."""
+    blow = Impulse(0.3 * strength, strength, dx=0.2, dz=0.4)
+    scene = Scene(2.0, 1.3, theta=0.7, omega=1.1, friction=0.4, impulse=blow)
+    landing = simulate(scene, 1.0, model="contact").events[0]
+    with mp.workdps(40):
+        theta, k2, g = mp.mpf(scene.theta), mp.mpf(scene.gyration2), mp.mpf(scene.gravity)
+        spun = (mp.mpf(blow.jx) * blow.dz - mp.mpf(blow.jz) * blow.dx) / k2
+        omega = scene.omega + spun
+
+        def h(angle: mp.mpf) -> mp.mpf:
+            return mp.sqrt((2 * mp.sin(angle)) ** 2 + (mp.mpf(scene.b) * mp.cos(angle)) ** 2)
+
+        z_dot = mp.diff(h, theta) * scene.omega + blow.jz
+
+        def gap_over_time(t: mp.mpf) -> mp.mpf:
+            return (h(theta) - h(theta + omega * t)) / t + z_dot - g * t / 2
+
+        exact = mp.findroot(gap_over_time, landing.t)
+        assert landing.kind is EventKind.IMPACT
+        assert abs(landing.t - exact) <= 32 * EPS * exact
