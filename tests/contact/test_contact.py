@@ -195,7 +195,7 @@ LIFTS = {0.2: 4.56387, 0.5: 4.65376, 1.0: 4.72602, 1.3: 4.74999, math.inf: 4.858
 
 @pytest.mark.parametrize(("friction", "speed"), LIFTS.items())
 def test_where_the_body_leaves_the_ground_in_its_first_slide(friction: float, speed: float) -> None:
-    """From the flat; physics.md section 7, five decimals."""
+    """From the flat; known to five decimals."""
     for omega, leaves in ((speed - 1e-5, False), (speed + 1e-5, True)):
         found = kinds(simulate(Scene(2.0, 1.0, omega=omega, friction=friction), 2.0))
         assert found[0] is EventKind.SLIP

@@ -316,7 +316,7 @@ def test_the_ratio_of_normal_speeds_is_not_the_restitution() -> None:
 
 
 def test_unlimited_friction_by_its_three_formulas() -> None:
-    """physics.md: u1 = u - v Gnt/Gtt without slip; stuck, stuck without pressure, or friction
+    """u1 = u - v Gnt/Gtt without slip; stuck, stuck without pressure, or friction
     alone. Their terms are of the size of the velocities and the response, and h' is that of another
     place by an ulp of theta."""
     met = [0, 0, 0]
