@@ -48,10 +48,9 @@ class ContactRun {
           motion_{units_, scene_, {}, {}} {}
 
     Integration<Motion> run() {
-        const Axes given = axes();
-        const double theta = count_from_quarter({state_.theta, 0.0}).high;
         const double x_dot = state_.x_dot;
-        state_ = with_angle(given, state_, axes(), theta);
+        DoubleDouble angle{state_.theta, 0.0};
+        state_ = recounted(state_, angle);
         if (scene_.friction == 0) state_.x_dot = x_dot;  // which nothing but gravity changes
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
@@ -85,6 +84,13 @@ class ContactRun {
             axes_exchanged_ = !axes_exchanged_;
         }
         return angle.rest;
+    }
+
+    // The state, its angle counted so; it is told with all its digits, and becomes the new one.
+    State recounted(const State& state, DoubleDouble& angle) {
+        const Axes before = axes();
+        angle = count_from_quarter(angle);
+        return with_angle(before, state, axes(), angle.high);
     }
 
     void follow() {
@@ -181,8 +187,8 @@ class ContactRun {
         const SlideStop stop = slide_on(slide, {t_end_ - t_, steps_left()}, checkpoint_);
         const double lasts = double(slide.last.time);
         const State last = end_of(slide).state;
-        const DoubleDouble theta = angle_at_end(slide);
         SlidePoint end = slide.last;
+        end.angle = angle_at_end(slide);
         counts_.steps += static_cast<long>(slide.pieces.size());
         if (!slide.pieces.empty()) add_segment(std::move(slide));
         if (stop == SlideStop::too_many_pieces || stop == SlideStop::no_progress) {
@@ -193,9 +199,7 @@ class ContactRun {
         }
         if (stop == SlideStop::time_is_over || t_ + lasts > t_end_) return finish();
         t_ += lasts;
-        const Axes axes_before = axes();
-        end.angle = count_from_quarter(theta);
-        state_ = with_angle(axes_before, last, axes(), end.angle.high);
+        state_ = recounted(last, end.angle);
         end_slide(stop, State(state_));
         if (next_.mode == Mode::sliding) sliding_on_ = end;
     }
@@ -315,7 +319,7 @@ class ContactRun {
             if (!(next < largest_ratio_that_settles * speed)) break;
             speed = std::max(next, 0.0);
         }
-        const DoubleDouble end = two_sum(state_.theta, turned);
+        DoubleDouble end = two_sum(state_.theta, turned);
         const double theta = end.high;
         const State settled =
             in_contact(geometry(axes(), theta), theta, zero_if_negligible(moving.omega),
@@ -323,8 +327,7 @@ class ContactRun {
         add_segment(Settling{lasts, state_, settled});
         if (t_ + lasts > t_end_) return finish();
         t_ += lasts;
-        const Axes axes_before = axes();
-        state_ = with_angle(axes_before, settled, axes(), count_from_quarter(end).high);
+        state_ = recounted(settled, end);
         const State before = state_;
         const Continuation next = continuation(scene_, state_);
         go_on_with(next, kind_of(next.mode, EventKind::slip), before);
