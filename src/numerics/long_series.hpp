@@ -37,13 +37,13 @@ inline constexpr auto over_next = [] {
     return found;
 }();
 
-// How far from its centre a series is as good as a double, beside its own size there: its last
-// terms are one rounding then, and what is left out, smaller by another fifth, is less. Four of
-// them, as symmetry may hide three; each as it would be at the end of a series that falls by a
-// fifth from term to term. A fixed point, whose logarithm is at an eighth of the error after each
-// step.
+// The distance from its centre to which a series is good: there its last terms are a twentieth of
+// an ulp beside its own size, and what is left out, smaller by another fifth, is less. Not half an
+// ulp, since it may have the same sign in one step after another. Four terms, as symmetry may hide
+// three; each as it would be at the end of a series that falls by a fifth from term to term. A
+// fixed point, whose logarithm is at an eighth of the error after each step.
 inline double reach(const LongSeries& series) {
-    constexpr double rest = 1e-16;  // half an ulp
+    constexpr double rest = 1e-17;
     constexpr double fall = 0.2;
     const double last[] = {std::abs(series[long_order]), fall * std::abs(series[long_order - 1]),
                            square(fall) * std::abs(series[long_order - 2]),

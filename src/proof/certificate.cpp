@@ -13,133 +13,154 @@ double theta_of(const Body& body, double angle_from_flat) {
     return body.a >= body.b ? angle_from_flat : half_pi - angle_from_flat;
 }
 
-// The start in the frame in which the motion goes forwards.
-struct Start {
-    double angle;  // from the nearest flat position, signed: negative while the body sinks
-    double direction;
-    RollingForces forces;
-};
-
 // At a turning point the body falls back towards the flat position.
 double direction_of(const RollingStart& from) {
     return from.omega != 0 ? std::copysign(1.0, from.omega) : -std::copysign(1.0, from.view.sin);
 }
 
-Start start_on_range(const RollingStart& from, const EnergyRange& range) {
+// The law on the quarter turn that the motion goes through again and again, mirrored. A place is
+// the angle from the flat position or from the tip (there negative), whichever is nearer to the
+// start: a place next to the start has all its digits.
+struct Quarter {
+    const EnergyRange& range;
+    double friction;
+    bool from_tip;
+
+    double flat() const { return from_tip ? -half_pi : 0.0; }
+    double tip() const { return from_tip ? 0.0 : half_pi; }
+    double top() const { return place(rolling_forces(range, 1.0)); }
+    double place(const RollingForces& at) const { return from_tip ? -at.angle_to_tip : at.angle; }
+    bool holds(double place) const {
+        const double sin2 = square(std::sin(place));
+        const double cos2 = square(std::cos(place));
+        const RollingForces at =
+            from_tip ? rolling_forces(range, cos2, sin2) : rolling_forces(range, sin2, cos2);
+        return law_margin({at.normal, at.friction}, friction) > 0;
+    }
+};
+
+// The start in the frame in which the motion goes forwards.
+struct Start {
+    double place;
+    bool rises;  // towards the tip; a body that lies or stands is about to
+    double direction;
+    ContactForce force;
+};
+
+Start start_on(const Quarter& quarter, const RollingStart& from) {
     const FlatView& at = from.view;
     const double direction = direction_of(from);
     const double omega2 = from.omega * from.omega * at.long_axis / from.body.gravity;
-    return {direction * std::atan2(at.sin, at.cos), direction,
-            rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2)};
+    const RollingForces forces =
+        rolling_forces(quarter.range, at.sin * at.sin, at.cos * at.cos, omega2);
+    return {quarter.place(forces),
+            direction * at.sin >= 0,
+            direction,
+            {forces.normal, forces.friction}};
 }
 
-ContactForce contact_force(const RollingForces& forces) { return {forces.normal, forces.friction}; }
-
-double margin_at(const EnergyRange& range, double friction, double angle) {
-    return law_margin(contact_force(rolling_forces_at_angle(range, angle)), friction);
-}
-
-// The angle from which on the law holds: that of the start; ahead of it, where it is within
-// rounding of its end there, and what counts is where the motion goes; nothing where it is broken.
-std::optional<double> holds_from(const EnergyRange& range, double friction, const Start& start) {
+// The place from which on the law holds: the start; ahead of it, where it is within rounding of
+// its end there, and what counts is where the motion goes; nothing where it is broken.
+std::optional<double> holds_from(const Quarter& quarter, const Start& start) {
     constexpr double ahead = 1e-8;  // of the way: sqrt(epsilon), where rounding is overcome
-    const ContactForce force = contact_force(start.forces);
-    if (!at_the_limit(force, friction)) {
-        return law_margin(force, friction) > 0 ? std::optional(start.angle) : std::nullopt;
+    if (!at_the_limit(start.force, quarter.friction)) {
+        const bool holds = law_margin(start.force, quarter.friction) > 0;
+        return holds ? std::optional(start.place) : std::nullopt;
     }
-    const double top = rolling_forces(range, 1.0).angle;
-    const double next =
-        start.angle >= 0 ? start.angle + ahead * (top - start.angle) : start.angle * (1 - ahead);
-    return margin_at(range, friction, std::abs(next)) > 0 ? std::optional(next) : std::nullopt;
+    const double goal = start.rises ? quarter.top() : quarter.flat();
+    const double next = start.place + ahead * (goal - start.place);
+    return quarter.holds(next) ? std::optional(next) : std::nullopt;
 }
 
 // The zeros of the law about one that was found in its squared form, refined in the plain one: near
 // the tip both forces may be small, and their squares know half their digits only. They lie between
-// the angles given; where F vanishes, too, the law may hold at what was found and be broken on both
+// the places given; where F vanishes, too, the law may hold at what was found and be broken on both
 // sides.
-void add_refined(std::vector<double>& angles, const EnergyRange& range, double friction,
-                 double angle, double from, double to) {
-    const auto holds = [&](double at) { return margin_at(range, friction, at) > 0; };
+void add_refined(std::vector<double>& places, const Quarter& quarter, double found, double from,
+                 double to) {
+    const auto holds = [&](double place) { return quarter.holds(place); };
     const auto add_between = [&](double low, double high) {
         const bool rises = holds(high);
         const Bracket zero = bisect(low, high, [&](double at) { return holds(at) == rises; });
-        angles.push_back(0.5 * (zero.low + zero.high));
+        places.push_back(0.5 * (zero.low + zero.high));
     };
-    double low = angle;
-    double high = angle;
-    const double scale = angle > 0 ? angle : to;
-    for (double reach = epsilon; reach < 1; reach *= 4) {
-        low = std::max(angle - reach * scale, from);
-        high = std::min(angle + reach * scale, to);
+    double low = found;
+    double high = found;
+    const double scale = found != 0 ? std::abs(found) : half_pi;
+    for (double reach = epsilon * scale; reach < half_pi; reach *= 4) {
+        low = std::max(found - reach, from);
+        high = std::min(found + reach, to);
         if (holds(low) != holds(high)) return add_between(low, high);
     }
-    if (holds(low) == holds(angle)) return angles.push_back(angle);
-    add_between(low, angle);
-    add_between(angle, high);
+    if (holds(low) == holds(found)) return places.push_back(found);
+    add_between(low, found);
+    add_between(found, high);
 }
 
-// Where the law may be broken, as angles from the flat position, ascending: its zeros, and those of
-// N, at which it is broken anyway.
+// Where the law may be broken, ascending: its zeros, and those of N, at which it is broken anyway.
 template <int N>
-std::vector<double> breaking_angles(const EnergyRange& range, const Bernstein<5>& contact,
-                                    const Bernstein<N>& law, double friction) {
-    const auto angle_at = [&](double x) { return rolling_forces(range, x).angle; };
+std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& contact,
+                                    const Bernstein<N>& law) {
+    const auto place_at = [&](double x) { return quarter.place(rolling_forces(quarter.range, x)); };
     const std::vector<double> roots = roots_on_unit_interval(law);
-    std::vector<double> angles;
-    for (const double x : roots_on_unit_interval(contact)) angles.push_back(angle_at(x));
+    std::vector<double> places;
+    for (const double x : roots_on_unit_interval(contact)) places.push_back(place_at(x));
     for (std::size_t i = 0; i < roots.size(); ++i) {
         const double from = i == 0 ? 0.0 : 0.5 * (roots[i - 1] + roots[i]);
         const double to = i + 1 == roots.size() ? 1.0 : 0.5 * (roots[i] + roots[i + 1]);
-        add_refined(angles, range, friction, angle_at(roots[i]), angle_at(from), angle_at(to));
+        add_refined(places, quarter, place_at(roots[i]), place_at(from), place_at(to));
     }
-    std::sort(angles.begin(), angles.end());
-    return angles;
+    std::sort(places.begin(), places.end());
+    return places;
 }
 
 // Adds the ends of the part about the start on which the law holds. Next to no friction will do
 // where none is needed, flat and on the tip and wherever F vanishes: such a part may be narrower
 // than the roots of the squared form can tell.
-void add_ends_about(std::vector<double>& angles, double start, const EnergyRange& range,
-                    double friction) {
-    const auto holds = [&](double angle) { return margin_at(range, friction, angle) > 0; };
-    const auto broken = [&](double angle) { return !holds(angle); };
-    const auto above = std::upper_bound(angles.begin(), angles.end(), start);
-    const double next = above != angles.end() ? *above : rolling_forces(range, 1.0).angle;
-    const double last = above != angles.begin() ? above[-1] : 0.0;
+void add_ends_about(std::vector<double>& places, double start, const Quarter& quarter) {
+    const auto holds = [&](double place) { return quarter.holds(place); };
+    const auto broken = [&](double place) { return !holds(place); };
+    const auto above = std::upper_bound(places.begin(), places.end(), start);
+    const double next = above != places.end() ? *above : quarter.top();
+    const double last = above != places.begin() ? above[-1] : quarter.flat();
     const double on_the_way_up = 0.5 * (start + next);
     const double on_the_way_down = 0.5 * (last + start);
-    if (broken(on_the_way_up)) angles.push_back(bisect(start, on_the_way_up, broken).high);
-    if (broken(on_the_way_down)) angles.push_back(bisect(on_the_way_down, start, holds).low);
-    std::sort(angles.begin(), angles.end());
+    if (broken(on_the_way_up)) places.push_back(bisect(start, on_the_way_up, broken).high);
+    if (broken(on_the_way_down)) places.push_back(bisect(on_the_way_down, start, holds).low);
+    std::sort(places.begin(), places.end());
 }
 
-// How far the body turns until, behind the angle `from` on its way, the first of the angles
-// (ascending, at least one) is met on one side or the other of the flat position, and which way it
-// then moves; nothing where it never gets there: on the separatrix the tip is the end.
+// The angle by which the body turns until, behind the place `from` on its way, it meets the first
+// of the places (ascending, at least one) on one side or the other of the flat position, and which
+// way it then moves; nothing where it never gets there: on the separatrix the tip is the end.
 struct Turn {
     double angle;
     double heading;
 };
 
-std::optional<Turn> first_meeting(const EnergyRange& range, const Start& start, double from,
-                                  const std::vector<double>& angles) {
+std::optional<Turn> first_meeting(const Quarter& quarter, const Start& start, double from,
+                                  const std::vector<double>& places) {
     const double on = start.direction;
-    const auto above = std::upper_bound(angles.begin(), angles.end(), std::abs(from));
-    const bool rising = start.angle >= 0;
-    if (!rising && above != angles.begin()) return Turn{on * (-above[-1] - start.angle), on};
-    if (rising && above != angles.end()) return Turn{on * (*above - start.angle), on};
-    if (!rising) return Turn{on * (angles.front() - start.angle), on};
+    const EnergyRange& range = quarter.range;
+    const auto above = std::upper_bound(places.begin(), places.end(), from);
+    const auto up_from = [](double low, double high) { return high - low; };
+    const double flat = quarter.flat();
+    const double tip = quarter.tip();
+    if (!start.rises && above != places.begin()) return Turn{on * (start.place - above[-1]), on};
+    if (start.rises && above != places.end()) return Turn{on * (*above - start.place), on};
+    if (!start.rises) {
+        return Turn{on * (up_from(flat, start.place) + up_from(flat, places.front())), on};
+    }
     if (!range.libration && range.energy_gap == 0) return std::nullopt;
-    // Over the top: the last angle, on the other side of the tip or back from the turning point.
-    if (range.libration) return Turn{on * (angles.back() - start.angle), -on};
-    return Turn{on * (pi - angles.back() - start.angle), on};
+    // Over the top: the last place, on the other side of the tip or back from the turning point.
+    if (range.libration) return Turn{on * (places.back() - start.place), -on};
+    return Turn{on * (up_from(start.place, tip) + up_from(places.back(), tip)), on};
 }
 
 // The law holds where both polynomials are positive.
 template <int N>
-EndOfRolling end_under_law(const EnergyRange& range, const ForcePolynomials& polynomials,
-                           const Polynomial<N>& law_polynomial, double friction, double theta,
-                           const Start& start) {
+EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polynomials,
+                           const Polynomial<N>& law_polynomial, double theta, const Start& start) {
     const Bernstein<5> contact = bernstein(polynomials.normal);
     const Bernstein<N> law = bernstein(law_polynomial);
     const Sign contact_sign = sign_on_unit_interval(contact);
@@ -148,16 +169,16 @@ EndOfRolling end_under_law(const EnergyRange& range, const ForcePolynomials& pol
 
     const bool broken = contact_sign == Sign::negative || law_sign == Sign::negative;
     EndOfRolling end{broken ? Validity::invalid : Validity::edge, theta, start.direction};
-    const std::optional<double> from = holds_from(range, friction, start);
+    const std::optional<double> from = holds_from(quarter, start);
     if (!from) return end;
-    std::vector<double> angles = breaking_angles(range, contact, law, friction);
-    add_ends_about(angles, std::abs(*from), range, friction);
-    if (angles.empty()) {  // on the edge: the least margin is where the law may be broken
-        const ForceExtremes extremes = force_extremes(range, polynomials);
-        angles.push_back(std::isinf(friction) ? extremes.least_normal.angle
-                                              : extremes.most_friction.angle);
+    std::vector<double> places = breaking_places(quarter, contact, law);
+    add_ends_about(places, *from, quarter);
+    if (places.empty()) {  // on the edge: the least margin is where the law may be broken
+        const ForceExtremes extremes = force_extremes(quarter.range, polynomials);
+        places.push_back(quarter.place(std::isinf(quarter.friction) ? extremes.least_normal
+                                                                    : extremes.most_friction));
     }
-    const std::optional<Turn> turn = first_meeting(range, start, *from, angles);
+    const std::optional<Turn> turn = first_meeting(quarter, start, *from, places);
     if (!turn) return {end.validity};
     return {end.validity, theta + turn->angle, turn->heading};
 }
@@ -174,11 +195,13 @@ std::optional<EndOfRolling> end_without_forces(const RollingStart& from, double 
 EndOfRolling end_of_rolling(const RollingStart& from, const EnergyRange& range,
                             const ForcePolynomials& polynomials, double friction) {
     if (const auto end = end_without_forces(from, friction)) return *end;
-    const Start start = start_on_range(from, range);
-    return std::isinf(friction)
-               ? end_under_law(range, polynomials, polynomials.normal, friction, from.theta, start)
-               : end_under_law(range, polynomials, grip_polynomial(polynomials, friction), friction,
-                               from.theta, start);
+    const Quarter quarter{range, friction, std::abs(from.view.sin) > std::abs(from.view.cos)};
+    const Start start = start_on(quarter, from);
+    if (std::isinf(friction)) {
+        return end_under_law(quarter, polynomials, polynomials.normal, from.theta, start);
+    }
+    const Polynomial<10> law = grip_polynomial(polynomials, friction);
+    return end_under_law(quarter, polynomials, law, from.theta, start);
 }
 
 }  // namespace

@@ -88,7 +88,9 @@ RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2,
     const double normal = (kh + omega2 * (ddh * kh - h * dh2)) / d;  // physics (23)
     // physics (24): F = h theta'' + h' omega^2 with theta'' of physics (18), rho h = S^2/h^2
     const double friction = std::sqrt(dh2) * std::abs(omega2 * (d - square(b) / h2) - h) / d;
-    return {std::atan2(std::sqrt(sin2), std::sqrt(cos2)), normal, friction};
+    const double sin = std::sqrt(sin2);
+    const double cos = std::sqrt(cos2);
+    return {std::atan2(sin, cos), std::atan2(cos, sin), normal, friction};
 }
 
 RollingForces rolling_forces(const EnergyRange& range, double x) {
@@ -101,13 +103,12 @@ RollingForces rolling_forces(const EnergyRange& range, double x) {
     return rolling_forces(range, sin2, cos2, 2 * energy / inertia(range, h * h, sin2, cos2));
 }
 
-RollingForces rolling_forces_at_angle(const EnergyRange& range, double angle) {
-    const double sin2 = square(std::sin(angle));
-    const double cos2 = square(std::cos(angle));
+RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2) {
     const double h2 = square(range.short_axis) * cos2 + sin2;
     const double h = std::sqrt(h2);
-    const double to_top = range.libration ? range.width - range.c2 * sin2 / (h + range.short_axis)
-                                          : range.c2 * cos2 / (1 + h);
+    const double to_tip = range.c2 * cos2 / (1 + h);
+    const double over_flat = range.c2 * sin2 / (h + range.short_axis);
+    const double to_top = sin2 > cos2 ? to_tip - range.tip_gap : range.width - over_flat;
     const double energy = range.energy_gap + std::max(to_top, 0.0);
     return rolling_forces(range, sin2, cos2, 2 * energy / inertia(range, h2, sin2, cos2));
 }

@@ -44,19 +44,20 @@ ForcePolynomials force_polynomials(const EnergyRange& range);
 
 // The contact forces at one place, straight from the equations of rolling.
 struct RollingForces {
-    double angle;     // from the flat position, 0 .. pi/2
-    double normal;    // N/(m g)
-    double friction;  // |F|/(m g)
+    double angle;         // from the flat position, 0 .. pi/2
+    double angle_to_tip;  // pi/2 - angle, with its own digits
+    double normal;        // N/(m g)
+    double friction;      // |F|/(m g)
 
     double needed() const;  // |F|/N; infinite where N <= 0 without N = F = 0
 };
 
 RollingForces rolling_forces(const EnergyRange& range, double x);
 
-// The forces at an angle from the flat position, which near the tip has more digits than x.
-RollingForces rolling_forces_at_angle(const EnergyRange& range, double angle);
+// The forces where sin^2 and cos^2 of the angle are known, which near the tip is more than x.
+RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2);
 
-// The forces where sin^2 and cos^2 of the angle and omega^2, in units of g/L, are known.
+// The forces where omega^2, in units of g/L, is known, too.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2);
 
 struct ForceExtremes {

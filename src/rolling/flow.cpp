@@ -219,8 +219,13 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
         sin = flow.direction * (cos < 0 ? -sin : sin);
         cos = std::abs(cos);
     } else {
-        sin = std::clamp(sin / flow.amplitude, -1.0, 1.0);
-        cos = std::sqrt((1 - sin) * (1 + sin));
+        // amplitude^2 - sin^2 = cos^2 - kappa^2: the smaller ones have the digits.
+        const double amplitude = flow.amplitude;
+        const double kappa = flow.phase.rate.kappa;
+        const double left = std::abs(sin) < cos ? (amplitude - sin) * (amplitude + sin)
+                                                : (cos - kappa) * (cos + kappa);
+        sin = std::clamp(sin / amplitude, -1.0, 1.0);
+        cos = std::sqrt(std::max(left, 0.0)) / amplitude;
         const bool on_way_back = heading < 0;
         if (on_way_back) sin = -sin;
         half_turns = on_way_back == flow.start_on_way_back ? 0.0 : 1.0;

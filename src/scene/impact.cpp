@@ -204,7 +204,10 @@ InitialState initial_state(const Scene& scene) {
         result.free_omega = state.omega;
     }
     const bool slip_removed = state.mode == Mode::sliding && std::isinf(scene.friction);
-    if (!result.touching || !(is_struck(scene) || slip_removed)) return result;
+    if (!result.touching || !(is_struck(scene) || slip_removed)) {
+        if (state.mode != Mode::flight) result.gap_rate = 0.0;
+        return result;
+    }
 
     Contact c = contact(scene, at, state, result.gap_rate);
     // Next to the flat position a slide would end before doubles tell its time from 0.
@@ -221,6 +224,7 @@ InitialState initial_state(const Scene& scene) {
     result.reaction_z = reaction.normal;
     const State free = state;
     apply(scene, at, reaction, state);
+    result.gap_rate = reaction.rebound;
     if (!is_struck(scene) && reaction.sticks) {
         result.slip_removed = c.v;
         result.energy_lost = energy_lost(scene, free, state);

@@ -16,7 +16,7 @@ struct InitialState {
     double free_omega;          // without the ground's reaction: the report's eq 48
     double slip_removed = 0.0;  // a given one, that infinite friction takes off at once [m/s]
     double energy_lost = 0.0;   // with that slip [J]
-    double gap_rate = 0.0;      // before the ground's reaction [m/s]
+    double gap_rate = 0.0;      // by its own digits; 0 in contact [m/s]
     bool touching = false;      // whether the body was on the ground before
 };
 

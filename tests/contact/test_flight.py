@@ -134,6 +134,32 @@ def test_leaving_by_acceleration_alone(omega: float, beyond: float, slope: float
     assert gap(np.longdouble(0.5 * t)) > 0
 
 
+@pytest.mark.parametrize(
+    ("b", "theta", "omega", "strength"),
+    [
+        (1.0, 1.7, 7.0, 1e-6),
+        (1.0, 0.9, 6.0, 10.0),
+        (0.1, -0.3, 6.3, 0.3),
+        (0.34, 0.46, -8.5, 6.4),
+        (0.04, -1.24, 1.4, 7.2),
+        (0.31, 0.62, -3.7, 0.2),
+    ],
+)
+def test_a_blow_that_presses_leaves_no_speed_into_the_ground(
+    b: float, theta: float, omega: float, strength: float
+) -> None:
+    """The body flies at once, from a closed gap that has no rate, whatever the blow gave."""
+    blow = Impulse(0.0, -strength, dx=0.0, dz=0.0)
+    scene = Scene(2.0, b, theta=theta, omega=omega, friction=0.6, impulse=blow)
+    start = scene.initial_state
+    assert start.mode is Mode.FLIGHT and start.reaction_z > 0
+    rising = float(support(np.longdouble(theta), 2.0, b).slope) * start.omega
+    gap = Gap(scene.replace(omega=start.omega, z_dot=rising, impulse=None))
+    t = first_impact(scene)
+    assert gap.lowest_before(t * (1 - 1e-9)) >= -gap.rounding(t)
+    assert abs(gap(np.longdouble(t))) <= gap.rounding(t) + EPS * t * abs(gap.rate(t))
+
+
 def test_a_hop_far_lower_than_the_body_is_timed_to_the_last_bits() -> None:
     """Leaving with u, lying flat without spin: 2 u/g, however small u is beside sqrt(g b)."""
     for u in (1e-3, 1e-7, 1e-11):

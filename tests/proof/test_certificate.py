@@ -16,7 +16,7 @@ import pytest
 from numpy.typing import NDArray
 from oracles.numbers import DIGITS, EPS, PI, Long, known
 from oracles.rolling import Motion
-from rolling_ellipse import Impulse, Scene, Validity, certify
+from rolling_ellipse import EventKind, Impulse, Scene, Validity, certify, simulate
 
 SCENES, CHUNK = 10_000, 500
 EDGE_MARGIN = 1e-5  # nearer to a threshold, relative, EDGE may be said
@@ -496,12 +496,38 @@ def test_next_to_no_friction_will_do_where_none_is_needed(
         assert found.ends_at is not None
         way = side * (mp.mpf(found.ends_at) - theta)
         assert way < 1e3 * friction
-        # from the flat position on, at most half a turn, an angle is counted in doubles, as theta
-        # is; 1e-12 of the forces, as the oracle allows double arithmetic
-        near = 4 * EPS * math.pi + 1e-12 * abs(way)
+        # at most half a turn, an angle is counted in doubles, as theta is: from the start where
+        # that is 0; 1e-12 of the forces, as the oracle allows double arithmetic
+        near = (4 * EPS * math.pi if theta else 0) + 1e-12 * abs(way)
         for share in (0, 0.01, 0.5, 1):
             assert grip(scene, gyration2, theta + side * share * max(way - near, 0)) > 0
         assert grip(scene, gyration2, theta + side * (way + near)) < 0
+
+
+@pytest.mark.parametrize("beside", [1e-13, 1e-9, 1e-5])
+@pytest.mark.parametrize("speed", [-2.0, -0.9, 0.0, 1.0])
+@pytest.mark.parametrize("b", [1.9, 1.001, 40.0])
+def test_a_fall_from_beside_the_tip_ends_where_the_law_does(
+    b: float, speed: float, beside: float
+) -> None:
+    """It falls at once, or turns back first, or goes over the tip: the end of rolling, and the
+    state of the event there, are right in units of their distance from the tip."""
+    with mp.workdps(DIGITS):
+        gyration2 = (1 + mp.mpf(b) ** 2) / 4
+        rate = math.sqrt((b * b - 1) / b / (gyration2 + b * b))  # of falling
+        friction = 1e3 * beside * (b * b - 1) / b**2
+        scene = Scene(
+            1.0, b, gravity=1.0, friction=friction, theta=beside, omega=speed * rate * beside
+        )
+        ends = certify(scene).ends_at
+        assert ends is not None and abs(ends) < 0.1
+        motion = simulate(scene, 30 / rate, model="contact", max_events=1, raise_on_failure=False)
+        event = motion.events[0]
+        assert event.kind is EventKind.SLIP
+        for angle in (mp.mpf(ends), mp.mpf(event.state_before.theta)):
+            near = 1e-12 * abs(angle)
+            assert grip(scene, gyration2, angle * (1 - mp.mpf(10) ** -12)) > 0
+            assert grip(scene, gyration2, angle + math.copysign(1, angle) * near) < 0
 
 
 @pytest.mark.parametrize("shift", [1e-3, -1e-3])

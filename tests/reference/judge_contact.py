@@ -1048,7 +1048,7 @@ def drawn(rng: random.Random, name: str | None = None) -> Case:
     struck = drawn_blow(rng, v) if name == "blow" else None
     scene = Scene(**v)
     long_turns = 0.0
-    if name in ("well", "lying", "tip", "beside tip"):
+    if name in ("well", "lying", "tip", "beside tip") and scene.friction != 0:
         long_turns = power(rng, 1, 7)
     longest = natural(scene)[1] * log_uniform(rng, *family.spans)
     return Case(name, scene, struck, longest, family.most_events, long_turns)

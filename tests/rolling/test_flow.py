@@ -186,6 +186,22 @@ def test_beside_the_tip_it_falls() -> None:
     assert left[0] < math.pi / 2 - 0.5 and right[0] > math.pi / 2 + 0.5
 
 
+@pytest.mark.parametrize("rounder", [1e-3, 1e-6, 1e-9])
+def test_a_nearly_round_body_beside_its_tip_falls_as_well(rounder: float) -> None:
+    """Its h' is below a rounding of h, but the angle tells it from the tip: omega is
+    beside lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), to the square of how far
+    it is off, and the roundings of the angle and of the exponent."""
+    a, b, beside = 1.0 + rounder, 1.0, 2.0**-30
+    with mp.workdps(40):
+        off = mp.mpf(math.pi / 2 + beside) - mp.pi / 2
+        k2 = (mp.mpf(a) ** 2 + 1) / 4
+        rate = mp.sqrt(mp.mpf(9.81) * (mp.mpf(a) ** 2 - 1) / (a * (k2 + mp.mpf(a) ** 2)))
+        t = float(2 / rate)
+        exact = float(off * rate * mp.sinh(rate * t))
+    omega = flow(t, a=a, b=b, theta=math.pi / 2 + beside, omega=0.0)[1]
+    assert omega == pytest.approx(exact, rel=4 * EPS / beside + 64 * EPS, abs=0)
+
+
 @pytest.mark.parametrize("side", [1e-12, -1e-12])
 @pytest.mark.parametrize("direction", [1, -1])
 def test_within_1e_12_of_the_separatrix(side: float, direction: int) -> None:
