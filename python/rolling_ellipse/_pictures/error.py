@@ -90,7 +90,7 @@ def plot_error(
     ValueError
         If there is no trajectory, one has no samples, the quantity is unknown, the number of labels
         or colours is wrong, the reference ends too early, or none is given for a motion that
-        started from coordinates of its own.
+        started from coordinates of its own or lasts longer than 1e15 half turns.
     TypeError
         If something is no trajectory.
     """
@@ -129,7 +129,12 @@ def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajector
     how: dict[str, Any] = {"model": "contact"}
     if motion.model != "contact":
         how = {"model": "rolling", "method": "exact"}
-    return Trajectory.computed(motion.scene, replace(DEFAULTS, **how), np.array([last]))
+    try:
+        return Trajectory.computed(motion.scene, replace(DEFAULTS, **how), np.array([last]))
+    except ValueError as error:  # beyond 1e15 half turns
+        raise ValueError(
+            f"reference must be given where no exact motion reaches {last:g} s: {error}"
+        ) from error
 
 
 def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:

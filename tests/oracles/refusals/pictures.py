@@ -23,6 +23,10 @@ from oracles.refusals import Refusal
 MOTION = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 0.5, 6))
 SLOPED = rl.simulate(scenes.slope, [0.0, 0.5])
 LATER = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 1.0, 6))
+TOO_LONG = rl.simulate(
+    rl.Scene(2.0, 2.0, omega=1e30), 1.0, model="rolling", method="radau", step=0.5,
+    raise_on_failure=False,
+)  # fmt: skip
 EMPTY = MOTION.sol([])
 FAR = rl.simulate(Scene(2.0, 1.0, x=1e24), [0.0, 1.0])
 Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
@@ -105,6 +109,7 @@ CURVES: list[Refusal] = [
     (r"^reference must be a Trajectory or None", lambda _: rl.plot_error(MOTION, reference=WRONG)),
     (r"^reference must reach the last", lambda _: rl.plot_error(LATER, reference=MOTION)),
     (r"^reference must be given for a trajectory that", lambda _: rl.plot_error(OWN_START)),
+    (r"^reference must be given where no exact motion reaches", lambda _: rl.plot_error(TOO_LONG)),
     (r"^t_end must be within \[0, 0\.5\] s, got 9", lambda _: rl.plot_strobe(MOTION, t_end=9.0)),
     (r"^kind must be one of", lambda _: rl.plot_energy(MOTION, kind=ANY)),
 ]  # fmt: skip
