@@ -130,11 +130,11 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     print(libraries)
     for library, reason in missing.items():
         print(f"missing: {library}: {reason}")
+    stamp = {"peers": libraries, "commit": commit()}  # before the first file is written
     races = {}
     for name in chosen.scenes:
         for half_turns in chosen.half_turns:
             result = race(name, half_turns, found, **how)
-            stamp = {"peers": libraries, "commit": commit()}
             result = replace(result, machine=result.machine | stamp)
             races[name, half_turns] = result
             print(f"\n{name}: end state after {half_turns} half turns or swings")
