@@ -138,7 +138,7 @@ FlatView flat_view(const Axes& axes, double theta) {
 bool is_equilibrium(const Geometry& at, double incline) {
     const bool is_circle = at.dh == 0 && at.ddh == 0;
     if (is_circle) return incline == 0;
-    // Of a nearly round body h' is small everywhere: what counts is the angle by which it is off.
+    // A nearly round body has a small h' everywhere: there the angle counts, h'/h''.
     const double size = std::min(at.h, std::abs(at.ddh) + std::abs(incline) * at.h);
     return std::abs(at.dh - incline * at.h) <= equal_ulps * epsilon * size;
 }

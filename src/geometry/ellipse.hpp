@@ -58,8 +58,8 @@ struct FlatView {
 
 FlatView flat_view(const Axes& axes, double theta);
 
-// Is the contact right below the centre, to within 8 ulp of the height? On a slope the vertical
-// meets the ground h tan(slope) = h incline downhill of the foot of h.
+// Is the contact right below the centre, to within 8 ulp of the height and of the angle? On a slope
+// the vertical meets the ground h tan(slope) = h incline downhill of the foot of h.
 bool is_equilibrium(const Geometry& at, double incline = 0.0);
 
 // psi - theta = atan2(h', h): the angle from the vertical to the contact, between -pi/2 and pi/2.

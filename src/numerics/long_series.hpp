@@ -37,11 +37,11 @@ inline constexpr auto over_next = [] {
     return found;
 }();
 
-// The distance from its centre to which a series is good: there its last terms are a twentieth of
-// an ulp beside its own size, and what is left out, smaller by another fifth, is less. Not half an
-// ulp, since it may have the same sign in one step after another. Four terms, as symmetry may hide
-// three; each as it would be at the end of a series that falls by a fifth from term to term. A
-// fixed point, whose logarithm is at an eighth of the error after each step.
+// The distance from its centre at which the last terms of a series are a twentieth of an ulp beside
+// its own size; the terms left out are smaller by another fifth. Half an ulp would be too much,
+// since it may have the same sign in one step after another. Four terms are looked at, as symmetry
+// may hide three; each as it would be at the end of a series that falls by a fifth from term to
+// term. Found as a fixed point, of which each step divides the error of the logarithm by eight.
 inline double reach(const LongSeries& series) {
     constexpr double rest = 1e-17;
     constexpr double fall = 0.2;

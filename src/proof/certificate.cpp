@@ -143,18 +143,15 @@ std::optional<Turn> first_meeting(const Quarter& quarter, const Start& start, do
     const double on = start.direction;
     const EnergyRange& range = quarter.range;
     const auto above = std::upper_bound(places.begin(), places.end(), from);
-    const auto up_from = [](double low, double high) { return high - low; };
     const double flat = quarter.flat();
     const double tip = quarter.tip();
     if (!start.rises && above != places.begin()) return Turn{on * (start.place - above[-1]), on};
     if (start.rises && above != places.end()) return Turn{on * (*above - start.place), on};
-    if (!start.rises) {
-        return Turn{on * (up_from(flat, start.place) + up_from(flat, places.front())), on};
-    }
+    if (!start.rises) return Turn{on * ((start.place - flat) + (places.front() - flat)), on};
     if (!range.libration && range.energy_gap == 0) return std::nullopt;
     // Over the top: the last place, on the other side of the tip or back from the turning point.
     if (range.libration) return Turn{on * (places.back() - start.place), -on};
-    return Turn{on * (up_from(start.place, tip) + up_from(places.back(), tip)), on};
+    return Turn{on * ((tip - start.place) + (tip - places.back())), on};
 }
 
 // The law holds where both polynomials are positive.
