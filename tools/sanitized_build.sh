@@ -14,8 +14,8 @@
 # crash. With --threads it is the thread sanitizer: two threads that touch the same memory, one of
 # them to write, with nothing between that orders them, are told, and the exit code is 66.
 #
-# PYTHON names the interpreter (default python3; it must have the build requirements); the builds
-# lie in build/sanitized and build/sanitized-threads.
+# PYTHON names the interpreter (default python3; it must have the build requirements, and no editable
+# installation of the package); the builds lie in build/sanitized and build/sanitized-threads.
 set -eu
 cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
@@ -53,6 +53,11 @@ if [ $# -eq 0 ]; then
     echo "UBSAN_OPTIONS='${UBSAN_OPTIONS:-}' $python ..."
     exit
 fi
+# An editable installation in the same Python would be found first.
+LD_PRELOAD="$preload" "$python" -c "
+import sys, rolling_ellipse._core as core
+sys.exit(None if core.__file__.startswith('$folder/site') else f'not sanitized: {core.__file__}')"
+
 if [ "$1" = --suite ]; then
     shift
     # Not where memory is limited: the runtimes reserve terabytes of addresses. Nor the browser, of
