@@ -19,6 +19,7 @@ from .problem import (
     version,
 )
 
+_LEAST_OF_LSODA = 200 * np.finfo(float).eps  # it fails below, and tells only stderr why
 _right_hand_side = numba.cfunc(lsoda_sig)(right_hand_side)
 
 
@@ -52,6 +53,8 @@ class NumbaPeer(Peer):
         self.name, self.solve = f"numbalsoda {solve.__name__}", solve
 
     def prepare(self, scene: Scene, t_end: float, setting: float) -> NumbaRun:
+        if self.solve is lsoda and setting < _LEAST_OF_LSODA:
+            raise ValueError(f"LSODA asks for a tolerance of {_LEAST_OF_LSODA:.1e} at least")
         return NumbaRun(problem(scene, t_end, setting), self.solve)
 
 
