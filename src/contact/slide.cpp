@@ -22,9 +22,9 @@ SlidePoint moved(const SlidePiece& piece, double clock) {
     const auto& [centre, kind, unit, reach, angle, omega, x_dot, path, time] = piece;
     const auto change = [clock](const LongSeries& series) { return value(series, clock); };
     const double lasts = kind == SlideClock::time ? clock : change(time);
-    return {centre.angle + change(angle), centre.omega + change(omega) / unit,
+    return {centre.angle + change(angle),        centre.omega + change(omega) / unit,
             centre.x_dot + change(x_dot) / unit, centre.path + change(path),
-            centre.time + lasts * unit};
+            centre.time + lasts * unit,          centre.energy};
 }
 
 // Of a circle all but the first coefficients vanish, and its reach has powers that are infinite.
@@ -60,6 +60,20 @@ std::pair<double, double> sin_cos(const DoubleDouble& angle) {
     const double rest_sin = std::sin(angle.low);  // up to one, after 1e16 radians
     const double rest_cos = std::cos(angle.low);
     return {sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin};
+}
+
+// The height by which the centre is lower than over the tip; nothing cancels near the tip.
+double under_tip(const Axes& axes, const Geometry& at) {
+    const double to_tip = axes.a > axes.b ? at.cos : at.sin;
+    return std::abs(axes.a - axes.b) * (axes.a + axes.b) * square(to_tip) /
+           (at.h + std::max(axes.a, axes.b));
+}
+
+double energy_of(const SlidingBody& body, const DoubleDouble& angle, double omega) {
+    const auto [sin, cos] = sin_cos(angle);
+    const Geometry at = geometry(body.axes, sin, cos);
+    return 0.5 * square(omega) * (body.gyration2 + square(at.dh)) -
+           body.gravity.into * under_tip(body.axes, at);
 }
 
 class Follower {
@@ -112,7 +126,9 @@ class Follower {
         }
         const bool stands_still = clock_ == SlideClock::time && next.time.high == from.time.high;
         slide_.last = next;
+        slide_.last.energy = next.energy + value(series.work, reach_) / square(unit);
         slide_.slip = slide_.slip + value(series.slip, reach_) / unit;
+        keep_energy();
         if (!end_) return stands_still ? std::optional(SlideStop::no_progress) : std::nullopt;
         return end();
     }
@@ -121,6 +137,26 @@ class Follower {
     Geometry geometry_here() const {
         const auto [sin, cos] = sin_cos(slide_.last.angle);
         return geometry(slide_.body.axes, sin, cos);
+    }
+
+    // A body that creeps over the tip has an omega that is left of a fast motion before it, with
+    // the roundings of that: the energy has fewer, and is counted from the tip.
+    void keep_energy() {
+        constexpr double slow = 0.02;  // of the largest kinetic energy
+        constexpr double near = 10;    // times the kinetic energy: the height under the tip
+        constexpr double rounding = 1e-12;
+        SlidePoint& last = slide_.last;
+        const Geometry at = geometry_here();
+        const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at);
+        const double kinetic = double(last.energy + fallen);
+        most_kinetic_ = std::max(most_kinetic_, kinetic);
+        if (!(kinetic < slow * most_kinetic_ && fallen < near * kinetic)) return;
+        const double inertia = slide_.body.gyration2 + square(at.dh);
+        const double omega = std::copysign(std::sqrt(2 * kinetic / inertia), last.omega.high);
+        const double change = (omega - last.omega.high) - last.omega.low;
+        if (!(std::abs(change) < rounding * std::abs(omega))) return;
+        last.omega = {omega, 0.0};
+        slide_.slip = slide_.slip + -at.h * change;
     }
 
     // As fast as it turns, and as its response changes, where that is next to none: no power of the
@@ -238,15 +274,18 @@ class Follower {
 
     // B = 0: in a moment, N = c/B ends it.
     SlideStop last_moment() {
-        const auto& [angle, omega, x_dot, path, time] = slide_.last;
+        const SlidePoint& last = slide_.last;
         const auto [stops, state] = rolling_ellipse::last_moment(
-            slide_.body, {double(angle), double(omega), double(slide_.slip), double(x_dot),
-                          double(path), double(time)});
-        slide_.last = {{state.angle, 0.0},
+            slide_.body, {double(last.angle), double(last.omega), double(slide_.slip),
+                          double(last.x_dot), double(last.path), double(last.time)});
+        const DoubleDouble angle = {state.angle, 0.0};
+        const double energy = energy_of(slide_.body, angle, state.omega);
+        slide_.last = {angle,
                        {state.omega, 0.0},
                        {state.x_dot, 0.0},
                        {state.path, 0.0},
-                       {state.time, 0.0}};
+                       {state.time, 0.0},
+                       {energy, 0.0}};
         slide_.slip = {state.slip, 0.0};
         slide_.pieces.push_back({slide_.last, SlideClock::time, 1.0, 0.0, {}, {}, {}, {}, {}});
         return stops ? SlideStop::slip_vanishes : SlideStop::jams;
@@ -255,6 +294,7 @@ class Follower {
     Slide& slide_;
     const SlideBounds& bounds_;
     const double angle_bound_;
+    double most_kinetic_ = 0.0;
     SlideClock clock_ = SlideClock::time;
     double reach_ = 0.0;
     std::optional<End> end_;
@@ -289,13 +329,16 @@ Slide slide_from(const Scene& scene, const State& start, double side) {
     Scene seen = scene;
     if (angle.is_odd()) std::swap(seen.a, seen.b);
     constexpr std::size_t usual_pieces = 16;
-    Slide slide{sliding_body(seen, side),
-                axes,
-                half_pi_exact * angle.quarters,
-                start.x,
-                {angle.rest, {start.omega, 0.0}, {start.x_dot, 0.0}, {0.0, 0.0}, {0.0, 0.0}},
-                {slip, 0.0},
-                {}};
+    const SlidingBody body = sliding_body(seen, side);
+    const double energy = energy_of(body, angle.rest, start.omega);
+    Slide slide{
+        body,
+        axes,
+        half_pi_exact * angle.quarters,
+        start.x,
+        {angle.rest, {start.omega, 0.0}, {start.x_dot, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {energy, 0.0}},
+        {slip, 0.0},
+        {}};
     slide.pieces.reserve(usual_pieces);
     return slide;
 }
@@ -305,6 +348,7 @@ void go_on_from(const SlidePoint& end, Slide& slide) {
     slide.theta_base = slide.theta_base + -end.angle.low;
     slide.last.omega = end.omega;
     slide.last.x_dot = end.x_dot;
+    slide.last.energy = end.energy;
     slide.slip = {0.0, 0.0};
 }
 

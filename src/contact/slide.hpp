@@ -16,13 +16,15 @@ namespace rolling_ellipse {
 // The angle is counted from the quarter turn next to the start, where a thin body is the most
 // sensitive to it: there it keeps digits that the whole angle has no room for. Path and time are
 // those since the start. The velocity of the centre is a number of its own: as the sum of slip and
-// h omega it would have their rounding, where friction hardly changes it.
+// h omega it would have their rounding, where friction hardly changes it. The energy, per mass, is
+// that of turning and of the height over the tip's; only the work of friction changes it.
 struct SlidePoint {
     DoubleDouble angle;
     DoubleDouble omega;
     DoubleDouble x_dot;
     DoubleDouble path;
     DoubleDouble time;
+    DoubleDouble energy;
 };
 
 // How the motion goes on from a point, by a clock that is 0 there; the series are of the changes,

@@ -16,7 +16,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
     const bool slowed = clock == SlideClock::slowed;
 
     SlideSeries slide;
-    auto& [angle, w, slip, x_dot, path, rolled, time, pressure, response, u] = slide;
+    auto& [angle, w, slip, x_dot, path, rolled, time, pressure, response, u, work] = slide;
     // Side by side: what is multiplied at once.
     TwoSeries p_q, spread;   // p angle', q angle'
     TwoSeries w_u;           // omega^2, u^2
@@ -26,12 +26,13 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
     TwoSeries l_h, c_w;      // L C, h omega
     TwoSeries loads, gains;  // (u V) omega', (h V) impulse'
     TwoSeries rate_c, w_h;   // dt/dtau omega, C h
-    LongSeries h, rate, impulse;
+    LongSeries h, rate, impulse, pull;
     angle[0] = at.angle;
     w[0] = at.omega;
     path[0] = at.path;
     time[0] = at.time;
     impulse[0] = 0.0;
+    work[0] = 0.0;
     p_q[0] = pair(c2 * sin * cos, c2 * ((cos - sin) * (cos + sin)));
     const double u0 = square(a * sin) + square(b * cos);
     u[0] = u0;
@@ -87,6 +88,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
             gains[k] = gain;
             spread[k] = pair(w[k], w[k]);
         }
+        pull[k] = gain[1];
         x_dot[k] = k == 0 ? at.x_dot : impulse[k] + body.gravity.along * time[k];
         slip[k] = k == 0 ? at.slip : x_dot[k] - rolled[k];
         if (k == long_order) break;
@@ -97,6 +99,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
         angle[k + 1] = spread[k][0] * over_next[k];
         w[k + 1] = gain[0] * over_next[k];
         impulse[k + 1] = gain[1] * over_next[k];
+        work[k + 1] = -(inner(pull, rolled, k) + outer(pull, rolled, k)) * over_next[k];
         if (slowed) {
             path[k + 1] = (inner(rate, x_dot, k) + outer(rate, x_dot, k)) * over_next[k];
             time[k + 1] = rate[k] * over_next[k];

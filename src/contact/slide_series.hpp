@@ -28,6 +28,7 @@ struct SlideSeries {
     LongSeries pressure;  // C
     LongSeries response;  // V
     LongSeries height2;   // u
+    LongSeries work;      // of the friction on the turning, per mass
 };
 
 SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double sin, double cos,

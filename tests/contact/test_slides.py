@@ -130,6 +130,22 @@ def test_a_frictionless_slide_keeps_its_energy() -> None:
     assert set(motion.mode) == {Mode.SLIDING} and not motion.events
 
 
+@pytest.mark.parametrize("creep", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize(("a", "b", "theta"), [(2.0, 1.0, math.pi / 2), (0.3, 2.0, 0.0)])
+def test_a_frictionless_slide_creeps_over_the_tip_as_often_as_it_comes_there(
+    a: float, b: float, theta: float, creep: float
+) -> None:
+    """Each time with the omega of the first: the energy has few roundings beside the tip, though in
+    between it falls by the difference of the axes. A few for omega, and for what the tip is missed
+    by, where the doubles of the angle are 1e-15 apart."""
+    scene = Scene(a, b, theta=theta, omega=creep, x_dot=1.0, friction=0.0)
+    motion = simulate(scene, 60.0, model="contact")
+    times = [float(motion.when(theta=theta + k * math.pi)[0]) for k in (1, 2, 3)]
+    there = motion.sol(times)
+    missed = 2e-15 * math.sqrt(GRAVITY)  # rad/s: sqrt(2 g (h_tip - h)/D) of that angle, at most
+    assert np.max(np.abs(there.omega - creep)) <= 64 * EPSILON * creep + missed**2 / creep
+
+
 def test_few_pieces_make_a_slide() -> None:
     """Their reach is some fifth of the distance to the nearest singularity in complex time."""
     whole = simulate(scenes.slip, 3.0, model="contact")
