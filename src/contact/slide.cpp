@@ -139,12 +139,12 @@ class Follower {
         return geometry(slide_.body.axes, sin, cos);
     }
 
-    // A body that creeps over the tip has an omega that is left of a fast motion before it, with
-    // the roundings of that: the energy has fewer, and is counted from the tip.
+    // Omega by the energy, where the body creeps over the tip. The series give it there with the
+    // roundings of the fast motion before; the energy, counted from the tip, has fewer.
     void keep_energy() {
         constexpr double slow = 0.02;  // of the largest kinetic energy
-        constexpr double near = 10;    // times the kinetic energy: the height under the tip
-        constexpr double rounding = 1e-12;
+        constexpr double near = 10;    // times the kinetic energy: g times the height under the tip
+        constexpr double rounding = 1e-12;  // at most; a larger change would be none of rounding
         SlidePoint& last = slide_.last;
         const Geometry at = geometry_here();
         const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at);
