@@ -27,16 +27,14 @@ Settings chosen(Settings settings, Validity validity) {
 
 // What a motion starts from, and its rolling, on level ground or on a slope.
 struct Beginning {
-    State state;
-    double gap_rate;
+    InitialState initial;
     std::optional<RollingStart> rolling;
     std::optional<SlopeFlow> on_slope;
 };
 
 Beginning beginning(const Scene& scene) {
-    const InitialState initial = initial_state(scene);
-    Beginning found{initial.state, initial.gap_rate, {}, {}};
-    const State& start = found.state;
+    Beginning found{initial_state(scene), {}, {}};
+    const State& start = found.initial.state;
     validate_motion(scene.body(), start.theta, start.omega);
     validate_velocity(scene.body(), start.x_dot, start.z_dot);
     if (!rolls(start)) return found;
@@ -70,7 +68,7 @@ bool by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
     if (!from.on_slope) return false;
     if (asked.model == Model::contact) return true;
     return asked.model == Model::automatic && asked.method == Method::automatic &&
-           !may_hold_for_ever(scene, from.state);
+           !may_hold_for_ever(scene, from.initial.state);
 }
 
 void end_validity(double t, double t_end, Solution& solution) {
@@ -112,7 +110,7 @@ Motion exact_motion(const Scene& scene, const Beginning& from, double t_end) {
         return single(scene, std::make_shared<const SlopeFlow>(std::move(flow)));
     }
     const auto flow =
-        std::make_shared<const RollingFlow>(rolling_flow(*from.rolling, from.state.x));
+        std::make_shared<const RollingFlow>(rolling_flow(*from.rolling, from.initial.state.x));
     validate_time(t_end, longest_time(*flow));
     return single(scene, flow);
 }
@@ -140,11 +138,11 @@ Solution integrated(Integration<Motion> found, const Settings& settings, double 
 
 Solution solved(const Scene& scene, const Beginning& from, const EndOfRolling& end,
                 const Settings& settings, double t_end, const Checkpoint& checkpoint) {
-    const State& start = from.state;
+    const State& start = from.initial.state;
     if (settings.model == Model::contact) {
-        return integrated(
-            integrate_contact(scene, start, from.gap_rate, end, settings, t_end, checkpoint),
-            settings, t_end);
+        return integrated(integrate_contact(scene, start, from.initial.gap_rate, end, settings,
+                                            t_end, checkpoint),
+                          settings, t_end);
     }
     if (!rolls(start)) {
         throw std::invalid_argument("model '" + name(settings.model) +
@@ -171,9 +169,9 @@ CertifiedScene certify(const Scene& scene) {
         result.certificate = certify_rolling(*from.rolling, scene.mass, scene.friction);
     } else if (from.on_slope) {
         const LawMeetings met = law_meetings(*from.on_slope, scene.friction);
-        result.certificate = certify_on_slope(scene, from.state, met);
+        result.certificate = certify_on_slope(scene, from.initial.state, met);
     }
-    result.reason = reason(scene, initial_state(scene), result.certificate);
+    result.reason = reason(scene, from.initial, result.certificate);
     return result;
 }
 
@@ -213,7 +211,7 @@ double period(const Scene& scene) {
     if (from.rolling) return period(rolling_flow(*from.rolling));
     if (!from.on_slope) {
         throw std::invalid_argument("scene must start rolling, but " +
-                                    why_not_rolling(scene, from.state));
+                                    why_not_rolling(scene, from.initial.state));
     }
     while (grow(*from.on_slope)) continue;
     if (const auto found = period(*from.on_slope)) return *found;

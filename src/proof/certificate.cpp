@@ -29,7 +29,9 @@ struct Quarter {
     double flat() const { return from_tip ? -half_pi : 0.0; }
     double tip() const { return from_tip ? 0.0 : half_pi; }
     double top() const { return place(rolling_forces(range, 1.0)); }
-    double place(const RollingForces& at) const { return from_tip ? -at.angle_to_tip : at.angle; }
+    double place(const RollingForces& at) const {
+        return from_tip ? -at.angle_to_tip() : at.angle();
+    }
     bool holds(double place) const {
         const double sin2 = square(std::sin(place));
         const double cos2 = square(std::cos(place));
@@ -235,8 +237,8 @@ Certificate certify_rolling(const RollingStart& from, double mass, double fricti
     const ForcePolynomials polynomials = force_polynomials(range);
     const ForceExtremes extremes = force_extremes(range, polynomials);
     return {end_of_rolling(from, range, polynomials, friction),
-            weight * extremes.least_normal.normal, theta_of(body, extremes.least_normal.angle),
-            extremes.most_friction.needed(), theta_of(body, extremes.most_friction.angle)};
+            weight * extremes.least_normal.normal, theta_of(body, extremes.least_normal.angle()),
+            extremes.most_friction.needed(), theta_of(body, extremes.most_friction.angle())};
 }
 
 }  // namespace rolling_ellipse

@@ -75,6 +75,10 @@ ForcePolynomials force_polynomials(const EnergyRange& range) {
     return p;
 }
 
+double RollingForces::angle() const { return std::atan2(sin, cos); }
+
+double RollingForces::angle_to_tip() const { return std::atan2(cos, sin); }
+
 double RollingForces::needed() const { return friction_needed({normal, friction}); }
 
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2) {
@@ -88,9 +92,7 @@ RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2,
     const double normal = (kh + omega2 * (ddh * kh - h * dh2)) / d;  // physics (23)
     // physics (24): F = h theta'' + h' omega^2 with theta'' of physics (18), rho h = S^2/h^2
     const double friction = std::sqrt(dh2) * std::abs(omega2 * (d - square(b) / h2) - h) / d;
-    const double sin = std::sqrt(sin2);
-    const double cos = std::sqrt(cos2);
-    return {std::atan2(sin, cos), std::atan2(cos, sin), normal, friction};
+    return {std::sqrt(sin2), std::sqrt(cos2), normal, friction};
 }
 
 RollingForces rolling_forces(const EnergyRange& range, double x) {

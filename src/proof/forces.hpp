@@ -44,12 +44,14 @@ ForcePolynomials force_polynomials(const EnergyRange& range);
 
 // The contact forces at one place, straight from the equations of rolling.
 struct RollingForces {
-    double angle;         // from the flat position, 0 .. pi/2
-    double angle_to_tip;  // pi/2 - angle, with its own digits
-    double normal;        // N/(m g)
-    double friction;      // |F|/(m g)
+    double sin;       // of the angle from the flat position
+    double cos;       // both >= 0
+    double normal;    // N/(m g)
+    double friction;  // |F|/(m g)
 
-    double needed() const;  // |F|/N; infinite where N <= 0 without N = F = 0
+    double angle() const;         // from the flat position, 0 .. pi/2
+    double angle_to_tip() const;  // pi/2 - angle, with its own digits
+    double needed() const;        // |F|/N; infinite where N <= 0 without N = F = 0
 };
 
 RollingForces rolling_forces(const EnergyRange& range, double x);

@@ -198,18 +198,16 @@ InitialState initial_state(const Scene& scene) {
     State& state = result.state;
     const Geometry at = geometry(scene.axes(), state.theta);
     result.touching = state.z == at.h;
-    result.gap_rate = gap_rate(state, at);
-    if (scene.impulse) {
-        result.gap_rate = strike(scene, *scene.impulse, at, state);
-        result.free_omega = state.omega;
-    }
+    const double rate =
+        scene.impulse ? strike(scene, *scene.impulse, at, state) : gap_rate(state, at);
+    if (scene.impulse) result.free_omega = state.omega;
     const bool slip_removed = state.mode == Mode::sliding && std::isinf(scene.friction);
     if (!result.touching || !(is_struck(scene) || slip_removed)) {
-        if (state.mode != Mode::flight) result.gap_rate = 0.0;
+        if (state.mode == Mode::flight) result.gap_rate = rate;
         return result;
     }
 
-    Contact c = contact(scene, at, state, result.gap_rate);
+    Contact c = contact(scene, at, state, rate);
     // Next to the flat position a slide would end before doubles tell its time from 0.
     if (slip_removed && zero_if_negligible(state.theta) == 0) {
         c.gtn = 0.0;
@@ -217,6 +215,7 @@ InitialState initial_state(const Scene& scene) {
     }
     if (c.u > 0) {
         state.mode = Mode::flight;
+        result.gap_rate = rate;
         return result;
     }
     const Reaction reaction = reaction_to(scene, c, 0.0);
