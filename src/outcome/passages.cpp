@@ -54,14 +54,14 @@ class Search {
         for (const Course& course : courses_) {
             if (course.stretch.repetition) repeat(course, value, times);
         }
-        constexpr double same_time = 4;  // [ulp]
-        std::vector<double> apart;
-        for (std::size_t i = 0; i < times.size(); ++i) {
-            const double before = i == 0 ? -infinity : times[i - 1];
-            const double ulp = std::nextafter(std::abs(before), infinity) - std::abs(before);
-            if (i == 0 || times[i] - before > same_time * ulp) apart.push_back(times[i]);
-        }
-        return apart;
+        const auto is_same = [](double before, double t) {
+            constexpr double ulps = 4;
+            const double apart = t - before;
+            if (apart > ulps * epsilon * before) return false;  // nearly always
+            return !(apart > ulps * (std::nextafter(before, infinity) - before));
+        };
+        times.erase(std::unique(times.begin(), times.end(), is_same), times.end());
+        return times;
     }
 
     std::vector<std::string> unproved() const {
@@ -87,8 +87,7 @@ class Search {
         const auto is_rounding = [&](const Look& look) {
             return std::abs(look.measure) <= rounding;
         };
-        const bool is_kept =
-            stretch.constant || std::all_of(here.begin(), here.end(), is_rounding);
+        const bool is_kept = stretch.constant || std::all_of(here.begin(), here.end(), is_rounding);
         const std::size_t first = looks.size();
         for (std::size_t i = 0; i < here.size(); ++i) {
             const auto rise = [&](std::size_t k) {
@@ -169,8 +168,8 @@ class Search {
                     found.push_back(looks[i].t);
                 } else {
                     // Turned so that it falls: a place where it is 0 is then the upper end.
-                    brackets.emplace_back(looks[i - 1].t, looks[i].t,
-                                          -now * looks[i - 1].measure, -now * looks[i].measure);
+                    brackets.emplace_back(looks[i - 1].t, looks[i].t, -now * looks[i - 1].measure,
+                                          -now * looks[i].measure);
                     sides.push_back(-now);
                 }
             }
@@ -199,23 +198,24 @@ class Search {
         };
         const auto first = course.values.begin() + 1;
         const std::size_t cut = std::max_element(first, first + n, nearer) - course.values.begin();
-        const auto after = [&](double t) { return std::upper_bound(times.begin(), times.end(), t); };
+        const auto after = [&](double t) {
+            return std::upper_bound(times.begin(), times.end(), t);
+        };
         times.erase(after(at[cut + n]), after(at[cut + 2 * n]));
         const std::vector<double> one(after(at[cut]), after(at[cut + n]));
         const double in_all = double(one.size()) * (count - 1);
         if (in_all > most) {
             throw std::invalid_argument(name_ + " must pass its value no more than " +
                                         std::to_string(long(most)) + " times, got about " +
-                                        short_text(in_all) +
-                                        " of them: simulate a shorter motion");
+                                        short_text(in_all) + " of them: simulate a shorter motion");
         }
         std::vector<double> again;
         again.reserve(std::size_t(in_all));
         for (double k = 1; k < count && !one.empty(); ++k) {
-            for (const double t : one) again.push_back(double(period * k + t));
+            const DoubleDouble later = period * k;
+            for (const double t : one) again.push_back(double(later + t));
         }
         times.insert(after(at[cut + n]), again.begin(), again.end());
-        std::sort(times.begin(), times.end());
     }
 
     std::string name_;
@@ -234,8 +234,7 @@ Passages passages(const Motion& motion, double last, Quantity quantity,
     const bool has_path = quantity == Quantity::x || quantity == Quantity::contact_x;
     const Search search(
         name_of(quantity), [&](const auto& times) { return gauge(quantity, times); },
-        has_path ? gauge.length() : 0.0, direction,
-        stretches(motion, last, quantity, gauge));
+        has_path ? gauge.length() : 0.0, direction, stretches(motion, last, quantity, gauge));
     Passages found{{}, search.unproved()};
     for (const double value : values) found.times.push_back(search.times_of(value));
     return found;

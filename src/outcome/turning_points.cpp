@@ -47,8 +47,8 @@ constexpr int degree = 8;
 
 // Chebyshev's nodes on [0, 1], to four digits, and a place between them at which their polynomial
 // is compared with the quantity.
-constexpr std::array<double, degree + 2> places = {0.0076, 0.067, 0.1786, 0.329,  0.41,
-                                                   0.5,    0.671, 0.8214, 0.933,  0.9924};
+constexpr std::array<double, degree + 2> places = {0.0076, 0.067, 0.1786, 0.329, 0.41,
+                                                   0.5,    0.671, 0.8214, 0.933, 0.9924};
 constexpr int compared = 4;
 
 // The polynomials binomial(degree, i) s^i (1-s)^(degree-i).
@@ -109,8 +109,8 @@ bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
             const double missed =
                 std::abs(bernstein_basis(places[compared]).dot(bernstein) - here[compared]);
             const auto [least, most] = std::minmax_element(here, here + places.size());
-            const double noise = epsilon * (roundings * size +
-                                            8 * high / (high - low) * (*most - *least));
+            const double noise =
+                epsilon * (roundings * size + 8 * high / (high - low) * (*most - *least));
             if (missed > noise) {
                 const double middle = low + 0.5 * (high - low);
                 if (depth < deepest && low < middle && middle < high &&
@@ -279,11 +279,10 @@ class Survey {
 
     void require_few(double quarters) const {
         if (!(quarters > most_quarters)) return;
-        throw std::invalid_argument(std::string(name_of(quantity_)) +
-                                    " must not be looked at over more than " +
-                                    std::to_string(long(most_quarters)) +
-                                    " quarter turns, got a motion of " + short_text(quarters) +
-                                    ": simulate a shorter one");
+        throw std::invalid_argument(
+            std::string(name_of(quantity_)) + " must not be looked at over more than " +
+            std::to_string(long(most_quarters)) + " quarter turns, got a motion of " +
+            short_text(quarters) + ": simulate a shorter one");
     }
 
     // Adds the turning points of a quantity that is smooth between the times.
@@ -467,9 +466,8 @@ void Gauge::measure(Quantity quantity, const double* times, std::size_t n, doubl
     } else if (quantity == Quantity::z) {
         take(ContactSample{}, [](const ContactSample& at) { return at.state.z; });
     } else {
-        take(FlowSample{}, [&](const FlowSample& at) {
-            return of_state(at.theta, at.omega, at.x, 0.0);
-        });
+        take(FlowSample{},
+             [&](const FlowSample& at) { return of_state(at.theta, at.omega, at.x, 0.0); });
     }
 }
 
@@ -490,11 +488,10 @@ std::vector<Stretch> stretches(const Motion& motion, double last, std::optional<
         std::visit([&](const auto& law) { survey(itself(law)); }, segment->law);
         looks += here.times.size();
         if (looks > most_looks) {
-            throw std::invalid_argument(std::string(name_of(quantity)) +
-                                        " must not be looked at more than " +
-                                        std::to_string(most_looks) + " times, got " +
-                                        std::to_string(looks) +
-                                        " for a part of the motion: simulate a shorter one");
+            throw std::invalid_argument(
+                std::string(name_of(quantity)) + " must not be looked at more than " +
+                std::to_string(most_looks) + " times, got " + std::to_string(looks) +
+                " for a part of the motion: simulate a shorter one");
         }
         found.push_back(std::move(here));
     }
