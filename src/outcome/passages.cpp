@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
-#include <stdexcept>
 #include <utility>
 
 #include "numerics/bisect.hpp"
+#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -31,9 +30,9 @@ struct Look {
 class Search {
   public:
     // To the size of the values, of which their rounding is a part, comes a length.
-    Search(std::string name, Measure measure, double length, int direction,
+    Search(std::optional<Quantity> quantity, Measure measure, double length, int direction,
            std::vector<Stretch> stretches)
-        : name_(std::move(name)),
+        : quantity_(quantity),
           measure_(std::move(measure)),
           length_(length),
           direction_(direction) {
@@ -205,9 +204,8 @@ class Search {
         const std::vector<double> one(after(at[cut]), after(at[cut + n]));
         const double in_all = double(one.size()) * (count - 1);
         if (in_all > most) {
-            throw std::invalid_argument(name_ + " must pass its value no more than " +
-                                        std::to_string(long(most)) + " times, got about " +
-                                        short_text(in_all) + " of them: simulate a shorter motion");
+            refuse_length(quantity_, "pass its value no more than 1000000 times",
+                          "about " + text(in_all) + " of them");
         }
         std::vector<double> again;
         again.reserve(std::size_t(in_all));
@@ -218,7 +216,7 @@ class Search {
         times.insert(after(at[cut + n]), again.begin(), again.end());
     }
 
-    std::string name_;
+    std::optional<Quantity> quantity_;
     Measure measure_;
     double length_;
     int direction_;
@@ -231,10 +229,9 @@ Passages passages(const Motion& motion, double last, Quantity quantity,
                   const std::vector<double>& values, int direction, const Checkpoint& checkpoint) {
     if (motion.segments.empty()) return {std::vector<std::vector<double>>(values.size()), {}};
     const Gauge gauge(motion, checkpoint);
-    const bool has_path = quantity == Quantity::x || quantity == Quantity::contact_x;
-    const Search search(
-        name_of(quantity), [&](const auto& times) { return gauge(quantity, times); },
-        has_path ? gauge.length() : 0.0, direction, stretches(motion, last, quantity, gauge));
+    const Measure measure = [&](const auto& times) { return gauge(quantity, times); };
+    const Search search(quantity, measure, gauge.rounded_length(quantity), direction,
+                        stretches(motion, last, quantity, gauge));
     Passages found{{}, search.unproved()};
     for (const double value : values) found.times.push_back(search.times_of(value));
     return found;
@@ -245,7 +242,7 @@ Passages zeros(const Motion& motion, double last, const Measure& function, int d
     if (motion.segments.empty()) return {{{}}, {}};
     function({motion.segments.front().begin * motion.units.time});  // one that is none says so
     const Gauge gauge(motion, checkpoint);
-    const Search search(name_of(std::nullopt), function, 0.0, direction,
+    const Search search(std::nullopt, function, 0.0, direction,
                         stretches(motion, last, std::nullopt, gauge));
     return {{search.times_of(0.0)}, search.unproved()};
 }

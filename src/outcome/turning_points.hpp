@@ -1,46 +1,14 @@
 // Times between which a quantity of a motion only rises or only falls.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "contact/segments.hpp"
-#include "scene/settings.hpp"
+#include "numerics/turns.hpp"
+#include "outcome/quantities.hpp"
 
 namespace rolling_ellipse {
-
-enum class Quantity { theta, x, z, omega, contact_x };
-
-// The name of a quantity in messages; none is a function of which nothing is known.
-const char* name_of(std::optional<Quantity> quantity);
-
-// A number in three digits.
-std::string short_text(double value);
-
-// A number at each of some ascending times [s].
-using Measure = std::function<std::vector<double>(const std::vector<double>& times)>;
-
-// The quantities of a motion as its samples have them, in SI units. The motion has to live as long.
-class Gauge {
-  public:
-    Gauge(const Motion& motion, const Checkpoint& checkpoint);
-
-    std::vector<double> operator()(Quantity quantity, const std::vector<double>& times) const;
-    double length() const { return std::max(axes_.a, axes_.b); }  // [m]
-
-  private:
-    void measure(Quantity quantity, const double* times, std::size_t n, double* values) const;
-
-    const Motion& motion_;
-    const Checkpoint& checkpoint_;
-    Sampler sample_;
-    Axes axes_;  // [m]
-    bool has_coordinates_;
-};
 
 // A motion that repeats itself: after the first time of a stretch come those of one period, those
 // of the next one, and those of two such periods after `count` of them.
