@@ -60,7 +60,7 @@ bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
                std::vector<double>& times) {
     constexpr double roundings = 1000;  // the inverse of the basis has a norm of 300
     constexpr int deepest = 16;
-    constexpr int trials = 3;  // halvings after which the polynomial has to be better than before
+    constexpr int trials = 6;  // halvings after which the polynomial has to be better than before
     bool all_met = true;
     while (!parts.empty()) {
         std::vector<double> at;

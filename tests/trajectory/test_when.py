@@ -187,6 +187,27 @@ def test_a_turning_point_on_a_slope() -> None:
     assert both == pytest.approx([(3.0 - root) / pull, (3.0 + root) / pull], rel=1e-9)
 
 
+def test_a_turning_point_at_the_start_comes_again() -> None:
+    """Pushed from where it lies in the well of a slope, so gently that its inertia about the contact
+    stays the same to rounding, a body is fastest there: each period after the start, and between
+    two passages of 1e-9 less, sqrt(8e-9)/(2 pi) = 1.4e-5 of a period apart."""
+    low, high, incline = 0.0, math.pi / 4, math.tan(0.1)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        ground = rl.geometry.support_slope(middle, a=2.0, b=1.0)
+        steep = ground > rl.geometry.support(middle, a=2.0, b=1.0) * incline
+        low, high = (low, middle) if steep else (middle, high)
+    scene = Scene(2.0, 1.0, theta=low, omega=1e-8, slope=0.1)
+    motion = simulate(scene, 20.5 * rl.period(scene), model="rolling")
+    again = np.arange(21) * rl.period(scene)
+    fastest = motion.when(omega=1e-8)
+    assert fastest == pytest.approx(again, abs=1e-7 * rl.period(scene))
+    pairs = motion.when(omega=1e-8 * (1 - 1e-9))
+    assert pairs.size == 41  # the start has the second one of its pair
+    assert np.all(np.diff(pairs[1:].reshape(-1, 2)) < 1.5e-5 * rl.period(scene))
+    assert np.array_equal(motion.when(omega=[1e-8, 0.06])[0], fastest)
+
+
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.filterwarnings("error::rolling_ellipse.CompletenessWarning")
 def test_far_down_a_slope() -> None:
