@@ -1,7 +1,7 @@
 """Types of the C++ core (src/bindings)."""
 
 import enum
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -87,19 +87,14 @@ class Ending(enum.Enum):
     UNDETERMINED = 6
     VALIDITY_LOST = 7
 
-class ArcKind(enum.Enum):
-    """What a motion does between two events."""
+class Quantity(enum.Enum):
+    """What a motion may pass a value of."""
 
-    STILL = 0
-    UNIFORM = 1
-    TURNING = 2
-    SWINGING = 3
-    SLOPING = 4
-    ROLLING_STEPS = 5
-    COORDINATE_STEPS = 6
-    SLIDING_STEPS = 7
-    SETTLING = 8
-    FLIGHT = 9
+    theta = 0
+    x = 1
+    z = 2
+    omega = 3
+    contact_x = 4
 
 class Settings:
     def __init__(
@@ -183,18 +178,6 @@ class Continuation:
     @property
     def why_it_rolls(self) -> str: ...
 
-class Arc:
-    @property
-    def kind(self) -> ArcKind: ...
-    @property
-    def begin(self) -> float: ...
-    @property
-    def end(self) -> float: ...
-    @property
-    def period(self) -> float: ...
-    @property
-    def marks(self) -> FloatArray: ...
-
 class Losses:
     @property
     def energy(self) -> float: ...
@@ -222,7 +205,13 @@ class Solution:
     def stats(self) -> dict[str, int]: ...
     def reason(self, scene: Scene) -> str: ...
     def losses(self) -> Losses | None: ...
-    def arcs(self) -> list[Arc]: ...
+    def knots(self) -> FloatArray: ...
+    def passages(
+        self, quantity: Quantity, values: FloatArray, direction: int
+    ) -> tuple[list[FloatArray], list[str]]: ...
+    def zeros(
+        self, function: Callable[[FloatArray], FloatArray], direction: int
+    ) -> tuple[list[FloatArray], list[str]]: ...
     def sample_rolling(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]: ...
     def sample_coordinates(self, t: FloatArray) -> tuple[FloatArray, FloatArray]: ...
     def sample_contact(self, t: FloatArray) -> dict[str, Any]: ...

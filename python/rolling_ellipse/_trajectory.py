@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +32,8 @@ from ._status import COMPLETED, STATUSES, Status
 from .geometry import support_slope
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from pandas import DataFrame
     from xarray import Dataset
 
@@ -357,6 +359,7 @@ class Trajectory(FieldsOnly):
 
         return sample_at(self, t)
 
+    @overload
     def when(
         self,
         *,
@@ -367,25 +370,49 @@ class Trajectory(FieldsOnly):
         contact_x: float | None = None,
         function: Callable[[Trajectory], Any] | None = None,
         direction: int = 0,
-    ) -> FloatArray:
+    ) -> FloatArray: ...
+
+    @overload
+    def when(
+        self,
+        *,
+        theta: Sequence[float] | FloatArray | None = None,
+        x: Sequence[float] | FloatArray | None = None,
+        z: Sequence[float] | FloatArray | None = None,
+        omega: Sequence[float] | FloatArray | None = None,
+        contact_x: Sequence[float] | FloatArray | None = None,
+        direction: int = 0,
+    ) -> list[FloatArray]: ...
+
+    def when(
+        self,
+        *,
+        theta: Any = None,
+        x: Any = None,
+        z: Any = None,
+        omega: Any = None,
+        contact_x: Any = None,
+        function: Callable[[Trajectory], Any] | None = None,
+        direction: int = 0,
+    ) -> FloatArray | list[FloatArray]:
         """Return all times in [0, t_end] at which the motion passes a value.
 
-        They are those of the motion, to the last bits, and not of its samples. Where a quantity is
-        monotone between known instants none is missed: all five of exact rolling (between its
-        passages of the flat position and of the tip, or the turning points); of steps, where the
-        polynomials of their dense output, or those of degree 8 that meet it to 1000 ulp, are shown
-        to rise or fall by their Bernstein coefficients; of flight all but ``contact_x``. The rest
-        is looked at 16 times a step and 64 times a quarter turn, with a `CompletenessWarning`.
+        They are those of the motion, to the last bits, and not of its samples. None is missed where
+        the turning points of the quantity are known: of exact rolling all five quantities have them
+        in closed form; of steps, slides and flight they are those of polynomials of degree 8 that
+        meet the quantity to 1000 ulp, found by their Bernstein coefficients. Where none does, there
+        is a `CompletenessWarning`, and for each `function`: that is looked at 16 times a step and
+        64 times a quarter turn.
 
-        An event may take omega over the value at once: its time counts. A value that is only
-        touched, as at a turning point, or that the motion starts or ends with, counts once; one
-        that is kept for a while counts where that begins. Touching is told to 8 ulp of the
-        quantity in exact motions, to 1000 ulp in steps.
+        A jump of omega across the value counts, at the event. A value that is only touched, as at a
+        turning point, or that the motion starts or ends with, counts once; one that is kept for a
+        while counts where that begins. Touching is resolved to 8 ulp of the quantity.
 
         Parameters
         ----------
-        theta, x, z, omega, contact_x : float, optional
-            The value of this quantity [rad, m, rad/s]; exactly one is given, or `function`.
+        theta, x, z, omega, contact_x : float or array_like, shape (n,), optional
+            The value, or n of them, of this quantity [rad, m, rad/s]; exactly one is given, or
+            `function`.
         function : callable, optional
             Takes a Trajectory and returns one number a sample; its zeros are looked for.
         direction : {0, 1, -1}
@@ -393,8 +420,9 @@ class Trajectory(FieldsOnly):
 
         Returns
         -------
-        ndarray, shape (m,)
-            Times, ascending [s]; empty if it never does.
+        ndarray, shape (m,), or list of them
+            Times, ascending [s]; empty if it never does. A list for n values: one array for each,
+            in their order.
 
         Raises
         ------

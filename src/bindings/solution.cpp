@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "arcs.hpp"
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
 #include "losses.hpp"
+#include "outcome/passages.hpp"
 #include "scene/refuse.hpp"
 #include "simulate.hpp"
 
@@ -143,9 +143,35 @@ Array events(const Solution& solution) {
     return table;
 }
 
-// The marks as an array.
-py::array_t<double> marks(const Arc& arc) {
-    return py::array_t<double>(static_cast<py::ssize_t>(arc.marks.size()), arc.marks.data());
+Array array_of(const std::vector<double>& values) {
+    return Array(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+// An array of times for each value, and where they are not proved to be all.
+py::tuple lists(const Passages& found) {
+    py::list times;
+    for (const std::vector<double>& each : found.times) times.append(array_of(each));
+    return py::make_tuple(times, found.unproved);
+}
+
+py::tuple passages_of(const Solution& solution, Quantity quantity,
+                      const std::vector<double>& values, int direction) {
+    Passages found;
+    {
+        const GilRelease release;
+        found = passages(solution.motion, solution.followed_until, quantity, values, direction,
+                         SignalWatch());
+    }
+    return lists(found);
+}
+
+// The function takes an array of times and returns an array of as many numbers.
+py::tuple zeros_of(const Solution& solution, const py::function& function, int direction) {
+    const Measure measure = [&](const std::vector<double>& times) {
+        const Array values = function(array_of(times));
+        return std::vector<double>(values.data(), values.data() + values.size());
+    };
+    return lists(zeros(solution.motion, solution.followed_until, measure, direction, [] {}));
 }
 
 py::dict stats(const Solution& solution) {
@@ -176,24 +202,13 @@ void bind_solution(py::module_& m) {
         .value("STEP_TOO_SMALL", Ending::step_too_small)
         .value("STEP_TOO_LARGE", Ending::step_too_large)
         .finalize();
-    py::native_enum<ArcKind>(m, "ArcKind", "enum.Enum", "What a motion does between two events.")
-        .value("STILL", ArcKind::still)
-        .value("UNIFORM", ArcKind::uniform)
-        .value("TURNING", ArcKind::turning)
-        .value("SWINGING", ArcKind::swinging)
-        .value("SLOPING", ArcKind::sloping)
-        .value("ROLLING_STEPS", ArcKind::rolling_steps)
-        .value("COORDINATE_STEPS", ArcKind::coordinate_steps)
-        .value("SLIDING_STEPS", ArcKind::sliding_steps)
-        .value("SETTLING", ArcKind::settling)
-        .value("FLIGHT", ArcKind::flight)
+    py::native_enum<Quantity>(m, "Quantity", "enum.Enum", "What a motion may pass a value of.")
+        .value("theta", Quantity::theta)
+        .value("x", Quantity::x)
+        .value("z", Quantity::z)
+        .value("omega", Quantity::omega)
+        .value("contact_x", Quantity::contact_x)
         .finalize();
-    bind_class<Arc>(m, "Arc")
-        .def_readonly("kind", &Arc::kind)
-        .def_readonly("begin", &Arc::begin)
-        .def_readonly("end", &Arc::end)
-        .def_readonly("period", &Arc::period)
-        .def_property_readonly("marks", marks);
     bind_class<Losses>(m, "Losses")
         .def_readonly("energy", &Losses::energy)
         .def_readonly("constraints", &Losses::constraints)
@@ -212,7 +227,9 @@ void bind_solution(py::module_& m) {
             "reason", [](const Solution& s, const Scene& scene) { return reason(scene, s); },
             "scene"_a)
         .def("losses", losses)
-        .def("arcs", arcs)
+        .def("knots", [](const Solution& s) { return array_of(knot_times(s.motion)); })
+        .def("passages", passages_of, "quantity"_a, "values"_a, "direction"_a)
+        .def("zeros", zeros_of, "function"_a, "direction"_a)
         .def("sample_rolling", sample_rolling, "t"_a)
         .def("sample_coordinates", sample_coordinates, "t"_a)
         .def("sample_contact", sample_contact, "t"_a);

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <optional>
+#include <vector>
 
 #include "numerics/numbers.hpp"
 
@@ -26,34 +30,79 @@ Bracket bisect(double low, double high, const Predicate& is_high) {
 
 // The same for the sign of a function, by the secants of the Illinois method (M. Dowell, P.
 // Jarratt, BIT 11 (1971) 168). A place next to an end of the bracket is moved a few doubles on: so
-// the other end comes near, too.
-template <class Function>
-Bracket bisect_root(double low, double high, const Function& f) {
-    constexpr int most_secants = 40;
-    double f_low = f(low);
-    double f_high = f(high);
-    const bool rises = f_high > 0;
-    int kept = 0;
-    for (int i = 0; i < most_secants; ++i) {
+// the other end comes near, too. The function is evaluated by whoever holds the bracket:
+//     while (const auto x = bracket.next()) bracket.take(*x, f(*x));
+class RootBracket {
+  public:
+    RootBracket(double low, double high, double f_low, double f_high)
+        : ends_{low, high}, f_low_(f_low), f_high_(f_high), rises_(f_high > 0) {}
+
+    // The next place to evaluate at; none where the ends are neighbours.
+    std::optional<double> next() {
+        constexpr int most_secants = 40;
+        const auto [low, high] = ends_;
         const double few = 4 * epsilon * std::max(std::abs(low), std::abs(high));
-        if (high - low <= 2 * few) break;
-        const double secant = (low * f_high - high * f_low) / (f_high - f_low);
-        double x = i % 4 == 3 || !(secant >= low && secant <= high) ? 0.5 * (low + high) : secant;
-        x = std::clamp(x, low + few, high - few);
-        const double now = f(x);
-        if ((now > 0) == rises) {
-            high = x;
-            f_high = now;
-            if (kept == 1) f_low /= 2;
-            kept = 1;
+        if (secants_ < most_secants && high - low > 2 * few) {
+            const double secant = (low * f_high_ - high * f_low_) / (f_high_ - f_low_);
+            const bool halve = secants_++ % 4 == 3 || !(secant >= low && secant <= high);
+            return std::clamp(halve ? 0.5 * (low + high) : secant, low + few, high - few);
+        }
+        secants_ = most_secants;
+        const double middle = low + 0.5 * (high - low);
+        return low < middle && middle < high ? std::optional(middle) : std::nullopt;
+    }
+
+    void take(double x, double f) {
+        if ((f > 0) == rises_) {
+            ends_.high = x;
+            f_high_ = f;
+            if (kept_ == 1) f_low_ /= 2;
+            kept_ = 1;
         } else {
-            low = x;
-            f_low = now;
-            if (kept == -1) f_high /= 2;
-            kept = -1;
+            ends_.low = x;
+            f_low_ = f;
+            if (kept_ == -1) f_high_ /= 2;
+            kept_ = -1;
         }
     }
-    return bisect(low, high, [&](double x) { return (f(x) > 0) == rises; });
+
+    Bracket ends() const { return ends_; }
+
+  private:
+    Bracket ends_;
+    double f_low_;
+    double f_high_;
+    bool rises_;
+    int secants_ = 0;
+    int kept_ = 0;  // the end that was taken last: +1 the upper one, -1 the lower one
+};
+
+// Refines many brackets side by side, so that their function may share work. It takes the places,
+// one in each of some brackets and in the order of these, and the numbers of these brackets.
+template <class Function>
+void refine(std::vector<RootBracket>& brackets, const Function& values) {
+    std::vector<std::size_t> open(brackets.size());
+    std::iota(open.begin(), open.end(), std::size_t{0});
+    std::vector<double> places;
+    for (;;) {
+        places.clear();
+        const auto is_done = [&](std::size_t i) {
+            const auto x = brackets[i].next();
+            if (x) places.push_back(*x);
+            return !x;
+        };
+        open.erase(std::remove_if(open.begin(), open.end(), is_done), open.end());
+        if (open.empty()) return;
+        const std::vector<double> found = values(places, open);
+        for (std::size_t k = 0; k < open.size(); ++k) brackets[open[k]].take(places[k], found[k]);
+    }
+}
+
+template <class Function>
+Bracket bisect_root(double low, double high, const Function& f) {
+    RootBracket bracket(low, high, f(low), f(high));
+    while (const auto x = bracket.next()) bracket.take(*x, f(*x));
+    return bracket.ends();
 }
 
 }  // namespace rolling_ellipse

@@ -75,7 +75,7 @@ def told(run: Run) -> tuple[Trajectory, list[str]]:
 
 def lost(run: Run, motion: Trajectory) -> float:
     """The largest of the three losses over its limit: more than 1 is lost."""
-    knots = np.unique([0.0, *motion._solution.arcs()[0].marks, motion.t_end])
+    knots = np.unique([*motion._solution.knots(), motion.t_end])
     inside = np.arange(LOOKS) / LOOKS
     times = np.append((knots[:-1, None] + np.diff(knots)[:, None] * inside).ravel(), knots[-1])
     seen = motion.sol(times)

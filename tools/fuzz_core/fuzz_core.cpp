@@ -10,11 +10,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "arcs.hpp"
 #include "bytes.hpp"
 #include "contact/continuation.hpp"
 #include "losses.hpp"
 #include "outcome/blow.hpp"
+#include "outcome/passages.hpp"
 #include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
 #include "proof/law.hpp"
@@ -260,10 +260,15 @@ void check_solution(const Scene& scene, const Solution& solution, double t_end) 
     }
     check_samples(scene, solution, t_end, contact);
     if (!solution.motion.segments.empty()) {
-        double reached = 0.0;
-        for (const Arc& arc : arcs(solution)) {
-            CHECK(arc.begin >= reached && arc.end >= arc.begin);
-            reached = arc.begin;
+        const double last = solution.followed_until;
+        for (const Quantity quantity :
+             {Quantity::theta, Quantity::x, Quantity::z, Quantity::omega, Quantity::contact_x}) {
+            const auto found =
+                passages(solution.motion, last, quantity, {0.0, 1.0}, 0, patience(1000));
+            for (const std::vector<double>& times : found.times) {
+                CHECK(std::is_sorted(times.begin(), times.end()));
+                CHECK(times.empty() || (times.front() >= 0 && times.back() <= last));
+            }
         }
     }
 }

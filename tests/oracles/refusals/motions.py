@@ -59,7 +59,8 @@ PARTS: list[Refusal] = [
     (r"^t must be within \[0, 0\.5\] \[s\]", lambda _: MOTION._solution.sample_rolling(np.ones(1))),
     (r"^direction must be 1, -1 or 0", lambda _: MOTION.when(theta=0.1, direction=2)),
     (r"^exactly one of theta, .* must be given, got none", lambda _: MOTION.when()),
-    (r"^function must be a function of a Traj", lambda _: MOTION.when(function=1)),  # type: ignore[arg-type]
+    (r"^function must be a function of a Traj", lambda _: MOTION.when(function=1)),  # type: ignore[call-overload]
+    (r"^theta must be a number or a 1-D", lambda _: MOTION.when(theta=np.ones((1, 1)))),
     (r"^theta must be finite, got nan", lambda _: MOTION.when(theta=math.nan)),
     (r"^function must return one number a", lambda _: MOTION.when(function=lambda at: [1.0])),
     (
