@@ -37,8 +37,6 @@ Beginning beginning(const Scene& scene) {
     const InitialState initial = initial_state(scene);
     Beginning found{initial.state, initial.gap_rate, {}, {}};
     const State& start = found.state;
-    validate_motion(scene.body(), start.theta, start.omega);
-    validate_velocity(scene.body(), start.x_dot, start.z_dot);
     if (!rolls(start)) return found;
     if (scene.slope == 0) {
         found.rolling = rolling_start(scene.body(), start.theta, start.omega);
