@@ -141,7 +141,8 @@ def classify(
     gravity : float or array_like
         Acceleration of gravity [m/s^2].
     gyration2 : float or array_like, optional
-        k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
+        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
+        (a^2 + b^2)/4.
     workers : int or executor
         Number of threads, up to 1024, -1 for all cores, or an executor, as of `simulate_many`; the
         same answers for any.
@@ -187,7 +188,7 @@ def thresholds(
     gravity : float
         Acceleration of gravity [m/s^2].
     gyration2 : float, optional
-        k^2 = I/m [m^2]; default: a uniform disc.
+        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc.
     friction : float
         Coefficient that `slip_speed` and `lift_off_speed` are for; if infinite, the slip speed is
         the contact loss speed.

@@ -338,7 +338,9 @@ class Trajectory(FieldsOnly):
         """Return a Scene that goes on from time t [s]; give it an impulse with `Scene.replace`."""
         at = self.sol(number("t", t))
         state = {name: float(getattr(at, name)[0]) for name in ("theta", "omega", "x")}
-        return reached_scene({**self.scene.__getstate__(), **state, **_placement(at), "impulse": None})
+        return reached_scene(
+            {**self.scene.__getstate__(), **state, **_placement(at), "impulse": None}
+        )
 
     def at(self, t: float) -> Sample:
         """Return the state at time t [s] in plain floats.

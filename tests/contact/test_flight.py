@@ -207,7 +207,9 @@ def test_a_spin_too_fast_for_the_clock_comes_down_all_the_same() -> None:
     motion = simulate(scene, 4e8, max_events=200, raise_on_failure=False)
     fastest = np.max(np.abs(motion.omega[motion.mode == Mode.FLIGHT]))
     assert fastest * np.spacing(motion.t_end) > math.pi
-    assert len(motion.events) > 5 and np.all(np.diff(motion.energy) <= 1e-6 * motion.kinetic_energy[1:])
+    assert len(motion.events) > 5 and np.all(
+        np.diff(motion.energy) <= 1e-6 * motion.kinetic_energy[1:]
+    )
 
 
 @pytest.mark.parametrize("strength", [1e-3, 1e-6, 1e-9])
