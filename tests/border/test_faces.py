@@ -2,7 +2,6 @@
 
 import copy
 import dataclasses
-import math
 import pickle
 import re
 from collections.abc import Callable

@@ -16,7 +16,6 @@ from oracles.contact import random_scenes, way_of_slide
 from oracles.geometry import support
 from rolling_ellipse import (
     EventKind,
-    Impulse,
     Mode,
     Scene,
     Status,

@@ -220,7 +220,7 @@ def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("roundness", [2.0**-8, 2.0**-20, 2.0**-30, 2.0**-38])
 def test_nearly_round_on_a_steep_slope(roundness: float) -> None:
-    """Rolling ends where N = m (g cos(alpha) + z'') of the motion itself is zero, and not before."""
+    """Rolling ends where N = m (g cos(alpha) + z'') of the motion itself is zero, not before."""
     rng = np.random.default_rng(int(1 / roundness) % 1000)
     ended = 0
     for _ in range(120):

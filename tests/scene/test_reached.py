@@ -32,7 +32,7 @@ def rolled(scene: Scene, t: float) -> rl.Trajectory:
 def test_a_state_after_very_many_half_turns_is_gone_on_from(
     scene: Scene, t: float, tmp_path: Path
 ) -> None:
-    """On, from a file, by a table of scenes and into a folder that is gone on with: the same bits."""
+    """On, from a file, by a table of scenes and into a folder: the same bits."""
     motion = rolled(scene, t)
     assert motion.theta[-1] > 0.99e14 * math.pi
     reached = motion.scene_at(motion.t_end)
@@ -69,26 +69,26 @@ def test_what_was_gained_downhill_is_not_typed_again() -> None:
     assert math.isinf(rl.required_friction(reached))
 
 
-def body(a: float, b: float, gravity: float) -> dict[str, float]:
+def body(a: float, b: float, gravity: float) -> dict[str, Any]:
     return {"a": a, "b": b, "gravity": gravity}
 
 
-def omega(scene: dict[str, float]) -> float:
+def omega(scene: dict[str, Any]) -> float:
     """omega^2 (k^2 + L^2) = 1e12 g L."""
     length = max(scene["a"], scene["b"])
     gyration2 = (scene["a"] ** 2 + scene["b"] ** 2) / 4
     return math.sqrt(MOST * scene["gravity"] * length / (gyration2 + length**2))
 
 
-def speed(scene: dict[str, float]) -> float:
+def speed(scene: dict[str, Any]) -> float:
     return math.sqrt(MOST * scene["gravity"] * max(scene["a"], scene["b"]))
 
 
-def height(scene: dict[str, float]) -> float:
+def height(scene: dict[str, Any]) -> float:
     return MOST * max(scene["a"], scene["b"])
 
 
-LIMITS: dict[str, Callable[[dict[str, float]], float]] = {
+LIMITS: dict[str, Callable[[dict[str, Any]], float]] = {
     "omega": omega, "x_dot": speed, "z_dot": speed, "z": height,
     "inertia": lambda of: 1e6 * max(of["a"], of["b"]) ** 2,
     "friction": lambda _: 1e6, "slope": lambda _: 1.5,
@@ -99,13 +99,14 @@ LIMITS: dict[str, Callable[[dict[str, float]], float]] = {
     "of", [body(2.0, 1.0, 9.81), body(1e-9, 1e-6, 1e-3), body(3e20, 3e20, 1e9)]
 )
 @pytest.mark.parametrize("name", LIMITS)
-def test_what_is_typed_goes_up_to_its_limit(name: str, of: dict[str, float]) -> None:
+def test_what_is_typed_goes_up_to_its_limit(name: str, of: dict[str, Any]) -> None:
     """64 roundings below it is taken, as much above it is refused by its name."""
     limit = LIMITS[name](of)
-    above = {"z": height(of) / 2} if name == "z_dot" else {}
-    Scene(**of, **above, **{name: limit * (1 - 64 * EPS)})
+    above: dict[str, Any] = {"z": height(of) / 2} if name == "z_dot" else {}
+    of = {**of, **above}
+    Scene(**{**of, name: limit * (1 - 64 * EPS)})
     with pytest.raises(ValueError, match=rf"^{name} must be .*, got "):
-        Scene(**of, **above, **{name: limit * (1 + 64 * EPS)})
+        Scene(**{**of, name: limit * (1 + 64 * EPS)})
 
 
 def test_a_blow_brings_no_more_than_is_typed() -> None:
