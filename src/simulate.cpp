@@ -35,8 +35,6 @@ struct Beginning {
 Beginning beginning(const Scene& scene) {
     Beginning found{initial_state(scene), {}, {}};
     const State& start = found.initial.state;
-    validate_motion(scene.body(), start.theta, start.omega);
-    validate_velocity(scene.body(), start.x_dot, start.z_dot);
     if (!rolls(start)) return found;
     if (scene.slope == 0) {
         found.rolling = rolling_start(scene.body(), start.theta, start.omega);

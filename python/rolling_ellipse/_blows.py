@@ -52,8 +52,7 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     Raises
     ------
     ValueError
-        If a blow makes the body faster than 1e50 times its weight allows, by omega, x_dot or
-        z_dot.
+        If a blow misses the body, or is stronger than one of a Scene may be.
     """
     scene = require_scene(scene)
     if impulse is None:
@@ -92,10 +91,5 @@ def required_friction(scene: Scene) -> float:
         slides by its velocities; N vanishes; or it is no circle and runs down a slope for ever. An
         infinite friction may hold some of these: see `certify`. 0 where any friction will do: with
         none at all a contact that moves slides.
-
-    Raises
-    ------
-    ValueError
-        If the blow makes the body faster than 1e50 times its weight allows.
     """
     return _core.required_friction(require_scene(scene).core)

@@ -46,7 +46,8 @@ def flow(
     gravity : float or array_like
         Acceleration of gravity [m/s^2].
     gyration2 : float or array_like, optional
-        k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
+        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
+        (a^2 + b^2)/4.
     workers : int or executor
         Number of threads, up to 1024, -1 for all cores: where fewer can be started, fewer do the
         work. Or an executor, as of `simulate_many`, for many millions of elements. The same bits

@@ -35,11 +35,10 @@ class Thresholds(FieldsOnly, Listed):
         From it on rolling would need the ground to pull (N = 0), first at this angle.
     slip_speed, slip_angle : float
         From it on rolling needs more than the given friction, first at this angle.
-    lift_off_speed : float or None
+    lift_off_speed : float
         The least speed at which a body of the given friction really leaves the ground: it slips
         first, and then its pressure on the ground ends before it passes the tip. From it on the
-        body always leaves, but for `jam_speeds`. None where the slides are too stiff to be
-        followed: beyond Painlevé's friction, with k^2 below some 1e-8 max(a, b)^2.
+        body always leaves, but for `jam_speeds`.
     jam_speeds : tuple of (float, float)
         Ranges of speed, ascending, in which the slide jams before it would leave the ground or
         pass the tip; inf ends one that goes on for ever. Empty up to `painleve_friction` and for
@@ -68,7 +67,7 @@ class Thresholds(FieldsOnly, Listed):
     contact_loss_angle: float | None
     slip_speed: float
     slip_angle: float | None
-    lift_off_speed: float | None
+    lift_off_speed: float
     jam_speeds: tuple[tuple[float, float], ...]
     friction_to_roll_over: float
     painleve_friction: float
@@ -77,7 +76,7 @@ class Thresholds(FieldsOnly, Listed):
     tip_rate: float
 
     @cached_property
-    def _lift_off(self) -> tuple[float | None, tuple[tuple[float, float], ...]]:
+    def _lift_off(self) -> tuple[float, tuple[tuple[float, float], ...]]:
         known = *self.__dict__["_body"], self.slip_speed, self.painleve_friction
         return _core.lift_off(*known)
 
@@ -142,7 +141,8 @@ def classify(
     gravity : float or array_like
         Acceleration of gravity [m/s^2].
     gyration2 : float or array_like, optional
-        k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
+        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
+        (a^2 + b^2)/4.
     workers : int or executor
         Number of threads, up to 1024, -1 for all cores, or an executor, as of `simulate_many`; the
         same answers for any.
@@ -188,7 +188,7 @@ def thresholds(
     gravity : float
         Acceleration of gravity [m/s^2].
     gyration2 : float, optional
-        k^2 = I/m [m^2]; default: a uniform disc.
+        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc.
     friction : float
         Coefficient that `slip_speed` and `lift_off_speed` are for; if infinite, the slip speed is
         the contact loss speed.

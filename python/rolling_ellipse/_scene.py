@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass, fields
 from typing import Any, ClassVar
 
@@ -80,7 +80,8 @@ class Scene(FieldsOnly, Listed):
 
     SI units, radians; theta is clockwise positive, so that rolling forwards increases x. At
     theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all that they were made
-    of is, number by number; `repr` is the call that makes an equal one.
+    of is, number by number; `repr` is the call that makes an equal one. Each speed, height and blow
+    may bring 1e12 m g max(a, b) of energy; what a motion has gained down a slope may be more.
 
     Parameters
     ----------
@@ -89,11 +90,12 @@ class Scene(FieldsOnly, Listed):
     mass, gravity : float
         Mass [kg], acceleration of gravity [m/s^2].
     inertia : float, optional
-        Moment of inertia about the centre [kg m^2]; default: a uniform disc, m (a^2 + b^2)/4.
+        Moment of inertia about the centre [kg m^2], from 1e-6 to 1e6 times m max(a, b)^2; default:
+        a uniform disc, m (a^2 + b^2)/4.
     slope : float
-        Angle of the ground [rad], downwards in x; |slope| < pi/2.
+        Angle of the ground [rad], downwards in x; |slope| <= 1.5.
     friction : float
-        Coefficient of friction, up to 1e50 or infinite. Infinite friction holds a rolling contact
+        Coefficient of friction, up to 1e6 or infinite. Infinite friction holds a rolling contact
         as long as it is pressed (N > 0); from then on the body slides with N = 0, the limit of
         large coefficients. For a slip that is given it is not: where a large coefficient presses
         the body into the ground until it jams, the slip is taken off by an impulse of the ground
@@ -166,6 +168,10 @@ class Scene(FieldsOnly, Listed):
             "friction": friction, "restitution": restitution, "theta": theta, "omega": omega,
             "x": x, "z": z, "x_dot": x_dot, "z_dot": z_dot,
         }  # fmt: skip
+        self._hold(numbers, impulse)
+
+    def _hold(self, numbers: dict[str, Any], impulse: Any, *, reached: bool = False) -> None:
+        """Keep the arguments, in the order of the fields, if they are valid."""
         for name, value in numbers.items():
             if type(value) is not float and not (value is None and name in _OPTIONAL):
                 numbers[name] = number(name, value)
@@ -176,14 +182,14 @@ class Scene(FieldsOnly, Listed):
                 f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
                 "use outcome(scene, impulse)"
             )
-        core = _for_core(numbers.values(), impulse)  # the core validates
+        core = _for_core(numbers.values(), impulse, reached)  # the core validates
         object.__setattr__(self, "__dict__", numbers | {"impulse": impulse, "core": core})
 
     @cached_property
     def core(self) -> _core.Scene:
         """The same for the core, which pickles do not hold."""
         *numbers, impulse = self.__getstate__().values()
-        return _for_core(numbers, impulse)
+        return _for_core(numbers, impulse, reached=True)
 
     def replace(self, **changes: Any) -> Scene:
         """Return the scene with some of its arguments changed.
@@ -251,8 +257,19 @@ class Scene(FieldsOnly, Listed):
         return [*rows, ("start", words.WHERE[start.mode] + after)]
 
 
-def _for_core(numbers: Iterable[Any], impulse: Impulse | None) -> _core.Scene:
-    return _core.Scene(*(*numbers, None if impulse is None else impulse.core))
+def _for_core(numbers: Iterable[Any], impulse: Impulse | None, reached: bool) -> _core.Scene:
+    return _core.Scene(*(*numbers, None if impulse is None else impulse.core, reached))
+
+
+def reached_scene(arguments: Mapping[str, Any]) -> Scene:
+    """Return the scene of all its arguments, in the state that some motion reached.
+
+    Down a slope that may have more energy than a scene that is typed.
+    """
+    *numbers, impulse = (field.name for field in fields(Scene))
+    scene = object.__new__(Scene)
+    scene._hold({name: arguments[name] for name in numbers}, arguments[impulse], reached=True)
+    return scene
 
 
 def require_scene(scene: object) -> Scene:

@@ -26,7 +26,7 @@ from ._samples import (
     sampled,
     vector,
 )
-from ._scene import Scene, require_scene
+from ._scene import Scene, reached_scene, require_scene
 from ._settings import METHODS, MODELS, Method, Model, Settings
 from ._status import COMPLETED, STATUSES, Status
 from .geometry import support_slope
@@ -339,12 +339,9 @@ class Trajectory(FieldsOnly):
     def scene_at(self, t: float) -> Scene:
         """Return a Scene that goes on from time t [s]; give it an impulse with `Scene.replace`."""
         at = self.sol(number("t", t))
-        return self.scene.replace(
-            theta=float(at.theta[0]),
-            omega=float(at.omega[0]),
-            x=float(at.x[0]),
-            impulse=None,
-            **_placement(at),
+        state = {name: float(getattr(at, name)[0]) for name in ("theta", "omega", "x")}
+        return reached_scene(
+            {**self.scene.__getstate__(), **state, **_placement(at), "impulse": None}
         )
 
     def at(self, t: float) -> Sample:

@@ -16,7 +16,7 @@ constexpr py::ssize_t scene_numbers = 18;
 constexpr int refused = -1;  // in the place of an Ending
 
 // A row of the table; NaN is what was not given.
-Scene scene_of(const double* row) {
+Scene scene_of(const double* row, double most) {
     const auto given = [&](int i) {
         return std::isnan(row[i]) ? std::nullopt : std::optional<double>(row[i]);
     };
@@ -36,17 +36,18 @@ Scene scene_of(const double* row) {
     scene.x_dot = given(12);
     scene.z_dot = given(13);
     if (given(14)) scene.impulse = Impulse{row[14], row[15], row[16], row[17]};
-    validate(scene);
+    validate(scene, most);
     return scene;
 }
 
 // The first scene that is refused, by its place and with the reason; None where none is.
-py::object first_refused(const Array& scenes) {
+py::object first_refused(const Array& scenes, bool reached) {
+    const double most = reached ? most_energy_reached : most_energy;
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
     py::ssize_t at = 0;
     try {
         run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-            for (at = begin; at < end; ++at) scene_of(scenes.data(at, 0));
+            for (at = begin; at < end; ++at) scene_of(scenes.data(at, 0), most);
         });
     } catch (const std::invalid_argument& error) {
         return py::make_tuple(at, error.what());
@@ -82,7 +83,7 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     Answer found;
     Solution& solution = found.solution;
     try {
-        solution = simulate(scene_of(row), settings, times[n - 1], checkpoint);
+        solution = simulate(scene_of(row, most_energy_reached), settings, times[n - 1], checkpoint);
     } catch (const std::invalid_argument& error) {
         solution.message = error.what();
         return found;
@@ -210,7 +211,7 @@ py::dict simulate_table(const Array& scenes, const Settings& settings, const Arr
 }  // namespace
 
 void bind_batch(py::module_& m) {
-    m.def("first_refused", first_refused, "scenes"_a);
+    m.def("first_refused", first_refused, "scenes"_a, "reached"_a);
     m.def(
         "validate_settings",
         [](const Settings& settings, double t_end) { validate(settings, t_end); }, "settings"_a,

@@ -27,8 +27,8 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
             scene.z = above_ground(scene.axes());  // where it may move down
             scene.x_dot = x_dot[i];
             scene.z_dot = z_dot[i];
-            validate(scene.body());  // by its own names: k^2 is no inertia
-            validate(scene);
+            validate(scene.body());                // by its own names: k^2 is no inertia
+            validate(scene, most_energy_reached);  // beside a gravity that does not matter
             const State before = state_before_impulse(scene);
             const double approach = gap_rate(before, geometry(scene.axes(), before.theta));
             const State after = collision(scene, before, approach).after;
@@ -71,32 +71,33 @@ void bind_scene(py::module_& m) {
              }),
              "jx"_a, "jz"_a, "dx"_a, "dz"_a);
     bind_class<Scene>(m, "Scene")
-        .def(py::init([](double a, double b, double mass, double gravity,
-                         std::optional<double> inertia, double slope, double friction,
-                         double restitution, double theta, double omega, double x,
-                         std::optional<double> z, std::optional<double> x_dot,
-                         std::optional<double> z_dot, std::optional<Impulse> impulse) {
-                 Scene scene{};
-                 scene.a = a;
-                 scene.b = b;
-                 scene.mass = mass;
-                 scene.gravity = gravity;
-                 scene.inertia = inertia.value_or(mass * uniform_disc_gyration2(a, b));
-                 scene.slope = slope;
-                 scene.friction = friction;
-                 scene.restitution = restitution;
-                 scene.theta = theta;
-                 scene.omega = omega;
-                 scene.x = x;
-                 scene.z = z;
-                 scene.x_dot = x_dot;
-                 scene.z_dot = z_dot;
-                 scene.impulse = impulse;
-                 validate(scene);
-                 return scene;
-             }),
+        .def(py::init(
+                 [](double a, double b, double mass, double gravity, std::optional<double> inertia,
+                    double slope, double friction, double restitution, double theta, double omega,
+                    double x, std::optional<double> z, std::optional<double> x_dot,
+                    std::optional<double> z_dot, std::optional<Impulse> impulse, bool reached) {
+                     Scene scene{};
+                     scene.a = a;
+                     scene.b = b;
+                     scene.mass = mass;
+                     scene.gravity = gravity;
+                     scene.inertia = inertia.value_or(mass * uniform_disc_gyration2(a, b));
+                     scene.slope = slope;
+                     scene.friction = friction;
+                     scene.restitution = restitution;
+                     scene.theta = theta;
+                     scene.omega = omega;
+                     scene.x = x;
+                     scene.z = z;
+                     scene.x_dot = x_dot;
+                     scene.z_dot = z_dot;
+                     scene.impulse = impulse;
+                     validate(scene, reached ? most_energy_reached : most_energy);
+                     return scene;
+                 }),
              "a"_a, "b"_a, "mass"_a, "gravity"_a, "inertia"_a, "slope"_a, "friction"_a,
-             "restitution"_a, "theta"_a, "omega"_a, "x"_a, "z"_a, "x_dot"_a, "z_dot"_a, "impulse"_a)
+             "restitution"_a, "theta"_a, "omega"_a, "x"_a, "z"_a, "x_dot"_a, "z_dot"_a, "impulse"_a,
+             "reached"_a)
         .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
     bind_class<State>(m, "State")
         .def_readonly("theta", &State::theta)

@@ -253,7 +253,7 @@ class ContactRun {
         hit(before, small_rate ? *small_rate : gap_rate(before, at));
     }
 
-    // Down a wall a body flies farther than doubles reach, if it is let for long enough.
+    // Bounces down a slope may grow, each more than the last, until doubles reach no farther.
     static bool is_known(const State& state) {
         return std::isfinite(state.theta) && std::isfinite(state.x) && std::isfinite(state.z) &&
                std::isfinite(state.x_dot) && std::isfinite(state.z_dot);

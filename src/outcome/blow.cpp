@@ -65,8 +65,6 @@ Outcome followed(const Scene& scene, const State& start, const Checkpoint& check
 
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint) {
     const State start = initial_state(scene).state;
-    validate_motion(scene.body(), start.theta, start.omega);
-    validate_velocity(scene.body(), start.x_dot, start.z_dot);
     const Continuation next = first_continuation(scene, start);
     switch (next.mode) {
         case Mode::rest:
@@ -91,7 +89,9 @@ double press_to(const Scene& scene, double distance, double omega) {
     const double wanted = inertia_about_contact(k2, at) * omega;
     const double there = k2 * state.omega + at.h * state.x_dot + at.dh * state.z_dot;
     const double force = scene.mass * (wanted - there) / (distance - at.dh);
-    return std::abs(force) <= largest_number ? force : std::copysign(infinity, force);
+    Scene pressed = scene;
+    pressed.impulse = Impulse{0.0, -force, distance, 0.0};
+    return energy_after_impulse(pressed) <= most_energy ? force : std::copysign(infinity, force);
 }
 
 double speed_to_the_tip(const Scene& scene) {

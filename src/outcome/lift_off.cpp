@@ -36,7 +36,7 @@ bool reaches_the_tip(const Scene& scene, const State& start) {
 }
 
 // What becomes of a body that rolls over the flat position, before it passes the tip.
-enum class Fate { stays, leaves, jams, unknown };
+enum class Fate { stays, leaves, jams };
 
 // The state in which a segment ends, and what goes on from there; nothing if the body gets over the
 // tip or turns back.
@@ -45,8 +45,7 @@ struct EndOfSegment {
     Continuation next;
 };
 
-// Follows the body from the flat position to the tip at one speed after another, as long as all of
-// that takes no more than so many pieces of slides: without inertia (k^2 -> 0) they are short.
+// Follows the body from the flat position to the tip at one speed after another.
 class Follower {
   public:
     Follower(const Scene& scene, const Checkpoint& checkpoint)
@@ -55,8 +54,6 @@ class Follower {
           flat_(scene.a >= scene.b ? 0.0 : half_pi),
           tip_(flat_ + half_pi),
           checkpoint_(checkpoint) {}
-
-    bool gave_up() const { return pieces_left_ <= 0; }
 
     // Only on the way up can c vanish: where it does, its rate is h''' omega^3, physics (53), and
     // h'' falls from the flat to the tip.
@@ -68,12 +65,11 @@ class Follower {
         State state = in_contact(geometry(axes_, flat_), flat_, omega, 0.0, 0.0, Mode::rolling);
         Continuation next = continuation(scene_, state);
         for (int i = 0; state.theta < tip_; ++i) {
-            if (gave_up()) return Fate::unknown;
             if (next.mode == Mode::flight || i == most_segments) return Fate::leaves;
             if (next.paradox != Painleve::determined) return Fate::jams;
             const std::optional<EndOfSegment> end =
                 next.mode == Mode::rolling ? end_of_rolling(state) : end_of_slide(state, next.side);
-            if (!end) return gave_up() ? Fate::unknown : Fate::stays;
+            if (!end) return Fate::stays;
             state = end->state;
             next = end->next;
         }
@@ -82,10 +78,8 @@ class Follower {
 
   private:
     static constexpr double over_the_tip = 0.5;  // [rad], where c no longer falls
-    static constexpr long pieces_a_segment = 5;  // what the rest of the work on one costs
 
     std::optional<EndOfSegment> end_of_rolling(const State& from) {
-        pieces_left_ -= pieces_a_segment;
         const RollingStart start = rolling_start(scene_.body(), from.theta, from.omega);
         const EndOfRolling end = rolling_ellipse::end_of_rolling(start, scene_.friction);
         if (end.validity != Validity::invalid) return std::nullopt;
@@ -102,16 +96,11 @@ class Follower {
         Slide slide = slide_from(scene_, from, side);
         const SlideStop stop =
             slide_on(slide, {infinity, most_pieces, tip_ + over_the_tip, false}, checkpoint_);
-        pieces_left_ -= static_cast<long>(slide.pieces.size()) + pieces_a_segment;
         switch (stop) {
             case SlideStop::slip_vanishes:
             case SlideStop::pressure_vanishes:
             case SlideStop::jams:
                 break;
-            case SlideStop::too_many_pieces:
-            case SlideStop::no_progress:
-                pieces_left_ = 0;
-                return std::nullopt;
             default:
                 return std::nullopt;
         }
@@ -132,7 +121,6 @@ class Follower {
     const double flat_;
     const double tip_;
     const Checkpoint& checkpoint_;
-    long pieces_left_ = 150'000;
 };
 
 // At lift-off omega^2 >= g/|h''| >= g L/c^2, physics (53), with no more energy than at the start.
@@ -154,7 +142,7 @@ LiftOff climbed(Follower& body, double low) {
     if (body.fate(low) == Fate::leaves) return {low, {}};
     double high = growth * low;
     for (int i = 0; body.fate(high) != Fate::leaves; ++i) {
-        if (i == most_growths || body.gave_up()) return {infinity, {}};
+        if (i == most_growths) return {infinity, {}};
         low = high;
         high *= growth;
     }
@@ -169,14 +157,14 @@ LiftOff scanned(Follower& body, double low) {
     LiftOff found{infinity, {}};
     Fate fate = Fate::stays;
     double before = low;
-    for (int i = 0; i <= most_growths && !body.gave_up(); ++i) {
+    for (int i = 0; i <= most_growths; ++i) {
         const double speed = i == 0 ? low : before * growth;
         const Fate now = body.fate(speed);
         if (now != fate) {
             const double change = i == 0 ? low : change_between(body, before, speed);
             if (fate == Fate::jams) found.jam_speeds.back().upper = change;
             if (now == Fate::jams) found.jam_speeds.push_back({change, infinity});
-            if (now == Fate::leaves) found.speed = std::min(*found.speed, change);
+            if (now == Fate::leaves) found.speed = std::min(found.speed, change);
         }
         fate = now;
         before = speed;
@@ -197,8 +185,7 @@ LiftOff lift_off(const Body& body, double friction, double slip_speed, double pa
     const double low = std::max(slip_speed, too_slow(body, at)) * units.time;
     const bool may_jam = std::isfinite(friction) && friction > painleve_friction;
     LiftOff found = may_jam ? scanned(follower, low) : climbed(follower, low);
-    if (follower.gave_up()) return {std::nullopt, {}};
-    *found.speed /= units.time;
+    found.speed /= units.time;
     for (SpeedRange& jams : found.jam_speeds) {
         jams.lower /= units.time;
         jams.upper /= units.time;

@@ -1,7 +1,6 @@
 // From which speed on a rolling body really leaves the ground: after its rolling has ended.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -16,9 +15,7 @@ struct SpeedRange {
 };
 
 struct LiftOff {
-    // The least with which it leaves the ground; infinite if there is none, absent where the slides
-    // are too stiff to be followed.
-    std::optional<double> speed;
+    double speed;  // the least with which it leaves the ground; infinite if there is none
     std::vector<SpeedRange> jam_speeds;
 };
 

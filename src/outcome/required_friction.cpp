@@ -15,7 +15,6 @@ double required_friction(const Scene& scene) {
     rough.friction = infinity;
     const State start = initial_state(rough).state;
     const Body body = scene.body();
-    validate_motion(body, start.theta, start.omega);
     if (scene.slope != 0) {
         const std::optional<SlopeExtremes> found = extremes_on_slope(rough, start);
         return found ? std::max(in_the_blow, found->most_friction) : infinity;

@@ -63,8 +63,8 @@ LawPolynomial law_polynomial(const SlopeBody& body, const SlopePiece& piece, dou
 }
 
 // Whether what the polynomial leaves out is within its rounding. Pieces are as long as angle, speed
-// and path allow; of a body that is nearly a circle, on what is nearly a wall, the law is so much
-// less than those that it has to be looked at in shorter ones.
+// and path allow; the law of a nearly round body is so much less than those that it has to be
+// looked at in shorter ones.
 bool is_resolved(const LawPolynomial& law) {
     const double last = std::abs(law.coefficients[degree - 1]) + std::abs(law.coefficients[degree]);
     return !(last > rounding * law.size);

@@ -1,14 +1,12 @@
 #include "scene/impact.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/ellipse.hpp"
 
 namespace rolling_ellipse {
 namespace {
-
-// The law approaches its limit for infinite friction like 1/friction: beyond this, within rounding.
-constexpr double practically_infinite = 1e20;
 
 // Velocity of the material contact point, physics (12): v along the ground, u away from it; and the
 // matrix that takes an impulse there to its change (Delassus), physics (39). W. J. Stronge, Impact
@@ -171,8 +169,8 @@ void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, Sta
 }
 
 Reaction reaction_to(const Scene& scene, const Contact& c, double restitution) {
-    return scene.friction > practically_infinite ? unlimited_friction(c, restitution)
-                                                 : coulomb_friction(c, scene.friction, restitution);
+    return std::isinf(scene.friction) ? unlimited_friction(c, restitution)
+                                      : coulomb_friction(c, scene.friction, restitution);
 }
 
 bool is_struck(const Scene& scene) {
@@ -234,6 +232,14 @@ InitialState initial_state(const Scene& scene) {
         state.mode = Mode::rest;
     }
     return result;
+}
+
+double energy_after_impulse(const Scene& scene) {
+    State state = state_before_impulse(scene);
+    strike(scene, *scene.impulse, geometry(scene.axes(), state.theta), state);
+    const double k2 = scene.inertia / scene.mass;
+    return 0.5 * (square(state.x_dot) + square(state.z_dot) + k2 * square(state.omega)) /
+           (scene.gravity * std::max(scene.a, scene.b));
 }
 
 // The slip stops before the compression ends where |v| (Gnn - mu s Gtn) <= |u| (mu Gtt - s Gtn),

@@ -22,6 +22,10 @@ struct InitialState {
 
 InitialState initial_state(const Scene& scene);
 
+// The kinetic energy, beside m g times the long semi-axis, that the impulse alone makes; the ground
+// only takes some off.
+double energy_after_impulse(const Scene& scene);
+
 // The least coefficient of friction with which the contact does not slip after the applied impulse,
 // whatever the scene's own; infinite where no finite one does that. With any larger one it does not
 // either, and the state then is the same.

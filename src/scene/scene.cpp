@@ -4,27 +4,27 @@
 #include <cmath>
 
 #include "geometry/ellipse.hpp"
+#include "scene/impact.hpp"
 #include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-constexpr double energy_limit = 1e100;  // of a kinetic energy beside m g times the long semi-axis
 constexpr double aspect_limit = 1e3;
 constexpr double blow_margin = 1e-12;  // of the long semi-axis, for the rounding of a point on it
 
-// The inertia of a body, in either form, beside that of its mass at the end of the long semi-axis:
-// below the least share k^2 is lost beside h^2 in D. It is k^2 that is compared, so that whoever
-// takes it from a scene has what a body takes.
+// The inertia of a body, in either form, beside that of its mass at the end of the long semi-axis.
+// It is k^2 that is compared, so that whoever takes it from a scene has what a body takes.
 void require_inertia(std::string_view name, std::string_view kind, double value, const Body& body,
                      std::string_view unit_name) {
-    constexpr double least = 1e-15;
-    constexpr double most = 1e30;
+    constexpr double least = 1e-6;
+    constexpr double most = 1e6;
     if (!(value > 0 && std::isfinite(value)))
         refuse(name, "a positive finite " + std::string(kind), value);
     const double share = body.gyration2 / square(std::max(body.a, body.b));
-    if (!(share >= least && share <= most)) {
-        refuse(name, "between 1e-15 and 1e30 times " + std::string(unit_name), value);
+    constexpr double rounding = equal_ulps * epsilon;
+    if (!(share >= least * (1 - rounding) && share <= most * (1 + rounding))) {
+        refuse(name, "between 1e-6 and 1e6 times " + std::string(unit_name), value);
     }
 }
 
@@ -50,6 +50,22 @@ void require_reach(const Scene& scene, const Impulse& blow) {
            distance);
 }
 
+// The speeds [rad/s, m/s] of a body with at most so much energy beside m g times its long
+// semi-axis.
+double most_omega(const Body& body, double energy) {
+    const double axis = std::max(body.a, body.b);
+    return std::sqrt(energy * (body.gravity * axis) / (body.gyration2 + square(axis)));
+}
+
+double most_speed(const Body& body, double energy) {
+    return std::sqrt(energy * body.gravity * std::max(body.a, body.b));
+}
+
+void require_in_size(std::string_view name, const std::string& unit, double value, double most) {
+    if (std::abs(value) <= most) return;
+    refuse(name, "at most " + text(most) + unit + " in size for this body", value);
+}
+
 }  // namespace
 
 void validate_length(std::string_view name, double value) {
@@ -71,30 +87,16 @@ void validate(const Body& body) {
     require_inertia("gyration2", "area [m^2]", body.gyration2, body, "max(a, b)^2");
 }
 
-void validate_motion(const Body& body, double theta, double omega) {
+void validate_motion(const Body& body, double theta, double omega, double most) {
     require_finite("theta", " [rad]", theta);
     require_finite("omega", " [rad/s]", omega);
-    const double axis = std::max(body.a, body.b);
-    const double energy = square(omega) * (body.gyration2 + square(axis)) / (body.gravity * axis);
-    if (energy > energy_limit) {
-        const double most = std::abs(omega) * std::sqrt(energy_limit / energy);
-        refuse("omega", "at most " + text(most) + " [rad/s] in size for this body", omega);
-    }
-}
-
-void validate_velocity(const Body& body, double x_dot, double z_dot) {
-    const double most = std::sqrt(energy_limit * body.gravity * std::max(body.a, body.b));
-    const auto require = [&](const std::string& name, double speed) {
-        if (std::abs(speed) <= most) return;
-        refuse(name, "at most " + text(most) + " [m/s] in size for this body", speed);
-    };
-    require("x_dot", x_dot);
-    require("z_dot", z_dot);
+    require_in_size("omega", " [rad/s]", omega, most_omega(body, most));
 }
 
 void validate_friction(double friction) {
-    if (!(friction >= 0 && (friction <= largest_number || friction == infinity))) {
-        refuse("friction", "a coefficient from 0 to 1e50, or inf", friction);
+    constexpr double most = 1e6;
+    if (!(friction >= 0 && (friction <= most || friction == infinity))) {
+        refuse("friction", "a coefficient from 0 to 1e6, or inf", friction);
     }
 }
 
@@ -105,16 +107,17 @@ void validate(const Impulse& impulse) {
     require_finite("dz", " [m]", impulse.dz);
 }
 
-void validate(const Scene& scene) {
+void validate(const Scene& scene, double most) {
     validate_axes(scene.a, scene.b);
     require_positive("mass", "mass [kg]", scene.mass);
     require_positive("gravity", "acceleration [m/s^2]", scene.gravity);
     require_inertia("inertia", "moment of inertia [kg m^2]", scene.inertia, scene.body(),
                     "mass max(a, b)^2");
-    if (!(std::abs(scene.slope) < half_pi)) {
+    constexpr double steepest = 1.5;
+    if (!(std::abs(scene.slope) <= steepest)) {
         const bool degrees = std::abs(scene.slope) <= 90;
         refuse("slope",
-               std::string("an angle [rad] strictly between -pi/2 and pi/2") +
+               std::string("an angle [rad] from -1.5 to 1.5") +
                    (degrees ? " (degrees? times pi/180)" : ""),
                scene.slope);
     }
@@ -122,12 +125,15 @@ void validate(const Scene& scene) {
     if (!(scene.restitution >= 0 && scene.restitution <= 1)) {
         refuse("restitution", "between 0 and 1", scene.restitution);
     }
-    validate_motion(scene.body(), scene.theta, scene.omega);
+    const Body body = scene.body();
+    validate_motion(body, scene.theta, scene.omega, most);
     require_finite("x", " [m]", scene.x);
     if (scene.z) require_finite("z", " [m]", *scene.z);
     if (scene.x_dot) require_finite("x_dot", " [m/s]", *scene.x_dot);
     if (scene.z_dot) require_finite("z_dot", " [m/s]", *scene.z_dot);
-    validate_velocity(scene.body(), scene.x_dot.value_or(0.0), scene.z_dot.value_or(0.0));
+    require_in_size("z", " [m]", scene.z.value_or(0.0), most * std::max(scene.a, scene.b));
+    require_in_size("x_dot", " [m/s]", scene.x_dot.value_or(0.0), most_speed(body, most));
+    require_in_size("z_dot", " [m/s]", scene.z_dot.value_or(0.0), most_speed(body, most));
     validate_blow(scene);
     state_before_impulse(scene);
 }
@@ -136,6 +142,12 @@ void validate_blow(const Scene& scene) {
     if (!scene.impulse) return;
     validate(*scene.impulse);
     require_reach(scene, *scene.impulse);
+    const double energy = energy_after_impulse(scene);
+    if (energy <= most_energy) return;
+    refuse("impulse",
+           "weak enough to leave the body, were it free, a kinetic energy of at most 1e12 times "
+           "mass gravity max(a, b)",
+           energy);
 }
 
 State state_before_impulse(const Scene& scene) {

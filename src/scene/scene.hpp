@@ -68,16 +68,22 @@ inline Body body(double a, double b, std::optional<double> gyration2, double gra
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
 }
 
+// The largest energies, beside m g times the long semi-axis: of what is typed, and of what a motion
+// reaches, which may have gained energy down a slope.
+inline constexpr double most_energy = 1e12;
+inline constexpr double most_energy_reached = 1e100;
+
 // Throw std::invalid_argument naming the argument, what was required and what came.
 void validate_length(std::string_view name, double value);
 void validate_axes(double a, double b);
 void validate(const Body& body);
-void validate_motion(const Body& body, double theta, double omega);
-void validate_velocity(const Body& body, double x_dot, double z_dot);
+void validate_motion(const Body& body, double theta, double omega, double most = most_energy);
 void validate_friction(double friction);
 void validate(const Impulse& impulse);
-void validate(const Scene& scene);
-void validate_blow(const Scene& scene);  // what it is, and that it meets the body
+void validate(const Scene& scene, double most = most_energy);
+
+// That it is finite, meets the body and does not make it too fast.
+void validate_blow(const Scene& scene);
 
 // A height at which the ellipse does not touch the ground, whatever its angle.
 inline double above_ground(const Axes& axes) { return axes.a + axes.b; }

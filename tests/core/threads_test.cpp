@@ -103,7 +103,7 @@ Numbers judgements(double omega) {
             static_cast<double>(classify(body, 0.6, 0.1, omega)),
             static_cast<double>(outcome(on_slope(omega), [] {})),
             thresholds(body, 0.6).slip_speed,
-            lift.speed.value_or(-1),
+            lift.speed,
             period(scene_of(omega))};
 }
 

@@ -211,14 +211,14 @@ def test_without_friction_or_restitution_the_laws_are_one() -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 def test_unlimited_friction_is_the_limit_of_much(law: Any) -> None:
-    """What is left goes like 1/mu: a hundredth of it for a hundred times the friction."""
+    """What is left goes like 1/mu: a tenth of it for ten times the friction."""
     state = approaching(300)
     limit, much, more = (
         np.stack(impacts.collide(*state, **BODY, friction=mu, restitution=0.7, law=law))
-        for mu in (math.inf, 1e6, 1e8)
+        for mu in (math.inf, 1e5, 1e6)
     )
     ratio = np.max(speed(much - limit)) / np.max(speed(more - limit))
-    assert ratio == pytest.approx(100, rel=0.02)
+    assert ratio == pytest.approx(10, rel=0.02)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -388,8 +388,8 @@ GOOD: dict[str, Any] = {
         ("b", 0.0, r"b must be a positive finite length \[m\], got 0.0"),
         ("a", 400.0, r"a/b must be between 1e-3 and 1e3, got 1333.3"),
         ("gyration2", 0.0, r"gyration2 must be a positive finite area \[m\^2\], got 0.0"),
-        ("friction", -0.1, r"friction must be a coefficient from 0 to 1e50, or inf, got -0.1"),
-        ("friction", math.nan, "friction must be a coefficient from 0 to 1e50, or inf, got nan"),
+        ("friction", -0.1, r"friction must be a coefficient from 0 to 1e6, or inf, got -0.1"),
+        ("friction", math.nan, "friction must be a coefficient from 0 to 1e6, or inf, got nan"),
         ("restitution", 1.1, "restitution must be between 0 and 1, got 1.1"),
         ("restitution", -0.1, "restitution must be between 0 and 1, got -0.1"),
     ],

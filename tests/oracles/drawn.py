@@ -87,7 +87,8 @@ def at_its_limit(values: dict[str, Any]) -> dict[str, Any]:
     radius = (a * b) ** 2 / h**3
     into, along = values["gravity"] * math.cos(slope), values["gravity"] * math.sin(slope)
     if radius < h and values["friction"] < 1:
-        return {"omega": math.copysign(math.sqrt(into / (h - radius)), values["omega"])}
+        omega = math.copysign(math.sqrt(into / (h - radius)), values["omega"])
+        return {"omega": omega} if abs(omega) < 1e5 * rate(values) else {}
     spin2 = values["omega"] ** 2
     inertia = values["inertia"] / values["mass"] + h**2 + tilt**2
     acceleration = (along * h - tilt * (into + radius * spin2)) / inertia

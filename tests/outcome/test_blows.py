@@ -126,7 +126,7 @@ def test_outcome_refuses() -> None:
     with pytest.raises(TypeError, match=r"^impulse must be an Impulse or None, got 3"):
         outcome(REPORT, 3)  # type: ignore[arg-type]
     light = Scene(2.0, 1.0, mass=1e-20)
-    with pytest.raises(ValueError, match=r"^(omega|x_dot|z_dot) must be .* at most .*, by blow 1$"):
+    with pytest.raises(ValueError, match=r"^impulse must be weak enough .*, by blow 1$"):
         outcome(light, Impulse([0.0, 1e40], dz=1.0))
 
 
@@ -145,7 +145,7 @@ def test_required_friction_is_what_blow_and_motion_need() -> None:
         assert found == required_friction(replace(scene, friction=0.123))
         if math.isinf(found):
             never += 1
-            assert certify(replace(scene, friction=1e19)).validity is not Validity.VALID, scene
+            assert certify(replace(scene, friction=1e6)).validity is not Validity.VALID, scene
             continue
         rolls = replace(scene, friction=math.inf).initial_state
         motion = oracles.rolling.motion(
@@ -299,10 +299,10 @@ def test_blow_to_says_why_not(
 def test_blow_to_where_presses_are_as_large_as_they_may_be() -> None:
     """A thousand times faster would ask for more: F d makes the speed, as with a longer lever."""
     usual, huge = (
-        -blow_to(replace(REPORT, friction=math.inf), distance).jz for distance in (1e-3, 1e-48)
+        -blow_to(replace(REPORT, friction=math.inf), distance).jz for distance in (1e-3, 2e-6)
     )
-    assert 1e48 < huge <= 1e50
-    assert huge * 1e-48 == pytest.approx(usual * 1e-3, rel=1e-9)
+    assert 1e7 < huge < 10 * math.sqrt(2e12 * 9.81 * 2.0)  # mass sqrt(2e12 g a)
+    assert huge * 2e-6 == pytest.approx(usual * 1e-3, rel=1e-9)
 
 
 def test_blow_to_refuses_what_is_no_number() -> None:

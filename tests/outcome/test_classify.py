@@ -41,7 +41,7 @@ def test_at_rest_beside_an_equilibrium_it_falls() -> None:
 
 
 @pytest.mark.parametrize("friction", [0.0, 1e-9, 0.5, math.inf])
-@pytest.mark.parametrize("omega", [-1e10, -1e-5, 1.0, 1e10])
+@pytest.mark.parametrize("omega", [-1e6, -1e-5, 1.0, 1e6])
 def test_a_circle_rolls_for_ever_on_any_friction(omega: float, friction: float) -> None:
     """Without any its contact slides, though it moves in the same way."""
     for theta in (0.0, 0.7, 500.0):
@@ -138,7 +138,7 @@ def test_too_fast_for_the_ground(friction: float) -> None:
         fast, slow = side * limit * (1 + 1e-11), side * limit * (1 - 1e-11)
         assert classify(**at, omega=fast) is Outcome.LOSES_CONTACT
         assert classify(**at, omega=slow) is below
-        assert classify(**at, omega=side * 1e10) is Outcome.LOSES_CONTACT
+        assert classify(**at, omega=side * 1e6) is Outcome.LOSES_CONTACT
         assert classify(**at, omega=side * limit) in (Outcome.EDGE, below, Outcome.LOSES_CONTACT)
 
 
@@ -164,16 +164,16 @@ def test_loss_of_contact_with_infinite_friction() -> None:
 
 @pytest.mark.parametrize(("a", "b"), [(1e3, 1.0), (1.0, 1e3), (1.0, 1e-3), (1e-3, 1.0)])
 def test_the_thinnest(a: float, b: float) -> None:
-    """c stays positive in the flat position, where h'' = L^2/S - S > 0, at any speed; at 1e10 rad/s
+    """c stays positive in the flat position, where h'' = L^2/S - S > 0, at any speed; at 1e4 rad/s
     rolling would need the ground to pull as soon as it rises."""
     flat = 0.0 if a > b else math.pi / 2
     tip = math.pi / 2 - flat
     slow = 1e-3 * thresholds(a, b).contact_loss_speed
     at: dict[str, Any] = {"a": a, "b": b}
     assert classify(**at, theta=flat, omega=slow) is Outcome.ROCKS
-    assert classify(**at, theta=flat, omega=1e10) is Outcome.SLIPS
-    assert classify(**at, theta=flat, omega=1e10, friction=2.0) is Outcome.SLIPS
-    assert classify(**at, theta=tip, omega=1e10, friction=2.0) is Outcome.LOSES_CONTACT
+    assert classify(**at, theta=flat, omega=1e4) is Outcome.SLIPS
+    assert classify(**at, theta=flat, omega=1e4, friction=2.0) is Outcome.SLIPS
+    assert classify(**at, theta=tip, omega=1e4, friction=2.0) is Outcome.LOSES_CONTACT
     assert classify(**at, theta=tip, omega=0.0) is Outcome.RESTS
 
 

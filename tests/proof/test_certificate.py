@@ -553,7 +553,7 @@ def test_a_hairs_breadth_from_the_threshold() -> None:
         for sign in (1, -1):
             friction = (truth.needed * (1 + sign * np.longdouble(10) ** -(13 + seed))).astype(float)
             close = sample._replace(friction=friction)
-            for row in np.flatnonzero(np.isfinite(friction) & (friction > 0)):
+            for row in np.flatnonzero((friction > 0) & (friction <= 1e6)):
                 verdict = certify(close.scene(int(row))).validity
                 exact = Validity.VALID if friction[row] >= truth.needed[row] else Validity.INVALID
                 assert verdict in (exact, Validity.EDGE), close.scene(int(row))

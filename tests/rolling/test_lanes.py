@@ -126,7 +126,7 @@ EXTREMES: dict[str, Callable[[], Columns]] = {
     "all aspects, turning": lambda: {
         "a": 10.0 ** np.linspace(-2.9999, 2.9999, 61), "b": 1.0, "omega": -90.0, "t": -0.3,
     },
-    "all inertias": lambda: {"gyration2": 10.0 ** np.arange(-14, 30), "omega": 3.0, "t": 0.2},
+    "all inertias": lambda: {"gyration2": 10.0 ** np.arange(-5, 6), "omega": 3.0, "t": 0.2},
     "all sizes": lambda: {
         "a": 2 * 10.0 ** np.arange(-29, 29, 2), "b": 10.0 ** np.arange(-29, 29, 2),
         "gyration2": 10.0 ** np.arange(-58, 58, 4), "gravity": 10.0 ** np.arange(-29, 29, 2),
@@ -141,7 +141,7 @@ EXTREMES: dict[str, Callable[[], Columns]] = {
         "a": 1.0, "b": 2.86e-3, "gyration2": 7.73e-6, "theta": -1.776e-4, "omega": 3.68,
         "t": np.geomspace(1e-9, 1e-6, 61),
     },
-    "very fast": lambda: {"omega": 10.0 ** np.arange(1, 49, 4), "t": 10.0 ** -np.arange(1, 49, 4)},
+    "very fast": lambda: {"omega": 10.0 ** np.arange(1, 7), "t": 10.0 ** -np.arange(1, 7)},
     "no time at all": lambda: {"theta": 0.3, "omega": np.linspace(-2, 2, 9), "t": 0.0},
 }  # fmt: skip
 

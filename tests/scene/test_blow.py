@@ -326,7 +326,10 @@ def test_a_blow_beside_the_body_is_refused(
         jx, jz = math.sin(along), math.cos(along)
         end = int(np.argmax(x * jz - z * jx))
         dx, dz = (share * float(each[end]) for each in (x, z))
-        for size in (1e-3, -1e3):  # either way along the line, and anywhere on it
+        for size in (
+            1e-3 * max(axes),
+            -1e3 * max(axes),
+        ):  # either way along the line, and anywhere on it
             blow = Impulse(size * jx, size * jz, dx=dx + 0.7 * a * jx, dz=dz + 0.7 * a * jz)
             if meets:
                 assert Scene(a, b, theta=theta, impulse=blow).impulse == blow

@@ -82,9 +82,8 @@ def test_scene_refuses_needles(axes: tuple[float, float]) -> None:
     assert_refused(ValueError, "a/b", "got", Scene, a=axes[0], b=axes[1])
 
 
-@pytest.mark.parametrize("share", [0.9e-15, 1.1e30])
+@pytest.mark.parametrize("share", [0.9e-6, 1.1e6])
 def test_mass_is_neither_at_a_point_nor_far_outside(share: float) -> None:
-    """Below 1e-15 L^2, k^2 vanishes beside h^2: events were NaN, and energy grew."""
     assert_refused(ValueError, "inertia", repr(4.0 * share), scene, inertia=4.0 * share)
     assert_refused(ValueError, "gyration2", repr(4.0 * share), flow, **FLOW, gyration2=4.0 * share)
 
@@ -93,7 +92,7 @@ def test_mass_is_neither_at_a_point_nor_far_outside(share: float) -> None:
 def test_scene_accepts_the_limits(axes: tuple[float, float]) -> None:
     assert Scene(*axes).initial_state.z > 0
     limits: list[dict[str, Any]] = [
-        {"friction": 0.0}, {"friction": INF}, {"restitution": 1.0}, {"slope": -1.57},
+        {"friction": 0.0}, {"friction": INF}, {"restitution": 1.0}, {"slope": -1.5},
     ]  # fmt: skip
     for given in limits:
         Scene(*axes, **given)
@@ -293,11 +292,11 @@ def test_what_is_taken_as_inertia_is_taken_as_gyration2() -> None:
     for axis, mass, off in zip(
         random.uniform(0.1, 9, 400), random.uniform(0.1, 9, 400), range(-200, 200), strict=True
     ):
-        inertia = mass * axis**2 * 1e-15 * (1 + off // 40 * 2.0**-52)
+        inertia = mass * axis**2 * 1e-6 * (1 + off // 10 * 2.0**-52)
         try:
             body = scene(a=axis, b=axis, mass=mass, inertia=inertia)
         except ValueError as error:
-            assert str(error).startswith("inertia must be between 1e-15 and 1e30 times mass")
+            assert str(error).startswith("inertia must be between 1e-6 and 1e6 times mass")
         else:
             taken += 1
             flow(1.0, a=axis, b=axis, theta=0.1, omega=0.0, gyration2=body.gyration2)

@@ -98,7 +98,7 @@ def speed(draw: Draw, of: Body) -> float:
         return draw.pick(0.0, 1.0, sign * draw.between(0, 4)) / of.clock
     return (
         sign
-        * draw.pick(0.0, draw.power(-20, 2), draw.power(-300, 0), draw.power(0, 49.4))
+        * draw.pick(0.0, draw.power(-20, 2), draw.power(-300, 0), draw.power(0, 6))
         / (of.clock)
     )
 
@@ -106,13 +106,13 @@ def speed(draw: Draw, of: Body) -> float:
 def friction(draw: Draw) -> float:
     return draw.pick(
         math.inf, 0.0, 1.0, draw.between(0, 2), draw.between(0, 2), draw.between(0, 0.3),
-        draw.power(-3, 3), draw.power(-320, 300),
+        draw.power(-3, 3), draw.power(-320, 6),
     )  # fmt: skip
 
 
 def gyration2(draw: Draw, of: Body) -> float:
     """k^2, mostly between that of a point and of a ring; anything between the limits, too."""
-    share = draw.pick(0.25, 1.0, draw.between(0.01, 1), draw.power(-29.9, 29.9), draw.power(-6, 6))
+    share = draw.pick(0.25, 1.0, draw.between(0.01, 1), draw.power(-6, 6))
     return share * of.length**2
 
 
@@ -128,11 +128,9 @@ def options(draw: Draw, of: Body) -> dict[str, float | None]:
     if draw.chance(0.2):
         found["inertia"] = (found.get("mass") or 1.0) * gyration2(draw, of)
     if draw.chance(0.3):
-        steep = math.copysign(math.nextafter(math.pi / 2, 0), draw.between(-1, 1))
         found["slope"] = draw.pick(
-            draw.between(-0.5, 0.5), draw.between(-1.57, 1.57), 5e-324, draw.power(-20, 0),
-            draw.power(-9, 0), -draw.power(-9, 0),
-            *(() if of.mild else (steep, draw.beside(steep))),
+            draw.between(-0.5, 0.5), draw.between(-1.5, 1.5), 5e-324, draw.power(-20, 0),
+            draw.power(-9, 0), -draw.power(-9, 0), 1.5, -1.5,
         )  # fmt: skip
     if draw.chance(0.4):
         found["restitution"] = draw.pick(0.0, 1.0, 0.5, draw.between(0, 1), 5e-324, 1 - 2**-53)

@@ -144,7 +144,7 @@ class Grid:
             raise ValueError(f"{_entry(name, tuple(wrong[0]))} must be a number, got nan")
 
     def _require_valid(self, begin: int, table: FloatArray) -> None:
-        refused = _core.first_refused(table)
+        refused = _core.first_refused(table, reached=False)
         if refused is None:
             return
         row, message = refused

@@ -229,7 +229,7 @@ def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
     require_tables(scenes, tables, n, samples)
     if name != _name(int(name[:8]), str(tables.pop("request", "")), scenes):
         raise ValueError("request and scenes must be those of the name of the file")
-    if (refused := _core.first_refused(scenes)) is not None:
+    if (refused := _core.first_refused(scenes, reached=True)) is not None:
         raise ValueError(f"scenes must be valid, got row {refused[0]}: {refused[1]}")
     return tables
 

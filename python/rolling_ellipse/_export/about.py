@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from zipfile import is_zipfile
 
 from .._check import file_name
-from .._scene import Impulse, Scene
+from .._scene import Impulse, Scene, reached_scene
 
 ARCHIVE, OBJECT = b"PK\x03\x04", b"{"  # first bytes of .npz files, and of JSON
 
@@ -101,4 +101,4 @@ def scene_of(found: Any) -> Scene:
     if impulse is not None:
         require_names("impulse", impulse, field_names(Impulse))
         impulse = Impulse(**impulse)
-    return Scene(**{**found, "impulse": impulse})
+    return reached_scene({**found, "impulse": impulse})

@@ -41,9 +41,9 @@ def collide(
     a, b : float or array_like
         Semi-axes [m].
     friction, restitution : float or array_like
-        Coefficients: from 0 to 1e50 or infinite, and between 0 and 1.
+        Coefficients: from 0 to 1e6 or infinite, and between 0 and 1.
     gyration2 : float or array_like, optional
-        k^2 = I/m [m^2]; default: a uniform disc, (a^2 + b^2)/4.
+        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc, (a^2 + b^2)/4.
     law : {"stronge", "poisson", "newton"}
         What the coefficient e of restitution means. "stronge": the normal force gives back e^2 of
         the work that it took. "poisson": e times the impulse that it needed to stop the approach.

@@ -24,7 +24,7 @@ MOTION = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 0.5, 6))
 SLOPED = rl.simulate(scenes.slope, [0.0, 0.5])
 LATER = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 1.0, 6))
 TOO_LONG = rl.simulate(
-    rl.Scene(2.0, 2.0, omega=1e30), 1.0, model="rolling", method="radau", step=0.5,
+    rl.Scene(2.0, 2.0, omega=1e6), 1e10, model="rolling", method="radau", step=5e9,
     raise_on_failure=False,
 )  # fmt: skip
 EMPTY = MOTION.sol([])
@@ -146,7 +146,6 @@ FILMS: list[Refusal] = [
 
 PLAYERS: list[Refusal] = [
     (r"^t_end must be shown by a player in at most", long_film),
-    (r"^scene must turn by at most", lambda _: rl.explore(scenes.report.replace(omega=1e20))),
     (r"^t_end must be at most .* s for this body", lambda _: rl.explore(scenes.report, t_end=1e9)),
     (
         r"^scene must stay where a double still knows a thousandth of its body of 2 m, got a",

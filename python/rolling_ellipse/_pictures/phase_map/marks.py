@@ -70,8 +70,8 @@ def _level_marks(plane: Plane) -> Iterator[Mark]:
     if along == "aspect":
         places = places[places > 1]  # a circle has no tip
     found = [_thresholds(plane, **{along: float(place)}) for place in places]
-    rolling_over, contact, flight = (  # None, of what could not be found, becomes NaN
-        np.array([getattr(each, name) for each in found], dtype=np.float64)
+    rolling_over, contact, flight = (
+        np.array([getattr(each, name) for each in found])
         for name in ("roll_over_speed", "contact_loss_speed", "lift_off_speed")
     )
     if plane.level == "energy":

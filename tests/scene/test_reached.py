@@ -1,0 +1,118 @@
+"""What a motion reaches may be more than can be typed: it is gone on from, saved and read."""
+
+import copy
+import math
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from rolling_ellipse import Impulse, Scene
+
+EPS = 2.0**-52
+MOST = 1e12  # energies and heights beside m g max(a, b) and max(a, b)
+DOWNHILL = Scene(2.0, 1.0, slope=0.1, omega=3.0)
+LEVEL = Scene(2.0, 1.0, omega=3.2)
+FORCED = pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
+
+
+def rolled(scene: Scene, t: float) -> rl.Trajectory:
+    return rl.simulate(scene, [0.0, t / 2, t], model="rolling")
+
+
+@FORCED
+@pytest.mark.parametrize(
+    ("scene", "t"),
+    [(DOWNHILL, 1e8), (LEVEL, 1e14 * rl.period(LEVEL) / 2)],
+    ids=["downhill", "level"],
+)
+def test_a_state_after_very_many_half_turns_is_gone_on_from(
+    scene: Scene, t: float, tmp_path: Path
+) -> None:
+    """On, from a file, by a table of scenes and into a folder: the same bits."""
+    motion = rolled(scene, t)
+    assert motion.theta[-1] > 0.99e14 * math.pi
+    reached = motion.scene_at(motion.t_end)
+    assert reached.theta == motion.theta[-1] and reached.omega == motion.omega[-1]
+    times = np.linspace(0.0, 1e-7, 5)
+    on = rl.simulate(reached, times, model="rolling")
+    assert on.theta[0] == reached.theta and np.all(np.isfinite(on.x))
+    # theta itself is a double: steps of it are of its ulp
+    turned = reached.omega * times[-1]
+    assert abs(on.theta[-1] - on.theta[0] - turned) <= np.spacing(reached.theta) + 0.01 * turned
+    for same in (pickle.loads(pickle.dumps(reached)), copy.deepcopy(reached)):
+        assert same == reached and rl.simulate(same, times, model="rolling") == on
+    for each in (motion, on):
+        each.save(tmp_path / "motion.npz")
+        again = rl.load(tmp_path / "motion.npz")
+        assert again == each and again.scene_at(each.t_end) == each.scene_at(each.t_end)
+    asked: dict[str, Any] = {"model": "rolling"}
+    assert rl.simulate_many([reached], times, **asked) == [on]
+    for _ in range(2):  # the second finds the folder complete
+        rl.simulate_many([reached], times, out=tmp_path / "many", **asked)
+    assert list(rl.load_many(tmp_path / "many")) == [on]
+
+
+@FORCED
+def test_what_was_gained_downhill_is_not_typed_again() -> None:
+    motion = rolled(DOWNHILL, 1e8)
+    reached = motion.scene_at(motion.t_end)
+    energy = reached.omega**2 * (reached.gyration2 + 4.0) / (reached.gravity * 2.0)
+    assert energy > MOST
+    for change in ({"omega": reached.omega}, {"impulse": Impulse(1.0)}):
+        with pytest.raises(ValueError, match=r"^omega must be at most .* for this body, got"):
+            reached.replace(**change)
+    assert rl.outcome(reached) is rl.Outcome.LOSES_CONTACT
+    assert math.isinf(rl.required_friction(reached))
+
+
+def body(a: float, b: float, gravity: float) -> dict[str, Any]:
+    return {"a": a, "b": b, "gravity": gravity}
+
+
+def omega(scene: dict[str, Any]) -> float:
+    """omega^2 (k^2 + L^2) = 1e12 g L."""
+    length = max(scene["a"], scene["b"])
+    gyration2 = (scene["a"] ** 2 + scene["b"] ** 2) / 4
+    return math.sqrt(MOST * scene["gravity"] * length / (gyration2 + length**2))
+
+
+def speed(scene: dict[str, Any]) -> float:
+    return math.sqrt(MOST * scene["gravity"] * max(scene["a"], scene["b"]))
+
+
+def height(scene: dict[str, Any]) -> float:
+    return MOST * max(scene["a"], scene["b"])
+
+
+LIMITS: dict[str, Callable[[dict[str, Any]], float]] = {
+    "omega": omega, "x_dot": speed, "z_dot": speed, "z": height,
+    "inertia": lambda of: 1e6 * max(of["a"], of["b"]) ** 2,
+    "friction": lambda _: 1e6, "slope": lambda _: 1.5,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "of", [body(2.0, 1.0, 9.81), body(1e-9, 1e-6, 1e-3), body(3e20, 3e20, 1e9)]
+)
+@pytest.mark.parametrize("name", LIMITS)
+def test_what_is_typed_goes_up_to_its_limit(name: str, of: dict[str, Any]) -> None:
+    """64 roundings below it is taken, as much above it is refused by its name."""
+    limit = LIMITS[name](of)
+    above: dict[str, Any] = {"z": height(of) / 2} if name == "z_dot" else {}
+    of = {**of, **above}
+    Scene(**{**of, name: limit * (1 - 64 * EPS)})
+    with pytest.raises(ValueError, match=rf"^{name} must be .*, got "):
+        Scene(**{**of, name: limit * (1 + 64 * EPS)})
+
+
+def test_a_blow_brings_no_more_than_is_typed() -> None:
+    """J^2/2m = 1e12 m g L through the centre, of a body at rest."""
+    scene = Scene(2.0, 1.0, mass=3.0)
+    most = 3.0 * math.sqrt(2 * MOST * 9.81 * 2.0)
+    scene.replace(impulse=Impulse(0.0, -most * (1 - 64 * EPS)))
+    with pytest.raises(ValueError, match=r"^impulse must be weak enough .*, got 10000000000"):
+        scene.replace(impulse=Impulse(0.0, -most * (1 + 64 * EPS)))
