@@ -65,9 +65,9 @@ def run(*command: str | Path) -> str:
     return done.stdout
 
 
-def clang_format() -> Path:
-    """The script that the test extra puts beside the interpreter."""
-    found = Path(sysconfig.get_path("scripts")) / "clang-format"
+def script(name: str) -> Path:
+    """A program that the test extra puts beside the interpreter."""
+    found = Path(sysconfig.get_path("scripts")) / name
     assert found.exists(), f"{found} is missing: pip install '.[test]'"
     return found
 
@@ -90,7 +90,7 @@ def test_mypy(tmp_path: Path) -> None:
 
 
 def test_clang_format() -> None:
-    run(clang_format(), "--dry-run", "-Werror", *(p for p in SOURCES if p not in GENERATED))
+    run(script("clang-format"), "--dry-run", "-Werror", *(p for p in SOURCES if p not in GENERATED))
 
 
 @pytest.mark.parametrize(
@@ -112,12 +112,24 @@ def test_the_tools_refuse_what_is_wrong(
     assert done.returncode == 1, done.stderr
 
 
+def test_oxlint() -> None:
+    run(script("oxlint"), "--deny-warnings", "python/rolling_ellipse/_player")
+
+
+def test_oxlint_refuses_what_is_wrong(tmp_path: Path) -> None:
+    (tmp_path / "unused.js").write_text("const x = 1;\n")
+    done = subprocess.run(
+        [script("oxlint"), "--deny-warnings", "."], cwd=tmp_path, capture_output=True, timeout=60
+    )
+    assert done.returncode == 1
+
+
 def test_clang_format_refuses_what_is_wrong(tmp_path: Path) -> None:
     (tmp_path / ".clang-format").write_text((ROOT / ".clang-format").read_text())
     path = tmp_path / "wide.cpp"
     path.write_text("int   f( ){return 1;}\n")
     done = subprocess.run(
-        [clang_format(), "--dry-run", "-Werror", path], capture_output=True, timeout=60
+        [script("clang-format"), "--dry-run", "-Werror", path], capture_output=True, timeout=60
     )
     assert done.returncode != 0
 
