@@ -1,4 +1,4 @@
-// What an explicit method knows between the ends of a step.
+// The interpolant of an explicit method.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace rolling_ellipse {
 
-// The dense output of a step (HNW II.6): the cubic Hermite polynomial and what raises its order,
+// The dense output of a step (HNW II.6), the cubic Hermite polynomial with terms of higher order:
 //     y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))),   0 <= s <= 1.
 template <int N, int Terms>
 struct DenseOutput {

@@ -1,9 +1,9 @@
 // Explicit Runge-Kutta methods as data.
 //
-// Rows of `a`: the stages of a step; then the weights of its result, so that the stage after them
-// is f at the end of the step (and the first one of the next step); then what only the dense output
-// needs. `error` are the weights of the error estimate, `dense` those of the terms that the dense
-// output has beyond the cubic Hermite polynomial.
+// Rows of `a`: the stages of a step; the weights of its result, whose stage is f at the end of the
+// step (and the first stage of the next step); the stages of the dense output. `error` holds the
+// weights of the error estimates, `dense` the weights of the terms that the dense output adds to
+// the cubic Hermite polynomial.
 #pragma once
 
 namespace rolling_ellipse {

@@ -1,5 +1,4 @@
-// The first time at which one of several quantities becomes negative, from looks at them in the
-// order of time.
+// The first time at which one of several margins becomes negative, from samples in ascending time.
 #pragma once
 
 #include <array>
@@ -10,15 +9,16 @@
 
 namespace rolling_ellipse {
 
-// Looks at a step: a dip below zero that is narrower than an eighth of it is found by its parabola.
+// Samples per step. A parabola finds a dip below zero that is narrower than an eighth of a step.
 inline constexpr int looks_per_step = 8;
 
-// A dip below zero between two looks that are both in order is found by the parabola through three
-// of them.
+// Follows N margins from sample to sample. A dip below zero between two positive samples is found
+// by the parabola through three samples.
 template <int N>
 class FirstNegative {
   public:
-    // The next look; margins: t -> std::array<double, N>. True once something was found.
+    // Sample `margins`, a function of t that returns std::array<double, N>, at the next time. True
+    // once a negative value was found.
     template <class Margins>
     bool look(double t, const Margins& margins) {
         looks_ = {looks_[1], looks_[2], Look{t, margins(t)}};
@@ -56,18 +56,18 @@ class FirstNegative {
         which_ = i;
     }
 
-    // The first negative double between a time that is in order and one that is not.
+    // The first time, in doubles, at which margin i is negative, between a good and a bad time.
     template <class Margins>
     static double crossing(int i, double good, double bad, const Margins& margins) {
         return bisect(good, bad, [&](double t) { return margins(t)[i] < 0; }).high;
     }
 
-    // The bottom of the parabola through three looks, and of one through closer ones around it.
+    // The minimum by the parabola through three samples, then by one through closer samples.
     template <class Margins>
     static double lowest(const Look& a, const Look& b, const Look& c, int i,
                          const Margins& margins) {
         const double rough = bottom_of_parabola(a, b, c, i);
-        if (!std::isfinite(rough)) return b.t;  // margins beyond the doubles are on no parabola
+        if (!std::isfinite(rough)) return b.t;  // the margins have overflowed
         const double beside = 0.05 * (c.t - a.t);
         const auto at = [&](double t) { return Look{t, margins(t)}; };
         if (!(a.t < rough - beside && rough + beside < c.t)) return rough;

@@ -1,9 +1,8 @@
-// Gauss-Legendre collocation, order 2 s: symplectic, symmetric, and with rounding errors that only
-// walk at random, as
+// Gauss-Legendre collocation of order 2 s: symplectic, symmetric, its rounding error a random walk.
+// Fixed-point iteration to the last bit, increments L_j = h b_j f(Y_j) where the h b_j sum to h,
+// and compensated summation, as in
 //     E. Hairer, R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231,
-//     M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861
-// do it: fixed-point iteration to the last bit, increments L_j = h b_j f(Y_j) with h b_j that sum
-// to h, and compensated summation.
+//     M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861.
 #pragma once
 
 #include "integrator/collocation.hpp"
@@ -21,7 +20,7 @@ class Gauss {
 
     const StepCounts& counts() const { return counts_; }
 
-    // One step; false if the stages do not converge, the step being too large for that.
+    // One step; false if it is so large that the stages do not converge.
     bool advance(Point<N>& point, double h) {
         const std::array<double, S> hb = weights(h);
         StageVectors<N, S> stages = h == last_step_ ? foreseen(point) : constant(point);
@@ -56,7 +55,7 @@ class Gauss {
   private:
     using Coefficients = GaussCoefficients<S>;
 
-    // h b_j, the outer two such that their sum is h.
+    // h b_j; the outer two are chosen so that the sum is h.
     static std::array<double, S> weights(double h) {
         std::array<double, S> hb;
         double rest = h;
@@ -80,7 +79,7 @@ class Gauss {
         return stages;
     }
 
-    // The stages where the polynomial of the step before has them.
+    // First guess of the stages: the collocation polynomial of the previous step, extrapolated.
     StageVectors<N, S> foreseen(const Point<N>& point) const {
         StageVectors<N, S> stages;
         for (int i = 0; i < S; ++i) stages[i] = point.y + combination(Coefficients::nu[i]);
@@ -96,7 +95,7 @@ class Gauss {
     const System& f_;
     StepCounts counts_;
     StageVectors<N, S> increments_;
-    double last_step_ = 0.0;  // the step that `increments_` belong to
+    double last_step_ = 0.0;  // size of the step that filled `increments_`
 };
 
 }  // namespace rolling_ellipse

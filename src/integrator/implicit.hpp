@@ -1,4 +1,4 @@
-// What implicit methods share: when their iteration ends, and their dense output.
+// End of the iteration, and dense output, of implicit methods.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@ namespace rolling_ellipse {
 template <int N, int Stages>
 using StageVectors = std::array<Vector<N>, Stages>;
 
-// When to end an iteration that is carried to the last bit: once the changes of no component
-// shrink any more (M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861, 3.2).
+// Stopping criterion of an iteration to the last bit: no component has a shrinking change any more
+// (M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861, 3.2).
 template <int N, int Stages>
 class Stagnation {
   public:
@@ -20,8 +20,9 @@ class Stagnation {
         smallest_ = last_;
     }
 
-    // Take note of the changes of an iteration, and say whether they still shrink somewhere. Two in
-    // turn are taken together: in second-order equations small and large ones alternate.
+    // Record the changes of an iteration; true if some component still shrinks. The larger one of
+    // two successive changes counts, since in second-order equations large and small ones
+    // alternate.
     bool shrinks(const StageVectors<N, Stages>& changes) {
         bool shrinking = false;
         const bool first = std::isinf(last_[0][0]);
@@ -45,8 +46,8 @@ class Stagnation {
     // The largest of the last changes, relative to a size of each component.
     double left(const Vector<N>& size) const { return largest_.cwiseQuotient(size).maxCoeff(); }
 
-    // Whether the changes are as good as none: beside what they were at first, as an iteration that
-    // diverges from a tiny start has tiny changes, too, or beside the size itself.
+    // True if the last changes are negligible relative to the first ones or to the size. (An
+    // iteration that diverges from a tiny start has tiny changes, too.)
     bool settled(const Vector<N>& size) const {
         constexpr double share_of_first = 1e-6;
         constexpr double near_rounding = 1e-11;
@@ -61,12 +62,11 @@ class Stagnation {
     Vector<N> first_ = Vector<N>::Zero();
 };
 
-// An iteration is over when its changes have settled and do not shrink any more; it has failed when
-// they do not settle.
+// Limit of iterations. An iteration ends when its changes are settled and do not shrink any more.
 inline constexpr int most_iterations = 200;
 
-// Dense output of an implicit method, of its full order: the method itself, with a shorter step. A
-// step so large that its parts cannot be solved is known at its start only.
+// Dense output of an implicit method by a shorter step, hence of the full order. It stays at the
+// start of the step if the stages of the shorter step do not converge.
 template <class Method, class System>
 struct PartialStep {
     static constexpr int N = System::size;
@@ -76,7 +76,7 @@ struct PartialStep {
     Point<N> from;
     double h;
 
-    // y at the fraction s of the step less y at its start.
+    // y at the fraction s of the step, minus y at its start.
     Vector<N> change(double s) const {
         Point<N> point = from;
         if (!Method(f).advance(point, s * h)) return Vector<N>::Zero();

@@ -1,7 +1,7 @@
 // Radau IIA with three stages, order 5: implicit, L-stable, also for differential-algebraic systems
 // diag(mass) y' = f(t, y). E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, IV.8:
-// simplified Newton iteration in coordinates in which the stages fall apart into a real and a
-// complex system of the size of y.
+// simplified Newton iteration in coordinates that split the stages into a real and a complex
+// system, each of the size of y.
 #pragma once
 
 #include <complex>
@@ -22,7 +22,7 @@ class Radau {
 
     const StepCounts& counts() const { return counts_; }
 
-    // One step; false if the stages do not converge, the step being too large for that.
+    // One step; false if it is so large that the stages do not converge.
     bool advance(Point<N>& point, double h) {
         constexpr double rounding = 2 * epsilon;
         const std::complex<double> pair(C::alpha, C::beta);
@@ -38,7 +38,7 @@ class Radau {
         const LU<double, N> real(real_matrix);
         const LU<std::complex<double>, N> complex(complex_matrix);
 
-        StageVectors<N, 3> z;  // the stages less y
+        StageVectors<N, 3> z;  // the stages minus y
         StageVectors<N, 3> w;  // inverse_transform z
         z.fill(Vector<N>::Zero());
         w.fill(Vector<N>::Zero());

@@ -12,7 +12,7 @@
 
 namespace rolling_ellipse {
 
-// Rows of a tableau as types, so that coefficients that are zero cost nothing.
+// Rows of a tableau as types: terms with a zero coefficient are removed at compile time.
 template <class Tableau, int Row>
 struct StageRow {
     static constexpr const auto& weights = Tableau::a[Row];
@@ -26,7 +26,7 @@ struct DenseRow {
     static constexpr const auto& weights = Tableau::dense[Row];
 };
 
-// By components: as expressions of vectors they are not inlined.
+// Written by components, since Eigen's expressions of vectors are not inlined here.
 template <class Row, std::size_t J, class K, int N>
 [[gnu::always_inline]] inline void add_weighted(const K& k, Vector<N>& sum) {
     if constexpr (Row::weights[J] != 0.0) {
@@ -53,7 +53,7 @@ class ExplicitMethod {
     static constexpr int N = System::size;
     static constexpr bool controls_error = Tableau::error_estimates > 0;
     using Dense = DenseOutput<N, Tableau::dense_terms>;
-    // Whether a step of controlled error has all that its dense output needs.
+    // True if a step of controlled error computes every stage of its dense output.
     static constexpr bool keeps_dense =
         controls_error && Tableau::all_stages == Tableau::stages + 1;
 
@@ -61,7 +61,7 @@ class ExplicitMethod {
 
     const StepCounts& counts() const { return counts_; }
 
-    // One step of the given size; always possible.
+    // One step of the given size; always true.
     bool advance(Point<N>& point, double h) {
         evaluate<0, Tableau::stages>(point, h);
         add<N>(point, increment(h));
@@ -75,11 +75,11 @@ class ExplicitMethod {
         return dense_of_stages(h);
     }
 
-    // That of the last step of controlled error, where it is kept.
+    // The dense output of the last step of controlled error, if keeps_dense.
     const Dense& last_dense() const { return last_dense_; }
 
-    // Steps of controlled error up to t_end; `visit(point)` sees each new point and may change
-    // it. The elementary controller of HNW II.4, with the limits that SciPy takes.
+    // Steps of controlled error up to t_end; `visit(point)` is called with each new point and may
+    // change it. The elementary controller of HNW II.4 with SciPy's limits on the step's growth.
     template <class Visit>
     Ending integrate(Point<N> point, double t_end, const Tolerance& tolerance, long max_steps,
                      Visit visit) {
@@ -95,7 +95,7 @@ class ExplicitMethod {
                 const double smallest = 10 * (std::nextafter(point.t, infinity) - point.t);
                 if (!(h >= smallest)) return Ending::step_too_small;
                 const double t = std::min(point.t + h, t_end);
-                h = t - point.t;  // exactly the step that is taken
+                h = t - point.t;  // the step after rounding of t
                 evaluate<1, error_stages>(point, h);
                 Point<N> next = point;
                 add<N>(next, increment(h));
@@ -110,7 +110,7 @@ class ExplicitMethod {
                     h *= std::min(growth_limit, factor);
                     break;
                 }
-                h *= std::max(most_shrinking, factor);  // the most where the error is not a number
+                h *= std::max(most_shrinking, factor);  // the limit if the error is NaN
                 growth_limit = 1.0;
                 ++counts_.rejected;
             }
@@ -136,17 +136,18 @@ class ExplicitMethod {
         dense.terms[2] = 2 * change - h * (slope_before + slope_after);
         add_dense_terms(h, dense, std::make_index_sequence<Tableau::dense_terms>{});
         for (Vector<N>& term : dense.terms) {
-            // Where a stage overflows, nothing is known between the ends of the step.
+            // After an overflow in a stage the interpolant is unknown.
             if (!in_range<N>(term)) term.setZero();
         }
         return dense;
     }
 
-    // The stages that the error estimate needs: one pair uses the slope at the end, too.
+    // Number of stages in the error estimate: one pair includes f at the end of the step.
     static constexpr int error_stages =
         Tableau::stages + (Tableau::error[0][Tableau::stages] != 0.0 ? 1 : 0);
 
-    // What does not need the slope before, which comes last, is added up while that is computed.
+    // The sum over the earlier stages is independent of the last one, so that the processor can
+    // compute both at the same time.
     template <int Stage>
     [[gnu::always_inline]] void evaluate_stage(const Point<N>& from, double h) {
         Vector<N> change = from.carry;
@@ -182,7 +183,7 @@ class ExplicitMethod {
         ((dense.terms[3 + I] = h * weighted_sum<DenseRow<Tableau, I>>(k_)), ...);
     }
 
-    // What a relative and an absolute error allow, inverted; infinite where that is nothing.
+    // 1/(atol + rtol size); infinite where both are 0.
     static Vector<N> inverse_scale(const Tolerance& tolerance, const Vector<N>& size) {
         Vector<N> inverse;
         for (int i = 0; i < N; ++i) {
@@ -191,8 +192,8 @@ class ExplicitMethod {
         return inverse;
     }
 
-    // The mean square of v relative to the tolerance; a component without error counts as 0 even
-    // where the tolerance is 0.
+    // The mean square of v relative to the tolerance. A component of 0 counts as 0 even where the
+    // tolerance is 0.
     [[gnu::always_inline]] static double mean_square(const Vector<N>& v, const Vector<N>& inverse) {
         double sum = 0.0;
         for (int i = 0; i < N; ++i) {
@@ -201,7 +202,7 @@ class ExplicitMethod {
         return sum / N;
     }
 
-    // The square of the error relative to the tolerance, which spares roots.
+    // The square of the error relative to the tolerance; squared, it needs no root.
     [[gnu::always_inline]] double error_square(const Point<N>& before, const Point<N>& after,
                                                double h, const Tolerance& tolerance) const {
         Vector<N> size;
@@ -221,7 +222,7 @@ class ExplicitMethod {
 
     // HNW II.4: from the sizes of y, y' and y''.
     double starting_step(const Point<N>& point, double t_end, const Tolerance& tolerance) {
-        constexpr double longest = 1e300;  // where there is no end: infinity would not shrink
+        constexpr double longest = 1e300;  // in place of an infinite span, which cannot shrink
         const double span = std::min(t_end - point.t, longest);
         const Vector<N> size = (point.origin + point.y).cwiseAbs();
         const Vector<N> inverse = inverse_scale(tolerance, size);

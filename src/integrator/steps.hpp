@@ -1,19 +1,18 @@
-// A solution as the list of the points between its steps. What a step needs for its dense output is
-// kept where it is known without more evaluations, and else computed again when somebody looks into
-// it.
+// A solution as the list of the points between its steps. The dense output of a step is stored
+// where it needs no further evaluation of f; otherwise it is computed when the step is sampled.
 //
 // An integration method is a class of a System (see system.hpp) with
 //     static constexpr int N;                  // = System::size
 //     static constexpr bool controls_error;
 //     explicit Method(const System&);
 //     bool advance(Point<N>&, double h);       // one step; false if its stages have no solution
-//     Dense dense_output(const Point<N>& from, double h);  // .change(s), 0 <= s <= 1, since `from`
+//     Dense dense_output(const Point<N>& from, double h);  // .change(s) = y - from.y, 0 <= s <= 1
 //     const StepCounts& counts() const;
-// and, where it controls its error, for integration by its own steps,
+// and, if it controls its error,
 //     Ending integrate(Point<N>, double t_end, const Tolerance&, long max_steps, Visit);
 //     static constexpr bool keeps_dense;
-//     const Dense& last_dense() const;         // where it keeps it
-// It allocates nothing in a step, sums compensated (`add`), and knows nothing of ellipses.
+//     const Dense& last_dense() const;         // if keeps_dense
+// A step allocates no memory and adds increments by compensated summation (`add`).
 #pragma once
 
 #include <algorithm>
@@ -31,7 +30,7 @@ struct Knot {
     double t;
     Vector<N> y;
     Vector<N> carry;
-    double periods;  // taken off y, where f is periodic
+    double periods;  // of f, subtracted from y so far
 
     Point<N> point() const { return {t, y, carry, Vector<N>::Zero()}; }
 };
@@ -43,11 +42,12 @@ struct Steps {
     std::vector<DenseOutput<N, 1>> dense = {};  // of the first steps, where it is kept
 };
 
-// Steps whose dense output is kept, lest long runs take several times the memory.
+// Largest number of steps whose dense output is stored, a bound on the memory of long runs.
 inline constexpr std::size_t most_kept = std::size_t{1} << 17;
 
 // Integrate from the last knot to t_end. `after_step(point)` may change each new point;
-// `reduce(point)` takes periods off it, and says how many; `checkpoint()` is called now and then.
+// `reduce(point)` subtracts periods from it and returns their number; `checkpoint()` is called
+// every `steps_between_checks` steps.
 template <class Integrator, int N, class Rule, class Reduce, class Checkpoint>
 Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& tolerance,
                  long max_steps, double t_end, Rule after_step, Reduce reduce,
@@ -75,13 +75,13 @@ Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& toler
     return integrate_by_fixed_steps(integrator, start, steps.size, t_end, max_steps, visit);
 }
 
-// The step that a time falls into.
+// Finds the step that contains a time.
 template <int N>
 class StepFinder {
   public:
     explicit StepFinder(const Steps<N>& steps) : steps_(steps) {}
 
-    // Go to the step that holds t; true if it is another one than before.
+    // Move to the step that contains t; true if that is another step than before.
     bool move_to(double t) {
         const std::vector<Knot<N>>& knots = steps_.knots;
         if (step_ < knots.size() && knots[step_].t <= t &&
@@ -97,12 +97,12 @@ class StepFinder {
 
     const Knot<N>& knot() const { return steps_.knots[step_]; }
 
-    // The dense output of the step, or null where it is not kept.
+    // The dense output of the step, or null if it is not stored.
     const DenseOutput<N, 1>* dense() const {
         return step_ < steps_.dense.size() ? &steps_.dense[step_] : nullptr;
     }
 
-    // Time since the knot. Fixed steps lie at multiples that are not rounded.
+    // Time since the knot. A fixed step begins at the exact multiple of its size.
     double since_knot(double t) const {
         return steps_.size == 0 ? t - knot().t
                                 : std::fma(-static_cast<double>(step_), steps_.size, t);
@@ -118,8 +118,8 @@ class StepFinder {
     std::size_t step_ = static_cast<std::size_t>(-1);
 };
 
-// Show take(i, knot, change) for each of n times between the first and the last knot: the state is
-// that of the knot plus the change. Quickest where the times are sorted.
+// Call take(i, knot, change) for each of n times between the first and the last knot; the state is
+// the knot's plus the change. Fastest for sorted times.
 template <class Integrator, int N, class Take>
 void look(Integrator& integrator, const Steps<N>& steps, const double* times, std::size_t n,
           Take take) {
@@ -142,10 +142,10 @@ void look(Integrator& integrator, const Steps<N>& steps, const double* times, st
     }
 }
 
-// Show take(knot, change) knots, evenly from the first to the last one, and the middles of some of
-// the steps after them: a look at a knot costs less than three evaluations of f, one at a middle up
-// to two steps, both together about a twentieth of the integration. The dense output of implicit
-// methods is a step itself, and no worse than the steps: they are seen at knots.
+// Call take(knot, change) at evenly chosen knots and in the middles of some of the steps. A knot
+// costs less than three evaluations of f and a middle at most two steps, in all about a twentieth
+// of the integration. Implicit methods are examined at knots only, since their dense output is a
+// step of the same accuracy.
 template <class Integrator, int N, class Take>
 void survey(Integrator& integrator, const Steps<N>& steps, long evaluations, Take take) {
     constexpr std::size_t least_knots = 8;

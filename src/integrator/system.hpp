@@ -1,4 +1,5 @@
-// What all integrators share. They see a system y' = f(t, y), or diag(mass) y' = f(t, y),
+// Points, tolerances and endings, common to all integrators. An integrator is given a system
+// y' = f(t, y), or diag(mass) y' = f(t, y), as a class
 //     struct System {
 //         static constexpr int size;
 //         Vector<size> operator()(double t, const Vector<size>& y) const;
@@ -6,8 +7,7 @@
 //         Vector<size> mass() const;                                      // for Radau
 //         Vector<size> typical() const;  // sizes of an ordinary state, for implicit methods
 //     };
-// and know nothing of what it describes. Nothing is allocated in a step; a step that cannot be
-// done is a status.
+// A step allocates no memory; a step that fails returns a status.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,9 +24,9 @@ using Vector = Eigen::Matrix<double, N, 1>;
 template <int N>
 using Matrix = Eigen::Matrix<double, N, N>;
 
-// A point of a solution, origin + y + carry at time t. The carry is what rounding has taken from y
-// (compensated summation). The origin is what the caller has taken off y because f is periodic; it
-// counts in the size of the state, that is in the scale of a relative error.
+// A point of a solution, origin + y + carry at time t. The carry is the sum of the rounding errors
+// of y (compensated summation). The origin is a multiple of the period of f, subtracted from y by
+// the caller; relative errors are measured against origin + y.
 template <int N>
 struct Point {
     double t;
@@ -35,7 +35,7 @@ struct Point {
     Vector<N> origin = Vector<N>::Zero();
 };
 
-// y + carry + increment, the rounding kept.
+// Add an increment to y + carry; the rounding error stays in the carry.
 template <int N>
 void add(Point<N>& point, const Vector<N>& increment) {
     for (int i = 0; i < N; ++i) {
@@ -45,7 +45,7 @@ void add(Point<N>& point, const Vector<N>& increment) {
     }
 }
 
-// How often long work calls its checkpoint: after 10 us of the cheapest steps, 4 ms of the dearest.
+// Steps between two calls of the checkpoint: 10 us of the cheapest steps, 4 ms of the slowest.
 inline constexpr std::size_t steps_between_checks = 64;
 
 struct Tolerance {
@@ -53,7 +53,7 @@ struct Tolerance {
     double absolute;
 };
 
-// Whether no component is larger than a state may be.
+// True if every component is at most `largest_number`.
 template <int N>
 bool in_range(const Vector<N>& y) {
     return (y.array().abs() <= largest_number).all();
@@ -65,19 +65,19 @@ struct StepCounts {
     long evaluations = 0;  // of f
 };
 
-// What is to happen after a step: nothing, or f to be evaluated anew.
+// Return value of a visitor: `changed` if it altered the point, so that f must be evaluated again.
 enum class AfterStep { go_on, changed };
 
-// How a motion ended. An integrator comes to the last time, or to a step that it may not or cannot
-// take; the rest is said of whole motions.
+// Reason for the end of a motion. Integrators return the first four; the others belong to whole
+// motions.
 enum class Ending {
     completed,
     max_steps,
     step_too_small,  // the tolerance cannot be met
     step_too_large,  // a fixed step: stages without a solution, or a state out of range
     max_events,
-    jammed,        // a slide goes on in no way
-    undetermined,  // a slide goes on in two ways
+    jammed,        // a slide has no continuation
+    undetermined,  // a slide has two continuations
     validity_lost
 };
 
@@ -90,13 +90,13 @@ struct Integration {
     StepCounts counts = {};
 };
 
-// Steps of one size up to t_end, the last one shorter. `method.advance(point, h)` takes all of the
-// point but its time on by h, and says whether it could; `visit(point)` sees each new point and may
-// change it. Times are not summed, so that no rounding collects.
+// Steps of one size up to t_end; the last one is shorter. `method.advance(point, h)` updates the
+// point except its time and returns false if the step fails; `visit(point)` is called with each new
+// point and may change it. Times are multiples of the step, so that rounding does not accumulate.
 template <class Method, int N, class Visit>
 Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, double t_end,
                                 long max_steps, Visit visit) {
-    constexpr double no_step = 1e-10;  // of a step: a last one so short is rounding of the times
+    constexpr double no_step = 1e-10;  // share of a step: a shorter last step is rounding of times
     const double start = point.t;
     for (long n = 0; point.t < t_end; ++n) {
         if (n == max_steps) return Ending::max_steps;

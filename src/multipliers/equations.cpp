@@ -55,7 +55,7 @@ ConstrainedBody::ConstrainedBody(const Scene& scene)
       gravity_(scene.ground_gravity()),
       length_(std::max(scene.a, scene.b)) {}
 
-// Angles are measured as lengths, so that pivots compare like with like; f4 is always the last row.
+// Angles are scaled to lengths, so that pivots are comparable; f4 is always the last row.
 template <int Rows>
 ConstrainedBody::Saddle<Rows> ConstrainedBody::solve_saddle(
     const Eigen::Matrix<double, Rows, 5>& a, const Coordinates& force,
@@ -104,10 +104,10 @@ double ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
     return missed;
 }
 
-// Along the rolling direction the energy changes by D (omega domega - pull dtheta), pull the part
-// of the force in it over D, for a velocity that is projected with its kinetic energy; the
-// correction is the least in domega^2 + (g/L) dtheta^2, which is regular at turning points, too.
-// Newton's method, until the excess stops shrinking.
+// Newton's method along the rolling direction, until the energy in excess stops shrinking. There
+// the energy changes by D (omega domega - pull dtheta), where `pull` is the component of the force
+// over D. The correction is the least one in domega^2 + (g/L) dtheta^2, regular at turning points,
+// too.
 double ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy) const {
     constexpr int most_iterations = 20;
     const double rate2 = root_of_squares(gravity_.into, gravity_.along) / length_;
@@ -134,9 +134,9 @@ double ConstrainedBody::as_length(const Eigen::Vector3d& residuals) const {
     return residuals.cwiseProduct(Eigen::Vector3d{1.0, 1.0, length_}).cwiseAbs().maxCoeff();
 }
 
-// Newton's method; where rounding is reached the residuals stop shrinking. What psi and r are makes
-// no difference, as they have no mass: far off they follow from theta first, lest their digits take
-// the place of its own.
+// Newton's method, until the residuals stop shrinking. psi and r have no mass, so that their values
+// are free: if they are far off they are first computed from theta, which keeps the digits of
+// theta.
 double ConstrainedBody::project_position(Coordinates& q) const {
     constexpr int most_iterations = 20;
     const double missed = largest_residual(q);

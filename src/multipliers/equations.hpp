@@ -2,7 +2,8 @@
 // Lagrange multipliers, from its Lagrangian (eqs 11-15), physics (21):
 //     M q_ddot = Q + A^T lambda,   A q_dot = 0,
 //     M = diag(m, m, I, 0, 0),     Q = (m g sin, -m g cos, 0, 0, 0)
-// with the slope in Q. M is singular in psi and r (eqs 19, 20); with A it is not.
+// with the slope in Q. M is singular in psi and r (eqs 19, 20); the saddle matrix with A is
+// regular.
 #pragma once
 
 #include "geometry/constraints.hpp"
@@ -19,7 +20,7 @@ struct MultiplierSolution {
 // The coordinates of a body in any mode: psi and r belong to its lowest point.
 CoordinateState coordinate_state(const Axes& axes, const State& state);
 
-// What follows from a state and the force on its contact, by Newton's and Euler's laws.
+// Accelerations and multipliers from a state and its contact force, by Newton's and Euler's laws.
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force);
 
@@ -41,14 +42,14 @@ class ConstrainedBody {
     Coordinates specific_mass() const { return {1.0, 1.0, gyration2_, 0.0, 0.0}; }
     Coordinates specific_force() const { return {gravity_.along, -gravity_.into, 0.0, 0.0, 0.0}; }
 
-    // The largest of |f2|, |f3| over the long semi-axis, and |f4|.
+    // max(|f2|/L, |f3|/L, |f4|) with the long semi-axis L.
     double largest_residual(const Coordinates& q) const;
 
-    // The nearest state, in the kinetic metric, that meets the constraints; returns the largest
-    // residual before.
+    // Project a state to the nearest one, in the kinetic metric, that meets the constraints;
+    // returns the largest residual before.
     double project(Coordinates& q, Coordinates& q_dot) const;
 
-    // The same, with the given energy per mass.
+    // The same, and the state has the given energy per mass afterwards.
     double project(Coordinates& q, Coordinates& q_dot, double energy) const;
 
   private:
@@ -71,7 +72,7 @@ class ConstrainedBody {
     double mass_;
     double gyration2_;
     GroundGravity gravity_;
-    double length_;  // unit of length, in which angles and displacements weigh the same
+    double length_;  // unit of length that makes angles and displacements comparable
 };
 
 }  // namespace rolling_ellipse

@@ -10,7 +10,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// One step of y' = z y from y = 1, in steps of 1.
+// The result of one step of size 1 of y' = z y from y = 1.
 template <class Tableau>
 std::complex<double> stability_function(std::complex<double> z) {
     std::array<std::complex<double>, Tableau::stages> slopes;

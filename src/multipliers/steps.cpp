@@ -61,7 +61,8 @@ struct IndexTwo {
         return typical;
     }
 
-    // Differences by q, which a simplified Newton iteration can do with; the rest is linear.
+    // Finite differences by q, accurate enough for a simplified Newton iteration; the rest is
+    // linear.
     Matrix<17> jacobian(double t, const Vector<17>& y) const {
         const Axes& axes = motion.body.axes();
         const double length = std::fmax(axes.a, axes.b);
@@ -82,7 +83,7 @@ struct IndexTwo {
     }
 };
 
-// Call action with the integrator of a motion and its steps.
+// Call action(integrator, steps) with the integrator and the steps of a motion.
 template <class Motion, class Action>
 void with_integrator(Motion& motion, Action action) {
     if (auto* steps = std::get_if<Steps<17>>(&motion.steps)) {
@@ -127,7 +128,7 @@ bool projects(Stabilization stabilization) {
            stabilization == Stabilization::projection_energy;
 }
 
-// Project a state as the stabilization asks for it; returns by how much it missed the constraints.
+// Project a state by the stabilization in force; returns the largest residual before.
 double project(const SteppedMultipliers& motion, Coordinates& q, Coordinates& q_dot) {
     if (motion.settings.stabilization == Stabilization::projection_energy) {
         return motion.body.project(q, q_dot, motion.specific_energy);
@@ -160,7 +161,7 @@ double reduce(Point<N>& point) {
     return half_turns;
 }
 
-// The state at a knot or between two, its angles without the half turns of the knot.
+// The state at a knot plus a change, its angles without the half turns of the knot.
 template <int N>
 CoordinateState state_at(const SteppedMultipliers& motion, const Knot<N>& knot,
                          const Vector<N>& change) {

@@ -14,21 +14,21 @@ struct CoordinateStart {
     CoordinateState state;
     double x;
     DoubleDouble angle_base;
-    bool rests = false;  // for ever
+    bool rests = false;  // true for a body at rest for ever
 };
 
 struct SteppedMultipliers {
     ConstrainedBody body;
     Settings settings;
     double specific_energy;   // of the start [J/kg]
-    double x_base;            // x at the start: the motion is the same wherever x = 0 is
-    DoubleDouble angle_base;  // angle at which half turns and rest are 0
-    // (q, q_dot); of the index-2 system, then lambda per mass and the multipliers of the positions.
+    double x_base;            // x at the start, from which x is integrated
+    DoubleDouble angle_base;  // angle of the start, from which half turns are counted
+    // y = (q, q_dot); the index-2 system appends lambda per mass and the position multipliers.
     std::variant<Steps<10>, Steps<17>> steps;
     double most_projected = 0.0;  // largest residual of a step before its projection
 };
 
-// The start of a body that rolls, and that from any coordinates and velocities.
+// The start of a rolling body, and the start from any coordinates and velocities.
 CoordinateStart coordinate_start(const Scene& scene, const State& start);
 CoordinateStart coordinate_start(const CoordinateState& state);
 
@@ -41,10 +41,11 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples);
 
-// Energies and constraints along the motion, which has taken so many evaluations.
+// Energies and constraint residuals along the motion, at a twentieth of the cost of its
+// evaluations.
 std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations);
 
-// Accelerations and multipliers of a state, with Baumgarte's feedback where it is asked for.
+// Accelerations and multipliers of a state, with Baumgarte's feedback if the settings ask for it.
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
                                  const CoordinateState& state);
 
