@@ -8,10 +8,9 @@
 namespace rolling_ellipse {
 namespace {
 
-// A climb of fewer half turns is followed by series.
+// Least number of half turns of a climb that is computed as a sum.
 constexpr double least_climb = 16;
-// Half turns that are followed by series before a sum over them: it is worth its preparation then,
-// and a shorter way loses digits in it.
+// Half turns computed by series before a sum takes over. A sum over less would lose digits.
 constexpr double half_turns_before_a_run = 1;
 
 SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega) {
@@ -42,7 +41,7 @@ double known_until(const SlopeFlow& flow) {
     return flow.pieces.empty() ? 0.0 : flow.pieces.back().end();
 }
 
-// Where the series begin: at the start, or at the top of a climb.
+// The place at which the series begin: the start, or the end of a climb's sum.
 SlopePlace begin(SlopeFlow& flow) {
     const SlopePlace& start = flow.start;
     if (start.omega == 0) flow.turnings.push_back(start.time);
@@ -79,7 +78,7 @@ SlopePlace place_in_pieces(const std::vector<SlopePiece>& pieces, DoubleDouble t
     return place_in(piece, double(time - piece.from.time));
 }
 
-// The way back from the first turning point to where the pieces began is a mirror image.
+// Between the first turning point and the mirrored start the motion is read backwards.
 SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
     if (!flow.turnings.empty()) {
         const DoubleDouble turning = flow.turnings.front();
@@ -94,8 +93,8 @@ SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
     return place_in_pieces(flow.pieces, time);
 }
 
-// The next piece begins where the last one ends, and after a turning point at the first place,
-// reversed: next to the rim of a well no series would come back to it.
+// The next piece begins at the end of the last one; after a turning point it begins at the reversed
+// start, which series beside the rim of a well would miss.
 SlopePlace next_place(const SlopeFlow& flow) {
     const SlopePiece& last = flow.pieces.back();
     const bool turned =
@@ -107,7 +106,7 @@ SlopePlace next_place(const SlopeFlow& flow) {
     return place;
 }
 
-// A swing is symmetric about both of its turning points.
+// Rocking is symmetric about both of its turning points.
 SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
     const DoubleDouble first = flow.turnings[0];
     const DoubleDouble last = flow.turnings[1];
@@ -122,7 +121,7 @@ SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
     return place;
 }
 
-// The places of a motion that moves.
+// Reads places of a moving body; keeps the readers of its sums from time to time.
 class SlopeReader {
   public:
     explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
@@ -168,7 +167,7 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
         const double radius = flow.body.long_axis;
         flow.acceleration =
             flow.body.gravity.along * radius / (flow.body.gyration2 + square(radius));
-        const bool moves = omega != 0 || flow.acceleration > 0;  // which may be below the doubles
+        const bool moves = omega != 0 || flow.acceleration > 0;  // may underflow to 0
         flow.kind = moves ? MotionKind::uniform : MotionKind::rest;
     }
     return flow;

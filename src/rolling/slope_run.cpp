@@ -20,7 +20,7 @@ double remainder(double level, double gain) {
     return ratio / std::sqrt(level) * series;
 }
 
-// The first terms of the sum of (W + j w)^(-1/2), up to where the others are known in one.
+// Sum up terms (W + j w)^(-1/2) until the level is high enough for the asymptotic formula.
 FirstRates first_rates(double level, double gain) {
     FirstRates first{};
     while (level < asymptotic_from * gain) {
@@ -53,11 +53,11 @@ double sum_of_rates(double level, const FirstRates& first, double gain, double n
 struct Centre {
     double quarters;
     double angle;
-    double grade_angle;  // how far beside it the integrand is singular
+    double grade_angle;  // imaginary part of the nearest singularity of the integrand
     double at() const { return quarters * half_pi + angle; }
 };
 
-// No singularity is closer to a part than pi/2, five times half of one.
+// Widest part of a panel in v. Singularities are pi/2 or more away, five times half of that width.
 constexpr double widest_part = 0.6;
 
 // The angle from the centre of a panel at v, and its derivative.
@@ -72,7 +72,7 @@ Offset offset_at(const RunPanel& panel, double v) {
             panel.scale * std::sqrt(square(tan) + square(panel.grade)) / (1 + square(tan))};
 }
 
-// W less that at `from`.
+// W at a place minus W at `from`, without the gain of whole half turns.
 double gained(const SlopeRun& run, double quarters, double angle, const Geometry& here) {
     return run.body.gravity.along * (path_at(run.body, quarters, angle) - run.path) +
            run.body.gravity.into * fall(run.body, run.at, here).value;
@@ -91,7 +91,7 @@ class RunMaker {
         run_.path = path_at(body, from.quarters - run_.turns, double(from.angle));
         run_.at = geometry(body, from);
         const double lost = run_.heading < 0 ? (half_turns - 1) * body.gain : 0.0;
-        // Where W is least: beyond the well, or the tip if there is none.
+        // W is least at the unstable equilibrium, or at the tip if there is no equilibrium.
         const double hill = body.equilibria ? body.equilibria->upright : 0.0;
         const Geometry top = geometry(body, 1.0, hill);
         const double curvature = body.gravity.along * top.dh - body.gravity.into * top.ddh;
@@ -181,7 +181,7 @@ class RunMaker {
 }  // namespace
 
 double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega) {
-    // As a product: the height of one that is nearly a circle would be a rounding.
+    // The height of the tip as a product, exact for nearly round bodies, too.
     const double to_tip = body.c2 * square(at.cos) / (at.h + body.long_axis);
     const double above = energy - body.gravity.into * to_tip;
     const double levels = above / body.gain - least_levels;

@@ -6,14 +6,14 @@
 namespace rolling_ellipse {
 namespace {
 
-// Half turns that take about so long: as if D and W were the same everywhere.
+// First guess of the number of half turns in a time, as if D and W were constant.
 double guess(const SlopeRun& run, double time) {
     const double speed = run.mass / run.half_turn;  // sqrt(W)
     const double change = run.heading * run.body.gain * time / (4 * run.mass);
     return std::max(std::floor(time / run.mass * (speed + change)), 0.0);
 }
 
-// The integrand of a part by Legendre polynomials, from the times that belong to its nodes.
+// Legendre coefficients of the integrand of a part, from the times at its nodes.
 PartSeries part_series(const double* times) {
     constexpr int n = part_order;
     std::array<double, n> nodes, before, now;
@@ -38,7 +38,7 @@ PartSeries part_series(const double* times) {
     return coefficients;
 }
 
-// The place in a part, -1 .. 1, at a time after its begin.
+// The place in a part, -1 ... 1, at a time since its beginning: Newton's method with bisection.
 double place_in_part(const PartSeries& coefficients, double time) {
     constexpr int most_tries = 60;
     constexpr double converged = 1e-9;  // Newton's method squares it
@@ -68,7 +68,7 @@ double place_in_part(const PartSeries& coefficients, double time) {
     return x;
 }
 
-// The times that belong to nodes, after so many half turns; returns their sum.
+// The times of nodes [begin, end) in the half turn after the first `half_turns`; returns their sum.
 double times_of(const SlopeRun& run, const RunNodes& nodes, std::size_t begin, std::size_t end,
                 double half_turns, double* times) {
     const double change = run.heading * half_turns * run.body.gain;
@@ -97,13 +97,14 @@ SlopePlace RunReader::operator()(DoubleDouble time) {
     return place;
 }
 
-// Of the half turn that is known: no other one would be found for it, whatever was asked before.
+// The current half turn is reused only well inside it, so that the answer does not depend on
+// earlier calls.
 bool RunReader::is_well_within(double rest) const {
-    constexpr double margin = 1e-9;  // far beyond rounding
+    constexpr double margin = 1e-9;  // many times the rounding of a time
     return rest > margin * lasts_ && rest < (1 - margin) * lasts_;
 }
 
-// To the half turn of a time since the begin of the run; what is over.
+// Make the half turn that contains a time since `from` the current one; returns the time in it.
 double RunReader::move_to(DoubleDouble since) {
     constexpr int most_tries = 20;
     const double last = run_.half_turns - 1;
@@ -141,7 +142,7 @@ double RunReader::times_in(std::size_t part, double* times) const {
     return times_of(run_, run_.part_nodes, begin, begin + part_order, half_turns_, times);
 }
 
-// At a time after the upper end of the half turn.
+// The place at a time since the upper end of the half turn.
 SlopePlace RunReader::place_at(double rest) {
     std::size_t i = 0;
     for (; i + 1 < run_.panels.size() && rest > panel_time(i); ++i) rest -= panel_time(i);

@@ -1,4 +1,4 @@
-// The places of a run at many times.
+// Places of a run at given times.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace rolling_ellipse {
 
-// The integrand of a part by Legendre polynomials.
+// Legendre coefficients of the integrand of a part.
 using PartSeries = std::array<double, part_order>;
 
-// The places at times of the motion after `from`. What is found out of a half turn is kept for the
-// next times in it, and changes no bit of them.
+// Reads places at times after `from`. Integrals over the current half turn are kept for the next
+// times in it; the bits of an answer do not depend on earlier calls.
 class RunReader {
   public:
     explicit RunReader(const SlopeRun& run);
@@ -30,9 +30,9 @@ class RunReader {
     static constexpr double unknown = -1.0;
 
     const SlopeRun& run_;
-    double half_turns_ = 0.0;  // before the one that is known
-    DoubleDouble begin_;       // its time since that of the run
-    double lasts_ = 0.0;       // 0 where none is known yet
+    double half_turns_ = 0.0;  // number before the current half turn
+    DoubleDouble begin_;       // time of the current half turn since `from`
+    double lasts_ = 0.0;       // its duration; 0 before the first call
     std::vector<double> panel_times_;
     std::vector<double> part_times_;
     std::size_t part_ = 0;

@@ -5,18 +5,18 @@ namespace rolling_ellipse {
 // Physics (18) with D h^2 = d0 + d1 sin^2 phi, u = h^2 and p = h h' = c2 sin phi cos phi:
 //     omega' u (d0 + d1 sin^2 phi) = u h (g_along u - g_into p) - L^2 S^2 p omega^2
 //     u' = 2 p omega,   p' = q omega,   q' = -4 p omega
-// Near an equilibrium g_along u - g_into p is a small difference: the caller knows its first
-// coefficient with all digits, and the others do not cancel.
+// Near an equilibrium the first coefficient of g_along u - g_into p is a small difference, which
+// the caller computes with all its digits (`drive`); the later coefficients do not cancel.
 SlopeSeries slope_series(const SlopeConstants& body, double sin, double cos, double omega,
                          double drive) {
     SlopeSeries motion;
     auto& [angle, w, path, h] = motion;
-    // Side by side: what is multiplied at once.
+    // Pairs of series that are multiplied at the same time.
     TwoSeries p_q, w_w;           // the rates of u and p
     TwoSeries u_u, inertia_h;     // the mass u D h^2, u h
     TwoSeries w_h;                // omega^2, h^2
-    TwoSeries p_uh, load_drive;   // what omega drives, what gravity drives
-    TwoSeries mass_h, turning_w;  // that over the mass; the rate of the path
+    TwoSeries p_uh, load_drive;   // their products: the terms of omega and of gravity
+    TwoSeries mass_h, turning_w;  // factors of omega' u D h^2 and of the path's rate h omega
     const double centrifugal = -body.long_axis2 * body.short_axis2;
     const double sin2 = square(sin);
     const double u0 = body.short_axis2 + body.c2 * sin2;
