@@ -6,8 +6,7 @@
 //   the reversed start at twice the time of the first turning point;
 // * a body that rocks between two turning points repeats the series up to the second one;
 // * a climb of many half turns is one sum (`climb`) except for its first half turn (`foot`), and
-// the
-//   series continue near its top;
+//   the series continue near its top;
 // * a body that runs downhill for good is one sum (`run`) after its first half turn.
 #pragma once
 

@@ -16,8 +16,7 @@
 
 namespace rolling_ellipse {
 
-// The Gauss rule of the parts of panels; in a part the integrand is the polynomial through its
-// nodes.
+// Gauss rule of a part of a panel, where the integrand is the polynomial through its nodes.
 inline constexpr int part_order = 16;
 inline const GaussRule& part_rule() { return gauss_rule(part_order); }
 
@@ -76,8 +75,7 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
 // Largest number of half turns; the phase of more is lost in the rounding of their number.
 inline constexpr double most_half_turns = 1e15;
 
-// Number of half turns from a place, in its direction, during which W stays large enough relative
-// to w for the sum.
+// Half turns from a place, in its direction, during which W is large enough beside w for the sum.
 double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega);
 
 // Time of n half turns.
