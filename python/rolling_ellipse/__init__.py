@@ -10,31 +10,19 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
 from . import geometry, scenes
-from ._constraints import ConstraintResiduals, constraints, kinematics
+from ._ask.categories import CompletenessWarning, StabilityWarning, ValidityWarning
+from ._ask.impulse import Impulse
+from ._ask.scene import InitialState, Scene
 from ._core import EventKind, Mode, Outcome, Validity
-from ._events import Event
-from ._impulse import Impulse
-from ._scene import InitialState, Scene
-from ._simulate import simulate
-from ._status import (
-    CompletenessWarning,
-    IntegrationError,
-    StabilityWarning,
-    Status,
-    ValidityWarning,
-    WorkerError,
-)
-from ._trajectory import Trajectory, load
+from ._motion.constraints import ConstraintResiduals, constraints, kinematics
+from ._motion.events import Event
+from ._motion.status import IntegrationError, Status, WorkerError
+from ._motion.trajectory import Trajectory, load
+from ._verbs.simulate import simulate
 
 if _TYPE_CHECKING:
     from . import impacts, report
-    from ._at import Sample
-    from ._batches import load_many, simulate_many
-    from ._blow_to import blow_to
-    from ._blows import outcome, required_friction
-    from ._certify import Certificate, certify
-    from ._flow import flow, period
-    from ._outcome import Thresholds, classify, thresholds
+    from ._motion.instant import Sample
     from ._pictures import (
         animate,
         plot,
@@ -48,7 +36,13 @@ if _TYPE_CHECKING:
         plot_strobe,
     )
     from ._player import Explorer, explore
-    from ._work_precision import WorkPrecision, work_precision
+    from ._verbs.batches import load_many, simulate_many
+    from ._verbs.blow_to import blow_to
+    from ._verbs.certify import Certificate, certify
+    from ._verbs.classify import Thresholds, classify, thresholds
+    from ._verbs.flow import flow, period
+    from ._verbs.outcome import outcome, required_friction
+    from ._verbs.work_precision import WorkPrecision, work_precision
 
     __version__: str
 
@@ -65,13 +59,24 @@ __all__ = [
 
 
 _PLACES = {
-    "Sample": "._at", "blow_to": "._blow_to", "load_many": "._batches",
-    "simulate_many": "._batches", "outcome": "._blows", "required_friction": "._blows",
-    "Certificate": "._certify", "certify": "._certify", "flow": "._flow", "period": "._flow",
-    "Thresholds": "._outcome", "classify": "._outcome", "thresholds": "._outcome",
-    "Explorer": "._player", "explore": "._player", "WorkPrecision": "._work_precision",
-    "work_precision": "._work_precision",
-}  # fmt: skip
+    "Sample": "._motion.instant",
+    "blow_to": "._verbs.blow_to",
+    "load_many": "._verbs.batches",
+    "simulate_many": "._verbs.batches",
+    "outcome": "._verbs.outcome",
+    "required_friction": "._verbs.outcome",
+    "Certificate": "._verbs.certify",
+    "certify": "._verbs.certify",
+    "flow": "._verbs.flow",
+    "period": "._verbs.flow",
+    "Thresholds": "._verbs.classify",
+    "classify": "._verbs.classify",
+    "thresholds": "._verbs.classify",
+    "Explorer": "._player",
+    "explore": "._player",
+    "WorkPrecision": "._verbs.work_precision",
+    "work_precision": "._verbs.work_precision",
+}
 
 
 def __getattr__(name: str) -> _Any:

@@ -36,12 +36,8 @@ FOLDERS = (
 # The same of the package: a module imports only those before it ("" is the package itself); what is
 # slow to load, pictures above all, may be imported where it is needed.
 MODULES = (
-    "_core", "_fields", "_quantities", "_check", "_samples", "_faces", "geometry", "_constraints",
-    "_status", "_impulse", "_start_words", "_scene", "scenes", "_settings", "_events",
-    "_when", "_at", "_trajectory", "_stability", "_simulate",
-    "_workers", "_flow", "_certify", "_outcome", "_blows", "_blow_to", "_errors", "_export",
-    "_batches", "_work_precision", "impacts", "report", "_pictures", "_player", "", "_command",
-    "__main__",
+    "_core", "_ask", "geometry", "scenes", "_motion", "_verbs", "impacts", "report", "_pictures",
+    "_player", "_show", "", "__main__",
 )  # fmt: skip
 COMPLEX_PRODUCTS = """
 void one(const double* x, const double* y, double* z) {

@@ -14,9 +14,9 @@ from .poster import positions, poster
 from .tracks import track
 
 if TYPE_CHECKING:
+    from .._ask.scene import Scene
+    from .._motion.trajectory import Trajectory
     from .._pictures.animation import RollingAnimation
-    from .._scene import Scene
-    from .._trajectory import Trajectory
 
 _PIXEL = 2.5e-5  # of the width of the view: a twentieth of a pixel where it is 2000 pixels wide
 _HEAD, _FOOT = 0.035, 0.035  # room for a line of text above, and for the ruler, over the width

@@ -15,8 +15,8 @@ from matplotlib.animation import AbstractMovieWriter, FuncAnimation, writers
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
-from ..._check import choice, file_name, flag, shown, whole
-from ..._export.atomic import replacing
+from ..._ask.check import choice, file_name, flag, shown, whole
+from ..._motion.export.atomic import replacing
 from ..alone import Alone, with_settings
 from ..palette import palette_of
 from .camera import cameras
@@ -26,7 +26,7 @@ from .strip import Strip
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
 
-    from ..._trajectory import Trajectory
+    from ..._motion.trajectory import Trajectory
     from .pace import Pace
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
