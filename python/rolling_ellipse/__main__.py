@@ -16,8 +16,8 @@ from matplotlib import rcParams
 
 from . import Status, Trajectory, simulate
 from ._motion.export.atomic import replacing
-from ._pictures.animation import animate
 from ._pictures.animation.movies import movie_writer
+from ._player import animate
 from ._show.command.explore import explore
 from ._show.command.options import (
     PROGRAM,

@@ -15,7 +15,7 @@ from .._ask.scene import InitialState, Scene
 from .._core import EventKind, Mode
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
+    from .export import event_table
 
 _STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot", "mode")
 _numbers = attrgetter(*_STATE[:-1])
@@ -112,21 +112,8 @@ class Events(tuple[Event, ...]):
     def _repr_html_(self) -> str:
         return html_table(self._caption(), self._shown(), _HEAD)
 
-    def to_dataframe(self) -> DataFrame:
-        """Return a pandas DataFrame with a row for each event.
-
-        Columns are t, kind, the states as ``theta_before``, ``theta_after`` and so on, the
-        reaction impulses, the energy lost and the reason. ``attrs["units"]`` has the units by
-        column.
-
-        Raises
-        ------
-        ImportError
-            Without pandas: it comes with ``rolling_ellipse[data]``.
-        """
-        from .export.tables import events_dataframe
-
-        return events_dataframe(self)
+    if TYPE_CHECKING:  # bound by `_show.methods`
+        to_dataframe = event_table.to_dataframe
 
 
 def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:

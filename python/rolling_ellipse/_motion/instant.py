@@ -54,8 +54,14 @@ class Sample:
     mode: Mode
 
 
-def sample_at(motion: Trajectory, t: float) -> Sample:
-    """Return a motion at one time."""
+def at(motion: Trajectory, t: float) -> Sample:
+    """Return the state at time t [s] in plain floats.
+
+    Raises
+    ------
+    ValueError
+        If t is outside of [0, t_end].
+    """
     found = motion.sol(number("t", t))
     names = [field.name for field in fields(Sample) if field.name != "mode"]
     values = {name: float(getattr(found, name)[0]) for name in names}

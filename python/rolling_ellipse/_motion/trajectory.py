@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
-from typing import TYPE_CHECKING, Any, TypeVar, overload
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -32,10 +31,8 @@ from .samples import (
 from .status import COMPLETED, STATUSES, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from pandas import DataFrame
-    from xarray import Dataset
+    import os
+    from typing import Self
 
     from .._pictures.animation import RollingAnimation
     from .._pictures.constraints import Constraints
@@ -46,7 +43,11 @@ if TYPE_CHECKING:
     from .._pictures.paths import Paths
     from .._pictures.phase import Phase
     from .._pictures.strobe import Strobe
-    from .instant import Sample
+    from .._show import notebook
+    from . import instant, passages
+    from .export import files, tables
+
+    _Path = str | os.PathLike[str]
 
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
@@ -344,221 +345,24 @@ class Trajectory(FieldsOnly):
             {**self.scene.__getstate__(), **state, **_placement(at), "impulse": None}
         )
 
-    def at(self, t: float) -> Sample:
-        """Return the state at time t [s] in plain floats.
+    # -- methods of other modules, which `_show.methods` binds -------------------------------------
 
-        Raises
-        ------
-        ValueError
-            If t is outside of [0, t_end].
-        """
-        from .instant import sample_at
+    if TYPE_CHECKING:
+        at, when = instant.at, passages.when
+        save, to_dataframe, to_xarray = files.save, tables.to_dataframe, tables.to_xarray
+        _repr_html_ = notebook._repr_html_
 
-        return sample_at(self, t)
-
-    @overload
-    def when(
-        self,
-        *,
-        theta: float | None = None,
-        x: float | None = None,
-        z: float | None = None,
-        omega: float | None = None,
-        contact_x: float | None = None,
-        function: Callable[[Trajectory], Any] | None = None,
-        direction: int = 0,
-    ) -> FloatArray: ...
-
-    @overload
-    def when(
-        self,
-        *,
-        theta: Sequence[float] | FloatArray | None = None,
-        x: Sequence[float] | FloatArray | None = None,
-        z: Sequence[float] | FloatArray | None = None,
-        omega: Sequence[float] | FloatArray | None = None,
-        contact_x: Sequence[float] | FloatArray | None = None,
-        direction: int = 0,
-    ) -> list[FloatArray]: ...
-
-    def when(
-        self,
-        *,
-        theta: Any = None,
-        x: Any = None,
-        z: Any = None,
-        omega: Any = None,
-        contact_x: Any = None,
-        function: Callable[[Trajectory], Any] | None = None,
-        direction: int = 0,
-    ) -> FloatArray | list[FloatArray]:
-        """Return all times in [0, t_end] at which the motion passes a value.
-
-        They are those of the motion, to the last bits, and not of its samples. None is missed where
-        the turning points of the quantity are known: of exact rolling all five quantities have them
-        in closed form; of steps, slides and flight they are those of polynomials of degree 8 that
-        meet the quantity to 1000 ulp, found by their Bernstein coefficients. Where none does, there
-        is a `CompletenessWarning`, and for each `function`: that is looked at 16 times a step and
-        64 times a quarter turn.
-
-        A jump of omega across the value counts, at the event. A value that is only touched, as at a
-        turning point, or that the motion starts or ends with, counts once; one that is kept for a
-        while counts where that begins. Touching is resolved to 8 ulp of the quantity.
-
-        Parameters
-        ----------
-        theta, x, z, omega, contact_x : float or array_like, shape (n,), optional
-            The value, or n of them, of this quantity [rad, m, rad/s]; exactly one is given, or
-            `function`.
-        function : callable, optional
-            Takes a Trajectory and returns one number a sample; its zeros are looked for.
-        direction : {0, 1, -1}
-            1: where it rises through the value; -1: where it falls; 0: either, and touches.
-
-        Returns
-        -------
-        ndarray, shape (m,), or list of them
-            Times, ascending [s]; empty if it never does. A list for n values: one array for each,
-            in their order.
-
-        Raises
-        ------
-        ValueError
-            If there would be more than a million times, if none or several quantities are given,
-            or one is not finite.
-        """
-        given = {
-            "theta": theta, "x": x, "z": z, "omega": omega, "contact_x": contact_x,
-            "function": function,
-        }  # fmt: skip
-        from .passages import passages
-
-        return passages(self, given, direction)
-
-    # -- pictures --------------------------------------------------------------------------------
-
-    def plot(self, **options: Any) -> Overview:
-        """Draw the overview figure; see `rolling_ellipse.plot`."""
-        from .._pictures import plot
-
-        return plot(self, **options)
-
-    def plot_strobe(self, **options: Any) -> Strobe:
-        """Draw the body at even times; see `rolling_ellipse.plot_strobe`."""
-        from .._pictures import plot_strobe
-
-        return plot_strobe(self, **options)
-
-    def plot_paths(self, **options: Any) -> Paths:
-        """Draw the paths over the ground; see `rolling_ellipse.plot_paths`."""
-        from .._pictures import plot_paths
-
-        return plot_paths(self, **options)
-
-    def plot_phase(self, **options: Any) -> Phase:
-        """Draw omega over theta; see `rolling_ellipse.plot_phase`."""
-        from .._pictures import plot_phase
-
-        return plot_phase(self, **options)
-
-    def plot_forces(self, **options: Any) -> Forces:
-        """Draw the contact forces over time; see `rolling_ellipse.plot_forces`."""
-        from .._pictures import plot_forces
-
-        return plot_forces(self, **options)
-
-    def plot_energy(self, **options: Any) -> Energy:
-        """Draw the energies over time; see `rolling_ellipse.plot_energy`."""
-        from .._pictures import plot_energy
-
-        return plot_energy(self, **options)
-
-    def plot_constraints(self, **options: Any) -> Constraints:
-        """Draw by how much the constraints are missed; see `rolling_ellipse.plot_constraints`."""
-        from .._pictures import plot_constraints
-
-        return plot_constraints(self, **options)
-
-    def plot_error(self, quantity: str = "theta", **options: Any) -> Error:
-        """Draw the error over time beside the exact motion; see `rolling_ellipse.plot_error`."""
-        from .._pictures import plot_error
-
-        return plot_error(self, quantity, **options)
-
-    def animate(
-        self, path: str | os.PathLike[str] | None = None, **options: Any
-    ) -> RollingAnimation:
-        """Animate the motion; see `rolling_ellipse.animate`."""
-        from .._pictures import animate
-
-        return animate(self, path, **options)
-
-    # -- tables ----------------------------------------------------------------------------------
-
-    def to_dataframe(self) -> DataFrame:
-        """Return a pandas DataFrame indexed by t, its columns named as the attributes.
-
-        The multipliers are ``lambda1`` to ``lambda4``, ``mode`` holds names of `Mode`. ``attrs``
-        has the units by column (``"units"``), the numbers of the scene, model, method and status.
-
-        Raises
-        ------
-        ImportError
-            Without pandas: it comes with ``rolling_ellipse[data]``.
-        """
-        from .export.tables import dataframe
-
-        return dataframe(self)
-
-    def to_xarray(self) -> Dataset:
-        """Return an xarray Dataset over t, its variables named as the attributes.
-
-        ``multipliers`` have a second dimension, ``constraint``; ``mode`` holds codes of `Mode`.
-        Every variable has ``units`` and ``long_name``; ``attrs`` has the numbers of the scene,
-        model, method and status, all of which a netCDF file can hold.
-
-        Raises
-        ------
-        ImportError
-            Without xarray: it comes with ``rolling_ellipse[data]``.
-        """
-        from .export.tables import dataset
-
-        return dataset(self)
-
-    # -- files -----------------------------------------------------------------------------------
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
-
-        The file is there when it is whole: whatever goes wrong, an old one of that name stays.
-
-        Raises
-        ------
-        ValueError
-            If something was put into it that `simulate` never does, and `load` would refuse.
-        OSError
-            If the file cannot be written.
-        """
-        from .export.files import write
-
-        write(self, path)
-
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Trajectory:
-        """Read a trajectory written by `save`.
-
-        Raises
-        ------
-        ValueError
-            If the file is damaged, holds something else, or has another schema version; it names
-            the file and what is wrong.
-        OSError
-            If there is no such file, or it cannot be read.
-        """
-        from .export.files import read
-
-        return read(cls, path)
+        def plot(self, **options: Any) -> Overview: ...
+        def plot_strobe(self, **options: Any) -> Strobe: ...
+        def plot_paths(self, **options: Any) -> Paths: ...
+        def plot_phase(self, **options: Any) -> Phase: ...
+        def plot_forces(self, **options: Any) -> Forces: ...
+        def plot_energy(self, **options: Any) -> Energy: ...
+        def plot_constraints(self, **options: Any) -> Constraints: ...
+        def plot_error(self, quantity: str = "theta", **options: Any) -> Error: ...
+        def animate(self, path: _Path | None = None, **options: Any) -> RollingAnimation: ...
+        @classmethod
+        def load(cls, path: _Path) -> Self: ...
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Trajectory):
@@ -584,11 +388,6 @@ class Trajectory(FieldsOnly):
         groups = ((self.t, self.theta, self.omega, self.x), self.coordinates, self.start)
         arrays = [group or (None,) for group in (*groups, self.contact)]
         return [None if each is None else each.tobytes() for group in arrays for each in group]
-
-    def _repr_html_(self) -> str:
-        from .._show.notebook import motion_html
-
-        return motion_html(self)
 
     def __repr__(self) -> str:
         if self.t.size == 0:
@@ -659,8 +458,3 @@ def solve(
         return _core.simulate(scene.core, settings.core, t_end)
     q, q_dot = (np.atleast_2d(values) for values in start)
     return _core.simulate_coordinates(scene.core, q, q_dot, settings.core, t_end)
-
-
-def load(path: str | os.PathLike[str]) -> Trajectory:
-    """Read a trajectory written by `Trajectory.save`."""
-    return Trajectory.load(path)

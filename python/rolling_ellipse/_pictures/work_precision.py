@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
 from .._ask.check import shown
-from .._verbs.work_precision.results import require_quantity
-from .._verbs.work_precision.run import ERRORS, NOT_RUN, OF_STATES
+from .._verbs.work_precision.run import ERRORS, NOT_RUN, OF_STATES, require_quantity
 from .._verbs.work_precision.words import beyond, end_alone
 from .artists import Artists
 from .axes import axes_of, leaving_no_figure

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from .._motion.trajectory import Trajectory
 
 
-def motion_html(trajectory: Trajectory) -> str:
+def _repr_html_(trajectory: Trajectory) -> str:
     """Return a table of the motion and, where there are samples, its strobe."""
     return f"{html_table(repr(trajectory)[1:-1], _rows(trajectory))}{strobe_svg(trajectory)}"
 

@@ -8,7 +8,7 @@ import os
 import sys
 from collections.abc import Collection, Iterable
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -19,14 +19,13 @@ from ..._ask.settings import Settings
 from ..._core import EventKind
 from ..events import as_numbers, events, from_numbers
 from ..samples import ContactSamples
+from ..status import Status
+from ..trajectory import Trajectory, solve
 from .atomic import replacing
 from .npz import arrays as npz_arrays
 from .strict import ARCHIVE, field_names, parsed, require_names, restored, scene_of
 
-if TYPE_CHECKING:
-    from ..trajectory import Trajectory
-
-    _Made = TypeVar("_Made", bound=Trajectory)
+_Made = TypeVar("_Made", bound=Trajectory)
 
 _SCHEMA = 4
 _VECTORS = ("t", "theta", "omega", "x")
@@ -34,15 +33,17 @@ _PAIRS = ("coordinates", "start")
 _FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
 
 
-def write(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
-    """Write a trajectory so that `read` gives it back, bit for bit.
+def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
+    """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
+
+    The file is there when it is whole: whatever goes wrong, an old one of that name stays.
 
     Raises
     ------
     ValueError
-        If `read` would refuse it, as somebody has put into it what `simulate` never does.
+        If something was put into it that `simulate` never does, and `load` would refuse.
     OSError
-        If it cannot be written; a file that was there is then still there.
+        If the file cannot be written.
     """
     name = file_name("path", path)
     text, arrays = json.dumps(_about(trajectory)), _arrays(trajectory)
@@ -51,15 +52,16 @@ def write(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
         np.savez(file, about=np.array(text), **arrays)
 
 
-def read(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
-    """Return the trajectory that a file holds.
+def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
+    """Read a trajectory written by `save`.
 
     Raises
     ------
     ValueError
-        If it is not what `write` writes: all of it is checked.
+        If the file is damaged, holds something else, or has another schema version; it names
+        the file and what is wrong.
     OSError
-        If it cannot be read.
+        If there is no such file, or it cannot be read.
     """
     return restored(path, lambda content: _of_bytes(kind, content), ARCHIVE)
 
@@ -96,8 +98,6 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
 
     So nothing is converted, filled in or left out, whatever the classes would be content with.
     """
-    from ..status import Status
-
     about = parsed("about", text)
     require_names("about", about, ("schema", "scene", "settings", "status", "events", *_FACTS))
     if about["schema"] != _SCHEMA:
@@ -157,8 +157,6 @@ def _event(numbers: Any) -> list[Any]:
 
 def _require_consistent(trajectory: Trajectory) -> None:
     """Raise ValueError unless the parts fit one another, and `sol` has all that it needs."""
-    from ..trajectory import solve
-
     asked, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
     _require_asked("model", trajectory.model, asked.model)
     _require_asked("method", trajectory.method, asked.method)

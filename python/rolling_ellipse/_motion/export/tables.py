@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._ask.scene import STATE_UNITS, Scene
+from ..._ask.scene import Scene
 from ..._core import Mode
 from ..quantities import MODE, MULTIPLIERS, QUANTITIES, TIME, Quantity
 
@@ -16,12 +16,20 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-    from ..events import Events
     from ..trajectory import Trajectory
 
 
-def dataframe(trajectory: Trajectory) -> DataFrame:
-    """Return the trajectory as a pandas DataFrame (see `Trajectory.to_dataframe`)."""
+def to_dataframe(trajectory: Trajectory) -> DataFrame:
+    """Return a pandas DataFrame indexed by t, its columns named as the attributes.
+
+    The multipliers are ``lambda1`` to ``lambda4``, ``mode`` holds names of `Mode`. ``attrs``
+    has the units by column (``"units"``), the numbers of the scene, model, method and status.
+
+    Raises
+    ------
+    ImportError
+        Without pandas: it comes with ``rolling_ellipse[data]``.
+    """
     pandas = required("pandas", "to_dataframe")
     columns: dict[str, Any] = {each.name: getattr(trajectory, each.name) for each in QUANTITIES}
     columns |= dict(zip(_names(MULTIPLIERS), trajectory.multipliers.T, strict=True))
@@ -32,8 +40,18 @@ def dataframe(trajectory: Trajectory) -> DataFrame:
     return frame
 
 
-def dataset(trajectory: Trajectory) -> Dataset:
-    """Return the trajectory as an xarray Dataset (see `Trajectory.to_xarray`)."""
+def to_xarray(trajectory: Trajectory) -> Dataset:
+    """Return an xarray Dataset over t, its variables named as the attributes.
+
+    ``multipliers`` have a second dimension, ``constraint``; ``mode`` holds codes of `Mode`.
+    Every variable has ``units`` and ``long_name``; ``attrs`` has the numbers of the scene,
+    model, method and status, all of which a netCDF file can hold.
+
+    Raises
+    ------
+    ImportError
+        Without xarray: it comes with ``rolling_ellipse[data]``.
+    """
     xarray = required("xarray", "to_xarray")
     variables: dict[str, Any] = {
         each.name: ("t", getattr(trajectory, each.name).copy(), _attributes(each))
@@ -58,29 +76,6 @@ def dataset(trajectory: Trajectory) -> Dataset:
     }
     found: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
     return found
-
-
-def events_dataframe(events: Events) -> DataFrame:
-    """Return events as a pandas DataFrame (see `Events.to_dataframe`)."""
-    pandas = required("pandas", "to_dataframe")
-    units = {"t": "s"}
-    columns: dict[str, Any] = {
-        "t": np.array([found.t for found in events], float),
-        "kind": [found.kind.name for found in events],
-    }
-    for when in ("before", "after"):
-        states = [getattr(found, f"state_{when}") for found in events]
-        for name, unit in STATE_UNITS.items():
-            columns[f"{name}_{when}"] = np.array([getattr(each, name) for each in states], float)
-            units[f"{name}_{when}"] = unit
-        columns[f"mode_{when}"] = [each.mode.name for each in states]
-    for name, unit in (("reaction_x", "N s"), ("reaction_z", "N s"), ("energy_lost", "J")):
-        columns[name] = np.array([getattr(found.state_after, name) for found in events], float)
-        units[name] = unit
-    columns["reason"] = [found.state_after.reason for found in events]
-    frame: DataFrame = pandas.DataFrame(columns)
-    frame.attrs = {"units": {name: units.get(name, "1") for name in columns}}
-    return frame
 
 
 def required(package: str, method: str) -> Any:

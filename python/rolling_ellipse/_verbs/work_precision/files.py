@@ -9,14 +9,16 @@ import json
 import math
 import os
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..._ask.check import file_name
 from ..._motion.export.atomic import replacing
 from ..._motion.export.strict import OBJECT, field_names, parsed, require_names, restored, scene_of
-from .results import WorkPrecision
 from .run import Errors, Run
 from .truth import Reference
+
+if TYPE_CHECKING:
+    from .results import WorkPrecision
 
 _SCHEMA = 2
 _TEXTS = ("name", "model", "method", "stabilization", "status", "reason")
@@ -33,12 +35,12 @@ def write(found: WorkPrecision, path: str | os.PathLike[str]) -> None:
     """
     name = file_name("path", path)
     text = json.dumps(_about(found), indent=1, allow_nan=False)
-    _restored(text)
+    _restored(type(found), text)
     with replacing(name) as new:
         new.write_text(text + "\n", encoding="utf-8")
 
 
-def read(path: str | os.PathLike[str]) -> WorkPrecision:
+def read(kind: type[WorkPrecision], path: str | os.PathLike[str]) -> WorkPrecision:
     """Return the race that a file holds.
 
     Raises
@@ -48,7 +50,7 @@ def read(path: str | os.PathLike[str]) -> WorkPrecision:
     OSError
         If it cannot be read.
     """
-    return restored(path, lambda content: _restored(content.decode("utf-8")), OBJECT)
+    return restored(path, lambda content: _restored(kind, content.decode("utf-8")), OBJECT)
 
 
 def _about(found: WorkPrecision) -> dict[str, Any]:
@@ -74,7 +76,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _restored(text: str) -> WorkPrecision:
+def _restored(kind: type[WorkPrecision], text: str) -> WorkPrecision:
     """Return the race of a text, if it is just what is written of it."""
     about = parsed("the file", text)
     require_names("the file", about, ("schema", "scene", "machine", "references", "runs"))
@@ -86,7 +88,7 @@ def _restored(text: str) -> WorkPrecision:
     if not isinstance(about["machine"], dict):
         raise ValueError(f"machine must hold names and values, got {about['machine']!r}")
     scene = {name: _unbounded(value) for name, value in dict(about["scene"]).items()}
-    found = WorkPrecision(
+    found = kind(
         scene=scene_of(scene),
         runs=tuple(_run(each) for each in about["runs"]),
         references=tuple(_reference(each) for each in about["references"]),

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from ..._ask.check import number, shown
 from ..._ask.printing import Row, html_table
 from ..._ask.scene import Scene
-from .run import ERRORS, FIGURES, NOT_RUN, OF_STATES, Run
+from . import files, words
+from .run import DECADES, ERRORS, NOT_RUN, OF_STATES, Run, require_quantity
 from .truth import Reference
 
 if TYPE_CHECKING:
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from ..._pictures.work_precision import WorkPrecisionChart
-
-DECADES = tuple(10.0**-k for k in range(2, 15))
 
 
 @dataclass(frozen=True, repr=False)
@@ -140,9 +139,7 @@ class WorkPrecision:
         Judged is the largest error of the state, at the samples and at the end. A way is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
         """
-        from .words import verdict
-
-        return verdict(self, self._reference(t_end))
+        return words.verdict(self, self._reference(t_end))
 
     def plot(
         self,
@@ -201,9 +198,7 @@ class WorkPrecision:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to a file of JSON; it is there when it is whole."""
-        from .files import write
-
-        write(self, path)
+        files.write(self, path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> WorkPrecision:
@@ -216,9 +211,7 @@ class WorkPrecision:
         OSError
             If it cannot be read.
         """
-        from .files import read
-
-        return read(path)
+        return files.read(cls, path)
 
     def __repr__(self) -> str:
         answers = sum(run.completed for run in self.runs)
@@ -255,13 +248,6 @@ class WorkPrecision:
                 return reference
         ends = ", ".join(repr(reference.t_end) for reference in self.references)
         raise ValueError(f"t_end must be one of {ends}, got {shown(t_end)}")
-
-
-def require_quantity(name: str, value: Any) -> str:
-    """Return the name of a quantity of runs, or raise ValueError."""
-    if isinstance(value, str) and value in (*ERRORS, *FIGURES):
-        return value
-    raise ValueError(f"{name} must be one of {', '.join((*ERRORS, *FIGURES))}, got {shown(value)}")
 
 
 def _positive(name: str, value: Any) -> float:

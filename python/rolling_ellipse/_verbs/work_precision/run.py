@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
+from ..._ask.check import shown
+
+DECADES = tuple(10.0**-k for k in range(2, 15))
 COMPLETED, NOT_RUN = "COMPLETED", "NOT_RUN"
 ERRORS = ("largest", "final", "l2", "linf", "energy", "gap", "slip")
 OF_STATES = ERRORS[:4]
@@ -122,3 +126,10 @@ class Run:
     def value(self, quantity: str) -> float:
         """Return one of its errors or figures by name."""
         return float(self.errors[quantity] if quantity in ERRORS else getattr(self, quantity))
+
+
+def require_quantity(name: str, value: Any) -> str:
+    """Return the name of a quantity of runs, or raise ValueError."""
+    if isinstance(value, str) and value in (*ERRORS, *FIGURES):
+        return value
+    raise ValueError(f"{name} must be one of {', '.join((*ERRORS, *FIGURES))}, got {shown(value)}")

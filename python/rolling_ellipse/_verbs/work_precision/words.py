@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from .run import NOT_RUN, Run
+from .run import DECADES, NOT_RUN, Run
 from .truth import Reference
 
 if TYPE_CHECKING:
@@ -21,8 +21,6 @@ Open = dict[float, tuple[str, ...]]  # names not run at all settings and not the
 
 def verdict(found: WorkPrecision, reference: Reference) -> str:
     """Return who is fastest at each decade, who reached nothing, and who was not run."""
-    from .results import DECADES
-
     end, runs = reference.t_end, found.of(reference.t_end)
     table = {decade: found.least(decade, t_end=end) for decade in DECADES}
     opened = {decade: found.not_run(decade, t_end=end) for decade in DECADES}
