@@ -254,6 +254,12 @@ def test_each_room_imports_only_those_before_it() -> None:
     assert between > 200  # fewer: the imports are no longer recognised
 
 
+def test_the_architecture_page_names_every_room() -> None:
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    for room in (*FOLDERS, *ROOMS):
+        assert f"`{room}" in page or not room, room
+
+
 def test_no_files_import_each_other_in_a_circle() -> None:
     """Neither when they are loaded nor later, but for type checkers."""
     graph = {

@@ -118,19 +118,23 @@ class Trajectory(FieldsOnly):
         Last time that was asked for [s].
     settings : Settings
         The arguments of `simulate` that it was computed with.
-    coordinates, start : tuple of ndarray, or None
-        Where the state is not a function of theta and omega: q and q_dot at the samples, (n, 5)
-        each; and those that it started from, (5,) each, where they are not the scene's.
-    contact : ContactSamples or None
-        Of the model "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the samples.
     events : tuple of Event
         Changes of mode and impacts of the model "contact", in the order of time; it prints as a
         table and has `to_dataframe`.
-    kept_events : tuple of Event, or None
-        Those that a file brought along.
     stats : dict
         Figures of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
         the right-hand side, without those for the dense output).
+
+    Other Parameters
+    ----------------
+    coordinates, start : tuple of ndarray, or None
+        What a motion of "multipliers" is made of beside: q and q_dot at the samples, (n, 5) each,
+        which `q` and `q_dot` give of every motion; and those that it started from, (5,) each,
+        where they are not the scene's (see `computed`).
+    contact : ContactSamples or None
+        The same of "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the samples.
+    kept_events : tuple of Event, or None
+        Those that a file brought along, which `events` gives; without them it solves again.
     """
 
     t: FloatArray
