@@ -11,6 +11,7 @@ import math
 import os
 import re
 import sys
+from array import array as vector
 from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
 from contextlib import suppress
 from itertools import chain, islice
@@ -25,6 +26,7 @@ COORDINATES = 5  # x, z, theta, psi, r
 
 _DOUBLE = np.dtype(np.float64)
 _MOST_WORKERS = 1024
+_KNOWN = "within the range of doubles"
 _PLACE = r"\[(\d+)\]"
 _LONGEST = 300  # characters of a value in a message
 _MOST_AXES = 32  # NumPy's broadcasting knows no more
@@ -47,22 +49,17 @@ def number(name: str, value: Any) -> float:
     ValueError
         If it is beyond the doubles, or masked.
     """
-    kind = type(value)
-    if kind is float:  # most are, and a scene has many
-        return value  # type: ignore[no-any-return]
-    if kind is np.float64:
-        return float(value)
-    if kind is int:
-        return _double(name, value)
-    if hasattr(kind, "__array__"):
-        found = _doubles(name, value)
-        if found is not None and found.ndim == 0:
-            return float(found)
-    elif hasattr(kind, "__float__") or hasattr(kind, "__index__"):  # text has neither
-        _require_plain(name, value)
-        with suppress(TypeError):
-            return _double(name, value)
-    raise TypeError(f"{name} must be a number, got {shown(value)}")
+    if type(value) is float:  # most are, and a scene has many
+        return value
+    if type(value) in _PLAIN:
+        try:
+            return float(value)
+        except OverflowError:
+            pass  # refused below
+    found = _doubles(name, value)
+    if found is None or found.ndim:
+        raise TypeError(f"{name} must be a number, got {shown(value)}")
+    return float(found)
 
 
 def optional_number(name: str, value: Any) -> float | None:
@@ -129,58 +126,53 @@ def array(name: str, value: Any) -> FloatArray:
 
 def _doubles(name: str, value: Any) -> FloatArray | None:
     """``value`` as a float64 array, or None if it is nothing of the kind."""
-    if type(value) is np.ndarray:
-        return _of_array(name, value)
     if type(value) is float:
         return np.array(value)
-    _require_plain(name, value)
-    if hasattr(type(value), "__array__"):
-        return _of_array(name, _converted(value))
-    if _is_sequence(value):
-        _require_plain_entries(name, value, value)
-    return _of_sequence(name, value)
+    if type(value) is np.ndarray:
+        if value.dtype is _DOUBLE and value.ndim <= _MOST_AXES:
+            return value
+    else:
+        _require_plain(name, value)
+        if _is_sequence(value):
+            _require_plain_entries(name, value, value)
+    return _converted(name, value)
 
 
-def _converted(value: Any) -> npt.NDArray[Any] | None:
+def _converted(name: str, value: Any) -> FloatArray | None:
+    """`_doubles` of what is plain, of a long list piece by piece."""
+    if isinstance(value, _SLICED) and (size := _size(value)) > _PIECE:
+        return _in_pieces(name, value, size)
     try:
-        return np.asarray(value)
-    except (TypeError, ValueError):  # ragged sequences
+        found: npt.NDArray[Any] = value if type(value) is np.ndarray else np.asarray(value)
+        dtype, entries = found.dtype, None
+        if (dtype.kind == "O" and not hasattr(type(value), "__array__")) or (
+            dtype.kind == "f" and dtype.itemsize > _DOUBLE.itemsize
+        ):
+            # Decimals, Fractions, ints of more than 64 bits: floats by their own rules
+            entries = vector("d", found.ravel().tolist())
+    except OverflowError:
+        raise ValueError(f"{name} must be {_KNOWN}, got {shown(value)}") from None
+    except (TypeError, ValueError):  # ragged sequences, a signalling NaN
         return None
-
-
-def _of_array(name: str, found: npt.NDArray[Any] | None) -> FloatArray | None:
-    if found is None or found.dtype.kind not in "biuf":
+    if entries is None and dtype.kind not in "biuf":
         return None
     if found.ndim > _MOST_AXES:
         raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {found.ndim}")
-    if found.dtype is _DOUBLE:
+    if dtype is _DOUBLE:
         return found
-    if found.dtype.itemsize > _DOUBLE.itemsize:
-        beyond = np.isfinite(found) & (abs(found) > np.finfo(np.float64).max)
-        require(name, "within the range of doubles", found, ~beyond)
-    return copied(found)
+    if entries is None:
+        return copied(found)
+    doubles = np.array(entries).reshape(found.shape)
+    require(name, _KNOWN, found, ~np.isinf(doubles) | (found == doubles))
+    return doubles
 
 
-def _of_list(name: str, found: npt.NDArray[Any] | None) -> FloatArray | None:
-    """As `_of_array`, also of what NumPy has made of Decimals, or ints of more than 64 bits."""
-    if found is None or found.dtype.kind != "O":
-        return _of_array(name, found)
-    with suppress(TypeError):
-        entries = [number(name, entry) for entry in found.ravel().tolist()]
-        return np.array(entries, dtype=np.float64).reshape(found.shape)
-    return None
-
-
-def _of_sequence(name: str, entries: Any) -> FloatArray | None:
-    """The numbers of a sequence, of a long list piece by piece."""
-    size = _size(entries)
-    if size <= _PIECE:
-        return _of_list(name, _converted(entries))
+def _in_pieces(name: str, entries: Any, size: int) -> FloatArray | None:
     step = len(entries) * _PIECE // size
     parts = (
-        [_of_sequence(name, entries[k : k + step]) for k in range(0, len(entries), step)]
+        [_converted(name, entries[k : k + step]) for k in range(0, len(entries), step)]
         if step > 1
-        else [_doubles(name, entry) for entry in entries]
+        else [_converted(name, entry) for entry in entries]
     )
     known = [part for part in parts if part is not None]
     shapes = {part.shape[1:] if step > 1 else part.shape for part in known}
@@ -214,19 +206,6 @@ def copied(values: npt.NDArray[Any]) -> FloatArray:
     return found.reshape(values.shape)
 
 
-def _double(name: str, value: Any) -> float:
-    """A number of Python as a float; TypeError if it is none."""
-    try:
-        found = float(value)
-    except OverflowError:
-        found = math.inf
-    except ValueError as error:  # a signalling NaN
-        raise TypeError from error
-    if math.isinf(found) and value != found:
-        raise ValueError(f"{name} must be within the range of doubles, got {shown(value)}")
-    return found
-
-
 def _require_plain(name: str, value: Any) -> None:
     """Raise an error if a value is masked, or has units, which its numbers do not tell."""
     if getattr(type(value), "__module__", "") == "builtins" or isinstance(value, np.generic):
@@ -255,10 +234,11 @@ def _has_units(value: Any) -> bool:
 
 def _is_sequence(value: Any) -> bool:
     """Whether NumPy takes it as a sequence of entries."""
-    known = isinstance(value, (list, tuple)) or (
+    if hasattr(type(value), "__array__"):
+        return False
+    return isinstance(value, (list, tuple)) or (
         isinstance(value, Sequence) and not isinstance(value, (str, bytes, bytearray, memoryview))
     )
-    return known and not hasattr(type(value), "__array__")
 
 
 def _require_plain_entries(name: str, value: Any, entries: Iterable[Any], axes: int = 1) -> None:
