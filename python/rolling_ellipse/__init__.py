@@ -6,8 +6,8 @@
 """
 
 import ast as _ast
+import os as _os
 from importlib import import_module as _import_module
-from pathlib import Path as _Path
 from typing import Any as _Any
 
 from ._show import methods as _methods  # noqa: F401  # binds them
@@ -15,8 +15,9 @@ from ._show import methods as _methods  # noqa: F401  # binds them
 
 def _listed() -> dict[str, str]:
     """Return the public names that the stub beside this file lists, and where each is."""
-    stub = _ast.parse(_Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-    imports = [line for line in stub.body if isinstance(line, _ast.ImportFrom)]
+    with open(_os.path.splitext(__file__)[0] + ".pyi", encoding="utf-8") as stub:
+        lines = _ast.parse(stub.read()).body
+    imports = [line for line in lines if isinstance(line, _ast.ImportFrom)]
     return {name.name: f".{line.module or ''}" for line in imports for name in line.names}
 
 
