@@ -5,73 +5,24 @@
 >>> trajectory.plot(); trajectory.animate("roll.gif")
 """
 
+import ast as _ast
+import os as _os
 from importlib import import_module as _import_module
-from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
-from . import geometry, scenes
-from ._constraints import ConstraintResiduals, constraints, kinematics
-from ._core import EventKind, Mode, Outcome, Validity
-from ._events import Event
-from ._impulse import Impulse
-from ._scene import InitialState, Scene
-from ._simulate import simulate
-from ._status import (
-    CompletenessWarning,
-    IntegrationError,
-    StabilityWarning,
-    Status,
-    ValidityWarning,
-    WorkerError,
-)
-from ._trajectory import Trajectory, load
-
-if _TYPE_CHECKING:
-    from . import impacts, report
-    from ._at import Sample
-    from ._batches import load_many, simulate_many
-    from ._blow_to import blow_to
-    from ._blows import outcome, required_friction
-    from ._certify import Certificate, certify
-    from ._flow import flow, period
-    from ._outcome import Thresholds, classify, thresholds
-    from ._pictures import (
-        animate,
-        plot,
-        plot_constraints,
-        plot_energy,
-        plot_error,
-        plot_forces,
-        plot_paths,
-        plot_phase,
-        plot_phase_map,
-        plot_strobe,
-    )
-    from ._player import Explorer, explore
-    from ._work_precision import WorkPrecision, work_precision
-
-    __version__: str
-
-__all__ = [
-    "Certificate", "CompletenessWarning", "ConstraintResiduals", "Event", "EventKind", "Explorer",
-    "Impulse", "InitialState", "IntegrationError", "Mode", "Outcome", "Sample", "Scene",
-    "StabilityWarning", "Status", "Thresholds", "Trajectory", "Validity", "ValidityWarning",
-    "WorkPrecision", "WorkerError", "__version__", "animate", "blow_to", "certify", "classify",
-    "constraints", "explore", "flow", "geometry", "impacts", "kinematics", "load", "load_many",
-    "outcome", "period", "plot", "plot_constraints", "plot_energy", "plot_error", "plot_forces",
-    "plot_paths", "plot_phase", "plot_phase_map", "plot_strobe", "report", "required_friction",
-    "scenes", "simulate", "simulate_many", "thresholds", "work_precision",
-]  # fmt: skip
+from ._show import methods as _methods  # noqa: F401  # binds them
 
 
-_PLACES = {
-    "Sample": "._at", "blow_to": "._blow_to", "load_many": "._batches",
-    "simulate_many": "._batches", "outcome": "._blows", "required_friction": "._blows",
-    "Certificate": "._certify", "certify": "._certify", "flow": "._flow", "period": "._flow",
-    "Thresholds": "._outcome", "classify": "._outcome", "thresholds": "._outcome",
-    "Explorer": "._player", "explore": "._player", "WorkPrecision": "._work_precision",
-    "work_precision": "._work_precision",
-}  # fmt: skip
+def _listed() -> dict[str, str]:
+    """Return the public names that the stub beside this file lists, and where each is."""
+    with open(_os.path.splitext(__file__)[0] + ".pyi", encoding="utf-8") as stub:
+        lines = _ast.parse(stub.read()).body
+    imports = [line for line in lines if isinstance(line, _ast.ImportFrom)]
+    return {name.name: f".{line.module or ''}" for line in imports for name in line.names}
+
+
+_PLACES = _listed()
+__all__ = sorted([*_PLACES, "__version__"])
 
 
 def __getattr__(name: str) -> _Any:
@@ -80,17 +31,15 @@ def __getattr__(name: str) -> _Any:
         from importlib.metadata import version
 
         value: _Any = version("rolling-ellipse")
-    elif name in ("impacts", "report"):
-        value = _import_module(f".{name}", __name__)
-    elif name in _PLACES:
-        value = getattr(_import_module(_PLACES[name], __name__), name)
-    elif name in __all__:
-        value = getattr(_import_module("._pictures", __name__), name)
-    else:
+    elif name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    elif _PLACES[name] == ".":
+        value = _import_module(f".{name}", __name__)
+    else:
+        value = getattr(_import_module(_PLACES[name], __name__), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return __all__

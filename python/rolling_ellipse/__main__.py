@@ -15,8 +15,11 @@ from pathlib import Path
 from matplotlib import rcParams
 
 from . import Status, Trajectory, simulate
-from ._command.explore import explore
-from ._command.options import (
+from ._motion.export.atomic import replacing
+from ._pictures.animation.movies import movie_writer
+from ._player import animate
+from ._show.command.explore import explore
+from ._show.command.options import (
     PROGRAM,
     chosen_scene,
     explore_parser,
@@ -24,10 +27,7 @@ from ._command.options import (
     motion_parser,
     require_file,
 )
-from ._command.summary import lines, summary
-from ._export.atomic import replacing
-from ._pictures.animation import animate
-from ._pictures.animation.movies import movie_writer
+from ._show.command.summary import lines, summary
 
 _FPS = 25.0  # which every kind of film can hold
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _settings
-from ._check import FloatArray
+from ._ask import settings as _settings
+from ._ask.check import FloatArray
 
 class Mode(enum.IntEnum):
     """What the body does, one code a sample."""

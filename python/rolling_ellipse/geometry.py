@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._check import FloatArray, broadcast, require, shaped
+from ._ask.check import FloatArray, broadcast, require, shaped
 
 __all__ = [
     "arc_length", "centre_path", "contact_angle", "contact_distance", "curvature_radius",

@@ -19,7 +19,7 @@
 from __future__ import annotations
 
 from . import _core
-from ._scene import Impulse, Scene
+from ._ask.scene import Impulse, Scene
 
 _lying = Scene(2.0, 1.0, theta=0.5)
 

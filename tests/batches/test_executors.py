@@ -17,8 +17,9 @@ import rolling_ellipse as rl
 from distributed import Client, LocalCluster
 from oracles.batches import ENDLESS, NAMED, TIMES
 from oracles.pickles import require_same
-from rolling_ellipse import Scene, WorkerError, _workers, load_many, scenes, simulate_many
-from rolling_ellipse._batches.asked import sizes
+from rolling_ellipse import Scene, WorkerError, load_many, scenes, simulate_many
+from rolling_ellipse._verbs import workers
+from rolling_ellipse._verbs.batches.asked import sizes
 
 THETA = np.linspace(0.0, 1.0, 5000)  # two tasks, of 2048 and the rest
 MANY = [Scene(2.0, 1.0, theta=0.3, omega=1e-3 * (i + 1)) for i in range(400)]
@@ -78,7 +79,7 @@ class Mapping:
 @pytest.fixture(autouse=True)
 def smaller_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of elements, so that some thousand are several tasks."""
-    monkeypatch.setattr(_workers, "_ELEMENTS", 2048)
+    monkeypatch.setattr(workers, "_ELEMENTS", 2048)
 
 
 @pytest.fixture(scope="module")
@@ -220,7 +221,7 @@ def test_results_that_wait_have_few_bytes(
 ) -> None:
     """No more than are allowed, or one result. That chunks grow by up to a sixteenth is seen a task
     late."""
-    monkeypatch.setattr(_workers, "_HELD", bytes_held)
+    monkeypatch.setattr(workers, "_HELD", bytes_held)
     executor = pool()
     simulate_many([scenes.rocking] * 100, np.linspace(0.0, 3.0, samples), workers=executor, **way)
     assert executor.most <= max(17 / 16 * bytes_held, executor.largest)

@@ -19,7 +19,7 @@ import rolling_ellipse as rl
 from oracles.batches import ENDLESS, NAMED, TIMES, singly
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, load_many, scenes, simulate_many
-from rolling_ellipse._batches import folders
+from rolling_ellipse._verbs.batches import folders
 
 GRID: dict[str, Any] = {"a": 2.0, "b": 1.0, "theta": 0.3, "omega": np.linspace(0.1, 1.4, 70)}
 
@@ -388,7 +388,7 @@ def test_links_lead_to_no_file_outside(out: Path, tmp_path: Path) -> None:
 
 LIVES = """
 import sys
-from rolling_ellipse._export.atomic import replacing
+from rolling_ellipse._motion.export.atomic import replacing
 with replacing(sys.argv[1]) as new:
     print(new.name, flush=True)
     input()

@@ -16,7 +16,7 @@ import rolling_ellipse as rl
 from oracles.batches import ENDLESS, NAMED, TIMES, singly
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
-from rolling_ellipse._batches.asked import sizes
+from rolling_ellipse._verbs.batches.asked import sizes
 
 ROLLING = [scenes.report, scenes.rocking, scenes.rolling, scenes.circle, scenes.thin]
 WAYS: dict[str, dict[str, Any]] = {
@@ -218,7 +218,7 @@ def test_progress_is_shown(
     bar: bool, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if not bar:
-        monkeypatch.setattr("rolling_ellipse._batches.progress.find_spec", lambda name: None)
+        monkeypatch.setattr("rolling_ellipse._verbs.batches.progress.find_spec", lambda name: None)
     simulate_many([scenes.rocking] * 20, 1.0, progress=True)
     said = capfd.readouterr().err
     assert ("20/20" if bar else "\r20 of 20 scenes\n") in said

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from rolling_ellipse import simulate_many
-from rolling_ellipse._work_precision.machine import machine
+from rolling_ellipse._verbs.work_precision.machine import machine
 
 ROUNDS = 3
 T_END = 3.0  # [s]

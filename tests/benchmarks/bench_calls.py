@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 from rolling_ellipse import Scene, _core, certify, simulate, thresholds
-from rolling_ellipse._settings import DEFAULTS
+from rolling_ellipse._ask.settings import DEFAULTS
 
 ROUNDS = 300
 IN_A_ROW = 5  # the first of which finds the caches cold

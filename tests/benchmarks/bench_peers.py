@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import peers
 from rolling_ellipse import Scene, WorkPrecision, period, work_precision
-from rolling_ellipse._work_precision.words import own_and_peer
+from rolling_ellipse._verbs.work_precision.words import own_and_peer
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
 import make_rolling_reference as reference

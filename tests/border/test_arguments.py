@@ -25,8 +25,8 @@ from matplotlib.figure import Figure
 from oracles.pictures import frames_of
 from PIL import Image
 from rolling_ellipse import _core, report
-from rolling_ellipse import _settings as settings
-from rolling_ellipse._fields import cached_property
+from rolling_ellipse._ask import settings as settings
+from rolling_ellipse._ask.records import cached_property
 from rolling_ellipse._pictures.animation import movies as movies
 
 MOTION = rl.simulate(rl.scenes.report, np.linspace(0.0, 1.0, 26))

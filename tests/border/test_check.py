@@ -11,7 +11,8 @@ import pytest
 import rolling_ellipse as rl
 from numpy.testing import assert_array_equal
 from oracles.quantities import plain, quantities
-from rolling_ellipse import _check, geometry, impacts, report
+from rolling_ellipse import geometry, impacts, report
+from rolling_ellipse._ask import check
 
 SCENE = rl.Scene(2.0, 1.0, omega=1.0)
 MOTION = rl.simulate(SCENE, 1.0)
@@ -253,7 +254,7 @@ def test_one_infinite_angle_of_many() -> None:
         np.arange(100, dtype=">i4"), np.arange(200.0, dtype="f4")[::-2].reshape(10, 10),
         np.asfortranarray(np.arange(60).reshape(20, 3)), [[1.0] * 40, 1.0],
     ],
-    ids=lambda value: f"{_check.shown(value):.20}",
+    ids=lambda value: f"{check.shown(value):.20}",
 )  # fmt: skip
 def test_what_is_converted_in_pieces_is_what_is_converted_at_once(
     value: Any, monkeypatch: pytest.MonkeyPatch
@@ -263,12 +264,12 @@ def test_what_is_converted_in_pieces_is_what_is_converted_at_once(
 
     def found() -> Any:
         try:
-            return _check.array("t", value)
+            return check.array("t", value)
         except TypeError as error:
             return str(error)
 
     expected = found()
-    monkeypatch.setattr(_check, "_PIECE", 16)
+    monkeypatch.setattr(check, "_PIECE", 16)
     taken: list[int] = []
     usual = np.asarray
 
@@ -301,9 +302,9 @@ def test_a_message_forms_no_more_of_a_value_than_it_shows() -> None:
     each: list[Any] = [many, tuple(many), [many], dict.fromkeys(range(1000), entry)]
     for value in each:
         asked = 0
-        assert len(_check.shown(value)) == 301 and asked <= 300
+        assert len(check.shown(value)) == 301 and asked <= 300
     short: list[Any] = [[1, (2,), {}, {3}, {"a": [1.5]}, (), "x" * 3, b"b", None], "x" * 298, 1.5]
     for value in short:
-        assert _check.shown(value) == repr(value)
-    assert _check.shown("x" * 1000) == "'" + "x" * 299 + "…"
-    assert _check.shown(deque(range(200_000))) == "an object of type deque"
+        assert check.shown(value) == repr(value)
+    assert check.shown("x" * 1000) == "'" + "x" * 299 + "…"
+    assert check.shown(deque(range(200_000))) == "an object of type deque"

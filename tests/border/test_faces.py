@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from rolling_ellipse._events import Events
+from rolling_ellipse._motion.events import Events
 
 SCENES = {name: getattr(rl.scenes, name) for name in rl.scenes.__all__}
 WEIRD = rl.Scene(

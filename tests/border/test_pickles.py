@@ -21,8 +21,8 @@ from matplotlib.figure import Figure
 from oracles.paths import TESTS
 from oracles.pickles import ROADS, core_objects, require_same
 from rolling_ellipse import Trajectory, _core, simulate
-from rolling_ellipse._samples import ContactSamples
-from rolling_ellipse._settings import Settings
+from rolling_ellipse._ask.settings import Settings
+from rolling_ellipse._motion.samples import ContactSamples
 
 TIMES = np.linspace(0.0, 1.5, 40)
 MOTIONS: dict[str, Callable[[], Any]] = {

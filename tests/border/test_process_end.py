@@ -78,7 +78,7 @@ def test_a_daemon_thread_does_not_hinder_the_end(call: str, tmp_path: Path) -> N
 FORK = """
 import os, pickle, signal, threading, warnings
 import rolling_ellipse as rl
-from rolling_ellipse import _trajectory
+from rolling_ellipse._motion import trajectory as _trajectory
 warnings.simplefilter("ignore")  # newer Pythons warn of a fork beside threads
 file = pickle.dumps(rl.simulate(rl.scenes.drop, 2.0))
 held, other = pickle.loads(file), pickle.loads(file)

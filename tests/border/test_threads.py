@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.pickles import require_same
-from rolling_ellipse import Scene, _core, _trajectory, scenes, simulate
-from rolling_ellipse._fields import cached_property
+from rolling_ellipse import Scene, _core, scenes, simulate
+from rolling_ellipse._ask.records import cached_property
+from rolling_ellipse._motion import trajectory as trajectories
 
 THREADS, CALLS_EACH = 8, 1000
 PLACES = 5  # of each kind of call as many different ones, so that neighbours do different work
@@ -198,7 +199,7 @@ def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
 ) -> None:
     """One thread is held in the midst of it for as long as the other one takes."""
     held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
-    begun, go_on, usual = Event(), Event(), getattr(_trajectory, within)
+    begun, go_on, usual = Event(), Event(), getattr(trajectories, within)
 
     def slowly(of: Any, *more: Any) -> Any:
         if of is held or of is held.scene:
@@ -206,7 +207,7 @@ def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
             go_on.wait()
         return usual(of, *more)
 
-    monkeypatch.setattr(_trajectory, within, slowly)
+    monkeypatch.setattr(trajectories, within, slowly)
     with ThreadPoolExecutor(2) as pool:
         first = pool.submit(read, held)
         begun.wait()

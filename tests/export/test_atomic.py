@@ -12,7 +12,7 @@ import threading
 from pathlib import Path
 
 import pytest
-from rolling_ellipse._export.atomic import replacing
+from rolling_ellipse._motion.export.atomic import replacing
 
 OLD, NEW = b"what was there", b"what comes"
 
@@ -86,7 +86,7 @@ def test_a_file_that_vanished_in_between_is_no_success(old: Path) -> None:
 def test_a_kill_leaves_the_old_file(old: Path) -> None:
     program = (
         "import os, signal, sys\n"
-        "from rolling_ellipse._export.atomic import replacing\n"
+        "from rolling_ellipse._motion.export.atomic import replacing\n"
         "with replacing(sys.argv[1]) as new, open(new, 'wb') as file:\n"
         "    file.write(b'half')\n"
         "    file.flush()\n"

@@ -12,8 +12,8 @@ import pandas
 import pytest
 import rolling_ellipse as rl
 import xarray
-from rolling_ellipse._quantities import MODE, MULTIPLIERS, QUANTITIES, TIME
-from rolling_ellipse._scene import SCENE_UNITS
+from rolling_ellipse._ask.scene import SCENE_UNITS
+from rolling_ellipse._motion.quantities import MODE, MULTIPLIERS, QUANTITIES, TIME
 
 BLOWN = rl.Scene(
     2.0, 1.0, mass=3.0, inertia=2.0, friction=5.0, impulse=rl.Impulse(1.0, -4.0, dx=0.5)

@@ -19,7 +19,7 @@ from oracles.margins import told
 from oracles.multipliers import GENERIC, SCENES, forces, matrix, matrix_slopes, settings
 from oracles.numbers import DIGITS, EPS, ulps
 from rolling_ellipse import Scene, Status, Trajectory, _core, simulate
-from rolling_ellipse._settings import Settings
+from rolling_ellipse._ask.settings import Settings
 
 Shape = tuple[float, float]
 Long = Any  # arrays of np.longdouble

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import Scene
-from rolling_ellipse._settings import DEFAULTS, Settings
+from rolling_ellipse._ask.settings import DEFAULTS, Settings
 
 from oracles.numbers import Long
 

@@ -11,7 +11,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from rolling_ellipse import Scene, WorkPrecision, work_precision
-from rolling_ellipse._work_precision import Errors
+from rolling_ellipse._verbs.work_precision import Errors
 
 SCENE = Scene(2.0, 1.0, theta=0.2, omega=3.2)
 FOUND = work_precision(

@@ -6,7 +6,6 @@ import os
 import shlex
 import subprocess
 import sys
-import types
 import webbrowser
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -236,8 +235,8 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         Path(path).write_text("<html>")
         found.append(scene)
 
-    player = types.SimpleNamespace(write_explorer=write_explorer)
-    monkeypatch.setitem(sys.modules, "rolling_ellipse._player", player)
+    command = "rolling_ellipse._show.command.explore"
+    monkeypatch.setattr(f"{command}.write_explorer", write_explorer)
 
     def opened(address: str) -> bool:
         found.append(address)

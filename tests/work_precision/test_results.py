@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 import rolling_ellipse as rl
 from rolling_ellipse import Scene, WorkPrecision
-from rolling_ellipse._work_precision.run import Errors, Run
-from rolling_ellipse._work_precision.truth import Reference
+from rolling_ellipse._verbs.work_precision.run import Errors, Run
+from rolling_ellipse._verbs.work_precision.truth import Reference
 
 
 def run(name: str, error: float, time: float, **other: Any) -> Run:

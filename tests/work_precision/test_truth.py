@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 from oracles import table
 from oracles.margins import told
 from rolling_ellipse import Scene, Validity, certify, flow, period, work_precision
-from rolling_ellipse._work_precision.truth import Judge
+from rolling_ellipse._verbs.work_precision.truth import Judge
 
 ROWS = [row for row in table.rows("rolling_reference") if 0 < float(row["t"]) < 1e4]
 

@@ -13,7 +13,7 @@ from matplotlib import rcParams, rcParamsDefault
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
-from .._check import shown
+from .._ask.check import shown
 from .alone import with_figures
 
 _Given = ParamSpec("_Given")

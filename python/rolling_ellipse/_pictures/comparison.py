@@ -15,8 +15,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import is_color_like, to_hex
 from matplotlib.lines import Line2D
 
-from .._check import shown
-from .._trajectory import Trajectory
+from .._ask.check import shown
+from .._motion.trajectory import Trajectory
 from . import sampling
 from .axes import listed
 from .labels import labels_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from .._errors import constraint_errors, worst
+from .._motion.relative_errors import constraint_errors, worst
 from .artists import Artists
 from .axes import leaving_no_figure, panels_of
 from .comparison import Comparison, Style
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-    from .._errors import Errors
-    from .._trajectory import Trajectory
+    from .._motion.relative_errors import Errors
+    from .._motion.trajectory import Trajectory
 
 
 @dataclass(frozen=True, repr=False)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from .._check import choice
-from .._errors import energy_error
+from .._ask.check import choice
+from .._motion.relative_errors import energy_error
 from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-    from .._trajectory import Trajectory
+    from .._motion.trajectory import Trajectory
 
 KINDS = ("energies", "error")
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._check import choice, shown
-from .._quantities import QUANTITIES as UNITS_AND_MEANINGS
-from .._settings import DEFAULTS
-from .._trajectory import Trajectory
+from .._ask.check import choice, shown
+from .._ask.settings import DEFAULTS
+from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
+from .._motion.trajectory import Trajectory
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
 from .legends import name_curves, some_of, title_beside_legend
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-    from .._check import FloatArray
+    from .._ask.check import FloatArray
     from .comparison import Style
 
 QUANTITIES = {  # with their symbols

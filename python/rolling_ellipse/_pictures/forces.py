@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.collections import PolyCollection
     from matplotlib.lines import Line2D
 
-    from .._trajectory import Trajectory
+    from .._motion.trajectory import Trajectory
 
 _LIMIT = ":"
 _STEEP = 3.0  # |F|/N beyond which the scale does not follow: it is infinite where N vanishes

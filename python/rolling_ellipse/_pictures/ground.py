@@ -15,7 +15,7 @@ from matplotlib.patches import Ellipse, Polygon
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D
 
-from .._check import require_near
+from .._ask.check import require_near
 from .._core import Mode
 from ..geometry import support_slope
 from .palette import PLUM, palette_of
@@ -23,9 +23,9 @@ from .palette import PLUM, palette_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .._check import FloatArray
-    from .._scene import InitialState, Scene
-    from .._trajectory import Trajectory
+    from .._ask.check import FloatArray
+    from .._ask.scene import InitialState, Scene
+    from .._motion.trajectory import Trajectory
 
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
 SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be a thin stripe

@@ -6,11 +6,11 @@ from collections.abc import Hashable, Sequence
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
-from .._check import shown
-from .._scene import SCENE_UNITS, Impulse, Scene
+from .._ask.check import shown
+from .._ask.scene import SCENE_UNITS, Impulse, Scene
 
 if TYPE_CHECKING:
-    from .._trajectory import Trajectory
+    from .._motion.trajectory import Trajectory
 
 MOST_FACTS = 3  # in one label; more would be longer than a small picture is wide
 

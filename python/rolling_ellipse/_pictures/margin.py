@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.text import Annotation
 
-    from .._check import FloatArray
+    from .._ask.check import FloatArray
 
 _SIZES = 4.5, 7.0  # of the letters [points]
 _PITCH = 1.25  # of lines, in sizes

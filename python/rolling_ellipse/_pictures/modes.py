@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-    from .._check import FloatArray
-    from .._events import Event
-    from .._trajectory import Trajectory
+    from .._ask.check import FloatArray
+    from .._motion.events import Event
+    from .._motion.trajectory import Trajectory
     from .palette import Palette
 
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .._errors import constraint_errors, energy_error, worst
+from .._motion.relative_errors import constraint_errors, energy_error, worst
 from .artists import Artists
 from .axes import figure_of, leaving_no_figure
 from .comparison import Comparison
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-    from .._check import FloatArray
-    from .._trajectory import Trajectory
+    from .._ask.check import FloatArray
+    from .._motion.trajectory import Trajectory
 
 
 @dataclass(frozen=True, repr=False)

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib import rcParams, rcParamsDefault
 from matplotlib.colors import LinearSegmentedColormap, is_color_like, to_hex, to_rgb, to_rgba
 
-from .._fields import cached_property
+from .._ask.records import cached_property
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

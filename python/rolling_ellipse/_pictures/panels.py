@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.collections import PolyCollection
     from matplotlib.lines import Line2D
 
-    from .._check import FloatArray
-    from .._trajectory import Trajectory
+    from .._ask.check import FloatArray
+    from .._motion.trajectory import Trajectory
     from .comparison import Comparison, Style
 
 DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion

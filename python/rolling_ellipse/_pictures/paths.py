@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.patches import Polygon
 
-    from .._trajectory import Trajectory
+    from .._motion.trajectory import Trajectory
     from .palette import Palette
 
 _CENTRE, _TIP = "-", "--"

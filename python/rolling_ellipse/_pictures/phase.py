@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .._check import flag
+from .._ask.check import flag
 from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .comparison import Comparison
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-    from .._check import FloatArray
-    from .._scene import Scene
-    from .._trajectory import Trajectory
+    from .._ask.check import FloatArray
+    from .._ask.scene import Scene
+    from .._motion.trajectory import Trajectory
 
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
 _COARSE = 1e-3  # rad

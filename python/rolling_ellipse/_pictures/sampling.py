@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._flow import period
-from .._samples import ContactSamples, even_times
+from .._motion.samples import ContactSamples, even_times
+from .._verbs.flow import period
 from .separatrix import flat_angle
 
 if TYPE_CHECKING:
-    from .._check import FloatArray
-    from .._trajectory import Trajectory
+    from .._ask.check import FloatArray
+    from .._motion.trajectory import Trajectory
 
 FEW = 120.0  # half turns or swings that are drawn one by one over time
 PARTS = 800  # of a longer time

@@ -13,8 +13,8 @@ import numpy as np
 from ..geometry import support, support_slope
 
 if TYPE_CHECKING:
-    from .._check import FloatArray
-    from .._scene import Scene
+    from .._ask.check import FloatArray
+    from .._ask.scene import Scene
 
 QUARTER = math.pi / 2
 _POINTS = 801, 100_000  # in one half turn and in all

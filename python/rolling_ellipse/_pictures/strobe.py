@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.ticker import MaxNLocator
 
-from .._check import number, whole_within
-from .._samples import even_times
+from .._ask.check import number, whole_within
+from .._motion.samples import even_times
 from . import ground as drawing
 from .artists import Artists
 from .axes import axes_of, leaving_no_figure
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Ellipse, Polygon
 
-    from .._scene import Scene
-    from .._trajectory import Trajectory
+    from .._ask.scene import Scene
+    from .._motion.trajectory import Trajectory
 
 
 _PILE = 0.4  # how opaque all bodies in one place are together, about

@@ -11,10 +11,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
-from .._check import shown
-from .._work_precision.results import require_quantity
-from .._work_precision.run import ERRORS, NOT_RUN, OF_STATES
-from .._work_precision.words import beyond, end_alone
+from .._ask.check import shown
+from .._verbs.work_precision.run import ERRORS, NOT_RUN, OF_STATES, require_quantity
+from .._verbs.work_precision.words import beyond, end_alone
 from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .margin import label_ends
@@ -29,8 +28,8 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.text import Text
 
-    from .._work_precision.results import WorkPrecision
-    from .._work_precision.run import Run
+    from .._verbs.work_precision.results import WorkPrecision
+    from .._verbs.work_precision.run import Run
     from .palette import Palette
 
 _NAMES = {

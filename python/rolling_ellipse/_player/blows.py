@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import _core
-from .._blows import outcome
+from .._ask.scene import Impulse, Scene
+from .._ask.settings import DEFAULTS
 from .._core import Outcome
-from .._outcome import thresholds
+from .._motion.samples import even_times
+from .._motion.status import Status
+from .._motion.trajectory import Trajectory
 from .._pictures.phase_map import COLOURS
-from .._samples import even_times
-from .._scene import Impulse, Scene
-from .._settings import DEFAULTS
-from .._status import Status
-from .._trajectory import Trajectory
+from .._verbs.classify import thresholds
+from .._verbs.outcome import outcome
 from ..geometry import support
 from .film import body, events
 from .tracks import columns, sample_times
 
 if TYPE_CHECKING:
-    from .._check import FloatArray
+    from .._ask.check import FloatArray
 
 NAMES = {
     Outcome.RESTS: "rests",

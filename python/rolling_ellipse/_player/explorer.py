@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from .._check import FloatArray, file_name, positive, require_near
-from .._export.atomic import replacing
-from .._fields import FieldsOnly, cached_property
-from .._scene import Impulse, Scene, require_scene
+from .._ask.check import FloatArray, file_name, positive, require_near
+from .._ask.records import FieldsOnly, cached_property
+from .._ask.scene import Impulse, Scene, require_scene
+from .._motion.export.atomic import replacing
 from . import blows
 from .page import document, fragment
 from .poster import positions, poster

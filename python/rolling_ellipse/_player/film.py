@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._pictures.animation import RollingAnimation
 from .._pictures.animation.camera import cameras
 from .._pictures.ground import SHOWN_TURNS, touching_x
 from .._pictures.sampling import turned_until
@@ -14,9 +15,8 @@ from .poster import positions, poster
 from .tracks import track
 
 if TYPE_CHECKING:
-    from .._pictures.animation import RollingAnimation
-    from .._scene import Scene
-    from .._trajectory import Trajectory
+    from .._ask.scene import Scene
+    from .._motion.trajectory import Trajectory
 
 _PIXEL = 2.5e-5  # of the width of the view: a twentieth of a pixel where it is 2000 pixels wide
 _HEAD, _FOOT = 0.035, 0.035  # room for a line of text above, and for the ruler, over the width
@@ -94,3 +94,6 @@ def events(motion: Trajectory, end: float) -> list[list[Any]]:
         for each in motion.events
         if each.t <= end
     ]  # fmt: skip
+
+
+RollingAnimation._page, RollingAnimation._html = film_page, film_html

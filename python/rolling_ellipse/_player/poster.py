@@ -6,14 +6,14 @@ import math
 from html import escape
 from typing import TYPE_CHECKING
 
-from .._samples import even_times
+from .._motion.samples import even_times
 from .look import DARK, LIGHT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .._check import FloatArray
-    from .._trajectory import Trajectory
+    from .._ask.check import FloatArray
+    from .._motion.trajectory import Trajectory
 
 _WIDTH = 640.0
 _BODIES = 9

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._samples import even_times
+from .._motion.samples import even_times
 
 if TYPE_CHECKING:
-    from .._check import FloatArray
-    from .._trajectory import Trajectory
+    from .._ask.check import FloatArray
+    from .._motion.trajectory import Trajectory
 
 MOST_SAMPLES = 20_000  # of one motion; 1 MB
 _RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from .. import _core
-from .._check import FloatArray, broadcast, choice, evaluate, require, shaped
+from .._ask.check import FloatArray, broadcast, choice, evaluate, require, shaped
 from . import _restitution
 
 Law = Literal["stronge", "poisson", "newton"]

@@ -11,8 +11,8 @@ from typing import Any, ClassVar, Literal, get_args
 import numpy as np
 
 from .. import geometry
-from .._check import FloatArray, choice, finite, number, require, uniform_disc
-from .._faces import Listed, Row, brief, with_unit
+from .._ask.check import FloatArray, choice, finite, number, require, uniform_disc
+from .._ask.printing import Listed, Row, brief, with_unit
 from ._collide import Law, collide, kinetic_speed
 
 Measure = Literal["median", "rms"]

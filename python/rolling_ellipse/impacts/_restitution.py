@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import geometry
-from .._check import FloatArray
+from .._ask.check import FloatArray
 
 # The law approaches its limit for infinite friction like 1/friction: beyond this, within rounding.
 _PRACTICALLY_INFINITE = 1e20

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import FloatArray, choice, coordinates, finite, number, require_together
-from .._scene import Impulse, Scene
+from .._ask.check import FloatArray, choice, coordinates, finite, number, require_together
+from .._ask.scene import Impulse, Scene
 from ..geometry import support_slope
 from ._rows import rows
 

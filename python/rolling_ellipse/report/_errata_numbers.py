@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._check import FloatArray
-from .._constraints import kinematics
-from .._outcome import thresholds
-from .._scene import Scene
-from .._simulate import simulate
+from .._ask.check import FloatArray
+from .._ask.scene import Scene
+from .._motion.constraints import kinematics
+from .._verbs.classify import thresholds
+from .._verbs.simulate import simulate
 from ..geometry import contact_angle, contact_distance, support, support_slope
 from . import _equations, _multipliers
 from ._motion import follow

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .._check import FloatArray
-from .._constraints import COORDINATES, ConstraintResiduals, constraints
-from .._scene import Scene
+from .._ask.check import FloatArray
+from .._ask.scene import Scene
+from .._motion.constraints import COORDINATES, ConstraintResiduals, constraints
 from ._rows import rows, rows_and_rate
 from ._runge_kutta import Steps, integrate
 from ._start import Start

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import FloatArray, coordinates, flag, require_together
-from .._scene import Scene
+from .._ask.check import FloatArray, coordinates, flag, require_together
+from .._ask.scene import Scene
 from ._equations import polar, state
 from ._rows import rows
 

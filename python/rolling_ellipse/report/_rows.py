@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .._check import COORDINATES, FloatArray, coordinates, finite, require_together, shown
-from .._scene import Scene
+from .._ask.check import COORDINATES, FloatArray, coordinates, finite, require_together, shown
+from .._ask.scene import Scene
 
 #: What can be as printed: the rows of f1, f2 and f3 (eq 32), the sign of a44 (appendix C), and
 #: tan(theta) in row 4, which otherwise is multiplied by cos^2(theta) and stays finite.

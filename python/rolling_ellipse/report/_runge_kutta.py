@@ -9,12 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from .. import _core
-from .._check import FloatArray
+from .._ask.check import FloatArray
 
 _TABLEAUS = _core.tableaus()
 _SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0
@@ -43,7 +42,6 @@ def integrate(
     message : str
         Why it stopped before the last time, or nothing.
     """
-    tableau = _TABLEAUS[steps.method]
     samples = [y for _ in t[t == 0]]
     now, end = 0.0, float(t[-1])
     first = slope(y)
@@ -54,17 +52,17 @@ def integrate(
         h = min(h, end - now)
         if not h >= smallest_step(now):
             return np.array(samples), f"no step that changes t meets rtol and atol at {now:.6g} s"
-        slopes, after = _stages(slope, y, first, h, tableau)
-        grow = 1.0 if steps.step else _growth(y, after, slopes, h, tableau, steps)
+        step = _Step(slope, y, first, h, steps.method)
+        grow = 1.0 if steps.step else step.growth(steps)
         if grow < _SAFETY:
             h *= grow
             continue
-        if not np.all(np.isfinite(after)):
+        if not np.all(np.isfinite(step.after)):
             return np.array(samples), f"the equations have no finite solution at {now:.6g} s"
         last = end if h == end - now else now + h
         while len(samples) < t.size and t[len(samples)] <= last:
-            samples.append(_dense(y, after, slopes, h, (t[len(samples)] - now) / h, tableau))
-        now, y, first = last, after, slopes[tableau["stages"]]
+            samples.append(step.at((t[len(samples)] - now) / h))
+        now, y, first = last, step.after, step.slopes[-1]
         h = steps.step or h * grow
     if len(samples) < t.size:
         return np.array(samples), f"max_steps reached at {now:.6g} s"
@@ -76,58 +74,44 @@ def smallest_step(t: float) -> float:
     return 10 * math.ulp(t)
 
 
-def _stages(
-    slope: Callable[[FloatArray], FloatArray],
-    y: FloatArray,
-    first: FloatArray,
-    h: float,
-    tableau: dict[str, Any],
-) -> tuple[FloatArray, FloatArray]:
-    """Slopes of the stages and of the new point, (stages + 1, n), and the new point."""
-    count = tableau["stages"]
-    slopes = np.zeros((count + 1, y.size))
-    slopes[0], after = first, y
-    for i in range(1, count + 1):
-        after = y + h * (tableau["a"][i, :i] @ slopes[:i])
-        slopes[i] = slope(after)
-    return slopes, after
+class _Step:
+    """A step of size h from y: the slopes of its stages and of the new point, and that point."""
 
+    def __init__(
+        self,
+        slope: Callable[[FloatArray], FloatArray],
+        y: FloatArray,
+        first: FloatArray,
+        h: float,
+        method: str,
+    ) -> None:
+        self.y, self.h, self.tableau = y, h, _TABLEAUS[method]
+        self.slopes = np.zeros((self.tableau["stages"] + 1, y.size))
+        self.slopes[0], self.after = first, y
+        for i in range(1, len(self.slopes)):
+            self.after = y + h * (self.tableau["a"][i, :i] @ self.slopes[:i])
+            self.slopes[i] = slope(self.after)
 
-def _growth(
-    y: FloatArray,
-    after: FloatArray,
-    slopes: FloatArray,
-    h: float,
-    tableau: dict[str, Any],
-    steps: Steps,
-) -> float:
-    """Factor for the next step, below the safety factor if this one is refused (HNW II.4)."""
-    scale = steps.atol + steps.rtol * np.maximum(np.abs(y), np.abs(after))
-    error = h * (tableau["error"][0, : len(slopes)] @ slopes) / scale
-    size = math.sqrt(float(np.mean(error**2)))
-    if not math.isfinite(size):
-        return _MOST_SHRINKING
-    factor = _SAFETY * size ** (-1 / tableau["order"]) if size > 0 else _MOST_GROWTH
-    return min(max(factor, _MOST_SHRINKING), _MOST_GROWTH)
+    def growth(self, steps: Steps) -> float:
+        """Factor for the next step, below the safety factor if this one is refused (HNW II.4)."""
+        scale = steps.atol + steps.rtol * np.maximum(np.abs(self.y), np.abs(self.after))
+        error = self.h * (self.tableau["error"][0, : len(self.slopes)] @ self.slopes) / scale
+        size = math.sqrt(float(np.mean(error**2)))
+        if not math.isfinite(size):
+            return _MOST_SHRINKING
+        factor = _SAFETY * size ** (-1 / self.tableau["order"]) if size > 0 else _MOST_GROWTH
+        return min(max(factor, _MOST_SHRINKING), _MOST_GROWTH)
 
-
-def _dense(
-    y: FloatArray,
-    after: FloatArray,
-    slopes: FloatArray,
-    h: float,
-    s: float,
-    tableau: dict[str, Any],
-) -> FloatArray:
-    """The point at the part s of a step: Hermite's cubic, and for a pair one order more."""
-    change = after - y
-    terms = [change, h * slopes[0] - change, 2 * change - h * (slopes[0] + slopes[-1])]
-    if tableau["dense_terms"]:
-        terms.append(h * (tableau["dense"][0, : len(slopes)] @ slopes))
-    value = np.zeros_like(y)
-    for i in range(len(terms) - 1, -1, -1):
-        value = terms[i] + ((1 - s) if i % 2 == 0 else s) * value
-    return y + s * value
+    def at(self, s: float) -> FloatArray:
+        """The point at the part s of it: Hermite's cubic, and for a pair one order more."""
+        h, slopes, change = self.h, self.slopes, self.after - self.y
+        terms = [change, h * slopes[0] - change, 2 * change - h * (slopes[0] + slopes[-1])]
+        if self.tableau["dense_terms"]:
+            terms.append(h * (self.tableau["dense"][0, : len(slopes)] @ slopes))
+        value = np.zeros_like(self.y)
+        for i in range(len(terms) - 1, -1, -1):
+            value = terms[i] + ((1 - s) if i % 2 == 0 else s) * value
+        return self.y + s * value
 
 
 def _first_step(y: FloatArray, first: FloatArray, steps: Steps, end: float) -> float:

@@ -6,12 +6,12 @@ import warnings
 from dataclasses import replace
 from typing import Any, Literal, get_args
 
-from .._check import FloatArray, choice, finite, optional_number, positive, shown, whole_within
-from .._constraints import COORDINATES
-from .._scene import Scene
-from .._settings import DEFAULTS, Method, Settings, Stabilization
-from .._simulate import report_status, sample_times
-from .._trajectory import Trajectory
+from .._ask.check import FloatArray, choice, finite, optional_number, positive, shown, whole_within
+from .._ask.scene import Scene
+from .._ask.settings import DEFAULTS, Method, Settings, Stabilization
+from .._motion.constraints import COORDINATES
+from .._motion.trajectory import Trajectory
+from .._verbs.simulate import report_status, sample_times
 from ._motion import PrintedMotion, follow
 from ._rows import CODE, misprints
 from ._runge_kutta import Steps, smallest_step

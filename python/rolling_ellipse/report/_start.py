@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .._check import FloatArray
-from .._constraints import constraints, kinematics
-from .._scene import Scene
+from .._ask.check import FloatArray
+from .._ask.scene import Scene
+from .._motion.constraints import constraints, kinematics
 from ..geometry import support, support_curvature, support_slope
 from ._rows import direction, rows
 

@@ -68,7 +68,10 @@ PARTS: list[Refusal] = [
         r"^function must not be looked at more than 7000000 times, got ",
         lambda _: SPINNING.when(function=lambda at: at.normal_force),
     ),
-    (r"module 'rolling_ellipse' has no attribute 'nothing'", lambda _: rl.nothing),
+    (
+        r"module 'rolling_ellipse' has no attribute 'nothing'",
+        lambda _: rl.nothing,  # type: ignore[attr-defined]
+    ),
     (r"^to_xarray needs xarray: pip install", lambda _: without("xarray", MOTION.to_xarray)),
 ]  # fmt: skip
 

@@ -15,8 +15,8 @@ from matplotlib.animation import FFMpegWriter
 from matplotlib.figure import Figure
 from rolling_ellipse import Scene, report, scenes
 from rolling_ellipse.__main__ import _motion
-from rolling_ellipse._command.options import joined, motion_parser
 from rolling_ellipse._pictures.animation import movies
+from rolling_ellipse._show.command.options import joined, motion_parser
 
 from oracles.refusals import Refusal
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import Scene, WorkPrecision, report, scenes
-from rolling_ellipse._batches.folders import _chunks, _digest_of_all, _name
+from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all, _name
 
 from oracles.refusals import Refusal
 

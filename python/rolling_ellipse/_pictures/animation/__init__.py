@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.registry import backend_registry
 from matplotlib.figure import Figure, SubFigure
 
-from ..._check import flag, number, shown
+from ..._ask.check import flag, number, shown
 from ..axes import leaving_no_figure, pyplot_figure, require_axes
 from ..comparison import Comparison
 from .film import RollingAnimation
@@ -20,7 +20,7 @@ from .pace import pace, within
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..._trajectory import Trajectory
+    from ..._motion.trajectory import Trajectory
 
 __all__ = ["RollingAnimation", "animate"]
 

@@ -11,8 +11,8 @@ import numpy as np
 from ..ground import SHOWN_TURNS, tilted, view
 
 if TYPE_CHECKING:
-    from ..._check import FloatArray
-    from ..._trajectory import Trajectory
+    from ..._ask.check import FloatArray
+    from ..._motion.trajectory import Trajectory
 
 BEHIND, AHEAD = 5.0, 4.0  # sizes of the body on either side of a motion that is followed
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from html import escape
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from matplotlib import rc_context, rcParams
@@ -15,8 +15,8 @@ from matplotlib.animation import AbstractMovieWriter, FuncAnimation, writers
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
-from ..._check import choice, file_name, flag, shown, whole
-from ..._export.atomic import replacing
+from ..._ask.check import choice, file_name, flag, shown, whole
+from ..._motion.export.atomic import replacing
 from ..alone import Alone, with_settings
 from ..palette import palette_of
 from .camera import cameras
@@ -26,7 +26,7 @@ from .strip import Strip
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
 
-    from ..._trajectory import Trajectory
+    from ..._motion.trajectory import Trajectory
     from .pace import Pace
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
@@ -55,6 +55,10 @@ class RollingAnimation(FuncAnimation):
         Where it is drawn; it keeps the animation alive. A film that `animate` has written as .html
         is drawn when this, or another of the artists, is first asked for.
     """
+
+    #: The player of it, as a page and as a fragment of HTML; bound by `_player.film`.
+    _page: ClassVar[Callable[[RollingAnimation], str]]
+    _html: ClassVar[Callable[[RollingAnimation], str]]
 
     def __init__(
         self,
@@ -202,15 +206,13 @@ class RollingAnimation(FuncAnimation):
 
     def _save_page(self, path: str, options: dict[str, Any]) -> None:
         """Write the page with the player."""
-        from ..._player import film_page
-
         movie_writer(path, self.fps, "filename")
         if options:
             raise TypeError(
                 "options must be none for an .html without a writer of matplotlib's, got "
                 + ", ".join(options)
             )
-        page = film_page(self)
+        page = self._page()
         with replacing(path) as new:
             new.write_text(page, encoding="utf-8")
 
@@ -224,10 +226,8 @@ class RollingAnimation(FuncAnimation):
         """
         wanted = rcParams["animation.html"]
         if wanted == "none":
-            from ..._player import film_html
-
             try:
-                return film_html(self)
+                return self._html()
             except ValueError as error:
                 return f"<p>{escape(str(error))}</p>"
         settings = {"animation.ffmpeg_path": ffmpeg()} if wanted == "html5" else {}

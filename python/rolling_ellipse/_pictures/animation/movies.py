@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from PIL import Image
 
-from ..._check import file_name
+from ..._ask.check import file_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..._check import FloatArray, file_name, positive, whole_within
+from ..._ask.check import FloatArray, file_name, positive, whole_within
 
 MOST_FRAMES = 1_000_000
 FPS, SPEEDS = (1e-3, 1e3), (1e-12, 1e12)

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-    from ..._check import FloatArray
-    from ..._trajectory import Trajectory
+    from ..._ask.check import FloatArray
+    from ..._motion.trajectory import Trajectory
     from ..palette import Palette
 
 

@@ -11,9 +11,9 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 
-from ..._check import shown, whole
+from ..._ask.check import shown, whole
 from ..._core import Outcome
-from ..._outcome import classify
+from ..._verbs.classify import classify
 from ..artists import Artists
 from ..axes import axes_of, leaving_no_figure, require_axes
 from ..legends import name_curves
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.text import Text
 
-    from ..._check import FloatArray
+    from ..._ask.check import FloatArray
     from .plane import Plane
 
 COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..._check import uniform_disc
-from ..._outcome import thresholds
+from ..._ask.check import uniform_disc
+from ..._verbs.classify import thresholds
 
 TIP_ASPECT = math.sqrt(3)
 """Up to this a/b of a uniform disc the N of rolling vanishes at the tip first.

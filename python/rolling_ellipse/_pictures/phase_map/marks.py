@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._outcome import thresholds
+from ..._verbs.classify import thresholds
 from ..palette import INK, PLUM
 from .discs import LAST_WITHIN, TIP_ASPECT, last_aspect_to_roll_over
 from .names import Names, visible_part
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.text import Text
 
-    from ..._check import FloatArray
-    from ..._outcome import Thresholds
+    from ..._ask.check import FloatArray
+    from ..._verbs.classify import Thresholds
     from .plane import Plane
 
 _POINTS = 49  # of a curve: each is one call of `thresholds`, some milliseconds

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.text import Text
 
-    from ..._check import FloatArray
+    from ..._ask.check import FloatArray
 
 _SIZE = "x-small"
 _WIDTH = 0.56  # of a letter, in font sizes

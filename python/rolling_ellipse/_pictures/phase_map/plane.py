@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ..._check import FloatArray, choice, number, positive, shown
+from ..._ask.check import FloatArray, choice, number, positive, shown
 from .discs import roll_over_speed
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")

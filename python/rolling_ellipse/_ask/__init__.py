@@ -1,0 +1,1 @@
+"""What is asked: arguments, the scene with its blow, and how it is to be computed."""

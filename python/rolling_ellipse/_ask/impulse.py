@@ -1,0 +1,153 @@
+"""The blow: one impulse at a point of the body, or many of them as arrays that broadcast."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import KW_ONLY, dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .categories import ValidityWarning
+from .check import FloatArray, array, common_shape, copied, pieces
+
+
+@dataclass(frozen=True, eq=False)
+class Impulse:
+    """An impulse applied to a point of the body, or many of them.
+
+    Of arrays that broadcast it stands for as many blows as they have elements together: those are
+    for `outcome`; a Scene takes one. The arrays are kept as read-only copies. Two are equal if
+    their numbers are, and, of arrays, their shapes.
+
+    Parameters
+    ----------
+    jx, jz : float or array_like
+        Components along the ground and away from it [N s].
+    dx, dz : float or array_like
+        Where it acts, seen from the centre in ground axes [m].
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or beyond 1e50 (of an array: with its index), or shapes do not
+        broadcast.
+    TypeError
+        If something is neither a number nor an array of them.
+    """
+
+    jx: Any = 0.0
+    jz: Any = 0.0
+    _: KW_ONLY
+    dx: Any = 0.0
+    dz: Any = 0.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            object.__setattr__(self, field.name, numbers(field.name, getattr(self, field.name)))
+        _ = self.shape  # arrays must broadcast
+        if not self._arrays:
+            _ = self.core  # the core validates
+            return
+        for name, values in vars(self).items():
+            _let_the_core_refuse(name, np.asarray(values), name)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """() for one blow; the common shape of the arrays for many."""
+        return common_shape(self._arrays, slice(None))
+
+    @property
+    def _arrays(self) -> dict[str, FloatArray]:
+        return {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+
+    @property
+    def core(self) -> _core.Impulse:
+        """The same for the core, of one blow."""
+        return _core.Impulse(self.jx, self.jz, self.dx, self.dz)
+
+    @classmethod
+    def press(cls, F: Any, d: Any) -> Impulse:
+        """Return the downward blow of the report's Figure 9: F [N s] at distance d [m] from G.
+
+        A negative F is no press but a pull, which takes more than a touch: a ValidityWarning says
+        so.
+
+        Parameters
+        ----------
+        F, d : float or array_like
+            Arrays that broadcast make many blows.
+        """
+        force, distance = array("F", F), array("d", d)
+        push = copied(force)
+        try:
+            found = cls(0.0, np.negative(push, out=push), dx=distance)
+        except ValueError:
+            _let_the_core_refuse("jz", force, "F")
+            _let_the_core_refuse("dx", distance, "d")
+            raise
+        pull = float(np.min(force, initial=0.0))
+        if pull < 0:
+            said = f"F = {pull!r} N s pulls the body upwards: a press has a positive F"
+            warnings.warn(said, ValidityWarning, stacklevel=2)
+        return found
+
+    def _values(self) -> tuple[Any, ...]:
+        """What two impulses are compared by: floats, and the shape and bits of arrays."""
+        return tuple(
+            # + 0.0: the two zeros are equal, their bits are not
+            (value.shape, (value + 0.0).tobytes()) if isinstance(value, np.ndarray) else value
+            for value in vars(self).values()
+        )
+
+    def __eq__(self, other: object) -> bool:
+        return self._values() == other._values() if type(other) is Impulse else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._values())
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Make the arrays read-only again: those of pickles and deep copies are not."""
+        self.__dict__.update(state)
+        for values in self._arrays.values():
+            values.flags.writeable = False
+
+
+def numbers(name: str, value: Any) -> Any:
+    """Return a number as a float, and an array of numbers as a read-only copy."""
+    found = array(name, value)
+    if found.ndim == 0:
+        return float(found)
+    kept = copied(found)
+    kept.flags.writeable = False
+    return kept
+
+
+def _worst(values: FloatArray) -> tuple[int, ...]:
+    """Return the index of the number that is refused if any is: NaN, or else the largest."""
+    place, size = 0, -1.0
+    for begin, piece in pieces(values):
+        sizes = np.abs(piece)
+        worst = int(sizes.argmax())
+        if not sizes[worst] <= size:
+            place, size = begin + worst, float(sizes[worst])
+        if np.isnan(size):
+            break
+    return tuple(int(i) for i in np.unravel_index(place, values.shape))
+
+
+def _let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
+    """Raise what the core says of the worst number, by the name of the argument that it came as."""
+    if not values.size:
+        return
+    index = _worst(values)
+    try:
+        _core.Impulse(**({"jx": 0.0, "jz": 0.0, "dx": 0.0, "dz": 0.0} | {name: values[index]}))
+    except ValueError as error:
+        said = str(error).replace(name, argument, 1)
+        raise ValueError(f"{said}{_at(index)}") from None
+
+
+def _at(index: tuple[int, ...]) -> str:
+    return f" at index {index[0] if len(index) == 1 else index}" if index else ""

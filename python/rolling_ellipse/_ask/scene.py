@@ -1,0 +1,279 @@
+"""What is physically there: the body, the ground, the start and the blow."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import KW_ONLY, dataclass, fields
+from typing import Any, ClassVar
+
+from .. import _core
+from .._core import Mode
+from . import reason as words
+from .check import number, shown
+from .impulse import Impulse as Impulse
+from .printing import Listed, Row, brief, with_unit
+from .records import FieldsOnly, cached_property
+
+_OPTIONAL = ("inertia", "z", "x_dot", "z_dot")
+STATE_UNITS = {
+    "theta": "rad", "omega": "rad/s", "x": "m", "z": "m", "x_dot": "m/s", "z_dot": "m/s",
+}  # fmt: skip
+SCENE_UNITS = {
+    "a": "m", "b": "m", "mass": "kg", "gravity": "m/s²", "inertia": "kg m²", "slope": "rad",
+    "friction": "", "restitution": "", **STATE_UNITS,
+}  # fmt: skip
+
+
+@dataclass(frozen=True, repr=False)
+class InitialState(Listed):
+    """The state just after the applied impulse.
+
+    Attributes
+    ----------
+    theta, omega, x, z, x_dot, z_dot : float
+        Angle [rad], angular velocity [rad/s], centre [m] and its velocity [m/s].
+    mode : Mode
+        What the body does from now on, as the contact with its friction allows it: ROLLING,
+        SLIDING, FLIGHT or REST.
+    reaction_x, reaction_z : float
+        Impulse of the ground on the body at t = 0 [N s]: against a blow, or (with infinite
+        friction) against a slip.
+    free_omega : float
+        Angular velocity without the ground's reaction, the report's eq 48 [rad/s].
+    energy_lost : float
+        Energy that goes with a slip which infinite friction takes off, or in an impact [J]. 0 for
+        a blow: its work depends on how it and the ground act in time.
+    reason : str
+        One sentence on what the blow did, what the body then does, and why.
+    """
+
+    _units: ClassVar[dict[str, str]] = {
+        **STATE_UNITS, "reaction_x": "N s", "reaction_z": "N s", "free_omega": "rad/s",
+        "energy_lost": "J",
+    }  # fmt: skip
+
+    theta: float
+    omega: float
+    x: float
+    z: float
+    x_dot: float
+    z_dot: float
+    mode: Mode
+    reaction_x: float
+    reaction_z: float
+    free_omega: float
+    energy_lost: float
+    reason: str
+
+    def __repr__(self) -> str:
+        numbers = ", ".join(
+            f"{name} = {brief(getattr(self, name))} {unit}" for name, unit in STATE_UNITS.items()
+        )
+        return f"<InitialState {self.mode.name}: {numbers}>"
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class Scene(FieldsOnly, Listed):
+    """An ellipse, its ground, its state at t = 0 and, if any, the impulse it then receives.
+
+    SI units, radians; theta is clockwise positive, so that rolling forwards increases x. At
+    theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all that they were made
+    of is, number by number; `repr` is the call that makes an equal one. Each speed, height and blow
+    may bring 1e12 m g max(a, b) of energy; what a motion has gained down a slope may be more.
+
+    Parameters
+    ----------
+    a, b : float
+        Semi-axes [m], in any order; 1e-3 <= a/b <= 1e3.
+    mass, gravity : float
+        Mass [kg], acceleration of gravity [m/s^2].
+    inertia : float, optional
+        Moment of inertia about the centre [kg m^2], from 1e-6 to 1e6 times m max(a, b)^2; default:
+        a uniform disc, m (a^2 + b^2)/4.
+    slope : float
+        Angle of the ground [rad], downwards in x; |slope| <= 1.5.
+    friction : float
+        Coefficient of friction, up to 1e6 or infinite. Infinite friction holds a rolling contact
+        as long as it is pressed (N > 0); from then on the body slides with N = 0, the limit of
+        large coefficients. For a slip that is given it is not: where a large coefficient presses
+        the body into the ground until it jams, the slip is taken off by an impulse of the ground
+        at t = 0, which costs energy (`initial_state` tells how much). A slip the other way goes on
+        with N = 0. Without friction a contact that moves is SLIDING, that of a circle, too.
+    restitution : float
+        Energetic (Stronge's) coefficient of restitution, between 0 and 1.
+    theta, omega : float
+        Angle [rad] and angular velocity [rad/s]; less than 1e-100 rad/s in size counts as rest.
+    x : float
+        Position of the centre along the ground [m].
+    z : float, optional
+        Height of the centre [m]; None, or a value within 8 ulp of touching: on the ground.
+    x_dot, z_dot : float, optional
+        Velocity of the centre [m/s]. On the ground the default is that of rolling, and values
+        within 8 ulp of it count as rolling; in the air the default is 0.
+    impulse : Impulse, optional
+        Blow received at t = 0, along a line that meets the body: what passes beside it cannot be
+        given by touching it.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, the body starts below the ground or moves into it, or the
+        blow misses it.
+    TypeError
+        If something is no number at all.
+    """
+
+    _units: ClassVar[dict[str, str]] = SCENE_UNITS
+
+    a: float
+    b: float
+    _: KW_ONLY
+    mass: float = 1.0
+    gravity: float = 9.81
+    inertia: float | None = None
+    slope: float = 0.0
+    friction: float = math.inf
+    restitution: float = 0.0
+    theta: float = 0.0
+    omega: float = 0.0
+    x: float = 0.0
+    z: float | None = None
+    x_dot: float | None = None
+    z_dot: float | None = None
+    impulse: Impulse | None = None
+
+    def __init__(  # that of a frozen dataclass takes as long as all of this together
+        self,
+        a: float,
+        b: float,
+        *,
+        mass: float = mass,
+        gravity: float = gravity,
+        inertia: float | None = inertia,
+        slope: float = slope,
+        friction: float = friction,
+        restitution: float = restitution,
+        theta: float = theta,
+        omega: float = omega,
+        x: float = x,
+        z: float | None = z,
+        x_dot: float | None = x_dot,
+        z_dot: float | None = z_dot,
+        impulse: Impulse | None = impulse,
+    ) -> None:
+        numbers: dict[str, Any] = {
+            "a": a, "b": b, "mass": mass, "gravity": gravity, "inertia": inertia, "slope": slope,
+            "friction": friction, "restitution": restitution, "theta": theta, "omega": omega,
+            "x": x, "z": z, "x_dot": x_dot, "z_dot": z_dot,
+        }  # fmt: skip
+        self._hold(numbers, impulse)
+
+    def _hold(self, numbers: dict[str, Any], impulse: Any, *, reached: bool = False) -> None:
+        """Keep the arguments, in the order of the fields, if they are valid."""
+        for name, value in numbers.items():
+            if type(value) is not float and not (value is None and name in _OPTIONAL):
+                numbers[name] = number(name, value)
+        if impulse is not None and not isinstance(impulse, Impulse):
+            raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
+        if impulse is not None and impulse.shape != ():
+            raise ValueError(
+                f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
+                "use outcome(scene, impulse)"
+            )
+        core = _for_core(numbers.values(), impulse, reached)  # the core validates
+        object.__setattr__(self, "__dict__", numbers | {"impulse": impulse, "core": core})
+
+    @cached_property
+    def core(self) -> _core.Scene:
+        """The same for the core, which pickles do not hold."""
+        *numbers, impulse = self.__getstate__().values()
+        return _for_core(numbers, impulse, reached=True)
+
+    def replace(self, **changes: Any) -> Scene:
+        """Return the scene with some of its arguments changed.
+
+        Raises
+        ------
+        TypeError
+            If a scene has no such argument.
+        ValueError
+            As of the constructor: what is kept must go with what is changed.
+        """
+        names = [field.name for field in fields(self)]
+        for name in changes:
+            if name not in names:
+                raise TypeError(f"changes must be of {', '.join(names)}, got {name}")
+        return dataclasses.replace(self, **changes)
+
+    @property
+    def gyration2(self) -> float:
+        """Square of the radius of gyration, k^2 = I/m [m^2]."""
+        return self.core.gyration2
+
+    @cached_property
+    def initial_state(self) -> InitialState:
+        """State just after the impulse: the collision law without restitution (InitialState)."""
+        start = _core.initial_state(self.core)
+        follows = _core.first_continuation(self.core, start.state)
+        did, then = words.what_the_blow_did(self, start), words.what_follows(self, start, follows)
+        state = start.state
+        return InitialState(
+            theta=state.theta,
+            omega=state.omega,
+            x=state.x,
+            z=state.z,
+            x_dot=state.x_dot,
+            z_dot=state.z_dot,
+            mode=follows.mode,
+            reaction_x=start.reaction_x,
+            reaction_z=start.reaction_z,
+            free_omega=start.free_omega,
+            energy_lost=start.energy_lost,
+            reason=f"{did}; {then}",
+        )
+
+    def _changed(self) -> dict[str, Any]:
+        """What is not as it is by default; the semi-axes have no default."""
+        found = ((field, getattr(self, field.name)) for field in fields(self))
+        return {field.name: value for field, value in found if value != field.default}
+
+    def __repr__(self) -> str:
+        given = (f"{name}={value!r}" for name, value in self._changed().items())
+        return f"Scene({', '.join(given)})"
+
+    def _rows(self) -> list[Row]:
+        """What is not as it is by default, and what follows of it."""
+        told = self._changed()
+        impulse = told.pop("impulse", None)
+        rows: list[Row] = [
+            (name, with_unit(value, SCENE_UNITS[name])) for name, value in told.items()
+        ]
+        start, after = self.initial_state, ""
+        if impulse is not None:
+            rows.append(("impulse", words.blow(impulse)))
+            after = f", omega = {brief(start.omega)} rad/s after the blow"
+        return [*rows, ("start", words.WHERE[start.mode] + after)]
+
+
+def _for_core(numbers: Iterable[Any], impulse: Impulse | None, reached: bool) -> _core.Scene:
+    return _core.Scene(*(*numbers, None if impulse is None else impulse.core, reached))
+
+
+def reached_scene(arguments: Mapping[str, Any]) -> Scene:
+    """Return the scene of all its arguments, in the state that some motion reached.
+
+    Down a slope that may have more energy than a scene that is typed.
+    """
+    *numbers, impulse = (field.name for field in fields(Scene))
+    scene = object.__new__(Scene)
+    scene._hold({name: arguments[name] for name in numbers}, arguments[impulse], reached=True)
+    return scene
+
+
+def require_scene(scene: object) -> Scene:
+    """Return the scene, or raise TypeError."""
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a Scene, got {shown(scene)}")
+    return scene

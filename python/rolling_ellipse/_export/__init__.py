@@ -1,1 +1,0 @@
-"""What leaves the package for others to read: files and tables."""

@@ -1,0 +1,181 @@
+"""What joins the segments of a contact motion: slip, stick, lift-off, impact and the rest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
+
+from .. import _core
+from .._ask.printing import Row, brief, html_table, text_table
+from .._ask.records import FieldsOnly, find_late, trusted
+from .._ask.scene import InitialState, Scene
+from .._core import EventKind, Mode
+
+if TYPE_CHECKING:
+    from .export import event_table
+
+_STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot", "mode")
+_numbers = attrgetter(*_STATE[:-1])
+_KINDS: dict[float, EventKind] = {kind.value: kind for kind in EventKind}
+_MODES: dict[float, Mode] = {mode.value: mode for mode in Mode}
+_SENTENCES = {
+    EventKind.SLIP: "friction cannot hold the contact any more",
+    EventKind.STICK: "the slip has come to an end; the body rolls",
+    EventKind.REVERSE: "the slip has come to an end and goes on the other way",
+    EventKind.LIFT_OFF: "the body leaves the ground",
+    EventKind.IMPACT: "the body hits the ground",
+    EventKind.REST: "the body has come to rest",
+    EventKind.JAM: "the sliding body jams: no motion of a rigid body goes on, or more than one",
+}
+_SLIP_WITHOUT_LIMIT = (
+    "the ground would have to pull: the body slides, not pressed (infinite friction)"
+)
+_HEAD = ("t [s]", "kind", "theta [rad]", "x [m]", "what changes")
+_FIRST, _LAST = 12, 4  # of many events, those shown
+
+
+@dataclass(frozen=True, repr=False)
+class Event(FieldsOnly):
+    """A change of mode, or an impact.
+
+    Attributes
+    ----------
+    t : float
+        When [s].
+    kind : EventKind
+        SLIP, STICK, REVERSE, LIFT_OFF, IMPACT, REST or JAM.
+    state_before, state_after : InitialState
+        The body just before and just after; the reaction impulse of an impact and the energy that
+        it takes are in the latter.
+    """
+
+    t: float
+    kind: EventKind
+    state_before: InitialState
+    state_after: InitialState
+
+    def _row(self) -> Row:
+        """The cells under `_HEAD`."""
+        after = self.state_after
+        numbers = (f"{self.t:.9g}", self.kind.name, brief(after.theta), brief(after.x))
+        return (*numbers, self._change())
+
+    def _change(self) -> str:
+        before, after = self.state_before, self.state_after
+        change = f"{before.mode.name} → {after.mode.name}"
+        if self.kind is EventKind.IMPACT:
+            change += f", {after.reaction_x:.4g} N s along, {after.reaction_z:.4g} N s up"
+            change += f", {after.energy_lost:.4g} J lost"
+        return change
+
+    def __repr__(self) -> str:
+        after = self.state_after
+        return (
+            f"<Event {self.kind.name} at t = {self.t:.9g} s, theta = {brief(after.theta)} rad, "
+            f"x = {brief(after.x)} m: {self._change()}>"
+        )
+
+
+class Events(tuple[Event, ...]):
+    """A tuple of events in the order of time that prints as a table; slices are the same.
+
+    Of many events it shows the first and the last ones.
+    """
+
+    __slots__ = ()
+
+    @overload
+    def __getitem__(self, place: SupportsIndex) -> Event: ...
+    @overload
+    def __getitem__(self, place: slice) -> Events: ...
+    def __getitem__(self, place: Any) -> Any:
+        found = super().__getitem__(place)
+        return Events(found) if isinstance(place, slice) else found
+
+    def _shown(self) -> list[Row]:
+        hidden = len(self) - _FIRST - _LAST
+        if hidden <= 1:  # the row that says so takes as much room
+            return [each._row() for each in self]
+        first, last = self[:_FIRST], self[-_LAST:]
+        gap = ("…", f"and {hidden} more", "", "", "")
+        return [*(each._row() for each in first), gap, *(each._row() for each in last)]
+
+    def _caption(self) -> str:
+        return "1 event" if len(self) == 1 else f"{len(self)} events"
+
+    def __repr__(self) -> str:
+        return f"{self._caption()}\n{text_table([_HEAD, *self._shown()])}" if self else "no events"
+
+    def _repr_html_(self) -> str:
+        return html_table(self._caption(), self._shown(), _HEAD)
+
+    if TYPE_CHECKING:  # bound by `_show.methods`
+        to_dataframe = event_table.to_dataframe
+
+
+def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:
+    """Make the events of what the core, or a file, says; their states when they are asked for.
+
+    A row holds t and the code of the kind, then theta, omega, x, z, x_dot, z_dot and the code of
+    the mode, just before and just after.
+    """
+    return Events(
+        [
+            trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_found": row, "_scene": scene})
+            for row in rows
+        ]
+    )
+
+
+def _before(event: Any) -> InitialState:
+    return _state(event._found[2:9], event._found[3], "just before", 0.0, 0.0, 0.0)
+
+
+def _after(event: Any) -> InitialState:
+    row, scene, kind = event._found, event._scene, event.kind
+    hit = kind is EventKind.IMPACT
+    pulled = kind is EventKind.SLIP and math.isinf(scene.friction)
+    reaction_x = scene.mass * (row[13] - row[6]) if hit else 0.0
+    reaction_z = scene.mass * (row[14] - row[7]) if hit else 0.0
+    lost = _core.energy_lost(scene.core, row[2:8], row[9:15]) if hit else 0.0
+    says = _SLIP_WITHOUT_LIMIT if pulled else _SENTENCES[kind]
+    return _state(row[9:16], row[3], says, reaction_x, reaction_z, lost)
+
+
+def _state(
+    numbers: Sequence[float],
+    free_omega: float,
+    reason: str,
+    reaction_x: float,
+    reaction_z: float,
+    energy_lost: float,
+) -> InitialState:
+    values: dict[str, Any] = dict(zip(_STATE, numbers, strict=True))
+    values |= {"mode": _MODES[values["mode"]], "reaction_x": reaction_x, "reaction_z": reaction_z}
+    values |= {"free_omega": free_omega, "energy_lost": energy_lost, "reason": reason}
+    return trusted(InitialState, values)
+
+
+find_late(Event, state_before=_before, state_after=_after)
+
+
+def as_numbers(found: Event) -> list[Any]:
+    """Return an event as JSON knows it; `from_numbers` makes it again."""
+    before, after = (
+        [*_numbers(state), int(state.mode)] for state in (found.state_before, found.state_after)
+    )
+    return [found.t, found.kind.name, before, after]
+
+
+def from_numbers(numbers: list[Any]) -> list[Any]:
+    """Return what `as_numbers` returned as a row that `events` takes."""
+    t, kind, before, after = numbers
+    row = [t, EventKind[kind].value]
+    for state in (before, after):
+        if len(state) != len(_STATE):
+            raise ValueError(f"events must hold states of {len(_STATE)} numbers, got {state!r}")
+        row += [*state[:-1], Mode(state[-1])]
+    return row

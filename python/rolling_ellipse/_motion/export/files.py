@@ -1,0 +1,184 @@
+"""Trajectories as .npz files: arrays and, as JSON, everything else."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+from collections.abc import Collection, Iterable
+from dataclasses import asdict
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from ... import _core
+from ..._ask.check import choice, file_name
+from ..._ask.settings import Settings
+from ..._core import EventKind
+from ..events import as_numbers, events, from_numbers
+from ..samples import ContactSamples
+from ..status import Status
+from ..trajectory import Trajectory, solve
+from .atomic import replacing
+from .npz import arrays as npz_arrays
+from .strict import ARCHIVE, field_names, parsed, require_names, restored, scene_of
+
+_Made = TypeVar("_Made", bound=Trajectory)
+
+_SCHEMA = 4
+_VECTORS = ("t", "theta", "omega", "x")
+_PAIRS = ("coordinates", "start")
+_FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
+
+
+def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
+    """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
+
+    The file is there when it is whole: whatever goes wrong, an old one of that name stays.
+
+    Raises
+    ------
+    ValueError
+        If something was put into it that `simulate` never does, and `load` would refuse.
+    OSError
+        If the file cannot be written.
+    """
+    name = file_name("path", path)
+    text, arrays = json.dumps(_about(trajectory)), _arrays(trajectory)
+    _restored(type(trajectory), text, arrays)
+    with replacing(name) as new, open(new, "wb") as file:
+        np.savez(file, about=np.array(text), **arrays)
+
+
+def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
+    """Read a trajectory written by `save`.
+
+    Raises
+    ------
+    ValueError
+        If the file is damaged, holds something else, or has another schema version; it names
+        the file and what is wrong.
+    OSError
+        If there is no such file, or it cannot be read.
+    """
+    return restored(path, lambda content: _of_bytes(kind, content), ARCHIVE)
+
+
+def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
+    arrays = npz_arrays(content, {"about", *_VECTORS, *_PAIRS, *ContactSamples._fields})
+    if "about" not in arrays:
+        raise ValueError("it must hold the array 'about'")
+    return _restored(kind, str(arrays.pop("about")), arrays)
+
+
+def _about(trajectory: Trajectory) -> dict[str, Any]:
+    """Return all but the arrays as JSON knows it."""
+    return {
+        "schema": _SCHEMA,
+        "scene": asdict(trajectory.scene),
+        "settings": asdict(trajectory.settings),
+        "status": trajectory.status.name,
+        "events": [as_numbers(found) for found in trajectory.events],
+        **{name: getattr(trajectory, name) for name in _FACTS},
+    }
+
+
+def _arrays(trajectory: Trajectory) -> dict[str, Any]:
+    found = {name: getattr(trajectory, name) for name in _VECTORS}
+    for name in _PAIRS:
+        if (pair := getattr(trajectory, name)) is not None:
+            found[name] = np.stack(pair)
+    return found if trajectory.contact is None else found | trajectory.contact._asdict()
+
+
+def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
+    """Return the trajectory of a text and arrays, if they are just what is written of it.
+
+    So nothing is converted, filled in or left out, whatever the classes would be content with.
+    """
+    about = parsed("about", text)
+    require_names("about", about, ("schema", "scene", "settings", "status", "events", *_FACTS))
+    if about["schema"] != _SCHEMA:
+        raise ValueError(f"schema must be {_SCHEMA}, got {about['schema']!r}")
+    require_names(f"model {about['model']!r}", arrays, _array_names(about["model"], arrays))
+    for name, values in arrays.items():
+        _require_values(name, values)
+    scene, settings = scene_of(about["scene"]), about["settings"]
+    require_names("settings", settings, field_names(Settings))
+    contact = [arrays[name] for name in ContactSamples._fields if name in arrays]
+    pairs: dict[str, Any] = {name: tuple(arrays[name]) for name in _PAIRS if name in arrays}
+    trajectory = kind(
+        **{name: arrays[name] for name in _VECTORS},
+        **pairs,
+        **{name: about[name] for name in _FACTS},
+        contact=ContactSamples._make(contact) if contact else None,
+        scene=scene,
+        settings=Settings(**settings),
+        status=Status[choice("status", about["status"], tuple(Status.__members__))],
+        kept_events=events(scene, map(_event, about["events"])),
+    )
+    _require_consistent(trajectory)
+    again = _about(trajectory)
+    for name, value in about.items():
+        if json.dumps(value, sort_keys=True) != json.dumps(again[name], sort_keys=True):
+            raise ValueError(f"{name} must be what save writes, {again[name]!r}, got {value!r}")
+    return trajectory
+
+
+def _array_names(model: Any, there: Collection[str]) -> set[str]:
+    """Return the names of the arrays of a model; only "multipliers" may have a start."""
+    names = set(_VECTORS)
+    if model == "contact":
+        names |= set(ContactSamples._fields)
+    if model == "multipliers":
+        names |= {"coordinates"} | ({"start"} & set(there))
+    return names
+
+
+def _require_values(name: str, values: npt.NDArray[Any]) -> None:
+    dtype = np.dtype(np.int8 if name == "mode" else np.float64)
+    if values.dtype != dtype:
+        raise ValueError(f"{name} must be of type {dtype}, got {values.dtype}")
+    if not np.all(np.isfinite(values)):
+        raise ValueError(f"{name} must be finite, got {float(values[~np.isfinite(values)][0])!r}")
+
+
+def _event(numbers: Any) -> list[Any]:
+    """Return the row of an event."""
+    t, kind, before, after = numbers
+    choice("kind", kind, tuple(EventKind.__members__))
+    for value in (t, *before[:-1], *after[:-1]):
+        if not (isinstance(value, float) and math.isfinite(value)):
+            raise ValueError(f"events must hold finite numbers, got {value!r}")
+    return from_numbers(numbers)
+
+
+def _require_consistent(trajectory: Trajectory) -> None:
+    """Raise ValueError unless the parts fit one another, and `sol` has all that it needs."""
+    asked, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
+    _require_asked("model", trajectory.model, asked.model)
+    _require_asked("method", trajectory.method, asked.method)
+    _require_within("span", [span], 0.0, sys.float_info.max)
+    _require_within("t_end", [t_end], 0.0, span)
+    _require_within("valid_until", [trajectory.valid_until], 0.0, math.inf)
+    _require_within("t", t, 0.0, t_end)
+    times = [found.t for found in trajectory.events]
+    _require_within("times of events", times, 0.0, t_end)
+    if times != sorted(times):
+        raise ValueError(f"times of events must not fall, got {times}")
+    _core.validate_settings(asked.core, span)
+    solve(trajectory.scene, asked, 0.0, trajectory.start)  # the core checks what was asked for
+
+
+def _require_asked(name: str, value: str, asked: str) -> None:
+    if asked not in ("auto", value):
+        raise ValueError(f"{name} must be that of the settings, {asked!r}, got {value!r}")
+
+
+def _require_within(name: str, values: Iterable[float], least: float, most: float) -> None:
+    found = np.asarray(values)
+    outside = found[~((found >= least) & (found <= most))]
+    if outside.size:
+        raise ValueError(f"{name} must lie in [{least!r}, {most!r}], got {float(outside[0])!r}")

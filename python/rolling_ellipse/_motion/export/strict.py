@@ -1,0 +1,104 @@
+"""What a file holds: all that there must be, each name once, and nothing else."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import fields
+from typing import Any, TypeVar
+from zipfile import is_zipfile
+
+from ..._ask.check import file_name
+from ..._ask.scene import Impulse, Scene, reached_scene
+
+ARCHIVE, OBJECT = b"PK\x03\x04", b"{"  # first bytes of .npz files, and of JSON
+
+_Made = TypeVar("_Made")
+
+
+def restored(
+    path: str | os.PathLike[str],
+    restore: Callable[[bytes], _Made],
+    begins: bytes,
+    writer: str = "save",
+    cure: str = "",
+) -> _Made:
+    """Return what a function makes of the bytes of a file that its writer is to have written.
+
+    Only a file with the right first bytes, and of an archive the end, is read: others may have any
+    size.
+
+    Raises
+    ------
+    ValueError
+        If the function raises anything; the file is named, what is wrong, and what to do, if
+        anything.
+    OSError
+        If the file cannot be read.
+    """
+    name = file_name("path", path)
+    with open(name, "rb") as file:
+        content = file.read(len(begins))
+        is_whole = content == begins
+        if is_whole and begins == ARCHIVE and file.seekable():
+            is_whole = is_zipfile(file)
+            file.seek(len(begins))
+        if is_whole:
+            content += file.read()
+    try:
+        if not is_whole:
+            raise ValueError(f"it begins with {content!r}, or it is cut short")
+        return restore(content)
+    except MemoryError:
+        raise
+    except Exception as error:  # damaged bytes raise about every kind there is, on their way here
+        wrong = str(error) or type(error).__name__
+        raise ValueError(
+            f"path must name a file written by {writer}, got {name!r}: {wrong}{cure}"
+        ) from error
+
+
+def parsed(name: str, text: str) -> Any:
+    """Return what a text of JSON holds; infinite numbers are allowed, NaN is none.
+
+    Raises
+    ------
+    ValueError
+        If it is no JSON, or a name comes twice.
+    """
+
+    def constant(literal: str) -> float:
+        if literal == "NaN":
+            raise ValueError(f"{name} must hold numbers, got NaN")
+        return float(literal)
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) != len(pairs):
+            names = [key for key, _ in pairs]
+            raise ValueError(f"{name} must have each name once, got {names}")
+        return found
+
+    return json.loads(text, parse_constant=constant, object_pairs_hook=once)
+
+
+def field_names(kind: type[Any]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind))
+
+
+def require_names(what: str, found: Any, names: Iterable[str]) -> None:
+    required = set(names)
+    if not isinstance(found, dict):
+        raise ValueError(f"{what} must hold names and values, got {found!r}")
+    for name in sorted(required ^ set(found)):
+        raise ValueError(f"{what} must {'have' if name in required else 'not have'} {name!r}")
+
+
+def scene_of(found: Any) -> Scene:
+    require_names("scene", found, field_names(Scene))
+    impulse = found["impulse"]
+    if impulse is not None:
+        require_names("impulse", impulse, field_names(Impulse))
+        impulse = Impulse(**impulse)
+    return reached_scene({**found, "impulse": impulse})

@@ -1,0 +1,116 @@
+"""Trajectories as tables of pandas and xarray."""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..._ask.scene import Scene
+from ..._core import Mode
+from ..quantities import MODE, MULTIPLIERS, QUANTITIES, TIME, Quantity
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import Dataset
+
+    from ..trajectory import Trajectory
+
+
+def to_dataframe(trajectory: Trajectory) -> DataFrame:
+    """Return a pandas DataFrame indexed by t, its columns named as the attributes.
+
+    The multipliers are ``lambda1`` to ``lambda4``, ``mode`` holds names of `Mode`. ``attrs``
+    has the units by column (``"units"``), the numbers of the scene, model, method and status.
+
+    Raises
+    ------
+    ImportError
+        Without pandas: it comes with ``rolling_ellipse[data]``.
+    """
+    pandas = required("pandas", "to_dataframe")
+    columns: dict[str, Any] = {each.name: getattr(trajectory, each.name) for each in QUANTITIES}
+    columns |= dict(zip(_names(MULTIPLIERS), trajectory.multipliers.T, strict=True))
+    columns["mode"] = pandas.Categorical.from_codes(trajectory.mode, [mode.name for mode in Mode])
+    frame: DataFrame = pandas.DataFrame(columns, index=pandas.Index(trajectory.t.copy(), name="t"))
+    everything = (TIME, *QUANTITIES, *MULTIPLIERS, MODE)
+    frame.attrs = {**_facts(trajectory), "units": {each.name: each.unit for each in everything}}
+    return frame
+
+
+def to_xarray(trajectory: Trajectory) -> Dataset:
+    """Return an xarray Dataset over t, its variables named as the attributes.
+
+    ``multipliers`` have a second dimension, ``constraint``; ``mode`` holds codes of `Mode`.
+    Every variable has ``units`` and ``long_name``; ``attrs`` has the numbers of the scene,
+    model, method and status, all of which a netCDF file can hold.
+
+    Raises
+    ------
+    ImportError
+        Without xarray: it comes with ``rolling_ellipse[data]``.
+    """
+    xarray = required("xarray", "to_xarray")
+    variables: dict[str, Any] = {
+        each.name: ("t", getattr(trajectory, each.name).copy(), _attributes(each))
+        for each in QUANTITIES
+    }
+    variables["multipliers"] = (
+        ("t", "constraint"),
+        trajectory.multipliers.copy(),
+        {
+            "units": ", ".join(each.unit for each in MULTIPLIERS),
+            "long_name": "; ".join(each.meaning for each in MULTIPLIERS),
+        },
+    )
+    flags = {  # as the CF conventions write codes
+        "flag_values": np.array(list(Mode), dtype=np.int8),
+        "flag_meanings": " ".join(mode.name for mode in Mode),
+    }
+    variables["mode"] = ("t", trajectory.mode.copy(), _attributes(MODE) | flags)
+    coordinates = {
+        "t": ("t", trajectory.t.copy(), _attributes(TIME)),
+        "constraint": ["f1", "f2", "f3", "f4"],
+    }
+    found: Dataset = xarray.Dataset(variables, coordinates, _facts(trajectory))
+    return found
+
+
+def required(package: str, method: str) -> Any:
+    """Return a package of the extra "data", or raise ImportError that says so."""
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(
+            f"{method} needs {package}: pip install 'rolling_ellipse[data]'"
+        ) from error
+
+
+def _names(quantities: tuple[Quantity, ...]) -> list[str]:
+    return [each.name for each in quantities]
+
+
+def _attributes(quantity: Quantity) -> dict[str, Any]:
+    return {"units": quantity.unit, "long_name": quantity.meaning}
+
+
+def _facts(trajectory: Trajectory) -> dict[str, float | str]:
+    """Scene and solution as numbers and strings, which every file format can hold.
+
+    A field of the scene that is None has no entry: Scene has the same default.
+    """
+    scene = trajectory.scene
+    facts: dict[str, float | str] = {
+        field.name: value
+        for field in fields(Scene)
+        if field.name != "impulse" and (value := getattr(scene, field.name)) is not None
+    }
+    if scene.impulse is not None:
+        for field in fields(scene.impulse):
+            facts[f"impulse_{field.name}"] = getattr(scene.impulse, field.name)
+    for name in ("model", "method", "message", "reason", "valid_until"):
+        facts[name] = getattr(trajectory, name)
+    facts["status"] = trajectory.status.name
+    return facts

@@ -1,0 +1,204 @@
+"""The arrays of a Trajectory: of one length, of one type, and never to be written to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from .._ask.check import FloatArray, array, shown
+
+if TYPE_CHECKING:
+    from .trajectory import Trajectory
+
+_Values = TypeVar("_Values", bound=npt.NDArray[Any])
+
+
+class ContactSamples(NamedTuple):
+    """What a contact motion knows beside theta, omega and x."""
+
+    z: FloatArray
+    x_dot: FloatArray
+    z_dot: FloatArray
+    normal_force: FloatArray
+    friction_force: FloatArray
+    mode: npt.NDArray[np.int8]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Come back read-only, which arrays in a plain tuple would not."""
+        return _frozen_contact, tuple(self)
+
+
+def _frozen_contact(*arrays: Any) -> ContactSamples:
+    return ContactSamples._make(frozen(values) for values in arrays)
+
+
+def frozen(values: _Values) -> _Values:
+    """Make an array read-only that nobody else has."""
+    values.setflags(write=False)
+    return values
+
+
+def even_times(begin: float, end: float, count: int) -> FloatArray:
+    """Return even times, none after the end: a subnormal step of `np.linspace` is rounded up."""
+    return np.minimum(np.linspace(begin, end, count), end)
+
+
+def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
+    """Return the arrays that a Trajectory holds; their bits do not depend on the order of times."""
+    if _core.are_sample_times(times):
+        return _ascending(solution, times)
+    order = np.argsort(times, kind="stable")
+    place = np.argsort(order)
+
+    def put_back(values: Any) -> Any:
+        if isinstance(values, ContactSamples):
+            return ContactSamples._make(map(put_back, values))
+        if isinstance(values, tuple):
+            return tuple(map(put_back, values))
+        return frozen(values[place])
+
+    return {name: put_back(values) for name, values in _ascending(solution, times[order]).items()}
+
+
+def _ascending(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
+    found: dict[str, Any] = {"t": frozen(np.array(times))}
+    if solution.model == "rolling":
+        found["theta"], found["omega"], found["x"] = solution.sample_rolling(times)
+    elif solution.model == "contact":
+        columns = solution.sample_contact(times)
+        for name in ("theta", "omega", "x"):
+            found[name] = columns.pop(name)
+        found["contact"] = ContactSamples(**columns)
+    else:
+        q, q_dot = found["coordinates"] = solution.sample_coordinates(times)
+        theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
+        found.update(theta=frozen(theta), omega=frozen(omega), x=frozen(x))
+    return found
+
+
+class _Rolling:
+    """Samples of which all follows from theta and omega, but for x."""
+
+    @staticmethod
+    def details(of: Trajectory) -> dict[str, FloatArray]:
+        return _core.rolling_detail(of.scene.core, of.theta, of.omega, of.x)
+
+    @staticmethod
+    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
+        return _core.rolling_contact(of.scene.core, of.theta, of.omega)
+
+
+class _Coordinates:
+    """Samples that hold q and q_dot themselves."""
+
+    @staticmethod
+    def details(of: Trajectory) -> dict[str, FloatArray]:
+        assert of.coordinates is not None
+        q, q_dot = of.coordinates
+        q_ddot, multipliers = _core.multiplier_detail(of.scene.core, of.settings.core, q, q_dot)
+        friction, normal = np.ascontiguousarray(multipliers.T[:2])
+        return {
+            "q": q, "q_dot": q_dot, "q_ddot": q_ddot, "multipliers": multipliers,
+            "normal_force": normal, "friction_force": friction,
+        }  # fmt: skip
+
+    @staticmethod
+    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
+        known = of._details
+        (_, z, *_), (x_dot, z_dot, *_) = known["q"].T, known["q_dot"].T
+        return known | {"z": z.copy(), "x_dot": x_dot.copy(), "z_dot": z_dot.copy()}
+
+
+class _Contact:
+    """Samples that hold the motion of the centre and the contact force beside theta and omega."""
+
+    @staticmethod
+    def details(of: Trajectory) -> dict[str, FloatArray]:
+        assert of.contact is not None
+        held = of.contact._asdict()
+        del held["mode"]
+        found = _core.contact_detail(of.scene.core, of.theta, of.omega, of.x, **held)
+        forces = of.contact.normal_force, of.contact.friction_force
+        return found | dict(zip(("normal_force", "friction_force"), forces, strict=True))
+
+    @staticmethod
+    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
+        assert of.contact is not None
+        return of.contact._asdict()
+
+
+def kind_of(trajectory: Trajectory) -> type[_Rolling | _Coordinates | _Contact]:
+    """Return how a trajectory's samples tell what they do not hold.
+
+    `details` gives q, q_dot, q_ddot, multipliers, normal and friction force; `touch` gives z,
+    x_dot, z_dot and the forces alone, where that is cheaper.
+    """
+    if trajectory.contact is not None:
+        return _Contact
+    return _Rolling if trajectory.coordinates is None else _Coordinates
+
+
+def _untouchable(values: _Values) -> _Values:
+    """Return an array that stays as it is: a copy if anybody may write to this one."""
+    if values.base is None and not values.flags.writeable:
+        return values  # as the core's samples are
+    layer: Any = values
+    while isinstance(layer, np.ndarray) and not layer.flags.writeable:
+        layer = layer.base
+    if isinstance(layer, np.ndarray) or not (values.flags.c_contiguous and values.flags.aligned):
+        return frozen(values.copy())
+    return values
+
+
+def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
+    """Return one number a sample; without a size, any number of samples.
+
+    Raises
+    ------
+    TypeError
+        If it holds something else than numbers.
+    ValueError
+        If it has another shape.
+    """
+    found = array(name, values)
+    if found.ndim != 1:
+        raise ValueError(f"{name} must be a 1-D array, got shape {found.shape}")
+    if size is not None and found.size != size:
+        raise ValueError(f"{name} must have the length of t, {size}, got {found.size}")
+    return _untouchable(found)
+
+
+def coordinate_pair(
+    name: str, values: Any, shape: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Return q and q_dot, both of a shape; `vector` says what is raised."""
+    required = f"{name} must be q and q_dot, arrays of shape {shape}"
+    try:
+        q, q_dot = values
+    except (TypeError, ValueError):
+        raise ValueError(f"{required}, got {shown(values)}") from None
+    pair = array(f"{name}[0]", q), array(f"{name}[1]", q_dot)
+    if any(found.shape != shape for found in pair):
+        raise ValueError(f"{required}, got shapes {pair[0].shape} and {pair[1].shape}")
+    return _untouchable(pair[0]), _untouchable(pair[1])
+
+
+def contact_samples(values: Any, size: int) -> ContactSamples:
+    """Return the samples of a contact motion; `vector` says what is raised."""
+    if not isinstance(values, ContactSamples):
+        raise TypeError(f"contact must be ContactSamples or None, got {shown(values)}")
+    *columns, mode = ContactSamples._fields
+    found = [vector(name, getattr(values, name), size) for name in columns]
+    return ContactSamples._make([*found, _codes(mode, values.mode, size)])
+
+
+def _codes(name: str, values: Any, size: int) -> npt.NDArray[np.int8]:
+    numbers = vector(name, values, size)
+    wrong = numbers[~np.isin(numbers, list(_core.Mode))]
+    if wrong.size:
+        raise ValueError(f"{name} must hold codes of Mode, got {float(wrong[0])!r}")
+    return _untouchable(np.asarray(values).astype(np.int8, copy=False))

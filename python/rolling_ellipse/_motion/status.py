@@ -1,0 +1,59 @@
+"""How a simulation ended, and what is raised when it did not end well."""
+
+from __future__ import annotations
+
+import enum
+from typing import TYPE_CHECKING, Any
+
+from .. import _core
+
+if TYPE_CHECKING:
+    from .trajectory import Trajectory
+
+
+class Status(enum.Enum):
+    """How a simulation ended; the value is the sentence."""
+
+    COMPLETED = "the motion was followed to the end"
+    JAMMED = (
+        "the sliding body jams (Painleve): no motion of a rigid body goes on, or more than one "
+        "does; less friction, or another shape"
+    )
+    VALIDITY_LOST = (
+        "rolling without slip stops being true at valid_until: use samples before it, "
+        "more friction or a slower start"
+    )
+    MAX_EVENTS = "the motion stopped after max_events events: allow more of them"
+    MAX_STEPS = (
+        "the integration stopped after max_steps steps: allow more of them, loosen rtol and atol "
+        "or take larger steps"
+    )
+    STEP_TOO_SMALL = (
+        "the integration stopped where no step that changes t meets rtol and atol: loosen them"
+    )
+    STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
+
+
+def status_of(ending: _core.Ending) -> Status:
+    """Return how a motion ended: what goes on in no way or in two is jammed, either way."""
+    return Status.JAMMED if ending is _core.Ending.UNDETERMINED else Status[ending.name]
+
+
+COMPLETED = Status.COMPLETED  # asked for by its class, it takes five times as long
+STATUSES = {ending.value: status_of(ending) for ending in _core.Ending}  # of codes
+
+
+class IntegrationError(RuntimeError):
+    """An integration stopped before its last time; `trajectory` holds what there is."""
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        super().__init__(trajectory.message)
+        self.trajectory = trajectory
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Be made again of the trajectory: exceptions are made of their message by default."""
+        return type(self), (self.trajectory,), self.__dict__
+
+
+class WorkerError(RuntimeError):
+    """An executor lost a task: nothing is known of the scenes that it held. Its cause says why."""

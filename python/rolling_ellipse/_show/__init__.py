@@ -1,0 +1,1 @@
+"""What a motion looks like in a notebook and in a shell, and the methods bound from above."""

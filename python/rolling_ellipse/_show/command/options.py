@@ -1,0 +1,135 @@
+"""What can be typed, and the scene that it stands for."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import Any, NoReturn
+
+from ... import scenes
+from ..._ask.scene import Impulse, Scene
+from ..._ask.settings import METHODS, MODELS
+
+_SCENE_OPTIONS = {
+    "a": "semi-axis parallel to the ground at theta = 0 [m]",
+    "b": "the other semi-axis [m]",
+    "mass": "mass [kg]",
+    "theta": "angle at the start, clockwise [rad]",
+    "omega": "angular velocity at the start [rad/s]; there is then no blow but that of --press",
+    "friction": "coefficient of friction",
+    "restitution": "coefficient of restitution",
+    "slope": "angle of the ground [rad]",
+}
+_BASE = (
+    "The scene is the report's, a = 2 m, b = 1 m, 10 kg, pressed down by 48 N s at 1.5 m from its "
+    "centre; options change it."
+)
+PROGRAM = "python -m rolling_ellipse"
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """Says what is wrong in one line; --help has the rest."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {' '.join(message.split())}\n")
+
+    def print_help(self, file: Any = None) -> None:
+        """Without argparse's silence where nothing can be written."""
+        print(self.format_help(), end="", file=file)
+
+
+def _scene_parser(prog: str, description: str, epilog: str | None = None) -> OneLineParser:
+    found = OneLineParser(prog=prog, description=f"{description} {_BASE}", epilog=epilog)
+    for name, meaning in _SCENE_OPTIONS.items():
+        found.add_argument(f"--{name}", type=float, metavar="NUMBER", help=meaning)
+    found.add_argument(
+        "--press", type=float, nargs=2, metavar=("F", "D"),
+        help="press down by F [N s] at D [m] from the centre instead",
+    )  # fmt: skip
+    return found
+
+
+def motion_parser() -> OneLineParser:
+    """Return what simulates a scene and says what happens."""
+    found = _scene_parser(
+        PROGRAM,
+        "Simulate an ellipse on the ground, and say what happens.",
+        f"{PROGRAM} explore [options] writes a page to play with the scene in a browser.",
+    )
+    found.add_argument("--time", type=float, default=6.0, metavar="S", help="end time (default 6)")
+    found.add_argument("--model", choices=MODELS, default="auto", help="how it moves")
+    found.add_argument("--method", choices=METHODS, default="auto", help="how it is computed")
+    found.add_argument("--step", type=float, metavar="S", help="size of fixed steps [s]")
+    found.add_argument("--save", metavar="FILE", help="write an animation (.gif, .mp4, .html)")
+    found.add_argument("--plot", metavar="FILE", help="write the overview figure")
+    found.add_argument("--json", action="store_true", help="print the summary as JSON")
+    return found
+
+
+def explore_parser() -> OneLineParser:
+    """Return what writes the page of a scene."""
+    found = _scene_parser(f"{PROGRAM} explore", "Play with a scene in a browser.")
+    found.add_argument("--save", metavar="FILE", help="write the page there (default: a new file)")
+    found.add_argument("--no-open", action="store_true", help="write it and open no browser")
+    return found
+
+
+def joined(arguments: list[str]) -> list[str]:
+    """Keep negative numbers with their options: argparse takes -1e-3 for another option.
+
+    An option takes its number by "="; the two of --press begin with a blank, as no option does.
+    """
+    found: list[str] = []
+    for argument in arguments:
+        last = found[-1] if found else ""
+        if not (argument.startswith("-") and _is_number(argument)):
+            found.append(argument)
+        elif "--press" in found[-2:]:
+            found.append(f" {argument}")
+        elif re.match("--[a-z]+$", last):
+            found[-1] += f"={argument}"
+        else:
+            found.append(argument)
+    return found
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def require_file(option: str, path: str) -> None:
+    """Raise ValueError unless a file of that name may be written."""
+    if Path(path).is_dir() or not Path(path).parent.is_dir():
+        raise ValueError(f"{option} must name a file in an existing folder, got {path!r}")
+
+
+def chosen_scene(options: argparse.Namespace) -> Scene:
+    """Return the report's scene with what the options change.
+
+    Its blow stays, unless the start is given by --omega, or there is another by --press.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, or the blow misses the body.
+    """
+    given: dict[str, Any] = {
+        name: value for name in _SCENE_OPTIONS if (value := getattr(options, name)) is not None
+    }
+    if options.press is not None:
+        if options.press[0] < 0:
+            raise ValueError(f"--press must have F >= 0, got {options.press[0]!r}: it would pull")
+        given["impulse"] = Impulse.press(*options.press)
+    elif options.omega is not None:
+        given["impulse"] = None
+    try:
+        return scenes.report.replace(**given)
+    except ValueError as error:
+        if str(error).startswith("impulse") and options.press is None:
+            raise ValueError(f"{error}: give --press F D, or --omega for no blow") from None
+        raise

@@ -1,0 +1,93 @@
+"""A small picture of a motion as SVG: the body at even times, in the colour of the text."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .._motion.samples import even_times
+
+if TYPE_CHECKING:
+    from .._motion.trajectory import Trajectory
+
+_Places = npt.NDArray[np.complex128]
+
+_BODIES, _POINTS = 9, 81
+_WIDTH, _HEIGHT = 480.0, 180.0  # the most that the picture takes [px]
+_MARGIN = 1.1  # around centres, in long semi-axes
+_REACH = 12.0  # shown is what happens within so many of them,
+_TURNING = 4 * math.pi  # and in two turns, to or fro
+
+
+def strobe_svg(trajectory: Trajectory) -> str:
+    """Return the picture, down being down; nothing of a motion without samples.
+
+    Places are complex numbers, x - iz seen from the foot of the first centre: i is down as on a
+    screen, and clockwise is the positive turn. Their unit is the long semi-axis, so that no scene
+    is too large or too far away.
+    """
+    if trajectory.t.size == 0:
+        return ""
+    scene, first, last = trajectory.scene, float(trajectory.t[0]), _shown_until(trajectory)
+    unit, fall = max(scene.a, scene.b), cmath.rect(1.0, scene.slope)
+
+    def centres(at: Trajectory) -> _Places:
+        places: _Places = fall * ((at.x - trajectory.x[0]) - 1j * at.z) / unit
+        return places
+
+    bodies_at, points_at = (
+        even_times(first, last, count if last > first else 1) for count in (_BODIES, _POINTS)
+    )
+    at, path = trajectory.sol(bodies_at), centres(trajectory.sol(points_at))
+    along = (path / fall).real
+    ground = fall * np.array([along.min() - _MARGIN, along.max() + _MARGIN])
+    seen = np.concatenate([path + _MARGIN * corner for corner in (1 + 1j, -1 - 1j)])
+    if np.abs((path / fall).imag).min() < _REACH:
+        seen = np.append(seen, ground)
+    corner = complex(seen.real.min(), seen.imag.min())
+    size = complex(seen.real.max(), seen.imag.max()) - corner
+    if size.real == 0 or size.imag == 0:  # too far away for its places to differ
+        return ""
+    scale = min(_WIDTH / size.real, _HEIGHT / size.imag)
+    rx, ry = _short(scale * scene.a / unit), _short(scale * scene.b / unit)
+    bodies = [
+        f'<g transform="translate({_point(scale * (place - corner))}) '
+        f'rotate({_short(math.degrees(math.fmod(theta, 2 * math.pi) + scene.slope))})" '
+        f'opacity="{0.3 + 0.7 * (i + 1) / at.t.size:.2f}">'
+        f'<ellipse rx="{rx}" ry="{ry}"/><path d="M0 0H{rx}"/></g>'
+        for i, (place, theta) in enumerate(zip(centres(at), at.theta.tolist(), strict=True))
+    ]
+    width, height = (_short(scale * extent) for extent in (size.real, size.imag))
+    lines = [_line(scale * (ground - corner), 2.0), _line(scale * (path - corner), 0.7)]
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
+        f'viewBox="0 0 {width} {height}" fill="none" stroke="currentColor">'
+        f"<title>t = {first:g} … {last:.4g} s</title>{''.join(lines + bodies)}</svg>"
+    )
+
+
+def _shown_until(trajectory: Trajectory) -> float:
+    """Return the time at which the body leaves the reach of the picture, or the last one [s]."""
+    t, x, z, theta = (getattr(trajectory, name) for name in ("t", "x", "z", "theta"))
+    reach = _REACH * max(trajectory.scene.a, trajectory.scene.b)
+    away = np.maximum(np.abs(x - x[0]), np.abs(z - z[0])) / reach
+    turned = np.cumsum(np.abs(np.diff(theta, prepend=theta[0]))) / _TURNING
+    used = np.maximum.accumulate(np.maximum(away, turned))
+    return float(t[-1] if used[-1] <= 1 else np.interp(1.0, used, t))
+
+
+def _short(value: float) -> str:
+    return f"{value:.1f}" if abs(value) >= 1 else f"{value:.3g}"
+
+
+def _point(place: complex) -> str:
+    return f"{place.real:.1f} {place.imag:.1f}"
+
+
+def _line(places: Any, width: float) -> str:
+    points = " ".join(_point(place) for place in places.tolist())
+    return f'<polyline stroke-width="{width:g}" points="{points}"/>'

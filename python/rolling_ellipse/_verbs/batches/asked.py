@@ -1,0 +1,178 @@
+"""The scenes that were asked for, in chunks: from an iterable, or from arrays that broadcast.
+
+The sizes of chunks depend on what was computed before and on nothing else, least of all on who
+computes: the first ones are small, so that a few slow scenes occupy many workers, and a folder
+that was begun by some workers can be finished by others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sized
+from contextlib import suppress
+from dataclasses import dataclass, fields
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from ... import _core
+from ..._ask.check import FloatArray, array, common_shape, shown
+from ..._ask.scene import Impulse, Scene
+from .tables import BLOW, NAMES, WIDTH, scenes_of, table_of
+
+_FIRST, _MOST = 16, 2048  # scenes of a chunk
+_SHARE = 32  # the next chunk is this part of all before it
+_SAMPLES = 2**18  # of a chunk
+_OPTIONAL = ("inertia", "z", "x_dot", "z_dot", "impulse")
+_DEFAULTS: dict[str, Any] = {field.name: field.default for field in fields(Scene)}
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Scenes that are computed together; `begin` is the place of the first among all."""
+
+    index: int
+    begin: int
+    table: FloatArray
+    given: list[Scene] | None = None
+
+    @property
+    def scenes(self) -> list[Scene]:
+        return scenes_of(self.table) if self.given is None else self.given
+
+
+def sizes(samples: int) -> Iterator[tuple[int, int]]:
+    """Yield begin and size of one chunk after the other, for so many samples a scene."""
+    most = max(1, min(_MOST, _SAMPLES // samples))
+    begin = 0
+    while True:
+        size = min(most, _FIRST + begin // _SHARE)
+        yield begin, size
+        begin += size
+
+
+class Listed:
+    """Scenes of an iterable, taken as they are needed."""
+
+    def __init__(self, scenes: Iterable[Any]) -> None:
+        self._each = iter(scenes)
+        self.total = len(scenes) if isinstance(scenes, Sized) else None
+
+    def chunks(self, samples: int) -> Iterator[Chunk]:
+        for index, (begin, size) in enumerate(sizes(samples)):
+            taken = list(islice(self._each, size))
+            for place, scene in enumerate(taken, begin):
+                if not isinstance(scene, Scene):
+                    raise TypeError(f"scenes[{place}] must be a Scene, got {shown(scene)}")
+            if not taken:
+                return
+            yield Chunk(index, begin, table_of(taken), taken)
+
+
+class Grid:
+    """Scenes whose arguments are numbers and arrays that broadcast, in C order.
+
+    Raises
+    ------
+    TypeError
+        If an argument is none of Scene's, or no number.
+    ValueError
+        If shapes do not broadcast, or a scene is refused: by the argument and its index.
+    """
+
+    def __init__(self, arguments: Mapping[Any, Any]) -> None:
+        for name in arguments:
+            if name not in _DEFAULTS:
+                raise TypeError(f"scenes must have names of {', '.join(_DEFAULTS)}, got {name!r}")
+        for name in ("a", "b"):
+            if name not in arguments:
+                raise TypeError(f"scenes must have {name!r}, got {list(arguments)}")
+        self._arrays: dict[str, FloatArray] = {}
+        for name, value in arguments.items():
+            if value is None and name in _OPTIONAL:
+                continue
+            if name == "impulse":
+                self._take_blow(value)
+                continue
+            self._arrays[name] = array(_entry(name), value)
+            if name in _OPTIONAL:
+                self._require_numbers(name)
+        entries = {_entry(name): values for name, values in self._arrays.items()}
+        self._shape = common_shape(entries, slice(None))
+        self.total = int(np.prod(self._shape, dtype=object))
+        for begin, size in sizes(1):
+            if begin >= self.total:
+                break
+            self._require_valid(begin, self._table(begin, size))
+
+    def chunks(self, samples: int) -> Iterator[Chunk]:
+        for index, (begin, size) in enumerate(sizes(samples)):
+            if begin >= self.total:
+                return
+            yield Chunk(index, begin, self._table(begin, size))
+
+    def _take_blow(self, impulse: Any) -> None:
+        if not isinstance(impulse, Impulse):
+            raise TypeError(f"scenes['impulse'] must be an Impulse or None, got {shown(impulse)}")
+        for name in BLOW:
+            self._arrays[name] = np.asarray(getattr(impulse, name))
+
+    def _table(self, begin: int, size: int) -> FloatArray:
+        at = np.arange(begin, min(begin + size, self.total))
+        index = np.unravel_index(at, self._shape) if self._shape else ()
+        table = np.empty((at.size, WIDTH))
+        for column, name in enumerate((*NAMES, *BLOW)):
+            values = self._arrays.get(name)
+            if values is None:
+                default = _DEFAULTS.get(name)
+                table[:, column] = np.nan if default is None else default
+            elif values.size == 1:
+                table[:, column] = values.item()
+            else:
+                table[:, column] = values[self._own(values, index)]
+        return table
+
+    def _own(self, values: FloatArray, index: tuple[Any, ...]) -> tuple[Any, ...]:
+        """The index of an array of its own of what has an index of all."""
+        last = index[len(index) - values.ndim :]
+        return tuple(i * (size > 1) for i, size in zip(last, values.shape, strict=True))
+
+    def _require_numbers(self, name: str) -> None:
+        values = self._arrays[name]
+        wrong = np.argwhere(np.isnan(values))
+        if len(wrong):
+            raise ValueError(f"{_entry(name, tuple(wrong[0]))} must be a number, got nan")
+
+    def _require_valid(self, begin: int, table: FloatArray) -> None:
+        refused = _core.first_refused(table, reached=False)
+        if refused is None:
+            return
+        row, message = refused
+        at = np.unravel_index(begin + row, self._shape) if self._shape else ()
+        name, _, rest = message.partition(" ")
+        values = self._arrays.get(name)
+        if values is None:
+            raise ValueError(f"scenes{_indexed(at)}: {message}")
+        own = () if values.size == 1 else self._own(values, at)
+        raise ValueError(f"{_entry(name, own)} {rest}")
+
+
+def _entry(name: str, index: tuple[Any, ...] = ()) -> str:
+    what = f"scenes['impulse'].{name}" if name in BLOW else f"scenes[{name!r}]"
+    return what + _indexed(index)
+
+
+def _indexed(index: tuple[Any, ...]) -> str:
+    return f"[{', '.join(str(int(i)) for i in index)}]" if index else ""
+
+
+def asked(scenes: Any) -> Listed | Grid:
+    """Return what `simulate_many` was asked for; what is neither scenes nor arrays is refused."""
+    if isinstance(scenes, Mapping):
+        return Grid(scenes)
+    with suppress(TypeError):  # an array without axes has what an iterable has, and is none
+        return Listed(scenes)
+    raise TypeError(
+        "scenes must be Scenes, as an iterable, or a mapping of the arguments of Scene to numbers "
+        f"and arrays, got {shown(scenes)}"
+    )

@@ -1,0 +1,308 @@
+"""A folder of motions: what was asked of all, and a file for each chunk of scenes.
+
+``request.npz`` holds the settings, the times and the version; ``00000007-1f…-a3….npz`` the seventh
+chunk, named by the hashes of that request and of its scenes; ``end.json``, which is written last,
+how many scenes there are and the hash of the names of all chunks. A file is there when it is whole.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import re
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, suppress
+from dataclasses import asdict
+from importlib.metadata import version
+from itertools import chain
+from pathlib import Path
+from typing import Any, NoReturn, TypeVar
+
+import numpy as np
+
+from ... import _core
+from ..._ask.check import FloatArray, file_name, flag, shown
+from ..._ask.settings import Settings
+from ..._motion.export.atomic import remove_unfinished, replacing
+from ..._motion.export.npz import arrays as npz_arrays
+from ..._motion.export.strict import ARCHIVE, OBJECT, field_names, parsed, require_names, restored
+from .answers import Answer, Request, Tables, answers
+from .asked import Chunk, sizes
+from .checked import NAMES, require_tables
+from .tables import scenes_of
+
+_SCHEMA = 2
+_SAME = "a folder of the same request"
+_REQUEST, _END = "request.npz", "end.json"
+_CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
+_AGAIN = "simulate_many with the same arguments"
+_OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")  # or of nobody
+
+_Names = dict[int, list[str]]  # of the chunks that are there, by their places, in order
+
+_Made = TypeVar("_Made")
+
+
+class Folder:
+    """The files of one request, made or gone on with.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds something else; it says what.
+    OSError
+        If it cannot be made or written.
+    """
+
+    def __init__(self, path: Any, request: Request) -> None:
+        self.path = Path(file_name("out", path))
+        about = _about(request)
+        self._request, self._samples = _digest_of(about, request.times), request.times.size
+        is_new = not (self.path / _REQUEST).exists()
+        if is_new:
+            self.path.mkdir(exist_ok=True)
+            self._require_new()
+        else:
+            self._require_same(about, request.times)
+        self._names = _chunks(self.path)
+        for name in chain.from_iterable(self._names.values()):
+            if name.split("-")[1] != self._request:
+                self._refuse(_SAME, f" with {name!r} of another one")
+        if is_new:
+            with _replacing(self.path / _REQUEST) as new, open(new, "wb") as file:
+                np.savez(file, about=np.array(json.dumps(about)), t=request.times)
+        remove_unfinished(self.path)
+        self._scenes: float = math.inf
+        with suppress(FileNotFoundError, ValueError):  # what is damaged is written again
+            self._scenes = _scenes_in(self.path, self._request, self._names, self._samples)
+
+    def has(self, chunk: Chunk) -> bool:
+        """Whether a chunk is there and whole; one of other scenes is refused."""
+        name = _name(chunk.index, self._request, chunk.table)
+        there = self._names.get(chunk.index, [])
+        if others := [each for each in there if each != name]:
+            last = chunk.begin + len(chunk.table) - 1
+            self._refuse_scenes(f"whose scenes {chunk.begin} to {last} are others: {others[0]!r}")
+        if chunk.begin >= self._scenes:
+            self._refuse_scenes(f"which has {self._scenes}")
+        if not there:
+            return False
+
+        def read(content: bytes) -> Tables:
+            return _tables(content, name, len(chunk.table), self._samples)
+
+        try:
+            _chunk(self.path / name, read)
+        except (FileNotFoundError, ValueError):
+            return False
+        return True
+
+    def store(self, chunk: Chunk, tables: Tables) -> None:
+        name = _name(chunk.index, self._request, chunk.table)
+        with _replacing(self.path / name) as new, open(new, "wb") as file:
+            np.savez(file, request=np.array(self._request), scenes=chunk.table, **tables)  # type: ignore[arg-type]
+        self._names[chunk.index] = [name]
+
+    def end(self, scenes: int, chunks: int) -> None:
+        """Say that it is complete."""
+        if max(self._names, default=-1) >= chunks:
+            self._refuse_scenes(f"which has more than {scenes}")
+        digest = _digest_of_all(self._request, scenes, self._names)
+        with _replacing(self.path / _END) as new:
+            new.write_text(json.dumps({"scenes": scenes, "digest": digest}))
+
+    def _require_new(self) -> None:
+        """Refuse files of others; chunks that have lost their request are told by their names."""
+        for name in sorted(os.listdir(self.path)):
+            if not _OURS.fullmatch(name):
+                self._refuse(
+                    "a new or empty folder, or one of simulate_many", f" with {name!r} in it"
+                )
+
+    def _require_same(self, about: dict[str, Any], times: FloatArray) -> None:
+        there, t = _request_in(self.path)
+        for name, value in about.items():
+            if there[name] != value:
+                self._refuse(_SAME, f" with the {name} {there[name]!r}, not {value!r}")
+        if t.tobytes() != times.tobytes():
+            self._refuse(_SAME, f" with other times, {t.size} from {t[0]!s} to {t[-1]!s} s")
+
+    def _refuse_scenes(self, why: str) -> NoReturn:
+        self._refuse("a folder of the same scenes", f", {why}")
+
+    def _refuse(self, required: str, why: str) -> NoReturn:
+        raise ValueError(f"out must be {required}, got {str(self.path)!r}{why}")
+
+
+def load_many(path: str | os.PathLike[str]) -> Iterator[Answer]:
+    """Return what `simulate_many` wrote to a folder: one motion after the other, in order.
+
+    In the place of a scene without a motion is its exception, as in the list that `simulate_many`
+    returns. Nothing but a file of at most 2048 scenes is in memory at a time.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The folder.
+
+    Returns
+    -------
+    iterator of Trajectory or exception
+        Bit for bit those that were computed; ``events`` are those of the machine that did.
+
+    Raises
+    ------
+    ValueError
+        If it is no such folder, of another schema version, not complete, or if its files are not
+        those of one call; while it is read: if a file is damaged, by its name.
+    OSError
+        If something cannot be read.
+    """
+    folder = Path(file_name("path", path))
+    if not (folder / _REQUEST).exists():
+        os.listdir(folder)  # says if there is none
+        raise ValueError(f"path must be a folder written by simulate_many, got {str(folder)!r}")
+    about, times = _request_in(folder)
+    if about["schema"] != _SCHEMA:
+        raise ValueError(
+            f"path must be a folder of schema {_SCHEMA}, got {str(folder)!r} of {about['schema']!r}"
+        )
+    if not (folder / _END).exists():
+        raise ValueError(
+            f"path must be a complete folder, got {str(folder)!r}: call {_AGAIN} to go on with it"
+        )
+    names = _chunks(folder)
+    scenes = _scenes_in(folder, _digest_of(about, times), names, times.size)
+    request = Request(Settings(**about["settings"]), times, about["raise_on_failure"])
+    return _all(folder, request, list(chain.from_iterable(names.values())), scenes)
+
+
+def _all(folder: Path, request: Request, names: list[str], scenes: int) -> Iterator[Answer]:
+    samples = request.times.size
+    for name, (begin, size) in zip(names, sizes(samples), strict=False):
+
+        def read(content: bytes, name: str = name, n: int = min(size, scenes - begin)) -> Any:
+            tables = _tables(content, name, n, samples)
+            found = scenes_of(tables.pop("scenes"))
+            return answers(request, found, tables, keep_events=True)
+
+        yield from _chunk(folder / name, read)
+
+
+def _scenes_in(folder: Path, request: str, names: _Names, samples: int) -> int:
+    """Return how many scenes a complete folder has.
+
+    Raises
+    ------
+    ValueError
+        If its end is damaged, or tells of other chunks than there are.
+    """
+    cure = f": {_AGAIN} writes it anew"
+    end = restored(folder / _END, _of_end, OBJECT, "simulate_many", cure)
+    scenes: int = end["scenes"]
+    for index, (begin, _) in enumerate(sizes(samples)):
+        if begin >= scenes:
+            break
+        if index not in names:
+            raise ValueError(
+                f"path must have the file {index:08d}-….npz, got {str(folder)!r}: {_AGAIN} makes it"
+            )
+    if end["digest"] != _digest_of_all(request, scenes, names):
+        raise ValueError(
+            f"path must have just the files that its {_END} tells of, got others in "
+            f"{str(folder)!r}: {_AGAIN} names one of other scenes, or completes the folder"
+        )
+    return scenes
+
+
+def _digest_of_all(request: str, scenes: int, names: _Names) -> str:
+    each = sorted(chain.from_iterable(names.values()))
+    return _digest(json.dumps([request, scenes, each]).encode())
+
+
+def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
+    """The tables of a chunk of n scenes, and these themselves, as its name says they are."""
+    tables = npz_arrays(content, {"request", "scenes", *NAMES})
+    scenes = tables.get("scenes", np.empty((0, 0)))
+    require_tables(scenes, tables, n, samples)
+    if name != _name(int(name[:8]), str(tables.pop("request", "")), scenes):
+        raise ValueError("request and scenes must be those of the name of the file")
+    if (refused := _core.first_refused(scenes, reached=True)) is not None:
+        raise ValueError(f"scenes must be valid, got row {refused[0]}: {refused[1]}")
+    return tables
+
+
+def _about(request: Request) -> dict[str, Any]:
+    about = {
+        "schema": _SCHEMA,
+        "version": version("rolling-ellipse"),
+        "settings": asdict(request.settings),
+        "raise_on_failure": request.raise_on_failure,
+    }
+    found: dict[str, Any] = json.loads(json.dumps(about))  # a pair is a list there
+    return found
+
+
+def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
+    arrays = npz_arrays(content, {"about", "t"})
+    about = parsed("about", str(arrays["about"]))
+    require_names("about", about, ("schema", "version", "settings", "raise_on_failure"))
+    require_names("settings", about["settings"], field_names(Settings))
+    t = arrays["t"]
+    if (
+        t.dtype != np.float64
+        or t.ndim != 1
+        or not t.size
+        or not np.all(np.diff(t, prepend=0.0) >= 0)
+    ):
+        raise ValueError("t must hold times that do not fall")
+    Settings(**about["settings"])
+    flag("raise_on_failure", about["raise_on_failure"])
+    return about, t
+
+
+def _of_end(content: bytes) -> dict[str, Any]:
+    found: dict[str, Any] = parsed("end", content.decode())
+    require_names("end", found, ("scenes", "digest"))
+    if type(count := found["scenes"]) is not int or count < 0:
+        raise ValueError(f"scenes must be a count, got {shown(count)}")
+    return found
+
+
+def _request_in(folder: Path) -> tuple[dict[str, Any], FloatArray]:
+    cure = f": delete it, and call {_AGAIN}"
+    return restored(folder / _REQUEST, _of_request, ARCHIVE, "simulate_many", cure)
+
+
+def _chunk(path: Path, restore: Callable[[bytes], _Made]) -> _Made:
+    return restored(path, restore, ARCHIVE, "simulate_many", f": {_AGAIN} computes it anew")
+
+
+def _replacing(path: Path) -> AbstractContextManager[Path]:
+    """`replacing` within the folder: a link would lead out of it."""
+    if path.is_symlink():
+        path.unlink()
+    return replacing(path)
+
+
+def _chunks(folder: Path) -> _Names:
+    found: _Names = {}
+    for name in sorted(filter(_CHUNK.fullmatch, os.listdir(folder))):
+        found.setdefault(int(name[:8]), []).append(name)
+    return found
+
+
+def _name(index: int, request: str, scenes: FloatArray) -> str:
+    return f"{index:08d}-{request}-{_digest(np.ascontiguousarray(scenes).tobytes())}.npz"
+
+
+def _digest_of(about: dict[str, Any], times: FloatArray) -> str:
+    """The hash of all that changes what is computed of a scene."""
+    said = {name: about[name] for name in ("schema", "version", "settings")}
+    return _digest(json.dumps(said, sort_keys=True).encode() + times.tobytes())
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:16]

@@ -1,0 +1,178 @@
+"""Many scenes in, a motion for each out."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+from ... import _core
+from ..._ask.check import flag
+from ..._ask.scene import Scene
+from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
+from ..._motion.status import WorkerError
+from ..simulate import sample_times
+from ..workers import Lost, in_order, threads_of
+from .answers import SAMPLE_BYTES, Answer, Request, answers, solve, solve_task
+from .asked import Chunk, Grid, Listed, asked, sizes
+from .folders import Folder
+from .progress import told
+
+
+def simulate_many(
+    scenes: Iterable[Scene] | Mapping[str, Any],
+    t: Any,
+    *,
+    workers: Any = 1,
+    progress: bool | Callable[[int, int | None], Any] = False,
+    out: str | os.PathLike[str] | None = None,
+    model: Model = DEFAULTS.model,
+    method: Method = DEFAULTS.method,
+    rtol: float = DEFAULTS.rtol,
+    atol: float = DEFAULTS.atol,
+    step: float | None = DEFAULTS.step,
+    stages: int | None = DEFAULTS.stages,
+    stabilization: Stabilization = DEFAULTS.stabilization,
+    baumgarte: tuple[float, float] = DEFAULTS.baumgarte,
+    max_steps: int = DEFAULTS.max_steps,
+    max_events: int = DEFAULTS.max_events,
+    rest_speed: float | None = DEFAULTS.rest_speed,
+    raise_on_failure: bool = True,
+) -> Any:
+    """Simulate many scenes, each as `simulate` does, bit for bit, whoever computes them.
+
+    Nothing is raised or warned of for a single scene: its exception stands in its place, and the
+    status of a trajectory says what `simulate` would warn of (VALIDITY_LOST).
+
+    Parameters
+    ----------
+    scenes : iterable of Scene, or mapping
+        An iterable is taken a chunk at a time. A mapping has the names of Scene's arguments, and
+        numbers or arrays that broadcast; ``impulse`` may be an Impulse of arrays. The motions are
+        then in C order of the common shape.
+    t : float or array_like, shape (n,)
+        End time or sample times of all of them, as of `simulate` [s].
+    workers : int or executor
+        Number of threads, up to 1024, -1 for all cores; or what has `submit` or is a pool with
+        `map`: an executor of concurrent.futures or mpi4py.futures, dask.distributed's Client. A
+        task holds up to 2048 scenes, or fewer of many samples. Executors of processes also share
+        what Python does, which threads do not.
+    progress : bool or callable
+        True: a bar, with tqdm where it is installed. A function is called with the number of
+        scenes done and of all (None for an iterable without a length) after each chunk.
+    out : str or path-like, optional
+        Folder that takes the motions, as plain .npz files of a chunk each; nothing is kept in
+        memory. It is made if it is not there. One that an interrupted call has left is gone on
+        with, by any workers: the chunks in it are not computed again, but for damaged ones.
+        `load_many` reads it.
+    model, method, rtol, atol, step, stages, stabilization, baumgarte : as of `simulate`
+    max_steps, max_events, rest_speed, raise_on_failure : as of `simulate`
+
+    Returns
+    -------
+    list of Trajectory or exception, or str
+        One for each scene, in order; with ``out`` the path of the folder. The exception of a scene
+        that `simulate` would refuse is a ValueError; of an integration that stops early an
+        IntegrationError, which has the trajectory (none with ``raise_on_failure=False``); of a
+        scene whose worker died, or found none to take it, a WorkerError whose cause is what the
+        executor says.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is wrong: a number of a mapping by its name and index, and before anything
+        is computed; what is no Scene in an iterable by its place. If ``out`` holds something else
+        than motions of the same scenes, times, settings and version.
+    WorkerError
+        With ``out``: if workers were lost. All that others have finished is there; the same call
+        goes on.
+    OSError
+        If ``out`` cannot be written; what was finished is there.
+    """
+    how = settings(
+        model, method, rtol, atol, step, stages, stabilization, baumgarte, max_steps, max_events,
+        rest_speed,
+    )  # fmt: skip
+    times = sample_times(t)
+    _core.validate_settings(how.core, float(times[-1]))
+    request = Request(how, times, flag("raise_on_failure", raise_on_failure))
+    threads_of(workers)
+    wanted = asked(scenes)
+    with told(progress, wanted.total) as tell:
+        if out is not None:
+            return _to_folder(Folder(out, request), request, wanted, workers, tell)
+        found: list[Answer] = []
+        for chunk, tables in _solved(request, wanted.chunks(times.size), workers):
+            if isinstance(tables, Lost):
+                found += [_worker_error(chunk, tables)] * len(chunk.table)
+            else:
+                found += answers(request, chunk.scenes, tables)
+            tell(len(found), wanted.total)
+        return found
+
+
+def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator[tuple[Chunk, Any]]:
+    """Yield the chunks with their tables, or with `Lost`."""
+    threads = threads_of(workers)
+    if threads is not None:
+        for chunk in chunks:
+            yield chunk, solve(request, chunk.table, threads)
+        return
+    held: dict[int, Chunk] = {}
+    samples = request.times.size
+    _, scenes = next(sizes(samples))
+    # bytes of a scene: of its samples, and of events as many as were seen
+    each = samples * SAMPLE_BYTES[request.settings.model]
+
+    def tasks() -> Iterator[bytes]:
+        nonlocal scenes
+        for place, chunk in enumerate(chunks):
+            held[place], scenes = chunk, len(chunk.table)
+            yield request.task(chunk.table)
+
+    def size() -> int:
+        return scenes * each
+
+    for place, tables in in_order(workers, solve_task, tasks(), size):
+        chunk = held.pop(place)
+        if not isinstance(tables, Lost):
+            there = sum(table.nbytes for table in tables.values())
+            each = max(each, there // len(chunk.table))
+        yield chunk, tables
+
+
+def _to_folder(
+    folder: Folder, request: Request, wanted: Listed | Grid, workers: Any, tell: Any
+) -> str:
+    done, count, lost = 0, 0, []
+
+    def missing() -> Iterator[Chunk]:
+        nonlocal done, count
+        for chunk in wanted.chunks(request.times.size):
+            count += 1
+            if folder.has(chunk):
+                done += len(chunk.table)
+            else:
+                yield chunk
+
+    for chunk, tables in _solved(request, missing(), workers):
+        if isinstance(tables, Lost):
+            lost.append(_worker_error(chunk, tables))
+            if tables.refused:
+                break
+            continue
+        folder.store(chunk, tables)
+        done += len(chunk.table)
+        tell(done, wanted.total)
+    if lost:
+        raise WorkerError(f"{len(lost)} chunks are missing: the same call goes on") from lost[0]
+    folder.end(done, count)
+    return str(folder.path)
+
+
+def _worker_error(chunk: Chunk, lost: Lost) -> WorkerError:
+    last = chunk.begin + len(chunk.table) - 1
+    why = f"{type(lost.error).__name__}: {lost.error}"
+    error = WorkerError(f"scenes {chunk.begin} to {last} got lost with their worker, {why}")
+    error.__cause__ = lost.error
+    return error

@@ -1,0 +1,143 @@
+"""The press that gives a body a speed, or rolls it over."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .. import _core
+from .._ask.check import number
+from .._ask.impulse import Impulse
+from .._ask.scene import Scene, require_scene
+from .._core import Mode, Outcome
+from ..geometry import support
+from .certify import certify
+from .outcome import outcome
+
+_SPEEDS = 2048  # looked at on the way up from the speed that just reaches the tip
+_FASTEST = 1e3  # of them, beside that
+
+
+def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Impulse:
+    """Return the press at a distance from the centre after which the body rolls as asked.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its own impulse is replaced.
+    distance : float
+        Horizontal distance of the press from the centre [m], as of `Impulse.press`.
+    omega : float, optional
+        Angular velocity just after the blow [rad/s], met within rounding. Default: the least
+        press after which the body rolls over, on level ground: the least double for which
+        `outcome` proves it. Where a harder press needs less friction, as that of a nearly round
+        body may, it is searched for at 2048 speeds, up to 1000 times that which just reaches the
+        tip, and refined by bisection.
+
+    Returns
+    -------
+    Impulse
+        A press: straight down, F > 0.
+
+    Raises
+    ------
+    ValueError
+        If no press there does it, with the reason: it is beside the body, has no lever, would have
+        to pull, slips for want of friction, the ground cannot keep the body so fast, the body is in
+        the air, rolls over anyhow, or, without omega, is on a slope or a circle.
+    """
+    bare = require_scene(scene).replace(impulse=None)
+    distance = number("distance", distance)
+    if bare.initial_state.mode is Mode.FLIGHT:
+        raise ValueError("scene must touch the ground: no contact holds a body in the air")
+    reach = float(support(bare.theta + math.pi / 2, a=bare.a, b=bare.b))
+    if not abs(distance) <= reach:
+        raise ValueError(
+            f"distance must be over the body, at most {reach!r} [m] from its centre, got "
+            f"{distance!r}"
+        )
+    if omega is None:
+        return _least_to_roll_over(bare, distance)
+    wanted = number("omega", omega)
+    blow = _press_to(bare, distance, wanted)
+    after = bare.replace(impulse=blow)
+    start = after.initial_state
+    if start.mode not in (Mode.ROLLING, Mode.REST):
+        raise ValueError(
+            f"omega must be one that the ground can keep, got {wanted!r}: {start.reason}"
+            f"{_asked_for(after)}"
+        )
+    return blow
+
+
+def _asked_for(scene: Scene) -> str:
+    needed = _core.sticking_friction(scene.core)
+    if not scene.friction < needed:
+        return ""
+    return f" (it would need {needed:.6g})" if needed < math.inf else " (no finite one would hold)"
+
+
+def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
+    """The press that gives an angular velocity to a contact that sticks."""
+    F = _core.press_to(scene.core, distance, omega)
+    _require_lever(F, distance)
+    if F == 0:
+        raise ValueError(f"omega must differ from what the body has anyhow, got {omega!r}")
+    if F < 0:
+        raise ValueError(
+            f"distance must be on the other side of the contact, got {distance!r}: for omega = "
+            f"{omega!r} it would have to be a pull"
+        )
+    return Impulse.press(F, distance)
+
+
+def _require_lever(F: float, distance: float) -> None:
+    if math.isinf(F):
+        raise ValueError(
+            "distance must not be right over the contact, where a press has no lever, or next to "
+            f"none, got {distance!r}"
+        )
+
+
+def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
+    """Search upwards from the speed that just reaches the tip, and refine to the last bit."""
+    if scene.slope != 0:
+        raise ValueError(f"omega must be given on a slope, got None with slope {scene.slope!r}")
+    if outcome(scene) is Outcome.ROLLS_OVER:
+        raise ValueError("scene must not roll over without a blow")
+    least = _core.speed_to_the_tip(scene.core)
+    if least == 0:
+        raise ValueError("omega must be given for a circle and on the tip: the least press is none")
+    backwards, forwards = (_core.press_to(scene.core, distance, s * least) for s in (-1, 1))
+    _require_lever(forwards, distance)
+    side = 1 if forwards > backwards else -1
+    beyond = np.concatenate([[0.0], np.geomspace(1e-13, _FASTEST, _SPEEDS)])
+    forces = np.array(
+        [_core.press_to(scene.core, distance, side * least * (1 + s)) for s in beyond]
+    )
+    forces = forces[(forces > 0) & np.isfinite(forces)]
+    codes = outcome(scene, Impulse.press(forces, distance))
+    over = np.flatnonzero(np.asarray(codes) == Outcome.ROLLS_OVER)
+    if over.size == 0:
+        raise _never_over(scene, distance, side * least)
+    first = int(over[0])
+    high, low = float(forces[first]), float(forces[first - 1]) if first else 0.0
+    while low < (middle := low + 0.5 * (high - low)) < high:
+        if outcome(scene, Impulse.press(middle, distance)) is Outcome.ROLLS_OVER:
+            high = middle
+        else:
+            low = middle
+    return Impulse.press(high, distance)
+
+
+def _never_over(scene: Scene, distance: float, least: float) -> ValueError:
+    """Say what becomes of a press that is just strong enough."""
+    after = scene.replace(impulse=_press_to(scene, distance, least * (1 + 1e-6)))
+    start = after.initial_state
+    why = f"{start.reason}{_asked_for(after)}"
+    if start.mode is Mode.ROLLING:
+        why = certify(after).reason
+    return ValueError(
+        f"distance must be one at which a press rolls the body over, got {distance!r}: {why}"
+    )

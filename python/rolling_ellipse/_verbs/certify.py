@@ -1,0 +1,86 @@
+"""The certificate: proof that rolling is valid for a whole motion, or where it ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from .. import _core
+from .._ask.printing import Listed
+from .._ask.records import trusted
+from .._ask.scene import Scene, require_scene
+from .._core import Validity
+
+_VALIDITIES = tuple(Validity)  # by their codes
+
+
+@dataclass(frozen=True, repr=False)
+class Certificate(Listed):
+    """Proof that rolling without slip is valid for the whole motion, or where it ends.
+
+    Attributes
+    ----------
+    validity : Validity
+        VALID, INVALID, EDGE (rounding cannot tell) or NO_PROOF (a start that does not roll).
+    smallest_normal_force : float or None
+        Least normal force [N] over the whole motion, both directions of time. On a slope -inf for
+        all but a circle, a body at rest and one that rocks: downhill they turn faster and faster,
+        and came from there.
+    smallest_normal_force_angle : float or None
+        Where: theta in [0, pi/2]; by symmetry at every +-theta + k pi that the motion reaches. On a
+        slope the angle itself, unwrapped; None for an infinite force.
+    largest_friction_needed : float or None
+        Largest |F/N| over the whole motion (infinite where N <= 0); on a slope infinite where the
+        least normal force is -inf.
+    largest_friction_needed_angle : float or None
+        Where, as above.
+    ends_at : float or None
+        The angle theta (unwrapped) at which rolling ends, forwards in time; None when VALID. That
+        of the start where the body moves without friction, a circle, too: its contact slides.
+    reason : str
+        One sentence with the numbers.
+    """
+
+    _units: ClassVar[dict[str, str]] = {
+        "smallest_normal_force": "N", "smallest_normal_force_angle": "rad",
+        "largest_friction_needed_angle": "rad", "ends_at": "rad",
+    }  # fmt: skip
+
+    validity: Validity
+    smallest_normal_force: float | None
+    smallest_normal_force_angle: float | None
+    largest_friction_needed: float | None
+    largest_friction_needed_angle: float | None
+    ends_at: float | None
+    reason: str
+
+    def __repr__(self) -> str:
+        return f"<Certificate {self.validity.name}: {self.reason}>"
+
+
+def certify(scene: Scene) -> Certificate:
+    """Prove, without integrating, whether rolling is valid for the motion that starts from a scene.
+
+    On level ground N and F of rolling are rational functions of the height h of the centre. The
+    signs of a quintic (N > 0) and of a polynomial of degree 10 (|F| <= friction N) on the heights
+    that the motion reaches are decided by Bernstein coefficients with subdivision; every
+    coefficient carries the margin by which rounding may have moved it. The extremes are taken at
+    critical points, not at samples.
+
+    On a slope the forces are linear in the energy of the motion at every angle, so that the law of
+    the contact holds for an interval of energies there. The motion is followed by power series at
+    rounding level, N and F with it, and their first root decides, by Bernstein coefficients again;
+    of many half turns those are looked at that decide for all between them. A margin that comes
+    down to rounding and not below is EDGE. What holds for 1e15 half turns is VALID.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Certificate
+    """
+    found = _core.certify(require_scene(scene).core)
+    found["validity"] = _VALIDITIES[found["validity"]]
+    return trusted(Certificate, found)

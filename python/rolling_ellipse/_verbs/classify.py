@@ -1,0 +1,209 @@
+"""What becomes of a rolling body, for one or a million, and the thresholds between outcomes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from .._ask.check import evaluate, number, optional_number
+from .._ask.printing import Listed, with_unit
+from .._ask.records import FieldsOnly, cached_property, find_late, trusted
+from .._core import Outcome
+from .workers import shared
+
+
+@dataclass(frozen=True, repr=False)
+class Thresholds(FieldsOnly, Listed):
+    """Where the motion on level ground changes its kind.
+
+    `lift_off_speed` and `jam_speeds` take some milliseconds, of what `thresholds` returns when they
+    are first asked for.
+
+    Speeds are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2] [rad],
+    None where the speed or the coefficient beside it is infinite (it never happens).
+
+    Attributes
+    ----------
+    roll_over_speed : float
+        Above it the body turns over; below it rocks.
+    contact_loss_speed, contact_loss_angle : float
+        From it on rolling would need the ground to pull (N = 0), first at this angle.
+    slip_speed, slip_angle : float
+        From it on rolling needs more than the given friction, first at this angle.
+    lift_off_speed : float
+        The least speed at which a body of the given friction really leaves the ground: it slips
+        first, and then its pressure on the ground ends before it passes the tip. From it on the
+        body always leaves, but for `jam_speeds`.
+    jam_speeds : tuple of (float, float)
+        Ranges of speed, ascending, in which the slide jams before it would leave the ground or
+        pass the tip; inf ends one that goes on for ever. Empty up to `painleve_friction` and for
+        infinite friction; above, they are found by a scan in steps of 2 % up to 50 times the slip
+        speed (narrower ranges may be missed). Their ends are refined by bisection; slides that run
+        into the point at which pressure and response vanish together know them to some 1e-5.
+    friction_to_roll_over : float
+        Largest |F/N| of rolling at the roll-over speed (infinite where N vanishes before).
+    painleve_friction, painleve_angle : float
+        Least friction coefficient for which sliding can jam, and where.
+    rocking_rate : float
+        Angular frequency of small rocking [rad/s].
+    tip_rate : float
+        Growth rate of the fall from the tip [1/s].
+    """
+
+    _units: ClassVar[dict[str, str]] = {
+        "roll_over_speed": "rad/s", "contact_loss_speed": "rad/s", "contact_loss_angle": "rad",
+        "slip_speed": "rad/s", "slip_angle": "rad", "lift_off_speed": "rad/s",
+        "jam_speeds": "rad/s", "painleve_angle": "rad", "rocking_rate": "rad/s",
+        "tip_rate": "1/s",
+    }  # fmt: skip
+
+    roll_over_speed: float
+    contact_loss_speed: float
+    contact_loss_angle: float | None
+    slip_speed: float
+    slip_angle: float | None
+    lift_off_speed: float
+    jam_speeds: tuple[tuple[float, float], ...]
+    friction_to_roll_over: float
+    painleve_friction: float
+    painleve_angle: float | None
+    rocking_rate: float
+    tip_rate: float
+
+    @cached_property
+    def _lift_off(self) -> tuple[float, tuple[tuple[float, float], ...]]:
+        known = *self.__dict__["_body"], self.slip_speed, self.painleve_friction
+        return _core.lift_off(*known)
+
+    def __repr__(self) -> str:
+        speeds = ", ".join(
+            f"{name} = {with_unit(getattr(self, name), 'rad/s')}"
+            for name in ("roll_over_speed", "slip_speed", "contact_loss_speed", "lift_off_speed")
+        )
+        return f"<Thresholds: {speeds}>"
+
+
+find_late(
+    Thresholds,
+    lift_off_speed=lambda found: found._lift_off[0],
+    jam_speeds=lambda found: found._lift_off[1],
+)
+
+
+def classify(
+    *,
+    a: Any,
+    b: Any,
+    omega: Any,
+    theta: Any = 0.0,
+    friction: Any = math.inf,
+    gravity: Any = 9.81,
+    gyration2: Any = None,
+    workers: Any = 1,
+) -> Outcome | npt.NDArray[np.int8]:
+    """Tell what a rolling body comes to first, from t = 0 on, without integrating.
+
+    The body starts rolling without slip (or at rest) on level ground. It rolls until the first of
+
+    ==================  ==========================================================================
+    ``RESTS``           nothing: it is in equilibrium and stays
+    ``ROCKS``           it turns back
+    ``ROLLS_OVER``      it passes the tip; a circle, which has none, rolls on for ever
+    ``SLIPS``           it would need more friction than there is (at once, where it moves and
+                        there is none); infinite friction: the ground would have to pull (N < 0),
+                        and the body slides, not pressed
+    ``LOSES_CONTACT``   the start itself is too fast for the ground, and the body leaves it at once;
+                        a body that rolls slips first
+    ``JAMS``            a slip begins inside the Painleve region. It never does: what ends rolling
+                        can always go on as sliding. The code is kept for completeness.
+    ``EDGE``            rounding cannot tell, as on the separatrix
+    ==================  ==========================================================================
+
+    So a body that starts beyond the angles at which it would slip rolls over first and slips later;
+    `certify` speaks of the whole motion. The answers are the proved signs of the polynomials of N
+    and of friction N - |F| on the heights met on the way (Bernstein coefficients with
+    subdivision, every coefficient with its margin for rounding).
+
+    Parameters
+    ----------
+    a, b : float or array_like
+        Semi-axes [m].
+    omega, theta : float or array_like
+        Angular velocity [rad/s] and angle [rad] at the start; less than 1e-100 rad/s in size
+        counts as rest.
+    friction : float or array_like
+        Coefficient of friction; inf allowed.
+    gravity : float or array_like
+        Acceleration of gravity [m/s^2].
+    gyration2 : float or array_like, optional
+        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
+        (a^2 + b^2)/4.
+    workers : int or executor
+        Number of threads, up to 1024, -1 for all cores, or an executor, as of `simulate_many`; the
+        same answers for any.
+
+    Returns
+    -------
+    Outcome or ndarray of int8
+        The outcome, if all arguments are scalars; else `Outcome` codes of the broadcast shape.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range (of an array it is named with its place in the common
+        shape, ``a[3]``) or shapes do not broadcast.
+    """
+    found = evaluate(
+        shared(workers, _core.classify_array),
+        a=a,
+        b=b,
+        omega=omega,
+        theta=theta,
+        friction=friction,
+        gravity=gravity,
+        gyration2=gyration2,
+    )
+    return Outcome(int(found)) if isinstance(found, float) else found
+
+
+def thresholds(
+    a: float,
+    b: float,
+    *,
+    gravity: float = 9.81,
+    gyration2: float | None = None,
+    friction: float = math.inf,
+) -> Thresholds:
+    """Return the speeds and friction coefficients at which the motion changes its kind.
+
+    Parameters
+    ----------
+    a, b : float
+        Semi-axes [m].
+    gravity : float
+        Acceleration of gravity [m/s^2].
+    gyration2 : float, optional
+        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc.
+    friction : float
+        Coefficient that `slip_speed` and `lift_off_speed` are for; if infinite, the slip speed is
+        the contact loss speed.
+
+    Returns
+    -------
+    Thresholds
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range.
+    """
+    body = (
+        number("a", a), number("b", b), number("gravity", gravity),
+        optional_number("gyration2", gyration2), number("friction", friction),
+    )  # fmt: skip
+    return trusted(Thresholds, _core.thresholds(*body) | {"_body": body})

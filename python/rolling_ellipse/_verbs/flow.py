@@ -1,0 +1,136 @@
+"""Exact rolling as plain functions of time."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from types import NoneType
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._ask.check import FloatArray, array, evaluate, shaped, uniform_disc
+from .._ask.scene import Scene, require_scene
+from .workers import shared, threads_of
+
+_SCALARS = (float, int, np.float64)
+
+
+def flow(
+    t: Any,
+    *,
+    a: Any,
+    b: Any,
+    theta: Any,
+    omega: Any,
+    gravity: Any = 9.81,
+    gyration2: Any = None,
+    workers: Any = 1,
+) -> tuple[Any, Any, Any]:
+    """Return the rolling state at any time, exactly; it does not check whether rolling is valid.
+
+    All arguments broadcast by NumPy's rules. The cost of one time does not depend on how far it is
+    from the start: the period, by the trapezoidal rule in a coordinate in which nothing peaks, is
+    subtracted as a double-double, and the energy integral is inverted from the start on by
+    Gauss-Legendre quadrature and Newton's method. Nothing is stepped.
+
+    Parameters
+    ----------
+    t : float or array_like
+        Time since the start [s], any sign; more than 1e15 half turns or swings are refused.
+    a, b : float or array_like
+        Semi-axes [m].
+    theta, omega : float or array_like
+        Angle [rad] and angular velocity [rad/s] at the start; less than 1e-100 rad/s in size
+        counts as rest.
+    gravity : float or array_like
+        Acceleration of gravity [m/s^2].
+    gyration2 : float or array_like, optional
+        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
+        (a^2 + b^2)/4.
+    workers : int or executor
+        Number of threads, up to 1024, -1 for all cores: where fewer can be started, fewer do the
+        work. Or an executor, as of `simulate_many`, for many millions of elements. The same bits
+        for any of them.
+
+    Returns
+    -------
+    theta, omega, x : float or ndarray
+        Angle [rad], angular velocity [rad/s], path of the centre since the start [m]; floats if all
+        arguments are scalars, else of the broadcast shape. A body in equilibrium (omega = 0 and
+        |h'| within 8 ulp of h) stays. The last bits may depend on how many times there are: many
+        of one motion are read off Taylor series about points of it. Their x then has the rounding
+        of a length like the body's, 2e-16 max(a, b), also where the body has come back to its
+        start and x is much smaller than that. Many motions at one time each are computed side by
+        side in the vectors of the processor (SSE2, AVX2 or AVX-512, with the same bits), which
+        moves the last bits as well, and gives x that rounding after whole swings.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range (of an array it is named with its place in the common
+        shape, ``a[3]``) or shapes do not broadcast.
+    """
+    # Plain floats, as in most calls, need no conversion.
+    if (
+        type(t) is type(a) is type(b) is type(theta) is type(omega) is type(gravity) is float
+        and (gyration2 is None or type(gyration2) is float)
+        and type(workers) is int
+        and workers == 1
+    ):
+        return _core.flow_scalar(t, a, b, theta, omega, gravity, gyration2)
+    threads = threads_of(workers)
+    one = (a, b, theta, omega, gravity)
+    if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):
+        with suppress(TypeError):  # an int beyond the doubles: refused by name below
+            if type(t) in _SCALARS:
+                return _core.flow_scalar(t, *one, gyration2)
+            times = array("t", t)
+            if threads is None:
+                k2 = uniform_disc(a, b) if gyration2 is None else gyration2
+                columns = [times.ravel(), *(np.array([float(v)]) for v in (*one, k2))]
+                found = shared(workers, _times)(times.size, columns)
+            else:
+                found = _core.flow_times(times.ravel(), *one, gyration2, threads)
+            return shaped(found, times.shape)  # type: ignore[no-any-return]
+    found = evaluate(
+        shared(workers, _core.flow_array), t=t, a=a, b=b, theta=theta, omega=omega, gravity=gravity,
+        gyration2=gyration2,
+    )  # fmt: skip
+    return found  # type: ignore[no-any-return]
+
+
+def _times(n: int, columns: list[FloatArray], threads: int) -> Any:
+    """Many times of one motion, as a part of more: of as few as pay for no table, all are here."""
+    times, *one = columns
+    a, b, theta, omega, gravity, gyration2 = (float(value[0]) for value in one)
+    return _core.flow_times(times, a, b, theta, omega, gravity, gyration2, threads)
+
+
+def arguments_of(scene: Scene) -> dict[str, Any]:
+    """Return the arguments of `flow` for a scene, as it is after its impulse."""
+    start = scene.initial_state
+    return {
+        "a": scene.a, "b": scene.b, "theta": start.theta, "omega": start.omega,
+        "gravity": scene.gravity, "gyration2": scene.gyration2,
+    }  # fmt: skip
+
+
+def period(scene: Scene) -> float:
+    """Return the time of a full swing, or of one full turn, of the rolling motion [s].
+
+    Infinite for a body at rest. By the trapezoidal rule for the energy integral, as in `flow`, with
+    an error of a few units in the last place; on a slope, where only a swing repeats itself, from
+    its turning points, by power series in time.
+
+    Parameters
+    ----------
+    scene : Scene
+        Must start rolling (after its impulse), on a slope between two turning points.
+
+    Raises
+    ------
+    ValueError
+        If it does not.
+    """
+    return _core.period(require_scene(scene).core)

@@ -1,0 +1,190 @@
+"""The one entry point: a scene and times in, a Trajectory out."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from .._ask.categories import StabilityWarning, ValidityWarning
+from .._ask.check import FloatArray, array, flag, shown
+from .._ask.scene import Scene, require_scene
+from .._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
+from .._motion.samples import even_times
+from .._motion.stability import advice
+from .._motion.status import COMPLETED, IntegrationError, Status
+from .._motion.trajectory import Trajectory
+
+_DEFAULT_SAMPLES = 1001
+
+
+def simulate(
+    scene: Scene,
+    t: Any,
+    *,
+    model: Model = DEFAULTS.model,
+    method: Method = DEFAULTS.method,
+    rtol: float = DEFAULTS.rtol,
+    atol: float = DEFAULTS.atol,
+    step: float | None = DEFAULTS.step,
+    stages: int | None = DEFAULTS.stages,
+    stabilization: Stabilization = DEFAULTS.stabilization,
+    baumgarte: tuple[float, float] = DEFAULTS.baumgarte,
+    max_steps: int = DEFAULTS.max_steps,
+    max_events: int = DEFAULTS.max_events,
+    rest_speed: float | None = DEFAULTS.rest_speed,
+    raise_on_failure: bool = True,
+) -> Trajectory:
+    """Simulate a scene from t = 0 and sample the motion.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its state is that at t = 0; an impulse acts there first.
+    t : float or array_like, shape (n,)
+        End time (then 1001 even samples), or strictly increasing sample times >= 0 [s]. A tuple
+        (0, end), the span of other programs, is refused: it would be two samples, as the list
+        [0, end] is. Rolling for more than 1e15 half turns or swings is refused: a double does not
+        know its phase.
+    model : {"auto", "rolling", "multipliers", "contact"}
+        "rolling" is rolling without slip; the certificate (see `certify`) says until when it is
+        true. "contact" is the whole motion: it rolls, slides, flies, hits the ground and comes to
+        rest, on segments joined by ``events``, none of which is stepped: slides are power series in
+        time [9]_ that end at proved first roots. "auto" is "rolling" where the certificate proves
+        it, and "contact" elsewhere; with a method given it is "rolling". "multipliers" is the same
+        motion in the report's five coordinates with four constraints and their Lagrange
+        multipliers, for study: "dop853" (also its "auto"), "dopri5", "rk4", or "radau" with the
+        stabilization "ggl".
+    method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
+        "exact" inverts the energy integral at each time; nothing is stepped, and neither
+        tolerances nor the span matter. On a slope power series in time at rounding level follow
+        one swing, or the first half turns; what repeats itself is not followed again, and many
+        half turns downhill or uphill are one sum, a difference of Hurwitz zeta functions [8]_. The
+        others integrate the equation of motion: "dop853" and "dopri5" are explicit Runge-Kutta
+        pairs of order 8 and 5 with error control [1]_; "rk4" is the classical method; "gauss" is
+        Gauss-Legendre collocation of order ``2 * stages``, symmetric and symplectic, whose energy
+        error does not grow, with rounding errors that only walk at random [2]_ [3]_; "radau" is
+        Radau IIA of order 5 [4]_. "auto" is "exact".
+    rtol, atol : float
+        Allowed local error of the pairs in each component of the state (theta and omega, or the
+        five coordinates and their rates): atol + rtol times its size.
+    step : float, optional
+        Size of steps [s]: required by "rk4", "gauss" and "radau"; with it "dop853" and "dopri5"
+        take fixed steps without error control. The last step may be shorter.
+    stages : {4, 3, 2}, optional
+        Of "gauss".
+    stabilization : {"projection", "none", "baumgarte", "projection+energy", "ggl"}
+        Of the constraints of "multipliers": "none" is the index-1 system, whose constraints
+        drift; "baumgarte" feeds the drift back [5]_; "projection" moves each state, also between
+        steps, to the nearest one, in the kinetic metric, that meets the constraints [6]_, and
+        "projection+energy" to one with the energy of the start; "ggl" is the index-2 system of
+        Gear, Gupta and Leimkuhler [7]_.
+    baumgarte : (float, float)
+        Gains (alpha, beta) [1/s] of ``f'' + 2 alpha f' + beta**2 f = 0``, for the velocity
+        constraint f1 of ``f1' + 2 alpha f1 = 0``.
+    max_steps : int
+        Most steps taken before the integration ends with the status MAX_STEPS.
+    max_events : int
+        Most events of "contact" before it ends with the status MAX_EVENTS.
+    rest_speed : float, optional
+        Rebound speed [m/s] under which "contact" sums the infinitely many bounces that are left,
+        with a relative error of the order of the square of its ratio to sqrt(g min(a, b)), which
+        is a millionth by default and a hundredth at most. Bounces that would take longer than that
+        allows are not summed: where next to nothing presses the body to its ground, or restitution
+        is near 1.
+    raise_on_failure : bool
+        Whether an integration that stops before the last time raises; otherwise it returns what
+        there is up to then.
+
+    Returns
+    -------
+    Trajectory
+        ``status`` COMPLETED; or VALIDITY_LOST, where the span of "rolling" or "multipliers" goes
+        beyond ``valid_until``: the arrays are complete and obey the rolling equation, and a
+        ValidityWarning is issued; or JAMMED, where a slide comes to a place from which no motion
+        of a rigid body goes on, or starts at one from which two do (Painleve): the arrays end
+        there. Infinite friction is not the limit of large coefficients here: a slip that would jam
+        it takes off by an impulse at t = 0 (see `Scene`). A start without slip that may roll and
+        may fly (on a slope, turning too fast for its weight, wedged by friction) goes on rolling.
+        ``reason`` tells both. At an event samples show what holds after it. Samples between steps
+        have the accuracy of the method. A StabilityWarning is issued where an integrated motion
+        has lost what it should keep, as looked at along all of it, at steps and between some of
+        them: a hundredth of its energy (or ten times rtol, if that is more), measured by the
+        largest kinetic plus |potential| energy, with x from the start; a thousandth of the long
+        semi-axis in its constraints; a tenth of it in those of any single step before its
+        projection, which then moves the body elsewhere; and where Baumgarte's gains are more than
+        the method bears at the step given.
+
+    Raises
+    ------
+    ValueError
+        If times are negative, not increasing or not finite, a name is unknown, an argument is out
+        of range or of no use to the method, or the models "rolling" or "multipliers" are asked
+        for a scene that does not start rolling.
+    IntegrationError
+        If the integration stops before the last time (MAX_EVENTS, MAX_STEPS, STEP_TOO_SMALL or
+        STEP_TOO_LARGE); its ``trajectory`` holds what there is.
+
+    References
+    ----------
+    .. [1] E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.,
+       Springer 1993, II.5, II.6 and II.10.
+    .. [2] E. Hairer, R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231.
+    .. [3] M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861.
+    .. [4] E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Springer 1996,
+       IV.8.
+    .. [5] J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1.
+    .. [6] Ch. Lubich, Ch. Engstler, U. Nowak, U. Poehle, Mech. Struct. Mach. 23 (1995) 473.
+    .. [7] C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12-13 (1985) 77.
+    .. [8] NIST Digital Library of Mathematical Functions, 25.11.
+    .. [9] A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99.
+    """
+    require_scene(scene)
+    raise_on_failure = flag("raise_on_failure", raise_on_failure)
+    how = settings(
+        model, method, rtol, atol, step, stages, stabilization, baumgarte, max_steps, max_events,
+        rest_speed,
+    )  # fmt: skip
+    trajectory = Trajectory.computed(scene, how, sample_times(t))
+    report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=3)
+    if told := advice(trajectory):
+        warnings.warn(told, StabilityWarning, stacklevel=2)
+    return trajectory
+
+
+def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel: int) -> None:
+    """Warn of lost validity; raise for an integration that stopped before its end."""
+    if trajectory.status is COMPLETED:
+        return
+    if trajectory.status is Status.VALIDITY_LOST:
+        warnings.warn(trajectory.message, ValidityWarning, stacklevel=stacklevel)
+    elif not trajectory.success and raise_on_failure:
+        raise IntegrationError(trajectory)
+
+
+def sample_times(t: Any) -> FloatArray:
+    """Return the times to sample at: those given, or 1001 even ones up to an end time."""
+    times = array("t", t)
+    if isinstance(t, tuple) and times.shape == (2,) and times[0] == 0:
+        end = shown(t[1])
+        raise ValueError(
+            f"t must be an end time, {end}, or an array of times, np.linspace(0, {end}, n) or, for "
+            f"just two samples, a list; got {shown(t)}"
+        )
+    if _core.are_sample_times(times):
+        return times
+    if not np.all(np.isfinite(times)):
+        raise ValueError(f"t must be finite [s], got {shown(t)}")
+    if times.size and times.min() < 0:
+        raise ValueError(f"t must not be negative [s], got {float(times.min())!r}")
+    if times.ndim == 0:
+        return even_times(0.0, float(times), _DEFAULT_SAMPLES) if times > 0 else np.zeros(1)
+    if times.ndim != 1 or times.size == 0:
+        raise ValueError(f"t must be an end time or a 1-D array of times, got shape {times.shape}")
+    i = int(np.flatnonzero(np.diff(times) <= 0)[0])
+    raise ValueError(
+        f"t must be strictly increasing, got t[{i}] = {float(times[i])!r} "
+        f"and t[{i + 1}] = {float(times[i + 1])!r}"
+    )

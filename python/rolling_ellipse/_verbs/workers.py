@@ -1,0 +1,204 @@
+"""Who does the work: threads of the core, or an executor, which may be of other machines.
+
+An executor has `submit`, as those of concurrent.futures, dask's Client and mpi4py.futures have, or
+is a pool that has `map`. What it is given is a function of this package and bytes: every way to
+another process knows those.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .._ask.check import FloatArray, shown, worker_count
+
+Columns = list[FloatArray]
+
+_IN_FLIGHT = 128  # tasks at most: they wait beside their results
+_HELD = 96 * 2**20  # bytes at most of results that wait for their turn, unless one has more
+_ELEMENTS = 2**16  # of a task; a multiple of the core's own parts, so that lanes stay the same
+
+
+@dataclass(frozen=True)
+class Lost:
+    """What stands in the place of a task's result; `refused`: it was not even taken."""
+
+    error: Exception
+    refused: bool = False
+
+
+def threads_of(workers: Any) -> int | None:
+    """Return a number of threads, or None for an executor.
+
+    Raises
+    ------
+    TypeError
+        If it is neither.
+    ValueError
+        If it is no possible number.
+    """
+    if type(workers) is int:  # nearly always
+        return worker_count(workers)
+    if isinstance(workers, type) or not (_can(workers, "submit") or _is_pool(workers)):
+        try:
+            return worker_count(workers)
+        except TypeError:
+            raise TypeError(
+                "workers must be a whole number, or an executor with submit or map, "
+                f"got {shown(workers)}"
+            ) from None
+    return None
+
+
+def in_order(
+    executor: Any,
+    function: Callable[[bytes], Any],
+    tasks: Iterable[bytes],
+    size: Callable[[], int] = lambda: 0,
+) -> Iterator[tuple[int, Any]]:
+    """Yield place and result of each task, in order; `Lost` where a worker died or none was left.
+
+    Tasks are taken as results are asked for, so many that the results that wait have no more than
+    `_HELD` bytes, if none has more than `size` says after its task was taken. An interrupt cancels
+    what has not begun; what is done by then is yielded before it goes on.
+    """
+    places = enumerate(tasks)
+    if not _can(executor, "submit"):
+        yield from _mapped(executor, function, places, size)
+        return
+    waiting: deque[tuple[int, Any]] = deque()
+    try:
+        while True:
+            while taken := _next(places, len(waiting), size):
+                place, task = taken
+                waiting.append((place, _submitted(executor, function, task)))
+            if not waiting:
+                return
+            place, future = waiting[0]
+            result = _result(future)
+            waiting.popleft()
+            yield place, result
+    except KeyboardInterrupt:
+        done = [(place, future) for place, future in waiting if _is_done(future)]
+        _cancel(future for _, future in waiting)
+        for place, future in done:
+            yield place, _result(future)
+        raise
+    finally:
+        _cancel(future for _, future in waiting)
+
+
+def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns], Any]:
+    """Return a function of elements and columns that workers compute.
+
+    The function itself also takes a number of threads. Its bits are the same for any workers; what
+    a task raises is raised.
+    """
+    threads = threads_of(workers)
+    if threads is not None:
+        return lambda n, columns: function(n, columns, threads)
+
+    def compute(n: int, columns: Columns) -> Any:
+        tasks = (
+            pickle.dumps((function, end - begin, _rows(columns, begin, end)))
+            for begin, end in _ranges(n)
+        )
+        found = []
+        for _, result in in_order(workers, _evaluate, tasks):
+            if isinstance(result, Lost):
+                raise result.error
+            found.append(result)
+        if isinstance(found[0], tuple):
+            return tuple(np.concatenate(parts) for parts in zip(*found, strict=True))
+        return np.concatenate(found)
+
+    return compute
+
+
+def _can(executor: Any, what: str) -> bool:
+    return callable(getattr(executor, what, None))
+
+
+def _is_pool(workers: Any) -> bool:
+    """Series and sequences of some libraries have a map, but nothing to end."""
+    return _can(workers, "map") and (_can(workers, "close") or _can(workers, "shutdown"))
+
+
+def _next(
+    places: Iterator[tuple[int, bytes]], waiting: int, size: Callable[[], int]
+) -> tuple[int, bytes] | None:
+    """The next task, unless as many wait as may."""
+    most = min(_IN_FLIGHT, _HELD // max(1, size()))
+    return None if waiting and waiting >= most else next(places, None)
+
+
+def _mapped(
+    pool: Any,
+    function: Callable[[bytes], Any],
+    places: Iterator[tuple[int, bytes]],
+    size: Callable[[], int],
+) -> Iterator[tuple[int, Any]]:
+    """By pools that cannot be given one task: a part is lost together."""
+    while True:
+        part: list[tuple[int, bytes]] = []
+        while taken := _next(places, len(part), size):
+            part.append(taken)
+        if not part:
+            return
+        try:
+            found: list[Any] = list(pool.map(function, [task for _, task in part]))
+        except Exception as error:
+            found = [Lost(error)] * len(part)
+        yield from zip((place for place, _ in part), found, strict=True)
+
+
+def _submitted(executor: Any, function: Callable[[bytes], Any], task: bytes) -> Any:
+    try:
+        return executor.submit(function, task)
+    except Exception as error:
+        return Lost(error, refused=True)
+
+
+def _result(future: Any) -> Any:
+    if isinstance(future, Lost):
+        return future
+    try:
+        return future.result()
+    except Exception as error:
+        return Lost(error)
+
+
+def _is_done(future: Any) -> bool:
+    return isinstance(future, Lost) or (_can(future, "done") and future.done())
+
+
+def _cancel(futures: Iterable[Any]) -> None:
+    for future in futures:
+        if _can(future, "cancel"):
+            future.cancel()
+
+
+def _ranges(n: int) -> Iterator[tuple[int, int]]:
+    """The last one may be longer: no task is too small for what pays with many elements."""
+    begin = 0
+    while n - begin >= 2 * _ELEMENTS:
+        yield begin, begin + _ELEMENTS
+        begin += _ELEMENTS
+    yield begin, n
+
+
+def _rows(columns: Columns, begin: int, end: int) -> Columns:
+    return [values if values.size == 1 else values[begin:end] for values in columns]
+
+
+def _evaluate(task: bytes) -> Any:
+    function, n, columns = pickle.loads(task)
+    try:
+        return function(n, columns, 1)
+    except ValueError as error:  # a wrong argument is no failure of the executor, which logs those
+        return Lost(error)

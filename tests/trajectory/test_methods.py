@@ -1,0 +1,87 @@
+"""The methods that are bound to a motion from other modules: as if they were written in its class.
+
+What they do is tested where they are; here it is that they are there, for people and for programs.
+"""
+
+import ast
+import inspect
+import pickle
+import pydoc
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from rolling_ellipse import Trajectory
+from rolling_ellipse._motion import events, trajectory
+from rolling_ellipse._show.methods import METHODS
+
+NAMES = {kind: [name for names in of.values() for name in names] for kind, of in METHODS.items()}
+MODULES = {Trajectory: trajectory, events.Events: events}
+
+
+def declared(kind: type) -> Iterator[str]:
+    """The names in the part of a class that is for type checkers."""
+    source = Path(MODULES[kind].__file__ or "").read_text(encoding="utf-8")
+    (body,) = (
+        each.body
+        for each in ast.parse(source).body
+        if isinstance(each, ast.ClassDef) and each.name == kind.__name__
+    )
+    for part in body:
+        if isinstance(part, ast.If):
+            for each in ast.walk(part):
+                if isinstance(each, ast.FunctionDef):
+                    yield each.name
+                elif isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store):
+                    yield each.id
+
+
+@pytest.mark.parametrize("kind", METHODS, ids=lambda kind: kind.__name__)
+def test_type_checkers_know_them_all(kind: type) -> None:
+    assert sorted(declared(kind)) == sorted(NAMES[kind])
+
+
+@pytest.mark.parametrize("name", NAMES[Trajectory])
+def test_each_is_a_method_of_its_name(name: str) -> None:
+    """So that help, Jupyter and pickles of bound methods know it by the name it is called by."""
+    method, motion = getattr(Trajectory, name), rl.simulate(rl.scenes.drop, 1.0)
+    assert name in dir(motion) and inspect.isroutine(method) and method.__name__ == name
+    assert inspect.getdoc(method) or name.startswith("_")
+    parameters = list(inspect.signature(method).parameters)
+    bound = list(inspect.signature(getattr(motion, name)).parameters)
+    assert bound == (parameters if name == "load" else parameters[1:])
+    assert pickle.loads(pickle.dumps(getattr(motion, name))).__name__ == name
+
+
+def test_help_tells_them() -> None:
+    told = pydoc.plain(pydoc.render_doc(Trajectory))
+    for name in ("plot", "animate", "when", "to_dataframe", "load"):
+        assert f"\n |  {name}(" in told, name
+
+
+def test_a_subclass_has_and_replaces_them(tmp_path: Path) -> None:
+    class Named(Trajectory):
+        def at(self, t: float) -> rl.Sample:
+            return super().at(t / 2)
+
+    motion = rl.simulate(rl.scenes.rocking, 2.0)
+    named = Named(**motion.__getstate__())
+    assert named.at(2.0) == motion.at(1.0) == Trajectory.at(named, 1.0)
+    motion.save(tmp_path / "motion.npz")
+    again = Named.load(tmp_path / "motion.npz")
+    assert type(again) is Named and type(Trajectory.load(tmp_path / "motion.npz")) is Trajectory
+    assert np.array_equal(again.theta, motion.theta)
+
+
+def test_nothing_is_loaded_before_it_is_asked_for() -> None:
+    script = (
+        "import sys, rolling_ellipse as rl; motion = rl.simulate(rl.scenes.rocking, 1.0);"
+        "dir(motion), repr(motion), vars(rl.Trajectory), motion.at(1.0), motion._repr_html_();"
+        "assert 'matplotlib' not in sys.modules; motion.plot;"
+        "assert 'matplotlib' in sys.modules and rl.Trajectory.plot is rl.plot"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True, timeout=300)
