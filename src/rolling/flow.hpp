@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "rolling/phase_time.hpp"
+#include "rolling/kernel.hpp"
 #include "rolling/start.hpp"
 
 namespace rolling_ellipse {
@@ -21,7 +21,7 @@ struct QuarterPosition {
 enum class MotionKind { rest, uniform, libration, rotation };
 
 // What one state needs.
-struct RollingMotion {
+struct RollingMotion : PhaseMotion<double> {
     MotionKind kind;
     // The start.
     double theta;
@@ -29,14 +29,6 @@ struct RollingMotion {
     double x;
     double gravity;
     FlatView start;
-    // The motion.
-    double direction;  // of rotation; +1 for libration
-    double amplitude;  // sin phi_max of a libration; 1 for rotation
-    PhaseTime phase;
-    // The start as the motion sees it.
-    bool start_on_way_back;  // of a libration: phase beyond +-pi/2
-    PhasePoint start_phase;  // without that half turn
-    Place start_place;
 };
 
 // And what samples of many times and events are counted from.
@@ -44,12 +36,6 @@ struct RollingFlow : RollingMotion {
     DoubleDouble start_time;
     QuarterPosition start_position;
     double quarter_path;
-};
-
-struct FlowSample {
-    double theta;
-    double omega;
-    double x;
 };
 
 RollingMotion rolling_motion(const RollingStart& from, double x = 0.0);
@@ -74,7 +60,7 @@ void validate_time(double t, double longest, const std::string& name = "t");
 double heading(const RollingMotion& motion);
 
 // Where the body is at a phase on the way up.
-QuarterPosition position_at(const RollingFlow& flow, const PhasePoint& phase);
+QuarterPosition position_at(const RollingFlow& flow, const PhasePoint<double>& phase);
 
 // Time of a full swing or of a full turn; infinite for a body at rest and on the separatrix.
 double period(const RollingMotion& motion);

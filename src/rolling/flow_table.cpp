@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "rolling/phase_motion.hpp"
+
 namespace rolling_ellipse {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr double longest_rise = 38.0;
 
 // A place on the way from the flat position to the tip or the turning point, by the tangent of its
 // phase from the one or the other; both are 1 in the middle.
-struct Place {
+struct TablePlace {
     bool at_tip;
     double tangent;
 };
@@ -28,13 +30,13 @@ struct Batches {
 
 class TableMaker {
   public:
-    explicit TableMaker(const RollingFlow& flow) : flow_(flow), kernel_(flow_kernel()) {
-        const PhaseRate& rate = flow.phase.rate;
+    explicit TableMaker(const RollingFlow& flow) : flow_(flow), kernel_(kernel()) {
+        const PhaseRate<double>& rate = flow.phase.rate;
         rotates_ = flow.kind == MotionKind::rotation;
         length_ = flow.start.long_axis;
         const double area = square(length_);
         const double fastest =
-            (rotates_ ? 1.0 : std::sqrt(rate.amplitude2)) / shape_factor(rate, 0.0);
+            (rotates_ ? 1.0 : std::sqrt(rate.amplitude2)) / shape_factor<double>(rate, 0.0);
         unit_ = std::min(0.5 / fastest, 0.5 * double(flow.phase.quarter_turn));
         body_ = {square(rate.short_axis / length_), rate.c2 / area,
                  flow.gravity * square(unit_) / length_, rate.d0 / square(area),
@@ -59,7 +61,7 @@ class TableMaker {
     void place(double spacing) {
         constexpr double wider = 1.5;  // from the middle on
         places_.clear();
-        const PhaseRate& rate = flow_.phase.rate;
+        const PhaseRate<double>& rate = flow_.phase.rate;
         const double flat = std::sqrt(rate.d0 / (rate.d1 * rate.amplitude2 + rate.d0));
         const double tip = rate.kappa;
         const double rise = std::asinh(1 / flat);
@@ -99,7 +101,7 @@ class TableMaker {
         all_.series.resize(size);
         all_.reach.resize(size);
         for (std::size_t i = 0; i < size; ++i) {
-            kernel_.states(flow_.phase.rate, rotates_, at_places[i], all_.states[i]);
+            kernel_.states(flow_.phase.rate, at_places[i], all_.states[i]);
         }
         at(all_.states, &StateBatch::sin, count()) = flow_.start.sin;
         at(all_.states, &StateBatch::cos, count()) = flow_.start.cos;
@@ -262,13 +264,13 @@ class TableMaker {
     }
 
     const RollingFlow& flow_;
-    const FlowKernel& kernel_;
+    const Kernel& kernel_;
     FlowTable table_{};
     bool rotates_;
     double length_;
     double unit_;
     TableConstants body_;
-    std::vector<Place> places_;
+    std::vector<TablePlace> places_;
     Batches all_;
 };
 
@@ -295,7 +297,7 @@ FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(
 }
 
 void FlowSampler::operator()(const double* times, std::size_t n, const FlowColumns& out) const {
-    if (table_ && !flow_kernel().read(reader(*table_), times, n, out)) return;
+    if (table_ && !kernel().read(reader(*table_), times, n, out)) return;
     for (std::size_t i = 0; i < n; ++i) {
         if (!table_ || std::isnan(out.theta[i])) store(sample(flow_, times[i]), out, i);
     }

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "rolling/flow.hpp"
-#include "rolling/flow_kernel.hpp"
 
 namespace rolling_ellipse {
 

@@ -1,57 +1,124 @@
-// How fast time, angle and path grow along the coordinate y of rolling/phase_map.hpp, at several
-// places side by side: most of the work of an exact motion.
-//
-// With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
-// H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral
-// of physics (27) becomes that of physics (29),
-//     dt/dphase = scale sqrt(D (H + h)) / sqrt(cos^2 phase + kappa^2 sin^2 phase),
-//     sin phi   = amplitude sin phase,
-// rotation (phase = phi) and libration (phase = u of sin phi = sin phi_max sin u) are one integral:
-//     rotation:  amplitude 1, scale^2 = 1/(2 g (H^2 - S^2)),   kappa^2 = (H^2 - L^2)/(H^2 - S^2)
-//     libration: amplitude^2 = (H^2 - S^2)/c^2, scale^2 = 1/(2 g c^2), kappa^2 = (L^2 - H^2)/c^2
-// No term is a difference that cancels, but for H - L itself. Along y
+// How fast time, angle and path grow along the coordinate y of rolling/phase.hpp:
 //     dphase/dy = speed sqrt((g^2 cos^2 + sin^2) (cos^2 + kappa^2 sin^2)),
 // whose last root cancels that of the integrand. The path of the centre grows by h dphi.
 #pragma once
 
-#include <array>
-#include <cstddef>
-
+#include "rolling/kernel.hpp"
 #include "rolling/phase_map.hpp"
 
 namespace rolling_ellipse {
+namespace {
 
-// The constants of the integrand above.
-struct PhaseRate {
-    double short_axis;     // S
-    double c2;             // L^2 - S^2
-    double energy_height;  // H
-    double amplitude2;
-    double scale2;
-    double kappa;
-    double d0;
-    double d1;
-    bool rotates;
+// scale^2 D (H + h), the square of the factor that depends on the shape: physics (28, 29).
+template <class T, class U>
+inline T shape_factor2(const PhaseRate<U>& rate, T sin2_phi) {
+    const T h2 = rate.short_axis * rate.short_axis + rate.c2 * sin2_phi;
+    return rate.scale2 * (rate.d0 + rate.d1 * sin2_phi) * (rate.energy_height + sqrt(h2)) / h2;
+}
+
+// What the rates at several places have in common, T, of bodies U. "Here" is the flat or the tip
+// from which the places are counted, "there" the other one.
+template <class T>
+struct RateConstants {
+    T quarter, half_turn, speed;
+    T tip_here;  // 1 or 0
+    T scale2_here, scale2_there;
+    T a[4], b[3];
+    T grade2;
+    T cos2_factor, sin2_factor;
+    T s2, c2, d0, d1, energy_height, time_factor;
+    T side;  // +-1: the way to the tip, from the flat or beyond
+    Truth<T> rotates;
 };
 
-inline constexpr std::size_t phase_lanes = 8;
-using PhaseLanes = std::array<double, phase_lanes>;
+template <class T, class U>
+inline RateConstants<T> rate_constants(const PhaseRate<U>& rate, const PhaseMap<U>& map,
+                                       U quarters) {
+    const auto from_tip = quarters != 0;
+    const auto spread = [](U value) { return value - T{}; };
+    RateConstants<T> of;
+    of.quarter = spread(map.quarter);
+    of.half_turn = spread(2 * map.quarter);
+    of.speed = spread(map.speed);
+    of.tip_here = spread(from_tip ? filled<U>(1.0) : U{});
+    of.scale2_here = spread(from_tip ? map.tip_scale2 : map.flat_scale2);
+    of.scale2_there = spread(from_tip ? map.flat_scale2 : map.tip_scale2);
+    for (int i = 0; i < 4; ++i) of.a[i] = spread(map.a[i]);
+    for (int i = 0; i < 3; ++i) of.b[i] = spread(map.b[i]);
+    of.grade2 = spread(map.grade * map.grade);
+    of.cos2_factor = spread(rate.rotates ? filled<U>(1.0) : rate.amplitude2);
+    of.sin2_factor = spread(rate.rotates ? rate.kappa * rate.kappa : U{});
+    of.s2 = spread(rate.short_axis * rate.short_axis);
+    of.c2 = spread(rate.c2 * rate.amplitude2);
+    of.d0 = spread(rate.d0);
+    of.d1 = spread(rate.d1 * rate.amplitude2);
+    of.energy_height = spread(rate.energy_height);
+    of.time_factor = spread(map.speed * map.speed * rate.scale2);
+    of.side = spread(quarters > 0 ? filled<U>(-1.0) : filled<U>(1.0));
+    of.rotates = spread(rate.rotates ? filled<U>(1.0) : U{}) > 0;
+    return of;
+}
 
-// What a way along y takes, or its rate: time [s], angle [rad], path of the centre [m].
-struct PhaseWay {
-    double time;
-    double angle;
-    double path;
-};
+// The rates at y = quarters Y + offset, |quarters| <= 1. With the phase as sin^2/q and cos^2/q,
+// h^2 = N/q, and so the other factors: one quotient serves all.
+template <class T>
+inline PhaseWay<T> phase_rate_at(const RateConstants<T>& of, T offset) {
+    constexpr double farthest = 150.0;  // e^(4 of it) is a double
+    const T from_here = abs(offset);
+    const T a_turn_on = abs(from_here - of.half_turn);
+    const T same = from_here < a_turn_on ? from_here : a_turn_on;
+    const T other = abs(from_here - of.quarter);
+    const auto is_same = same < other;
+    const T distance = min<T>(is_same ? same : other, filled<T>(farthest));
+    const T scale2 = is_same ? of.scale2_here : of.scale2_there;
+    const auto at_tip = (is_same ? of.tip_here : 1 - of.tip_here) > 0;
 
-struct PhaseWays {
-    PhaseLanes time;
-    PhaseLanes angle;
-    PhaseLanes path;
-};
+    const T sinh = hyperbolic(distance).sinh;
+    const T sinh2 = sinh * sinh;
+    const T c = 1 + 2 * sinh2;
+    const T a = of.a[0] + c * (of.a[1] + c * (of.a[2] + c * of.a[3]));
+    const T b = of.b[0] + c * (of.b[1] + c * of.b[2]);
+    const T opposite = scale2 * sinh2 * (b * b);
+    const T adjacent = a * a;
+    const T q = opposite + adjacent;
+    const T sin2 = at_tip ? adjacent : opposite;
+    const T cos2 = at_tip ? opposite : adjacent;
 
-// The rates at y = quarters Y + offset, |quarters| <= 1, |offset| <= 5/2 Y.
-PhaseWays phase_rates(const PhaseRate& rate, const PhaseMap& map, int quarters,
-                      const PhaseLanes& offset);
+    const T n = of.s2 * q + of.c2 * sin2;
+    const T inertia = of.d0 * q + of.d1 * sin2;
+    const T graded = of.grade2 * cos2 + sin2;
+    const T along = of.cos2_factor * cos2 + of.sin2_factor * sin2;
+    const T inverse = 1 / (q * n);
+    const T per_q = n * inverse;
+    const T h = sqrt(q * n) * per_q;
+    const T time = sqrt((of.time_factor * inertia) * graded * ((of.energy_height + h) * inverse));
+    const T size = of.speed * sqrt(graded * along) * per_q;
+    // A libration that has passed its turning point goes back.
+    const T to_tip = of.side * offset;
+    const auto goes_on =
+        of.tip_here > 0 ? (to_tip > 0) & (to_tip < of.half_turn) : abs(to_tip) < of.quarter;
+    const T angle = (goes_on | of.rotates) ? size : -size;
+    return {time, angle, h * angle};
+}
 
+// The rates of bodies side by side, at a few places of each.
+inline void phase_rates(const PhaseRate<Pack>& rate, const PhaseMap<Pack>& map, Pack quarters,
+                        const Pack* offsets, int count, PhaseWays<Pack>& found) {
+    const RateConstants<Pack> of = rate_constants<Pack>(rate, map, quarters);
+    for (int i = 0; i < count; ++i) {
+        const PhaseWay<Pack> at = phase_rate_at(of, offsets[i]);
+        found.time[i] = at.time;
+        found.angle[i] = at.angle;
+        found.path[i] = at.path;
+    }
+}
+
+// Those of one body, at places side by side; after the last of them there is room for a Pack.
+inline void phase_rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
+                        double* offsets, int count, PhaseWays<double>& found) {
+    for (int i = count; i % widest_pack != 0; ++i) offsets[i] = offsets[count - 1];
+    kernel().rates(rate, map, quarters, offsets, count, found);
+}
+
+}  // namespace
 }  // namespace rolling_ellipse

@@ -193,9 +193,9 @@ void of_equal_forces_the_first_is_told() {
     CHECK(watch.holds_until == infinity);
 }
 
-std::vector<FlowKernel> kernels_of_this_machine() {
-    std::vector<FlowKernel> found;
-    for (const LaneLevel level : lane_levels()) found.push_back(flow_kernel(level));
+std::vector<Kernel> kernels_of_this_machine() {
+    std::vector<Kernel> found;
+    for (const LaneLevel level : lane_levels()) found.push_back(kernel(level));
     return found;
 }
 
@@ -210,7 +210,7 @@ void every_vector_level_has_the_same_bits() {
     for (const double omega : {1.0, 3.2}) {  // libration and rotation
         const RollingFlow flow = rolling_flow(rolling_start(body, 0.2, omega));
         const FlowTable table = flow_table(flow);
-        const PhaseRate& rate = flow.phase.rate;
+        const PhaseRate<double>& rate = flow.phase.rate;
         PlaceBatch places{};
         for (int i = 0; i < batch_size; ++i) {
             places.at_tip.of[i] = i % 2;
@@ -223,10 +223,10 @@ void every_vector_level_has_the_same_bits() {
         StateBatch first_states{};
         SeriesBatch first_series{};
         std::vector<double> first;
-        for (const FlowKernel& kernel : kernels_of_this_machine()) {
+        for (const Kernel& kernel : kernels_of_this_machine()) {
             StateBatch states{};
             SeriesBatch series{};
-            kernel.states(rate, omega > 3, places, states);
+            kernel.states(rate, places, states);
             kernel.series({0.25, 0.75, 1.0, rate.d0 / 16, rate.d1 / 16}, states, series);
             std::vector<double> read(3 * times.size());
             double* const theta = read.data();

@@ -56,8 +56,14 @@ int main() {
         2.0, "log beside 1", 1 + 1e-12, 1.42, [](Pack x) { return log(x); },
         [](long double x) { return std::log(x); });
     within(
+        2.5, "asinh", 1e-300, 1e100, [](Pack x) { return asinh(x); },
+        [](long double x) { return std::asinh(x); });
+    within(
         2.0, "angle", 1e-300, 1.0, [](Pack s) { return octant_angle(s, pack(1.0)); },
         [](long double s) { return std::atan(s); });
+    within(
+        2.0, "obtuse angle", 1e-300, 1e300, [](Pack s) { return angle_of(s, pack(-1.0)); },
+        [](long double s) { return std::atan2(s, -1.0L); });
     within(
         0.5, "two_product", 1e-100, 1e100,
         [](Pack x) {

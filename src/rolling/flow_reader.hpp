@@ -1,14 +1,10 @@
-// What a table of exact rolling is made of and read by: the same code for several vector levels
-// (flow_kernel_*.cpp), of which the best one of the machine is taken, with the same bits at every
-// level (see numerics/lanes.hpp).
+// A table of exact rolling, and the numbers of which it is made and by which it is read.
 #pragma once
 
 #include <cstddef>
 
 #include "numerics/double_double.hpp"
-#include "numerics/lane_levels.hpp"
 #include "numerics/series.hpp"
-#include "rolling/phase_time.hpp"
 
 namespace rolling_ellipse {
 
@@ -112,26 +108,5 @@ struct FlowColumns {
 
     FlowColumns from(std::size_t begin) const { return {theta + begin, omega + begin, x + begin}; }
 };
-
-struct FlowKernel {
-    void (*states)(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatch& found);
-    void (*series)(const TableConstants& body, const StateBatch& at, SeriesBatch& found);
-    void (*reach)(const SeriesBatch& series, ReachBatch& found);
-    // The first time that is not within most in size, NaN neither; n if there is none.
-    std::size_t (*first_beyond)(const double* times, std::size_t n, double most);
-    // The motion at many times; theta is NaN where no piece reaches. Returns whether one is.
-    bool (*read)(const FlowReader& motion, const double* times, std::size_t n,
-                 const FlowColumns& out);
-};
-
-FlowKernel flow_kernel_baseline();
-FlowKernel flow_kernel_avx2();
-FlowKernel flow_kernel_avx512();
-
-// For a level that the machine has; the narrowest serves all below.
-FlowKernel flow_kernel(LaneLevel level);
-
-// The best one of the machine.
-const FlowKernel& flow_kernel();
 
 }  // namespace rolling_ellipse

@@ -4,7 +4,8 @@
 
 #include "numerics/gauss_legendre.hpp"
 #include "numerics/lanes.hpp"
-#include "rolling/flow_kernel.hpp"
+#include "rolling/flow_reader.hpp"
+#include "rolling/phase_rates.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -14,24 +15,17 @@ using LaneSeries = Pack[table_size];
 inline Pack load(const Eight& from, int lane) { return load(from.of + lane); }
 inline void store(Pack values, Eight& to, int lane) { store(values, to.of + lane); }
 
-// scale^2 D (H + h), physics (28, 29).
-inline Pack shape_factor2(const PhaseRate& rate, Pack sin2_phi) {
-    const Pack h2 = square(rate.short_axis) + rate.c2 * sin2_phi;
-    return rate.scale2 * (rate.d0 + rate.d1 * sin2_phi) * (rate.energy_height + sqrt(h2)) / h2;
-}
-
 // |dt/dtangent|, physics (29).
-inline Pack time_rate(const PhaseRate& rate, Mask at_tip, Pack tangent) {
-    const double kappa2 = square(rate.kappa);
+inline Pack time_rate(const PhaseRate<double>& rate, Mask<Pack> at_tip, Pack tangent) {
+    const double kappa2 = rate.kappa * rate.kappa;
     const Pack tan2 = tangent * tangent;
     const Pack sin2 = (at_tip ? pack(1.0) : tan2) / (1 + tan2);
     const Pack under = (1 + tan2) * (at_tip ? tan2 + kappa2 : 1 + kappa2 * tan2);
-    return sqrt(shape_factor2(rate, rate.amplitude2 * sin2) / under);
+    return sqrt(shape_factor2<Pack>(rate, rate.amplitude2 * sin2) / under);
 }
 
-void states(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatch& found,
-            int lane) {
-    const Mask at_tip = load(at.at_tip, lane) > 0;
+void states(const PhaseRate<double>& rate, const PlaceBatch& at, StateBatch& found, int lane) {
+    const Mask<Pack> at_tip = load(at.at_tip, lane) > 0;
     const Pack tangent = load(at.tangent, lane);
     const Pack from = load(at.from, lane);
     const Pack middle = 0.5 * (tangent + from);
@@ -50,18 +44,18 @@ void states(const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatc
     const Pack opposite = tangent * adjacent;
     const Pack sin = at_tip ? adjacent : opposite;
     const Pack cos = at_tip ? opposite : adjacent;
-    const Pack across = sqrt(cos * cos + square(rate.kappa) * (sin * sin));
-    const Pack factor = sqrt(shape_factor2(rate, rate.amplitude2 * (sin * sin)));
+    const Pack across = sqrt(cos * cos + rate.kappa * rate.kappa * (sin * sin));
+    const Pack factor = sqrt(shape_factor2<Pack>(rate, rate.amplitude2 * (sin * sin)));
     const double amplitude = __builtin_sqrt(rate.amplitude2);
     const Pack body_sin = amplitude * sin;
-    const Pack body_cos = rotates ? cos : across;
-    const Mask near_tip = body_sin > body_cos;
+    const Pack body_cos = rate.rotates ? cos : across;
+    const Mask<Pack> near_tip = body_sin > body_cos;
     const Pack angle = octant_angle(min(body_sin, body_cos), max(body_sin, body_cos));
     store(body_sin, found.sin, lane);
     store(body_cos, found.cos, lane);
     store(near_tip ? pack(1.0) : pack(0.0), found.near_tip, lane);
     store(near_tip ? -angle : angle, found.angle, lane);
-    store((rotates ? across : amplitude * cos) / factor, found.omega, lane);
+    store((rate.rotates ? across : amplitude * cos) / factor, found.omega, lane);
 }
 
 // Physics (18) with D h^2 = d0 + d1 q, u = h^2, q and p the square of the sine and the product of
@@ -111,7 +105,7 @@ inline Pack value(const Eight (&series)[table_size], Pack z, int lane) {
 
 // The last terms, of which one may be small by chance, are some roundings beside what the series is
 // part of; what is left out is smaller by another twentieth.
-inline Mask holds(const Eight (&series)[table_size], Pack whole, Pack radius, int lane) {
+inline Mask<Pack> holds(const Eight (&series)[table_size], Pack whole, Pack radius, int lane) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
     const Pack size = max(whole, max(abs(load(series[1], lane)) * radius,
@@ -126,9 +120,9 @@ void reach(const SeriesBatch& series, ReachBatch& found, int lane) {
     const Pack back = load(found.back, lane);
     const Pack forward = load(found.forward, lane);
     const Pack radius = max(back, forward);
-    const Mask good = holds(series.angle, load(found.angle, lane), radius, lane) &
-                      holds(series.omega, abs(load(series.omega[0], lane)), radius, lane) &
-                      holds(series.path, load(found.path, lane), radius, lane);
+    const Mask<Pack> good = holds(series.angle, load(found.angle, lane), radius, lane) &
+                            holds(series.omega, abs(load(series.omega[0], lane)), radius, lane) &
+                            holds(series.path, load(found.path, lane), radius, lane);
     store(good ? pack(1.0) : pack(0.0), found.holds, lane);
     store(value(series.path, -back, lane), found.path_back, lane);
     store(value(series.path, forward, lane), found.path_forward, lane);
@@ -278,14 +272,14 @@ bool combine(const FlowReader& motion, const double* times, int n, const Block& 
         Pack omega = spin * load(block.omega + i);
         Pack x = motion.x +
                  ((quarters * motion.quarter_path - motion.path) + heading * load(block.path + i));
-        const Mask at_start = abs(t) <= motion.start_radius;
+        const Mask<Pack> at_start = abs(t) <= motion.start_radius;
         if (any(at_start)) {
             const Motions at = together(*motion.start, t * motion.per_unit);
             theta = at_start ? motion.theta + at.angle : theta;
             omega = at_start ? at.omega : omega;
             x = at_start ? motion.x + at.path : x;
         }
-        const Mask lost = (abs(time) >= motion.last_end) & ~at_start;
+        const Mask<Pack> lost = (abs(time) >= motion.last_end) & ~at_start;
         if (any(lost)) {
             some_lost = true;
             theta = lost ? pack(__builtin_nan("")) : theta;
@@ -327,24 +321,12 @@ bool read(const FlowReader& motion, const double* times, std::size_t n, const Fl
 
 std::size_t first_beyond(const double* times, std::size_t n, double most) {
     std::size_t i = 0;
-    Mask within = Pack{} == Pack{};
+    Mask<Pack> within = Pack{} == Pack{};
     for (; i + lanes <= n; i += lanes) within &= abs(load(times + i)) <= most;
-    if (any(~within)) i = 0;
+    if (any(negated(within))) i = 0;
     while (i < n && times[i] <= most && -times[i] <= most) ++i;
     return i;
 }
-
-constexpr FlowKernel compiled = {
-    [](const PhaseRate& rate, bool rotates, const PlaceBatch& at, StateBatch& found) {
-        for (int lane = 0; lane < batch_size; lane += lanes) states(rate, rotates, at, found, lane);
-    },
-    [](const TableConstants& body, const StateBatch& at, SeriesBatch& found) {
-        for (int lane = 0; lane < batch_size; lane += lanes) series(body, at, found, lane);
-    },
-    [](const SeriesBatch& of, ReachBatch& found) {
-        for (int lane = 0; lane < batch_size; lane += lanes) reach(of, found, lane);
-    },
-    first_beyond, read};
 
 }  // namespace
 }  // namespace rolling_ellipse
