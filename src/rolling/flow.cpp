@@ -67,11 +67,29 @@ RollingFlow rolling_flow(const RollingStart& from, double x) {
 double heading(const RollingMotion& motion) { return heading_of<double>(motion); }
 
 QuarterPosition position_at(const RollingFlow& flow, const PhasePoint<double>& phase) {
-    const MotionPoint<double> at = motion_point<double>(flow, phase);
+    const MotionPoint<double> at = motion_point(flow.phase.rate, flow.amplitude, phase);
     return quarter_position(flow.start, at.sin_phi, at.cos_phi);
 }
 
 namespace {
+
+// How far from its centre a series is as good as a double, beside its own size there: the last
+// terms are one rounding then, and what is left out, smaller by another tenth, is less.
+double reach(const Series& series) {
+    constexpr double rest = 1e-16;  // half an ulp
+    double radius = 1.0;
+    for (int i = 0; i < 3; ++i) {  // its size depends on the radius, by a small power of it
+        const double size = std::max({std::abs(series[0]), std::abs(series[1]) * radius,
+                                      std::abs(series[2]) * square(radius)});
+        double least = infinity;
+        for (const int k : {series_order - 1, series_order}) {
+            const double last = std::abs(series[k]);
+            if (last > 0) least = std::min(least, std::pow(rest * size / last, 1.0 / k));
+        }
+        radius = least;
+    }
+    return radius;
+}
 
 // A move so short that one power series knows it: it keeps the digits of what has changed.
 std::optional<FlowSample> short_move(const RollingMotion& motion, double t) {
@@ -81,7 +99,7 @@ std::optional<FlowSample> short_move(const RollingMotion& motion, double t) {
     const SeriesConstants body{
         square(short_axis) / unit2, c2 / unit2, motion.gravity * square(t) / unit,
         motion.phase.rate.d0 / square(unit2), motion.phase.rate.d1 / square(unit2)};
-    const MotionSeries series = motion_series(body, sin, cos, motion.omega * t);
+    const auto series = motion_series<series_order>(body, sin, cos, motion.omega * t);
     if (!(std::min(reach(series.angle), reach(series.omega)) >= 1)) return std::nullopt;
     Series gain = series.omega;
     gain[0] = 0.0;

@@ -19,28 +19,17 @@ struct TableSeries {
     alignas(64) double rows[table_size + 1][series_columns];
 };
 
-// The constants of the series, with lengths in units of the long semi-axis and time in a unit of
-// its own.
-struct TableConstants {
-    double short_axis2;
-    double c2;
-    double gravity;
-    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28)
-    double d1;
-};
-
 struct alignas(64) Eight {
     double of[batch_size];
 };
 
-// Phases by the tangent of their offset from the flat position, or from the tip.
+// Places by their coordinate y (rolling/phase.hpp), and the one before each.
 struct PlaceBatch {
-    Eight at_tip;  // 1 or 0
-    Eight tangent;
-    Eight from;  // the tangent of the place before it, in the same half
+    Eight y;
+    Eight from;
 };
 
-// The motion there, on the way up, and the time since the place before it.
+// The motion there, on the way up, and time and path since the place before it.
 struct StateBatch {
     Eight sin;  // of the angle from the flat position
     Eight cos;
@@ -48,6 +37,7 @@ struct StateBatch {
     Eight angle;     // from the nearer one of flat position and tip
     Eight omega;
     Eight duration;
+    Eight path;
 };
 
 struct SeriesBatch {
@@ -63,8 +53,6 @@ struct ReachBatch {
     Eight angle;
     Eight path;
     Eight holds;  // 1 where it is as good as a double as far as that, else 0
-    Eight path_back;
-    Eight path_forward;
 };
 
 struct FlowPiece {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "rolling/motion_series.hpp"
 #include "rolling/phase_motion.hpp"
 
 namespace rolling_ellipse {
@@ -11,16 +12,6 @@ namespace {
 
 // Motions have 10 to 60 pieces a quarter turn; on the separatrix there is no end of them.
 constexpr std::size_t most_pieces = 1000;
-
-// From here on, in the graded coordinate, a body on the separatrix is on the tip to rounding.
-constexpr double longest_rise = 38.0;
-
-// A place on the way from the flat position to the tip or the turning point, by the tangent of its
-// phase from the one or the other; both are 1 in the middle.
-struct TablePlace {
-    bool at_tip;
-    double tangent;
-};
 
 struct Batches {
     std::vector<StateBatch> states;
@@ -44,8 +35,8 @@ class TableMaker {
     }
 
     FlowTable make() {
-        // Between places in the graded coordinate, in which all that is singular is half_pi away
-        // from the motion (physics 31): what series of this order reach in nearly all motions.
+        // In the coordinate y, in which all that is singular is half_pi away from the motion: what
+        // series of this order reach in nearly all motions.
         for (const double spacing : {0.128, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
@@ -59,21 +50,18 @@ class TableMaker {
 
   private:
     void place(double spacing) {
-        constexpr double wider = 1.5;  // from the middle on
+        constexpr double wider = 1.5;  // from 45 degrees of the phase on
+        // So much further, a body on the separatrix is on the tip to rounding.
+        constexpr double longest_rise = 38.0;
+        const PhaseMap<double>& map = flow_.phase.map;
+        const double middle = asinh(1 / map.grade);
+        const double end = std::isinf(map.quarter) ? middle + longest_rise : map.quarter;
+        const int up = static_cast<int>(std::ceil(middle / spacing));
+        const int down = static_cast<int>(std::ceil((end - middle) / (wider * spacing)));
         places_.clear();
-        const PhaseRate<double>& rate = flow_.phase.rate;
-        const double flat = std::sqrt(rate.d0 / (rate.d1 * rate.amplitude2 + rate.d0));
-        const double tip = rate.kappa;
-        const double rise = std::asinh(1 / flat);
-        const int up = static_cast<int>(std::ceil(rise / spacing));
-        for (int i = 0; i < up; ++i) places_.push_back({false, flat * std::sinh(rise * i / up)});
-        const double fall = tip > 0 ? std::asinh(1 / tip) : longest_rise;
-        const int down = static_cast<int>(std::ceil(fall / (wider * spacing)));
-        for (int i = 0; i <= down; ++i) {
-            const double v = fall * i / down;
-            places_.push_back({true, tip > 0 ? tip * std::sinh(fall - v) : std::exp(-v)});
-        }
-        places_[up].tangent = 1.0;
+        for (int i = 0; i < up; ++i) places_.push_back(middle * i / up);
+        for (int i = 0; i < down; ++i) places_.push_back(middle + (end - middle) * i / down);
+        places_.push_back(end);
     }
 
     std::size_t count() const { return places_.size(); }
@@ -89,19 +77,15 @@ class TableMaker {
         std::vector<PlaceBatch> at_places(size);
         for (std::size_t i = 0; i < size * batch_size; ++i) {
             const std::size_t j = std::min(i, count() - 1);
-            const bool at_tip = places_[j].at_tip;
-            const bool first_of_half = j == 0 || (at_tip && places_[j].tangent == 1.0);
-            at(at_places, &PlaceBatch::at_tip, i) = at_tip;
-            at(at_places, &PlaceBatch::tangent, i) = places_[j].tangent;
-            at(at_places, &PlaceBatch::from, i) = places_[j == 0 ? 0 : j - 1].tangent;
-            // The middle is a place of the upper half; the way there is one of the lower.
-            if (first_of_half) at(at_places, &PlaceBatch::at_tip, i) = false;
+            at(at_places, &PlaceBatch::y, i) = places_[j];
+            at(at_places, &PlaceBatch::from, i) = places_[j == 0 ? 0 : j - 1];
         }
         all_.states.resize(size);
         all_.series.resize(size);
         all_.reach.resize(size);
         for (std::size_t i = 0; i < size; ++i) {
-            kernel_.states(flow_.phase.rate, at_places[i], all_.states[i]);
+            kernel_.states(flow_.phase.rate, flow_.phase.map, flow_.amplitude, at_places[i],
+                           all_.states[i]);
         }
         at(all_.states, &StateBatch::sin, count()) = flow_.start.sin;
         at(all_.states, &StateBatch::cos, count()) = flow_.start.cos;
@@ -188,23 +172,20 @@ class TableMaker {
         }
     }
 
-    // The paths of neighbours meet half way; they are counted from the flat position or, near it,
-    // from the tip.
+    // Counted from the flat position or, near it, from the tip.
     void add_paths() {
         std::vector<FlowPiece>& pieces = table_.pieces;
-        const auto step = [&](std::size_t i) {  // from i - 1 to i
-            return length_ * (at(all_.reach, &ReachBatch::path_forward, i - 1) -
-                              at(all_.reach, &ReachBatch::path_back, i));
-        };
         const auto path = [&](std::size_t i) -> double& { return pieces[i].series.rows[0][2]; };
+        const auto step = [&](std::size_t i) { return at(all_.states, &StateBatch::path, i); };
         for (std::size_t i = 1; i < count() && pieces[i].quarters == 0; ++i) {
             path(i) = path(i - 1) + step(i);
         }
         const std::size_t last = count() - 1;
         if (pieces[last].quarters == 0) return;
-        const double tangent = places_[last].tangent;
-        const double sin = 1 / root_of_squares(1.0, tangent);
-        path(last) = position_at(flow_, {sin, tangent * sin}).path;
+        const PhaseMap<double>& map = flow_.phase.map;
+        const bool has_tip = places_[last] == map.quarter;
+        const Place<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last]};
+        path(last) = position_at(flow_, phase_point(map, end)).path;
         for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
             path(i - 1) = path(i) - step(i);
     }
@@ -269,8 +250,8 @@ class TableMaker {
     bool rotates_;
     double length_;
     double unit_;
-    TableConstants body_;
-    std::vector<TablePlace> places_;
+    SeriesConstants body_;
+    std::vector<double> places_;
     Batches all_;
 };
 

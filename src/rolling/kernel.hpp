@@ -34,8 +34,9 @@ struct Kernel {
     // The states of bodies, written to their places; and for every body of the list whether it is
     // one of those that have to be taken alone.
     void (*sample)(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone);
-    void (*states)(const PhaseRate<double>& rate, const PlaceBatch& at, StateBatch& found);
-    void (*series)(const TableConstants& body, const StateBatch& at, SeriesBatch& found);
+    void (*states)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
+                   const PlaceBatch& at, StateBatch& found);
+    void (*series)(const SeriesConstants& body, const StateBatch& at, SeriesBatch& found);
     void (*reach)(const SeriesBatch& series, ReachBatch& found);
     // The first time that is not within most in size, NaN neither; n if there is none.
     std::size_t (*first_beyond)(const double* times, std::size_t n, double most);

@@ -11,7 +11,7 @@ namespace {
 
 void rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
            const double* offsets, int count, PhaseWays<double>& found) {
-    const RateConstants<Pack> of = rate_constants<Pack>(rate, map, quarters);
+    const RateConstants<Pack> of = rate_constants(spread(rate), spread(map), pack(quarters));
     for (int i = 0; i < count; i += lanes) {
         const PhaseWay<Pack> at = phase_rate_at(of, load(offsets + i));
         store(at.time, found.time + i);
@@ -45,10 +45,13 @@ void sample(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone) {
 constexpr Kernel compiled = {
     rates,
     sample,
-    [](const PhaseRate<double>& rate, const PlaceBatch& at, StateBatch& found) {
-        for (int lane = 0; lane < batch_size; lane += lanes) states(rate, at, found, lane);
+    [](const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
+       const PlaceBatch& at, StateBatch& found) {
+        for (int lane = 0; lane < batch_size; lane += lanes) {
+            states(rate, map, amplitude, at, found, lane);
+        }
     },
-    [](const TableConstants& body, const StateBatch& at, SeriesBatch& found) {
+    [](const SeriesConstants& body, const StateBatch& at, SeriesBatch& found) {
         for (int lane = 0; lane < batch_size; lane += lanes) series(body, at, found, lane);
     },
     [](const SeriesBatch& of, ReachBatch& found) {

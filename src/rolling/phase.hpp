@@ -107,6 +107,16 @@ struct PhaseTime {
     T time[most_steps + 2];
 };
 
+// The constants of power series in time (rolling/motion_series.hpp), with the long semi-axis as the
+// unit of length and time in a unit of its own.
+struct SeriesConstants {
+    double short_axis2;
+    double c2;
+    double gravity;
+    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28)
+    double d1;
+};
+
 // A motion from its start on.
 template <class T>
 struct PhaseMotion {

@@ -65,7 +65,7 @@ inline PhaseRate<T> phase_rate(const PhaseStart<T>& at) {
 // scale sqrt(D (H + h)) where phi has this sine.
 template <class T>
 inline T shape_factor(const PhaseRate<T>& rate, T sin_phi) {
-    return sqrt(shape_factor2<T>(rate, sin_phi * sin_phi));
+    return sqrt(shape_factor2(rate, sin_phi * sin_phi));
 }
 
 template <class T>
@@ -95,14 +95,13 @@ struct MotionPoint {
 // Angle and angular velocity at a phase, on the way up: physics (30), the energy integral at the
 // point itself.
 template <class T>
-inline MotionPoint<T> motion_point(const PhaseMotion<T>& motion, const PhasePoint<T>& at) {
-    const PhaseRate<T>& rate = motion.phase.rate;
-    const T sin_phi = rate.rotates ? at.sin : motion.amplitude * at.sin;
+inline MotionPoint<T> motion_point(const PhaseRate<T>& rate, T amplitude, const PhasePoint<T>& at) {
+    const T sin_phi = rate.rotates ? at.sin : amplitude * at.sin;
     const T factor = shape_factor(rate, sin_phi);
     const T across = rate.kappa * at.sin;
     const T root = sqrt(at.cos * at.cos + across * across);
     return {sin_phi, rate.rotates ? at.cos : root,
-            (rate.rotates ? root : motion.amplitude * at.cos) / factor};
+            (rate.rotates ? root : amplitude * at.cos) / factor};
 }
 
 // +1 or -1: which way the motion goes at its start, for angles and for omega.
@@ -143,7 +142,8 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const auto [time, turns] = reduced<T>(turn, t);
     const auto [to, way] = move(phase, motion.start_place, time);
     const T heading = heading_of(motion);
-    const MotionPoint<T> now = motion_point(motion, phase_point(phase.map, to));
+    const MotionPoint<T> now =
+        motion_point<T>(phase.rate, motion.amplitude, phase_point(phase.map, to));
 
     const T sin_phi = heading * now.sin_phi;
     const T swung = angle_of<T>(sin_phi * from.cos - now.cos_phi * from.sin,

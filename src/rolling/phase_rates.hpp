@@ -10,14 +10,14 @@ namespace rolling_ellipse {
 namespace {
 
 // scale^2 D (H + h), the square of the factor that depends on the shape: physics (28, 29).
-template <class T, class U>
-inline T shape_factor2(const PhaseRate<U>& rate, T sin2_phi) {
+template <class T>
+inline T shape_factor2(const PhaseRate<T>& rate, T sin2_phi) {
     const T h2 = rate.short_axis * rate.short_axis + rate.c2 * sin2_phi;
     return rate.scale2 * (rate.d0 + rate.d1 * sin2_phi) * (rate.energy_height + sqrt(h2)) / h2;
 }
 
-// What the rates at several places have in common, T, of bodies U. "Here" is the flat or the tip
-// from which the places are counted, "there" the other one.
+// What the rates at several places have in common. "Here" is the flat or the tip from which the
+// places are counted, "there" the other one.
 template <class T>
 struct RateConstants {
     T quarter, half_turn, speed;
@@ -31,31 +31,31 @@ struct RateConstants {
     Truth<T> rotates;
 };
 
-template <class T, class U>
-inline RateConstants<T> rate_constants(const PhaseRate<U>& rate, const PhaseMap<U>& map,
-                                       U quarters) {
+template <class T>
+inline RateConstants<T> rate_constants(const PhaseRate<T>& rate, const PhaseMap<T>& map,
+                                       T quarters) {
     const auto from_tip = quarters != 0;
-    const auto spread = [](U value) { return value - T{}; };
+    const T one = filled<T>(1.0);
     RateConstants<T> of;
-    of.quarter = spread(map.quarter);
-    of.half_turn = spread(2 * map.quarter);
-    of.speed = spread(map.speed);
-    of.tip_here = spread(from_tip ? filled<U>(1.0) : U{});
-    of.scale2_here = spread(from_tip ? map.tip_scale2 : map.flat_scale2);
-    of.scale2_there = spread(from_tip ? map.flat_scale2 : map.tip_scale2);
-    for (int i = 0; i < 4; ++i) of.a[i] = spread(map.a[i]);
-    for (int i = 0; i < 3; ++i) of.b[i] = spread(map.b[i]);
-    of.grade2 = spread(map.grade * map.grade);
-    of.cos2_factor = spread(rate.rotates ? filled<U>(1.0) : rate.amplitude2);
-    of.sin2_factor = spread(rate.rotates ? rate.kappa * rate.kappa : U{});
-    of.s2 = spread(rate.short_axis * rate.short_axis);
-    of.c2 = spread(rate.c2 * rate.amplitude2);
-    of.d0 = spread(rate.d0);
-    of.d1 = spread(rate.d1 * rate.amplitude2);
-    of.energy_height = spread(rate.energy_height);
-    of.time_factor = spread(map.speed * map.speed * rate.scale2);
-    of.side = spread(quarters > 0 ? filled<U>(-1.0) : filled<U>(1.0));
-    of.rotates = spread(rate.rotates ? filled<U>(1.0) : U{}) > 0;
+    of.quarter = map.quarter;
+    of.half_turn = 2 * map.quarter;
+    of.speed = map.speed;
+    of.tip_here = from_tip ? one : T{};
+    of.scale2_here = from_tip ? map.tip_scale2 : map.flat_scale2;
+    of.scale2_there = from_tip ? map.flat_scale2 : map.tip_scale2;
+    for (int i = 0; i < 4; ++i) of.a[i] = map.a[i];
+    for (int i = 0; i < 3; ++i) of.b[i] = map.b[i];
+    of.grade2 = map.grade * map.grade;
+    of.cos2_factor = rate.rotates ? one : rate.amplitude2;
+    of.sin2_factor = rate.rotates ? rate.kappa * rate.kappa : T{};
+    of.s2 = rate.short_axis * rate.short_axis;
+    of.c2 = rate.c2 * rate.amplitude2;
+    of.d0 = rate.d0;
+    of.d1 = rate.d1 * rate.amplitude2;
+    of.energy_height = rate.energy_height;
+    of.time_factor = map.speed * map.speed * rate.scale2;
+    of.side = quarters > 0 ? -one : one;
+    of.rotates = rate.rotates;
     return of;
 }
 
@@ -101,10 +101,31 @@ inline PhaseWay<T> phase_rate_at(const RateConstants<T>& of, T offset) {
     return {time, angle, h * angle};
 }
 
+// The constants of one body in all lanes.
+inline PhaseRate<Pack> spread(const PhaseRate<double>& of) {
+    return {pack(of.short_axis), pack(of.c2),     pack(of.energy_height),
+            pack(of.amplitude2), pack(of.scale2), pack(of.kappa),
+            pack(of.d0),         pack(of.d1),     pack(of.rotates) > 0};
+}
+inline PhaseMap<Pack> spread(const PhaseMap<double>& of) {
+    return {pack(of.quarter),
+            pack(of.step),
+            pack(of.steps),
+            pack(of.has_tail) > 0,
+            pack(of.grade),
+            pack(of.kappa),
+            pack(of.speed),
+            pack(of.sine_scale),
+            pack(of.flat_scale2),
+            pack(of.tip_scale2),
+            {pack(of.a[0]), pack(of.a[1]), pack(of.a[2]), pack(of.a[3])},
+            {pack(of.b[0]), pack(of.b[1]), pack(of.b[2])}};
+}
+
 // The rates of bodies side by side, at a few places of each.
 inline void phase_rates(const PhaseRate<Pack>& rate, const PhaseMap<Pack>& map, Pack quarters,
                         const Pack* offsets, int count, PhaseWays<Pack>& found) {
-    const RateConstants<Pack> of = rate_constants<Pack>(rate, map, quarters);
+    const RateConstants<Pack> of = rate_constants(rate, map, quarters);
     for (int i = 0; i < count; ++i) {
         const PhaseWay<Pack> at = phase_rate_at(of, offsets[i]);
         found.time[i] = at.time;

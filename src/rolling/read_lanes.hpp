@@ -5,102 +5,57 @@
 #include "numerics/gauss_legendre.hpp"
 #include "numerics/lanes.hpp"
 #include "rolling/flow_reader.hpp"
-#include "rolling/phase_rates.hpp"
+#include "rolling/motion_series.hpp"
+#include "rolling/phase_motion.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-using LaneSeries = Pack[table_size];
-
 inline Pack load(const Eight& from, int lane) { return load(from.of + lane); }
 inline void store(Pack values, Eight& to, int lane) { store(values, to.of + lane); }
 
-// |dt/dtangent|, physics (29).
-inline Pack time_rate(const PhaseRate<double>& rate, Mask<Pack> at_tip, Pack tangent) {
-    const double kappa2 = rate.kappa * rate.kappa;
-    const Pack tan2 = tangent * tangent;
-    const Pack sin2 = (at_tip ? pack(1.0) : tan2) / (1 + tan2);
-    const Pack under = (1 + tan2) * (at_tip ? tan2 + kappa2 : 1 + kappa2 * tan2);
-    return sqrt(shape_factor2<Pack>(rate, rate.amplitude2 * sin2) / under);
-}
-
-void states(const PhaseRate<double>& rate, const PlaceBatch& at, StateBatch& found, int lane) {
-    const Mask<Pack> at_tip = load(at.at_tip, lane) > 0;
-    const Pack tangent = load(at.tangent, lane);
+void states(const PhaseRate<double>& one_rate, const PhaseMap<double>& one_map, double amplitude,
+            const PlaceBatch& at, StateBatch& found, int lane) {
+    const PhaseRate<Pack> rate = spread(one_rate);
+    const PhaseMap<Pack> map = spread(one_map);
+    const RateConstants<Pack> of = rate_constants(rate, map, Pack{});
+    const Pack y = load(at.y, lane);
     const Pack from = load(at.from, lane);
-    const Pack middle = 0.5 * (tangent + from);
-    const Pack half = abs(0.5 * (tangent - from));
+    const Pack middle = 0.5 * (y + from);
+    const Pack half = 0.5 * (y - from);
     // Places are so near to each other that eight nodes are exact to rounding.
-    constexpr int nodes = 4;
-    Pack sum{};
-    for (int i = 0; i < nodes; ++i) {
+    constexpr int pairs = 4;
+    Pack time{}, path{};
+    for (int i = 0; i < pairs; ++i) {
         const Pack offset = half * gauss_tables::nodes_8[i];
-        sum += gauss_tables::weights_8[i] * (time_rate(rate, at_tip, middle - offset) +
-                                             time_rate(rate, at_tip, middle + offset));
+        const PhaseWay<Pack> before = phase_rate_at(of, middle - offset);
+        const PhaseWay<Pack> after = phase_rate_at(of, middle + offset);
+        time += gauss_tables::weights_8[i] * (before.time + after.time);
+        path += gauss_tables::weights_8[i] * (before.path + after.path);
     }
-    store(sum * half, found.duration, lane);
+    store(time * half, found.duration, lane);
+    store(path * half, found.path, lane);
 
-    const Pack adjacent = 1 / sqrt(1 + tangent * tangent);
-    const Pack opposite = tangent * adjacent;
-    const Pack sin = at_tip ? adjacent : opposite;
-    const Pack cos = at_tip ? opposite : adjacent;
-    const Pack across = sqrt(cos * cos + rate.kappa * rate.kappa * (sin * sin));
-    const Pack factor = sqrt(shape_factor2<Pack>(rate, rate.amplitude2 * (sin * sin)));
-    const double amplitude = __builtin_sqrt(rate.amplitude2);
-    const Pack body_sin = amplitude * sin;
-    const Pack body_cos = rate.rotates ? cos : across;
-    const Mask<Pack> near_tip = body_sin > body_cos;
-    const Pack angle = octant_angle(min(body_sin, body_cos), max(body_sin, body_cos));
-    store(body_sin, found.sin, lane);
-    store(body_cos, found.cos, lane);
+    const Mask<Pack> at_tip = y > 0.5 * map.quarter;
+    const Place<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
+    const MotionPoint<Pack> now = motion_point(rate, pack(amplitude), phase_point(map, place));
+    const Mask<Pack> near_tip = now.sin_phi > now.cos_phi;
+    const Pack angle = octant_angle(min(now.sin_phi, now.cos_phi), max(now.sin_phi, now.cos_phi));
+    store(now.sin_phi, found.sin, lane);
+    store(now.cos_phi, found.cos, lane);
     store(near_tip ? pack(1.0) : pack(0.0), found.near_tip, lane);
     store(near_tip ? -angle : angle, found.angle, lane);
-    store((rate.rotates ? across : amplitude * cos) / factor, found.omega, lane);
+    store(now.omega, found.omega, lane);
 }
 
-// Physics (18) with D h^2 = d0 + d1 q, u = h^2, q and p the square of the sine and the product of
-// sine and cosine of the angle:
-//     omega' u (d0 + d1 q) = -c2 p (g u h + S^2 omega^2),   q' = 2 p omega,   p' = (1 - 2 q) omega
-void series(const TableConstants& body, const StateBatch& at, SeriesBatch& found, int lane) {
-    const Pack sin = load(at.sin, lane);
-    LaneSeries q{sin * sin}, p{sin * load(at.cos, lane)}, w{load(at.omega, lane)};
-    Pack over_2h{}, over_mass{};
-    LaneSeries u{}, h{}, inertia{}, mass{}, push{}, turning{};
-    store(pack(0.0), found.angle[0], lane);
-    store(pack(0.0), found.path[0], lane);
-#pragma GCC unroll 16
+void series(const SeriesConstants& body, const StateBatch& at, SeriesBatch& found, int lane) {
+    const auto motion = motion_series<table_order>(body, load(at.sin, lane), load(at.cos, lane),
+                                                   load(at.omega, lane));
     for (int k = 0; k < table_size; ++k) {
-        u[k] = body.c2 * q[k];
-        inertia[k] = body.d1 * q[k];
-        if (k == 0) {
-            u[0] += body.short_axis2;
-            inertia[0] += body.d0;
-            h[0] = sqrt(u[0]);
-            over_2h = 0.5 / h[0];
-            over_mass = 1 / (u[0] * inertia[0]);
-        } else {
-            h[k] = (u[k] - self_product(h, k, 1)) * over_2h;
-        }
-        store(w[k], found.omega[k], lane);
-        if (k == table_order) break;
-        mass[k] = product(u, inertia, k);
-        push[k] = body.gravity * product(u, h, k) + body.short_axis2 * self_product(w, k);
-        const Pack force = -body.c2 * product(p, push, k);
-        turning[k] = (force - terms(mass, turning, k, 1, k)) * over_mass;
-        const Pack qw = product(q, w, k);
-        const double next = 1.0 / (k + 1);
-        q[k + 1] = 2 * next * product(p, w, k);
-        p[k + 1] = next * (w[k] - 2 * qw);
-        w[k + 1] = next * turning[k];
-        store(next * w[k], found.angle[k + 1], lane);
-        store(next * product(h, w, k), found.path[k + 1], lane);
+        store(motion.angle[k], found.angle[k], lane);
+        store(motion.omega[k], found.omega[k], lane);
+        store(motion.path[k], found.path[k], lane);
     }
-}
-
-inline Pack value(const Eight (&series)[table_size], Pack z, int lane) {
-    Pack sum = load(series[table_order], lane);
-    for (int k = table_order - 1; k >= 0; --k) sum = sum * z + load(series[k], lane);
-    return sum;
 }
 
 // The last terms, of which one may be small by chance, are some roundings beside what the series is
@@ -124,8 +79,6 @@ void reach(const SeriesBatch& series, ReachBatch& found, int lane) {
                             holds(series.omega, abs(load(series.omega[0], lane)), radius, lane) &
                             holds(series.path, load(found.path, lane), radius, lane);
     store(good ? pack(1.0) : pack(0.0), found.holds, lane);
-    store(value(series.path, -back, lane), found.path_back, lane);
-    store(value(series.path, forward, lane), found.path_forward, lane);
 }
 
 // The most times that are on the way through `read` together.

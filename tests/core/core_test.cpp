@@ -211,10 +211,10 @@ void every_vector_level_has_the_same_bits() {
         const RollingFlow flow = rolling_flow(rolling_start(body, 0.2, omega));
         const FlowTable table = flow_table(flow);
         const PhaseRate<double>& rate = flow.phase.rate;
+        const PhaseMap<double>& map = flow.phase.map;
         PlaceBatch places{};
         for (int i = 0; i < batch_size; ++i) {
-            places.at_tip.of[i] = i % 2;
-            places.tangent.of[i] = 0.12 * i + 0.11;
+            places.y.of[i] = 0.12 * i + 0.11;
             places.from.of[i] = 0.12 * i;
         }
         std::vector<double> times;
@@ -226,7 +226,7 @@ void every_vector_level_has_the_same_bits() {
         for (const Kernel& kernel : kernels_of_this_machine()) {
             StateBatch states{};
             SeriesBatch series{};
-            kernel.states(rate, places, states);
+            kernel.states(rate, map, flow.amplitude, places, states);
             kernel.series({0.25, 0.75, 1.0, rate.d0 / 16, rate.d1 / 16}, states, series);
             std::vector<double> read(3 * times.size());
             double* const theta = read.data();
