@@ -4,8 +4,8 @@
 
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
-#include "rolling/flow_lanes.hpp"
-#include "rolling/flow_table.hpp"
+#include "rolling/level/many_bodies.hpp"
+#include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -45,8 +45,7 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     const FlowColumns found = columns(out);
     const double* const times = t.data();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
-        const py::ssize_t wrong =
-            begin + kernel().first_beyond(times + begin, end - begin, most);
+        const py::ssize_t wrong = begin + kernel().first_beyond(times + begin, end - begin, most);
         if (wrong < end) {
             validate_time(times[wrong], longest, "t[" + std::to_string(wrong) + "]");
         }

@@ -1,7 +1,7 @@
 // Several doubles side by side, and functions of them and of one double, which give the same bits:
 // templates over a number T, which is a double or a Pack. For files that are compiled once for
-// every vector level, see rolling/lanes_avx2.cpp: everything here is in an anonymous namespace, so
-// that no function of a wide level can come to run on a machine without it.
+// every vector level, see rolling/level/lanes_avx2.cpp: everything here is in an anonymous
+// namespace, so that no function of a wide level can come to run on a machine without it.
 //
 // The same operations in the same order at every level: a fused multiply-add serves two_product
 // alone, which is exact without it as well.

@@ -24,7 +24,7 @@
 #include "outcome/classify.hpp"
 #include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
-#include "rolling/flow_lanes.hpp"
+#include "rolling/level/many_bodies.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;

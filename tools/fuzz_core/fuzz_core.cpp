@@ -18,8 +18,8 @@
 #include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
 #include "proof/law.hpp"
-#include "rolling/equation.hpp"
-#include "rolling/flow_lanes.hpp"
+#include "rolling/level/many_bodies.hpp"
+#include "rolling/stepped/equation.hpp"
 #include "scene/impact.hpp"
 #include "simulate.hpp"
 

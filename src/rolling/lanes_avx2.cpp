@@ -1,7 +1,0 @@
-#include "rolling/kernel_lanes.hpp"
-
-namespace rolling_ellipse {
-
-Kernel kernel_avx2() { return compiled; }
-
-}  // namespace rolling_ellipse
