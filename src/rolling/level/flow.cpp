@@ -120,8 +120,9 @@ FlowSample sample(const RollingMotion& motion, double t) {
     from.theta = motion.theta;
     from.sin = motion.start.sin;
     from.cos = motion.start.cos;
-    const auto [theta, omega, path] = sample_at<double>(motion, from, t);
-    return {theta, omega, motion.x + path};
+    FlowSample moved = sample_at<double>(motion, from, t);
+    moved.x += motion.x;
+    return moved;
 }
 
 double longest_time(const RollingMotion& motion) {

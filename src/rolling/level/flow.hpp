@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "rolling/level/kernel.hpp"
+#include "rolling/level/phase.hpp"
 #include "rolling/level/start.hpp"
 
 namespace rolling_ellipse {

@@ -12,12 +12,6 @@
 
 namespace rolling_ellipse {
 
-struct FlowSample {
-    double theta;
-    double omega;
-    double x;
-};
-
 // Bodies that roll, each at its own time: places in `starts` and `times`.
 struct BodiesAtTimes {
     const RollingStart* starts;
@@ -35,9 +29,8 @@ struct Kernel {
     // one of those that have to be taken alone.
     void (*sample)(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone);
     void (*states)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
-                   const PlaceBatch& at, StateBatch& found);
-    void (*series)(const SeriesConstants& body, const StateBatch& at, SeriesBatch& found);
-    void (*reach)(const SeriesBatch& series, ReachBatch& found);
+                   PlaceBatch& places);
+    void (*series)(const SeriesConstants& body, double unit, PlaceBatch& places);
     // The first time that is not within most in size, NaN neither; n if there is none.
     std::size_t (*first_beyond)(const double* times, std::size_t n, double most);
     // The motion at many times; theta is NaN where no piece reaches. Returns whether one is.

@@ -11,9 +11,10 @@ namespace {
 
 void rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
            const double* offsets, int count, PhaseWays<double>& found) {
-    const RateConstants<Pack> of = rate_constants(spread(rate), spread(map), pack(quarters));
+    const PhaseRate<Pack> of = spread(rate);
+    const PhaseMap<Pack> in = spread(map);
     for (int i = 0; i < count; i += lanes) {
-        const PhaseWay<Pack> at = phase_rate_at(of, load(offsets + i));
+        const PhaseWay<Pack> at = phase_rate_at(of, in, pack(quarters), load(offsets + i));
         store(at.time, found.time + i);
         store(at.angle, found.angle + i);
         store(at.path, found.path + i);
@@ -42,23 +43,19 @@ void sample(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone) {
     }
 }
 
-constexpr Kernel compiled = {
-    rates,
-    sample,
-    [](const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
-       const PlaceBatch& at, StateBatch& found) {
-        for (int lane = 0; lane < batch_size; lane += lanes) {
-            states(rate, map, amplitude, at, found, lane);
-        }
-    },
-    [](const SeriesConstants& body, const StateBatch& at, SeriesBatch& found) {
-        for (int lane = 0; lane < batch_size; lane += lanes) series(body, at, found, lane);
-    },
-    [](const SeriesBatch& of, ReachBatch& found) {
-        for (int lane = 0; lane < batch_size; lane += lanes) reach(of, found, lane);
-    },
-    first_beyond,
-    read};
+constexpr Kernel compiled = {rates,
+                             sample,
+                             [](const PhaseRate<double>& rate, const PhaseMap<double>& map,
+                                double amplitude, PlaceBatch& places) {
+                                 for (int i = 0; i < batch_size; i += lanes)
+                                     states(rate, map, amplitude, places, i);
+                             },
+                             [](const SeriesConstants& body, double unit, PlaceBatch& places) {
+                                 for (int i = 0; i < batch_size; i += lanes)
+                                     series(body, unit, places, i);
+                             },
+                             first_beyond,
+                             read};
 
 }  // namespace
 }  // namespace rolling_ellipse

@@ -13,12 +13,6 @@ namespace {
 // Motions have 10 to 60 pieces a quarter turn; on the separatrix there is no end of them.
 constexpr std::size_t most_pieces = 1000;
 
-struct Batches {
-    std::vector<StateBatch> states;
-    std::vector<SeriesBatch> series;
-    std::vector<ReachBatch> reach;
-};
-
 class TableMaker {
   public:
     explicit TableMaker(const RollingFlow& flow) : flow_(flow), kernel_(kernel()) {
@@ -40,8 +34,7 @@ class TableMaker {
         for (const double spacing : {0.128, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
-            expand();
-            if (!holds()) continue;
+            if (!expand()) continue;
             fill();
             break;
         }
@@ -66,69 +59,47 @@ class TableMaker {
 
     std::size_t count() const { return places_.size(); }
 
-    template <class Batch>
-    static double& at(std::vector<Batch>& batches, Eight Batch::* column, std::size_t i) {
-        return (batches[i / batch_size].*column).of[i % batch_size];
+    double& at(PlaceBatch::Eight PlaceBatch::* column, std::size_t i) {
+        return (batches_[i / batch_size].*column)[i % batch_size];
     }
 
-    // The states of all places and, after them, of the start; and their series.
-    void expand() {
-        const std::size_t size = count() / batch_size + 1;
-        std::vector<PlaceBatch> at_places(size);
-        for (std::size_t i = 0; i < size * batch_size; ++i) {
-            const std::size_t j = std::min(i, count() - 1);
-            at(at_places, &PlaceBatch::y, i) = places_[j];
-            at(at_places, &PlaceBatch::from, i) = places_[j == 0 ? 0 : j - 1];
-        }
-        all_.states.resize(size);
-        all_.series.resize(size);
-        all_.reach.resize(size);
-        for (std::size_t i = 0; i < size; ++i) {
-            kernel_.states(flow_.phase.rate, flow_.phase.map, flow_.amplitude, at_places[i],
-                           all_.states[i]);
-        }
-        at(all_.states, &StateBatch::sin, count()) = flow_.start.sin;
-        at(all_.states, &StateBatch::cos, count()) = flow_.start.cos;
-        at(all_.states, &StateBatch::omega, count()) = flow_.omega;
-        for (std::size_t i = 0; i < size; ++i) {
-            StateBatch states = all_.states[i];
-            for (double& omega : states.omega.of) omega *= unit_;
-            kernel_.series(body_, states, all_.series[i]);
-        }
+    // Half the time to the place before, or to the one after.
+    double half_way_back(std::size_t i) { return 0.5 * at(&PlaceBatch::time, i == 0 ? 1 : i); }
+    double half_way_on(std::size_t i) {
+        return half_way_back(i + 1 < count() ? i + 1 : count() - 1);
     }
 
-    double duration(std::size_t i) { return at(all_.states, &StateBatch::duration, i); }
-
-    // Do the series meet half way between their places?
-    bool holds() {
-        const double per_unit = 0.5 / unit_;
-        for (std::size_t i = 0; i < all_.reach.size() * batch_size; ++i) {
+    // The states of all places, and their series: do these meet half way?
+    bool expand() {
+        batches_.resize((count() + batch_size - 1) / batch_size);
+        const std::size_t all = batches_.size() * batch_size;
+        for (std::size_t i = 0; i < all; ++i) {
             const std::size_t j = std::min(i, count() - 1);
-            const double back = per_unit * duration(std::max<std::size_t>(j, 1));
-            at(all_.reach, &ReachBatch::back, i) = back;
-            at(all_.reach, &ReachBatch::forward, i) =
-                j + 1 < count() ? per_unit * duration(j + 1) : back;
-            const double sin = at(all_.states, &StateBatch::sin, i);
-            at(all_.reach, &ReachBatch::angle, i) = sin;
-            at(all_.reach, &ReachBatch::path, i) = sin * std::sqrt(body_.short_axis2);
+            at(&PlaceBatch::y, i) = places_[j];
+            at(&PlaceBatch::from, i) = places_[j == 0 ? 0 : j - 1];
         }
-        bool all = true;
-        for (std::size_t i = 0; i < all_.reach.size(); ++i) {
-            kernel_.reach(all_.series[i], all_.reach[i]);
+        for (PlaceBatch& places : batches_) {
+            kernel_.states(flow_.phase.rate, flow_.phase.map, flow_.amplitude, places);
         }
-        for (std::size_t i = 0; i < count(); ++i) {
-            all = all && at(all_.reach, &ReachBatch::holds, i) > 0;
+        for (std::size_t i = 0; i < all; ++i) {
+            const std::size_t j = std::min(i, count() - 1);
+            at(&PlaceBatch::radius, i) = std::max(half_way_back(j), half_way_on(j)) / unit_;
         }
-        return all;
+        bool hold = true;
+        for (PlaceBatch& places : batches_) {
+            kernel_.series(body_, unit_, places);
+            for (const double holds : places.holds) hold = hold && holds > 0;
+        }
+        return hold;
     }
 
     void fill() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         pieces.resize(count());
         for (std::size_t i = 0; i < count(); ++i) {
-            pieces[i].quarters = at(all_.states, &StateBatch::near_tip, i);
-            fill(pieces[i].series, i);
-            pieces[i].series.rows[0][0] = at(all_.states, &StateBatch::angle, i);
+            pieces[i].quarters = at(&PlaceBatch::near_tip, i);
+            fill(pieces[i].series, batches_[i / batch_size], i % batch_size);
+            pieces[i].series.rows[0][0] = at(&PlaceBatch::angle, i);
         }
         add_times();
         add_paths();
@@ -137,14 +108,12 @@ class TableMaker {
     }
 
     // All but what the angle is counted from.
-    void fill(TableSeries& found, std::size_t i) const {
-        const SeriesBatch& from = all_.series[i / batch_size];
-        const std::size_t lane = i % batch_size;
+    void fill(TableSeries& found, const PlaceBatch& from, std::size_t lane) const {
         const double per_unit = 1 / unit_;
         for (int k = 0; k < table_size; ++k) {
-            found.rows[k][0] = from.angle[k].of[lane];
-            found.rows[k][1] = from.omega[k].of[lane] * per_unit;
-            found.rows[k][2] = from.path[k].of[lane] * length_;
+            found.rows[k][0] = from.series[k][0][lane];
+            found.rows[k][1] = from.series[k][1][lane] * per_unit;
+            found.rows[k][2] = from.series[k][2][lane] * length_;
         }
     }
 
@@ -154,21 +123,20 @@ class TableMaker {
         const DoubleDouble quarter = flow_.phase.quarter_turn;
         DoubleDouble time{};
         for (std::size_t i = 0; i < count(); ++i) {
-            if (i > 0) time = time + duration(i);
+            if (i > 0) time = time + at(&PlaceBatch::time, i);
             pieces[i].centre = time;
         }
         if (std::isfinite(quarter.high)) {
             time = quarter;
             for (std::size_t i = count() - 1; double(time) > 0.5 * double(quarter); --i) {
                 pieces[i].centre = time;
-                time = time - DoubleDouble{duration(i), 0.0};
+                time = time + -at(&PlaceBatch::time, i);
             }
         }
         double low = 0.0;
         for (std::size_t i = 0; i < count(); ++i) {
-            const double forward = unit_ * at(all_.reach, &ReachBatch::forward, i);
             pieces[i].low = low;
-            pieces[i].high = low = double(pieces[i].centre) + forward;
+            pieces[i].high = low = double(pieces[i].centre) + half_way_on(i);
         }
     }
 
@@ -176,7 +144,7 @@ class TableMaker {
     void add_paths() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const auto path = [&](std::size_t i) -> double& { return pieces[i].series.rows[0][2]; };
-        const auto step = [&](std::size_t i) { return at(all_.states, &StateBatch::path, i); };
+        const auto step = [&](std::size_t i) { return at(&PlaceBatch::path, i); };
         for (std::size_t i = 1; i < count() && pieces[i].quarters == 0; ++i) {
             path(i) = path(i - 1) + step(i);
         }
@@ -191,29 +159,23 @@ class TableMaker {
     }
 
     void add_start() {
-        fill(table_.start, count());
         // Its radius is somewhat like that of the piece about the same place.
         const double since = std::abs(double(flow_.start_time));
         const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
                                         [&](const FlowPiece& p) { return since < p.high; });
-        SeriesBatch same{};
-        ReachBatch found{};
+        PlaceBatch same;
         double radius = (piece->high - piece->low) / unit_;
-        const SeriesBatch& from = all_.series[count() / batch_size];
         for (int i = 0; i < batch_size; ++i) {
-            for (int k = 0; k <= table_order; ++k) {
-                same.angle[k].of[i] = from.angle[k].of[count() % batch_size];
-                same.omega[k].of[i] = from.omega[k].of[count() % batch_size];
-                same.path[k].of[i] = from.path[k].of[count() % batch_size];
-            }
-            found.back.of[i] = found.forward.of[i] = radius;
+            same.sin[i] = flow_.start.sin;
+            same.cos[i] = flow_.start.cos;
+            same.omega[i] = flow_.omega;
+            same.radius[i] = radius;
             radius *= 0.75;
         }
-        kernel_.reach(same, found);
-        const auto* const holds = std::find(found.holds.of, found.holds.of + batch_size, 1.0);
-        table_.reader.start_radius = holds == found.holds.of + batch_size
-                                         ? 0.0
-                                         : unit_ * found.back.of[holds - found.holds.of];
+        kernel_.series(body_, unit_, same);
+        fill(table_.start, same, 0);
+        const auto first = std::find(same.holds, same.holds + batch_size, 1.0) - same.holds;
+        table_.reader.start_radius = first == batch_size ? 0.0 : unit_ * same.radius[first];
     }
 
     void describe() {
@@ -252,7 +214,7 @@ class TableMaker {
     double unit_;
     SeriesConstants body_;
     std::vector<double> places_;
-    Batches all_;
+    std::vector<PlaceBatch> batches_;
 };
 
 }  // namespace

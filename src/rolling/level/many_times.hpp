@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "rolling/level/flow.hpp"
+#include "rolling/level/table.hpp"
 
 namespace rolling_ellipse {
 

@@ -125,13 +125,6 @@ inline Reduced<T> reduced(const TwoParts<T>& turn, T t) {
     return {turns != 0 ? rest : t, turns};
 }
 
-template <class T>
-struct MotionSample {
-    T theta;
-    T omega;
-    T x;
-};
-
 // Where a motion is at a time, and the path since the start.
 template <class T>
 MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& from, T t) {

@@ -128,4 +128,12 @@ struct PhaseMotion {
     Place<T> start_place;
 };
 
+template <class T>
+struct MotionSample {
+    T theta;
+    T omega;
+    T x;
+};
+using FlowSample = MotionSample<double>;
+
 }  // namespace rolling_ellipse

@@ -19,40 +19,24 @@ struct TableSeries {
     alignas(64) double rows[table_size + 1][series_columns];
 };
 
-struct alignas(64) Eight {
-    double of[batch_size];
-};
-
-// Places by their coordinate y (rolling/level/phase.hpp), and the one before each.
-struct PlaceBatch {
-    Eight y;
-    Eight from;
-};
-
-// The motion there, on the way up, and time and path since the place before it.
-struct StateBatch {
+// Places of a table side by side, and what is made of them.
+struct alignas(64) PlaceBatch {
+    using Eight = double[batch_size];
+    Eight y;     // the coordinate of rolling/level/phase.hpp
+    Eight from;  // that of the place before
+    // The motion there, on the way up, and time and path since the place before.
     Eight sin;  // of the angle from the flat position
     Eight cos;
     Eight near_tip;  // 1 or 0
     Eight angle;     // from the nearer one of flat position and tip
     Eight omega;
-    Eight duration;
+    Eight time;
     Eight path;
-};
-
-struct SeriesBatch {
-    Eight angle[table_size];
-    Eight omega[table_size];
-    Eight path[table_size];
-};
-
-// A series so far back and forward, in units of its variable, as a part of an angle and a path.
-struct ReachBatch {
-    Eight back;
-    Eight forward;
-    Eight angle;
-    Eight path;
-    Eight holds;  // 1 where it is as good as a double as far as that, else 0
+    // Angle, angular velocity and path as power series; whether they are as good as doubles as far
+    // as a radius, in units of their variable.
+    Eight series[table_size][3];
+    Eight radius;
+    Eight holds;  // 1 or 0
 };
 
 struct FlowPiece {

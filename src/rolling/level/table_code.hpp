@@ -11,16 +11,12 @@
 namespace rolling_ellipse {
 namespace {
 
-inline Pack load(const Eight& from, int lane) { return load(from.of + lane); }
-inline void store(Pack values, Eight& to, int lane) { store(values, to.of + lane); }
-
 void states(const PhaseRate<double>& one_rate, const PhaseMap<double>& one_map, double amplitude,
-            const PlaceBatch& at, StateBatch& found, int lane) {
+            PlaceBatch& at, int lane) {
     const PhaseRate<Pack> rate = spread(one_rate);
     const PhaseMap<Pack> map = spread(one_map);
-    const RateConstants<Pack> of = rate_constants(rate, map, Pack{});
-    const Pack y = load(at.y, lane);
-    const Pack from = load(at.from, lane);
+    const Pack y = load(at.y + lane);
+    const Pack from = load(at.from + lane);
     const Pack middle = 0.5 * (y + from);
     const Pack half = 0.5 * (y - from);
     // Places are so near to each other that eight nodes are exact to rounding.
@@ -28,57 +24,53 @@ void states(const PhaseRate<double>& one_rate, const PhaseMap<double>& one_map, 
     Pack time{}, path{};
     for (int i = 0; i < pairs; ++i) {
         const Pack offset = half * gauss_tables::nodes_8[i];
-        const PhaseWay<Pack> before = phase_rate_at(of, middle - offset);
-        const PhaseWay<Pack> after = phase_rate_at(of, middle + offset);
+        const PhaseWay<Pack> before = phase_rate_at(rate, map, Pack{}, middle - offset);
+        const PhaseWay<Pack> after = phase_rate_at(rate, map, Pack{}, middle + offset);
         time += gauss_tables::weights_8[i] * (before.time + after.time);
         path += gauss_tables::weights_8[i] * (before.path + after.path);
     }
-    store(time * half, found.duration, lane);
-    store(path * half, found.path, lane);
+    store(time * half, at.time + lane);
+    store(path * half, at.path + lane);
 
     const Mask<Pack> at_tip = y > 0.5 * map.quarter;
     const Place<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
     const MotionPoint<Pack> now = motion_point(rate, pack(amplitude), phase_point(map, place));
     const Mask<Pack> near_tip = now.sin_phi > now.cos_phi;
     const Pack angle = octant_angle(min(now.sin_phi, now.cos_phi), max(now.sin_phi, now.cos_phi));
-    store(now.sin_phi, found.sin, lane);
-    store(now.cos_phi, found.cos, lane);
-    store(near_tip ? pack(1.0) : pack(0.0), found.near_tip, lane);
-    store(near_tip ? -angle : angle, found.angle, lane);
-    store(now.omega, found.omega, lane);
-}
-
-void series(const SeriesConstants& body, const StateBatch& at, SeriesBatch& found, int lane) {
-    const auto motion = motion_series<table_order>(body, load(at.sin, lane), load(at.cos, lane),
-                                                   load(at.omega, lane));
-    for (int k = 0; k < table_size; ++k) {
-        store(motion.angle[k], found.angle[k], lane);
-        store(motion.omega[k], found.omega[k], lane);
-        store(motion.path[k], found.path[k], lane);
-    }
+    store(now.sin_phi, at.sin + lane);
+    store(now.cos_phi, at.cos + lane);
+    store(near_tip ? pack(1.0) : pack(0.0), at.near_tip + lane);
+    store(near_tip ? -angle : angle, at.angle + lane);
+    store(now.omega, at.omega + lane);
 }
 
 // The last terms, of which one may be small by chance, are some roundings beside what the series is
 // part of; what is left out is smaller by another twentieth.
-inline Mask<Pack> holds(const Eight (&series)[table_size], Pack whole, Pack radius, int lane) {
+inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, Pack radius) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
-    const Pack size = max(whole, max(abs(load(series[1], lane)) * radius,
-                                     abs(load(series[2], lane)) * (radius * radius)));
+    const Pack size = max(whole, max(abs(series[1]) * radius, abs(series[2]) * (radius * radius)));
     Pack power = radius;
     for (int k = 2; k < table_order; ++k) power *= radius;
-    return (abs(load(series[table_order - 1], lane)) * power <= rest_before * size) &
-           (abs(load(series[table_order], lane)) * (power * radius) <= rest * size);
+    return (abs(series[table_order - 1]) * power <= rest_before * size) &
+           (abs(series[table_order]) * (power * radius) <= rest * size);
 }
 
-void reach(const SeriesBatch& series, ReachBatch& found, int lane) {
-    const Pack back = load(found.back, lane);
-    const Pack forward = load(found.forward, lane);
-    const Pack radius = max(back, forward);
-    const Mask<Pack> good = holds(series.angle, load(found.angle, lane), radius, lane) &
-                            holds(series.omega, abs(load(series.omega[0], lane)), radius, lane) &
-                            holds(series.path, load(found.path, lane), radius, lane);
-    store(good ? pack(1.0) : pack(0.0), found.holds, lane);
+void series(const SeriesConstants& body, double unit, PlaceBatch& at, int lane) {
+    const Pack sin = load(at.sin + lane);
+    const Pack omega = load(at.omega + lane) * unit;
+    const auto motion = motion_series<table_order>(body, sin, load(at.cos + lane), omega);
+    for (int k = 0; k < table_size; ++k) {
+        store(motion.angle[k], at.series[k][0] + lane);
+        store(motion.omega[k], at.series[k][1] + lane);
+        store(motion.path[k], at.series[k][2] + lane);
+    }
+    const Pack radius = load(at.radius + lane);
+    const Pack path = sin * __builtin_sqrt(body.short_axis2);
+    const Mask<Pack> good = holds(motion.angle, sin, radius) &
+                            holds(motion.omega, abs(omega), radius) &
+                            holds(motion.path, path, radius);
+    store(good ? pack(1.0) : pack(0.0), at.holds + lane);
 }
 
 // The most times that are on the way through `read` together.
