@@ -4,8 +4,9 @@
 
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
-#include "rolling/flow_lanes.hpp"
-#include "rolling/flow_table.hpp"
+#include "rolling/level/kernel.hpp"
+#include "rolling/level/many_bodies.hpp"
+#include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -45,8 +46,7 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     const FlowColumns found = columns(out);
     const double* const times = t.data();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
-        const py::ssize_t wrong =
-            begin + flow_kernel().first_beyond(times + begin, end - begin, most);
+        const py::ssize_t wrong = begin + kernel().first_beyond(times + begin, end - begin, most);
         if (wrong < end) {
             validate_time(times[wrong], longest, "t[" + std::to_string(wrong) + "]");
         }
@@ -71,7 +71,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
                      const std::string& level) {
     constexpr std::array<const char*, 7> names{"t",     "a",       "b",        "theta",
                                                "omega", "gravity", "gyration2"};
-    // One alone is as quick alone, and then has the bits of flow_scalar.
+    // One alone is quicker alone.
     const LaneLevel lanes = level_called(n == 1 && level == "best" ? "one by one" : level);
     std::vector<Array> out = empty_arrays(3, n);
     const FlowColumns found = columns(out);

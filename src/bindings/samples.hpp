@@ -4,7 +4,7 @@
 #include "bindings/arrays.hpp"
 #include "contact/segments.hpp"
 #include "geometry/constraints.hpp"
-#include "rolling/flow_table.hpp"
+#include "rolling/level/many_times.hpp"
 
 namespace rolling_ellipse::bindings {
 

@@ -7,7 +7,7 @@
 #include "contact/units.hpp"
 #include "geometry/half_turns.hpp"
 #include "proof/law.hpp"
-#include "rolling/equation.hpp"
+#include "rolling/stepped/equation.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -12,9 +12,9 @@
 #include "contact/slide.hpp"
 #include "contact/units.hpp"
 #include "multipliers/steps.hpp"
-#include "rolling/flow_table.hpp"
-#include "rolling/slope_flow.hpp"
-#include "rolling/steps.hpp"
+#include "rolling/level/many_times.hpp"
+#include "rolling/slope/flow.hpp"
+#include "rolling/stepped/steps.hpp"
 
 namespace rolling_ellipse {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "geometry/constraints.hpp"
-#include "rolling/flow.hpp"
+#include "rolling/level/flow.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "geometry/constraints.hpp"
-#include "rolling/equation.hpp"
+#include "rolling/stepped/equation.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {

@@ -9,13 +9,15 @@
 
 namespace rolling_ellipse {
 
-// high + low, |low| <= ulp(high)/2.
-struct DoubleDouble {
-    double high = 0.0;
-    double low = 0.0;
+// high + low, |low| <= ulp(high)/2; of a double, or of lanes of them (numerics/lanes.hpp).
+template <class T>
+struct TwoParts {
+    T high{};
+    T low{};
 
-    explicit operator double() const { return high + low; }
+    explicit operator T() const { return high + low; }
 };
+using DoubleDouble = TwoParts<double>;
 
 inline DoubleDouble quick_two_sum(double large, double small) {
     const double sum = large + small;

@@ -1,10 +1,15 @@
-// Several doubles side by side, and functions of them. For files that are compiled once for every
-// vector level, see rolling/flow_lanes_kernel.hpp: everything here is in an anonymous namespace, so
-// that no function of a wide level can come to run on a machine without it.
+// Several doubles side by side, and functions of them and of one double, which give the same bits:
+// templates over a number T, which is a double or a Pack. For files that are compiled once for
+// every vector level, see rolling/level/lanes_avx2.cpp: everything here is in an anonymous
+// namespace, so that no function of a wide level can come to run on a machine without it.
 //
-// The same operations in the same order at every level, so that all levels give the same bits: a
-// fused multiply-add serves two_product alone, which is exact without it as well.
+// The same operations in the same order at every level: a fused multiply-add serves two_product
+// alone, which is exact without it as well.
 #pragma once
+
+#include <cmath>
+
+#include "numerics/double_double.hpp"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -24,11 +29,28 @@ namespace {
 constexpr int lanes = ROLLING_ELLIPSE_LANES;
 
 using Pack = double __attribute__((vector_size(lanes * sizeof(double))));
-using Bits = long long __attribute__((vector_size(lanes * sizeof(double))));
-using UnsignedBits = unsigned long long __attribute__((vector_size(lanes * sizeof(double))));
-using Mask = decltype(Pack{} < Pack{});
+using PackBits = unsigned long long __attribute__((vector_size(lanes * sizeof(double))));
+using PackPair = TwoParts<Pack>;
 
-inline Pack pack(double value) { return value - Pack{}; }
+template <class T>
+struct BitsOf {
+    using Type = PackBits;
+};
+template <>
+struct BitsOf<double> {
+    using Type = unsigned long long;
+};
+template <class T>
+using Bits = typename BitsOf<T>::Type;
+template <class T>
+using Mask = decltype(T{} < T{});
+
+template <class T>
+inline T filled(double value) {
+    return value - T{};
+}
+
+inline Pack pack(double value) { return filled<Pack>(value); }
 
 inline Pack load(const double* from) {
     Pack loaded;
@@ -38,12 +60,63 @@ inline Pack load(const double* from) {
 
 inline void store(Pack values, double* to) { __builtin_memcpy(to, &values, sizeof values); }
 
-inline bool any(Mask mask) {
-    bool found = false;
-    for (int i = 0; i < lanes; ++i) found |= mask[i] != 0;
+template <class T>
+inline Bits<T> bits(T x) {
+    Bits<T> found;
+    __builtin_memcpy(&found, &x, sizeof x);
     return found;
 }
 
+template <class T>
+inline T number(Bits<T> of) {
+    T found;
+    __builtin_memcpy(&found, &of, sizeof of);
+    return found;
+}
+
+// One lane of a number, of which a double has one.
+template <class T>
+inline constexpr int lanes_of = sizeof(T) / sizeof(double);
+inline double lane_of(double x, int) { return x; }
+inline double lane_of(Pack x, int lane) { return x[lane]; }
+inline void set_lane(double& x, int, double value) { x = value; }
+inline void set_lane(Pack& x, int lane, double value) {
+    __builtin_memcpy(reinterpret_cast<char*>(&x) + lane * sizeof value, &value, sizeof value);
+}
+
+inline bool any(bool mask) { return mask; }
+inline bool any(Mask<Pack> mask) {
+#if defined(__AVX512F__)
+    return _mm512_movepi64_mask((__m512i)mask) != 0;
+#elif defined(__AVX2__)
+    return _mm256_movemask_pd((__m256d)mask) != 0;
+#else
+    bool found = false;
+    for (int i = 0; i < lanes; ++i) found |= mask[i] != 0;
+    return found;
+#endif
+}
+
+inline bool negated(bool mask) { return !mask; }
+inline Mask<Pack> negated(Mask<Pack> mask) { return ~mask; }
+
+// The largest of the lanes.
+template <class T>
+inline double largest(T x) {
+    double found = lane_of(x, 0);
+    for (int i = 1; i < lanes_of<T>; ++i) found = lane_of(x, i) > found ? lane_of(x, i) : found;
+    return found;
+}
+
+// Every lane from the element of the array that it names.
+inline double element(const double* from, double index) { return from[static_cast<int>(index)]; }
+inline Pack element(const Pack* from, Pack index) {
+    Pack found;
+    for (int i = 0; i < lanes; ++i) found[i] = from[static_cast<int>(index[i])][i];
+    return found;
+}
+
+inline double sqrt(double x) { return __builtin_sqrt(x); }
 inline Pack sqrt(Pack x) {
 #if defined(__AVX512F__)
     return (Pack)_mm512_maskz_sqrt_pd(0xff, (__m512d)x);
@@ -57,25 +130,55 @@ inline Pack sqrt(Pack x) {
 #endif
 }
 
-inline Pack abs(Pack x) { return (Pack)((Bits)x & 0x7fffffffffffffffLL); }
-
-inline Pack copysign(Pack size, Pack sign) {
-    const Bits sign_bit = (Bits)sign & (Bits)pack(-0.0);
-    return (Pack)((Bits)abs(size) | sign_bit);
+template <class T>
+inline T abs(T x) {
+    return number<T>(bits(x) & 0x7fffffffffffffffULL);
 }
 
-inline Pack max(Pack x, Pack y) { return x > y ? x : y; }
-inline Pack min(Pack x, Pack y) { return x < y ? x : y; }
+template <class T>
+inline T copysign(T size, T sign) {
+    constexpr unsigned long long sign_bit = 0x8000000000000000ULL;
+    return number<T>((bits(size) & ~sign_bit) | (bits(sign) & sign_bit));
+}
+
+template <class T>
+inline T max(T x, T y) {
+    return x > y ? x : y;
+}
+template <class T>
+inline T min(T x, T y) {
+    return x < y ? x : y;
+}
 
 // 1.5 2^52, whose last bit is 1: a sum with it is rounded to whole numbers.
 constexpr double rounder = 6755399441055744.0;
 
-// The nearest whole number, for |x| < 2^51.
-inline Pack nearest(Pack x) { return (x + rounder) - rounder; }
+// The nearest whole number, for |x| < 2^51, and the next one from x on, downwards and upwards.
+template <class T>
+inline T nearest(T x) {
+    return (x + rounder) - rounder;
+}
+template <class T>
+inline T rounded_down(T x) {
+    const T n = nearest(x);
+    return n > x ? n - 1 : n;
+}
+template <class T>
+inline T rounded_up(T x) {
+    const T n = nearest(x);
+    return n < x ? n + 1 : n;
+}
+
+// Whether a whole number is odd.
+template <class T>
+inline Mask<T> is_odd(T n) {
+    return nearest(0.5 * n) != 0.5 * n;
+}
 
 // 2^n for a whole number |n| <= 1022.
-inline Pack power_of_two(Pack n) {
-    return (Pack)(((UnsignedBits)(n + rounder) << 52) + (1023ULL << 52));
+template <class T>
+inline T power_of_two(T n) {
+    return number<T>((bits<T>(n + rounder) << 52) + (1023ULL << 52));
 }
 
 constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // ln 2 to 42 bits: multiples of it are exact
@@ -83,46 +186,45 @@ constexpr double ln2_low = 0x1.ef35793c76730p-45;
 
 // sinh v and e^-v, 0 <= v < 700: from sinh r and cosh r, v = n ln 2 + r, by the addition theorems,
 // so that a small sinh keeps its digits.
+template <class T>
 struct Hyperbolic {
-    Pack sinh;
-    Pack falling;
+    T sinh;
+    T falling;
 };
 
-inline Hyperbolic hyperbolic(Pack v) {
-    const Pack n = nearest(v * 1.44269504088896340736);
-    const Pack r = (v - n * ln2_high) - n * ln2_low;
-    const Pack x = r * r;
-    // Taylor series: |r| <= 0.35, the first terms left out are below 5e-18.
-    Pack odd = x * (1.0 / 6227020800) + 1.0 / 39916800;
-    odd = odd * x + 1.0 / 362880;
-    odd = odd * x + 1.0 / 5040;
-    odd = odd * x + 1.0 / 120;
-    odd = odd * x + 1.0 / 6;
-    odd = r + r * (x * odd);
-    Pack even = x * (1.0 / 479001600) + 1.0 / 3628800;
-    even = even * x + 1.0 / 40320;
-    even = even * x + 1.0 / 720;
-    even = even * x + 1.0 / 24;
-    even = even * x + 0.5;
-    even = even * x;  // cosh r - 1
-    const Pack up = 0.5 * power_of_two(n);
-    const Pack down = 0.5 * power_of_two(-n);
-    const Pack cosh_n = up + down;
-    const Pack sinh_n = up - down;
-    return {sinh_n + (sinh_n * even + cosh_n * odd), 2 * down * (1 + (even - odd))};
+template <class T>
+inline Hyperbolic<T> hyperbolic(T v) {
+    const T n = nearest<T>(v * 1.44269504088896340736);
+    const T r = (v - n * ln2_high) - n * ln2_low;
+    const T x = r * r;
+    const T x2 = x * x;
+    // Taylor series: |r| <= 0.35, the first terms left out are below 5e-18. Pairs of terms do not
+    // wait for each other.
+    const T odd = r * x *
+                  (((x * (1.0 / 120) + 1.0 / 6) + x2 * (x * (1.0 / 362880) + 1.0 / 5040)) +
+                   (x2 * x2) * (x * (1.0 / 6227020800) + 1.0 / 39916800));
+    const T sinh_r = r + odd;
+    const T even = x * (((x * (1.0 / 24) + 0.5) + x2 * (x * (1.0 / 40320) + 1.0 / 720)) +
+                        (x2 * x2) * (x * (1.0 / 479001600) + 1.0 / 3628800));  // cosh r - 1
+    const T up = 0.5 * power_of_two<T>(n);
+    const T down = 0.5 * power_of_two<T>(-n);
+    const T cosh_n = up + down;
+    const T sinh_n = up - down;
+    return {sinh_n + (sinh_n * even + cosh_n * sinh_r), 2 * down * (1 + (even - sinh_r))};
 }
 
 // The natural logarithm of a normal positive number: of a power of two and of m between sqrt(1/2)
 // and sqrt(2), by the series of 2 artanh((m - 1)/(m + 1)).
-inline Pack log(Pack x) {
+template <class T>
+inline T log(T x) {
     constexpr unsigned long long root_half = 0x3fe6a09e667f3bcdULL;
     constexpr unsigned long long one = 0x3ff0000000000000ULL;
-    const UnsignedBits exponent = ((UnsignedBits)x - root_half + one) >> 52;  // n + 1023
-    const Pack m = (Pack)((UnsignedBits)x - (exponent << 52) + one);
-    const Pack n = (Pack)(exponent | 0x4330000000000000ULL) - (4503599627370496.0 + 1023);
-    const Pack f = (m - 1) / (m + 1);
-    const Pack s = f * f;
-    Pack sum = s * (1.0 / 23) + 1.0 / 21;
+    const Bits<T> exponent = (bits(x) - root_half + one) >> 52;  // n + 1023
+    const T m = number<T>(bits(x) - (exponent << 52) + one);
+    const T n = number<T>(exponent | 0x4330000000000000ULL) - (4503599627370496.0 + 1023);
+    const T f = (m - 1) / (m + 1);
+    const T s = f * f;
+    T sum = s * (1.0 / 23) + 1.0 / 21;
     sum = sum * s + 1.0 / 19;
     sum = sum * s + 1.0 / 17;
     sum = sum * s + 1.0 / 15;
@@ -135,13 +237,22 @@ inline Pack log(Pack x) {
     return n * ln2_high + (2 * f + (2 * f * s * sum + n * ln2_low));
 }
 
+// The inverse of sinh, for 0 <= x < 1e150: e^asinh(x) = 1 + gain, whose rounding is made good.
+template <class T>
+inline T asinh(T x) {
+    const T gain = x + x * x / (1 + sqrt(1 + x * x));
+    const T one_more = 1 + gain;
+    return log(one_more) + (gain - (one_more - 1)) / one_more;
+}
+
 // The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos: of the tangent, or of
 // that of its distance from 45 degrees; a polynomial of least error (2e-19) for 22.5 degrees.
-inline Pack octant_angle(Pack sin, Pack cos) {
-    const Mask upper = sin > 0.41421356237309503 * cos;
-    const Pack y = (upper ? sin - cos : sin) / (upper ? sin + cos : cos);
-    const Pack z = y * y;
-    Pack sum = z * 0.016285756855221028 - 0.034570561981427744;
+template <class T>
+inline T octant_angle(T sin, T cos) {
+    const auto upper = sin > 0.41421356237309503 * cos;
+    const T y = (upper ? sin - cos : sin) / (upper ? sin + cos : cos);
+    const T z = y * y;
+    T sum = z * 0.016285756855221028 - 0.034570561981427744;
     sum = sum * z + 0.04551593220626549;
     sum = sum * z - 0.05230454270650244;
     sum = sum * z + 0.05878928997834775;
@@ -152,17 +263,26 @@ inline Pack octant_angle(Pack sin, Pack cos) {
     sum = sum * z - 0.14285714285659828;
     sum = sum * z + 0.19999999999999804;
     sum = sum * z - 0.3333333333333333;
-    const Pack over = y * (z * sum);
+    const T over = y * (z * sum);
     return upper ? 0.78539816339744830962 + (y + (over + 3.06161699786838301793e-17)) : y + over;
 }
 
-// high + low, |low| <= ulp(high)/2; see numerics/double_double.hpp.
-struct PackPair {
-    Pack high;
-    Pack low;
-};
+// The angle of the point (cos, sin), between -pi and pi.
+template <class T>
+inline T angle_of(T sin, T cos) {
+    const T s = abs(sin);
+    const T c = abs(cos);
+    const T near_axis = octant_angle(min(s, c), max(s, c));
+    const T acute = s > c ? half_pi_exact.high - (near_axis - half_pi_exact.low) : near_axis;
+    const T angle = cos < 0 ? 2 * half_pi_exact.high - (acute - 2 * half_pi_exact.low) : acute;
+    return copysign(angle, sin);
+}
 
-inline Pack rounded(PackPair x) { return x.high + x.low; }
+// What numerics/double_double.hpp has for doubles.
+
+using rolling_ellipse::quick_two_sum;
+using rolling_ellipse::two_product;
+using rolling_ellipse::two_sum;
 
 inline PackPair quick_two_sum(Pack large, Pack small) {
     const Pack sum = large + small;
@@ -198,22 +318,9 @@ inline PackPair two_product(Pack x, Pack y) {
 #endif
 }
 
-inline PackPair operator-(PackPair x) { return {-x.high, -x.low}; }
-
 inline PackPair operator+(PackPair x, Pack y) {
     const PackPair sum = two_sum(x.high, y);
     return quick_two_sum(sum.high, sum.low + x.low);
-}
-
-inline PackPair operator+(PackPair x, PackPair y) {
-    const PackPair sum = two_sum(x.high, y.high);
-    return quick_two_sum(sum.high, sum.low + (x.low + y.low));
-}
-
-inline PackPair operator-(PackPair x, PackPair y) { return x + (-y); }
-
-inline PackPair select(Mask mask, PackPair x, PackPair y) {
-    return {mask ? x.high : y.high, mask ? x.low : y.low};
 }
 
 }  // namespace

@@ -47,22 +47,29 @@ inline int nodes_needed(double height, std::initializer_list<double> places) {
     return 1 + static_cast<int>(std::ceil(log_accuracy / (2 * std::log(rho))));
 }
 
-// The smallest tabled rule with full double precision over an interval, so many times as long as
-// twice the distance that its complex neighbourhood is free of singularities; the largest where the
-// interval is longer. The error falls like rho^(-2n), rho the sum of the semi-axes of the ellipse
-// with the ends as foci and that distance as its height (L. N. Trefethen, SIAM Rev. 50 (2008) 67,
-// theorem 4.5): rho = exp(asinh(1/length)).
-inline const GaussRule& rule_for_length(double length) {
+// The longest intervals over which the rules of the table have full double precision, each so many
+// times as long as twice the distance that its complex neighbourhood is free of singularities. The
+// error falls like rho^(-2n), rho the sum of the semi-axes of the ellipse with the ends as foci and
+// that distance as its height (L. N. Trefethen, SIAM Rev. 50 (2008) 67, theorem 4.5):
+// rho = exp(asinh(1/length)).
+inline constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
     constexpr double log_accuracy = 38.0;  // -ln(3e-17)
-    static const auto lengths = [] {
-        std::array<double, std::size(gauss_rules)> found{};
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            found[i] = 1 / std::sinh(log_accuracy / (2 * gauss_rules[i].size));
-        }
-        return found;
-    }();
+    std::array<double, std::size(gauss_rules)> found{};
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const double x = log_accuracy / (2 * gauss_rules[i].size);
+        double sinh = x;
+        double term = x;
+        for (int k = 2; k < 60; k += 2) sinh += term *= x * x / (k * (k + 1));
+        found[i] = 1 / sinh;
+    }
+    return found;
+}();
+
+// The smallest rule with full double precision over an interval of such a length; the largest where
+// the interval is longer.
+inline const GaussRule& rule_for_length(double length) {
     std::size_t i = 0;
-    while (i + 1 < lengths.size() && lengths[i] < length) ++i;
+    while (i + 1 < longest_lengths.size() && longest_lengths[i] < length) ++i;
     return gauss_rules[i];
 }
 

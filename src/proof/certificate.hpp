@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "proof/forces.hpp"
-#include "rolling/flow.hpp"
+#include "rolling/level/flow.hpp"
 
 namespace rolling_ellipse {
 

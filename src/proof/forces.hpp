@@ -11,7 +11,7 @@
 #pragma once
 
 #include "numerics/bernstein.hpp"
-#include "rolling/start.hpp"
+#include "rolling/level/start.hpp"
 
 namespace rolling_ellipse {
 

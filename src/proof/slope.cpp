@@ -9,7 +9,7 @@
 #include "numerics/golden_section.hpp"
 #include "numerics/quadrature.hpp"
 #include "proof/law.hpp"
-#include "rolling/equation.hpp"
+#include "rolling/stepped/equation.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "proof/certificate.hpp"
-#include "rolling/slope_flow.hpp"
+#include "rolling/slope/flow.hpp"
 
 namespace rolling_ellipse {
 

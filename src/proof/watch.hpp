@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "rolling/equation.hpp"
+#include "rolling/stepped/equation.hpp"
 #include "scene/settings.hpp"
 
 namespace rolling_ellipse {

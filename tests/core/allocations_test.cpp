@@ -10,8 +10,8 @@
 
 #include "motions.hpp"
 #include "outcome/classify.hpp"
-#include "rolling/flow_lanes.hpp"
-#include "rolling/flow_table.hpp"
+#include "rolling/level/many_bodies.hpp"
+#include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
 namespace {

@@ -17,6 +17,7 @@
 #include "numerics/lu.hpp"
 #include "proof/law.hpp"
 #include "proof/watch.hpp"
+#include "rolling/level/kernel.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;
@@ -193,15 +194,14 @@ void of_equal_forces_the_first_is_told() {
     CHECK(watch.holds_until == infinity);
 }
 
-std::vector<FlowKernel> kernels_of_this_machine() {
-    std::vector<FlowKernel> found;
-    for (const LaneLevel level : lane_levels()) found.push_back(flow_kernel(level));
+std::vector<Kernel> kernels_of_this_machine() {
+    std::vector<Kernel> found;
+    for (const LaneLevel level : lane_levels()) found.push_back(kernel(level));
     return found;
 }
 
-template <class Batch>
-bool same_bits(const Batch& one, const Batch& other) {
-    return std::memcmp(&one, &other, sizeof(Batch)) == 0;
+bool same_bits(const PlaceBatch& one, const PlaceBatch& other) {
+    return std::memcmp(&one, &other, sizeof(PlaceBatch)) == 0;
 }
 
 // Places, series and times of one motion by each of them.
@@ -210,35 +210,32 @@ void every_vector_level_has_the_same_bits() {
     for (const double omega : {1.0, 3.2}) {  // libration and rotation
         const RollingFlow flow = rolling_flow(rolling_start(body, 0.2, omega));
         const FlowTable table = flow_table(flow);
-        const PhaseRate& rate = flow.phase.rate;
-        PlaceBatch places{};
-        for (int i = 0; i < batch_size; ++i) {
-            places.at_tip.of[i] = i % 2;
-            places.tangent.of[i] = 0.12 * i + 0.11;
-            places.from.of[i] = 0.12 * i;
-        }
+        const PhaseRate<double>& rate = flow.phase.rate;
+        const PhaseMap<double>& map = flow.phase.map;
         std::vector<double> times;
         for (int i = 0; i < 4003; ++i)
             times.push_back(std::sin(7.0 * i) * (i % 3 == 0 ? 1e9 : 5.0));
-        StateBatch first_states{};
-        SeriesBatch first_series{};
+        PlaceBatch first_places{};
         std::vector<double> first;
-        for (const FlowKernel& kernel : kernels_of_this_machine()) {
-            StateBatch states{};
-            SeriesBatch series{};
-            kernel.states(rate, omega > 3, places, states);
-            kernel.series({0.25, 0.75, 1.0, rate.d0 / 16, rate.d1 / 16}, states, series);
+        for (const Kernel& kernel : kernels_of_this_machine()) {
+            PlaceBatch places{};
+            for (int i = 0; i < batch_size; ++i) {
+                places.y[i] = 0.12 * i + 0.11;
+                places.from[i] = 0.12 * i;
+                places.radius[i] = 0.1;
+            }
+            kernel.states(rate, map, flow.amplitude, places);
+            kernel.series({0.25, 0.75, 1.0, rate.d0 / 16, rate.d1 / 16}, 0.5, places);
             std::vector<double> read(3 * times.size());
             double* const theta = read.data();
             const FlowColumns out{theta, theta + times.size(), theta + 2 * times.size()};
             CHECK(!kernel.read(reader(table), times.data(), times.size(), out));
             if (first.empty()) {
-                first_states = states;
-                first_series = series;
+                first_places = places;
                 first = read;
             }
-            CHECK(states.omega.of[0] > 0 && series.path[2].of[3] != 0);
-            CHECK(same_bits(states, first_states) && same_bits(series, first_series));
+            CHECK(places.omega[0] > 0 && places.series[2][2][3] != 0);
+            CHECK(same_bits(places, first_places));
             CHECK(read == first);
         }
     }

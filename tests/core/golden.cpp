@@ -24,7 +24,7 @@
 #include "outcome/classify.hpp"
 #include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
-#include "rolling/flow_lanes.hpp"
+#include "rolling/level/many_bodies.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;
@@ -76,9 +76,8 @@ void print_library() {
 #else
     const std::string library = "other 0";
 #endif
-    std::printf("library %s %016llx %s\n", library.c_str(),
-                static_cast<unsigned long long>(fingerprint()),
-                lane_levels().size() > 1 ? "lanes" : "no-lanes");
+    std::printf("library %s %016llx\n", library.c_str(),
+                static_cast<unsigned long long>(fingerprint()));
 }
 
 // -------------------------------------------------------------------------------- motions
@@ -326,14 +325,12 @@ void print_bodies() {
         starts.push_back(rolling_start(body, theta, omega));
         times.push_back((draw() - 0.5) * (i % 5 == 0 ? 1e4 : 20.0));
     }
-    std::vector<FlowSample> side_by_side(count), alone(count);
+    std::vector<FlowSample> side_by_side(count);
     sample(lane_levels().back(), starts.data(), times.data(), count, side_by_side.data());
-    sample(LaneLevel::one_by_one, starts.data(), times.data(), count, alone.data());
     for (int i = 0; i < count; ++i) {
         const auto& [body, theta, omega, view, height, rests] = starts[i];
         print("body", {times[i], body.a, body.b, theta, omega, body.gravity, body.gyration2});
-        print("lanes", {side_by_side[i].theta, side_by_side[i].omega, side_by_side[i].x});
-        print("alone", {alone[i].theta, alone[i].omega, alone[i].x});
+        print("rolled", {side_by_side[i].theta, side_by_side[i].omega, side_by_side[i].x});
     }
 }
 

@@ -7,7 +7,7 @@
 
 #include "motions.hpp"
 #include "numerics/lane_levels.hpp"
-#include "rolling/flow_table.hpp"
+#include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;

@@ -32,7 +32,7 @@ from oracles.paths import ROOT
 
 LIBRARY, RECORDS = golden()
 MOTIONS = [name for name in blocks(RECORDS, "motion")]
-OTHERS = ("body", "lanes", "alone", "thresholds", "classify")
+OTHERS = ("body", "rolled", "thresholds", "classify")
 
 
 def found(name: str) -> str | None:
@@ -145,7 +145,7 @@ def test_motions_of_the_installed_extension_have_the_bits_of_the_second_build(
 def test_bodies_of_the_installed_extension_have_the_bits_of_the_second_build(
     second: tuple[str, list[Record]],
 ) -> None:
-    bodies = [each for each in second[1] if each.kind in ("body", "lanes", "alone")]
+    bodies = [each for each in second[1] if each.kind in ("body", "rolled")]
     compare(bodies, bodies_through_python(bodies), 0.0)
 
 

@@ -17,8 +17,8 @@
 #include "outcome/classify.hpp"
 #include "outcome/lift_off.hpp"
 #include "outcome/thresholds.hpp"
-#include "rolling/flow_lanes.hpp"
-#include "rolling/flow_table.hpp"
+#include "rolling/level/many_bodies.hpp"
+#include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;

@@ -55,7 +55,7 @@ def record(line: str) -> Record:
 
 
 def read(text: str) -> tuple[str, list[Record]]:
-    """The C library that it was made with (and whether there are lanes), and the records."""
+    """The C library that it was made with, and the records."""
     library, *lines = text.splitlines()
     assert library.startswith("library ")
     return library, [record(line) for line in lines]
@@ -162,19 +162,14 @@ def motion_through_python(motion: list[Record]) -> Iterator[Record]:
 
 
 def bodies_through_python(records: list[Record]) -> list[Record]:
-    """All records of many bodies: each, side by side, and alone."""
+    """All records of many bodies: each, and its state at its time, side by side."""
     bodies = [each for each in records if each.kind == "body"]
     columns = np.array([each.numbers for each in bodies]).T
     t, a, b, theta, omega, gravity, gyration2 = columns
     named = {"a": a, "b": b, "theta": theta, "omega": omega, "gravity": gravity}
-    lanes = np.array(rl.flow(t, **named, gyration2=gyration2))
-    found = []
-    for i, body in enumerate(bodies):
-        one = {name: float(column[i]) for name, column in named.items()}
-        alone = rl.flow(float(t[i]), **one, gyration2=float(gyration2[i]))
-        found += [body, Record("lanes", (), tuple(map(float, lanes[:, i]))),
-                  Record("alone", (), tuple(map(float, alone)))]  # fmt: skip
-    return found
+    rolled = np.array(rl.flow(t, **named, gyration2=gyration2)).T
+    states = [Record("rolled", (), tuple(each)) for each in rolled.tolist()]
+    return [each for pair in zip(bodies, states, strict=True) for each in pair]
 
 
 def outcomes_through_python(records: list[Record]) -> Iterator[Record]:

@@ -18,8 +18,8 @@
 #include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
 #include "proof/law.hpp"
-#include "rolling/equation.hpp"
-#include "rolling/flow_lanes.hpp"
+#include "rolling/level/many_bodies.hpp"
+#include "rolling/stepped/equation.hpp"
 #include "scene/impact.hpp"
 #include "simulate.hpp"
 
@@ -303,7 +303,7 @@ void check_coordinates(const Scene& scene, Bytes& bytes) {
     check_samples(scene, solution, t_end, false);
 }
 
-// Rolling at any time by its three roads: one state, a table of many, the lanes of the processor.
+// Rolling at any time: one state, the same in the lanes of the processor, and a table of many.
 void check_flow(const Scene& scene, Bytes& bytes) {
     const Body body = scene.body();
     const double t = bytes.sign() * unit_of_time(scene) * bytes.power(-6, 9);
@@ -332,7 +332,10 @@ void check_flow(const Scene& scene, Bytes& bytes) {
     std::for_each(samples, samples + count, check_state);
     const std::vector<RollingStart> starts(count, start);
     sample(lane_levels().back(), starts.data(), times, count, samples);
-    std::for_each(samples, samples + count, check_state);
+    for (int i = 0; i < count; ++i) {
+        const FlowSample alone = sample(static_cast<const RollingMotion&>(flow), times[i]);
+        CHECK(samples[i].theta == alone.theta && samples[i].omega == alone.omega);
+    }
     CHECK(period(flow) > 0);
 }
 

@@ -62,8 +62,8 @@ def flow(
         of one motion are read off Taylor series about points of it. Their x then has the rounding
         of a length like the body's, 2e-16 max(a, b), also where the body has come back to its
         start and x is much smaller than that. Many motions at one time each are computed side by
-        side in the vectors of the processor (SSE2, AVX2 or AVX-512, with the same bits), which
-        moves the last bits as well, and gives x that rounding after whole swings.
+        side in the vectors of the processor (SSE2, AVX2 or AVX-512), with the bits that each has
+        alone.
 
     Raises
     ------

@@ -1,0 +1,258 @@
+#include "rolling/level/many_times.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "rolling/level/motion.hpp"
+#include "rolling/level/power_series.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// Motions have 10 to 60 pieces a quarter turn; on the separatrix there is no end of them.
+constexpr std::size_t most_pieces = 1000;
+
+class TableMaker {
+  public:
+    explicit TableMaker(const RollingFlow& flow) : flow_(flow), kernel_(kernel()) {
+        const PhaseRate<double>& rate = flow.phase.rate;
+        rotates_ = flow.kind == MotionKind::rotation;
+        length_ = flow.start.long_axis;
+        const double area = square(length_);
+        const double fastest =
+            (rotates_ ? 1.0 : std::sqrt(rate.amplitude2)) / shape_factor<double>(rate, 0.0);
+        unit_ = std::min(0.5 / fastest, 0.5 * double(flow.phase.quarter_turn));
+        body_ = {square(rate.short_axis / length_), rate.c2 / area,
+                 flow.gravity * square(unit_) / length_, rate.d0 / square(area),
+                 rate.d1 / square(area)};
+    }
+
+    FlowTable make() {
+        // In the coordinate y, in which all that is singular is half_pi away from the motion: what
+        // series of this order reach in nearly all motions.
+        for (const double spacing : {0.128, 0.1, 0.07, 0.05}) {
+            place(spacing);
+            if (places_.size() > most_pieces) break;
+            if (!expand()) continue;
+            fill();
+            break;
+        }
+        return std::move(table_);
+    }
+
+  private:
+    void place(double spacing) {
+        constexpr double wider = 1.5;  // from 45 degrees of the phase on
+        // So much further, a body on the separatrix is on the tip to rounding.
+        constexpr double longest_rise = 38.0;
+        const PhaseMap<double>& map = flow_.phase.map;
+        const double middle = asinh(1 / map.grade);
+        const double end = std::isinf(map.quarter) ? middle + longest_rise : map.quarter;
+        const int up = static_cast<int>(std::ceil(middle / spacing));
+        const int down = static_cast<int>(std::ceil((end - middle) / (wider * spacing)));
+        places_.clear();
+        for (int i = 0; i < up; ++i) places_.push_back(middle * i / up);
+        for (int i = 0; i < down; ++i) places_.push_back(middle + (end - middle) * i / down);
+        places_.push_back(end);
+    }
+
+    std::size_t count() const { return places_.size(); }
+
+    double& at(PlaceBatch::Eight PlaceBatch::* column, std::size_t i) {
+        return (batches_[i / batch_size].*column)[i % batch_size];
+    }
+
+    // Half the time to the place before, or to the one after.
+    double half_way_back(std::size_t i) { return 0.5 * at(&PlaceBatch::time, i == 0 ? 1 : i); }
+    double half_way_on(std::size_t i) {
+        return half_way_back(i + 1 < count() ? i + 1 : count() - 1);
+    }
+
+    // The states of all places, and their series: do these meet half way?
+    bool expand() {
+        batches_.resize((count() + batch_size - 1) / batch_size);
+        const std::size_t all = batches_.size() * batch_size;
+        for (std::size_t i = 0; i < all; ++i) {
+            const std::size_t j = std::min(i, count() - 1);
+            at(&PlaceBatch::y, i) = places_[j];
+            at(&PlaceBatch::from, i) = places_[j == 0 ? 0 : j - 1];
+        }
+        for (PlaceBatch& places : batches_) {
+            kernel_.states(flow_.phase.rate, flow_.phase.map, flow_.amplitude, places);
+        }
+        for (std::size_t i = 0; i < all; ++i) {
+            const std::size_t j = std::min(i, count() - 1);
+            at(&PlaceBatch::radius, i) = std::max(half_way_back(j), half_way_on(j)) / unit_;
+        }
+        bool hold = true;
+        for (PlaceBatch& places : batches_) {
+            kernel_.series(body_, unit_, places);
+            for (const double holds : places.holds) hold = hold && holds > 0;
+        }
+        return hold;
+    }
+
+    void fill() {
+        std::vector<FlowPiece>& pieces = table_.pieces;
+        pieces.resize(count());
+        for (std::size_t i = 0; i < count(); ++i) {
+            pieces[i].quarters = at(&PlaceBatch::near_tip, i);
+            fill(pieces[i].series, batches_[i / batch_size], i % batch_size);
+            pieces[i].series.rows[0][0] = at(&PlaceBatch::angle, i);
+        }
+        add_times();
+        add_paths();
+        add_start();
+        describe();
+    }
+
+    // All but what the angle is counted from.
+    void fill(TableSeries& found, const PlaceBatch& from, std::size_t lane) const {
+        const double per_unit = 1 / unit_;
+        for (int k = 0; k < table_size; ++k) {
+            found.rows[k][0] = from.series[k][0][lane];
+            found.rows[k][1] = from.series[k][1][lane] * per_unit;
+            found.rows[k][2] = from.series[k][2][lane] * length_;
+        }
+    }
+
+    // From the end that is nearer: the flat position, or the tip or the turning point.
+    void add_times() {
+        std::vector<FlowPiece>& pieces = table_.pieces;
+        const DoubleDouble quarter = flow_.phase.quarter_turn;
+        DoubleDouble time{};
+        for (std::size_t i = 0; i < count(); ++i) {
+            if (i > 0) time = time + at(&PlaceBatch::time, i);
+            pieces[i].centre = time;
+        }
+        if (std::isfinite(quarter.high)) {
+            time = quarter;
+            for (std::size_t i = count() - 1; double(time) > 0.5 * double(quarter); --i) {
+                pieces[i].centre = time;
+                time = time + -at(&PlaceBatch::time, i);
+            }
+        }
+        double low = 0.0;
+        for (std::size_t i = 0; i < count(); ++i) {
+            pieces[i].low = low;
+            pieces[i].high = low = double(pieces[i].centre) + half_way_on(i);
+        }
+    }
+
+    // Counted from the flat position or, near it, from the tip.
+    void add_paths() {
+        std::vector<FlowPiece>& pieces = table_.pieces;
+        const auto path = [&](std::size_t i) -> double& { return pieces[i].series.rows[0][2]; };
+        const auto step = [&](std::size_t i) { return at(&PlaceBatch::path, i); };
+        for (std::size_t i = 1; i < count() && pieces[i].quarters == 0; ++i) {
+            path(i) = path(i - 1) + step(i);
+        }
+        const std::size_t last = count() - 1;
+        if (pieces[last].quarters == 0) return;
+        const PhaseMap<double>& map = flow_.phase.map;
+        const bool has_tip = places_[last] == map.quarter;
+        const Place<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last]};
+        path(last) = position_at(flow_, phase_point(map, end)).path;
+        for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
+            path(i - 1) = path(i) - step(i);
+    }
+
+    void add_start() {
+        // Its radius is somewhat like that of the piece about the same place.
+        const double since = std::abs(double(flow_.start_time));
+        const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
+                                        [&](const FlowPiece& p) { return since < p.high; });
+        PlaceBatch same;
+        double radius = (piece->high - piece->low) / unit_;
+        for (int i = 0; i < batch_size; ++i) {
+            same.sin[i] = flow_.start.sin;
+            same.cos[i] = flow_.start.cos;
+            same.omega[i] = flow_.omega;
+            same.radius[i] = radius;
+            radius *= 0.75;
+        }
+        kernel_.series(body_, unit_, same);
+        fill(table_.start, same, 0);
+        const auto first = std::find(same.holds, same.holds + batch_size, 1.0) - same.holds;
+        table_.reader.start_radius = first == batch_size ? 0.0 : unit_ * same.radius[first];
+    }
+
+    void describe() {
+        FlowReader& reader = table_.reader;
+        const std::vector<FlowPiece>& pieces = table_.pieces;
+        reader.half = 1;
+        while (2 * reader.half <= int(pieces.size()) - 1) reader.half *= 2;
+        // The last piece is taken for all that is beyond.
+        table_.ends.assign(2 * reader.half - 1, infinity);
+        for (std::size_t i = 0; i + 1 < pieces.size(); ++i) table_.ends[i] = pieces[i].high;
+        reader.last_end = pieces.back().high;
+        reader.per_unit = 1 / unit_;
+        const DoubleDouble half_turn = flow_.phase.half_turn;
+        if (std::isfinite(half_turn.high)) {
+            reader.half_turn = half_turn;
+            reader.half_turns_per_time = 1 / half_turn.high;
+        }
+        reader.start_time = flow_.start_time;
+        reader.spin = heading(flow_);
+        reader.alternates = !rotates_;
+        reader.quarters_per_half_turn = rotates_ ? 2 * flow_.direction : 0.0;
+        const QuarterPosition& from = flow_.start_position;
+        reader.quarters = from.quarters;
+        reader.angle = two_sum(flow_.theta, -from.angle);
+        reader.path = from.path;
+        reader.quarter_path = flow_.quarter_path;
+        reader.theta = flow_.theta;
+        reader.x = flow_.x;
+    }
+
+    const RollingFlow& flow_;
+    const Kernel& kernel_;
+    FlowTable table_{};
+    bool rotates_;
+    double length_;
+    double unit_;
+    SeriesConstants body_;
+    std::vector<double> places_;
+    std::vector<PlaceBatch> batches_;
+};
+
+}  // namespace
+
+FlowTable flow_table(const RollingFlow& flow) { return TableMaker(flow).make(); }
+
+FlowReader reader(const FlowTable& table) {
+    FlowReader found = table.reader;
+    found.pieces = table.pieces.data();
+    found.ends = table.ends.data();
+    found.start = &table.start;
+    return found;
+}
+
+FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
+    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
+    // A table costs as much as ten single times; but where a few places are looked at again and
+    // again, now some of them and now others (roots), their bits should not change.
+    constexpr std::size_t few = 40;
+    if (expected < few) return;
+    table_ = flow_table(flow);
+    if (table_->pieces.empty()) table_.reset();
+}
+
+void FlowSampler::operator()(const double* times, std::size_t n, const FlowColumns& out) const {
+    if (table_ && !kernel().read(reader(*table_), times, n, out)) return;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!table_ || std::isnan(out.theta[i])) store(sample(flow_, times[i]), out, i);
+    }
+}
+
+void FlowSampler::operator()(const double* times, std::size_t n, FlowSample* samples) const {
+    std::vector<double> columns(3 * n);
+    double* const theta = columns.data();
+    double* const omega = theta + n;
+    double* const x = omega + n;
+    (*this)(times, n, FlowColumns{theta, omega, x});
+    for (std::size_t i = 0; i < n; ++i) samples[i] = {theta[i], omega[i], x[i]};
+}
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,139 @@
+// An exact rolling motion as the phase sees it: the integrand of the time, the coordinate in which
+// it is integrated, and the integrals; of one body, T = double, or of as many as a Pack has lanes.
+//
+// With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
+// H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral
+// of physics (27) becomes that of physics (29),
+//     dt/dphase = scale sqrt(D (H + h)) / sqrt(cos^2 phase + kappa^2 sin^2 phase),
+//     sin phi   = amplitude sin phase,
+// rotation (phase = phi) and libration (phase = u of sin phi = sin phi_max sin u) are one integral:
+//     rotation:  amplitude 1, scale^2 = 1/(2 g (H^2 - S^2)),   kappa^2 = (H^2 - L^2)/(H^2 - S^2)
+//     libration: amplitude^2 = (H^2 - S^2)/c^2, scale^2 = 1/(2 g c^2), kappa^2 = (L^2 - H^2)/c^2
+// No term is a difference that cancels, but for H - L itself.
+//
+// The coordinate y sweeps the phase evenly, physics (61): nothing peaks in it, at the flat however
+// thin the body, or at the tip however near the separatrix.
+//     tan phase = g sc(w, k),   k' = kappa g,   w = theta_3(q)^2 y,   q = e^(-2 Y),
+// sc = sn/cn of Jacobi with the complementary modulus k'. The flat position is at y = 0, the tip or
+// turning point at y = Y, and all is symmetric about both. The integrand of the time is singular
+// where tan phase is imaginary, between g and 1/kappa: on the line Im y = pi/2 (DLMF 22.4). Near
+// either end y is the v of physics (31).
+#pragma once
+
+#include "numerics/double_double.hpp"
+
+namespace rolling_ellipse {
+
+// Whether something holds: of a number, or of each of its lanes.
+template <class T>
+using Truth = decltype(T{} < T{});
+
+// The constants of the integrand.
+template <class T>
+struct PhaseRate {
+    T short_axis;     // S
+    T c2;             // L^2 - S^2
+    T energy_height;  // H
+    T amplitude2;
+    T scale2;
+    T kappa;
+    T d0;
+    T d1;
+    Truth<T> rotates;
+};
+
+// The constants of the coordinate.
+template <class T>
+struct PhaseMap {
+    T quarter;          // Y; infinite on the separatrix
+    T step;             // of the trapezoidal rule that integrates over a quarter
+    T steps;            // in a quarter, or as far as the tail
+    Truth<T> has_tail;  // the quarter is longer than the steps: as doubles go, the tip is reached
+    T grade;            // g
+    T kappa;
+    T speed;        // dw/dy
+    T sine_scale;   // C
+    T flat_scale2;  // (g C)^2
+    T tip_scale2;   // (kappa C)^2
+    T a[4];
+    T b[3];
+};
+
+// A point of the coordinate, y = quarters Y + offset; the nearest quarter unless told otherwise.
+template <class T>
+struct Place {
+    T quarters;
+    T offset;
+};
+
+// A phase, as its sine and cosine.
+template <class T>
+struct PhasePoint {
+    T sin;
+    T cos;
+};
+
+// What a way along y takes, or its rate: time [s], angle [rad], path of the centre [m].
+template <class T>
+struct PhaseWay {
+    T time;
+    T angle;
+    T path;
+};
+
+// The rates at several places. Those of one body are computed side by side, a Pack of the widest
+// level at once.
+inline constexpr int widest_pack = 8;
+inline constexpr int most_places = 48;  // the nodes of a panel and its end
+
+template <class T>
+struct alignas(64) PhaseWays {
+    T time[most_places];
+    T angle[most_places];
+    T path[most_places];
+};
+
+template <class T>
+struct PhaseTime {
+    PhaseRate<T> rate;
+    PhaseMap<T> map;
+    TwoParts<T> quarter_turn;  // to the tip or turning point; infinite on the separatrix
+    TwoParts<T> half_turn;     // in which the phase advances by pi
+    T quarter_path;            // of the centre; of a rotation
+    // dt/dy at the steps of the map, and one beside them, and what cubics through it make of the
+    // time since the flat: where to look for a time.
+    static constexpr int most_steps = 160;
+    T slope[most_steps + 3];
+    T time[most_steps + 2];
+};
+
+// The constants of power series in time (rolling/level/power_series.hpp), with the long semi-axis
+// as the unit of length and time in a unit of its own.
+struct SeriesConstants {
+    double short_axis2;
+    double c2;
+    double gravity;
+    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28)
+    double d1;
+};
+
+// A motion from its start on.
+template <class T>
+struct PhaseMotion {
+    PhaseTime<T> phase;
+    T direction;                // of rotation; +1 for libration
+    T amplitude;                // sin phi_max of a libration; 1 for rotation
+    Truth<T> on_way_back;       // at the start of a libration: its phase is beyond +-pi/2
+    PhasePoint<T> start_phase;  // without that half turn
+    Place<T> start_place;
+};
+
+template <class T>
+struct MotionSample {
+    T theta;
+    T omega;
+    T x;
+};
+using FlowSample = MotionSample<double>;
+
+}  // namespace rolling_ellipse

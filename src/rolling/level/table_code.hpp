@@ -1,0 +1,277 @@
+// The code of a FlowKernel. It is compiled for each vector level in a source of its own, see
+// numerics/lanes.hpp: nothing of the library is called.
+#pragma once
+
+#include "numerics/gauss_legendre.hpp"
+#include "numerics/lanes.hpp"
+#include "rolling/level/motion.hpp"
+#include "rolling/level/power_series.hpp"
+#include "rolling/level/table.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+void states(const PhaseRate<double>& one_rate, const PhaseMap<double>& one_map, double amplitude,
+            PlaceBatch& at, int lane) {
+    const PhaseRate<Pack> rate = spread(one_rate);
+    const PhaseMap<Pack> map = spread(one_map);
+    const Pack y = load(at.y + lane);
+    const Pack from = load(at.from + lane);
+    const Pack middle = 0.5 * (y + from);
+    const Pack half = 0.5 * (y - from);
+    // Places are so near to each other that eight nodes are exact to rounding.
+    constexpr int pairs = 4;
+    Pack time{}, path{};
+    for (int i = 0; i < pairs; ++i) {
+        const Pack offset = half * gauss_tables::nodes_8[i];
+        const PhaseWay<Pack> before = phase_rate_at(rate, map, Pack{}, middle - offset);
+        const PhaseWay<Pack> after = phase_rate_at(rate, map, Pack{}, middle + offset);
+        time += gauss_tables::weights_8[i] * (before.time + after.time);
+        path += gauss_tables::weights_8[i] * (before.path + after.path);
+    }
+    store(time * half, at.time + lane);
+    store(path * half, at.path + lane);
+
+    const Mask<Pack> at_tip = y > 0.5 * map.quarter;
+    const Place<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
+    const MotionPoint<Pack> now = motion_point(rate, pack(amplitude), phase_point(map, place));
+    const Mask<Pack> near_tip = now.sin_phi > now.cos_phi;
+    const Pack angle = octant_angle(min(now.sin_phi, now.cos_phi), max(now.sin_phi, now.cos_phi));
+    store(now.sin_phi, at.sin + lane);
+    store(now.cos_phi, at.cos + lane);
+    store(near_tip ? pack(1.0) : pack(0.0), at.near_tip + lane);
+    store(near_tip ? -angle : angle, at.angle + lane);
+    store(now.omega, at.omega + lane);
+}
+
+// The last terms, of which one may be small by chance, are some roundings beside what the series is
+// part of; what is left out is smaller by another twentieth.
+inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, Pack radius) {
+    constexpr double rest = 1e-15;
+    constexpr double rest_before = 2e-14;
+    const Pack size = max(whole, max(abs(series[1]) * radius, abs(series[2]) * (radius * radius)));
+    Pack power = radius;
+    for (int k = 2; k < table_order; ++k) power *= radius;
+    return (abs(series[table_order - 1]) * power <= rest_before * size) &
+           (abs(series[table_order]) * (power * radius) <= rest * size);
+}
+
+void series(const SeriesConstants& body, double unit, PlaceBatch& at, int lane) {
+    const Pack sin = load(at.sin + lane);
+    const Pack omega = load(at.omega + lane) * unit;
+    const auto motion = motion_series<table_order>(body, sin, load(at.cos + lane), omega);
+    for (int k = 0; k < table_size; ++k) {
+        store(motion.angle[k], at.series[k][0] + lane);
+        store(motion.omega[k], at.series[k][1] + lane);
+        store(motion.path[k], at.series[k][2] + lane);
+    }
+    const Pack radius = load(at.radius + lane);
+    const Pack path = sin * __builtin_sqrt(body.short_axis2);
+    const Mask<Pack> good = holds(motion.angle, sin, radius) &
+                            holds(motion.omega, abs(omega), radius) &
+                            holds(motion.path, path, radius);
+    store(good ? pack(1.0) : pack(0.0), at.holds + lane);
+}
+
+// The most times that are on the way through `read` together.
+constexpr int block = 64;
+static_assert(block % lanes == 0 && batch_size % lanes == 0);
+
+struct alignas(64) Block {
+    double turns[block];  // whole half turns
+    double time[block];   // since the nearest flat position, in two parts
+    double low[block];
+    // Since there, or since the tip that is so many quarters from it.
+    double angle[block];
+    double omega[block];
+    double path[block];
+    double quarters[block];
+};
+
+// t + start - n T without rounding. Of a late time the low part of n T is longer than a piece.
+void reduce(const FlowReader& motion, const double* times, int n, Block& found) {
+    const DoubleDouble period = motion.half_turn;
+    const DoubleDouble start = motion.start_time;
+    for (int i = 0; i < n; i += lanes) {
+        const Pack t = load(times + i);
+        const Pack turns = nearest((t + start.high) * motion.half_turns_per_time);
+        const PackPair turned = two_product(turns, pack(period.high));
+        const PackPair rest = two_sum(t, -turned.high);
+        const PackPair high = two_sum(rest.high, pack(start.high));
+        const Pack low = (rest.low + high.low) - (turned.low + turns * period.low) + start.low;
+        const PackPair time = two_sum(high.high, low);
+        store(turns, found.turns + i);
+        store(time.high, found.time + i);
+        store(time.low, found.low + i);
+    }
+}
+
+struct Motions {
+    Pack angle;
+    Pack omega;
+    Pack path;
+};
+
+// One series at several times: even and odd powers, as two sums need not wait for each other.
+inline Motions together(const TableSeries& series, Pack z) {
+    const auto& rows = series.rows;
+    const Pack z2 = z * z;
+    const auto column = [&](int i) {
+        Pack even = pack(rows[table_order][i]);
+        Pack odd = pack(rows[table_order - 1][i]);
+#pragma GCC unroll 16
+        for (int k = table_order - 2; k > 0; k -= 2) {
+            even = even * z2 + rows[k][i];
+            odd = odd * z2 + rows[k - 1][i];
+        }
+        even = even * z2 + rows[0][i];
+        return even + odd * z;
+    };
+    return {column(0), column(1), column(2)};
+}
+
+// A series at one time: its columns side by side, and its even and odd rows.
+inline void alone(const TableSeries& series, double z, Block& found, int i) {
+    constexpr int parts = 2 * series_columns / lanes;
+    const double z2 = z * z;
+    Pack sums[parts];
+#pragma GCC unroll 16
+    for (int part = 0; part < parts; ++part) {
+        sums[part] = load(series.rows[table_order] + part * lanes);
+#pragma GCC unroll 16
+        for (int k = table_order - 2; k >= 0; k -= 2) {
+            sums[part] = sums[part] * z2 + load(series.rows[k] + part * lanes);
+        }
+    }
+    alignas(64) double even_odd[2 * series_columns];
+#pragma GCC unroll 16
+    for (int part = 0; part < parts; ++part) store(sums[part], even_odd + part * lanes);
+    using Row [[gnu::vector_size(series_columns * sizeof(double))]] = double;
+    Row even, odd;
+    __builtin_memcpy(&even, even_odd, sizeof even);
+    __builtin_memcpy(&odd, even_odd + series_columns, sizeof odd);
+    const Row sum = even + odd * z;
+    found.angle[i] = sum[0];
+    found.omega[i] = sum[1];
+    found.path[i] = sum[2];
+}
+
+// By halves, without a branch for the processor to guess: times may come in any order.
+inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
+    int i = 0;
+    for (int half = motion.half; half > 0; half /= 2) {
+        i += time >= motion.ends[i + half - 1] ? half : 0;
+    }
+    return motion.pieces[i];
+}
+
+void look_up(const FlowReader& motion, int n, Block& block) {
+    const FlowPiece* recent = motion.pieces;
+    for (int i = 0; i < n; i += lanes) {
+        const Pack time = load(block.time + i);
+        const Pack low = load(block.low + i);
+        const Pack since = abs(time);
+        const Pack since_low = time < 0 ? -low : low;
+        const auto holds = [&](const FlowPiece& piece) {
+            return !any((since < piece.low) | (since >= piece.high));
+        };
+        if (!holds(*recent)) recent = &piece_at(motion, since[0]);
+        if (holds(*recent)) {
+            const Pack z = ((since - recent->centre.high) + (since_low - recent->centre.low)) *
+                           motion.per_unit;
+            const Motions found = together(recent->series, z);
+            store(found.angle, block.angle + i);
+            store(found.omega, block.omega + i);
+            store(found.path, block.path + i);
+            store(pack(recent->quarters), block.quarters + i);
+            continue;
+        }
+        for (int lane = 0; lane < lanes; ++lane) {
+            const FlowPiece& piece = piece_at(motion, since[lane]);
+            const double z =
+                ((since[lane] - piece.centre.high) + (since_low[lane] - piece.centre.low)) *
+                motion.per_unit;
+            alone(piece.series, z, block, i + lane);
+            block.quarters[i + lane] = piece.quarters;
+        }
+    }
+}
+
+// What the motion is at these times; theta is NaN beyond its pieces. Returns whether one is.
+bool combine(const FlowReader& motion, const double* times, int n, const Block& block,
+             const FlowColumns& out) {
+    bool some_lost = false;
+    for (int i = 0; i < n; i += lanes) {
+        const Pack t = load(times + i);
+        const Pack turns = load(block.turns + i);
+        const Pack time = load(block.time + i);
+        const Pack odd = turns - 2 * nearest(0.5 * turns);
+        const Pack spin = motion.spin - (2 * motion.spin * motion.alternates) * (odd * odd);
+        const Pack heading = time < 0 ? -spin : spin;
+        const Pack quarters = motion.quarters_per_half_turn * turns +
+                              (heading * load(block.quarters + i) - motion.quarters);
+        const PackPair turned = two_product(quarters, pack(half_pi_exact.high));
+        const PackPair angle = two_sum(turned.high, pack(motion.angle.high));
+        const Pack low = angle.low + turned.low + quarters * half_pi_exact.low + motion.angle.low;
+        Pack theta = angle.high + (low + heading * load(block.angle + i));
+        Pack omega = spin * load(block.omega + i);
+        Pack x = motion.x +
+                 ((quarters * motion.quarter_path - motion.path) + heading * load(block.path + i));
+        const Mask<Pack> at_start = abs(t) <= motion.start_radius;
+        if (any(at_start)) {
+            const Motions at = together(*motion.start, t * motion.per_unit);
+            theta = at_start ? motion.theta + at.angle : theta;
+            omega = at_start ? at.omega : omega;
+            x = at_start ? motion.x + at.path : x;
+        }
+        const Mask<Pack> lost = (abs(time) >= motion.last_end) & ~at_start;
+        if (any(lost)) {
+            some_lost = true;
+            theta = lost ? pack(__builtin_nan("")) : theta;
+        }
+        store(theta, out.theta + i);
+        store(omega, out.omega + i);
+        store(x, out.x + i);
+    }
+    return some_lost;
+}
+
+bool read_block(const FlowReader& motion, const double* times, int n, const FlowColumns& out) {
+    Block block;
+    reduce(motion, times, n, block);
+    look_up(motion, n, block);
+    return combine(motion, times, n, block, out);
+}
+
+bool read(const FlowReader& motion, const double* times, std::size_t n, const FlowColumns& out) {
+    bool some_lost = false;
+    std::size_t i = 0;
+    for (; i + block <= n; i += block) {
+        some_lost |= read_block(motion, times + i, block, out.from(i));
+    }
+    if (i == n) return some_lost;
+    // The last of them fills what is left of a pack.
+    const int left = int(n - i);
+    double last[block], theta[block], omega[block], x[block];
+    for (int j = 0; j < block; ++j) last[j] = times[j < left ? i + j : n - 1];
+    const int whole = (left + lanes - 1) / lanes * lanes;
+    some_lost |= read_block(motion, last, whole, {theta, omega, x});
+    for (int j = 0; j < left; ++j) {
+        out.theta[i + j] = theta[j];
+        out.omega[i + j] = omega[j];
+        out.x[i + j] = x[j];
+    }
+    return some_lost;
+}
+
+std::size_t first_beyond(const double* times, std::size_t n, double most) {
+    std::size_t i = 0;
+    Mask<Pack> within = Pack{} == Pack{};
+    for (; i + lanes <= n; i += lanes) within &= abs(load(times + i)) <= most;
+    if (any(negated(within))) i = 0;
+    while (i < n && times[i] <= most && -times[i] <= most) ++i;
+    return i;
+}
+
+}  // namespace
+}  // namespace rolling_ellipse

@@ -1,0 +1,324 @@
+// Time as a function of the phase of an exact rolling motion, and its inverse: integrals of
+// rolling/level/rates.hpp.
+//
+// The rates are even about the flat and the tip and analytic for |Im y| < pi/2. So the trapezoidal
+// rule has the time of a quarter, with an error that falls like exp(-pi^2/step) (L. N. Trefethen,
+// J. A. C. Weideman, SIAM Rev. 56 (2014) 385). A part of a quarter is Gauss-Legendre quadrature,
+// from where it starts, so that a short way is known as well as a long one.
+#pragma once
+
+#include <limits>
+
+#include "numerics/quadrature.hpp"
+#include "rolling/level/rates.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+template <class T>
+inline TwoParts<T> times(const TwoParts<T>& x, T y) {
+    const TwoParts<T> whole = two_product(x.high, y);
+    return quick_two_sum(whole.high, whole.low + x.low * y);
+}
+
+// The terms of a sum, whose roundings are kept.
+template <class T>
+inline void add(TwoParts<T>& sum, T term) {
+    const TwoParts<T> next = two_sum(sum.high, term);
+    sum = {next.high, sum.low + next.low};
+}
+
+constexpr double largest_finite = std::numeric_limits<double>::max();
+constexpr double longest_panel = 6.0;
+constexpr int most_pairs = most_places / 2;
+
+// Gauss-Legendre rules as pairs of nodes -x and +x; a rule that is shorter than its neighbour's in
+// another lane goes on with no weight.
+template <class T>
+struct NodePairs {
+    int count;
+    T nodes[most_pairs];
+    T weights[most_pairs];
+};
+
+// For panels of this length, see longest_lengths.
+template <class T>
+inline void set_rules(NodePairs<T>& pairs, T length) {
+    T index{};
+    for (std::size_t i = 0; i + 1 < longest_lengths.size(); ++i) {
+        const auto is_longer = length > longest_lengths[i];
+        if (!any(is_longer)) break;
+        index = is_longer ? index + 1 : index;
+    }
+    const auto size = [](double of) { return (gauss_rules[static_cast<int>(of)].size + 1) / 2; };
+    const auto set = [&](int i, int lane, const GaussRule& rule) {
+        const bool has = i < (rule.size + 1) / 2;
+        const double node = has ? rule.nodes[i] : 0.0;
+        const double weight = has ? rule.weights[i] : 0.0;
+        set_lane(pairs.nodes[i], lane, node);
+        set_lane(pairs.weights[i], lane, node == 0 ? 0.5 * weight : weight);
+    };
+    pairs.count = size(largest(index));
+    for (int lane = 0; lane < lanes_of<T>; ++lane) {
+        const GaussRule& rule = gauss_rules[static_cast<int>(lane_of(index, lane))];
+        for (int i = 0; i < pairs.count; ++i) set(i, lane, rule);
+    }
+}
+
+// A way, and the rates at its end.
+template <class T>
+struct WayTo {
+    PhaseWay<T> way;
+    PhaseWay<T> end;
+};
+
+// From one offset to another, by as many panels as it takes.
+template <class T>
+WayTo<T> way_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T end) {
+    const T panels = 1 + rounded_down<T>(abs<T>(end - begin) / longest_panel);
+    const T half = 0.5 * (end - begin) / panels;
+    NodePairs<T> pairs;
+    set_rules<T>(pairs, abs(half) * (2 / pi));
+    const int count = pairs.count;
+    T offsets[most_places];
+    PhaseWays<T> rates;
+    TwoParts<T> time{}, angle{}, path{};
+    const int most_panels = static_cast<int>(largest(panels));
+    for (int panel = 0; panel < most_panels; ++panel) {
+        const auto is_inside = panels > panel;
+        const T middle = is_inside ? begin + (2 * panel + 1) * half : end;
+        for (int i = 0; i < count; ++i) {
+            offsets[2 * i] = middle - half * pairs.nodes[i];
+            offsets[2 * i + 1] = middle + half * pairs.nodes[i];
+        }
+        offsets[2 * count] = end;
+        phase_rates(phase.rate, phase.map, quarters, offsets, 2 * count + 1, rates);
+        for (int i = 0; i < count; ++i) {
+            const T weight = is_inside ? pairs.weights[i] : T{};
+            add<T>(time, weight * (rates.time[2 * i] + rates.time[2 * i + 1]));
+            add<T>(angle, weight * (rates.angle[2 * i] + rates.angle[2 * i + 1]));
+            add<T>(path, weight * (rates.path[2 * i] + rates.path[2 * i + 1]));
+        }
+    }
+    return {{half * (time.high + time.low), half * (angle.high + angle.low),
+             half * (path.high + path.low)},
+            {rates.time[2 * count], rates.angle[2 * count], rates.path[2 * count]}};
+}
+
+template <class T>
+inline T end_of_steps(const PhaseMap<T>& map) {
+    return map.steps * map.step;
+}
+
+// From one offset to another; bodies side by side have no tails.
+inline WayTo<Pack> way_between(const PhaseTime<Pack>& phase, Pack quarters, Pack begin, Pack end) {
+    return way_by_panels<Pack>(phase, quarters, begin, end);
+}
+
+// Around a tip that is far enough nothing but time goes on, at one rate: for minutes near the
+// separatrix, and for ever on it.
+inline WayTo<double> way_between(const PhaseTime<double>& phase, double quarters, double begin,
+                                 double end) {
+    constexpr double long_way = 12.0;
+    const PhaseMap<double>& map = phase.map;
+    const double edge = 2 * end_of_steps(map);
+    if (map.quarter <= edge || abs(end - begin) <= long_way) {
+        return way_by_panels(phase, quarters, begin, end);
+    }
+    // Where that begins and ends, in size of the offset.
+    const double from = quarters == 0 ? edge : 0.0;
+    const double to = quarters == 0 ? 2 * map.quarter - edge : map.quarter - edge;
+    for (const double limit : {-to, -from, from, to}) {
+        if (limit == 0 || !(limit > min(begin, end) && limit < max(begin, end))) continue;
+        const WayTo<double> first = way_between(phase, quarters, begin, limit);
+        const WayTo<double> second = way_between(phase, quarters, limit, end);
+        return {{first.way.time + second.way.time, first.way.angle + second.way.angle,
+                 first.way.path + second.way.path},
+                second.end};
+    }
+    const double middle = abs(0.5 * (begin + end));
+    if (!(middle >= from && middle <= to)) return way_by_panels(phase, quarters, begin, end);
+    const PhaseWay<double> slope = way_by_panels(phase, quarters, end, end).end;
+    return {{(end - begin) * slope.time, 0.0, 0.0}, slope};
+}
+
+// A cubic for dt/dy in the step after a place, and its integral.
+template <class T>
+struct Cubic {
+    T slope;
+    T time;
+};
+
+template <class T>
+inline Cubic<T> in_step(const PhaseTime<T>& phase, T i, T s) {
+    const T before = element(phase.slope, i);
+    const T f0 = element(phase.slope + 1, i);
+    const T f1 = element(phase.slope + 2, i);
+    const T after = element(phase.slope + 3, i);
+    const T m0 = 0.5 * (f1 - before);
+    const T m1 = 0.5 * (after - f0);
+    const T p2 = 3 * (f1 - f0) - 2 * m0 - m1;
+    const T p3 = m0 + m1 - 2 * (f1 - f0);
+    return {f0 + s * (m0 + s * (p2 + s * p3)),
+            phase.map.step * s * (f0 + s * (m0 / 2 + s * (p2 / 3 + s * p3 / 4)))};
+}
+
+// To a few digits: the time since the flat, for 0 <= y <= Y, dt/dy, and the place at a time.
+template <class T>
+inline Cubic<T> rough_time(const PhaseTime<T>& phase, T y) {
+    const PhaseMap<T>& map = phase.map;
+    const T end = end_of_steps(map);
+    const T last = map.steps;
+    const T steps = y / map.step;
+    const auto is_beyond = y >= end;
+    const T i = is_beyond ? last - 1 : min<T>(rounded_down(steps), last - 1);
+    const Cubic<T> at = in_step<T>(phase, i, steps - i);
+    const T slope = element(phase.slope + 1, last);
+    return {is_beyond ? slope : at.slope, is_beyond ? element(phase.time, last) + (y - end) * slope
+                                                    : element(phase.time, i) + at.time};
+}
+
+template <class T>
+inline T rough_place(const PhaseTime<T>& phase, T time) {
+    const PhaseMap<T>& map = phase.map;
+    const T last = map.steps;
+    T i{};
+    for (int k = 1; k < phase.most_steps; ++k) {
+        const auto is_later = (time >= phase.time[k]) & (last > k);
+        if (!any(is_later)) break;
+        i = is_later ? i + 1 : i;
+    }
+    const T begin = element(phase.time, i);
+    const T end = element(phase.time + 1, i);
+    const T s = (time - begin) / (end - begin);
+    const Cubic<T> at = in_step<T>(phase, i, s);
+    const T over = time - element(phase.time, last);
+    return over >= 0 ? end_of_steps(map) + over / element(phase.slope + 1, last)
+                     : map.step * (i + s) + (time - begin - at.time) / at.slope;
+}
+
+// To a few digits, how far in y a time reaches.
+template <class T>
+inline T rough_distance(const PhaseTime<T>& phase, const Place<T>& from, T time) {
+    const T quarter = phase.map.quarter;
+    const T y = (from.quarters != 0 ? from.quarters * quarter : T{}) + from.offset;
+    const Cubic<T> start = rough_time<T>(phase, abs(y));
+    const T target = copysign(start.time, y) + time;
+    const T half_turns = nearest<T>(target / phase.half_turn.high);
+    const auto some = half_turns != 0;
+    const T rest = target - (some ? half_turns * phase.half_turn.high : T{});
+    const T place = copysign(rough_place<T>(phase, abs(rest)), rest);
+    return abs(time) < phase.map.step * start.slope
+               ? time / start.slope
+               : place + (some ? 2 * half_turns * quarter : T{}) - y;
+}
+
+// dt/dy at the steps: the quarter by the trapezoidal rule.
+template <class T>
+void integrate_quarter(PhaseTime<T>& phase) {
+    const PhaseMap<T>& map = phase.map;
+    const T n = map.steps;
+    const int most = static_cast<int>(largest(n));
+    T* const f = phase.slope + 1;
+    TwoParts<T> sum{};
+    T path{};
+    T offsets[most_places];
+    PhaseWays<T> rates;
+    T beyond{};  // what is left of dt/dy at the tip
+    if (any(map.has_tail)) {
+        offsets[0] = T{};
+        phase_rates(phase.rate, map, filled<T>(1.0), offsets, 1, rates);
+        beyond = map.has_tail ? rates.time[0] : T{};
+    }
+    for (int first = 0; first <= most; first += most_places) {
+        const int count = most - first < most_places ? most - first + 1 : most_places;
+        for (int i = 0; i < count; ++i) offsets[i] = min<T>(filled<T>(first + i), n) * map.step;
+        phase_rates(phase.rate, map, T{}, offsets, count, rates);
+        for (int i = first; i < first + count; ++i) {
+            const auto is_end = i == 0 ? n > -1 : n == i;
+            const T weight = is_end ? filled<T>(0.5) : n > i ? filled<T>(1.0) : T{};
+            // about the end all is even
+            f[i] = n < i ? f[i - 2] : rates.time[i - first];
+            add<T>(sum, weight * (rates.time[i - first] - beyond));
+            path += weight * rates.path[i - first];
+        }
+    }
+    f[-1] = f[1];
+    f[most + 1] = f[most - 1];
+    phase.quarter_path = path * map.step;
+    phase.quarter_turn = times<T>(sum, map.step);
+    if (any(map.has_tail)) {
+        const TwoParts<T> tail = two_product(map.quarter, beyond);
+        const TwoParts<T> all = (phase.quarter_turn + tail.high) + tail.low;
+        phase.quarter_turn.high = map.has_tail ? all.high : phase.quarter_turn.high;
+        phase.quarter_turn.low = map.has_tail ? all.low : phase.quarter_turn.low;
+    }
+    // The integrals of the cubics.
+    phase.time[0] = T{};
+    for (int i = 0; i < most; ++i) {
+        phase.time[i + 1] = phase.time[i] + map.step * (13.0 / 24 * (f[i] + f[i + 1]) -
+                                                        1.0 / 24 * (f[i - 1] + f[i + 2]));
+    }
+}
+
+template <class T>
+void set_phase_time(PhaseTime<T>& phase, const PhaseRate<T>& rate) {
+    phase.rate = rate;
+    set_phase_map<T>(phase.map, rate.kappa, sqrt(rate.d0 / (rate.d1 * rate.amplitude2 + rate.d0)));
+    integrate_quarter(phase);
+    const auto is_endless = phase.map.quarter > largest_finite;
+    if (any(is_endless)) {
+        const T high = phase.quarter_turn.high;
+        phase.quarter_turn.high = is_endless ? filled<T>(infinity) : high;
+        phase.quarter_turn.low = is_endless ? T{} : phase.quarter_turn.low;
+    }
+    phase.half_turn = {2 * phase.quarter_turn.high, 2 * phase.quarter_turn.low};
+}
+
+// Where a motion is after a time of at most a full swing, and the way there.
+template <class T>
+struct PhaseMove {
+    Place<T> to;
+    PhaseWay<T> way;
+};
+
+// Newton's method: the way is integrated to a first guess, and extended by what is missing. The
+// last step is so small that its square is below rounding, or the place does not show it.
+template <class T>
+PhaseMove<T> move(const PhaseTime<T>& phase, const Place<T>& from, T time) {
+    constexpr double smallest_step = 3e-9;
+    constexpr double largest_step = 0.5;
+    constexpr int most_steps = 60;
+    // To places that are doubles themselves, so that the way and the place it leads to agree.
+    const auto to_double = [&](T distance) { return (from.offset + distance) - from.offset; };
+    T distance = to_double(rough_distance(phase, from, time));
+    auto [way, slope] = way_between(phase, from.quarters, from.offset, from.offset + distance);
+    auto open = time == time;
+    for (int i = 0; i < most_steps; ++i) {
+        const T missing = (time - way.time) / slope.time;
+        const T step = max<T>(min<T>(missing, filled<T>(largest_step)), filled<T>(-largest_step));
+        const T begin = from.offset + distance;
+        const T least =
+            max<T>(smallest_step * min<T>(abs(distance), filled<T>(1.0)), epsilon * abs(begin));
+        const auto is_last = open & (abs(step) <= least);
+        way.angle = is_last ? way.angle + step * slope.angle : way.angle;
+        way.path = is_last ? way.path + step * slope.path : way.path;
+        open = open & (abs(step) > least);
+        const T next = to_double(distance + step);
+        const T after = open ? next : distance;
+        distance = is_last ? distance + step : after;
+        if (!any(open)) break;
+        const WayTo<T> more = way_between(phase, from.quarters, begin, from.offset + after);
+        way.time = open ? way.time + more.way.time : way.time;
+        way.angle = open ? way.angle + more.way.angle : way.angle;
+        way.path = open ? way.path + more.way.path : way.path;
+        slope.time = open ? more.end.time : slope.time;
+        slope.angle = open ? more.end.angle : slope.angle;
+        slope.path = open ? more.end.path : slope.path;
+    }
+    way.time = time;
+    return {moved(phase.map, from, distance), way};
+}
+
+}  // namespace
+}  // namespace rolling_ellipse

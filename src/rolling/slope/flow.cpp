@@ -1,0 +1,254 @@
+#include "rolling/slope/flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rolling/slope/runs/reader.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+// Least number of half turns of a climb that is computed as a sum.
+constexpr double least_climb = 16;
+// Half turns computed by series before a sum takes over. A sum over less would lose digits.
+constexpr double half_turns_before_a_run = 1;
+
+SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega) {
+    const double s = body.side * view.sin;
+    SlopePlace place{};
+    place.omega = body.side * omega * body.time;
+    if (std::abs(s) <= view.cos) {
+        place.angle = {std::atan2(s, view.cos), 0.0};
+    } else {
+        place.quarters = std::copysign(1.0, s);
+        place.angle = {-std::copysign(std::atan2(view.cos, std::abs(s)), s), 0.0};
+    }
+    return place;
+}
+
+const SlopePlace& first_of_pieces(const SlopeFlow& flow) { return flow.pieces.front().from; }
+
+bool climbs_for_ever(const SlopeFlow& flow) {
+    return flow.climb && flow.climbed == most_half_turns && !flow.pieces.empty();
+}
+
+bool is_followed(const SlopeFlow& flow) {
+    return flow.kind == MotionKind::libration || flow.run || climbs_for_ever(flow);
+}
+
+// Time at which the pieces end.
+double known_until(const SlopeFlow& flow) {
+    return flow.pieces.empty() ? 0.0 : flow.pieces.back().end();
+}
+
+// The place at which the series begin: the start, or the end of a climb's sum.
+SlopePlace begin(SlopeFlow& flow) {
+    const SlopePlace& start = flow.start;
+    if (start.omega == 0) flow.turnings.push_back(start.time);
+    if (start.omega >= 0) return start;
+    const double n = may_run(flow.body, flow.energy.start, geometry(flow.body, start), start.omega);
+    if (n < least_climb) return start;
+    SlopePlace at = start;
+    while (start.quarters - at.quarters <= 2 * half_turns_before_a_run) {
+        flow.foot.push_back(piece_from(flow.body, at));
+        at = place_after(flow.body, flow.energy, flow.foot.back());
+    }
+    flow.climb = slope_run(flow.body, start, flow.energy.start, n);
+    flow.climbed = n;
+    return place_after(*flow.climb, n);
+}
+
+SlopePlace circle_at(const SlopeFlow& flow, double t) {
+    SlopePlace place = flow.start;
+    const double way = t * (flow.start.omega + 0.5 * flow.acceleration * t);
+    place.time = {t, 0.0};
+    place.angle = place.angle + two_product(t, flow.start.omega) +
+                  two_product(0.5 * flow.acceleration * t, t);
+    place.omega += flow.acceleration * t;
+    place.path = {flow.body.long_axis * way, 0.0};
+    return place;
+}
+
+SlopePlace place_in_pieces(const std::vector<SlopePiece>& pieces, DoubleDouble time) {
+    const double t = double(time);
+    const auto later = std::upper_bound(
+        pieces.begin(), pieces.end(), t,
+        [](double at, const SlopePiece& piece) { return at < double(piece.from.time); });
+    const SlopePiece& piece = later == pieces.begin() ? *later : later[-1];
+    return place_in(piece, double(time - piece.from.time));
+}
+
+// Between the first turning point and the mirrored start the motion is read backwards.
+SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
+    if (!flow.turnings.empty()) {
+        const DoubleDouble turning = flow.turnings.front();
+        const DoubleDouble mirrored = turning * 2.0 - time;
+        const bool is_later = double(mirrored - turning) < 0;
+        if (is_later && double(mirrored - first_of_pieces(flow).time) > 0) {
+            SlopePlace place = place_in_pieces(flow.pieces, mirrored);
+            place.omega = -place.omega;
+            return place;
+        }
+    }
+    return place_in_pieces(flow.pieces, time);
+}
+
+// The next piece begins at the end of the last one; after a turning point it begins at the reversed
+// start, which series beside the rim of a well would miss.
+SlopePlace next_place(const SlopeFlow& flow) {
+    const SlopePiece& last = flow.pieces.back();
+    const bool turned =
+        flow.turnings.size() == 1 && double(flow.turnings.front() - last.from.time) > 0;
+    if (!turned) return place_after(flow.body, flow.energy, last);
+    SlopePlace place = first_of_pieces(flow);
+    place.time = flow.turnings.front() * 2.0 - place.time;
+    place.omega = -place.omega;
+    return place;
+}
+
+// Rocking is symmetric about both of its turning points.
+SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
+    const DoubleDouble first = flow.turnings[0];
+    const DoubleDouble last = flow.turnings[1];
+    const DoubleDouble half = last - first;
+    const DoubleDouble since = -last + t;
+    if (double(since) <= 0) return place_about_turning(flow, {t, 0.0});
+    const double swings = std::floor(double(since) / double(half));
+    const DoubleDouble rest = since - half * swings;
+    const bool back = std::fmod(swings, 2.0) == 0;
+    SlopePlace place = place_about_turning(flow, back ? last - rest : first + rest);
+    if (back) place.omega = -place.omega;
+    return place;
+}
+
+// Reads places of a moving body; keeps the readers of its sums from time to time.
+class SlopeReader {
+  public:
+    explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
+
+    SlopePlace operator()(double t) {
+        const double time = t / flow_.body.time;
+        if (flow_.kind == MotionKind::uniform) return circle_at(flow_, time);
+        if (flow_.kind == MotionKind::libration) return place_in_swing(flow_, time);
+        if (flow_.climb && time < double(first_of_pieces(flow_).time)) {
+            if (time < flow_.foot.back().end()) return place_in_pieces(flow_.foot, {time, 0.0});
+            return read(climb_, *flow_.climb, time);
+        }
+        if (flow_.run && time > known_until(flow_)) return read(run_, *flow_.run, time);
+        return place_about_turning(flow_, {time, 0.0});
+    }
+
+  private:
+    static SlopePlace read(std::optional<RunReader>& reader, const SlopeRun& run, double time) {
+        if (!reader) reader.emplace(run);
+        return (*reader)({time, 0.0});
+    }
+
+    const SlopeFlow& flow_;
+    std::optional<RunReader> climb_;
+    std::optional<RunReader> run_;
+};
+
+}  // namespace
+
+SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x) {
+    omega = zero_if_negligible(omega);
+    SlopeFlow flow{};
+    flow.theta = theta;
+    flow.omega = omega;
+    flow.x = x;
+    flow.body = slope_body(body, slope);
+    flow.start = first_place(flow.body, flat_view(body.axes(), theta), omega);
+    flow.energy = energy_of(flow.body, flow.start);
+    flow.kind = MotionKind::rotation;
+    const bool balanced = is_equilibrium(geometry(body.axes(), theta), std::tan(slope));
+    if (omega == 0 && balanced) flow.kind = MotionKind::rest;
+    if (flow.body.c2 == 0) {
+        const double radius = flow.body.long_axis;
+        flow.acceleration =
+            flow.body.gravity.along * radius / (flow.body.gyration2 + square(radius));
+        const bool moves = omega != 0 || flow.acceleration > 0;  // may underflow to 0
+        flow.kind = moves ? MotionKind::uniform : MotionKind::rest;
+    }
+    return flow;
+}
+
+bool grow(SlopeFlow& flow) {
+    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return false;
+    if (is_followed(flow)) return false;
+    const SlopePlace from = flow.pieces.empty() ? begin(flow) : next_place(flow);
+    if (!flow.downhill && from.omega > 0) {
+        const Geometry here = geometry(flow.body, from);
+        const Tracked w = energy_at(flow.body, flow.energy, from, here);
+        const double at_least = w.value - 8 * epsilon * w.magnitude;
+        if (may_run(flow.body, at_least, here, from.omega) > 0) flow.downhill = from;
+    }
+    if (flow.downhill && from.quarters - flow.downhill->quarters > 2 * half_turns_before_a_run) {
+        flow.run =
+            slope_run(flow.body, *flow.downhill, energy_at(flow, *flow.downhill), most_half_turns);
+        return false;
+    }
+    flow.pieces.push_back(piece_from(flow.body, from));
+    const DoubleDouble turning = time_of_turning(flow.pieces.back());
+    if (turning.high < infinity) flow.turnings.push_back(turning);
+    if (flow.turnings.size() == 2) flow.kind = MotionKind::libration;
+    return true;
+}
+
+void prepare(SlopeFlow& flow, double t) {
+    flow.until = std::max(flow.until, t / flow.body.time);
+    if (flow.pieces.empty() && !grow(flow)) return;
+    while (known_until(flow) <= flow.until && grow(flow)) continue;
+}
+
+FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {
+    const SlopeBody& body = flow.body;
+    const DoubleDouble turned =
+        half_pi_exact * (place.quarters - flow.start.quarters) + (place.angle - flow.start.angle);
+    return {double(turned * body.side + flow.theta), body.side * place.omega / body.time,
+            double(place.path * (body.side * body.length) + flow.x)};
+}
+
+FlowSample sample(const SlopeFlow& flow, double t) {
+    FlowSample found;
+    sample(flow, &t, 1, &found);
+    return found;
+}
+
+void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
+    SlopeReader place_at(flow);
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool starts = flow.kind == MotionKind::rest || times[i] == 0;
+        samples[i] = starts ? FlowSample{flow.theta, flow.omega, flow.x}
+                            : sample_of(flow, place_at(times[i]));
+    }
+}
+
+double longest_time(const SlopeFlow& prepared) {
+    constexpr double most = most_half_turns;
+    const double unit = prepared.body.time;
+    if (prepared.kind == MotionKind::uniform) {
+        const double speed = std::abs(prepared.start.omega);
+        const double turned = most * pi;
+        const double last = std::sqrt(square(speed) + 2 * prepared.acceleration * turned);
+        return unit * (2 * turned / (speed + last));
+    }
+    if (prepared.kind == MotionKind::libration) {
+        return unit * most * double(prepared.turnings[1] - prepared.turnings[0]);
+    }
+    if (climbs_for_ever(prepared)) return unit * double(first_of_pieces(prepared).time);
+    if (!prepared.run) return infinity;
+    return unit * double(prepared.run->from.time + time_of(*prepared.run, most));
+}
+
+double energy_at(const SlopeFlow& flow, const SlopePlace& at) {
+    return energy_at(flow.body, flow.energy, at, geometry(flow.body, at)).value;
+}
+
+std::optional<double> period(const SlopeFlow& prepared) {
+    if (prepared.kind == MotionKind::rest) return infinity;
+    if (prepared.kind != MotionKind::libration) return std::nullopt;
+    return prepared.body.time * double((prepared.turnings[1] - prepared.turnings[0]) * 2.0);
+}
+
+}  // namespace rolling_ellipse

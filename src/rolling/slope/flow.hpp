@@ -1,0 +1,64 @@
+// Exact rolling on a slope: the state at any time.
+//
+// The motion is a chain of power series in time (`pieces`), and neither its cost nor its error
+// grows with the time:
+// * the motion after a turning point mirrors the motion before it, so that the series continue from
+//   the reversed start at twice the time of the first turning point;
+// * a body that rocks between two turning points repeats the series up to the second one;
+// * a climb of many half turns is one sum (`climb`) except for its first half turn (`foot`), and
+//   the series continue near its top;
+// * a body that runs downhill for good is one sum (`run`) after its first half turn.
+#pragma once
+
+#include <optional>
+
+#include "rolling/level/flow.hpp"
+#include "rolling/slope/runs/run.hpp"
+
+namespace rolling_ellipse {
+
+struct SlopeFlow {
+    MotionKind kind;  // `uniform` for a circle, which accelerates evenly; `rotation` until two
+                      // turning points are found
+    double theta;
+    double omega;
+    double x;
+    SlopeBody body;
+    // All members below are in units of the body.
+    double acceleration;  // of a circle
+    SlopePlace start;
+    SlopeEnergy energy;
+    std::vector<SlopePiece> foot;  // first half turn of a climb, where a sum loses digits
+    std::optional<SlopeRun> climb;
+    double climbed;  // half turns
+    std::vector<SlopePiece> pieces;
+    std::vector<DoubleDouble> turnings;  // times of the first two turning points
+    std::optional<SlopePlace> downhill;  // first place from which it runs downhill for good
+    std::optional<SlopeRun> run;
+    double until;  // time up to which `prepare` was asked for
+};
+
+// A body that rolls on a slope other than 0.
+SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega, double x);
+
+// Extend the pieces until the motion is known up to a time [s].
+void prepare(SlopeFlow& flow, double t);
+
+// Append one piece; false if the rest of the motion is known without more pieces.
+bool grow(SlopeFlow& flow);
+
+// The state at a prepared time in [0, longest_time]; the states at n times, fastest if ascending.
+FlowSample sample(const SlopeFlow& flow, double t);
+void sample(const SlopeFlow& flow, const double* times, std::size_t n, FlowSample* samples);
+FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
+
+// Time of 1e15 half turns or swings; infinite if the motion was not prepared for that many.
+double longest_time(const SlopeFlow& prepared);
+
+// W = D omega^2/2 at a place.
+double energy_at(const SlopeFlow& flow, const SlopePlace& at);
+
+// Time of a full swing [s]; empty if the motion does not repeat, infinite at rest.
+std::optional<double> period(const SlopeFlow& prepared);
+
+}  // namespace rolling_ellipse

@@ -1,0 +1,212 @@
+#include "rolling/slope/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/bisect.hpp"
+
+namespace rolling_ellipse {
+namespace {
+
+bool at_tip(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
+
+// The nearest flat position or tip.
+void normalize(SlopePlace& place) {
+    const double over = std::nearbyint(place.angle.high / half_pi);
+    if (over == 0) return;
+    place.quarters += over;
+    place.angle = place.angle - half_pi_exact * over;
+}
+
+// h times the moment of gravity about the contact, per unit mass. Next to an equilibrium the
+// difference of its terms would be a rounding: it is the product of physics (62) wherever there is
+// one on the slope.
+double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, double c) {
+    if (!body.equilibria) {
+        const double h2 = square(body.short_axis) + body.c2 * square(s);
+        return body.gravity.along * h2 - body.gravity.into * body.c2 * s * c;
+    }
+    const double over_lying = double(at.angle + -body.equilibria->lying);
+    const double over_upright = double(at.angle + -body.equilibria->upright);
+    return at_tip(at.quarters) ? body.pull * std::sin(over_upright) * std::cos(over_lying)
+                               : -body.pull * std::sin(over_lying) * std::cos(over_upright);
+}
+
+}  // namespace
+
+std::optional<Equilibria> equilibria(double long_axis, double short_axis, double incline) {
+    // A quadratic equation in the tangent of the angle, whose product of roots is known.
+    const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
+    const double both = 2 * long_axis * short_axis * incline;
+    const double root = (c2 - both) * (c2 + both);
+    if (root <= 0) return std::nullopt;
+    const double sum = c2 + std::sqrt(root);
+    return Equilibria{std::atan2(2 * square(short_axis) * incline, sum),
+                      -std::atan2(2 * square(long_axis) * incline, sum)};
+}
+
+SlopeBody slope_body(const Body& from, double slope) {
+    const Axes axes = from.axes();
+    const double long_axis = std::max(axes.a, axes.b);
+    SlopeBody body{};
+    body.length = std::ldexp(1.0, std::ilogb(long_axis));
+    body.time = std::ldexp(1.0, std::ilogb(long_axis / from.gravity) >> 1);
+    body.side = slope < 0 ? -1.0 : 1.0;
+    body.long_axis = long_axis / body.length;
+    body.short_axis = std::min(axes.a, axes.b) / body.length;
+    body.c2 = (body.long_axis - body.short_axis) * (body.long_axis + body.short_axis);
+    body.gyration2 = from.gyration2 / body.length / body.length;
+    const double gravity = from.gravity / body.length * body.time * body.time;
+    body.gravity = ground_gravity(gravity, std::abs(slope));
+    body.equilibria =
+        equilibria(body.long_axis, body.short_axis, body.gravity.along / body.gravity.into);
+    body.pull = gravity * body.c2;
+    const double s2 = square(body.short_axis);
+    const double l2 = square(body.long_axis);
+    body.series = {s2,
+                   l2,
+                   body.c2,
+                   body.gravity,
+                   s2 * (body.gyration2 + s2),
+                   body.c2 * (body.gyration2 + l2 + s2)};
+    body.slowest = std::sqrt(gravity * body.long_axis / (body.gyration2 + s2));
+    body.quarter_path = path_from_flat(body.long_axis, body.short_axis, 1.0, 0.0);
+    body.gain = body.gravity.along * 2 * body.quarter_path;
+    return body;
+}
+
+Geometry geometry(const SlopeBody& body, double quarters, double angle) {
+    const double s = std::sin(angle);
+    const double c = std::cos(angle);
+    const Axes axes{body.long_axis, body.short_axis};
+    return at_tip(quarters) ? geometry(axes, c, -s) : geometry(axes, s, c);
+}
+
+double path_at(const SlopeBody& body, double quarters, double angle) {
+    const double s = std::sin(std::abs(angle));
+    const double c = std::cos(angle);
+    const double over = at_tip(quarters) ? path_from_tip(body.long_axis, body.short_axis, s, c)
+                                         : path_from_flat(body.long_axis, body.short_axis, s, c);
+    return std::fma(quarters, body.quarter_path, std::copysign(over, angle));
+}
+
+Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to) {
+    const auto difference = [](double x, double y) {
+        return tracked(square(x)) - tracked(square(y));
+    };
+    const bool by_tips =
+        std::abs(from.cos) + std::abs(to.cos) < std::abs(from.sin) + std::abs(to.sin);
+    return tracked(body.c2 / (from.h + to.h)) *
+           (by_tips ? difference(to.cos, from.cos) : difference(from.sin, to.sin));
+}
+
+SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start) {
+    const Geometry at = geometry(body, start);
+    return {0.5 * inertia_about_contact(body.gyration2, at) * square(start.omega), at};
+}
+
+Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
+                  const Geometry& here) {
+    const double gained = body.gravity.along * double(at.path);
+    return tracked(energy.start) + tracked(gained) +
+           tracked(body.gravity.into) * fall(body, energy.at, here);
+}
+
+SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
+    const double s = std::sin(double(from.angle));
+    const double c = std::cos(double(from.angle));
+    SlopePiece piece{};
+    piece.from = from;
+    piece.unit = 1 / std::max(std::abs(from.omega), body.slowest);
+    SlopeConstants constants = body.series;
+    constants.gravity.into *= square(piece.unit);
+    constants.gravity.along *= square(piece.unit);
+    const bool tip = at_tip(from.quarters);
+    const double sin = tip ? c : s;
+    const double cos = tip ? -s : c;
+    const double drive = square(piece.unit) * gravity_drive(body, from, sin, cos);
+    piece.series = slope_series(constants, sin, cos, from.omega * piece.unit, drive);
+    piece.lasts = piece.unit * std::min(reach(piece.series.omega), reach(piece.series.path));
+    return piece;
+}
+
+SlopePlace place_in(const SlopePiece& piece, double since) {
+    const double z = since / piece.unit;
+    SlopePlace place = piece.from;
+    place.time = place.time + since;
+    place.angle = place.angle + value(piece.series.angle, z);
+    place.path = place.path + value(piece.series.path, z);
+    place.omega = value(piece.series.omega, z) / piece.unit;
+    normalize(place);
+    return place;
+}
+
+double angle_in(const SlopePiece& piece, double since) {
+    return double(piece.from.angle) + value(piece.series.angle, since / piece.unit);
+}
+
+double acceleration_in(const SlopePiece& piece, double since) {
+    return derivative(piece.series.omega, since / piece.unit) / square(piece.unit);
+}
+
+namespace {
+
+// The time since the begin of the piece at which it turns back; infinite if it does not.
+double turning_in(const SlopePiece& piece) {
+    const double before = piece.from.omega;
+    const auto turned = [&](double since) {
+        return value(piece.series.omega, since / piece.unit) * before <= 0;
+    };
+    if (before == 0 || std::isinf(piece.lasts) || !turned(piece.lasts)) return infinity;
+    return bisect(0.0, piece.lasts, turned).high;
+}
+
+}  // namespace
+
+DoubleDouble time_of_turning(const SlopePiece& piece) {
+    const double since = turning_in(piece);
+    return since < infinity ? piece.from.time + since : DoubleDouble{infinity, 0.0};
+}
+
+// A piece may pass the tip and come back: what counts is the way to where it turns.
+double time_of_tip(const SlopePiece& piece) {
+    const double until = std::min(piece.lasts, turning_in(piece));
+    if (std::isinf(until)) return infinity;
+    const double from = double(piece.from.angle);
+    const double to = angle_in(piece, until);
+    double first = infinity;
+    for (const double tip : {-half_pi, 0.0, half_pi}) {
+        const bool is_tip = (tip == 0) == at_tip(piece.from.quarters);
+        if (!is_tip || std::abs(from - tip) <= equal_ulps * epsilon) continue;
+        if ((from < tip) == (to < tip)) continue;
+        const auto passed = [&](double since) {
+            return (angle_in(piece, since) < tip) != (from < tip);
+        };
+        first = std::min(first, double(piece.from.time + bisect(0.0, until, passed).high));
+    }
+    return first;
+}
+
+SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece) {
+    constexpr double well_known = 0.1;  // share of W in the terms it is the sum of
+    SlopePlace place = place_in(piece, piece.lasts);
+    const Geometry here = geometry(body, place);
+    const Tracked w = energy_at(body, energy, place, here);
+    if (w.value > well_known * w.magnitude) {
+        const double inertia = inertia_about_contact(body.gyration2, here);
+        place.omega = std::copysign(std::sqrt(2 * w.value / inertia), place.omega);
+    }
+    return place;
+}
+
+// Physics (18, 20), as RollingDynamics has them for a scene.
+ContactForce contact_force(const SlopeBody& body, const SlopePlace& place) {
+    const Geometry at = geometry(body, place);
+    const double omega2 = square(place.omega);
+    const double drive = at.h * body.gravity.along - at.dh * (body.gravity.into + at.rho * omega2);
+    const double turning = drive / inertia_about_contact(body.gyration2, at);
+    return {body.gravity.into + at.dh * turning + at.ddh * omega2,
+            at.h * turning + at.dh * omega2 - body.gravity.along};
+}
+
+}  // namespace rolling_ellipse

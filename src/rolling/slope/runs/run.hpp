@@ -1,0 +1,90 @@
+// Many half turns down or up a slope, at a cost that does not depend on their number.
+//
+// From one half turn to the next W = D omega^2/2, a function of the angle, grows by the constant w.
+// Hence n half turns take, physics (59),
+//     T(n) = int sqrt(D/2) sum_(j<n) (W + j w)^(-1/2) dphi   over one half turn.
+// The sum is a difference of Hurwitz zeta functions, computed by the Euler-Maclaurin formula. The
+// integrand has complex singularities beside the flat position, where D = 0, and beside the place
+// of the least W; panels are graded towards both as in physics (31).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "numerics/quadrature.hpp"
+#include "rolling/slope/motion.hpp"
+
+namespace rolling_ellipse {
+
+// Gauss rule of a part of a panel, where the integrand is the polynomial through its nodes.
+inline constexpr int part_order = 16;
+inline const GaussRule& part_rule() { return gauss_rule(part_order); }
+
+// Nodes of Gauss rules: weight times sqrt(D/2), and W in the first half turn.
+struct RunNodes {
+    std::vector<double> weight;
+    std::vector<double> level;
+};
+
+// The first terms of the sum of (W + j w)^(-1/2), and the level W + j w at which the
+// Euler-Maclaurin formula takes over.
+struct FirstRates {
+    double count;  // of terms
+    double sum;
+    double level;
+    double root;       // of the level
+    double remainder;  // of the formula at the level
+};
+
+// The coordinate v of a panel: tan((phi - centre)/scale) = grade sinh(v), first <= v <= last. The
+// integral over the whole panel has one Gauss rule, an integral over a part of it the finer rules
+// of its parts.
+struct RunPanel {
+    double quarters;  // of the centre, with its angle
+    double angle;
+    double scale;
+    double grade;
+    double first;
+    double last;
+    std::size_t begin;  // its nodes
+    std::size_t end;
+    std::size_t part;  // its first part
+    int parts;
+};
+
+struct SlopeRun {
+    SlopeBody body;
+    SlopePlace from;
+    double turns;    // whole half turns before `from`, in quarters
+    double heading;  // +1 downhill, -1 uphill
+    double path;     // at `from`, counted from the flat position at `turns`
+    Geometry at;     // at `from`
+    double energy;   // W at `from`
+    std::vector<RunPanel> panels;
+    RunNodes nodes;
+    RunNodes part_nodes;
+    std::vector<FirstRates> first;  // one a node, downhill
+    double mass;                    // sum of all weights
+    double half_turn;               // time of the first half turn
+    double half_turns;              // largest number that may be asked for
+};
+
+// The run from a place: uphill for as many half turns as `may_run` allows, downhill for any number.
+SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy, double half_turns);
+
+// Largest number of half turns; the phase of more is lost in the rounding of their number.
+inline constexpr double most_half_turns = 1e15;
+
+// Half turns from a place, in its direction, during which W is large enough beside w for the sum.
+double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega);
+
+// Time of n half turns.
+DoubleDouble time_of(const SlopeRun& run, double half_turns);
+
+// The place at v in a panel during the half turn after the first n.
+SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns);
+
+// The place after n half turns.
+SlopePlace place_after(const SlopeRun& run, double half_turns);
+
+}  // namespace rolling_ellipse

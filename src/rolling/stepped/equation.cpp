@@ -1,0 +1,88 @@
+#include "rolling/stepped/equation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rolling_ellipse {
+RollingEquation::RollingEquation(const Body& body, double slope)
+    : axes_(body.axes()),
+      turned_{{square(body.a), square(body.b), (body.a - body.b) * (body.a + body.b)},
+              {square(body.b), square(body.a), (body.b - body.a) * (body.b + body.a)}},
+      gyration2_(body.gyration2),
+      gravity_(ground_gravity(body.gravity, slope)),
+      long_axis_(std::max(body.a, body.b)) {}
+
+// physics (19), with D' = 2 h' rho and rho' = -3 rho h'/h.
+Matrix<2> RollingEquation::jacobian(double, const Vector<2>& y) const {
+    const Geometry at = geometry(axes_, y[0]);
+    const double omega = y[1];
+    const double inertia = inertia_about_contact(gyration2_, at);
+    const double load = gravity_.into + at.rho * omega * omega;
+    const double rho_derivative = -3 * at.rho * at.dh / at.h;
+    const double by_theta = at.dh * gravity_.along - at.ddh * load -
+                            at.dh * rho_derivative * omega * omega -
+                            2 * at.dh * at.rho * acceleration(at.sin, at.cos, omega);
+    const double by_omega = -2 * at.dh * at.rho * omega;
+    Matrix<2> jacobian;
+    jacobian << 0.0, 1.0, by_theta / inertia, by_omega / inertia;
+    return jacobian;
+}
+
+// physics (17)
+SpecificEnergy RollingEquation::energy(const Geometry& at, double omega, double x) const {
+    return {0.5 * inertia_about_contact(gyration2_, at) * omega * omega,
+            gravity_.into * at.h - gravity_.along * x};
+}
+
+RollingDynamics::RollingDynamics(const Scene& scene)
+    : equation_(scene.body(), scene.slope), mass_(scene.mass), gravity_(scene.ground_gravity()) {}
+
+RollingDynamics::Accelerations RollingDynamics::accelerations(const Geometry& at,
+                                                              double omega) const {
+    const double omega2 = omega * omega;
+    const double omega_dot = equation_.acceleration(at.sin, at.cos, omega);
+    return {omega_dot, at.h * omega_dot + at.dh * omega2, at.dh * omega_dot + at.ddh * omega2};
+}
+
+ContactForce RollingDynamics::force(const Accelerations& of_centre) const {
+    return {mass_ * (gravity_.into + of_centre.z), mass_ * (of_centre.x - gravity_.along)};
+}
+
+ContactForce rolling_force(const Scene& scene, double theta, double omega) {
+    return RollingDynamics(scene).force(geometry(scene.axes(), theta), omega);
+}
+
+// The multipliers of the gradients of f1 ... f4: lambda1 = F, lambda2 = N, and from the rows of psi
+// and r, which carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3.
+// At the contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
+Eigen::Vector4d contact_multipliers(const Coordinates& q, const ContactForce& force) {
+    const double offset = q[coordinate::psi] - q[coordinate::theta];
+    return {force.friction, force.normal, force.normal * std::cos(offset), 0.0};
+}
+
+SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, double psi,
+                                       double omega, double omega_dot) {
+    const double psi_dot = contact_angle_rate(axes, at) * omega;
+    const double psi_ddot =
+        contact_angle_rate(axes, at) * omega_dot + contact_angle_second(axes, at) * omega * omega;
+    return {psi_ddot, polar_radius_derivative(axes, psi) * psi_ddot +
+                          polar_radius_second(axes, psi) * psi_dot * psi_dot};
+}
+
+RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
+    const Axes axes = scene.axes();
+    const Geometry at = geometry(axes, theta);
+    const RollingDynamics dynamics(scene);
+    const RollingDynamics::Accelerations acceleration = dynamics.accelerations(at, omega);
+
+    RollingDetail detail;
+    detail.state = kinematics(axes, theta, omega);
+    const SecondRates rates = contact_point_second_rates(axes, at, detail.state.q[coordinate::psi],
+                                                         omega, acceleration.theta);
+    detail.q_ddot << acceleration.x, acceleration.z, acceleration.theta, rates.psi, rates.r;
+    detail.force = dynamics.force(acceleration);
+    detail.multipliers = contact_multipliers(detail.state.q, detail.force);
+    return detail;
+}
+
+}  // namespace rolling_ellipse
