@@ -3,8 +3,8 @@
 On a quiet machine, with `pip install '.[test,peers]'`, gfortran (for numbalsoda), g++ and Boost's
 headers; it takes about an hour, and everything is then of one commit and one machine:
 
-    races      docs/peers_*.json, by tests/benchmarks/bench_peers.py
-    batches    docs/batches.json, by tests/benchmarks/bench_batches.py
+    races      docs/peers_*.json, by benchmarks/bench_peers.py
+    batches    docs/batches.json, by benchmarks/bench_batches.py
     pictures   docs/*.png and *.gif, by docs/make_pictures.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
     text       the marked parts of README.md, from the files of the first two
@@ -29,7 +29,7 @@ from rolling_ellipse import WorkPrecision
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 README = ROOT / "README.md"
-BENCHMARKS = ROOT / "tests" / "benchmarks"
+BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 MOTIONS = {"R": "rolling over, {:g} half turns", "L": "rocking, {:g} half swings"}
 STAMPS = {"commit": ", at commit", "peers": ", beside"}

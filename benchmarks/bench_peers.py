@@ -1,4 +1,4 @@
-"""The package beside other people's integrators: python tests/benchmarks/bench_peers.py
+"""The package beside other people's integrators: python benchmarks/bench_peers.py
 
 Who is installed takes part (the extra "peers"; Boost.odeint needs g++ and its headers), who is
 missing is named. Everybody integrates theta, omega and x with compiled right-hand sides, from a

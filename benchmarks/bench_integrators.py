@@ -1,4 +1,4 @@
-"""What integration costs, and buys: python tests/benchmarks/bench_integrators.py
+"""What integration costs, and buys: python benchmarks/bench_integrators.py
 
 Every case is run once in each of many rounds, one after the other; least and median time are kept.
 Machines differ and so does their load: compare the ratios of one run. SciPy and numba are peers

@@ -1,6 +1,6 @@
 """What single calls cost: the least of many interleaved rounds, and its ratio to the first line.
 
-    python tests/benchmarks/bench_calls.py [rounds]
+    python benchmarks/bench_calls.py [rounds]
 
 The core's own share stands beside: what is left is Python's. Import times are those of new
 interpreters, as they come and with NumPy alone.

@@ -1,4 +1,4 @@
-"""What a step costs in five coordinates: python tests/benchmarks/bench_multipliers.py
+"""What a step costs in five coordinates: python benchmarks/bench_multipliers.py
 
 Each method takes the same fixed steps of the model "rolling" (first line of its table: one degree
 of freedom) and of the model "multipliers" with every stabilization it has. As in bench_flow.py

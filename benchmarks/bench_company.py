@@ -1,6 +1,6 @@
 """What company costs: long calls beside a busy Python thread.
 
-    python tests/benchmarks/bench_company.py
+    python benchmarks/bench_company.py
 
 A call that computes asks Python for signals every 50 ms, for which it has to wait until the busy
 thread hands the GIL over, after 5 ms. It shares the processor with that thread, too: on one core

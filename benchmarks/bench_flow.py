@@ -1,4 +1,4 @@
-"""What exact rolling costs, as ratios within one run: python tests/benchmarks/bench_flow.py
+"""What exact rolling costs, as ratios within one run: python benchmarks/bench_flow.py
 
 Machines differ and so does their load: every case is timed once in each of many rounds, one after
 the other, and the least time of each is kept. Only ratios (to the first line of a table) of one

@@ -1,6 +1,6 @@
 """Judge `simulate(model="contact")` by random scenes, followed by make_contact_reference.py.
 
-    python tests/reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
+    python reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
 
 Half an hour to an hour on two cores. A file that is there is gone on with; `--only 17` judges one
 scene of a seed and prints all of its values, `--family well` draws of one family, `--report` only

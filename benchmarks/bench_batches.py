@@ -1,4 +1,4 @@
-"""What many motions cost in files: python tests/benchmarks/bench_batches.py
+"""What many motions cost in files: python benchmarks/bench_batches.py
 
 Figures to plan a large run by: time of one core and bytes for a motion, exact or with slips and
 jumps, and what processes of a pool write side by side.

@@ -1,4 +1,4 @@
-"""What a motion with impacts, slip and flight costs: python tests/benchmarks/bench_contact.py
+"""What a motion with impacts, slip and flight costs: python benchmarks/bench_contact.py
 
 Each scene has about ten events. `simulate` is timed beside SciPy's solve_ivp (DOP853) with terminal
 events, started anew after each of them; both give the events, and theta, omega, x, z at the same
