@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from common import machine
 from rolling_ellipse import simulate_many
-from rolling_ellipse._work_precision.machine import machine
 
 ROUNDS = 3
 T_END = 3.0  # [s]

@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 import rolling_ellipse
 from bench_integrators import Cases, Run, interleaved, peer
+from common import machine
 from rolling_ellipse import EventKind, Mode, Scene, certify, simulate
-from rolling_ellipse._work_precision.machine import machine
 
 DROPPED: dict[str, Any] = {"z": 2.5, "theta": 0.3, "omega": 8.0, "restitution": 0.5}
 ON_A_SLOPE: dict[str, Any] = {"slope": 0.1, "omega": -2.0}

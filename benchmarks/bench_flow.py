@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 import rolling_ellipse
+from common import machine
 from rolling_ellipse import Scene, flow, period, thresholds
-from rolling_ellipse._work_precision.machine import machine
 
 REPEATS = 200  # calls in one timing of a scalar case: some milliseconds, far above the clock
 STATES = 2000  # motions in one timing of a set-up through arrays

@@ -19,9 +19,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import rolling_ellipse
+from common import machine
 from rolling_ellipse import Scene, flow, period, simulate
 from rolling_ellipse._core import rolling_equation
-from rolling_ellipse._work_precision.machine import machine
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
 import make_rolling_reference as reference

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 import rolling_ellipse
 from bench_flow import Cases, R, interleaved, print_table
+from common import machine
 from rolling_ellipse import Scene, simulate
-from rolling_ellipse._work_precision.machine import machine
 
 STEPS = 4000  # some milliseconds: starting a simulation and one sample are a hundredth of it
 STEP = 2.0**-8  # [s]; 422 in half a turn

@@ -112,7 +112,7 @@ def speed() -> str:
     stamp = f"Least of {on['rounds']} rounds on {on['processor']}, {on['vectors']}, {on['date']}"
     beside = "".join(f"{word} {on[of]}" for of, word in STAMPS.items() if of in on)
     told = [line for line in drawn.verdict().splitlines() if line[0] != " "]
-    verdict = "\n".join(f"* {line}" for line in told[1:] if not line.startswith("time of"))
+    verdict = "\n".join(f"* {line}" for line in told[1:])
     table = "\n".join(lines)
     return f"{told[0]}\n\n{verdict}\n\n{table}\n\n{stamp}{beside}.\n"
 

@@ -253,7 +253,7 @@ class Clock:
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     made = Clock()
-    for module in ("race", "laps", "truth"):
+    for module in ("race", "timing", "truth"):
         monkeypatch.setattr(f"rolling_ellipse._work_precision.{module}.time", made)
     return made
 
@@ -372,7 +372,7 @@ def test_everybody_runs_at_the_coarsest_setting(clock: Clock) -> None:
 
 def test_the_dearest_take_part_in_fewer_rounds() -> None:
     """10 s for 10 rounds: what costs 1 ms has all of them, what costs 2 s a few."""
-    from rolling_ellipse._work_precision.laps import _shares
+    from rolling_ellipse._work_precision.timing import _shares
 
     assert _shares([1e-3, 2.0, 0.5], 10, 10.0) == [10, 2, 9]
     assert _shares([1e-3, 2.0], 10, 100.0) == [10, 10]
