@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from textwrap import wrap
+from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .._check import shown
 from .._work_precision.results import ERRORS, NOT_RUN, OF_STATES, require_quantity
-from .._work_precision.verdict import beyond, end_alone
+from .._work_precision.verdict import end_alone
 from .artists import Artists
 from .axes import axes_of, leaving_no_figure
 from .margin import label_ends
@@ -96,41 +96,32 @@ def draw(
             continue
         look = looks[members[0].name]
         lines[key] = ax.plot([p[0] for p in points], [p[1] for p in points], ms=4, mew=0, **look)[0]
-        across, time, best = min(points, key=lambda point: point[0])
+        at, time, best = min(points, key=lambda point: point[0])
         if y == "time" and best.setup > 0.1 * time:
-            hollow = look | {"ls": "", "mfc": palette_of(ax).background, "mew": 0.8, "zorder": 2.5}
-            setups[key] = ax.plot([across], [time + best.setup], ms=4.5, **hollow)[0]
+            hollow = look | {"ls": "", "mfc": palette_of(ax).background}
+            setups[key] = ax.plot([at], [time + best.setup], ms=4.5, mew=0.8, **hollow)[0]
     floor = attainable = None
     if x in OF_STATES:
-        reference = next(r for r in found.references if r.t_end == runs[-1].t_end)
-        own, least = reference.limits(x)
-        grey = palette_of(ax).grey
+        own, least = found.judged_by(runs[-1].t_end).limits(x)
         if least > 0:
-            attainable = ax.axvline(least, color=grey, lw=1, ls="--", zorder=1)
+            attainable = ax.axvline(least, color=palette_of(ax).grey, lw=1, ls="--", zorder=1)
         if own > 0:
-            first = min(own, ax.get_xlim()[0])
-            floor = ax.axvspan(first, own, color=grey, alpha=0.18, lw=0, zorder=0)
+            across = min(own, ax.get_xlim()[0]), own
+            floor = ax.axvspan(*across, color=palette_of(ax).grey, alpha=0.18, lw=0, zorder=0)
     if x in ERRORS:
         ax.invert_xaxis()
     failures, why = _rim(ax, groups, looks, x)
-    late = {
-        key: made
-        for key, members in groups.items()
-        if len(made := [run for run in members if run.status != NOT_RUN]) < len(members)
-    }
+    late = [key for key, members in groups.items() if NOT_RUN in {run.status for run in members}]
     if late:
-        who = (_title(key) if spans else f"{key} {beyond(made)}" for key, made in late.items())
-        why += wrap(f"→ not run, for want of time: {', '.join(who)}", _LINE)
+        why.append("→ finer settings were not run, for want of time")
     alone = end_alone(runs) if x == "largest" else []
     titles = {
         key: _title(key) + " (end alone)" * (groups[key][0].name in alone) + " →" * (key in late)
         for key in lines
     }
     names = label_ends(ax, {key: (line, titles[key]) for key, line in lines.items()}, own_figure)
-    machine = dict.fromkeys(_STAMP, "?") | found.machine
-    told = wrap(
-        ", ".join(f"{name} {machine[name]}" for name in _STAMP), _LINE, break_on_hyphens=False
-    )
+    facts = ", ".join(f"{name} {found.machine.get(name, '?')}" for name in _STAMP)
+    told = wrap(facts, _LINE, break_on_hyphens=False)
     if attainable or floor:
         why.append(_LIMITS)
     reasons = _below(ax, why, 0)
@@ -172,8 +163,7 @@ def _place(found: WorkPrecision, run: Run, quantity: str) -> float:
     value = run.value(quantity)
     if quantity not in ERRORS or math.isnan(value):
         return value
-    reference = next(each for each in found.references if each.t_end == run.t_end)
-    floor = reference.limits(quantity)[0] if quantity in OF_STATES else 0.0
+    floor = found.judged_by(run.t_end).limits(quantity)[0] if quantity in OF_STATES else 0.0
     return min(max(value, floor or _LEAST), _MOST)
 
 
@@ -196,7 +186,7 @@ def _rim(
             transform=across, clip_on=False, zorder=5, scalex=False, scaley=False,
         )[0]  # fmt: skip
         count = f", {len(runs)} runs" if len(runs) > 1 else ""
-        reason = wrap(runs[0].reason, 100, max_lines=1, placeholder=" …")[0]
+        reason = shorten(runs[0].reason, _LINE, placeholder=" …")
         lines.append(f"× {_title(key)}{count}: {runs[0].status}, {reason}")
     if len(lines) > _REASONS:
         lines = [*lines[: _REASONS - 1], f"… and {len(lines) - _REASONS + 1} more"]

@@ -154,7 +154,7 @@ class WorkPrecision:
 
     def of(self, t_end: float | None = None) -> tuple[Run, ...]:
         """Return the runs to one end [s]."""
-        end = self._reference(t_end).t_end
+        end = self.judged_by(t_end).t_end
         return tuple(run for run in self.runs if run.t_end == end)
 
     def best(
@@ -214,7 +214,7 @@ class WorkPrecision:
         """
         from .verdict import verdict
 
-        return verdict(self, self._reference(t_end), DECADES)
+        return verdict(self, self.judged_by(t_end), DECADES)
 
     def plot(
         self, x: str = "largest", y: str = "time", tags: Sequence[str] | None = None,
@@ -286,11 +286,12 @@ class WorkPrecision:
         if require_quantity("x", x) not in ERRORS:
             raise ValueError(f"x must be an error, one of {', '.join(ERRORS)}, got {x!r}")
         require_quantity("y", y)
-        floor = self._reference(t_end).limits(x)[0] if x in OF_STATES else 0.0
+        floor = self.judged_by(t_end).limits(x)[0] if x in OF_STATES else 0.0
         runs = [run for run in self.of(t_end) if run.completed and not math.isnan(run.value(y))]
         return [run for run in runs if max(run.value(x), floor) <= at]
 
-    def _reference(self, t_end: float | None) -> Reference:
+    def judged_by(self, t_end: float | None) -> Reference:
+        """Return what the runs to one end [s] were judged by."""
         ends = [reference.t_end for reference in self.references]
         if t_end is not None and t_end not in ends:
             listed = ", ".join(map(repr, ends))

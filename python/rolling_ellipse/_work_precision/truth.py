@@ -121,14 +121,15 @@ class Judge:
         for name, value in numbers.items():
             if time.perf_counter() > deadline:
                 return np.full(times.size, math.nan)
-            change = _CHANGE * (1.0 if name == "theta" else value)
+            share = _CHANGE * max(1.0, abs(value)) if name == "theta" else _CHANGE
+            change = share if name == "theta" else share * value
             sides = []
             for changed in (value + change, value - change):
                 with suppress(ValueError):  # as friction or the ground forbid it
                     sides.append(motion(numbers | {name: changed}, times))
             if sides:
                 apart = self._apart(sides[0], [*sides, middle][1])
-                known += _ROUNDING / (len(sides) * _CHANGE) * apart
+                known += _ROUNDING / (len(sides) * share) * apart
         largest: FloatArray = np.max(known, axis=0)
         return largest
 

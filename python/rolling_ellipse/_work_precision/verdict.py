@@ -47,11 +47,6 @@ def end_alone(runs: Sequence[Run]) -> list[str]:
     return list(dict.fromkeys(alone))
 
 
-def beyond(made: Sequence[Run]) -> str:
-    """Say how far a way was run."""
-    return f"beyond {made[-1].setting:.0e}" if made else "at all"
-
-
 def _leaders(runs: Sequence[Run], table: Table, opened: dict[float, bool]) -> Iterator[str]:
     """Yield the fastest at each stretch of decades, and below it who follows by which factors."""
     methods = {run.name: (run.model, run.method) for run in runs}
@@ -96,7 +91,8 @@ def _without_answer(runs: Sequence[Run]) -> list[str]:
         whole = len(made) == len(found)
         if not whole:
             so_far = f" ({_time(answers[-1].time)} a call so far)" if answers else ""
-            late.append(f"{name} was not run {beyond(made)}: no time left{so_far}")
+            beyond = f"beyond {made[-1].setting:.0e}" if made else "at all"
+            late.append(f"{name} was not run {beyond}: no time left{so_far}")
         if made and not answers:
             so_far = "" if whole else " so far"
             lines.append(f"{name} reached nothing{so_far}: {made[0].status}, {made[0].reason}")
