@@ -31,11 +31,7 @@ _OF_MULTIPLIERS = (
 
 
 class Stopped(Exception):
-    """A run that has no answer; `status` says in which way."""
-
-    def __init__(self, status: str, reason: str) -> None:
-        super().__init__(reason)
-        self.status = status
+    """A run that has no answer: the name of its status, and the reason."""
 
 
 @dataclass(frozen=True)

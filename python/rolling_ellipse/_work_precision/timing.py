@@ -45,7 +45,7 @@ class Lap:
         try:
             self._run()
         except Stopped as stopped:
-            self.status, self.reason = stopped.status, str(stopped)
+            self.status, self.reason = stopped.args
         except ValueError as refusal:
             self.status, self.reason = "REFUSED", str(refusal)
         except Exception as failure:  # whatever a peer may raise

@@ -72,7 +72,13 @@ class Judge:
         final = float(np.max(self._apart(end, [column[-1] for column in self._truth])))
         if found is None:
             return Errors(final=final)
-        motion = found if isinstance(found, Trajectory) else self._rolling(found)
+        motion = found
+        if not isinstance(found, Trajectory):  # which knows what follows from states of rolling
+            motion = Trajectory(
+                self.times, *found, scene=self.scene, model="rolling", method="exact",
+                status=Status.COMPLETED, message="", reason="", valid_until=math.inf,
+                t_end=self.t_end, span=self.t_end, settings=DEFAULTS,
+            )  # fmt: skip
         off = self._apart((motion.theta, motion.omega, motion.x), self._truth)
         off = np.max(off, axis=0)[1:-1]
         positions, velocities = constraint_errors(motion)
@@ -84,14 +90,6 @@ class Judge:
             gap=float(np.fmax.reduce(positions["gap"])),
             slip=float(np.fmax.reduce(velocities["slip"])),
         )
-
-    def _rolling(self, columns: Columns) -> Trajectory:
-        """Return states of rolling as a Trajectory, which knows what follows from them."""
-        return Trajectory(
-            self.times, *columns, scene=self.scene, model="rolling", method="exact",
-            status=Status.COMPLETED, message="", reason="", valid_until=math.inf,
-            t_end=self.t_end, span=self.t_end, settings=DEFAULTS,
-        )  # fmt: skip
 
     def _apart(self, found: Any, exact: Any) -> FloatArray:
         """Return the differences of theta, omega and x, (3, n), each beside its size.

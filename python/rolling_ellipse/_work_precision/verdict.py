@@ -24,10 +24,8 @@ def verdict(found: WorkPrecision, reference: Reference, decades: Decades) -> str
     opened = {decade: found.not_run(decade, t_end=end) != () for decade in decades}
     floor, attainable = reference.limits("largest")
     limits = f"its own error {floor:.1e}; " if floor else ""
-    if math.isnan(attainable):
-        limits += "no time was left to find what is attainable"
-    else:
-        limits += f"attainable {attainable:.1e}"
+    unknown = "no time was left to find what is attainable"
+    limits += unknown if math.isnan(attainable) else f"attainable {attainable:.1e}"
     alone = end_alone(runs)
     but = f" (of {', '.join(alone)} at the end alone)" if alone else ""
     lines = [
