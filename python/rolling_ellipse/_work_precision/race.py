@@ -127,7 +127,7 @@ def work_precision(
         runs=tuple(lap.run() for lap in laps),
         references=tuple(judge.reference for judge in judges),
         machine={
-            "processor": platform.processor() or platform.machine(),
+            "processor": platform.machine(),
             "system": platform.platform(),
             **_core.build(),
             "python": platform.python_version(),
