@@ -17,6 +17,7 @@ from .._export.atomic import replacing
 from .results import Errors, Reference, Run, WorkPrecision
 
 _SCHEMA = 2
+_PARTS = ("scene", "machine", "references", "runs")
 _KINDS = {"float": "a number of at least 0", "int": "a count", "str": "a text"}
 
 
@@ -33,7 +34,8 @@ def read(path: str | os.PathLike[str]) -> WorkPrecision:
 
 
 def _about(found: WorkPrecision) -> Any:
-    return {"schema": _SCHEMA, **_plain(asdict(found))}
+    parts = _plain(asdict(found))
+    return {"schema": _SCHEMA, **{name: parts[name] for name in _PARTS}}
 
 
 def _plain(value: Any) -> Any:
@@ -49,7 +51,7 @@ def _plain(value: Any) -> Any:
 def _restored(text: str) -> WorkPrecision:
     """Return the race of a text, if it is just what is written of it."""
     about = parsed("the file", text)
-    require_names("the file", about, ("schema", *field_names(WorkPrecision)))
+    require_names("the file", about, ("schema", *_PARTS))
     if about["schema"] != _SCHEMA:
         raise ValueError(f"schema must be {_SCHEMA}, got {about['schema']!r}")
     for name in ("references", "runs"):
