@@ -111,15 +111,16 @@ def work_precision(
             raise ValueError(f"methods and peers must have names of their own, got {name!r} twice")
     known_by = time.perf_counter() + _KNOWING * seconds
     judges = [Judge(scene, end, samples, reference, known_by) for end in ends]
-    laps = []
+    ladders = []
     for judge in judges:
         settings = {TOLERANCES: rtols, STEPS: lengths or default_steps(scene, judge.t_end)}
         for contender in contenders:
-            ladder = settings[contender.ladder] if contender.ladder else [math.nan]
-            coarse_first = sorted(set(ladder), reverse=True)
-            laps += [Lap(contender, judge, setting) for setting in coarse_first]
+            rungs = settings[contender.ladder] if contender.ladder else [math.nan]
+            coarse_first = sorted(set(rungs), reverse=True)
+            ladders.append([Lap(contender, judge, setting) for setting in coarse_first])
+    laps = [lap for ladder in ladders for lap in ladder]
     with progress(len(laps) + rounds) as told:
-        spent = judge_all(laps, _JUDGING * seconds, told)
+        spent = judge_all(ladders, _JUDGING * seconds, told)
         left = seconds - min(spent, _JUDGING * seconds)  # one that took long takes none of it
         made = time_all(laps, rounds, left, told)
     return WorkPrecision(

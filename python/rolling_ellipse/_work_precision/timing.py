@@ -104,7 +104,7 @@ class Lap:
         )  # fmt: skip
 
 
-def judge_all(laps: Sequence[Lap], seconds: float, told: Told) -> float:
+def judge_all(ladders: Sequence[Sequence[Lap]], seconds: float, told: Told) -> float:
     """Judge the runs that `seconds` allow, and return the time spent on them [s].
 
     Every contender runs at its coarsest setting for each end. Then the next run is always one of
@@ -112,13 +112,11 @@ def judge_all(laps: Sequence[Lap], seconds: float, told: Told) -> float:
     an equal share of `seconds`, whatever the others have used, or within what they have left;
     otherwise it is not made, nor are finer ones. Set-up is not counted.
     """
-    ladders: dict[tuple[Contender, float], list[Lap]] = {}
-    for lap in laps:
-        ladders.setdefault((lap.contender, lap.judge.t_end), []).append(lap)
-    waiting = [(0.0, i, 0, ladder) for i, ladder in enumerate(ladders.values())]
+    waiting = [(0.0, i, 0) for i in range(len(ladders))]  # time with the next run, ladder, rung
     share, spent = seconds / len(waiting), 0.0
     while waiting:
-        total, i, rung, ladder = heapq.heappop(waiting)
+        total, i, rung = heapq.heappop(waiting)
+        ladder = ladders[i]
         lap, before = ladder[rung], sum(lap.cost for lap in ladder[:rung])
         expected, left = total - before, max(0.0, seconds - spent)
         if rung and total > share and expected >= left:
@@ -133,7 +131,7 @@ def judge_all(laps: Sequence[Lap], seconds: float, told: Told) -> float:
         if rung + 1 < len(ladder):
             power = 1.0 if lap.contender.ladder == STEPS else _POWER_OF_TOLERANCES
             next_cost = lap.cost * math.pow(lap.setting / ladder[rung + 1].setting, power)
-            heapq.heappush(waiting, (before + lap.cost + next_cost, i, rung + 1, ladder))
+            heapq.heappush(waiting, (before + lap.cost + next_cost, i, rung + 1))
     return spent
 
 
