@@ -3,8 +3,8 @@
 On a quiet machine, with `pip install '.[test,peers]'`, gfortran (for numbalsoda), g++ and Boost's
 headers; it takes about an hour, and everything is then of one commit and one machine:
 
-    races      docs/peers_*.json, by tests/benchmarks/bench_peers.py
-    batches    docs/batches.json, by tests/benchmarks/bench_batches.py
+    races      docs/peers_*.json, by benchmarks/bench_peers.py
+    batches    docs/batches.json, by benchmarks/bench_batches.py
     pictures   docs/*.png and *.gif, by docs/make_pictures.py
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
     text       the marked parts of README.md, from the files of the first two
@@ -29,7 +29,7 @@ from rolling_ellipse import WorkPrecision
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 README = ROOT / "README.md"
-BENCHMARKS = ROOT / "tests" / "benchmarks"
+BENCHMARKS = ROOT / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 MOTIONS = {"R": "rolling over, {:g} half turns", "L": "rocking, {:g} half swings"}
 STAMPS = {"commit": ", at commit", "peers": ", beside"}
@@ -112,7 +112,7 @@ def speed() -> str:
     stamp = f"Least of {on['rounds']} rounds on {on['processor']}, {on['vectors']}, {on['date']}"
     beside = "".join(f"{word} {on[of]}" for of, word in STAMPS.items() if of in on)
     told = [line for line in drawn.verdict().splitlines() if line[0] != " "]
-    verdict = "\n".join(f"* {line}" for line in told[1:] if not line.startswith("time of"))
+    verdict = "\n".join(f"* {line}" for line in told[1:])
     table = "\n".join(lines)
     return f"{told[0]}\n\n{verdict}\n\n{table}\n\n{stamp}{beside}.\n"
 

@@ -19,7 +19,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-RECORD = Path(__file__).resolve().parents[1] / "tests" / "benchmarks" / "hot_loops.json"
+RECORD = Path(__file__).resolve().parents[1] / "benchmarks" / "hot_loops.json"
 JOBS = (
     "exact flow, one state",
     "exact flow, a table and 1000 samples",

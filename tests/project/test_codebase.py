@@ -26,7 +26,7 @@ GENERATED = {
     ROOT / "src" / "numerics" / "gauss_legendre.hpp": ROOT / "tools" / "make_gauss_legendre.py",
     ROOT / "src" / "integrator" / "collocation.hpp": ROOT / "tools" / "make_collocation.py",
 }
-PYTHON_FOLDERS = ("python", "tests", "tools", "docs")
+PYTHON_FOLDERS = ("python", "tests", "tools", "docs", "benchmarks", "reference")
 BINDINGS = ROOT / "src" / "bindings"
 CORE = [path for path in SOURCES if path.parent != BINDINGS]
 # The order of the data: a folder includes only itself and those before it; "" is src itself.

@@ -244,6 +244,12 @@ RACES: list[Refusal] = [
     (r"^methods must be names, or mappings", race(methods=[1])),
     (r"^name of a method must be a string", race(methods=[{"model": "rolling", "name": 1}])),
     (r"^methods must be among 'flow'", race(methods=["x"])),
+    (r"^methods must be among 'flow'", race(methods=["multipliers/rk4/glue"])),
+    (r"^arguments of methods must be one of", race(methods=[{"speed": 1}])),
+    (r"^steps must be positive and finite", race(steps=[-1.0])),
+    (r"^samples must be at least 1, got 0", race(samples=0)),
+    (r"^rounds must be at least 1, got 0", race(rounds=0)),
+    (r"^max_seconds must be positive", race(max_seconds=0)),
     (r"^methods and peers must name at least one", race(methods=[])),
     (r"^methods and peers must have names of", race(methods=["exact", "exact"])),
     (r"^peers must have a name and a function", race(peers=[1])),
@@ -268,19 +274,12 @@ def of_run(**facts: Any) -> Callable[[Path], Any]:
     return raced(lambda known: known["runs"][0].update(facts))
 
 
-def negative_floor(known: Any) -> None:
-    known["references"][0]["floor"] = -1.0
-
-
 RACE_FILES: list[Refusal] = [
     (r"schema must be \d+, got 99", raced(lambda known: known.update(schema=99))),
     (r"runs must be a list that is not empty", raced(lambda known: known.update(runs=[]))),
-    (r"machine must hold names and values", raced(lambda known: known.update(machine=1))),
     (r"runs must end where the references do", of_run(t_end=9.0)),
     (r"it must hold what save writes", raced(lambda known: known["scene"].update(a=2))),
-    (r"tags must be a list", of_run(tags=1)),
-    (r"a reference must have numbers of", raced(negative_floor)),
-    (r"time must be a number, got 'x'", of_run(time="x")),
+    (r"time must be a number of at least 0, got 'x'", of_run(time="x")),
     (r"steps must be a count", of_run(steps=-1)),
     (r"status must be a text", of_run(status=1)),
 ]  # fmt: skip

@@ -5,20 +5,33 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from ..._ask.check import FloatArray, choice, shown
+from ..._ask.check import (
+    FloatArray,
+    choice,
+    shown,
+)
+from ..flow import (
+    arguments_of,
+    flow,
+    period,
+)
 from ..._ask.scene import Scene
-from ..._ask.settings import DEFAULTS, METHODS, MODELS, STABILIZATIONS, settings
+from ..._ask.settings import (
+    DEFAULTS,
+    METHODS,
+    MODELS,
+    STABILIZATIONS,
+    settings,
+)
+from ..simulate import sample_times
 from ..._motion.stability import advice
 from ..._motion.status import Status
 from ..._motion.trajectory import Trajectory
-from ..flow import arguments_of, flow, period
-from ..simulate import sample_times
 
-State = tuple[float, float, float]  # theta, omega, x
 TOLERANCES, STEPS = "tolerances", "steps"
 
 _RELATIVE = 100.0  # rtol over atol
@@ -31,48 +44,18 @@ _OF_MULTIPLIERS = (
 )  # fmt: skip
 
 
-class Peer(Protocol):
-    """Another program. It may also have `ladder` ("tolerances" or "steps") and `tags`."""
-
-    name: str
-
-    def prepare(self, scene: Scene, t_end: float, setting: float) -> Callable[[], Any]:
-        """Return a function of nothing that returns theta, omega, x at the end.
-
-        It may have `sample`, a function of sorted times that returns their arrays, and `counts`, a
-        mapping with "steps", "rejected" and "evaluations" of the last call. ValueError refuses.
-        """
-
-
 class Stopped(Exception):
-    """A run that has no answer; `status` says in which way."""
-
-    def __init__(self, status: str, reason: str) -> None:
-        super().__init__(reason)
-        self.status = status
-
-
-class Runner:
-    """A contender at one setting, ready to run; `advice` is that of `simulate` on its motion."""
-
-    advice = ""
-
-    def end(self) -> State:
-        """Return the state at the end: what is timed."""
-        raise NotImplementedError
-
-    def sampled(self, times: FloatArray) -> Trajectory | None:
-        """Return the motion at the times, if it can be had."""
-        raise NotImplementedError
-
-    def counts(self) -> Mapping[str, int]:
-        """Return steps, rejected steps and evaluations of the last call, where known."""
-        return {}
+    """A run that has no answer: the name of its status, and the reason."""
 
 
 @dataclass(frozen=True)
 class Contender:
-    """A way to compute a motion, over a ladder of settings (None: it has none)."""
+    """A way to compute a motion, over a ladder of settings (None: it has none).
+
+    `prepare(scene, t_end, setting)` returns a function of nothing that returns theta, omega, x at
+    the end. It may have `sample`, a function of times that returns a Trajectory or theta, omega, x;
+    `counts`, those of its last call; and `advice`, what should be known of its answer.
+    """
 
     name: str
     model: str
@@ -80,77 +63,55 @@ class Contender:
     stabilization: str
     ladder: str | None
     tags: tuple[str, ...]
-    prepare: Callable[[Scene, float, float], Runner]
+    prepare: Callable[[Scene, float, float], Any]
 
 
-# ------------------------------------------------------------------------ the package's own
-
-
-class _Flow(Runner):
+class _Flow:
     def __init__(self, scene: Scene, t_end: float, _: float) -> None:
         start = scene.initial_state
         if scene.slope or start.mode.name not in _HELD:
             raise ValueError("flow must be given a scene that rolls on level ground")
-        self.scene, self.x = scene, start.x
-        self.arguments, self.t_end = arguments_of(scene), t_end
+        self.x, self.t_end, self.arguments = start.x, t_end, arguments_of(scene)
 
-    def end(self) -> State:
+    def __call__(self) -> tuple[float, float, float]:
         theta, omega, x = flow(self.t_end, **self.arguments)
         return theta, omega, self.x + x
 
-    def sampled(self, times: FloatArray) -> Trajectory:
+    def sample(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         theta, omega, x = flow(times, **self.arguments)
-        return rolling_motion(self.scene, times, theta, omega, self.x + x)
+        return theta, omega, self.x + x
 
 
-class _Simulation(Runner):
+class _Simulation:
+    advice = ""
+
     def __init__(self, scene: Scene, t_end: float, arguments: dict[str, Any]) -> None:
         self.scene = replace(scene)  # a new one, whose own set-up is paid for again
         self.settings = tuple((DEFAULTS.__getstate__() | arguments).values())
         self.times = np.array([t_end])
-        self.last: Trajectory | None = None
 
-    def end(self) -> State:
-        motion = self._run(self.times)
+    def __call__(self) -> tuple[float, float, float]:
+        motion = self.sample(self.times)
         return float(motion.theta[0]), float(motion.omega[0]), float(motion.x[0])
 
-    def sampled(self, times: FloatArray) -> Trajectory:
-        return self._run(times)
-
-    def counts(self) -> Mapping[str, int]:
-        stats = self.last.stats if self.last else {}
-        return stats | {"rejected": stats.get("rejected_steps", 0)}
-
-    def _run(self, times: FloatArray) -> Trajectory:
+    def sample(self, times: FloatArray) -> Trajectory:
         """Do all that `simulate` does but warn."""
-        how = settings(*self.settings)
-        motion = Trajectory.computed(self.scene, how, sample_times(times))
+        motion = Trajectory.computed(self.scene, settings(*self.settings), sample_times(times))
         if motion.status is not Status.COMPLETED:
             raise Stopped(motion.status.name, motion.message)
         told = advice(motion)
         self.advice, self.last = self.advice or told or "", motion
         return motion
 
-
-def rolling_motion(scene: Scene, t: FloatArray, theta: Any, omega: Any, x: Any) -> Trajectory:
-    """Return states of rolling as a Trajectory, which knows what follows from them."""
-    return Trajectory(
-        t, theta, omega, x, scene=scene, model="rolling", method="exact", status=Status.COMPLETED,
-        message="", reason="", valid_until=math.inf, t_end=float(t[-1]), span=float(t[-1]),
-        settings=DEFAULTS,
-    )  # fmt: skip
+    @property
+    def counts(self) -> dict[str, int]:
+        return self.last.stats | {"rejected": self.last.stats.get("rejected_steps", 0)}
 
 
 def own_contenders(methods: Any, scene: Scene, rolls: bool) -> list[Contender]:
-    """Return those that are named, or those that suit a scene.
-
-    Raises
-    ------
-    ValueError, TypeError
-        If there is none, a name is unknown, or one comes twice.
-    """
+    """Return those that are named, or those that suit a scene."""
     if methods is None:
-        return [_own(spec) for spec in _suitable(scene, rolls)]
+        methods = _suitable(scene, rolls)
     if isinstance(methods, str):
         methods = (methods,)
     if not isinstance(methods, Sequence):
@@ -209,76 +170,34 @@ def _simulation(name: str, arguments: dict[str, Any]) -> Contender:
     model = choice("model", arguments.get("model", "rolling"), MODELS)
     method = choice("method", arguments.get("method", "auto"), METHODS)
     how = {"model": model, **arguments}
+    ladder: str | None = TOLERANCES if method in _PAIRS else STEPS
     if method == "exact" or model == "contact":
         ladder = None
-    else:
-        ladder = TOLERANCES if method in _PAIRS else STEPS
 
-    def prepare(scene: Scene, t_end: float, setting: float) -> Runner:
-        if ladder == TOLERANCES:
-            at: dict[str, Any] = {"rtol": setting, "atol": setting / _RELATIVE}
-        else:
-            at = {"step": setting} if ladder else {}
-        return _Simulation(scene, t_end, how | at)
+    def prepare(scene: Scene, t_end: float, setting: float) -> _Simulation:
+        at = {"rtol": setting, "atol": setting / _RELATIVE} if ladder == TOLERANCES else {}
+        return _Simulation(scene, t_end, how | at | ({"step": setting} if ladder == STEPS else {}))
 
     default = DEFAULTS.stabilization if model == "multipliers" else ""
     stabilization = str(arguments.get("stabilization", default))
     return Contender(name, model, method, stabilization, ladder, ("own", model), prepare)
 
 
-# -------------------------------------------------------------------------------------- peers
-
-
-class _PeerRunner(Runner):
-    def __init__(self, scene: Scene, run: Any) -> None:
-        self.scene, self.run = scene, run
-
-    def end(self) -> State:
-        theta, omega, x = self.run()
-        return float(theta), float(omega), float(x)
-
-    def sampled(self, times: FloatArray) -> Trajectory | None:
-        if not hasattr(self.run, "sample"):
-            return None
-        return rolling_motion(self.scene, times, *self.run.sample(times))
-
-    def counts(self) -> Mapping[str, int]:
-        return getattr(self.run, "counts", None) or {}
-
-
-def peer_contenders(peers: Any) -> list[Contender]:
-    """Return the contenders of peers.
-
-    Raises
-    ------
-    TypeError
-        If one has no name or cannot prepare.
-    """
-    return [_peer(peer) for peer in peers]
-
-
-def _peer(peer: Peer) -> Contender:
+def of_peer(peer: Any) -> Contender:
+    """Return the contender that is a peer; TypeError if it has no name or cannot prepare."""
     name = getattr(peer, "name", None)
     if not isinstance(name, str) or not callable(getattr(peer, "prepare", None)):
         raise TypeError(f"peers must have a name and a function prepare, got {shown(peer)}")
     ladder = choice(f"ladder of {name}", getattr(peer, "ladder", TOLERANCES), (TOLERANCES, STEPS))
-    tags = tuple(str(tag) for tag in getattr(peer, "tags", ()))
+    tags = dict.fromkeys(["peer", *(str(tag) for tag in getattr(peer, "tags", ()))])
 
-    def prepare(scene: Scene, t_end: float, setting: float) -> Runner:
+    def prepare(scene: Scene, t_end: float, setting: float) -> Any:
         run = peer.prepare(scene, t_end, setting)
         if not callable(run):
             raise TypeError(f"prepare of {name} must return a function, got {shown(run)}")
-        return _PeerRunner(scene, run)
+        return run
 
-    own_tags = ("peer", *(tag for tag in tags if tag != "peer"))
-    return Contender(name, "rolling", name, "", ladder, own_tags, prepare)
-
-
-# ------------------------------------------------------------------------------------ ladders
-
-
-def default_tolerances() -> list[float]:
-    return [10.0**-k for k in range(2, 15)]
+    return Contender(name, "rolling", name, "", ladder, tuple(tags), prepare)
 
 
 def default_steps(scene: Scene, t_end: float) -> list[float]:

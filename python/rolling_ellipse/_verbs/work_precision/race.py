@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 import math
+import platform
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from datetime import date
+from importlib.metadata import version
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from ..._ask.check import array, positive, shown, whole_within
-from ..._ask.scene import Scene, require_scene
-from .contenders import (
-    STEPS,
-    TOLERANCES,
-    Contender,
-    default_steps,
-    default_tolerances,
-    own_contenders,
-    peer_contenders,
+from ... import _core
+from ..._ask.check import (
+    array,
+    positive,
+    shown,
+    whole_within,
 )
-from .laps import Lap, judge_all, time_all
-from .machine import machine
-from .progress import Progress
+from ..._ask.scene import (
+    Scene,
+    require_scene,
+)
+from .contenders import STEPS, TOLERANCES, default_steps, of_peer, own_contenders
 from .results import WorkPrecision
+from .timing import Lap, judge_all, progress, time_all
 from .truth import Judge, Truth, rolls_for_certain
 
 _MOST = 1_000_000  # rounds, samples
@@ -32,18 +35,11 @@ _JUDGING = 0.6  # share of max_seconds in which every run is made once
 
 
 def work_precision(
-    scene: Scene,
-    t_end: float | Sequence[float],
-    *,
-    methods: Sequence[Any] | None = None,
-    tolerances: Sequence[float] | None = None,
-    steps: Sequence[float] | None = None,
-    samples: int = 64,
-    rounds: int = 20,
-    max_seconds: float = 60.0,
-    peers: Sequence[Any] = (),
+    scene: Scene, t_end: float | Sequence[float], *, methods: Sequence[Any] | None = None,
+    tolerances: Sequence[float] | None = None, steps: Sequence[float] | None = None,
+    samples: int = 64, rounds: int = 20, max_seconds: float = 60.0, peers: Sequence[Any] = (),
     reference: Truth | None = None,
-) -> WorkPrecision:
+) -> WorkPrecision:  # fmt: skip
     """Compute one motion in many ways, and hold the errors reached against the times taken.
 
     Every way is tried at every setting of its ladder. Each run is judged once, against the exact
@@ -86,10 +82,6 @@ def work_precision(
         theta, omega, x at increasing times, in any arithmetic, from elsewhere: without it, exact
         rolling, or the contact motion, by whose own error nothing else can be judged.
 
-    Returns
-    -------
-    WorkPrecision
-
     Raises
     ------
     ValueError, TypeError
@@ -101,78 +93,63 @@ def work_precision(
     Equations I, 2nd ed., Springer 1993, II.10.
     """
     require_scene(scene)
-    ends = _increasing("t_end", t_end)
-    ladders = {
-        TOLERANCES: _ladder("tolerances", tolerances) or default_tolerances(),
-        STEPS: _ladder("steps", steps),
-    }
+    ends = _numbers("t_end", t_end, "a time or increasing times [s]")
+    if any(after <= before for before, after in pairwise(ends)):
+        raise ValueError(f"t_end must be a time or increasing times [s], got {shown(t_end)}")
+    rtols = [10.0**-k for k in range(2, 15)]
+    if tolerances is not None:
+        rtols = _numbers("tolerances", tolerances, "a sequence of positive numbers")
+    lengths = [] if steps is None else _numbers("steps", steps, "a sequence of positive numbers")
     samples = whole_within("samples", samples, _MOST)
     rounds = whole_within("rounds", rounds, _MOST)
     seconds = positive("max_seconds", max_seconds)
     if reference is not None and not callable(reference):
         raise TypeError(f"reference must be a function of times or None, got {shown(reference)}")
-    rivals = peer_contenders(_listed("peers", peers))
-    contenders = [*own_contenders(methods, scene, rolls_for_certain(scene)), *rivals]
-    _require_apart(contenders)
-    known_by = time.perf_counter() + _KNOWING * seconds
-    judges = [Judge(scene, end, samples, reference, known_by) for end in ends]
-    laps = [
-        Lap(contender, judge, setting)
-        for judge in judges
-        for contender, setting in _rungs(contenders, ladders, scene, judge.t_end)
-    ]
-    with Progress(len(laps) + rounds) as progress:
-        spent = judge_all(laps, scene, _JUDGING * seconds, progress)
-        left = seconds - min(spent, _JUDGING * seconds)  # one that took long takes none of it
-        made = time_all(laps, rounds, left, progress)
-    return WorkPrecision(
-        scene=scene,
-        runs=tuple(lap.run() for lap in laps),
-        references=tuple(judge.reference for judge in judges),
-        machine=machine() | {"rounds": str(made)},
-    )
-
-
-def _rungs(
-    contenders: Sequence[Contender], ladders: dict[str, list[float]], scene: Scene, t_end: float
-) -> Iterator[tuple[Contender, float]]:
-    """Yield the settings of every contender, all from coarse to fine."""
-    at = ladders | {STEPS: ladders[STEPS] or default_steps(scene, t_end)}
-    for contender in contenders:
-        for setting in at[contender.ladder] if contender.ladder else [math.nan]:
-            yield contender, setting
-
-
-def _ladder(name: str, values: Any) -> list[float]:
-    """Return settings from coarse to fine; none where there are to be the defaults."""
-    if values is None:
-        return []
-    found = np.atleast_1d(array(name, values))
-    if found.ndim != 1 or found.size == 0:
-        raise ValueError(f"{name} must be a sequence of positive numbers, got {shown(values)}")
-    for value in found.tolist():
-        positive(name, value)
-    return sorted(set(found.tolist()), reverse=True)
-
-
-def _increasing(name: str, values: Any) -> list[float]:
-    found = np.atleast_1d(array(name, values))
-    if found.ndim != 1 or found.size == 0 or np.any(np.diff(found) <= 0):
-        raise ValueError(f"{name} must be a time or increasing times [s], got {shown(values)}")
-    return [positive(name, value) for value in found.tolist()]
-
-
-def _listed(name: str, values: Any) -> list[Any]:
     try:
-        return list(values)
+        rivals = list(peers)
     except TypeError:
-        raise TypeError(f"{name} must be a sequence, got {shown(values)}") from None
-
-
-def _require_apart(contenders: Sequence[Contender]) -> None:
+        raise TypeError(f"peers must be a sequence, got {shown(peers)}") from None
+    contenders = own_contenders(methods, scene, rolls_for_certain(scene))
+    contenders += [of_peer(peer) for peer in rivals]
     names = [contender.name for contender in contenders]
     if not names:
         raise ValueError("methods and peers must name at least one way to compute, got none")
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"methods and peers must have names of their own, got {name!r} twice")
+    known_by = time.perf_counter() + _KNOWING * seconds
+    judges = [Judge(scene, end, samples, reference, known_by) for end in ends]
+    ladders = []
+    for judge in judges:
+        settings = {TOLERANCES: rtols, STEPS: lengths or default_steps(scene, judge.t_end)}
+        for contender in contenders:
+            rungs = settings[contender.ladder] if contender.ladder else [math.nan]
+            coarse_first = sorted(set(rungs), reverse=True)
+            ladders.append([Lap(contender, judge, setting) for setting in coarse_first])
+    laps = [lap for ladder in ladders for lap in ladder]
+    with progress(len(laps) + rounds) as told:
+        spent = judge_all(ladders, _JUDGING * seconds, told)
+        left = seconds - min(spent, _JUDGING * seconds)  # one that took long takes none of it
+        made = time_all(laps, rounds, left, told)
+    return WorkPrecision(
+        scene=scene,
+        runs=tuple(lap.run() for lap in laps),
+        references=tuple(judge.reference for judge in judges),
+        machine={
+            "processor": platform.machine(),
+            "system": platform.platform(),
+            **_core.build(),
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "rolling_ellipse": version("rolling-ellipse"),
+            "date": date.today().isoformat(),
+            "rounds": str(made),
+        },
+    )
+
+
+def _numbers(name: str, values: Any, what: str) -> list[float]:
+    found = np.atleast_1d(array(name, values))
+    if found.ndim != 1 or found.size == 0:
+        raise ValueError(f"{name} must be {what}, got {shown(values)}")
+    return [positive(name, value) for value in found.tolist()]

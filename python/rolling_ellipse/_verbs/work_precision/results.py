@@ -1,18 +1,22 @@
-"""All runs of a race, and what can be asked of them."""
+"""What a race gave: runs, what they were judged by, and what can be asked of them."""
 
 from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..._ask.check import number, shown
-from ..._ask.printing import Row, html_table
+from ..._ask.check import (
+    number,
+    shown,
+)
+from ..._ask.printing import (
+    Row,
+    html_table,
+)
 from ..._ask.scene import Scene
-from . import files, words
-from .run import DECADES, ERRORS, NOT_RUN, OF_STATES, Run, require_quantity
-from .truth import Reference
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,10 +26,111 @@ if TYPE_CHECKING:
 
     from ..._pictures.work_precision import WorkPrecisionChart
 
+DECADES = tuple(10.0**-k for k in range(2, 15))
+COMPLETED, NOT_RUN = "COMPLETED", "NOT_RUN"
+ERRORS = ("largest", "final", "l2", "linf", "energy", "gap", "slip")
+OF_STATES = ERRORS[:4]
+FIGURES = (
+    "setting", "time", "samples_time", "setup", "spread", "steps", "rejected", "evaluations",
+    "t_end",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Errors(Mapping[str, float]):
+    """By how much a run is off; attributes and items alike, NaN where it has no such answer.
+
+    An error of the state is the largest of |theta| [rad], |omega| over the largest |omega| of the
+    motion, and |x| over the longer semi-axis. `largest` is that at the samples and the end, or at
+    the end alone of a run that gives no samples. Gap and slip are of a body that touches and does
+    not slide, over the longer semi-axis, and over that and the largest |omega|.
+    """
+
+    final: float = math.nan  # of the state at the end
+    l2: float = math.nan  # root mean square of the states at the sample times
+    linf: float = math.nan  # largest of the states at the sample times
+    energy: float = math.nan  # largest change over |kinetic| + |potential|
+    gap: float = math.nan  # largest distance from the ground
+    slip: float = math.nan  # largest velocity of the contact along the ground
+
+    @property
+    def largest(self) -> float:
+        return self.final if math.isnan(self.linf) else max(self.final, self.linf)
+
+    def __getitem__(self, name: str) -> float:
+        if name not in ERRORS:
+            raise KeyError(name)
+        value: float = getattr(self, name)
+        return value
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(ERRORS)
+
+    def __len__(self) -> int:
+        return len(ERRORS)
+
+
+@dataclass(frozen=True)
+class Run:
+    """One way to compute a motion at one setting: what it cost, and how far it was off."""
+
+    name: str
+    model: str  # model, method and stabilization of `simulate`; of a peer "rolling", its name, ""
+    method: str
+    stabilization: str
+    setting: float  # relative tolerance, or step [s]; NaN of what has none
+    errors: Errors
+    time: float  # least of a call that returns the state at the end [s]
+    setup: float  # what a new scene costs before, the first call's longer time included [s]
+    spread: float  # median of the times over the least, less 1; NaN of a single timing
+    steps: int  # of that call, as the next two; 0 where unknown
+    rejected: int
+    evaluations: int  # of the right-hand side
+    status: str  # "COMPLETED", a name of `Status`, "REFUSED", "FAILED"; "NOT_RUN" for want of time
+    reason: str  # why it has no answer, or what should be known of the one that it has
+    tags: tuple[str, ...]  # "own" or "peer", and what else it is
+    samples_time: float  # of a call that returns the states at all sample times [s]
+    t_end: float  # [s]
+
+    @property
+    def completed(self) -> bool:
+        """Whether there is an answer."""
+        return self.status == COMPLETED
+
+    def value(self, quantity: str) -> float:
+        """Return one of its errors or figures by name."""
+        return float(self.errors[quantity] if quantity in ERRORS else getattr(self, quantity))
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What the runs up to one end are judged by.
+
+    `attainable` is what a relative change of 2.2e-16 of every number of the scene, one after the
+    other, does to the state at the end, and two units in its last place: nobody who computes with
+    doubles can promise less. It is NaN where there was no time to find out.
+    """
+
+    name: str  # where the truth comes from
+    t_end: float  # [s]
+    floor: float  # its own error, as a `final` error: smaller ones cannot be told apart
+    attainable: float
+    growth: float = 1.0  # factor of both at the worst of the sample times over the end; at least 1
+
+    def limits(self, error: str) -> tuple[float, float]:
+        """Return floor and attainable for an error of the state, by its name."""
+        factor = 1.0 if error == "final" else self.growth
+        return factor * self.floor, factor * self.attainable
+
 
 @dataclass(frozen=True, repr=False)
 class WorkPrecision:
     """Runs of many ways to compute one motion; made by `work_precision`.
+
+    In its methods `x` is the name of an error, `y` of what it costs: "largest", "final", "l2",
+    "linf", "energy", "gap", "slip"; "time", "samples_time", "setup", "spread", "steps", "rejected",
+    "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by default the last; any
+    other is refused by ValueError.
 
     Attributes
     ----------
@@ -35,7 +140,7 @@ class WorkPrecision:
     references : tuple of Reference
         What the runs were judged by, one for each end.
     machine : dict of str
-        Processor and its vectors, compiler and flags, versions, date, rounds made.
+        Processor, compiler and flags, versions, date, rounds made.
     """
 
     scene: Scene
@@ -54,14 +159,8 @@ class WorkPrecision:
         return tuple(dict.fromkeys(run.name for run in self.runs))
 
     def of(self, t_end: float | None = None) -> tuple[Run, ...]:
-        """Return the runs to one end [s], by default the last.
-
-        Raises
-        ------
-        ValueError
-            If there are none.
-        """
-        end = self._reference(t_end).t_end
+        """Return the runs to one end [s]."""
+        end = self.judged_by(t_end).t_end
         return tuple(run for run in self.runs if run.t_end == end)
 
     def best(
@@ -69,16 +168,9 @@ class WorkPrecision:
     ) -> Run | None:
         """Return the run that takes least among those with an error of at most `at`, or None.
 
-        Parameters
-        ----------
-        at : float
-            Largest error allowed; one of the state below the reference's own counts as that.
-        x, y : str
-            The error, and what is to be least.
-        t_end : float, optional
-            Which end [s]; default the last.
+        An error of the state below the reference's own counts as that.
         """
-        able = self._able(_positive("at", at), x, y, t_end)
+        able = self._able(at, x, y, t_end)
         return min(able, key=lambda run: run.value(y), default=None)
 
     def least(
@@ -86,40 +178,27 @@ class WorkPrecision:
     ) -> dict[str, float]:
         """Return for each way that reaches an error of at most `at` the least it takes, by name."""
         found: dict[str, float] = {}
-        for run in self._able(_positive("at", at), x, y, t_end):
+        for run in self._able(at, x, y, t_end):
             found[run.name] = min(found.get(run.name, math.inf), run.value(y))
         return found
 
     def not_run(
         self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> tuple[str, ...]:
-        """Return the ways that have not reached an error of at most `at`, but were not run at all
-        their settings for want of time, by name."""
+        """Return the names of the ways that have not reached an error of at most `at`, but were not
+        run at all their settings for want of time."""
         reached = self.least(at, x=x, y=y, t_end=t_end)
-        runs = [run for run in self.of(t_end) if run.status == NOT_RUN and run.name not in reached]
-        return tuple(dict.fromkeys(run.name for run in runs))
+        late = dict.fromkeys(run.name for run in self.of(t_end) if run.status == NOT_RUN)
+        return tuple(name for name in late if name not in reached)
 
     def unbeaten(
-        self,
-        margin: float = 1.2,
-        *,
-        x: str = "largest",
-        y: str = "time",
+        self, margin: float = 1.2, *, x: str = "largest", y: str = "time",
         t_end: float | None = None,
-    ) -> dict[str, tuple[float, ...]]:
-        """Return the ways that no other beats by more than `margin`, with the errors where so.
+    ) -> dict[str, tuple[float, ...]]:  # fmt: skip
+        """Return by name the decades of the error, 1e-2 … 1e-14, at which a way is unbeaten.
 
-        Errors at which another way has settings that were not run (`not_run`) are left out.
-
-        Parameters
-        ----------
-        margin : float
-            A time up to so many times the least is not beaten; at least 1.
-
-        Returns
-        -------
-        dict
-            By name, those of the decades 1e-2 … 1e-14 at which it is unbeaten.
+        No other is faster by more than `margin`, at least 1. Decades at which another way has
+        settings that were not run (`not_run`) are left out.
         """
         if not number("margin", margin) >= 1:
             raise ValueError(f"margin must be at least 1, got {margin!r}")
@@ -139,79 +218,54 @@ class WorkPrecision:
         Judged is the largest error of the state, at the samples and at the end. A way is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
         """
-        return words.verdict(self, self._reference(t_end))
+        from .verdict import verdict
+
+        return verdict(self, self.judged_by(t_end), DECADES)
 
     def plot(
-        self,
-        x: str = "largest",
-        y: str = "time",
-        tags: Sequence[str] | None = None,
-        ax: Axes | None = None,
-        *,
-        t_end: float | None = None,
-    ) -> WorkPrecisionChart:
-        """Draw one quantity of the runs over another, both on logarithmic axes.
+        self, x: str = "largest", y: str = "time", tags: Sequence[str] | None = None,
+        ax: Axes | None = None, *, t_end: float | None = None,
+    ) -> WorkPrecisionChart:  # fmt: skip
+        """Draw one quantity of the runs over another, both on logarithmic axes; return the artists.
 
         Every run is drawn, joined along its ladder; those without an answer are on the rim, with
-        their reasons below. The name of a line that ends for want of time has an arrow.
+        their reasons below. The name of a line that ends for want of time has an arrow. Over
+        "t_end" runs to all ends are drawn, joined at equal settings.
 
         Parameters
         ----------
         x, y : str
-            "largest", "final", "l2", "linf", "energy", "gap", "slip" of the errors; "time",
-            "samples_time", "setup", "spread", "steps", "rejected", "evaluations", "setting" or
-            "t_end".
+            What is drawn.
         tags : sequence of str, optional
             Draw runs with one of these tags (or names) only.
         ax : matplotlib Axes, optional
             Where to draw; without it, in a new pyplot figure with a stamp of the machine.
-        t_end : float, optional
-            Which end [s]; default the last. Over "t_end" all are drawn, joined at equal settings.
-
-        Returns
-        -------
-        WorkPrecisionChart
-            The artists.
         """
         from ..._pictures.work_precision import draw
 
         return draw(self, x, y, tags, ax, t_end)
 
     def to_dataframe(self) -> DataFrame:
-        """Return a pandas DataFrame with a row for each run.
-
-        Raises
-        ------
-        ImportError
-            Without pandas: it comes with ``rolling_ellipse[data]``.
-        """
+        """Return a pandas DataFrame, of ``rolling_ellipse[data]``, with a row for each run."""
         from ..._motion.export.tables import required
 
         pandas = required("pandas", "to_dataframe")
-        rows = []
-        for run in self.runs:
-            row = asdict(run)
-            del row["errors"]
-            rows.append(row | dict(run.errors) | {"tags": " ".join(run.tags)})
-        frame: DataFrame = pandas.DataFrame(rows)
+        rows = [asdict(run) | dict(run.errors) | {"tags": " ".join(run.tags)} for run in self.runs]
+        frame: DataFrame = pandas.DataFrame(rows).drop(columns="errors")
         return frame
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to a file of JSON; it is there when it is whole."""
-        files.write(self, path)
+        from .files import write
+
+        write(self, path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> WorkPrecision:
-        """Read what `save` has written.
+        """Read what `save` has written; ValueError if the file is damaged or holds another."""
+        from .files import read
 
-        Raises
-        ------
-        ValueError
-            If the file is damaged or holds something else; it is named.
-        OSError
-            If it cannot be read.
-        """
-        return files.read(cls, path)
+        return read(path)
 
     def __repr__(self) -> str:
         answers = sum(run.completed for run in self.runs)
@@ -233,25 +287,26 @@ class WorkPrecision:
         return html_table(repr(self)[1:-1], rows, ("way", "least error", "least time"))
 
     def _able(self, at: float, x: str, y: str, t_end: float | None) -> list[Run]:
+        if not number("at", at) > 0:
+            raise ValueError(f"at must be positive, got {at!r}")
         if require_quantity("x", x) not in ERRORS:
             raise ValueError(f"x must be an error, one of {', '.join(ERRORS)}, got {x!r}")
         require_quantity("y", y)
-        floor = self._reference(t_end).limits(x)[0] if x in OF_STATES else 0.0
+        floor = self.judged_by(t_end).limits(x)[0] if x in OF_STATES else 0.0
         runs = [run for run in self.of(t_end) if run.completed and not math.isnan(run.value(y))]
         return [run for run in runs if max(run.value(x), floor) <= at]
 
-    def _reference(self, t_end: float | None) -> Reference:
-        if t_end is None:
-            return self.references[-1]
-        for reference in self.references:
-            if reference.t_end == t_end:
-                return reference
-        ends = ", ".join(repr(reference.t_end) for reference in self.references)
-        raise ValueError(f"t_end must be one of {ends}, got {shown(t_end)}")
+    def judged_by(self, t_end: float | None) -> Reference:
+        """Return what the runs to one end [s] were judged by."""
+        ends = [reference.t_end for reference in self.references]
+        if t_end is not None and t_end not in ends:
+            listed = ", ".join(map(repr, ends))
+            raise ValueError(f"t_end must be one of {listed}, got {shown(t_end)}")
+        return self.references[-1 if t_end is None else ends.index(t_end)]
 
 
-def _positive(name: str, value: Any) -> float:
-    found = number(name, value)
-    if not found > 0:
-        raise ValueError(f"{name} must be positive, got {found!r}")
-    return found
+def require_quantity(name: str, value: Any) -> str:
+    """Return the name of a quantity of runs, or raise ValueError."""
+    if isinstance(value, str) and value in (*ERRORS, *FIGURES):
+        return value
+    raise ValueError(f"{name} must be one of {', '.join((*ERRORS, *FIGURES))}, got {shown(value)}")

@@ -1,6 +1,6 @@
 """What company costs: long calls beside a busy Python thread.
 
-    python tests/benchmarks/bench_company.py
+    python benchmarks/bench_company.py
 
 A call that computes asks Python for signals every 50 ms, for which it has to wait until the busy
 thread hands the GIL over, after 5 ms. It shares the processor with that thread, too: on one core
@@ -8,12 +8,12 @@ nothing could be better than a ratio of 2.
 """
 
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+from common import seconds
 from rolling_ellipse import flow, scenes, simulate
 
 ROUNDS = 5
@@ -49,12 +49,6 @@ def company() -> Iterator[None]:
     finally:
         over.set()
         thread.join()
-
-
-def seconds(call: Callable[[], Any]) -> float:
-    begin = time.perf_counter()
-    call()
-    return time.perf_counter() - begin
 
 
 def main() -> None:

@@ -3,7 +3,6 @@
 The judge of `rolling_ellipse.flow`: mpmath only, no code shared with the package.
 
     python make_rolling_reference.py            makes the table again (4 minutes, one core)
-    python make_rolling_reference.py --verify   checks the table by the second road (1 minute)
 
 Motion. theta is the rotation of the ellipse, clockwise positive, theta = 0 with axis a parallel to
 the ground, k^2 = I/m independent of a and b:
@@ -20,28 +19,25 @@ where the integrand has nearby complex singularities, the flat (thin ellipses) a
 separatrix). Every state in the table was computed twice, with different panels, node counts and
 working precision, and has to agree to `AGREEMENT`; the worst relative difference was 2.3e-58.
 
-Second road (--verify): Taylor series of order 50 of equation (1) itself, with no use of the energy,
-on up to four scenes of every kind that a few hundred steps can cross. Checked: 70 scenes of 20 of
-the 22 kinds (a fast spin and 1e9 half turns take too many steps), all theta, omega and x equal
-within 4.4e-40, the rounding of the table.
+Second road: Taylor series of another form of the equation, with no use of the energy, on up to four
+scenes of every kind that a few hundred steps can cross (`make_slope_reference.py --level`): all
+theta, omega and x of 75 scenes of 20 of the 22 kinds were equal within 1.9e-38 (a fast spin and 1e9
+half turns take too many steps).
 
 Units. What one rounding of every input does to the answer y, plus two of the answer's own:
 
     unit_y = 2.2e-16 (sum over p in (a, b, k^2, g, omega0) of |dy/dp| |p| + |dy/dtheta0|) + 2 ulp(y)
 
-by central differences of the first road; one scene of each of 19 kinds was compared with central
-differences of the second road: equal within 5e-7. Where unit_theta would exceed 1e-4 the time is
+by central differences of the first road; of one scene of each of 19 kinds those of a Taylor series
+were once compared: equal within 5e-7. Where unit_theta would exceed 1e-4 the time is
 cut: there the inputs do not fix the answer.
 """
 
-import argparse
 import csv
 import math
 import random
-import sys
 from bisect import bisect_right
-from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -295,70 +291,6 @@ def units(changes: list[State], state: State) -> list[float]:
     return [e + 2 * math.ulp(float(y)) for e, y in zip(effects, state, strict=True)]
 
 
-# ---------------------------------------------------------------- second road: Taylor series of (1)
-
-
-def empty_series(count: int) -> list[list[Any]]:
-    """Lists of coefficients still to be filled."""
-    return [[] for _ in range(count)]
-
-
-def taylor_coefficients(scene: Scene, start: State, order: int) -> list[list[Any]]:
-    """Series in time of theta, omega, x, sin and cos, by the recurrences of the products in (1)."""
-    a2, b2, k2, g = mpf(scene.a) ** 2, mpf(scene.b) ** 2, mpf(scene.gyration2), mpf(scene.gravity)
-    theta, omega, x = [start.theta], [start.omega], [start.x]
-    cos, sin = ([value] for value in mp.cos_sin(start.theta))
-    w, height, inertia, slope, spin = empty_series(5)  # h^2, h, D, h', omega^2
-    i1, i2, i4 = empty_series(3)  # 1 / h, 1 / h^2, 1 / h^4
-    sin_cos, pull, turn = empty_series(3)  # h h', (g + rho omega^2) / h, omega'
-
-    def times(p: list[Any], q: list[Any], n: int) -> Any:
-        return mp.fdot(p[: n + 1], q[n::-1])
-
-    for n in range(order):
-        w.append(a2 * times(sin, sin, n) + b2 * times(cos, cos, n))
-        if n == 0:
-            i1.append(1 / mp.sqrt(w[0]))
-        else:  # y = w^(-1/2):  n w0 y_n = sum_j (-j/2 - (n - j)) w_j y_(n-j)
-            terms = ((-mpf(j) / 2 - (n - j)) * w[j] * i1[n - j] for j in range(1, n + 1))
-            i1.append(mp.fsum(terms) / (n * w[0]))
-        i2.append(times(i1, i1, n))
-        i4.append(times(i2, i2, n))
-        height.append(times(w, i1, n))
-        sin_cos.append((a2 - b2) * times(sin, cos, n))
-        slope.append(times(sin_cos, i1, n))
-        spin.append(times(omega, omega, n))
-        pull.append(g * i1[n] + a2 * b2 * times(spin, i4, n))
-        inertia.append(w[n] + times(slope, slope, n) + (k2 if n == 0 else 0))
-        known = mp.fdot(inertia[1 : n + 1], turn[n - 1 :: -1]) if n else mpf(0)
-        turn.append(-(times(sin_cos, pull, n) + known) / inertia[0])  # (1)
-        x.append(times(height, omega, n) / (n + 1))
-        cos_next, sin_next = -times(sin, omega, n) / (n + 1), times(cos, omega, n) / (n + 1)
-        theta.append(omega[n] / (n + 1))
-        omega.append(turn[n] / (n + 1))
-        cos.append(cos_next)
-        sin.append(sin_next)
-    return [theta, omega, x, sin, cos]
-
-
-def taylor_state(scene: Scene, t: Any, *, max_steps: int, order: int = 50) -> State | None:
-    """State at t by steps whose last terms are below 1e-56; None when max_steps cannot cross t."""
-    state, left = State(mpf(scene.theta0), mpf(scene.omega0), mpf(0)), mpf(t)
-    for _ in range(max_steps):
-        series = taylor_coefficients(scene, state, order)
-        # sin and cos too: for a circle the other coefficients are rounding noise
-        last = [(n, abs(column[n])) for column in series for n in (order - 1, order)]
-        largest = max(size ** (mpf(1) / n) for n, size in last)
-        step = left if largest == 0 else min(left, mpf("1e-56") ** (mpf(1) / order) / largest)
-        if left / step > 3 * max_steps:
-            return None
-        state = State(*(mp.polyval(column[::-1], step) for column in series[:3]))
-        left -= step
-        if left == 0:
-            return state
-    return None
-
-
 # ---------------------------------------------------------------- the scenes
 
 
@@ -540,46 +472,7 @@ def make_table(seed: int) -> None:
             print(f"{kind}: {count}, worst disagreement so far {mp.nstr(worst, 2)}", flush=True)
 
 
-def read_table() -> Iterator[tuple[str, Scene, float, State]]:
-    """The lines of the table: kind, inputs, t and the state."""
-    with TABLE.open(newline="") as file:
-        for row in csv.DictReader(file):
-            scene = Scene(*(float(row[name]) for name in COLUMNS[1:7]))
-            yield row["kind"], scene, float(row["t"]), State(*(mpf(row[n]) for n in COLUMNS[8:11]))
-
-
-def verify(max_steps: int, per_kind: int) -> None:
-    """Compare the table with the Taylor road and print the worst difference of every kind."""
-    done: Counter[str] = Counter()
-    worst: dict[str, Any] = {}
-    for kind, scene, t, state in read_table():
-        if done[kind] >= per_kind:
-            continue
-        other = taylor_state(scene, t, max_steps=max_steps)
-        if other is not None:
-            done[kind] += 1
-            worst[kind] = max(worst.get(kind, mpf(0)), difference(other, state))
-    for kind, count in done.items():
-        if count:
-            print(f"{kind}: {count} scenes agree within {mp.nstr(worst[kind], 2)}")
-    print(f"in all {done.total()} scenes, worst {mp.nstr(max(worst.values()), 2)}")
-    assert done.total() >= 20 and max(worst.values()) < mpf("1e-30")
-
-
-def main(arguments: list[str]) -> None:
-    """Make or verify the table."""
-    parser = argparse.ArgumentParser(description="High-precision reference of exact rolling.")
-    parser.add_argument("--verify", action="store_true", help="check the table by Taylor series")
-    parser.add_argument("--max-steps", type=int, default=350, help="Taylor steps per scene")
-    parser.add_argument("--per-kind", type=int, default=4, help="scenes of each kind to verify")
-    options = parser.parse_args(arguments)
+if __name__ == "__main__":
     print(f"mpmath {mpmath.__version__}")
     with mp.workdps(DIGITS):
-        if options.verify:
-            verify(options.max_steps, options.per_kind)
-        else:
-            make_table(seed=20240229)
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])
+        make_table(seed=20240229)

@@ -1,4 +1,4 @@
-"""What many motions cost in files: python tests/benchmarks/bench_batches.py
+"""What many motions cost in files: python benchmarks/bench_batches.py
 
 Figures to plan a large run by: time of one core and bytes for a motion, exact or with slips and
 jumps, and what processes of a pool write side by side.
@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from common import machine
 from rolling_ellipse import simulate_many
-from rolling_ellipse._verbs.work_precision.machine import machine
 
 ROUNDS = 3
 T_END = 3.0  # [s]

@@ -1,4 +1,4 @@
-"""The package beside other people's integrators: python tests/benchmarks/bench_peers.py
+"""The package beside other people's integrators: python benchmarks/bench_peers.py
 
 Who is installed takes part (the extra "peers"; Boost.odeint needs g++ and its headers), who is
 missing is named. Everybody integrates theta, omega and x with compiled right-hand sides, from a
@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 import peers
+from common import machine
 from rolling_ellipse import Scene, WorkPrecision, period, work_precision
-from rolling_ellipse._verbs.work_precision.words import own_and_peer
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
 import make_rolling_reference as reference
@@ -101,7 +101,9 @@ def factors(found: WorkPrecision) -> str:
 def factor(found: WorkPrecision, decade: float) -> str:
     """The best peer's time over the package's best; a star where not everybody was run."""
     others = {run.name for run in found.runs if "peer" in run.tags}
-    mine, best = own_and_peer(found.least(decade), others)
+    least = found.least(decade)
+    mine = min((time for name, time in least.items() if name not in others), default=math.inf)
+    best = min((time for name, time in least.items() if name in others), default=math.inf)
     star = "*" if found.not_run(decade) else ""
     if math.isinf(mine) or math.isinf(best):
         return ("no peer" if math.isfinite(mine) else "-") + star
@@ -135,7 +137,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     for name in chosen.scenes:
         for half_turns in chosen.half_turns:
             result = race(name, half_turns, found, **how)
-            result = replace(result, machine=result.machine | stamp)
+            result = replace(result, machine=result.machine | machine() | stamp)
             races[name, half_turns] = result
             print(f"\n{name}: end state after {half_turns} half turns or swings")
             print(f"{table(result)}\n{result.verdict()}")

@@ -1,4 +1,4 @@
-"""The same body in MuJoCo: python tests/benchmarks/peers/mujoco_ellipse.py
+"""The same body in MuJoCo: python benchmarks/peers/mujoco_ellipse.py
 
 An ellipsoid on a plane, held in its plane by two slides and a hinge, with the mass and inertia of
 the scene: MuJoCo finds the contact of an ellipsoid and a plane exactly, so that all that differs is

@@ -1,6 +1,6 @@
 """How soon Ctrl-C ends long work: in single runs of every model, in batches, in a notebook.
 
-    python tests/benchmarks/bench_interrupts.py [--tries 50] [--only WORDS] [--company]
+    python benchmarks/bench_interrupts.py [--tries 50] [--only WORDS] [--company]
 
 Each kind of work is begun and interrupted so many times, at moments spread over half a second.
 Printed are the median, the 95th percentile and the longest of the times from the signal to the

@@ -61,7 +61,6 @@ the answer.
 A scene has a row for each event and one, `state`, for its end. A jam is the end.
 """
 
-import csv
 import math
 import random
 import time
@@ -74,11 +73,10 @@ from typing import Any, NamedTuple
 
 import gmpy2
 from gmpy2 import mpfr
-from series import Road, product, quotient, square_root, value
+from series import ROUNDING, Road, log_uniform, product, quotient, square_root, value, write_table
 
 TABLE = Path(__file__).with_name("contact_reference.csv")
 AGREEMENT = 1e-34
-ROUNDING = 2.2e-16
 UNIT_LIMIT = 1e-9
 
 
@@ -709,11 +707,6 @@ class Family(NamedTuple):
     most_events: int = MOST_EVENTS
 
 
-def log_uniform(rng: random.Random, low: float, high: float) -> float:
-    """A number whose logarithm is uniform."""
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
-
-
 def random_axes(rng: random.Random, shape: str) -> tuple[float, float]:
     """Semi-axes: lying or standing."""
     longer = log_uniform(rng, 0.3, 3.0)
@@ -975,10 +968,7 @@ def make_table(seed: int) -> None:
         for _ in range(family.scenes):
             made.append(drawn(rng, family, named(family.name)))
         print(f"{family.name}: {time.perf_counter() - began:.0f} s so far", flush=True)
-    with TABLE.open("w", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(COLUMNS)
-        table.writerows(line for one in made for line in one.lines)
+    write_table(TABLE, COLUMNS, (line for one in made for line in one.lines))
     print(len(made), "scenes", dict(Counter(kind for one in made for kind in one.kinds)))
     print(f"apart {max(one.disagreement for one in made):.1e}")
     print(f"energy {max(one.energy_change for one in made):.1e}")

@@ -19,7 +19,6 @@ by one-sided differences of 1e-24 in 60 digits. Scenes whose inputs do not fix t
 `UNIT_LIMIT` of its size are left out: next to the rim, and where the well nearly vanishes.
 """
 
-import csv
 import math
 import random
 import time
@@ -31,8 +30,8 @@ from typing import Any, NamedTuple
 
 import gmpy2
 from gmpy2 import mpfr
-from make_slope_reference import ROUNDING, Rolling, Scene, Series, State, log_uniform
-from series import Road, value
+from make_slope_reference import Rolling, Scene, Series, State
+from series import ROUNDING, Road, log_uniform, value, write_table
 
 TABLE = Path(__file__).with_name("well_reference.csv")
 TABLE_ROAD = Road(80, 60, 1e-60)
@@ -256,21 +255,18 @@ def drawn(rng: random.Random) -> Iterator[Line]:
 # ---------------------------------------------------------------- the table
 
 
-def make_table(seed: int) -> None:
-    """Write the table."""
+def made(seed: int) -> Iterator[list[str]]:
+    """The lines, each computed twice."""
     began, worst = time.perf_counter(), 0.0
-    with TABLE.open("w", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(COLUMNS)
-        for scene, t, answer, unit in islice(drawn(random.Random(seed)), COUNT):
-            other = answers(scene, t, CHECK_ROAD)
-            for one, two, least in zip(answer, other, unit, strict=True):
-                worst = max(worst, float(abs(one - two) / max(abs(two), least)))
-            assert worst < AGREEMENT, scene
-            digits = [f"{one:.29e}" for one in answer]
-            table.writerow([*map(repr, (*scene, t)), *digits, *(f"{one:.6e}" for one in unit)])
+    for scene, t, answer, unit in islice(drawn(random.Random(seed)), COUNT):
+        other = answers(scene, t, CHECK_ROAD)
+        for one, two, least in zip(answer, other, unit, strict=True):
+            worst = max(worst, float(abs(one - two) / max(abs(two), least)))
+        assert worst < AGREEMENT, scene
+        digits = [f"{one:.29e}" for one in answer]
+        yield [*map(repr, (*scene, t)), *digits, *(f"{one:.6e}" for one in unit)]
     print(f"{COUNT} scenes, apart {worst:.1e}, {time.perf_counter() - began:.0f} s")
 
 
 if __name__ == "__main__":
-    make_table(seed=20261122)
+    write_table(TABLE, COLUMNS, made(seed=20261122))

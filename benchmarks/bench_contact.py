@@ -1,28 +1,23 @@
-"""What a motion with impacts, slip and flight costs: python tests/benchmarks/bench_contact.py
+"""What a motion with impacts, slip and flight costs: python benchmarks/bench_contact.py
 
 Each scene has about ten events. `simulate` is timed beside SciPy's solve_ivp (DOP853) with terminal
 events, started anew after each of them; both give the events, and theta, omega, x, z at the same
 1001 times. SciPy's right-hand sides and events are Python or compiled by numba; its flights are
 integrated like the rest, or are parabolas whose end brentq finds. Before anything is timed the
-motions are compared: other events than the package's make a gap in the table. As in
-bench_integrators.py every case is run in each of many rounds; compare ratios of one run.
+motions are compared: other events than the package's make a gap in the table. Every case is run in
+each of many rounds; compare ratios of one run.
 """
 
-import argparse
 import math
-import os
-import platform
 from collections.abc import Callable
 from functools import partial
 from itertools import product
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-import rolling_ellipse
-from bench_integrators import Cases, Run, interleaved, peer
+from common import interleaved, peer, rounds_asked
 from rolling_ellipse import EventKind, Mode, Scene, certify, simulate
-from rolling_ellipse._verbs.work_precision.machine import machine
 
 DROPPED: dict[str, Any] = {"z": 2.5, "theta": 0.3, "omega": 8.0, "restitution": 0.5}
 ON_A_SLOPE: dict[str, Any] = {"slope": 0.1, "omega": -2.0}
@@ -35,6 +30,15 @@ TOLERANCES = (1e-10, 1e-6)  # atol is a hundredth
 SAMPLES = 1001  # what simulate gives
 MOST_EVENTS = 100  # of a motion that has gone astray
 FIRST_STEP = 1e-3  # [s] of flights: with no error to control solve_ivp steps over short hops
+
+
+class Run(NamedTuple):
+    """What one call did."""
+
+    evaluations: int
+    steps: int
+
+
 Found = tuple[list[tuple[float, EventKind]], Any, Run]  # events; rows of theta, omega, x, z
 
 
@@ -139,7 +143,7 @@ class SciPyMotion:
         arcs = {Mode.ROLLING: self.roll, Mode.SLIDING: self.slide, Mode.FLIGHT: self.fly}
         while len(events) < MOST_EVENTS and (kind := arcs[self.mode]()):
             events.append((self.t, kind))
-        return events, self.samples, Run(*self.counts.tolist(), self.samples[0, -1])
+        return events, self.samples, Run(*self.counts.tolist())
 
     def roll(self) -> EventKind | None:
         kind, y = self.integrate(self.state[:3])
@@ -228,7 +232,7 @@ def own_motion(scene: Scene, t: Any) -> Found:
     """The package, asked for the same arrays."""
     motion = simulate(scene, t)
     samples = motion.theta, motion.omega, motion.x, motion.z
-    run = Run(motion.stats["evaluations"], motion.stats["steps"], float(motion.theta[-1]))
+    run = Run(motion.stats["evaluations"], motion.stats["steps"])
     return [(event.t, event.kind) for event in motion.events], samples, run
 
 
@@ -259,10 +263,10 @@ def compared(truth: Found, other: Found) -> str:
 def compare(scene: Scene, t_end: float, rounds: int) -> None:
     """The table of a scene; ratios are those of the least times to the first line."""
     truth, notes = own_motion(scene, t_end), {}
-    cases: Cases = {
+    cases: dict[str, Callable[[], Run]] = {
         f"simulate, {SAMPLES} samples": lambda: own_motion(scene, t_end)[2],
         "simulate, 1 sample": lambda: own_motion(scene, [t_end])[2],
-        "certify": lambda: certify(scene) and Run(0, 0, 0.0),
+        "certify": lambda: certify(scene) and Run(0, 0),
     }
     flies = any(kind is EventKind.IMPACT for _, kind in truth[0])
     for name, motion in peers(scene, t_end, flies).items():
@@ -272,24 +276,18 @@ def compare(scene: Scene, t_end: float, rounds: int) -> None:
         except (ArithmeticError, ValueError) as error:
             notes[name] = f"{'-':>12}  {error}"
     found = interleaved(cases, rounds)
-    first = min(next(iter(found.values()))[0])
+    first = min(next(iter(found.values())))
     for name in cases | notes:
         line = f"{name:36}"
         if name in found:
-            times, run = found[name]
+            times, run = found[name], cases[name]()
             line += f"{min(times) * 1e6:12.1f}{np.median(times) * 1e6:10.1f}"
             line += f"{min(times) / first:10.2f}{run.steps:8d}{run.evaluations:13d}"
         print(line + notes.get(name, ""))
 
 
 def main() -> None:
-    options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--rounds", type=int, default=20, help="at least 20 for figures to keep")
-    rounds = options.parse_args().rounds
-    modules = [rolling_ellipse, np, *filter(None, (peer("scipy"), peer("numba")))]
-    versions = ", ".join(f"{module.__name__} {module.__version__}" for module in modules)
-    print(f"{machine()['processor']}, {os.cpu_count()} cores, {platform.platform()}")
-    print(f"{versions}, Python {platform.python_version()}; {rounds} rounds")
+    rounds = rounds_asked(__doc__)
     for title, (scene, t_end) in SCENES.items():
         print(f"\n{title}; {len(simulate(scene, t_end).events)} events in {t_end} s")
         print(f"{'[us]':44}call    median     ratio   steps  evaluations   event times   end state")

@@ -1,6 +1,6 @@
 """Judge `simulate(model="contact")` by random scenes, followed by make_contact_reference.py.
 
-    python tests/reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
+    python reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
 
 Half an hour to an hour on two cores. A file that is there is gone on with; `--only 17` judges one
 scene of a seed and prints all of its values, `--family well` draws of one family, `--report` only
@@ -53,13 +53,11 @@ from make_contact_reference import (
     Series,
     Undecided,
     collide,
-    log_uniform,
     peak_of_friction,
     standing,
 )
-from series import Road
+from series import ROUNDING, Road, log_uniform
 
-ROUNDING = 2.2e-16
 # Units are told by one of them, values by the next; a check is done by the one after that.
 ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
 CHANGED_ROAD, EXACT_ROAD = ROADS[:2]

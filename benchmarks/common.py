@@ -1,0 +1,111 @@
+"""The machine, timings in turns and tables: what the timings share."""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import importlib
+import os
+import platform
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from rolling_ellipse import Scene, _core, period
+
+SHORTEST = 5e-3  # of a timing [s]: short calls are repeated, warm
+_LEVELS = {"avx512f": "AVX-512", "avx2": "AVX2", "avx": "AVX", "asimd": "NEON"}
+
+
+def machine() -> dict[str, str]:
+    """Return the processor and its widest vectors, the compiler of the core, versions, by name."""
+    text = ""
+    with suppress(OSError):  # not there but on Linux
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
+    lines = (line.partition(":") for line in text.partition("\n\n")[0].splitlines())
+    facts = {name.strip(): value.strip() for name, _, value in lines}
+    flags = (facts.get("flags") or facts.get("Features") or "").split()
+    return {
+        "processor": facts.get("model name") or platform.processor() or platform.machine(),
+        "vectors": next((name for flag, name in _LEVELS.items() if flag in flags), "unknown"),
+        "cores": str(os.cpu_count() or 1),
+        "system": platform.platform(),
+        **_core.build(),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "rolling_ellipse": version("rolling-ellipse"),
+        "date": datetime.date.today().isoformat(),
+    }
+
+
+def peer(name: str) -> Any:
+    """A module, or None and a line that says so."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        print(f"{name.partition('.')[0]} is not installed: left out")
+        return None
+
+
+def rounds_asked(about: str | None, default: int = 20) -> int:
+    """Read the number of rounds from the command line, and print what they run on."""
+    options = argparse.ArgumentParser(description=about)
+    least = f"at least {default} for figures to keep"
+    options.add_argument("--rounds", type=int, default=default, help=least)
+    rounds: int = options.parse_args().rounds
+    facts = machine()
+    print(f"{facts['processor']}, {facts['cores']} cores, {facts['system']}")
+    versions = ", ".join(f"{name} {facts[name]}" for name in ("rolling_ellipse", "numpy", "python"))
+    print(f"{versions}; {rounds} rounds")
+    return rounds
+
+
+def end_time(scene: Scene, half_turns: float) -> float:
+    """Time of so many half turns or half swings [s]."""
+    return half_turns * period(scene) / 2
+
+
+def seconds(call: Callable[[], Any], repeats: int = 1) -> float:
+    """Time of one of so many calls."""
+    begin = time.perf_counter()
+    for _ in range(repeats):
+        call()
+    return (time.perf_counter() - begin) / repeats
+
+
+def interleaved(
+    calls: Mapping[Any, Callable[[], Any]], rounds: int, shortest: float = SHORTEST
+) -> dict[Any, list[float]]:
+    """Seconds of a call of each in every round; they take turns, so that the load is shared."""
+    repeats = {}
+    for name, call in calls.items():
+        call()
+        repeats[name] = 1 + int(shortest / seconds(call))
+    found: dict[Any, list[float]] = {name: [] for name in calls}
+    for _ in range(rounds):
+        for name, call in calls.items():
+            found[name].append(seconds(call, repeats[name]))
+    return found
+
+
+class Case(NamedTuple):
+    """A call, and how many things it does, of each of which the time is told."""
+
+    call: Callable[[], Any]
+    count: int = 1
+
+
+def print_tables(tables: Mapping[str, Mapping[str, Case]], rounds: int) -> None:
+    """Time all cases in turns; print the least time of each, and its ratio to the first."""
+    calls = {(title, name): case.call for title, t in tables.items() for name, case in t.items()}
+    times = interleaved(calls, rounds)
+    for title, table in tables.items():
+        print(f"\n{title}\n{'':38}{'ns':>12}{'ratio':>12}")
+        least = {name: min(times[title, name]) / case.count for name, case in table.items()}
+        first = next(iter(least.values()))
+        for name, one in least.items():
+            print(f"{name:38}{one * 1e9:12.1f}{one / first:12.4f}")

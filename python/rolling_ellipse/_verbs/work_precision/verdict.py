@@ -1,0 +1,116 @@
+"""What the runs of a race say, in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
+
+from .results import NOT_RUN, Reference, Run
+
+if TYPE_CHECKING:
+    from .results import WorkPrecision
+
+_MARGIN = 1.2  # of times that are called equal
+Decades = Sequence[float]
+Table = dict[float, dict[str, float]]  # the least time by decade and name
+
+
+def verdict(found: WorkPrecision, reference: Reference, decades: Decades) -> str:
+    """Return who is fastest at each decade, who reached nothing, and who was not run."""
+    end, runs = reference.t_end, found.of(reference.t_end)
+    table = {decade: found.least(decade, t_end=end) for decade in decades}
+    opened = {decade: found.not_run(decade, t_end=end) != () for decade in decades}
+    floor, attainable = reference.limits("largest")
+    limits = f"its own error {floor:.1e}; " if floor else ""
+    unknown = "no time was left to find what is attainable"
+    limits += unknown if math.isnan(attainable) else f"attainable {attainable:.1e}"
+    alone = end_alone(runs)
+    but = f" (of {', '.join(alone)} at the end alone)" if alone else ""
+    lines = [
+        f"To t = {end:.6g} s, judged by {reference.name} ({limits}), at the sample times and the "
+        f"end{but}:"
+    ]
+    lines += _leaders(runs, table, opened)
+    if none := [decade for decade, least in table.items() if not least]:
+        why = ", which the reference could not tell" if none[0] < floor else ""
+        lines.append(f"nobody has reached an error {_span(none)}{why}")
+    return "\n".join(lines + _without_answer(runs))
+
+
+def end_alone(runs: Sequence[Run]) -> list[str]:
+    """Return the names of those whose samples are not known, so that their end alone is judged."""
+    alone = (run.name for run in runs if run.completed and math.isnan(run.errors.linf))
+    return list(dict.fromkeys(alone))
+
+
+def _leaders(runs: Sequence[Run], table: Table, opened: dict[float, bool]) -> Iterator[str]:
+    """Yield the fastest at each stretch of decades, and below it who follows by which factors."""
+    methods = {run.name: (run.model, run.method) for run in runs}
+    setups: dict[str, float] = {}  # the longest: what compiles does so once
+    for run in runs:
+        if run.completed:
+            setups[run.name] = max(setups.get(run.name, 0.0), run.setup)
+
+    def first(least: dict[str, float]) -> str:
+        return min(least, key=lambda name: least[name])
+
+    def second(decade: float) -> str:
+        """The first of those with another method than the first; "" without any."""
+        least = table[decade]
+        way = methods[first(least)]
+        others = {name: time for name, time in least.items() if methods[name] != way}
+        return first(others) if others else ""
+
+    reached = [decade for decade, least in table.items() if least]
+    for decades in _stretches(reached, lambda decade: (first(table[decade]), opened[decade])):
+        name, more = first(table[decades[0]]), opened[decades[0]]
+        rank = "the fastest that was run" if more else "unbeaten"
+        cost = f"{_time(table[decades[-1]][name])}, set-up {_time(setups[name])}"
+        yield f"{name} is {rank} {_span(decades)} ({cost});"
+        for same in _stretches(decades, second):
+            if rival := second(same[0]):
+                factors = [table[decade][rival] / table[decade][name] for decade in same]
+                told = (f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, same, strict=True))
+                equal = " (as good as equal)" if max(factors) <= _MARGIN else ""
+                yield f"    {rival} takes {', '.join(told)}{equal}"
+            else:
+                yield f"    no other {'was seen' if more else 'gets'} there {_span(same)}"
+
+
+def _without_answer(runs: Sequence[Run]) -> list[str]:
+    """Those without an answer, with the first reason, or a poor one; and what was not run."""
+    lines, late = [], []
+    for name in dict.fromkeys(run.name for run in runs):
+        found = [run for run in runs if run.name == name]
+        made = [run for run in found if run.status != NOT_RUN]
+        answers = [run for run in made if run.completed]
+        whole = len(made) == len(found)
+        if not whole:
+            so_far = f" ({_time(answers[-1].time)} a call so far)" if answers else ""
+            beyond = f"beyond {made[-1].setting:.0e}" if made else "at all"
+            late.append(f"{name} was not run {beyond}: no time left{so_far}")
+        if made and not answers:
+            so_far = "" if whole else " so far"
+            lines.append(f"{name} reached nothing{so_far}: {made[0].status}, {made[0].reason}")
+        elif whole and (nearest := min(run.errors.largest for run in answers)) > 1e-2:
+            lines.append(f"{name} came no nearer than {nearest:.1e}")
+    return lines + late
+
+
+def _stretches(decades: Decades, key: Callable[[float], Any]) -> Iterator[list[float]]:
+    return (list(same) for _, same in groupby(decades, key))
+
+
+def _span(decades: Decades) -> str:
+    if len(decades) == 1:
+        return f"at {decades[0]:.0e}"
+    return f"from {decades[0]:.0e} to {decades[-1]:.0e}"
+
+
+def _time(seconds: float) -> str:
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 1e-9:.3g} ns"
