@@ -266,7 +266,7 @@ class Clock:
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     made = Clock()
     for module in ("race", "timing", "truth"):
-        monkeypatch.setattr(f"rolling_ellipse._work_precision.{module}.time", made)
+        monkeypatch.setattr(f"rolling_ellipse._verbs.work_precision.{module}.time", made)
     return made
 
 
