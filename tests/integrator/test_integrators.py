@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.numbers import EPS
-from oracles.stability import exponent
 from rolling_ellipse import IntegrationError, Mode, Scene, Status, Trajectory
 from scipy.integrate import solve_ivp
+from stability_laws import exponent
 
 # most motions here are about the rolling equation, whether a ground could give the forces or not
 pytestmark = pytest.mark.filterwarnings("ignore:rolling is true until")
