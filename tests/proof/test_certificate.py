@@ -47,7 +47,7 @@ class Sample(NamedTuple):
     def scene(self, row: int) -> Scene:
         a, b, mass, gravity, inertia, friction, theta, omega = (float(field[row]) for field in self)
         moment = None if math.isnan(inertia) else inertia
-        state = {"friction": friction, "theta": theta, "omega": omega}
+        state: dict[str, Any] = {"friction": friction, "theta": theta, "omega": omega}
         return Scene(a, b, mass=mass, gravity=gravity, inertia=moment, **state)
 
 
