@@ -16,6 +16,7 @@ everything works: its figures are not for keeping.
 import argparse
 import json
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -62,6 +63,8 @@ def notebooks(quick: bool) -> None:
         notebook = nbformat.read(path, 4)
         metadata = notebook.metadata.copy()
         with TemporaryDirectory() as folder:
+            for module in path.parent.glob("*.py"):  # which it imports from its own folder
+                shutil.copy(module, folder)
             resources = {"metadata": {"path": folder}}
             NotebookClient(notebook, None, resources=resources, timeout=None).execute()
         notebook.metadata = metadata

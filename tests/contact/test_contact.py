@@ -5,6 +5,7 @@ import functools
 import itertools
 import math
 from collections import Counter, defaultdict
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,14 @@ STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot")
 
 def kinds(motion: Trajectory) -> list[EventKind]:
     return [event.kind for event in motion.events]
+
+
+def random_motions(
+    count: int, seed: int, t: Any = 4.0, max_events: int = 100, **given: Any
+) -> Iterator[tuple[Scene, Trajectory]]:
+    how: dict[str, Any] = {"model": "contact", "raise_on_failure": False}
+    for scene in random_scenes(count, seed, **given):
+        yield scene, simulate(scene, t, max_events=max_events, **how)
 
 
 # ----------------------------------------------------------------------------- closed forms
@@ -382,13 +391,9 @@ def missed(scene: Scene, kind: EventKind, at: InitialState) -> float:
     if kind in (EventKind.STICK, EventKind.REVERSE):
         return abs(response(scene, at).slip) / (1e-12 * sizes(scene, at)["x_dot"])
     if kind is EventKind.SLIP and at.mode == Mode.ROLLING:
-        body: dict[str, Any] = {
-            "mass": scene.mass,
-            "slope": scene.slope,
-            "theta": at.theta,
-            "omega": at.omega,
-        }
-        rolled = simulate(Scene(scene.a, scene.b, **body), [0.0], model="contact")
+        body = Scene(scene.a, scene.b, mass=scene.mass, slope=scene.slope)
+        rolling = body.replace(theta=at.theta, omega=at.omega)
+        rolled = simulate(rolling, [0.0], model="contact")
         normal, friction = rolled.normal_force[0], rolled.friction_force[0]
         if math.isinf(scene.friction):
             return float(abs(normal) / (scene.mass * allowed))
@@ -400,13 +405,7 @@ def missed(scene: Scene, kind: EventKind, at: InitialState) -> float:
 @functools.cache
 def transitions() -> list[tuple[Scene, Event]]:
     """Events of random motions."""
-    return [
-        (scene, event)
-        for scene in random_scenes(400, 23)
-        for event in simulate(
-            scene, 3.0, model="contact", max_events=100, raise_on_failure=False
-        ).events
-    ]
+    return [(scene, event) for scene, motion in random_motions(400, 23) for event in motion.events]
 
 
 def test_every_transition_does_what_its_name_says() -> None:
@@ -515,8 +514,7 @@ def test_a_jam() -> None:
 def test_only_slip_jams() -> None:
     """Without slip the acceleration of the contact always has an answer."""
     jams = 0
-    for scene in random_scenes(600, 31, friction=3.0, slope=0.0):
-        motion = simulate(scene, 4.0, model="contact", max_events=200, raise_on_failure=False)
+    for scene, motion in random_motions(600, 31, friction=3.0, slope=0.0):
         if motion.status is Status.JAMMED:
             last = motion.events[-1].state_after
             contact = response(scene, last)
@@ -563,16 +561,14 @@ def test_a_blow_may_lead_to_two_motions() -> None:
 def test_no_motion_leads_to_two_motions() -> None:
     """Slides end before they come there, and an impact ends without the slip that it takes."""
     jams = 0
-    for scene in random_scenes(600, 43, friction=3.0, restitution=0.0):
-        motion = simulate(scene, 4.0, model="contact", max_events=200, raise_on_failure=False)
+    for _, motion in random_motions(600, 43, friction=3.0, restitution=0.0):
         jams += motion.status is Status.JAMMED
         assert "two motions" not in motion.message or motion.t_end == 0
     assert jams > 20
 
 
 def test_unlimited_friction_never_jams() -> None:
-    for scene in random_scenes(300, 37, friction=math.inf):
-        motion = simulate(scene, 4.0, model="contact", max_events=200, raise_on_failure=False)
+    for scene, motion in random_motions(300, 37, friction=math.inf):
         assert motion.status in (Status.COMPLETED, Status.MAX_EVENTS), scene
 
 
@@ -592,9 +588,7 @@ def test_what_no_motion_may_do() -> None:
     """Sampled 1e5 times: it never enters the ground, N >= 0, friction within its cone and against
     the slip, and energy only falls. Integrated arcs are good to 1e-13 a step at their ends and a
     few 1e-11 between; bounces that are summed gain no more than the square of their duration."""
-    for i, scene in enumerate(random_scenes(100, 41)):
-        times = np.linspace(0, 4, 1001)
-        motion = simulate(scene, times, model="contact", max_events=300, raise_on_failure=False)
+    for i, (scene, motion) in enumerate(random_motions(100, 41, np.linspace(0, 4, 1001), 300)):
         size, weight = max(scene.a, scene.b), scene.mass * scene.gravity
         residuals = motion.constraint_residuals()
         assert residuals.gap.min() >= -1e-12 * size, i
@@ -613,6 +607,8 @@ def test_what_no_motion_may_do() -> None:
 
 
 # ----------------------------------------------------------------------------- the same motion
+
+eventful = pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
 
 
 def test_the_first_arc_is_exact_rolling() -> None:
@@ -640,7 +636,7 @@ def test_auto_takes_the_contact_model_only_where_it_is_needed() -> None:
     assert np.array_equal(forced.theta, simulate(rl.scenes.report, 5.0).theta)
 
 
-@pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
+@eventful
 def test_samples_at_an_event_show_what_holds_after_it(name: str) -> None:
     motion = simulate(getattr(rl.scenes, name), 5.0)
     assert motion.events
@@ -663,7 +659,7 @@ def test_what_happens_at_the_last_time_has_happened() -> None:
         assert motion.t[-1] == event.t and motion.omega[-1] == event.state_after.omega
 
 
-@pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
+@eventful
 def test_a_scene_made_on_the_way_goes_on_alike(name: str) -> None:
     motion = simulate(getattr(rl.scenes, name), 5.0)
     ends = [0.0, *(event.t for event in motion.events), 5.0]
@@ -676,7 +672,7 @@ def test_a_scene_made_on_the_way_goes_on_alike(name: str) -> None:
             assert one.t + half == pytest.approx(other.t, rel=1e-13 * 10 ** len(motion.events[i:]))
 
 
-@pytest.mark.parametrize("name", ["jump", "slip", "slope", "drop", "bounce"])
+@eventful
 def test_a_saved_motion_comes_back_bit_for_bit(name: str, tmp_path: Path) -> None:
     before = simulate(getattr(rl.scenes, name), 3.0)
     before.save(tmp_path / "motion.npz")
@@ -717,6 +713,7 @@ def test_max_events() -> None:
 
 
 def test_max_steps_stops_where_the_steps_ended() -> None:
+    """Those of all arcs count: the slope scene takes several slides of some dozens of steps."""
     whole = simulate(rl.scenes.slip, 5.0)
     cut = simulate(rl.scenes.slip, 5.0, max_steps=5, raise_on_failure=False)
     assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == 5
@@ -724,32 +721,20 @@ def test_max_steps_stops_where_the_steps_ended() -> None:
     assert cut.message.endswith(": allow more of them")  # they have no tolerance
     assert 0 < cut.t_end < whole.events[0].t and cut.t[-1] <= cut.t_end
     assert np.allclose(cut.omega, whole.omega[: cut.t.size], rtol=1e-11, atol=1e-13)
+    steps = simulate(rl.scenes.slope, 5.0).stats["steps"]
+    assert simulate(rl.scenes.slope, 5.0, max_steps=steps).success
+    cut = simulate(rl.scenes.slope, 5.0, max_steps=steps - 1, raise_on_failure=False)
+    assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == steps - 1
 
 
-def test_max_steps_counts_all_arcs() -> None:
-    """The slope scene takes several slides of some dozens of steps each."""
-    whole = simulate(rl.scenes.slope, 5.0).stats["steps"]
-    assert simulate(rl.scenes.slope, 5.0, max_steps=whole).success
-    cut = simulate(rl.scenes.slope, 5.0, max_steps=whole - 1, raise_on_failure=False)
-    assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == whole - 1
-
-
-BAD: dict[str, Any] = {
-    "max_events": [0, -3],
-    "rest_speed": [0.0, -1e-3, math.nan, math.inf, 0.04],
-    "friction": [-0.1, math.nan],
-    "restitution": [-0.01, 1.01, math.nan],
-}
+BAD = {"max_events": (0, -3), "rest_speed": (0.0, -1e-3, math.nan, math.inf, 0.04)}
 
 
 @pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
 def test_bad_numbers_are_refused_by_name(name: str, value: float) -> None:
     given: dict[str, Any] = {name: value}
     with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value}"):
-        if name in ("friction", "restitution"):
-            Scene(2.0, 1.0, **given)
-        else:
-            simulate(rl.scenes.drop, 1.0, **given)
+        simulate(rl.scenes.drop, 1.0, **given)
 
 
 @pytest.mark.parametrize("scene", [rl.scenes.rolling, rl.scenes.slip, rl.scenes.drop])
@@ -758,28 +743,13 @@ def test_no_more_turns_than_a_double_knows(scene: Scene) -> None:
         simulate(scene, 1e25, model="contact")
 
 
-def test_a_velocity_beyond_any_scene_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"^x_dot must be at most .* for this body, got 1000\.0$"):
-        Scene(1e-20, 1e-20, x_dot=1e3)
-    with pytest.raises(ValueError, match=r"^z_dot must be at most .* for this body, got -1000\.0$"):
-        Scene(1e-20, 1e-20, z=1e-9, z_dot=-1e3)
-
-
-def test_a_start_in_the_ground_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"^z must be at least h\(theta\) = 1.0 \[m\].*got 0.9"):
-        Scene(2.0, 1.0, z=0.9)
-    with pytest.raises(ValueError, match=r"^z_dot must be at least .*got -0.1"):
-        Scene(2.0, 1.0, z_dot=-0.1)
-
-
 # ----------------------------------------------------------------------------- the start
 
 
 def test_the_start_says_what_the_body_does() -> None:
     """On every ground and in every state, the mode of `initial_state` is the contact model's."""
     met = {mode: 0 for mode in Mode}
-    for scene in random_scenes(2000, 71):
-        motion = simulate(scene, [0.0], model="contact", raise_on_failure=False)
+    for scene, motion in random_motions(2000, 71, [0.0]):
         mode = scene.initial_state.mode
         assert motion.mode.tolist() == [mode], scene
         does = {"ROLLING": "rolls", "SLIDING": "slides", "FLIGHT": "flies", "REST": "rests"}
@@ -788,27 +758,23 @@ def test_the_start_says_what_the_body_does() -> None:
     assert min(met[mode] for mode in (Mode.ROLLING, Mode.SLIDING, Mode.FLIGHT)) > 50
 
 
-@pytest.mark.parametrize(
-    ("scene", "mode", "reason"),
-    [
-        (Scene(2.0, 1.0, slope=0.5, friction=0.05), Mode.SLIDING, "friction 0.05 cannot hold"),
-        (Scene(2.0, 1.0, theta=1.5, omega=30.0), Mode.FLIGHT, "the ground would have to pull"),
-        (
-            Scene(2.0, 1.0, slope=0.2, theta=0.06874278580117352, friction=0.5),
-            Mode.REST,
-            "no impulse; the body rests",
-        ),
-        (rl.scenes.report, Mode.ROLLING, "without it omega would be 5.76 rad/s; the body rolls"),
-    ],
-)
+IN_BALANCE = Scene(2.0, 1.0, slope=0.2, theta=0.06874278580117352, friction=0.5)
+STARTS = [
+    (Scene(2.0, 1.0, slope=0.5, friction=0.05), Mode.SLIDING, "friction 0.05 cannot hold"),
+    (Scene(2.0, 1.0, theta=1.5, omega=30.0), Mode.FLIGHT, "the ground would have to pull"),
+    (IN_BALANCE, Mode.REST, "no impulse; the body rests"),
+    (rl.scenes.report, Mode.ROLLING, "without it omega would be 5.76 rad/s; the body rolls"),
+]
+
+
+@pytest.mark.parametrize(("scene", "mode", "reason"), STARTS)
 def test_starts_that_look_like_rolling(scene: Scene, mode: Mode, reason: str) -> None:
     assert scene.initial_state.mode is mode and reason in scene.initial_state.reason
 
 
 def test_a_body_in_equilibrium_on_a_slope_stays_in_every_model() -> None:
-    scene = Scene(2.0, 1.0, slope=0.2, theta=0.06874278580117352, friction=0.5)
     for model in ("auto", "rolling", "multipliers"):
-        motion = simulate(scene, 1e4, model=model)
+        motion = simulate(IN_BALANCE, 1e4, model=model)
         assert np.all(motion.mode == Mode.REST) and np.all(motion.omega == 0)
         assert np.ptp(motion.theta) == 0
 
@@ -823,8 +789,7 @@ def test_leaving_the_ground_is_no_slip() -> None:
     motion = simulate(scene, 2.3)
     assert kinds(motion)[0] is EventKind.LIFT_OFF
     assert motion.events[0].t == pytest.approx(2.152772, abs=1e-6)
-    for other in random_scenes(600, 83):
-        found = simulate(other, 4.0, model="contact", max_events=50, raise_on_failure=False)
+    for _, found in random_motions(600, 83, max_events=50):
         for event in found.events:
             flies = event.state_after.mode is Mode.FLIGHT
             if event.kind is EventKind.SLIP:

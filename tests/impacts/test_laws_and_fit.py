@@ -43,6 +43,14 @@ def speed(velocities: np.ndarray, k2: float = K2) -> np.ndarray:
     return np.sqrt(velocities[0] ** 2 + velocities[1] ** 2 + k2 * velocities[2] ** 2)
 
 
+def after(state: Any, law: Any, friction: float, restitution: float, **body: Any) -> np.ndarray:
+    """Velocities, shape (3, ...)."""
+    shape = BODY | body
+    return np.stack(
+        impacts.collide(*state, **shape, friction=friction, restitution=restitution, law=law)
+    )
+
+
 # ------------------------------------------------------------------------------- the oracle
 
 
@@ -88,9 +96,7 @@ def test_laws_against_the_path_in_small_steps(
     and by one at its own end. A push with its friction, sqrt(1 + mu^2) < 1.5 of it, moves the body
     by sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three of them by 2e-3 of the approach."""
     for state in approaching(25, seed=3).T:
-        found = np.array(
-            impacts.collide(*state, **BODY, friction=friction, restitution=restitution, law=law)
-        )
+        found = after(state, law, friction, restitution)
         true = walked(law, state, friction, restitution)
         approach = -contact(state, state[1:])[1]
         assert speed(found - true) < 2e-3 * approach
@@ -99,10 +105,7 @@ def test_laws_against_the_path_in_small_steps(
 def test_the_laws_are_told_apart() -> None:
     """The bound of the test above is far below what it has to see."""
     state = approaching(25, seed=3)
-    found = [
-        np.stack(impacts.collide(*state, **BODY, friction=0.4, restitution=0.6, law=law))
-        for law in LAWS
-    ]
+    found = [after(state, law, 0.4, 0.6) for law in LAWS]
     approach = -contact(state, state[1:])[1]
     for one, other in itertools.combinations(found, 2):
         assert np.max(speed(one - other) / approach) > 2e-2
@@ -116,16 +119,16 @@ def test_the_laws_are_told_apart() -> None:
 def test_an_impulse_at_the_contact_within_the_cone(law: Any, friction: float) -> None:
     """Velocities of up to 10 m/s, and some tens of roundings each."""
     state = approaching(400)
-    after = np.stack(impacts.collide(*state, **BODY, friction=friction, restitution=0.7, law=law))
+    velocities = after(state, law, friction, 0.7)
     h, slope = (f(state[0], **BODY) for f in (geometry.support, geometry.support_slope))
-    tangential, normal, spin = after - state[1:]
+    tangential, normal, spin = velocities - state[1:]
     small = 100 * EPS * 10
     # angular momentum about the contact
     assert np.max(np.abs(K2 * spin + h * tangential + slope * normal)) < small
     assert np.all(normal > -small)
     if math.isfinite(friction):
         assert np.all(np.abs(tangential) <= friction * normal + small)
-    assert np.all(contact(state, after)[1] > -small)
+    assert np.all(contact(state, velocities)[1] > -small)
 
 
 @pytest.mark.parametrize("law", ENERGY_KEEPING)
@@ -135,11 +138,9 @@ def test_stronge_and_poisson_create_no_energy(law: Any, shape: tuple[float, floa
     k2 = (a * a + b * b) / 4
     for friction in (0.0, 0.1, 0.5, 1.2, 1e6, math.inf):
         for restitution in (0.0, 0.5, 0.9, 1.0):
-            after = impacts.collide(
-                *state, a=a, b=b, friction=friction, restitution=restitution, law=law
-            )
+            found = after(state, law, friction, restitution, a=a, b=b)
             # some tens of roundings
-            assert np.all(speed(np.stack(after), k2) <= speed(state[1:], k2) * (1 + 100 * EPS))
+            assert np.all(speed(found, k2) <= speed(state[1:], k2) * (1 + 100 * EPS))
 
 
 def test_a_light_thin_body_that_turns_fast_keeps_its_energy() -> None:
@@ -158,8 +159,8 @@ def test_a_light_thin_body_that_turns_fast_keeps_its_energy() -> None:
     assert np.max(np.abs(slope * before[2] / before[1])) > 100
     k2 = body["gyration2"]
     for friction in (0.0, 0.3, math.inf):
-        after = np.stack(impacts.collide(theta, *before, **body, friction=friction, restitution=1))
-        gained = speed(after, k2) ** 2 / speed(before, k2) ** 2 - 1
+        found = after((theta, *before), "stronge", friction, 1, **body)
+        gained = speed(found, k2) ** 2 / speed(before, k2) ** 2 - 1
         assert np.max(gained) < 40 * EPS
         if friction == 0:
             assert np.min(gained) > -40 * EPS
@@ -172,26 +173,16 @@ def test_newton_creates_energy() -> None:
     h, slope = geometry.support(theta, **BODY), geometry.support_slope(theta, **BODY)
     before = np.array([0.5, -1.0, 0.0])  # no spin: slip 0.5 m/s, approach 1 m/s
     assert h > 0 > slope
-    ratio = {
-        law: float(
-            speed(
-                np.array(
-                    impacts.collide(theta, *before, **BODY, friction=0.6, restitution=1.0, law=law)
-                )
-            )
-            / speed(before)
-        )
-        for law in LAWS
-    }
+    found = {law: after((theta, *before), law, 0.6, 1.0) for law in LAWS}
+    ratio = {law: float(speed(velocities) / speed(before)) for law, velocities in found.items()}
     assert ratio["newton"] ** 2 > 1.15
     assert all(ratio[law] <= 1 + 100 * EPS for law in ENERGY_KEEPING)
 
 
 def test_newton_is_the_ratio_of_gap_rates() -> None:
     state = approaching(300)
-    after = np.stack(impacts.collide(*state, **BODY, friction=0.3, restitution=0.4, law="newton"))
-    before = contact(state, state[1:])[1]
-    assert np.max(np.abs(contact(state, after)[1] + 0.4 * before)) < 1000 * EPS
+    rates = contact(state, after(state, "newton", 0.3, 0.4))[1]
+    assert np.max(np.abs(rates + 0.4 * contact(state, state[1:])[1])) < 1000 * EPS
 
 
 def test_without_friction_or_restitution_the_laws_are_one() -> None:
@@ -199,12 +190,7 @@ def test_without_friction_or_restitution_the_laws_are_one() -> None:
     each at the end of compression."""
     state = approaching(300)
     for friction, restitution in ((0.0, 0.6), (0.0, 1.0), (0.5, 0.0), (math.inf, 0.0)):
-        found = [
-            np.stack(
-                impacts.collide(*state, **BODY, friction=friction, restitution=restitution, law=law)
-            )
-            for law in LAWS
-        ]
+        found = [after(state, law, friction, restitution) for law in LAWS]
         for other in found[1:]:
             assert np.max(speed(other - found[0])) < 1e-13  # ten velocities' worth of roundings
 
@@ -213,10 +199,7 @@ def test_without_friction_or_restitution_the_laws_are_one() -> None:
 def test_unlimited_friction_is_the_limit_of_much(law: Any) -> None:
     """What is left goes like 1/mu: a tenth of it for ten times the friction."""
     state = approaching(300)
-    limit, much, more = (
-        np.stack(impacts.collide(*state, **BODY, friction=mu, restitution=0.7, law=law))
-        for mu in (math.inf, 1e5, 1e6)
-    )
+    limit, much, more = (after(state, law, mu, 0.7) for mu in (math.inf, 1e5, 1e6))
     ratio = np.max(speed(much - limit)) / np.max(speed(more - limit))
     assert ratio == pytest.approx(10, rel=0.02)
 
@@ -237,19 +220,11 @@ def test_stronge_is_what_a_simulated_body_does() -> None:
         restitution=0.6,
     )  # fmt: skip
     hit = next(e for e in simulate(scene, 1.0).events if e.kind is EventKind.IMPACT)
-    before, after = hit.state_before, hit.state_after
-    found = impacts.collide(
-        before.theta,
-        before.x_dot,
-        before.z_dot,
-        before.omega,
-        a=2.0,
-        b=1.0,
-        friction=0.3,
-        restitution=0.6,
-    )
+    before, then = hit.state_before, hit.state_after
+    state = (before.theta, before.x_dot, before.z_dot, before.omega)
+    found = after(state, "stronge", 0.3, 0.6, a=2.0, b=1.0)
     # the mass is 3 kg there and 1 kg here: some of the roundings differ
-    assert found == pytest.approx((after.x_dot, after.z_dot, after.omega), rel=64 * EPS)
+    assert found == pytest.approx([then.x_dot, then.z_dot, then.omega], rel=64 * EPS)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -292,9 +267,8 @@ E, MU = 0.61, 0.25  # on no point of a first grid
 def series(law: Any, noise: float, count: int = 1000) -> tuple[Any, Any]:
     """Impacts with these coefficients and normal noise, the same in each kinetic direction."""
     before = approaching(count, seed=7)
-    after = impacts.collide(*before, **BODY, friction=MU, restitution=E, law=law)
     blur = np.random.default_rng(8).normal(0, 1, (3, count)) * noise
-    return before, np.stack(after) + blur / np.array([[1.0], [1.0], [math.sqrt(K2)]])
+    return before, after(before, law, MU, E) + blur / np.array([[1.0], [1.0], [math.sqrt(K2)]])
 
 
 @pytest.mark.parametrize("minimise", ["median", "rms"])
@@ -322,10 +296,10 @@ def test_fit_finds_the_coefficients_through_noise(law: Any) -> None:
 
 
 def test_the_median_does_not_mind_wild_trials() -> None:
-    before, after = series("stronge", 0.02)
-    after[:, ::10] *= -3.0
+    before, found = series("stronge", 0.02)
+    found[:, ::10] *= -3.0
     median, rms = (
-        impacts.fit(before, after, **BODY, minimise=minimise) for minimise in ("median", "rms")
+        impacts.fit(before, found, **BODY, minimise=minimise) for minimise in ("median", "rms")
     )
     assert median.restitution == pytest.approx(E, abs=0.02)
     assert median.friction == pytest.approx(MU, abs=0.02)
@@ -334,36 +308,30 @@ def test_the_median_does_not_mind_wild_trials() -> None:
 
 
 def test_errors_are_those_of_the_coefficients_found() -> None:
-    before, after = series("newton", 0.1, 50)
-    fitted = impacts.fit(before, after, **BODY, law="stronge")
-    predicted = np.stack(
-        impacts.collide(*before, **BODY, friction=fitted.friction, restitution=fitted.restitution)
-    )
-    assert np.allclose(fitted.errors, speed(predicted - after), rtol=1e-12)
+    before, seen = series("newton", 0.1, 50)
+    fitted, again = (impacts.fit(before, seen, **BODY, law="stronge") for _ in range(2))
+    assert (again.restitution, again.friction) == (fitted.restitution, fitted.friction)
+
+    def errors(de: float = 0.0, dmu: float = 0.0) -> np.ndarray:
+        moved = after(before, "stronge", fitted.friction + dmu, fitted.restitution + de)
+        return speed(moved - seen)
+
+    assert np.allclose(fitted.errors, errors(), rtol=1e-12)
     assert fitted.median_error == np.median(fitted.errors)
     assert fitted.rms_error == pytest.approx(math.sqrt(np.mean(fitted.errors**2)), rel=1e-14)
-    # least among its neighbours, and the same every time
     for de, dmu in ((0.05, 0), (-0.05, 0), (0, 0.05), (0, -0.05)):
-        moved = impacts.collide(
-            *before,
-            **BODY,
-            friction=fitted.friction + dmu,
-            restitution=fitted.restitution + de,
-        )
-        assert np.median(speed(np.stack(moved) - after)) > fitted.median_error
-    again = impacts.fit(before, after, **BODY, law="stronge")
-    assert (again.restitution, again.friction) == (fitted.restitution, fitted.friction)
+        assert np.median(errors(de, dmu)) > fitted.median_error
 
 
 def test_what_sticks_bounds_friction_from_below() -> None:
     """Any friction above the largest |J_t|/J_n of these impacts makes the same of them."""
     before: Any = approaching(200, seed=9)
-    after: Any = np.stack(impacts.collide(*before, **BODY, friction=math.inf, restitution=0.5))
-    normal = after[1] - before[2]
+    found: Any = after(before, "stronge", math.inf, 0.5)
+    normal = found[1] - before[2]
     kept = normal > 0.05  # where friction alone stops the approach, none is enough
-    before, after = before[:, kept], after[:, kept]
-    enough = np.max(np.abs(after[0] - before[1]) / normal[kept])
-    fitted = impacts.fit(before, after, **BODY, minimise="rms")
+    before, found = before[:, kept], found[:, kept]
+    enough = np.max(np.abs(found[0] - before[1]) / normal[kept])
+    fitted = impacts.fit(before, found, **BODY, minimise="rms")
     assert fitted.restitution == pytest.approx(0.5, abs=1e-3)
     assert fitted.friction > 0.95 * enough
 
@@ -376,43 +344,53 @@ GOOD: dict[str, Any] = {
 }  # fmt: skip
 
 
+BAD: dict[str, tuple[float, ...]] = {
+    "theta": (math.nan,), "x_dot": (math.inf,), "z_dot": (math.nan,), "omega": (-math.inf,),
+    "a": (-1.0,), "a/b": (400.0,), "b": (0.0,), "gyration2": (0.0,), "friction": (-0.1, math.nan),
+    "restitution": (1.1, -0.1),
+}  # fmt: skip
+
+
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize(
-    ("name", "value", "message"),
-    [
-        ("theta", math.nan, r"theta must be a finite number \[rad\].*, got nan"),
-        ("x_dot", math.inf, r"x_dot must be a finite number \[m/s\].*, got inf"),
-        ("z_dot", math.nan, r"z_dot must be a finite number \[m/s\].*, got nan"),
-        ("omega", -math.inf, r"omega must be a finite number \[rad/s\].*, got -inf"),
-        ("a", -1.0, r"a must be a positive finite length \[m\], got -1.0"),
-        ("b", 0.0, r"b must be a positive finite length \[m\], got 0.0"),
-        ("a", 400.0, r"a/b must be between 1e-3 and 1e3, got 1333.3"),
-        ("gyration2", 0.0, r"gyration2 must be a positive finite area \[m\^2\], got 0.0"),
-        ("friction", -0.1, r"friction must be a coefficient from 0 to 1e6, or inf, got -0.1"),
-        ("friction", math.nan, "friction must be a coefficient from 0 to 1e6, or inf, got nan"),
-        ("restitution", 1.1, "restitution must be between 0 and 1, got 1.1"),
-        ("restitution", -0.1, "restitution must be between 0 and 1, got -0.1"),
-    ],
-)
-def test_numbers_out_of_range(law: Any, name: str, value: float, message: str) -> None:
-    for wrong in (value, [GOOD[name], value]):  # alone, and as one of several
-        with pytest.raises(ValueError, match=f"^{message}"):
-            impacts.collide(**GOOD | {name: wrong}, law=law)
+@pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
+def test_numbers_out_of_range(law: Any, name: str, value: float) -> None:
+    argument = name.partition("/")[0]
+    for wrong in (value, [GOOD[argument], value]):  # alone, and as one of several
+        with pytest.raises(ValueError, match=f"^{name} must be"):
+            impacts.collide(**GOOD | {argument: wrong}, law=law)
+
+
+stronge = impacts.kinetic_speed
+
+
+def collide(**changed: Any) -> Any:
+    return impacts.collide(**(GOOD | changed))
+
+
+def fit(before: Any, then: Any, **changed: Any) -> Any:
+    return impacts.fit(before, then, **(BODY | changed))
 
 
 def test_names_and_kinds() -> None:
-    with pytest.raises(ValueError, match="law must be one of 'stronge', 'poisson', 'newton', got"):
-        impacts.collide(**GOOD, law="kane")  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="omega must be a number or an array of numbers, got 'x'"):
-        impacts.collide(**GOOD | {"omega": "x"})
-    with pytest.raises(
-        ValueError, match=r"must broadcast together, .*theta \(2,\), .*omega \(3,\)"
+    before_after = series("stronge", 0.0, 8)
+    lengths = {"theta": [0.1, 0.2], "omega": [1.0, 2.0, 3.0]}
+    for said, call in (
+        ("law must be one of 'stronge', 'poisson', 'newton', got", lambda: collide(law="kane")),
+        (r".*must broadcast together, .*theta \(2,\), .*omega \(3,\)", lambda: collide(**lengths)),
+        ("gyration2 must be a positive", lambda: stronge(1.0, 2.0, 3.0, gyration2=-1.0)),
+        (
+            "z_dot must be finite, got nan",
+            lambda: stronge(1.0, [2.0, math.nan], 3.0, gyration2=1.0),
+        ),
+        ("minimise must be one of 'median', 'rms'", lambda: fit(*before_after, minimise="mean")),
+        ("law must be one of .*, got 'kane'", lambda: fit(*before_after, law="kane")),
+        ("b must be a positive finite length", lambda: fit(*before_after, b=-0.3)),
+        ("gyration2 must be a positive finite area", lambda: fit(*before_after, gyration2=0.0)),
     ):
-        impacts.collide(**GOOD | {"theta": [0.1, 0.2], "omega": [1.0, 2.0, 3.0]})
-    with pytest.raises(ValueError, match=r"gyration2 must be a positive finite area .*, got -1.0"):
-        impacts.kinetic_speed(1.0, 2.0, 3.0, gyration2=-1.0)
-    with pytest.raises(ValueError, match="z_dot must be finite, got nan"):
-        impacts.kinetic_speed(1.0, [2.0, math.nan], 3.0, gyration2=1.0)
+        with pytest.raises(ValueError, match=f"^{said}"):
+            call()
+    with pytest.raises(TypeError, match="omega must be a number or an array of numbers, got 'x'"):
+        collide(omega="x")
 
 
 def changed(of: np.ndarray, row: int, value: float) -> np.ndarray:
@@ -438,18 +416,6 @@ def test_series_that_cannot_be_fitted(
 ) -> None:
     with pytest.raises(ValueError, match=f"^{message}"):
         impacts.fit(*change(*series("stronge", 0.0, 8)), **BODY)
-
-
-def test_fit_names_its_options() -> None:
-    good = series("stronge", 0.0, 8)
-    with pytest.raises(ValueError, match="minimise must be one of 'median', 'rms', got 'mean'"):
-        impacts.fit(*good, **BODY, minimise="mean")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"law must be one of .*, got 'kane'"):
-        impacts.fit(*good, **BODY, law="kane")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"b must be a positive finite length \[m\], got -0.3"):
-        impacts.fit(*good, a=0.7, b=-0.3)
-    with pytest.raises(ValueError, match=r"gyration2 must be a positive finite area .*, got 0.0"):
-        impacts.fit(*good, **BODY, gyration2=0.0)
 
 
 @pytest.mark.filterwarnings("error")

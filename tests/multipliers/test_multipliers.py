@@ -426,47 +426,42 @@ def test_max_steps_leaves_what_there_is() -> None:
 # ---------------------------------------------------------------------- wrong questions
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        ({"stabilization": "glue"}, r"^stabilization must be one of 'none'.*'ggl'.*, got 'glue'"),
-        ({"stabilization": None}, r"^stabilization must be one of .*, got None"),
-        ({"baumgarte": (-1.0, 1.0)}, r"^baumgarte must be two finite gains .*, got -1"),
-        ({"baumgarte": (1.0, math.nan)}, r"^baumgarte must be two finite gains .*, got nan"),
-        ({"baumgarte": (math.inf, 1.0)}, r"^baumgarte must be two finite gains .*, got inf"),
-        ({"baumgarte": (1.0, 1e308)}, r"^baumgarte must be two .* at most 1e50 .*, got 1e\+308"),
-        ({"baumgarte": 3.0}, r"^baumgarte must be two numbers, got 3\.0"),
-        ({"baumgarte": (1.0,)}, r"^baumgarte must be two numbers, got \(1\.0,\)"),
-        ({"baumgarte": (1.0, 2.0, 3.0)}, r"^baumgarte must be two numbers, got"),
-        ({"method": "exact"}, r"^method must be one of .*'radau' for .*, got 'exact'"),
-        ({"method": "gauss", "step": 0.1}, r"^method must be one of .*, got 'gauss'"),
-        ({"method": "rk4"}, r"^step must be given \[s\] for method 'rk4', got None"),
-        ({"method": "rk4", "step": -0.1}, r"^step must be a positive finite time"),
-        ({"stages": 3}, r"^stages must be None for method"),
+NO_GAINS = [
+    (-1.0, 1.0),
+    (1.0, math.nan),
+    (math.inf, 1.0),
+    (1.0, 1e308),
+    3.0,
+    (1.0,),
+    (1.0, 2.0, 3.0),
+]
+RADAU: dict[str, Any] = {"method": "radau", "step": 0.1}
+WRONG: list[tuple[str, dict[str, Any]]] = [
+    *(("baumgarte must be two", {"baumgarte": gains}) for gains in NO_GAINS),
+    *(("stabilization must be one of", {"stabilization": name}) for name in ("glue", None)),
+    ("method must be one of .*'radau' for", {"method": "exact"}),
+    ("method must be one of", {"method": "gauss", "step": 0.1}),
+    ("step must be given", {"method": "rk4"}),
+    ("step must be a positive", {"method": "rk4", "step": -0.1}),
+    ("stages must be None", {"stages": 3}),
+    ("stabilization must be 'ggl'", RADAU),
+    ("stabilization must be 'ggl'", RADAU | {"stabilization": "none"}),
+    ("stabilization .*'rolling'", {"model": "rolling", "stabilization": "none"}),
+    ("stabilization .*'auto'", {"model": "auto", "stabilization": "ggl"}),
+    *(
         (
-            {"method": "radau", "step": 0.1},
-            r"^stabilization must be 'ggl' for method 'radau', got 'projection'",
-        ),
-        ({"method": "radau", "step": 0.1, "stabilization": "none"}, r"must be 'ggl'.*got 'none'"),
-        ({"model": "rolling", "stabilization": "none"}, r"^stabilization .*'rolling'.*got 'none'"),
-        ({"model": "auto", "stabilization": "ggl"}, r"^stabilization .*'auto'.*got 'ggl'"),
-    ],
-)
-def test_wrong_arguments_are_refused_by_name(arguments: dict[str, Any], said: str) -> None:
-    with pytest.raises(ValueError, match=said):
+            "stabilization must not be 'ggl'",
+            {"method": method, "stabilization": "ggl", "step": step},
+        )
+        for method, step in (("auto", None), ("dop853", None), ("dopri5", None), ("rk4", 0.01))
+    ),
+]
+
+
+@pytest.mark.parametrize(("said", "arguments"), WRONG)
+def test_wrong_arguments_are_refused_by_name(said: str, arguments: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=f"^{said}"):
         simulate(GENERIC, 1.0, **({"model": "multipliers"} | arguments))
-
-
-@pytest.mark.parametrize("method", ["auto", "dop853", "dopri5", "rk4"])
-def test_ggl_is_for_radau(method: Any) -> None:
-    step: dict[str, Any] = {"step": 0.01} if method == "rk4" else {}
-    with pytest.raises(ValueError, match=r"^stabilization must not be 'ggl', which only .*'radau'"):
-        simulate(GENERIC, 1.0, model="multipliers", method=method, stabilization="ggl", **step)
-
-
-def test_gains_that_are_no_numbers() -> None:
-    with pytest.raises(TypeError, match=r"^baumgarte must be a number, got 'a'"):
-        simulate(GENERIC, 1.0, model="multipliers", baumgarte=("a", 1.0))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", ["drop", "slip"])

@@ -13,9 +13,10 @@ import pytest
 from oracles.margins import told
 from oracles.multipliers import SCENES
 from oracles.numbers import EPS
-from oracles.stability import KEPT, ROUND, SPANS, half_turn, kept, worst_residual
+from oracles.stability import KEPT, SPANS, kept, worst_residual
 from rolling_ellipse import Scene, simulate
 from rolling_ellipse.geometry import centre_path
+from stability_laws import FED_BACK, half_turn
 
 ROTATION = Scene(2.0, 1.0, theta=0.2, omega=3.2)
 ROCKING = Scene(2.0, 1.0, theta=0.2, omega=1.0)
@@ -29,7 +30,7 @@ multipliers = partial(simulate, model="multipliers", max_steps=10_000_000)
 def test_what_each_stabilization_is_worth() -> None:
     """Errors of theta: the drift costs most, feedback less, projection little, and with the energy
     least, from 10 half turns on. Residuals: feedback bounds them, projection leaves rounding."""
-    exact = simulate(ROUND, kept("none").t)
+    exact = simulate(FED_BACK, kept("none").t)
     errors = {name: np.abs(kept(name).theta - exact.theta) for name in KEPT}
     gaps = {name: np.abs(kept(name).constraint_residuals().gap) for name in KEPT}
     told(f"\n{'half turns':20}" + "".join(f"{n:>10}" for n in SPANS) + "   gap after the last")
@@ -41,7 +42,7 @@ def test_what_each_stabilization_is_worth() -> None:
         assert np.all(2 * errors[better][later] < errors[worse][later]), (better, worse)
     assert gaps["none"][-1] > 0.1 and gaps["gains of 10"][-1] < 1e-6
     # theta is 3000 at the end, its last digit 5e-13, and the ground feels it through h'
-    grain = 4 * np.spacing(kept("projection").theta) * ROUND.a
+    grain = 4 * np.spacing(kept("projection").theta) * FED_BACK.a
     assert np.all(gaps["projection"] <= grain) and np.all(gaps["projection+energy"] <= grain)
 
 
@@ -109,14 +110,14 @@ def test_order_of_the_index_2_system() -> None:
     """Radau IIA with three stages has order 5 there for positions and velocities; the multipliers
     of a trajectory are computed from these, so that they have it, too (E. Hairer, G. Wanner,
     Solving Ordinary Differential Equations II, VII.4)."""
-    span = 1.37 * half_turn(ROUND)
+    span = 1.37 * half_turn(FED_BACK)
     counts = [40, 80, 160]
     errors = []
     for count in counts:
         times = np.append(np.arange(count) * (span / count), span)
         times = np.concatenate([times, (np.arange(count) + 0.37) * (span / count)])
         times.sort()
-        exact, found = simulate(ROUND, times), ggl(ROUND, times, step=span / count)
+        exact, found = simulate(FED_BACK, times), ggl(FED_BACK, times, step=span / count)
         errors.append(
             [
                 np.max(np.abs(getattr(found, name) - getattr(exact, name)))

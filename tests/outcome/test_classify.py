@@ -232,31 +232,14 @@ def test_workers_and_inputs() -> None:
 
 
 GOOD: dict[str, Any] = {"a": 2.0, "b": 1.0, "omega": 3.0}
+NAN, INF = math.nan, math.inf
+BAD = {
+    "a": (0.0, -1.0, NAN, INF), "b": (0.0, NAN), "omega": (NAN, -INF), "theta": (NAN, INF),
+    "friction": (-1.0, NAN), "gravity": (0.0, -9.81, INF), "gyration2": (-1.0, 0.0, NAN),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("a", 0.0),
-        ("a", -1.0),
-        ("a", math.nan),
-        ("a", math.inf),
-        ("b", 0.0),
-        ("b", math.nan),
-        ("omega", math.nan),
-        ("omega", -math.inf),
-        ("theta", math.nan),
-        ("theta", math.inf),
-        ("friction", -1.0),
-        ("friction", math.nan),
-        ("gravity", 0.0),
-        ("gravity", -9.81),
-        ("gravity", math.inf),
-        ("gyration2", -1.0),
-        ("gyration2", 0.0),
-        ("gyration2", math.nan),
-    ],
-)
+@pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
 def test_bad_numbers_are_refused_by_name(name: str, value: float) -> None:
     """Alone, and as the last of an array of good ones; in threads too."""
     with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value}"):
@@ -267,14 +250,14 @@ def test_bad_numbers_are_refused_by_name(name: str, value: float) -> None:
 
 
 def test_other_bad_arguments() -> None:
-    with pytest.raises(ValueError, match="a/b must be between"):
-        classify(a=1001.0, b=1.0, omega=0.0)
-    with pytest.raises(ValueError, match=r"broadcast.*a \(2,\), b \(3,\)"):
-        classify(a=[1.0, 2.0], b=[1.0, 2.0, 3.0], omega=0.0)
-    for name in ("a", "b", "omega", "theta", "friction", "gravity", "gyration2"):
-        with pytest.raises(TypeError, match=rf"^{name} must be"):
-            classify(**(GOOD | {name: "1.0"}))
-    with pytest.raises(ValueError, match="workers"):
-        classify(**GOOD, workers=0)
+    wrongs: list[tuple[type[Exception], str, dict[str, Any]]] = [
+        (ValueError, "a/b must be between", {"a": 1001.0}),
+        (ValueError, r".*broadcast.*a \(2,\), b \(3,\)", {"a": [1.0, 2.0], "b": [1.0, 2.0, 3.0]}),
+        (ValueError, "workers", {"workers": 0}),
+        *((TypeError, f"{name} must be", {name: "1.0"}) for name in BAD),
+    ]
+    for refusal, said, wrong in wrongs:
+        with pytest.raises(refusal, match=f"^{said}"):
+            classify(**(GOOD | wrong))
     with pytest.raises(TypeError):
         classify(2.0, 1.0, 3.0)  # type: ignore[call-arg]

@@ -1,6 +1,7 @@
 """The notebooks: committed as they ran, small, and running again without an error."""
 
 import json
+import shutil
 from pathlib import Path
 
 import nbformat
@@ -50,6 +51,8 @@ def test_notebook_ends_in_an_assertion(path: Path) -> None:
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_runs(path: Path, tmp_path: Path) -> None:
+    for module in path.parent.glob("*.py"):  # which it imports from its own folder
+        shutil.copy(module, tmp_path)
     notebook = nbformat.read(path, 4)
     resources = {"metadata": {"path": str(tmp_path)}}
     # raises CellExecutionError with the cell and its traceback

@@ -16,7 +16,6 @@ import scipy.integrate
 from oracles.geometry import support
 from oracles.margins import told
 from oracles.numbers import DIGITS, known
-from oracles.stability import exponent
 from rolling_ellipse import (
     EventKind,
     Outcome,
@@ -27,9 +26,10 @@ from rolling_ellipse import (
     period,
     simulate,
 )
+from stability_laws import GRAVITY, GYRATION2, A, B, exponent, rms, shortfall
+from stability_laws import GRAZING as SCENE
 
-A, B, GYRATION2, GRAVITY, OMEGA = 2.0, 1.0, 1.25, 9.81, 4.5
-SCENE = Scene(A, B, omega=OMEGA)
+OMEGA = SCENE.omega
 DISTANCES = range(1, 16)  # k
 # The margins of the polynomial of degree 10 allow for some 1e-12 of its terms.
 DECIDED = range(1, 12)
@@ -64,24 +64,12 @@ def friction(k: int, side: int) -> float:
 # ------------------------------------------------------------------------- by samples
 
 
-def shortfall(samples: int, seed: int = 0) -> float:
-    """By how much the largest of so many even samples of a quarter of a turn is too small, over 64
-    places that the grid may have (rms)."""
-    once = period(SCENE) / 4
-    places = np.random.default_rng(seed).uniform(0, 1, 64)
-    missed = []
-    for place in places:
-        times = (np.arange(samples) + place) * (once / samples)
-        found = simulate(SCENE, times, model="rolling", method="exact").friction_needed.max()
-        missed.append(1 - float(found) / float(need()[0]))
-    return math.sqrt(np.mean(np.square(missed)))
-
-
 def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
     """A maximum is flat: slope -2, within what the rms of 64 draws scatters, a tenth of itself,
     over two decades: 0.05. So a grid finds what is short by more than that, and no less."""
     counts = [30, 100, 300, 1000, 3000]
-    short = [shortfall(count) for count in counts]
+    places = np.random.default_rng(0).uniform(0, 1, 64)
+    short = [rms(shortfall(count, places)) for count in counts]
     slope = exponent(counts, short)
     for count, missed in zip(counts, short, strict=True):
         told(f"{count} samples: short by {missed:.1e}, blind from k = {-math.log10(missed):.1f} on")

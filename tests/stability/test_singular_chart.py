@@ -19,33 +19,16 @@ from oracles.numbers import DIGITS, EPS
 from oracles.report import BODY, SHAPE, start
 from oracles.rolling import forces_by_differentiation
 from rolling_ellipse import Scene, report, simulate
+from stability_laws import exponent, third
 
 TIP = math.pi / 2
 MASS, GRAVITY = BODY["mass"], BODY["gravity"]
 CLOSE = range(1, 9)  # k: 10^-k rad, or parts, beside the singular place
 
 
-def rolling(theta: float, a: float, b: float) -> rl.Trajectory:
-    """One exact state at 3.2 rad/s."""
-    scene = Scene(a, b, mass=MASS, gravity=GRAVITY, theta=theta, omega=3.2)
-    return simulate(scene, [0.0], model="rolling", method="exact")
-
-
-def third(theta: float, a: float, b: float, complete: bool = False) -> float:
-    """lambda3 of eq 39 on an exact state [N]: as printed, or with all terms of its numerator."""
-    at = rolling(theta, a, b)
-    q_ddot = [at.x_ddot[0], at.z_ddot[0], at.omega_dot[0], at.psi_ddot[0], at.r_ddot[0]]
-    body = {"a": a, "b": b, "mass": MASS, "gravity": GRAVITY}
-    if not complete:
-        return float(report.eq_39(at.q[0], q_ddot, **body)[2])
-    squeeze = 4 * (a * b) ** 3 * math.sin(2 * at.psi[0]) * (a * a - b * b)
-    return float(report.complete_f(at.q[0], q_ddot, **body)) / squeeze
-
-
 def slope(values: list[float], first: int = 3) -> float:
     """Of ln |value| against ln of the distance, from k = first on."""
-    x = [-k * math.log(10) for k in CLOSE if k >= first]
-    return float(np.polyfit(x, np.log(np.abs(values[-len(x) :])), 1)[0])
+    return exponent([10.0**-k for k in CLOSE if k >= first], values[first - CLOSE[0] :])
 
 
 # ------------------------------------------------------------------------- as printed
@@ -54,14 +37,23 @@ def slope(values: list[float], first: int = 3) -> float:
 def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
     """1/sin(2 psi) and tan^2 theta: the distance to the power -3, lost terms and all. For a circle
     1/(a - b), and a numerator that happens to change its sign near a/b = 1.003. The next order is
-    the distance itself: 1e-3 where the fits begin, and some 30 times the distance of the circle."""
-    at_tip = [third(TIP + 10.0**-k, 2.0, 1.0) for k in CLOSE]
-    of_circle = [third(0.7, 1 + 10.0**-k, 1.0) for k in CLOSE]
+    the distance itself: 1e-3 where the fits begin, and some 30 times the distance of the circle.
+    With all terms it is zero over zero: the value exists, its rounding grows like 1/distance (an
+    ulp of psi = pi/2 is of the distance 2.2e-16/10^-k, and tan^2 theta has it twice)."""
+    at_tip = [third(TIP + 10.0**-k, 2.0, 1.0).printed for k in CLOSE]
+    of_circle = [third(0.7, 1 + 10.0**-k, 1.0).printed for k in CLOSE]
+    limit = third(TIP + 1e-5, 2.0, 1.0).complete
+    distances = 10.0 ** -np.arange(8, 13)
+    lost = [third(TIP + distance, 2.0, 1.0).complete / limit - 1 for distance in distances]
     told(f"at the tip slope {slope(at_tip):.4f} (-3), up to {max(map(abs, at_tip)):.1e} N")
     told(f"for a circle {slope(of_circle, 5):.4f} (-1), up to {max(map(abs, of_circle)):.1e} N")
+    told(f"complete: {lost[-1]:.1e} lost, slope {exponent(distances, lost):.3f} (-1)")
     assert abs(slope(at_tip) + 3) <= 1e-3
     assert abs(slope(of_circle, 5) + 1) <= 1e-2
-    assert not math.isfinite(third(0.0, 2.0, 1.0)) and not math.isfinite(third(0.7, 1.0, 1.0))
+    for place in ((0.0, 2.0, 1.0), (0.7, 1.0, 1.0)):
+        assert not math.isfinite(third(*place).printed) and math.isfinite(third(*place).solved)
+    assert abs(exponent(distances, lost) + 1) <= 0.05
+    assert abs(lost[-1]) > 1e-5
 
 
 def test_the_tangent_of_the_fourth_row_is_infinite_at_the_tip() -> None:
@@ -90,17 +82,6 @@ def test_the_tangent_does_not_get_over_the_tip() -> None:
     over = report.simulate(q, q_dot, times, printed=(), **how)
     assert isinstance(over, report.PrintedMotion)
     assert over.message == "" and over.q[-1, 2] > 2 * math.pi
-
-
-def test_the_right_numerator_over_sin_2psi_loses_a_digit_with_each() -> None:
-    """Zero over zero: the value exists, its rounding grows like 1/distance. An ulp of psi = pi/2 is
-    of the distance 2.2e-16/10^-k, and tan^2 theta has it twice."""
-    limit = third(TIP + 1e-5, 2.0, 1.0, complete=True)
-    lost = [abs(third(TIP + 10.0**-k, 2.0, 1.0, complete=True) / limit - 1) for k in range(8, 13)]
-    found = np.polyfit(np.arange(8, 13), np.log10(lost), 1)[0]
-    told(", ".join(f"{value:.1e}" for value in lost), f"slope {-found:.3f} (-1)")
-    assert abs(found - 1) <= 0.05
-    assert lost[-1] > 1e-5
 
 
 # ------------------------------------------------------------------------- as it is solved
