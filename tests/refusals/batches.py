@@ -3,7 +3,6 @@
 import json
 import math
 import shutil
-import tempfile
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -11,33 +10,20 @@ from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
-from rolling_ellipse import Scene, WorkPrecision, report, scenes
+from rolling_ellipse import Scene, scenes
 from rolling_ellipse._batches.folders import _chunks, _digest_of_all, _name
 
 from refusals import Row
 
 SCENE = Scene(2.0, 1.0, omega=1.0)
-
-TIMES = [0.0, 0.5]
-
-WRONG: Any = 1
-
-Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
-
-AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
-
-BODY: dict[str, Any] = {**AXES, "mass": 1.0, "gravity": 9.81}
-
-QUICK: dict[str, Any] = {"tolerances": [1e-3], "steps": [0.1], "samples": 2, "rounds": 1}
-
+TIMES = [0.0, 1.5]
 MANY: Any = {"a": 2.0, "b": 1.0, "omega": [1.0, 2.0]}
+MIXED = [scenes.jump, scenes.report, scenes.slip]
+FLOW: dict[str, Any] = {"b": 1.0, "theta": 0.0, "omega": 1.0}
 
 
 def many(scenes: Any, **options: Any) -> Callable[[Path], Any]:
     return lambda _: rl.simulate_many(scenes, TIMES, **options)
-
-
-FLOW: dict[str, Any] = {"b": 1.0, "theta": 0.0, "omega": 1.0}
 
 
 class Pool(ThreadPoolExecutor):
@@ -90,55 +76,42 @@ def broken(folder: Path) -> None:
         made(folder, workers=pool)
 
 
-def spoilt(change: Callable[[Path], Any]) -> Callable[[Path], Any]:
+def spoilt(change: Callable[[Path], Any], scenes: Any = MANY) -> Callable[[Path], Any]:
     def call(folder: Path) -> Any:
-        path = made(folder)
+        path = made(folder, scenes)
         change(path)
         return list(rl.load_many(path))
 
     return call
 
 
-def table(chunk: bool = True, **values: Any) -> Callable[[Path], Any]:
-    """Other arrays in the one chunk, or in the request; None takes one away."""
+def forged(name: str = "0*.npz", **changes: Callable[[Any], Any]) -> Row:
+    """Other arrays in the one chunk, or in another file; None takes one away."""
 
     def change(path: Path) -> None:
-        file = next(path.glob("0*.npz")) if chunk else path / "request.npz"
+        file = next(path.glob(name))
         with np.load(file) as data:
-            arrays = dict(data) | values
-        with file.open("wb") as new:
-            np.savez(new, **{k: v for k, v in arrays.items() if v is not None})
-
-    return spoilt(change)
-
-
-def of_request(**facts: Any) -> Callable[[Path], Any]:
-    def change(path: Path) -> None:
-        with np.load(path / "request.npz") as data:
             arrays = dict(data)
-        about = json.loads(str(arrays["about"])) | facts
-        with (path / "request.npz").open("wb") as new:
-            np.savez(new, about=np.array(json.dumps(about)), t=arrays["t"])
+        new = {key: change(arrays.pop(key)) for key, change in changes.items()}
+        arrays |= {key: value for key, value in new.items() if value is not None}
+        with file.open("wb") as whole:
+            np.savez(whole, **arrays)
 
-    return spoilt(change)
-
-
-def kept(name: str) -> np.ndarray:
-    """An array of the chunk, to be changed."""
-    with tempfile.TemporaryDirectory() as folder:
-        with np.load(next(made(Path(folder)).glob("0*.npz"))) as data:
-            found: np.ndarray = data[name]
-        return found
+    return "path", spoilt(change, MIXED)
 
 
-def with_entry(name: str, place: Any, value: float) -> Callable[[Path], Any]:
-    def call(folder: Path) -> Any:
-        values = kept(name)
+def put(place: Any, value: float) -> Callable[[Any], Any]:
+    """Another number at a place of an array."""
+
+    def change(values: Any) -> Any:
         values[place] = value
-        changed: Any = {name: values}
-        return table(**changed)(folder)
+        return values
 
-    return call
+    return change
+
+
+def of_schema(number: int) -> Callable[[Any], Any]:
+    return lambda about: np.array(json.dumps(json.loads(str(about)) | {"schema": number}))
 
 
 def negative_count(path: Path) -> None:
@@ -165,55 +138,6 @@ def renamed(folder: Path) -> Any:
     return list(rl.load_many(path))
 
 
-def race(scene: Scene = SCENE, t_end: Any = 0.5, **options: Any) -> Callable[[Path], Any]:
-    return lambda _: rl.work_precision(scene, t_end, **{**QUICK, "methods": "exact", **options})
-
-
-class Peer:
-    name = "peer"
-
-    def __init__(self, run: Any = WRONG) -> None:
-        self.run = run
-
-    def prepare(self, scene: Any, t_end: float, setting: float) -> Any:
-        return self.run
-
-
-def result(ask: Callable[[WorkPrecision], Any]) -> Callable[[Path], Any]:
-    return lambda _: ask(race()(Path()))
-
-
-def raced(change: Callable[[Any], Any]) -> Callable[[Path], Any]:
-    """A file of a race in which something was changed."""
-
-    def call(folder: Path) -> Any:
-        path = folder / "race.json"
-        race()(folder).save(path)
-        known = json.loads(path.read_text())
-        change(known)
-        path.write_text(json.dumps(known))
-        return WorkPrecision.load(path)
-
-    return call
-
-
-def jammed() -> Scene:
-    return scenes.slip.replace(friction=5.0, theta=1.0)
-
-
-def of_run(**facts: Any) -> Callable[[Path], Any]:
-    return raced(lambda known: known["runs"][0].update(facts))
-
-
-def negative_floor(known: Any) -> None:
-    known["references"][0]["floor"] = -1.0
-
-
-def printed(**options: Any) -> Callable[[Path], Any]:
-    how = {**BODY, "equations": "printed", "consistent": "project", **options}
-    return lambda _: report.simulate(Q, Q_DOT, 0.1, **how)
-
-
 REFUSALS: list[Row] = [
     # asked
     ("scenes", many(1)),
@@ -236,18 +160,20 @@ REFUSALS: list[Row] = [
     ("a[1]", lambda _: rl.flow([1.0, 1.0], a=[2.0, -1.0], **FLOW, workers=Pool())),
     # folders
     ("path", lambda folder: rl.load_many(folder)),
-    ("path", of_request(schema=99)),
     ("path", spoilt(lambda path: (path / "end.json").unlink())),
     ("path", spoilt(lambda path: next(path.glob("0*.npz")).unlink())),
-    ("path", table(chunk=False, t=np.array([1.0, 0.0]))),
     ("path", spoilt(negative_count)),
     ("path", spoilt(another_digest)),
-    ("path", table(mode=None)),
-    ("path", table(codes=np.zeros(3))),
-    ("path", with_entry("codes", (0, 1), 99)),
-    ("path", with_entry("codes", (0, 3), -1)),
-    ("path", with_entry("rolling", 0, math.nan)),
-    ("path", with_entry("numbers", 0, math.nan)),
-    ("path", with_entry("scenes", (0, 0), 3.0)),
     ("path", renamed),
+    forged("request.npz", about=of_schema(99)),
+    forged("request.npz", t=lambda _: np.array([1.0, 0.0])),
+    forged(mode=lambda _: None), forged(mode=lambda v: v + 9),
+    forged(codes=lambda v: v[:1]), forged(codes=lambda v: v.astype(float)),
+    *(forged(codes=put(place, value)) for place, value in (
+        ((0, 0), 77), ((0, 1), 99), ((0, 3), -1), ((0, 3), 1), ((0, 9), 2**62))),
+    forged(rolling=put(0, math.nan)), forged(numbers=put(0, math.nan)),
+    forged(contact=lambda v: v * math.nan),
+    forged(events=put((0, 1), 0.5)), forged(events=put((0, 8), 9.0)),
+    forged(text=lambda v: np.append(v, np.int8(1))),
+    forged(scenes=put((0, 0), 3.0)), forged(scenes=lambda v: v[:, :17]),
 ]  # fmt: skip

@@ -262,7 +262,7 @@ SPOIL = (
     *[f"damage.inner_fact({FILE}, {{share}}, {{json}})"] * 4,
     f"damage.packed({FILE}, 10**{{eight}})",
     f"damage.header({FILE}, {{member!r}}, {{header}}, {{version}})",
-    f"damage.twice({FILE}, {{member!r}})", f"damage.text({FILE}, {{nested}})",
+    f"damage.twice({FILE}, 'about')", f"damage.text({FILE}, {{nested}})",
     f"Path({FILE}).write_bytes({{bytes}})",
 )  # fmt: skip
 VALUES = ("theta=trajectory.theta[{n} % trajectory.t.size]", "x=trajectory.x[0]", "omega={number}",
