@@ -20,7 +20,7 @@ QUICK = (
     "properties/test_certificates.py::test_thresholds_grow_with_friction",
     "stability/test_singular_chart.py",
     "batches/test_simulate_many.py::test_bits_of_simulate",
-    "trajectory/test_saving.py",
+    "trajectory/test_equality.py",
     "trajectory/test_sol.py",
     "trajectory/test_trajectory.py",
     "work_precision/test_results.py",

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 from unittest import mock
 
@@ -10,7 +11,7 @@ import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import Scene, scenes
 
-from refusals import Row
+from refusals import Row, wrong
 
 MOTION = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 0.5, 6))
 
@@ -31,11 +32,7 @@ assert CONTACT.contact is not None
 
 def contact(**changes: Any) -> Any:
     assert CONTACT.contact is not None
-    return replace(CONTACT, contact=CONTACT.contact._replace(**changes))
-
-
-def changed(**parts: Any) -> Any:
-    return replace(MOTION, **parts)
+    return CONTACT.contact._replace(**changes)
 
 
 def without(package: str, call: Callable[[], Any]) -> Any:
@@ -43,15 +40,24 @@ def without(package: str, call: Callable[[], Any]) -> Any:
         return call()
 
 
+NO_ARRAYS = [1j * np.zeros(N), ["a"] * N, [[0.0], [1.0, 2.0]], None]
+TABLE = np.zeros((N, 5))
+
 REFUSALS: list[Row] = [
-    ("t", lambda _: replace(MOTION, t=np.zeros((2, 2)))),
-    ("x", lambda _: replace(MOTION, x=np.zeros(2))),
-    ("coordinates", lambda _: replace(STEPPED, coordinates=1)),  # type: ignore[arg-type]
-    ("coordinates", lambda _: replace(STEPPED, coordinates=(np.zeros(2), np.zeros(2)))),
-    ("contact", lambda _: replace(CONTACT, contact=1)),  # type: ignore[arg-type]
-    ("mode", lambda _: contact(mode=np.full(N, 9))),
-    ("settings", lambda _: changed(settings=1)),
-    ("kept_events", lambda _: changed(kept_events=(1,))),
+    *wrong(
+        partial(replace, CONTACT), {},
+        t=[*NO_ARRAYS, np.zeros((N, 1))], theta=[*NO_ARRAYS, np.zeros(N + 1)],
+        omega=[*NO_ARRAYS, 1.0], x=[*NO_ARRAYS, np.zeros(3)],
+        coordinates=[1, (TABLE,), (TABLE[1:],) * 2, (TABLE, np.zeros(5))],
+        start=[1, (TABLE,) * 2], contact=[1, (1, 2)], scene=[None], settings=[1],
+        status=[None, "COMPLETED"], reason=[3.5], message=[None], model=["auto"], method=[None],
+        kept_events=[(1,), []], stats=[None], t_end=[None, "late"], span=["late"],
+        valid_until=["late"],
+    ),
+    ("theta", lambda _: replace(MOTION, t=[0.0])),  # type: ignore[arg-type]
+    ("z", lambda _: replace(CONTACT, contact=contact(z=np.zeros(4)))),
+    *(("mode", lambda _, mode=mode: replace(CONTACT, contact=contact(mode=mode)))
+      for mode in (np.zeros(4), np.full(N, 9), np.full(N, 0.5))),
     ("t", lambda _: MOTION.sol([[0.1]])),
     ("t", lambda _: MOTION.sol(1.0)),
     ("t", lambda _: MOTION._solution.sample_rolling(np.ones(1))),
