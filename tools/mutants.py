@@ -49,22 +49,29 @@ CHANGES = {
 
 # The tests nearest to a folder of the sources; others have the folder of their own name.
 NEAREST = {
-    "bindings": ["trajectory", "border", "batches"],
+    "bindings": ["refusals", "trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
     "geometry": ["geometry", "rolling"],
     "multipliers": ["multipliers", "trajectory", "stability"],
     "numerics": ["rolling", "proof", "contact"],
     "proof": ["proof", "outcome", "contact"],
     "rolling": ["rolling", "integrator", "contact"],
-    "scene": ["scene", "contact", "border"],
-    "_export": ["export", "trajectory"],
+    "scene": ["scene", "contact", "refusals"],
+    "_export": ["export", "refusals", "trajectory"],
+    "_batches": ["batches", "refusals"],
     "_faces": ["border", "trajectory"],
     "_command": ["project"],
-    "python": ["trajectory", "scene", "outcome", "border", "batches"],
+    "python": ["trajectory", "scene", "outcome", "refusals", "border", "batches"],
 }
 
 # Of tests/core, those that need seconds.
 PROGRAMS = ("core_test", "threads_test", "lanes_test", "golden")
+
+# An editable installation would be found before the copy, and no mutant ever be noticed.
+NOT_EDITABLE = """\
+import sys
+sys.meta_path = [finder for finder in sys.meta_path if "ScikitBuild" not in type(finder).__name__]
+"""
 
 # Written by programs, or nothing but names.
 LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "details.cpp", "build.cpp", "_core.pyi")
@@ -178,7 +185,16 @@ class Workshop:
         for module in self.objects.glob("_core*"):
             if module.is_file():
                 shutil.copy2(module, package)
+        (self.site / "sitecustomize.py").write_text(NOT_EDITABLE, encoding="utf-8")
         return True
+
+    def require_tested(self) -> None:
+        """The tests must import the copy."""
+        code = "import rolling_ellipse; print(rolling_ellipse.__file__)"
+        command = [sys.executable, "-c", code]
+        done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
+        if not done.stdout.startswith(str(self.site)):
+            sys.exit(f"another installation is found first: {done.stdout}{done.stderr}")
 
     def failing(self, *arguments: str) -> str:
         """Which test fails first, if any; one that hangs, for five times as long as usual, does."""
@@ -293,6 +309,7 @@ def main() -> None:
     workshop.configure()
     if not workshop.build():
         sys.exit("the sources as they are do not build")
+    workshop.require_tested()
     if by := workshop.failing_program() or workshop.failing("-m", "quick"):
         sys.exit(f"{by} fails with the sources as they are")
     for i, mutant in enumerate(todo):

@@ -1,5 +1,7 @@
-"""The border to the C++ core: sizes of arrays, times, threads and Ctrl-C."""
+"""The border to the C++ core: sizes of arrays, times, threads and Ctrl-C; names and help."""
 
+import inspect
+import re
 import signal
 import subprocess
 import sys
@@ -10,7 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rolling_ellipse as rl
 from rolling_ellipse import Scene, _core, flow, scenes, simulate, thresholds
+from rolling_ellipse import _settings as settings
+from rolling_ellipse._fields import cached_property
 
 SCENE = scenes.rolling.core
 TWO, THREE, FIVES = np.ones(2), np.ones(3), np.ones((2, 5))
@@ -213,3 +218,70 @@ def test_ctrl_c_ends_every_long_loop(loop: Callable[[], Any]) -> None:
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, usual)
+
+
+# ------------------------------------------------------------------- settings, names and help
+
+
+def test_choices_are_those_of_the_core() -> None:
+    for choices, kind in (
+        (settings.MODELS, _core.Model), (settings.METHODS, _core.Method),
+        (settings.STABILIZATIONS, _core.Stabilization),
+    ):  # fmt: skip
+        names = [name.lower().replace("_", "+") for name in kind.__members__]
+        assert list(choices) == names
+
+
+def test_only_what_is_public_is_offered() -> None:
+    assert dir(rl) == sorted(rl.__all__)
+    for module in (rl.scenes, rl.geometry):
+        assert dir(module) == sorted(module.__all__)
+
+
+WITHOUT_UNITS = ("events", "success", "reason", "stats")
+
+
+def test_help_tells_units() -> None:
+    properties = {
+        name: inspect.getdoc(each)
+        for name, each in vars(rl.Trajectory).items()
+        if not name.startswith("_") and isinstance(each, (property, cached_property))
+    }
+    assert len(properties) > 25
+    for name, text in properties.items():
+        assert text, name
+        assert re.search(r"\[.+\]", text) or name in WITHOUT_UNITS, (name, text)
+    assert properties["normal_force"] == (
+        "Contact force on the body away from the ground [N], shape (n,)."
+    )
+    for name in rl.scenes.__all__:
+        assert f"``{name}``" in (rl.scenes.__doc__ or ""), name
+
+
+@pytest.mark.parametrize(
+    "t", [[0.0, 6.0], np.array([0.0, 6.0]), (1.0, 6.0), (0.0, 3.0, 6.0), (6.0,)]
+)
+def test_times_of_other_kinds_are(t: Any) -> None:
+    assert rl.simulate(rl.scenes.report, t).t.tolist() == list(t)
+
+
+class Dial:
+    """A number that may be turned."""
+
+    def __init__(self, value: float) -> None:
+        self.value = value
+
+    def __float__(self) -> float:
+        return self.value
+
+
+def test_settings_that_were_seen_before_are_checked_as_at_first() -> None:
+    """Equal numbers of another type are not the same, nor is an object whose value has changed."""
+    scene, dial = rl.scenes.rolling, Dial(1e-4)
+    how: dict[str, Any] = {"model": "rolling", "method": "dopri5"}
+    assert rl.simulate(scene, [1.0], max_steps=500, **how).settings.max_steps == 500
+    with pytest.raises(TypeError, match=r"max_steps must be a whole number, got 500\.0"):
+        rl.simulate(scene, [1.0], max_steps=500.0, **how)  # type: ignore[arg-type]
+    for dial.value in (1e-4, 1e-6):
+        changing: Any = dial
+        assert rl.simulate(scene, [1.0], rtol=changing, **how).settings.rtol == dial.value

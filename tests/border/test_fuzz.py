@@ -1,14 +1,11 @@
 """The fuzzer of `tools/fuzz_api.py`: a short run, that it drives everything, that it sees what is
 wrong."""
 
-import inspect
-import json
 import subprocess
 import sys
-from pathlib import Path
+from typing import Any
 
 import pytest
-import rolling_ellipse as rl
 from oracles.paths import ROOT
 
 TOOLS = ROOT / "tools"
@@ -21,7 +18,7 @@ def tools(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_nothing_is_found() -> None:
-    """What it prints has the seed and index of each finding, to run that case alone."""
+    """What it prints has the lines of each finding, to be pasted."""
     command = [sys.executable, str(TOOLS / "fuzz_api.py"), "--seed", "1", "--calls", str(CALLS)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, (
@@ -30,30 +27,56 @@ def test_nothing_is_found() -> None:
     assert f"{CALLS} cases" in done.stdout
 
 
+def test_every_argument_of_what_is_public_is_drawn() -> None:
+    """A function that is new is called by its signature: its arguments need a line in `NUMBERS` or
+    `OTHERS` of `tools/fuzz/calls.py`."""
+    import inspect
+
+    from fuzz.calls import FUNCTIONS, NUMBERS, OTHERS, OWN, PICTURES, PLAIN, RARE
+
+    assert set(FUNCTIONS) == {*OWN, *PICTURES, *PLAIN, *RARE}
+    names = {
+        parameter
+        for name in FUNCTIONS
+        if name not in OWN
+        for parameter in inspect.signature(FUNCTIONS[name]).parameters
+    }
+    assert names - NUMBERS.keys() - OTHERS.keys() == {"options"}
+
+
 def test_a_case_is_the_same_every_time() -> None:
-    from fuzz.calls import case
+    from fuzz_api import Hunt
 
-    drawn = [case(3, index) for index in range(200)]
-    assert drawn == [case(3, index) for index in range(200)] != [case(4, i) for i in range(200)]
+    drawn: list[list[list[str]]] = []
+
+    class Recorder:
+        def findings(self, lines: list[str]) -> list[None]:
+            drawn[-1].append(lines)
+            return []
+
+    for seed in (3, 3, 4):
+        drawn.append([])
+        process: Any = Recorder()
+        Hunt(process, seed).go(100)
+    assert drawn[0] == drawn[1] != drawn[2]
 
 
-def test_everything_public_is_driven() -> None:
-    """A function that is new needs an entry in the table of `tools/fuzz/calls.py`."""
-    from fuzz.calls import case
+def test_a_finding_is_made_short(capfd: pytest.CaptureFixture[str]) -> None:
+    """Every motion of a body with a mass of its own is a finding here, and one is printed."""
+    from fuzz.process import Finding
+    from fuzz_api import Hunt
 
-    missing = {
-        f"{prefix}{name}"
-        for prefix, module in (
-            ("", rl), ("geometry.", rl.geometry), ("impacts.", rl.impacts), ("report.", rl.report),
-        )
-        for name in module.__all__
-        if inspect.isfunction(getattr(module, name))
-    }  # fmt: skip
-    for index in range(200_000):  # pictures take long, and each is one of some 10 000 cases
-        missing -= {line.does for line in case(5, index)[1]}
-        if not missing:
-            return
-    pytest.fail(f"never called: {sorted(missing)}")
+    class Touchy:
+        def findings(self, lines: list[str]) -> list[Finding]:
+            wrong = "mass=" in lines[0] and "rl.simulate(" in lines[0]
+            return [Finding("planted", "a mass", tuple(lines[:1]))] if wrong else []
+
+    process: Any = Touchy()
+    hunt = Hunt(process, 1)
+    hunt.go(300)
+    (found,) = hunt.found.values()
+    assert "mass=10.0" in found.lines[0] and "slope=" not in found.lines[0]
+    assert "planted: a mass" in capfd.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -66,11 +89,11 @@ def test_everything_public_is_driven() -> None:
         ("unnamed", "rl.certify(int('x'))"),
         ("warning", "__import__('warnings').warn('planted', stacklevel=1)"),
         ("nan", "{'a': (np.array([1.0, (lambda big: big - big)(4 * 2.0**1023)]),)}"),
+        ("copy", "promises.same(*(rl.simulate(rl.scenes.rolling, t) for t in ([1.0], [0.5])))"),
     ],
 )
-def test_it_sees(kind: str, code: str, tmp_path: Path) -> None:
-    from fuzz.__main__ import main
+def test_it_sees(kind: str, code: str) -> None:
+    from fuzz.process import Process
 
-    report = tmp_path / "findings.json"
-    assert main(["--code", code, "--seconds-per-call", "0.3", "--report", str(report)]) == 1
-    assert [each["kind"] for each in json.loads(report.read_text())] == [kind]
+    with Process(0.3) as process:
+        assert [found.kind for found in process.findings([code])] == [kind]

@@ -20,21 +20,10 @@ import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from oracles.paths import TESTS
 from oracles.pickles import ROADS, core_objects, require_same
+from oracles.trajectory import MOTIONS, TIMES
 from rolling_ellipse import Trajectory, _core, simulate
 from rolling_ellipse._ask.settings import Settings
 from rolling_ellipse._motion.samples import ContactSamples
-
-TIMES = np.linspace(0.0, 1.5, 40)
-MOTIONS: dict[str, Callable[[], Any]] = {
-    "rolling": lambda: simulate(rl.scenes.report, TIMES),
-    "gauss": lambda: simulate(rl.scenes.rocking, TIMES, method="gauss", step=0.01),
-    "multipliers": lambda: simulate(rl.scenes.report, TIMES, model="multipliers"),
-    "contact": lambda: simulate(rl.scenes.bounce, TIMES),
-    "from coordinates": lambda: rl.report.simulate(
-        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0
-    ),
-    "stopped": lambda: simulate(rl.scenes.bounce, TIMES, max_events=1, raise_on_failure=False),
-}
 
 
 def printed() -> rl.report.PrintedMotion:

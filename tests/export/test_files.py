@@ -2,8 +2,6 @@
 
 import copy
 import dataclasses
-import io
-import json
 import math
 import os
 import pickle
@@ -21,7 +19,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from oracles.files import half_a_file
+from oracles.files import half_a_file, put_together, taken_apart
 from oracles.paths import TESTS
 from oracles.pickles import require_same
 from rolling_ellipse import Trajectory, simulate
@@ -52,19 +50,6 @@ def contents(
         motion.save(path)
         found[name] = path.read_bytes()
     return found
-
-
-def taken_apart(content: bytes) -> tuple[Any, dict[str, Any]]:
-    with np.load(io.BytesIO(content)) as data:
-        arrays: dict[str, Any] = {name: data[name] for name in data.files}
-    return json.loads(str(arrays.pop("about"))), arrays
-
-
-def put_together(about: Any, arrays: dict[str, Any], save: Callable[..., None] = np.savez) -> bytes:
-    file = io.BytesIO()
-    text = about if isinstance(about, str) else json.dumps(about)
-    save(file, about=np.array(text), **arrays)
-    return file.getvalue()
 
 
 def refusal(content: bytes, path: Path, said: str = "") -> str:
@@ -221,99 +206,6 @@ def test_no_name_is_missing_or_unknown(
             refusal(put_together(new, arrays), path, f".* must have '{key}'$")
 
 
-TEXTS = {
-    "schema": ({"schema": 5}, "schema must be 4, got 5$"),
-    "status": ({"status": "FINISHED"}, "status must be one of 'COMPLETED', .*'FINISHED'"),
-    "model": ({"model": "falling"}, "model 'falling' must not have 'friction_force'"),
-    "no arrays for it": ({"model": "multipliers"}, "model 'multipliers' must have 'coordinates'"),
-    "auto": ({"method": "auto"}, "method must be one of 'exact', .*, got 'auto'$"),
-    "method": ({"method": "euler"}, "method must be one of 'exact', .*, got 'euler'$"),
-    "span": ({"span": 0.01}, r"t_end must lie in \[0.0, 0.01\], got \d"),
-    "no time": ({"t_end": -1.0}, r"t_end must lie in \[0.0, 3.0\], got -1.0$"),
-    "validity": ({"valid_until": -1.0}, r"valid_until must lie in \[0.0, inf\], got -1.0$"),
-    "no sentence": ({"reason": 1}, "reason must be a sentence, got 1$"),
-    "count": ({"stats": {"steps": 1.5}}, "steps must be a count, got 1.5$"),
-    "figure": ({"stats": {"leaps": 1}}, "stats must have no names but .*leaps"),
-    "events": ({"events": 3}, ".*not iterable"),
-    "event": ({"events": [[0.1, "SLIP"]]}, ".*unpack"),
-    "kind": ({"events": [[0.1, "FALL", [0.0] * 7, [0.0] * 7]]}, "kind must be one of .*'FALL'$"),
-    "late": ({"events": [[9.0, "SLIP", [0.0] * 6 + [0], [0.0] * 6 + [0]]]}, r"times of .*got 9\.0"),
-    "too short": ({"events": [[0.1, "SLIP", [0.0] * 6, [0.0] * 8]]}, "events .* of 7 numbers"),
-    "no mode": ({"events": [[0.1, "SLIP", [0.0] * 6 + [0], [0.0] * 6 + [9]]]}, "9 is not a valid"),
-    "no numbers": ({"events": [[0.1, "SLIP", ["a"] * 7, [0.0] * 7]]}, "events must .*, got 'a'$"),
-}
-
-
-@pytest.mark.parametrize(("change", "said"), TEXTS.values(), ids=TEXTS)
-def test_what_is_wrong_is_said(
-    change: dict[str, Any], said: str, contents: dict[str, bytes], tmp_path: Path
-) -> None:
-    about, arrays = taken_apart(contents["contact"])
-    refusal(put_together(about | change, arrays), tmp_path / "motion.npz", said)
-
-
-PARTS = {
-    "mass": ("scene", "mass", -1.0, "mass must be.*-1.0"),
-    "angle": ("scene", "theta", "flat", "theta must be a number, got 'flat'"),
-    "lifted": ("scene", "z", 0.1, "z must be at least .*0.1"),
-    "blow": ("scene", "impulse", {"jx": 1.0}, "impulse must have 'dx'"),
-    "whole": ("scene", "a", 2, r"scene must be what save writes, .*'a': 2\.0.*'a': 2\b"),
-    "tolerance": ("settings", "rtol", -1.0, "rtol must be a finite number of at least 0, got -1"),
-    "other model": ("settings", "model", "rolling", "model must be that of .*'rolling', got 'con"),
-    "other method": ("settings", "method", "rk4", "method must be that of .*'rk4', got 'exact'"),
-    "no events": ("settings", "max_events", 0, "max_events must be at least 1, got 0"),
-    "gains": ("settings", "baumgarte", [1.0], r"baumgarte must be two numbers, got \[1.0\]"),
-}
-
-
-@pytest.mark.parametrize(("part", "name", "value", "said"), PARTS.values(), ids=PARTS)
-def test_wrong_scenes_and_settings_are_refused_with_the_name_of_the_file(
-    part: str, name: str, value: Any, said: str, contents: dict[str, bytes], tmp_path: Path
-) -> None:
-    about, arrays = taken_apart(contents["contact"])
-    about[part][name] = value
-    refusal(put_together(about, arrays), tmp_path / "motion.npz", said)
-
-
-def test_events_in_disorder_are_refused(contents: dict[str, bytes], tmp_path: Path) -> None:
-    about, arrays = taken_apart(contents["contact"])
-    assert len(about["events"]) == 3
-    about["events"].reverse()
-    refusal(put_together(about, arrays), tmp_path / "motion.npz", "times of events must not fall")
-
-
-def test_a_step_is_refused_beside_a_span_that_forgets_it(
-    contents: dict[str, bytes], tmp_path: Path
-) -> None:
-    about, arrays = taken_apart(contents["multipliers"])
-    assert about["settings"]["step"] == 0.1
-    about["span"] = 1e308
-    refusal(put_together(about, arrays), tmp_path / "motion.npz", "step must be at")
-
-
-RAW_TEXTS = {
-    "no JSON": "t = 1",
-    "a list": "[]",
-    "nothing": "",
-    "bottomless": "[" * 100_000,
-    "bottomless and closed": '{"schema":' * 50_000 + "4" + "}" * 50_000,
-    "long number": '{"schema": ' + "4" * 5000 + "}",
-    "half a character": '{"schema": "\ud800"}',
-}
-
-
-@pytest.mark.parametrize("text", RAW_TEXTS.values(), ids=RAW_TEXTS)
-def test_other_texts_are_refused(text: str, contents: dict[str, bytes], tmp_path: Path) -> None:
-    _, arrays = taken_apart(contents["rolling"])
-    refusal(put_together(text, arrays), tmp_path / "motion.npz")
-
-
-def test_names_come_once(contents: dict[str, bytes], tmp_path: Path) -> None:
-    about, arrays = taken_apart(contents["rolling"])
-    text = json.dumps(about).replace('{"schema": 4', '{"schema": 4, "schema": 4')
-    refusal(put_together(text, arrays), tmp_path / "motion.npz", "about must have each name once")
-
-
 # ----------------------------------------------------------------------------- wrong arrays
 
 RETYPED: dict[str, Callable[[Any], Any]] = {
@@ -344,24 +236,6 @@ def test_wrong_arrays_are_refused(
     for array in arrays:
         wrong = arrays | {array: change(arrays[array])}
         refusal(put_together(about, wrong), tmp_path / "motion.npz")
-
-
-WRONG_NUMBERS = {
-    "before": ("t", -1e-9, r"t must lie in \[0.0, 2\.\d+\], got -1e-09"),
-    "after": ("t", 9.0, r"t must lie in \[0.0, 2\.\d+\], got 9.0"),
-    "nan": ("z", math.nan, "z must be finite, got nan"),
-    "mode": ("mode", 4, "mode must hold codes of Mode, got 4.0"),
-    "no mode": ("mode", -1, "mode must hold codes of Mode, got -1.0"),
-}
-
-
-@pytest.mark.parametrize(("name", "value", "said"), WRONG_NUMBERS.values(), ids=WRONG_NUMBERS)
-def test_wrong_numbers_are_refused(
-    name: str, value: float, said: str, contents: dict[str, bytes], tmp_path: Path
-) -> None:
-    about, arrays = taken_apart(contents["contact"])
-    arrays[name][1] = value
-    refusal(put_together(about, arrays), tmp_path / "motion.npz", said)
 
 
 @pytest.mark.parametrize("name", SAVED)
@@ -418,40 +292,6 @@ def test_nothing_is_unpacked(contents: dict[str, bytes], tmp_path: Path) -> None
     about, arrays = taken_apart(contents["rolling"])
     content = put_together(about, arrays, np.savez_compressed)
     refusal(content, tmp_path / "motion.npz", ".* must not be compressed")
-
-
-def header(shape: str, dtype: str = "<f8") -> bytes:
-    text = f"{{'descr': {dtype!r}, 'fortran_order': False, 'shape': {shape}, }}".encode()
-    text += b" " * (-(len(text) + 11) % 64) + b"\n"
-    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text
-
-
-HEADERS = {
-    "terabytes": header("(1000000000000,)"),
-    "more than there is": header("(13,)"),
-    "below nothing": header("(-12, -1)"),
-    "too many dimensions": header("(" + "1, " * 70 + "12)"),
-    "no shape": header("'all'"),
-    "objects": header("(12,)", "|O"),
-    "of no size": header("(12,)", "|V0"),
-    "deep": header("(" * 500 + "12" + ",)" * 500),
-    "another version": header("(12,)").replace(b"\x01\x00", b"\x09\x00", 1),
-    "no header": b"",
-    "more signs than a parser stacks": header("-" * 7000 + "1"),
-    "a pickle": pickle.dumps(Harmful()),
-}
-
-
-@pytest.mark.parametrize("head", HEADERS.values(), ids=HEADERS)
-def test_wrong_headers_are_refused(head: bytes, contents: dict[str, bytes], tmp_path: Path) -> None:
-    path, body = tmp_path / "motion.npz", np.arange(12.0).tobytes()
-    with (
-        zipfile.ZipFile(io.BytesIO(contents["rolling"])) as before,
-        zipfile.ZipFile(path, "w") as after,
-    ):
-        for name in before.namelist():
-            after.writestr(name, head + body if name == "x.npy" else before.read(name))
-    refusal(path.read_bytes(), path)
 
 
 def test_a_member_is_read_once(contents: dict[str, bytes], tmp_path: Path) -> None:
@@ -547,7 +387,7 @@ def test_an_exception_while_saving_leaves_the_old_file(
 KILLED = """
 import os, pickle, signal, sys
 import numpy as np
-from oracles.files import half_a_file
+from oracles.files import half_a_file, put_together, taken_apart
 
 def killed(file, **arrays):
     half_a_file(file)

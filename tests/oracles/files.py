@@ -1,8 +1,27 @@
-"""What a writer may leave behind."""
+"""Files of trajectories in parts, and what a writer may leave behind."""
 
+import io
+import json
+from collections.abc import Callable
 from typing import Any
+
+import numpy as np
 
 
 def half_a_file(file: Any, **arrays: Any) -> None:
     file.write(b"PK half of what should be here")
     file.flush()
+
+
+def taken_apart(content: bytes) -> tuple[Any, dict[str, Any]]:
+    """What a file holds as JSON, and its arrays."""
+    with np.load(io.BytesIO(content)) as data:
+        arrays: dict[str, Any] = {name: data[name] for name in data.files}
+    return json.loads(str(arrays.pop("about"))), arrays
+
+
+def put_together(about: Any, arrays: dict[str, Any], save: Callable[..., None] = np.savez) -> bytes:
+    file = io.BytesIO()
+    text = about if isinstance(about, str) else json.dumps(about)
+    save(file, about=np.array(text), **arrays)
+    return file.getvalue()

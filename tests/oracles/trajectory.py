@@ -1,7 +1,10 @@
-"""The scenes whose motions are looked at sample by sample."""
+"""The scenes whose motions are looked at sample by sample, and motions of every make."""
 
+from collections.abc import Callable
+
+import numpy as np
 import rolling_ellipse as rl
-from rolling_ellipse import Scene
+from rolling_ellipse import Scene, Trajectory, simulate
 
 SCENES = {
     "report": rl.scenes.report,
@@ -18,3 +21,26 @@ VECTORS = (
     "friction_force", "friction_needed", "energy", "kinetic_energy", "potential_energy",
 )  # fmt: skip
 MATRICES = {"q": 5, "q_dot": 5, "multipliers": 4}
+
+TIMES = np.linspace(0.0, 2.0, 21)
+
+
+def of_coordinates() -> Trajectory:
+    found = rl.report.simulate(*rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0)
+    assert isinstance(found, Trajectory)
+    return found
+
+
+MOTIONS: dict[str, Callable[[], Trajectory]] = {
+    "rolling": lambda: simulate(rl.scenes.report, TIMES),
+    "gauss": lambda: simulate(rl.scenes.rocking, TIMES, method="gauss", step=0.01),
+    "multipliers": lambda: simulate(rl.scenes.rolling, TIMES, model="multipliers"),
+    "circle": lambda: simulate(rl.scenes.circle, TIMES),
+    "slope": lambda: simulate(rl.scenes.slope, TIMES),
+    "rest": lambda: simulate(Scene(2.0, 1.0), TIMES),
+    "jump": lambda: simulate(rl.scenes.jump, TIMES),
+    "contact": lambda: simulate(rl.scenes.bounce, TIMES),
+    "stopped": lambda: simulate(rl.scenes.bounce, TIMES, max_events=1, raise_on_failure=False),
+    "none": lambda: simulate(rl.scenes.bounce, [2.0], max_events=1, raise_on_failure=False),
+    "from coordinates": of_coordinates,
+}

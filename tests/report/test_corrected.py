@@ -220,19 +220,3 @@ def test_corrected_raises_where_it_stops() -> None:
     assert there.t.tolist() == [0.0, 0.1] and 0.1 <= there.t_end < 0.2
     whole = corrected(Q, Q_DOT, times)
     assert np.array_equal(there.q, whole.q[:2])
-
-
-BAD: dict[str, tuple[Any, ...]] = {
-    "q": ([1, 2, 3],), "q_dot": ([0, 0, math.inf, 0, 0],), "t": ([0.0, 2.0, 1.0],), "b": (0.0,),
-    "gravity": (-1.0,), "consistent": ("no",), "method": ("euler", "exact"),
-    "stabilization": ("glue",), "baumgarte": (10.0,), "rtol": (-1e-3,), "atol": (math.inf,),
-    "step": (0.0,), "max_steps": (0,),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
-def test_corrected_refuses_bad_input_by_name(name: str, value: Any) -> None:
-    arguments = {"q": Q, "q_dot": Q_DOT, "t": 1.0, **SHAPE, name: value}
-    q, q_dot, t = (arguments.pop(name) for name in ("q", "q_dot", "t"))
-    with pytest.raises(ValueError, match=f"^{name} must"):
-        report.simulate(q, q_dot, t, **arguments)

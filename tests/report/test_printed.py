@@ -223,34 +223,35 @@ def test_motion_says_what_it_is() -> None:
     assert motion.energy[0] == pytest.approx(energy, rel=1e-14)
 
 
-# ---------------------------------------------------------------------------------------- bad input
+def test_as_many_states_everywhere() -> None:
+    """Leading axes broadcast, or are refused with all shapes."""
+    two, three, one = (np.stack([Q] * n) for n in (2, 3, 1))
+    four = np.zeros((3, 4))
+    said = r"^arguments must broadcast together, got shapes q \(2, 5\), "
+    axes: dict[str, Any] = {"a": 2.0, "b": 1.0}
+    for call in (
+        lambda q, other: report.f1(q, other),
+        lambda q, other: report.eq_38(q, other, **axes),
+        lambda q, other: report.constraint_rates(q, other, **axes),
+        lambda q, other: rl.constraints(q, other, **axes).gap,
+        lambda q, other: report.consistent_rates(q, other[:, 0], **axes),
+        lambda q, other: report.eqs_33_to_37(q, other, four[: len(other)], **BODY),
+        lambda q, other: report.equations_of_motion(q, other, four[: len(other)], **BODY),
+        *(
+            lambda q, other, name=name: getattr(report, name)(q, other, **BODY)
+            for name in (
+                "eq_39", "eq_40", "eq_41", "eq_42", "lambda4_numerator", "multipliers", "complete_f"
+            )
+        ),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=said):
+            call(two, three)
+        assert len(call(two, one)) == len(call(one, two)) == 2
 
 
-BAD: dict[str, tuple[Any, ...]] = {
-    "q": ([1, 2, 3], [0, 1, math.nan, 0, 1]), "q_dot": ([[0] * 5],), "t": (-1.0,), "a": (-1.0,),
-    "mass": (0.0,), "equations": ("wrong",), "consistent": ("maybe",), "stabilization": ("none",),
-    "printed": (("f1", "f9"), 3), "method": ("euler",), "step": (0.0,), "rtol": (-1e-3,),
-    "atol": (math.inf,), "max_steps": (0,),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
-def test_bad_input_is_refused_by_name(name: str, value: Any) -> None:
-    arguments = {"q": Q, "q_dot": Q_DOT, "t": 1.0, "equations": "printed", **SHAPE, name: value}
-    q, q_dot, t = (arguments.pop(name) for name in ("q", "q_dot", "t"))
-    with pytest.raises(ValueError, match=f"^{name} must"):
-        report.simulate(q, q_dot, t, **arguments)
-
-
-@pytest.mark.parametrize(
-    ("equations", "name", "value"),
-    [
-        ("corrected", "printed", ("f1",)),
-        ("printed", "stabilization", "projection"),
-        ("printed", "baumgarte", (1.0, 1.0)),
-    ],
-)
-def test_what_is_of_no_use_is_refused(equations: str, name: str, value: object) -> None:
-    q, q_dot = rl.kinematics(0.2, 2.0, a=2.0, b=1.0)
-    with pytest.raises(ValueError, match=f"^{name} must be None for the {equations} equations"):
-        rl.report.simulate(q, q_dot, 1.0, a=2.0, b=1.0, equations=equations, **{name: value})  # type: ignore[arg-type]
+@pytest.mark.parametrize("method", ["dopri5", "rk4"])
+def test_a_step_that_cannot_change_the_time(method: Any) -> None:
+    motion = report.simulate(
+        Q, Q_DOT, 1e-12, **BODY, equations="printed", consistent="project", step=1e-14
+    )
+    assert motion.message == "" and motion.t[-1] == 1e-12

@@ -1,13 +1,17 @@
-"""The state just after an applied impulse, against the collision law followed step by step."""
+"""The state just after an applied impulse, against the collision law followed along its path.
+
+It is that of `test_collision.py`, which follows it in small pushes, too, up to the end of the
+approach: what is applied does not bounce.
+"""
 
 import itertools
 import math
-from typing import NamedTuple
 
 import mpmath as mp
 import numpy as np
 import oracles.geometry
 import pytest
+from oracles.contact import Response, reaction_by_pieces
 from oracles.numbers import DIGITS, EPS
 from rolling_ellipse import Impulse, Mode, Scene, ValidityWarning
 
@@ -18,67 +22,20 @@ FRICTIONS = [0.0, 0.05, 0.2, 0.6, 1.0, 5.0, math.inf]
 # ------------------------------------------------------------------------------- the oracle
 
 
-class Contact(NamedTuple):
-    """Slip and gap rate of a body without reaction, and what a unit of reaction does to them."""
-
-    slip: mp.mpf
-    gap_rate: mp.mpf
-    tangential: mp.mpf
-    normal: mp.mpf
-    coupling: mp.mpf
-
-
-def free_contact(scene: Scene, impulse: Impulse) -> tuple[Contact, mp.mpf]:
+def free_contact(scene: Scene, impulse: Impulse) -> tuple[Response, mp.mpf]:
     """After Newton's and Euler's laws for the applied impulse alone; also the free omega."""
     h, slope, _ = oracles.geometry.height_slopes(scene.theta, scene.a, scene.b)
     mass, inertia = mp.mpf(scene.mass), mp.mpf(scene.gyration2) * mp.mpf(scene.mass)
     jx, jz, dx, dz = (mp.mpf(value) for value in (impulse.jx, impulse.jz, impulse.dx, impulse.dz))
     omega = scene.omega + (dz * jx - dx * jz) / inertia
     x_dot, z_dot = h * scene.omega + jx / mass, slope * scene.omega + jz / mass
-    return Contact(
+    return Response(
         x_dot - h * omega,
         z_dot - slope * omega,
         1 / mass + h * h / inertia,
         1 / mass + slope * slope / inertia,
         h * slope / inertia,
     ), omega
-
-
-def reaction(contact: Contact, friction: mp.mpf) -> tuple[mp.mpf, mp.mpf]:
-    """Coulomb's law along the normal impulse until the approach ends: each slip, stop, stick or
-    reversal is one straight piece."""
-    slip, gap_rate, *_ = contact
-    along, across = mp.mpf(0), mp.mpf(0)
-    while gap_rate < 0:
-        if slip == 0 and abs(contact.coupling) <= friction * contact.tangential:
-            pull = -contact.coupling / contact.tangential
-        else:
-            pull = -friction * mp.sign(slip if slip != 0 else contact.coupling)
-        slip_change = contact.coupling + contact.tangential * pull
-        gap_change = contact.normal + contact.coupling * pull
-        until_stop = -slip / slip_change if slip * slip_change < 0 else mp.inf
-        until_end = -gap_rate / gap_change if gap_change > 0 else mp.inf
-        step = min(until_stop, until_end)
-        along, across = along + pull * step, across + step
-        slip = mp.mpf(0) if step == until_stop else slip + slip_change * step
-        gap_rate = mp.mpf(0) if step == until_end else gap_rate + gap_change * step
-    return along, across
-
-
-def reaction_in_small_steps(contact: Contact, friction: float, steps: int) -> tuple[float, float]:
-    """The same law with no cases at all: after each small push the friction that stops the slip,
-    cut off at the cone."""
-    slip, gap_rate, tangential, normal, coupling = map(float, contact)
-    push = -gap_rate / normal / steps
-    along = across = 0.0
-    while gap_rate < 0:
-        across += push
-        pull = -(slip + coupling * push) / tangential
-        pull = min(max(pull, -friction * push), friction * push)
-        along += pull
-        slip += coupling * push + tangential * pull
-        gap_rate += normal * push + coupling * pull
-    return along, across
 
 
 def random_scenes(count: int, seed: int = 5) -> list[Scene]:
@@ -115,23 +72,6 @@ def digits() -> None:
     mp.mp.dps = DIGITS
 
 
-def test_oracle_against_small_steps() -> None:
-    """First order in the step, so ten thousand steps agree to a few parts in ten thousand."""
-    compared = 0
-    for scene in random_scenes(70, seed=6):
-        if not math.isfinite(scene.friction) or scene.impulse is None:
-            continue
-        contact, _ = free_contact(scene, scene.impulse)
-        if contact.gap_rate >= 0:
-            continue
-        exact = reaction(contact, mp.mpf(scene.friction))
-        steps = reaction_in_small_steps(contact, scene.friction, 10_000)
-        size = abs(exact[0]) + exact[1]
-        assert abs(steps[0] - exact[0]) < 1e-3 * size and abs(steps[1] - exact[1]) < 1e-3 * size
-        compared += 1
-    assert compared > 20
-
-
 # --------------------------------------------------------------------------- random impulses
 
 RANDOM = random_scenes(210)
@@ -144,7 +84,7 @@ def test_collision_law(scene: Scene) -> None:
     contact, free_omega = free_contact(scene, scene.impulse)
     unlimited = math.isinf(scene.friction)
     friction = mp.mpf(10) ** 20 if unlimited else mp.mpf(scene.friction)
-    along, across = reaction(contact, friction) if contact.gap_rate < 0 else (0, 0)
+    along, across = reaction_by_pieces(contact, friction, 0) if contact.gap_rate < 0 else (0, 0)
     h, slope, _ = oracles.geometry.height_slopes(scene.theta, scene.a, scene.b)
     inertia = mp.mpf(scene.gyration2) * MASS
     found = scene.initial_state
@@ -158,7 +98,7 @@ def test_collision_law(scene: Scene) -> None:
     assert abs(found.omega - omega) <= size * (1 + scene_stiffness(contact)) * (1 + h) / inertia
 
 
-def scene_stiffness(contact: Contact) -> mp.mpf:
+def scene_stiffness(contact: Response) -> mp.mpf:
     """How much solving for the reaction magnifies a rounding of the contact's response."""
     determinant = contact.normal * contact.tangential - contact.coupling**2
     return (contact.normal + contact.tangential) ** 2 / determinant

@@ -9,7 +9,14 @@ from typing import Any, NamedTuple
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.contact import Response, kinetic_energy, random_scenes, response
+from oracles.contact import (
+    Response,
+    kinetic_energy,
+    random_scenes,
+    reaction_by_pieces,
+    reaction_in_small_pushes,
+    response,
+)
 from oracles.geometry import support
 from oracles.margins import told
 from oracles.numbers import EPS
@@ -38,68 +45,6 @@ def hits(count: int, seed: int, bounces: int = 100, **given: Any) -> list[Hit]:
         if len(found) >= count:
             return found[:count]
     raise AssertionError(f"only {len(found)} impacts")
-
-
-def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[float, float]:
-    """Each slip, stop, stick or reversal is a straight piece of u(p), v(p), p the normal impulse;
-    it ends when the normal work of restitution is e^2 that of compression."""
-    slip, gap_rate, tangential, normal, coupling = contact
-    along = across = work = 0.0
-    owed = math.inf  # work of restitution, known when compression ends
-    while True:
-        sticks = slip == 0 and abs(coupling) <= friction * tangential
-        if sticks:
-            pull = -coupling / tangential
-        else:
-            pull = -friction * math.copysign(1.0, slip if slip != 0 else coupling)
-        slip_change = 0.0 if sticks else coupling + tangential * pull
-        gap_change = normal + coupling * pull
-        step = -slip / slip_change if slip * slip_change < 0 else math.inf
-        stops = True
-        if gap_rate < 0:
-            until_end = -gap_rate / gap_change if gap_change > 0 else math.inf
-        else:
-            owed = e * e * -work if math.isinf(owed) else owed
-            until_end = ((gap_rate**2 + 2 * gap_change * owed) ** 0.5 - gap_rate) / gap_change
-        if until_end <= step:
-            step, stops = until_end, False
-        gained = step * (gap_rate + gap_change * step / 2)
-        along, across = along + pull * step, across + step
-        compresses = gap_rate < 0
-        slip = 0.0 if stops else slip + slip_change * step
-        gap_rate += gap_change * step
-        if compresses:
-            work += gained
-            gap_rate = gap_rate if stops else 0.0
-        else:
-            owed -= gained
-            if not stops:
-                return along, across
-
-
-def reaction_in_small_pushes(
-    contacts: Response, friction: Any, e: Any, pushes: int
-) -> tuple[Any, Any]:
-    """Arrays of impacts at once: after each push the friction that stops the slip, cut off at the
-    cone; the work is summed as it comes."""
-    slip, gap_rate, tangential, normal, coupling = (np.array(part) for part in contacts)
-    determinant = normal * tangential - coupling**2
-    push = 2 * (np.abs(gap_rate) + np.abs(slip)) * (normal + tangential) / determinant / pushes
-    along, across = np.zeros_like(slip), np.zeros_like(slip)
-    compressed, restored = np.zeros_like(slip), np.zeros_like(slip)
-    active = np.full(slip.shape, True)
-    while active.any():
-        step = np.where(active, push, 0.0)
-        pull = np.clip(-(slip + coupling * step) / tangential, -friction * step, friction * step)
-        gap_change = normal * step + coupling * pull
-        work = step * (gap_rate + gap_change / 2)
-        compressed -= np.where(gap_rate < 0, work, 0)
-        restored += np.where(gap_rate < 0, 0, work)
-        along, across = along + pull, across + step
-        slip += coupling * step + tangential * pull
-        gap_rate += gap_change
-        active &= (gap_rate < 0) | (restored < e * e * compressed)
-    return along, across
 
 
 def impulses(hit: Hit) -> tuple[float, float]:

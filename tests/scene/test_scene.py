@@ -1,7 +1,4 @@
-"""Wrong questions are refused by name; what counts as touching, rolling, resting; Scene as a value.
-
-A message names the argument and says what came: `a must be a positive finite length [m], got -1.0`.
-"""
+"""What counts as touching, rolling, resting; Scene and Impulse as values."""
 
 import dataclasses
 import math
@@ -16,76 +13,21 @@ from rolling_ellipse import (
     Impulse,
     Mode,
     Scene,
-    certify,
-    constraints,
     flow,
     geometry,
-    kinematics,
-    period,
     simulate,
-    thresholds,
 )
 
 INF, NAN = math.inf, math.nan
-FLOW: dict[str, Any] = {"t": 1.0, "a": 2.0, "b": 1.0, "theta": 0.2, "omega": 1.0}
 
 
-def assert_refused(
-    error: type[Exception], name: str, received: str, call: Callable[..., Any], **given: Any
-) -> None:
-    with pytest.raises(error) as caught:
+def assert_refused(name: str, got: float, call: Callable[..., Any], **given: Any) -> None:
+    with pytest.raises(ValueError, match=rf"^{name} must .* got {re.escape(repr(got))}"):
         call(**given)
-    message = str(caught.value)
-    assert re.search(rf"\b{name}\b", message), message
-    assert received in message, message
 
 
 def scene(**changes: Any) -> Scene:
     return Scene(**{"a": 2.0, "b": 1.0, **changes})
-
-
-# --------------------------------------------------------------------------- one number wrong
-
-POSITIVE = [0.0, -0.0, -1.0, INF, -INF, NAN]
-FINITE = [INF, -INF, NAN]
-WRONG_VALUES = {
-    **{name: POSITIVE for name in ("a", "b", "mass", "gravity", "inertia")},
-    **{name: FINITE for name in ("theta", "omega", "x", "z", "x_dot", "z_dot")},
-    "slope": [math.pi / 2, -math.pi / 2, 2.0, *FINITE],
-    "friction": [-0.1, -1e-300, -INF, NAN],
-    "restitution": [-0.1, 1.0000001, *FINITE],
-}
-NO_NUMBERS = ["2.0", [1.0], (2.0,), 1j, {}, object]
-MAY_BE_NONE = {"inertia", "z", "x_dot", "z_dot"}
-
-
-@pytest.mark.parametrize(
-    ("name", "value"), [(name, value) for name, values in WRONG_VALUES.items() for value in values]
-)
-def test_scene_refuses_wrong_values(name: str, value: float) -> None:
-    assert_refused(ValueError, name, repr(value), scene, **{name: value})
-
-
-@pytest.mark.parametrize("name", WRONG_VALUES)
-@pytest.mark.parametrize("value", NO_NUMBERS, ids=str)
-def test_scene_refuses_what_is_no_number(name: str, value: object) -> None:
-    assert_refused(TypeError, name, "got", scene, **{name: value})
-
-
-@pytest.mark.parametrize("name", sorted(WRONG_VALUES.keys() - MAY_BE_NONE))
-def test_scene_refuses_none(name: str) -> None:
-    assert_refused(TypeError, name, "None", scene, **{name: None})
-
-
-@pytest.mark.parametrize("axes", [(1000.1, 1.0), (1.0, 1000.1), (1e-9, 1.0), (1.0, 1e-20)])
-def test_scene_refuses_needles(axes: tuple[float, float]) -> None:
-    assert_refused(ValueError, "a/b", "got", Scene, a=axes[0], b=axes[1])
-
-
-@pytest.mark.parametrize("share", [0.9e-6, 1.1e6])
-def test_mass_is_neither_at_a_point_nor_far_outside(share: float) -> None:
-    assert_refused(ValueError, "inertia", repr(4.0 * share), scene, inertia=4.0 * share)
-    assert_refused(ValueError, "gyration2", repr(4.0 * share), flow, **FLOW, gyration2=4.0 * share)
 
 
 @pytest.mark.parametrize("axes", [(1000.0, 1.0), (1.0, 1000.0), (1e-3, 1.0), (1e-9, 1e-9)])
@@ -115,19 +57,7 @@ def test_scene_wants_names() -> None:
 
 
 @pytest.mark.parametrize("name", ["jx", "jz", "dx", "dz"])
-@pytest.mark.parametrize("value", FINITE)
-def test_impulse_refuses_wrong_values(name: str, value: float) -> None:
-    assert_refused(ValueError, name, repr(value), Impulse, **{name: value})
-
-
-@pytest.mark.parametrize("name", ["jx", "jz", "dx", "dz"])
-@pytest.mark.parametrize("value", ["1", None, ["1"], [[1.0], [1.0, 2.0]]], ids=str)
-def test_impulse_refuses_what_is_no_number(name: str, value: object) -> None:
-    assert_refused(TypeError, name, "got", Impulse, **{name: value})
-
-
-@pytest.mark.parametrize("name", ["jx", "jz", "dx", "dz"])
-@pytest.mark.parametrize("value", FINITE)
+@pytest.mark.parametrize("value", [INF, -INF, NAN])
 def test_impulse_refuses_wrong_values_of_arrays_with_their_index(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value} at index 2$"):
         Impulse(**{name: [1.0, -2.0, value]})
@@ -166,25 +96,6 @@ def test_presses_of_arrays() -> None:
     for name, given in (("F", ([1.0, NAN], 0.5)), ("d", (1.0, [0.5, INF]))):
         with pytest.raises(ValueError, match=rf"^{name} must be .*, got (nan|inf) at index 1$"):
             Impulse.press(*given)
-    with pytest.raises(ValueError, match=r"^F must be a finite .* 1e50, got 1e\+51$"):
-        Impulse.press(1e51, 0.5)
-    with pytest.raises(ValueError, match=r"^d must be a finite .* 1e50, got -1e\+51$"):
-        Impulse.press([1.0, 2.0], -1e51)
-
-
-@pytest.mark.parametrize("position", [0, 1])
-def test_press_refuses_wrong_values(position: int) -> None:
-    good = [48.0, 1.5]
-    for value, error in ((NAN, ValueError), (INF, ValueError), ("1", TypeError), (None, TypeError)):
-        given: list[Any] = list(good)
-        given[position] = value
-        with pytest.raises(error, match=r"\b(F|d)\b" if position == 0 else r"\bd\b"):
-            Impulse.press(*given)
-
-
-@pytest.mark.parametrize("value", [48.0, (0.0, -48.0), "press"])
-def test_scene_refuses_an_impulse_that_is_none(value: object) -> None:
-    assert_refused(TypeError, "impulse", "got", scene, impulse=value)
 
 
 def test_impulse_is_a_value() -> None:
@@ -244,20 +155,16 @@ def test_replace() -> None:
     changed = struck.replace(omega=2.0, impulse=None)
     assert changed == scene(omega=2.0, friction=0.3) and struck.omega == 1.0
     assert struck.replace() == struck
-    with pytest.raises(TypeError, match=r"^changes must be of a, b, mass, .*impulse, got omga$"):
-        struck.replace(omga=2.0)
-    assert_refused(ValueError, "omega", "nan", struck.replace, omega=NAN)
-    assert_refused(TypeError, "omega", "'2'", struck.replace, omega="2")
 
 
 def test_replace_refuses_what_no_longer_goes_together() -> None:
     """A height for one angle or shape is under the ground for another; a blow may miss."""
     touching = scene(z=1.0)
-    assert_refused(ValueError, "z", "1.0", touching.replace, theta=0.5)
-    assert_refused(ValueError, "z", "1.0", touching.replace, b=1.5)
-    assert touching.replace(a=3.0).initial_state.z == 1.0
     struck = scene(impulse=Impulse.press(48.0, 1.5))
-    assert_refused(ValueError, "impulse", "1.5", struck.replace, a=1.4)
+    assert touching.replace(a=3.0).initial_state.z == 1.0
+    assert_refused("z", 1.0, touching.replace, theta=0.5)
+    assert_refused("z", 1.0, touching.replace, b=1.5)
+    assert_refused("impulse", 1.5, struck.replace, a=1.4)
 
 
 @pytest.mark.parametrize(("slope", "asked"), [(30.0, True), (-90.0, True), (1000.0, False)])
@@ -352,14 +259,14 @@ def test_beyond_8_ulp_it_is_in_the_air(theta: float) -> None:
 def test_under_the_ground_is_refused(theta: float) -> None:
     h = geometry.support(theta, a=2.0, b=1.0)
     for z in (ulps_above(h, -20), 0.5 * h, 0.0, -3.0):
-        assert_refused(ValueError, "z", repr(z), scene, theta=theta, z=z)
+        assert_refused("z", z, scene, theta=theta, z=z)
 
 
 @pytest.mark.parametrize("theta", ANGLES)
 def test_moving_into_the_ground_is_refused(theta: float) -> None:
     along = scene(theta=theta, omega=1.3).initial_state.z_dot
     for z_dot in (along - 1e-9, along - 4.0):
-        assert_refused(ValueError, "z_dot", repr(z_dot), scene, theta=theta, omega=1.3, z_dot=z_dot)
+        assert_refused("z_dot", z_dot, scene, theta=theta, omega=1.3, z_dot=z_dot)
     leaving = scene(theta=theta, omega=1.3, z_dot=along + 1e-9).initial_state
     assert leaving.mode == Mode.FLIGHT and leaving.z_dot == along + 1e-9
 
@@ -395,80 +302,7 @@ def test_modes_are_numbered() -> None:
     assert Mode.SLIDING == 1
 
 
-# ------------------------------------------------------------------------------- simulate
-
-WRONG_TIMES: list[tuple[type[Exception], object]] = [
-    (ValueError, [[0.0, 1.0]]),
-    (ValueError, [0.0, 0.0]),
-    (ValueError, [0.0, 2.0, 1.0]),
-    (ValueError, [-1.0, 0.0]),
-    (ValueError, [0.0, NAN]),
-    (ValueError, [0.0, INF]),
-    (ValueError, []),
-    (ValueError, -1.0),
-    (ValueError, NAN),
-    (ValueError, INF),
-    (TypeError, "1.0"),
-    (TypeError, None),
-    (TypeError, [0.0, "1"]),
-    (TypeError, 1j),
-]
-
-
-@pytest.mark.parametrize(("error", "t"), WRONG_TIMES, ids=str)
-def test_simulate_refuses_wrong_times(error: type[Exception], t: object) -> None:
-    assert_refused(error, "t", "got", simulate, scene=scene(omega=1.0), t=t)
-
-
-@pytest.mark.parametrize("name", ["model", "method"])
-@pytest.mark.parametrize("value", ["", "Auto", "no_such", "rk5"])
-def test_simulate_refuses_unknown_names_and_lists_the_known(name: str, value: str) -> None:
-    given: dict[str, Any] = {"scene": scene(omega=1.0), "t": 1.0, name: value}
-    assert_refused(ValueError, name, repr(value), simulate, **given)
-    known = {
-        "model": ["auto", "rolling", "multipliers"],
-        "method": ["auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"],
-    }[name]
-    with pytest.raises(ValueError) as caught:
-        simulate(**given)
-    for word in known:
-        assert re.search(rf"\b{word}\b", str(caught.value))
-
-
-@pytest.mark.parametrize("method", ["exact", "dop853", "dopri5", "rk4", "gauss", "radau"])
-def test_the_contact_model_chooses_its_methods(method: str) -> None:
-    given: dict[str, Any] = {
-        "scene": scene(omega=1.0),
-        "t": 1.0,
-        "model": "contact",
-        "method": method,
-    }
-    assert_refused(ValueError, "method", repr(method), simulate, **given)
-
-
-@pytest.mark.parametrize("name", ["model", "method"])
-@pytest.mark.parametrize("value", [None, 1, ["auto"]], ids=str)
-def test_simulate_refuses_names_that_are_no_text(name: str, value: object) -> None:
-    given: dict[str, Any] = {"scene": scene(omega=1.0), "t": 1.0, name: value}
-    with pytest.raises((TypeError, ValueError), match=rf"\b{name}\b.*{re.escape(repr(value))}"):
-        simulate(**given)
-
-
-@pytest.mark.parametrize("call", [lambda s: simulate(s, 1.0), certify, period])
-@pytest.mark.parametrize("value", [None, 2.0, "report", (2.0, 1.0)], ids=str)
-def test_a_scene_is_wanted(call: Callable[..., Any], value: object) -> None:
-    with pytest.raises(TypeError, match=r"\b[Ss]cene\b"):
-        call(value)
-
-
-def test_what_is_no_scene_is_shown_briefly() -> None:
-    for thing in (np.arange(1e5).tolist(), "x" * 10**5):
-        with pytest.raises(TypeError, match=r"^scene must be a Scene, got ") as caught:
-            certify(thing)  # type: ignore[arg-type]
-        assert len(str(caught.value)) < 400
-        with pytest.raises(TypeError, match=r"^impulse must be an Impulse or None") as caught:
-            scene(impulse=thing)
-        assert len(str(caught.value)) < 400
+# ------------------------------------------------------------------------------- arrays
 
 
 def test_simulate_leaves_the_times_alone() -> None:
@@ -479,99 +313,8 @@ def test_simulate_leaves_the_times_alone() -> None:
     assert not np.shares_memory(trajectory.t, t)
 
 
-def test_period_is_for_level_ground() -> None:
-    assert_refused(ValueError, "slope", "0.1", period, scene=scene(omega=3.0, slope=0.1))
-
-
-# ------------------------------------------------------- flow, thresholds, constraints, kinematics
-
-
-@pytest.mark.parametrize("name", ["a", "b", "gravity", "gyration2"])
-@pytest.mark.parametrize("value", POSITIVE)
-def test_flow_refuses_what_is_not_positive(name: str, value: float) -> None:
-    assert_refused(ValueError, name, repr(value), flow, **{**FLOW, name: value})
-    assert_refused(ValueError, name, repr(value), flow, **{**FLOW, name: np.array([1.0, value])})
-
-
-@pytest.mark.parametrize("name", ["t", "theta", "omega"])
-@pytest.mark.parametrize("value", FINITE)
-def test_flow_refuses_what_is_not_finite(name: str, value: float) -> None:
-    assert_refused(ValueError, name, repr(value), flow, **{**FLOW, name: value})
-    assert_refused(ValueError, name, repr(value), flow, **{**FLOW, name: np.array([1.0, value])})
-
-
-@pytest.mark.parametrize("name", ["t", "a", "b", "theta", "omega", "gravity"])
-@pytest.mark.parametrize("value", ["1", None, 1j], ids=str)
-def test_flow_refuses_what_is_no_number(name: str, value: object) -> None:
-    assert_refused(TypeError, name, "got", flow, **{**FLOW, name: value})
-
-
-@pytest.mark.parametrize("workers", [0, -2])
-def test_flow_refuses_an_impossible_number_of_workers(workers: int) -> None:
-    assert_refused(ValueError, "workers", str(workers), flow, **FLOW, workers=workers)
-
-
-def test_flow_refuses_needles_and_shapes_that_do_not_broadcast() -> None:
-    assert_refused(ValueError, "a/b", "got", flow, **{**FLOW, "a": 1001.0})
-    with pytest.raises(ValueError, match=r"\bomega\b"):
-        flow(np.zeros(3), a=2.0, b=1.0, theta=0.0, omega=np.ones(4))
-
-
 def test_flow_leaves_its_inputs_alone() -> None:
     t, omega = np.linspace(0.0, 2.0, 5), np.full(5, 3.2)
     before = t.copy(), omega.copy()
     flow(t, a=2.0, b=1.0, theta=0.2, omega=omega)
     assert np.array_equal(t, before[0]) and np.array_equal(omega, before[1])
-
-
-THRESHOLDS: dict[str, Any] = {"a": 2.0, "b": 1.0}
-
-
-@pytest.mark.parametrize("name", ["a", "b", "gravity", "gyration2"])
-@pytest.mark.parametrize("value", POSITIVE)
-def test_thresholds_refuse_what_is_not_positive(name: str, value: float) -> None:
-    assert_refused(ValueError, name, repr(value), thresholds, **{**THRESHOLDS, name: value})
-
-
-@pytest.mark.parametrize("value", [-0.1, -INF, NAN])
-def test_thresholds_refuse_wrong_friction(value: float) -> None:
-    assert_refused(ValueError, "friction", repr(value), thresholds, **THRESHOLDS, friction=value)
-
-
-@pytest.mark.parametrize("name", ["a", "b", "gravity", "friction"])
-@pytest.mark.parametrize("value", ["1", None, [2.0]], ids=str)
-def test_thresholds_refuse_what_is_no_number(name: str, value: object) -> None:
-    assert_refused(TypeError, name, "got", thresholds, **{**THRESHOLDS, name: value})
-
-
-def test_thresholds_refuse_needles() -> None:
-    assert_refused(ValueError, "a/b", "got", thresholds, a=1001.0, b=1.0)
-
-
-@pytest.mark.parametrize("name", ["a", "b"])
-def test_constraints_and_kinematics_refuse_wrong_axes(name: str) -> None:
-    states: dict[Callable[..., Any], dict[str, Any]] = {
-        constraints: {"q": np.zeros(5), "q_dot": np.zeros(5)},
-        kinematics: {"theta": 0.3, "omega": 1.0},
-    }
-    for call, state in states.items():
-        for value in POSITIVE:
-            axes: dict[str, Any] = {"a": 2.0, "b": 1.0, name: value}
-            assert_refused(ValueError, name, repr(value), call, **state, **axes)
-        for nothing in ("1", None):
-            axes = {"a": 2.0, "b": 1.0, name: nothing}
-            assert_refused(TypeError, name, "got", call, **state, **axes)
-
-
-@pytest.mark.parametrize("name", ["q", "q_dot"])
-@pytest.mark.parametrize("value", ["state", None, ["a"] * 5, [1j] * 5], ids=str)
-def test_constraints_refuse_what_is_no_number(name: str, value: object) -> None:
-    state = {"q": np.zeros(5), "q_dot": np.zeros(5), name: value}
-    assert_refused(TypeError, name, "got", constraints, **state, a=2.0, b=1.0)
-
-
-@pytest.mark.parametrize("name", ["theta", "omega"])
-@pytest.mark.parametrize("value", ["1", None, 1j], ids=str)
-def test_kinematics_refuses_what_is_no_number(name: str, value: object) -> None:
-    state = {"theta": 0.3, "omega": 1.0, name: value}
-    assert_refused(TypeError, name, "got", kinematics, **state, a=2.0, b=1.0)

@@ -10,26 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from oracles.trajectory import MOTIONS, TIMES
 from rolling_ellipse import Trajectory, simulate
 
-TIMES = np.linspace(0.0, 2.0, 21)
-
-
-def of_coordinates() -> Trajectory:
-    found = rl.report.simulate(*rl.kinematics(0.3, 2.0, a=2.0, b=1.0), TIMES, a=2.0, b=1.0)
-    assert isinstance(found, Trajectory)
-    return found
-
-
-MOTIONS: dict[str, Callable[[], Trajectory]] = {
-    "rolling": lambda: simulate(rl.scenes.report, TIMES),
-    "gauss": lambda: simulate(rl.scenes.rocking, TIMES, method="gauss", step=0.01),
-    "multipliers": lambda: simulate(rl.scenes.rolling, TIMES, model="multipliers"),
-    "contact": lambda: simulate(rl.scenes.bounce, TIMES),
-    "stopped": lambda: simulate(rl.scenes.bounce, TIMES, max_events=1, raise_on_failure=False),
-    "none": lambda: simulate(rl.scenes.bounce, [2.0], max_events=1, raise_on_failure=False),
-    "from coordinates": of_coordinates,
-}
 each = pytest.mark.parametrize("make", MOTIONS.values(), ids=MOTIONS)
 
 
@@ -42,8 +25,11 @@ def test_the_same_again(make: Callable[[], Trajectory], tmp_path: Path) -> None:
     if motion.t.size:
         _ = motion.energy, motion.q  # what it keeps does not matter
         again.append(motion.sol(motion.t))
+    times = np.random.default_rng(1).uniform(0, motion.t_end, 200)
     for other in again:
         assert motion == other and other == motion and hash(motion) == hash(other)
+        assert motion.sol(times) == other.sol(times) and repr(motion) == repr(other)
+        assert (motion.stats, motion.events) == (other.stats, other.events)
     assert len({motion, *again}) == 1
 
 

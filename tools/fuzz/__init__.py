@@ -1,1 +1,1 @@
-"""A fuzzer of the whole public API: see `tools/fuzz_api.py`."""
+"""The fuzzer of the public API; `tools/fuzz_api.py` is its command."""

@@ -1,4 +1,7 @@
-"""Ways to spoil files and pickles of the package; places are shares of what there is."""
+"""Ways to spoil files and pickles of the package; places are shares of what there is.
+
+Archives that are no longer what they say are in `tests/refusals/files.py`, one by one.
+"""
 
 from __future__ import annotations
 
@@ -6,21 +9,13 @@ import json
 import pickle
 import pickletools
 import re
-import struct
 import warnings
-import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-
-def cut(path: str, share: float) -> None:
-    """Leave the first part of the file."""
-    data = Path(path).read_bytes()
-    Path(path).write_bytes(data[: int(share * len(data))])
 
 
 def flip(path: str, share: float, mask: int) -> None:
@@ -55,35 +50,6 @@ def inner_fact(path: str, share: float, value: Any) -> None:
     holder, key = places[int(share * len(places))]
     holder[key] = value
     _write(path, {**arrays, "about": np.array(json.dumps(about))})
-
-
-def packed(path: str, size: int) -> None:
-    """Put a member into the file that unpacks to so many zeros."""
-    _raw(path, "z", bytes(size), compresslevel=1)
-
-
-def header(path: str, name: str, text: str, version: int = 1) -> None:
-    """Give one array a header that says something else, of a few numbers."""
-    code = "<H" if version == 1 else "<I"
-    size = struct.pack(code, len(text) % 2**16)
-    _raw(path, name, b"\x93NUMPY" + bytes([version, 0]) + size + text.encode() + bytes(24))
-
-
-def twice(path: str, name: str) -> None:
-    """Put one array into the file once more."""
-    with zipfile.ZipFile(path) as archive:
-        content = archive.read(f"{name}.npy")
-    _raw(path, name, content)
-
-
-def text(path: str, content: str) -> None:
-    """Put any text in the place of the JSON."""
-    _write(path, {**_arrays(path), "about": np.array(content)})
-
-
-def nested(path: str, depth: int, opening: str) -> None:
-    """JSON within JSON."""
-    text(path, opening * depth)
 
 
 def line(path: str, share: float, old: str, new: str) -> None:
@@ -128,13 +94,6 @@ def _dtype_states(data: bytes | bytearray) -> Iterator[range]:
             assert position is not None
             yield range(begin, position + 1)
             begin = None
-
-
-def _raw(path: str, name: str, content: bytes, compresslevel: int | None = None) -> None:
-    method = zipfile.ZIP_STORED if compresslevel is None else zipfile.ZIP_DEFLATED
-    with warnings.catch_warnings(), zipfile.ZipFile(path, "a") as archive:
-        warnings.simplefilter("ignore")  # of a name that comes twice
-        archive.writestr(f"{name}.npy", content, method, compresslevel)
 
 
 def _places(found: Any) -> list[tuple[Any, Any]]:

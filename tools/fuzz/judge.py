@@ -10,6 +10,7 @@ import io
 import math
 import pickle
 import re
+import tempfile
 import time
 import warnings
 from collections.abc import Callable, Iterator
@@ -28,34 +29,30 @@ import rolling_ellipse as rl
 from rolling_ellipse.__main__ import main
 
 from . import damage, promises
-from .case import Finding, Line
 
-PRELUDE = """\
-import copy, pickle
-from dataclasses import replace
-from decimal import Decimal
-from fractions import Fraction
-from math import inf, nan, nextafter, pi
-from pathlib import Path
-import matplotlib.pyplot as plt
-import numpy as np
-import rolling_ellipse as rl
-"""
+Finds = Iterator[tuple[str, str]]
 
 OWN_WARNINGS = (
     "ValidityWarning", "InconsistentStartWarning", "StabilityWarning", "CompletenessWarning",
 )  # fmt: skip
-_FIELDS = {field.name for kind in (rl.Scene, rl.Impulse) for field in fields(kind)} - {"_"}
-# words of a message that name arguments without naming one
-_TOGETHER = (
-    "arguments must broadcast",
-    "missing 1 required",
-    "unsupported pickle",
-    "cannot pickle",
-)
+_FIELDS = {field.name for kind in (rl.Scene, rl.Impulse) for field in fields(kind)}
+# Words of a message that name arguments without naming one.
+_TOGETHER = ("arguments must broadcast", "missing 1 required", "unsupported pickle",
+             "cannot pickle")  # fmt: skip
 _NOT_FINITE = re.compile(
     r"\bnan\b|\binf\b|NaN|longdouble|\bma\b|1e400|10\*\*400|NaT|e\+?30\d\b|e\+?29\d\b"
 )
+_LINE = re.compile(r"(?:(\w+) = )?(.*)", re.DOTALL)
+# How many times as long as others some lines may take: pictures, whole batches, 1e6 steps.
+_PATIENCE = {
+    "unpickled": 10, "plot": 6, "animate": 6, "work_precision": 6, "errata": 4, "fit": 3,
+    "report.simulate": 4, "when": 20, "command": 8, "simulate_many": 8, "load_many": 8,
+    "to_dataframe": 2, "_html": 20,
+}  # fmt: skip
+
+
+def patience(line: str) -> float:
+    return max([1.0, *(factor for part, factor in _PATIENCE.items() if part in line)])
 
 
 def command(arguments: list[str]) -> str:
@@ -79,117 +76,90 @@ def caught(function: Callable[..., Any], *arguments: Any, **options: Any) -> Exc
     return None
 
 
-def namespace() -> dict[str, Any]:
-    """The names that the lines of a case use."""
-    return {
-        "Decimal": Decimal, "Fraction": Fraction, "command": command, "copy": copy,
-        "damage": damage, "inf": math.inf, "nan": math.nan, "nextafter": math.nextafter,
-        "Path": Path, "caught": caught, "np": np, "pi": math.pi, "pickle": pickle, "plt": plt,
-        "replace": replace, "rl": rl,
-    }  # fmt: skip
+NAMES: dict[str, Any] = {
+    "Decimal": Decimal, "Fraction": Fraction, "Path": Path, "caught": caught, "command": command,
+    "copy": copy, "damage": damage, "inf": math.inf, "nan": math.nan, "nextafter": math.nextafter,
+    "np": np, "pi": math.pi, "pickle": pickle, "plt": plt, "promises": promises,
+    "replace": replace, "rl": rl, "tempfile": tempfile,
+}  # fmt: skip
 
 
 class Case:
-    """The lines of one case, and what is known after those that ran.
+    """The lines of one case, and what is known after those that ran."""
 
-    Attributes
-    ----------
-    outcomes : list of str
-        For each line that ran: "returned", or the name of the exception.
-    """
-
-    def __init__(self, lines: list[Line], seconds: float) -> None:
+    def __init__(self, lines: list[str], seconds: float) -> None:
         self.lines, self.seconds = lines, seconds
-        self.outcomes: list[str] = []
-        self._values = namespace()
+        self._values = dict(NAMES)
         self._finite = True
 
-    def run(self, i: int) -> tuple[bool, list[Finding]]:
+    def run(self, i: int) -> tuple[bool, list[tuple[str, str]]]:
         """Run line i; whether the lines after it can follow, and what is wrong with it."""
         line = self.lines[i]
-        found: list[Finding] = []
-        goes_on = False
-        self._finite &= not _NOT_FINITE.search(re.sub(r"friction=inf\b", "", line.code))
+        name, code = _LINE.fullmatch(line).groups()  # type: ignore[union-attr]
+        forged = "forged" in line
+        self._finite &= not _NOT_FINITE.search(re.sub(r"friction=inf\b", "", code))
+        found: list[tuple[str, str]] = []
+        goes_on = interrupted = False
         begin = time.process_time()
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             try:
-                value = eval(line.code, self._values)
-            except rl.IntegrationError as error:
-                self.outcomes.append("IntegrationError")
-                value, goes_on = error.trajectory, True
-                found += self._judged(line, value)
-            except KeyboardInterrupt:
-                self.outcomes.append("KeyboardInterrupt")
-                if not self._late(line, begin):
-                    raise
-            except Exception as error:
-                self.outcomes.append(type(error).__name__)
-                found += self._of_exception(line, error)
-            else:
-                self.outcomes.append("returned")
+                value = eval(code, self._values)
                 goes_on = True
-                found += self._judged(line, value)
+            except rl.IntegrationError as error:
+                value, goes_on = error.trajectory, True
+            except promises.Broken as error:
+                found.append(error.args)
+            except KeyboardInterrupt:
+                interrupted = True
+            except Exception as error:
+                found += self._of_exception(code, error, forged)
             if goes_on:
-                self._values[""] = value
-                if line.name:
-                    self._values[line.name] = value
-                if line.promise:
-                    found += [self._finding(line, *b) for b in line.promise(self._values)]
-        if self._late(line, begin):
-            spent = time.process_time() - begin
-            how = "ended by an interrupt" if self.outcomes[-1] == "KeyboardInterrupt" else "ended"
-            found.append(self._finding(line, "hang", f"takes long ({how}, {spent:.1f} s)"))
-        return goes_on, found + [self._finding(line, *b) for b in _of_warnings(said)]
+                self._values[name or "_"] = value
+                # what has no answer has NaN in a race
+                if not forged and not isinstance(value, rl.WorkPrecision):
+                    found += promises.of_result(value, self._finite)
+        spent = time.process_time() - begin
+        if spent > self.seconds * patience(line):
+            found.append(("hang", f"takes long, {'until interrupted' if interrupted else ''}"))
+        elif interrupted:  # it was meant for another line
+            raise KeyboardInterrupt
+        return goes_on, found + list(_of_warnings(said))
 
-    def _late(self, line: Line, begin: float) -> bool:
-        return time.process_time() - begin > self.seconds * line.patience
-
-    def _judged(self, line: Line, value: Any) -> list[Finding]:
-        if line.forgery:
-            return []
-        return [self._finding(line, *broken) for broken in promises.of_result(value, self._finite)]
-
-    def _finding(self, line: Line, kind: str, what: str) -> Finding:
-        until = self.lines[: self.lines.index(line) + 1]
-        code = "\n".join(map(str, until))
-        return Finding(kind, line.does, what, code, forged=line.forgery)
-
-    def _of_exception(self, line: Line, error: Exception) -> Iterator[Finding]:
+    def _of_exception(self, code: str, error: Exception, forged: bool) -> Finds:
         said = f"{type(error).__name__}: {error}"[:300].encode("ascii", "replace").decode()
         if isinstance(error, ValueError | TypeError):
-            names = self._argument_names(line)
-            if line.forgery:
+            names = self._argument_names(code)
+            if forged:
                 names |= {"q", "q_dot"}  # what is made of arrays that somebody has put in
             if "trajectories" in names:
                 names.add("trajectory")  # one of them
             if not any(map(str(error).__contains__, _TOGETHER)) and not _names_one(error, names):
-                yield self._finding(line, "unnamed", said)
+                yield "unnamed", said
         elif not isinstance(error, OSError | MemoryError | ImportError):
-            yield self._finding(line, "exception", said)
+            yield "exception", said
 
-    def _argument_names(self, line: Line) -> set[str]:
-        names = _FIELDS | set(re.findall(r"\b(\w+)=", line.code))
-        tree = ast.parse(line.code, mode="eval").body
-        if isinstance(tree, ast.Call):
-            called = eval(ast.unparse(tree.func), self._values)
-            with contextlib.suppress(TypeError, ValueError):
-                names |= set(inspect.signature(called).parameters)
+    def _argument_names(self, code: str) -> set[str]:
+        names = _FIELDS | set(re.findall(r"\b(\w+)=", code))
+        for call in ast.walk(ast.parse(code, mode="eval")):
+            if isinstance(call, ast.Call):
+                with contextlib.suppress(Exception):
+                    called = eval(ast.unparse(call.func), self._values)
+                    names |= set(inspect.signature(called).parameters)
         return names
 
 
 def _names_one(error: Exception, names: set[str]) -> bool:
     """Whether a message speaks of an argument; names of one letter also are words."""
     message = str(error)
-    long = [name for name in names if len(name) > 1]
-    short = [name for name in names if len(name) == 1]
-    as_word = re.search(rf"(?<!\w)({'|'.join(map(re.escape, long))})(?!\w)", message)
-    letters = "|".join(map(re.escape, short)) or "(?!)"
+    long = "|".join(re.escape(name) for name in names if len(name) > 1)
+    letters = "|".join(re.escape(name) for name in names if len(name) == 1) or "(?!)"
+    as_word = re.search(rf"(?<!\w)({long})(?!\w)", message)
     as_subject = re.search(rf"(^|[\s,;:]|--)({letters})( must| and |/b|[\[,=:]| \()", message)
     return bool(as_word or as_subject)
 
 
-def _of_warnings(said: list[warnings.WarningMessage]) -> Iterator[tuple[str, str]]:
+def _of_warnings(said: list[warnings.WarningMessage]) -> Finds:
     for each in said:
         if each.category.__name__ not in OWN_WARNINGS:
             place = re.sub(r".*/(site-packages|lib/python[\d.]+)/", "", each.filename)

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from random import Random
 from typing import TypeVar
+
+from hypothesis import strategies as st
 
 T = TypeVar("T")
 
@@ -17,7 +18,7 @@ EXTREMES = (
     "0", "0.0", "-0.0", "nan", "-nan", "inf", "-inf", "5e-324", "-5e-324",
     "2.2250738585072014e-308", "2.225073858507201e-308", "1.7976931348623157e308",
     "-1.7976931348623157e308", "1e-300", "1e300", "1e-160", "1e160", "-1", "-1.0", "1", "1.0", "2",
-    "2**31", "2**31 - 1", "-2**31", "2**32", "2**40", "2**53 + 1", "2**63", "2**63 - 1", "2**64",
+    "2**31", "-2**31", "2**32", "2**40", "2**53 + 1", "2**63", "2**63 - 1", "2**64",
     "1e16", "0.1", "1e-30", "1e30", "nextafter(1e-30, 0)", "nextafter(1e30, inf)", "1e-3", "1e3",
     "nextafter(1e-3, 0)", "nextafter(1e3, inf)", "pi / 2", "-pi / 2", "1.5", "-1.5",
     "nextafter(1.5, 2)", "nextafter(1, 0)", "nextafter(1, 2)", "1e50", "1e22", "1e6", "1e-6",
@@ -53,29 +54,46 @@ WRONG = (
 
 SHAPES = ((), (), (), (1,), (3,), (7,), (0,), (2, 3), (2, 1), (1, 1), (2, 0), (40,))
 
+# Makes of an array, the numbers of which are equal to those given.
+MAKES = (
+    *["np.array({0})"] * 8, *["{0}"] * 3, "tuple({0})", "np.array({0}, dtype='>f8')",
+    "np.repeat({0}, 2)[::2]", "np.array({0}[::-1])[::-1]", "np.array({0}, dtype=np.longdouble)",
+    "np.frombuffer(np.array({0}).tobytes())",
+    "np.frombuffer(b'-' + np.array({0}).tobytes(), float, offset=1)",
+    "np.array([(1, v) for v in {0}], dtype='i1,f8')['f1']",
+)  # fmt: skip
+
+# Arguments that ask for work: anything may stand there but a large number.
+WORK = ("max_steps", "max_events", "resolution", "max_seconds", "samples", "rounds", "count")
+
 
 class Draw:
-    """The random choices of one case: the same for the same seed and index."""
+    """The choices of one case, made by Hypothesis; what stands first is the simplest."""
 
-    def __init__(self, seed: int, index: int) -> None:
-        self.random = Random(f"{seed}/{index}")
-
-    def chance(self, probability: float) -> bool:
-        return self.random.random() < probability
+    def __init__(self, draw: st.DrawFn) -> None:
+        self._draw = draw
 
     def pick(self, *options: T) -> T:
-        return self.random.choice(options)
+        found: T = self._draw(st.sampled_from(options))
+        return found
 
-    def weighted(self, options: Sequence[T], weights: Sequence[float]) -> T:
-        return self.random.choices(options, weights)[0]
+    def chance(self, probability: float) -> bool:
+        return self._draw(st.integers(0, 99)) >= 100 * (1 - probability)
 
     def between(self, low: float, high: float) -> float:
-        return self.random.uniform(low, high)
+        return self._draw(st.floats(low, high))
+
+    def share(self) -> float:
+        """From 0 up to, but without 1."""
+        return self._draw(st.floats(0, 1, exclude_max=True))
+
+    def whole(self, low: int, high: int) -> int:
+        return self._draw(st.integers(low, high))
 
     def power(self, low: float, high: float) -> float:
         """A number whose size is anything between 10^low and 10^high; sometimes a pure power."""
         if self.chance(0.2):
-            return 10.0 ** self.random.randint(math.ceil(low), math.floor(high))
+            return 10.0 ** self.whole(math.ceil(low), math.floor(high))
         return float(10.0 ** self.between(low, high))
 
     def count(self, most: int) -> int:
@@ -90,51 +108,31 @@ class Draw:
 
     def extreme(self) -> str:
         """A number as hard as numbers get."""
-        if self.chance(0.25):
-            return repr(self.pick(1, 1, -1) * 2.0 ** self.random.randint(-1074, 1023))
-        if self.chance(0.25):
-            return repr(self.pick(1, 1, -1) * self.power(-320, 308))
-        return self.pick(*EXTREMES)
+        kind = self.whole(0, 3)
+        if kind == 0:
+            return repr(self.pick(1, 1, -1) * 2.0 ** self.whole(-1074, 1023))
+        return repr(self._draw(st.floats())) if kind == 1 else self.pick(*EXTREMES)
 
     def hostile(self) -> str:
         """Anything that a caller might pass by mistake."""
-        if self.chance(0.5):
-            return self.extreme()
-        return self.pick(*DRESSED, *WRONG, *WRONG)
+        return self.extreme() if self.chance(0.5) else self.pick(*DRESSED, *WRONG, *WRONG)
 
     def mutated(self, arguments: dict[str, str]) -> dict[str, str]:
         """The arguments of a call, none, one or two of them replaced by something hostile."""
         found = dict(arguments)
-        changes = self.weighted((0, 1, 2), (0.8, 0.16, 0.04))
-        for name in self.random.sample(list(found), min(changes, len(found))):
-            found[name] = self.hostile()
+        for _ in range(self.pick(*[0] * 20, *[1] * 4, 2) if found else 0):
+            name = self.pick(*found)
+            found[name] = self.pick("0", "-1", "nan", *WRONG) if name in WORK else self.hostile()
         return found
 
     def array(self, values: Sequence[float], shape: tuple[int, ...] | None = None) -> str:
-        """Numbers as an array-like of a random make; equal to them but for float32 and integers."""
-        numbers = text(list(values))
+        """Numbers as an array-like of some make."""
         if shape is not None and len(shape) != 1:
-            return f"np.array({numbers}).reshape({shape})"
-        make = self.weighted(
-            (
-                "np.array({0})", "{0}", "tuple({0})", "np.array({0}, dtype='>f8')",
-                "np.repeat({0}, 2)[::2]", "np.array({0}[::-1])[::-1]",
-                "np.array({0}, dtype=np.longdouble)", "np.array({0}, dtype=np.float32)",
-                "np.array({0}).astype(np.int64)", "np.array({0}).astype(bool)",
-                "np.frombuffer(np.array({0}).tobytes())",
-                "np.frombuffer(b'-' + np.array({0}).tobytes(), float, offset=1)",
-                "np.array([(1, v) for v in {0}], dtype='i1,f8')['f1']",
-            ),
-            (8, 3, 1, 1, 1, 1, 1, 0.5, 0.2, 0.2, 1, 1, 1),
-        )  # fmt: skip
-        if not all(abs(v) < 1e9 for v in values) and ("astype" in make or "32" in make):
-            make = "np.array({0})"
-        return make.format(numbers)
-
-
-def text(value: object) -> str:
-    """Source text of a number, a string, None, or a list or tuple of such."""
-    return repr(value)
+            return f"np.array({list(values)}).reshape({shape})"
+        if all(abs(v) < 1e9 for v in values) and self.chance(0.05):
+            kind = self.pick("np.float32", "np.int64", "bool")
+            return f"np.array({list(values)}).astype({kind})"
+        return self.pick(*MAKES).format(list(values))
 
 
 def call(function: str, *arguments: str, **options: str) -> str:

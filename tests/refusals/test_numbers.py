@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable
+from dataclasses import fields
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -22,17 +23,20 @@ BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 1.0, "gravity": 9.81}
 AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
 HIT: dict[str, Any] = {"x_dot": 0.0, "z_dot": -1.0, "omega": 0.0, "friction": 0.3}
 
+SCENE_NUMBERS = [field.name for field in fields(rl.Scene) if field.name != "impulse"]
+#: Arguments that may be None.
+OPTIONAL = ("z", "inertia", "gyration2", "x", "x_dot", "z_dot")
+
 Door = Callable[[Any], Any]
 
 #: What takes one number, by the name of the argument.
 SCALAR_DOORS: list[tuple[str, Door]] = [
-    ("a", lambda v: rl.Scene(v, 1.0)),
-    ("z", lambda v: rl.Scene(2.0, 1.0, z=v)),
-    ("inertia", lambda v: rl.Scene(2.0, 1.0, inertia=v)),
-    ("a", lambda v: rl.thresholds(v, 1.0)),
-    ("friction", lambda v: rl.thresholds(2.0, 1.0, friction=v)),
+    *((name, lambda v, name=name: rl.Scene(**{**AXES, name: v})) for name in SCENE_NUMBERS),
+    *((name, lambda v, name=name: rl.thresholds(**{**AXES, name: v}))
+      for name in ("a", "b", "gravity", "friction", "gyration2")),
     ("rtol", lambda v: rl.simulate(SCENE, 1.0, rtol=v)),
     ("baumgarte", lambda v: rl.simulate(SCENE, 1.0, baumgarte=(v, 1.0))),
+    ("a", lambda v: rl.constraints(Q, Q_DOT, a=v, b=1.0)),
     ("b", lambda v: rl.constraints(Q, Q_DOT, a=2.0, b=v)),
     ("b", lambda v: rl.kinematics(0.3, 1.0, a=2.0, b=v)),
     ("t", lambda v: MOTION.scene_at(v)),
@@ -49,8 +53,9 @@ SCALAR_DOORS: list[tuple[str, Door]] = [
 
 #: What takes one number or many.
 ARRAY_DOORS: list[tuple[str, Door]] = [
-    ("jx", lambda v: rl.Impulse(v)),
-    ("F", lambda v: rl.Impulse.press(v, 1.0)),
+    *((name, lambda v, name=name: rl.Impulse(**{name: v})) for name in ("jx", "jz", "dx", "dz")),
+    *((name, lambda v, name=name: rl.Impulse.press(**{"F": 48.0, "d": 1.0, name: v}))
+      for name in ("F", "d")),
     *((name, lambda v, name=name: rl.flow(**{**FLOW, name: v})) for name in FLOW),
     ("gravity", lambda v: rl.classify(**AXES, omega=1.0, gravity=v)),
     ("t", lambda v: rl.simulate(SCENE, v)),
@@ -58,6 +63,7 @@ ARRAY_DOORS: list[tuple[str, Door]] = [
     ("x", lambda v: MOTION.when(x=v)),
     ("scenes['theta']", lambda v: rl.simulate_many({**AXES, "theta": v}, 1.0)),
     ("q", lambda v: rl.constraints(v, Q_DOT, **AXES)),
+    ("q_dot", lambda v: rl.constraints(Q, v, **AXES)),
     ("theta", lambda v: geometry.support(v, **AXES)),
     ("b", lambda v: geometry.arc_length(0.3, a=2.0, b=v)),
     ("omega", lambda v: rl.kinematics(0.3, v, **AXES)),
@@ -65,7 +71,7 @@ ARRAY_DOORS: list[tuple[str, Door]] = [
     ("z_dot", lambda v: impacts.kinetic_speed(0.0, v, 0.0, gyration2=1.0)),
     ("theta", lambda v: report.eq_5(v, **AXES)),
     ("omega", lambda v: report.consistent_rates(Q, v, **AXES)),
-]
+]  # fmt: skip
 
 NO_NUMBERS: list[Any] = [
     None, {}, object, float, np.float64, "2", b"2", np.str_("2"), np.bytes_(b"2"), np.array("2"),
@@ -107,7 +113,7 @@ def refused(error: type[Exception], name: str, requirement: str, door: Door, val
 @names(SCALAR_DOORS + ARRAY_DOORS)
 def test_what_is_no_number(name: str, door: Door) -> None:
     for value in NO_NUMBERS:
-        if value is not None or name not in ("z", "inertia", "gyration2", "x"):
+        if value is not None or name not in OPTIONAL:
             refused(TypeError, name, "a number", door, value)
 
 

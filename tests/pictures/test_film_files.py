@@ -1,0 +1,181 @@
+"""A picture or film that fails leaves nothing behind; names of films, and who writes them."""
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from matplotlib.animation import FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from oracles.pictures import frames_of
+from PIL import Image
+from rolling_ellipse._pictures.animation import movies as movies
+
+MOTION = rl.simulate(rl.scenes.report, np.linspace(0.0, 1.0, 26))
+CURVES = [
+    rl.plot_paths, rl.plot_phase, rl.plot_forces, rl.plot_energy, rl.plot_constraints,
+    rl.plot_error,
+]  # fmt: skip
+SMALL: dict[str, Any] = {"t_end": 0.2, "width": 160, "dpi": 50}
+
+FRAMES = (".gif", ".mp4")  # written frame by frame; an .html is one string
+
+
+@pytest.fixture(autouse=True)
+def no_figure_stays() -> Iterator[None]:
+    yield
+    opened = plt.get_fignums()
+    plt.close("all")
+    assert opened == []
+
+
+def test_places_in_rows() -> None:
+    figure = Figure()
+    two: Any = figure.subplots(1, 2, squeeze=False)
+    for given in (two, two.tolist(), list(two), (two[0, 0], two[0, 1])):
+        assert len(rl.plot_forces(MOTION, ax=given).axes) == 2
+
+
+def test_a_given_figure_stays_as_it_is() -> None:
+    figure = Figure()
+    with pytest.raises(ValueError, match="count must be at least 1"):
+        rl.plot(MOTION, figure=figure, count=0)
+    assert figure.axes == []
+
+
+@pytest.mark.parametrize("draw", [rl.plot, rl.plot_strobe, *CURVES])
+def test_a_drawing_that_fails_closes_its_figure(draw: Any, monkeypatch: Any) -> None:
+    mine = plt.figure()
+    monkeypatch.setattr(Axes, "plot", lambda *args, **options: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        draw(MOTION)
+    assert plt.get_fignums() == [mine.number]
+    plt.close(mine)
+
+
+@pytest.mark.parametrize("units", [1, 512, 749])
+def test_a_motion_of_next_to_no_time(units: int) -> None:
+    """No even time is after its end, whose share in it is rounded up to a unit or two."""
+    end = units * 5e-324
+    assert rl.simulate(rl.scenes.rocking, end).t[-1] == end
+    motion = rl.simulate(rl.scenes.rocking, [0.0, end])
+    draw: Any
+    for draw in (rl.plot, rl.plot_strobe, *CURVES):
+        draw(motion)
+        plt.close()
+    assert rl.animate(motion)._repr_html_() and motion._repr_html_()
+
+
+# ------------------------------------------------------------------------------------ films
+
+
+def test_paths_that_cannot_be_written(tmp_path: Path, monkeypatch: Any) -> None:
+    (tmp_path / "folder.gif").mkdir()
+    monkeypatch.setattr(rl.Trajectory, "sol", None)  # before any work
+    for name in ("", "roll\0.gif"):
+        with pytest.raises(ValueError, match=r"^path must name a file, got"):
+            rl.animate(MOTION, name)
+    with pytest.raises(IsADirectoryError, match=r"folder\.gif"):
+        rl.animate(MOTION, tmp_path / "folder.gif")
+    with pytest.raises(FileNotFoundError, match=r"no such folder.*no/roll\.gif"):
+        rl.animate(MOTION, tmp_path / "no" / "roll.gif")
+
+
+@pytest.mark.parametrize("name", ["12:30.mp4", "-x.mp4", "%03d.mp4", "concat:a|b.gif", "ä.html"])
+def test_names_that_ffmpeg_would_understand(tmp_path: Path, name: str, monkeypatch: Any) -> None:
+    monkeypatch.chdir(tmp_path)
+    rl.animate(MOTION, name, **SMALL)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    if name.endswith(".mp4"):
+        assert (tmp_path / name).read_bytes()[4:8] == b"ftyp"
+
+
+@pytest.mark.parametrize("suffix", FRAMES)
+@pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError, OSError])
+def test_an_old_film_stays_until_the_new_one_is_whole(
+    tmp_path: Path, monkeypatch: Any, suffix: str, error: type[BaseException]
+) -> None:
+    path = tmp_path / f"roll{suffix}"
+    path.write_bytes(b"old")
+    film = rl.animate(MOTION, **SMALL)
+    drawn: list[Any] = []
+    draw = film._func  # type: ignore[attr-defined]
+
+    def stops(i: int, *args: Any) -> Any:
+        drawn.append(i)
+        if len(drawn) > 3:
+            raise error
+        return draw(i, *args)
+
+    monkeypatch.setattr(film, "_func", stops)
+    with pytest.raises(error):
+        film.save(path)
+    assert path.read_bytes() == b"old" and list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("suffix", FRAMES)
+def test_a_killed_film_leaves_the_old_one(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"roll{suffix}"
+    path.write_bytes(b"old")
+    program = (
+        "import os, signal, sys, rolling_ellipse as rl\n"
+        "film = rl.animate(rl.simulate(rl.scenes.report, 1.0), width=160, dpi=50)\n"
+        "kill = lambda i, n: i > 5 and os.kill(os.getpid(), signal.SIGKILL)\n"
+        "film.save(sys.argv[1], progress_callback=kill)\n"
+    )
+    subprocess.run([sys.executable, "-c", program, path], timeout=120, check=False)
+    assert path.read_bytes() == b"old"
+
+
+def test_an_ffmpeg_that_fails(tmp_path: Path, monkeypatch: Any) -> None:
+    path = tmp_path / "roll.mp4"
+    path.write_bytes(b"old")
+    program = tmp_path / "ffmpeg"
+    program.write_text(
+        "#!/bin/sh\ncat > /dev/null\necho first >&2\necho disk is full >&2\nexit 1\n"
+    )
+    program.chmod(0o755)
+    monkeypatch.setattr(movies, "ffmpeg", lambda: str(program))
+    with pytest.raises(OSError, match=r"^ffmpeg could not write '.*roll\.mp4': disk is full$"):
+        rl.animate(MOTION, path, **SMALL)
+    assert path.read_bytes() == b"old" and len(list(tmp_path.iterdir())) == 2
+
+
+def test_an_extra_without_a_program(monkeypatch: Any) -> None:
+    """imageio_ffmpeg has none for this machine, and says so by a RuntimeError."""
+    imageio = pytest.importorskip("imageio_ffmpeg")
+
+    def missing() -> str:
+        raise RuntimeError("No ffmpeg exe could be found")
+
+    monkeypatch.setattr(imageio, "get_ffmpeg_exe", missing)
+    monkeypatch.setattr(FFMpegWriter, "isAvailable", lambda: False)
+    with pytest.raises(FileNotFoundError, match=r"rolling_ellipse\[video\]"):
+        rl.animate(MOTION, "roll.mp4")
+
+
+def test_writers_of_ones_own(tmp_path: Path) -> None:
+    film = rl.animate(MOTION, **SMALL)
+    film.save(tmp_path / "roll.gif", PillowWriter(fps=5))
+    with Image.open(tmp_path / "roll.gif") as picture:
+        assert frames_of(picture) == film.t.size
+
+
+@pytest.mark.parametrize("draw", [rl.plot_strobe, rl.plot_paths, rl.plot, rl.animate])
+def test_a_body_too_far_away_to_be_seen_is_refused(draw: Any) -> None:
+    """At 7.8e23 m doubles are 1.3e8 m apart; at 1e12 m a tenth of a millimetre, enough to draw."""
+    with pytest.raises(ValueError, match=r"^trajectory must stay where .*, got a centre 7\.8"):
+        draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=7.847959263208443e23), 1.0))
+    assert not plt.get_fignums()
+    draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=1e12), 1.0))
+    plt.close("all")

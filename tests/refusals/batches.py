@@ -1,0 +1,179 @@
+"""Refusals of many motions, and of the folders that hold them."""
+
+import json
+import math
+import shutil
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rolling_ellipse as rl
+from rolling_ellipse import Scene, scenes
+from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all, _name
+
+from refusals import Row
+
+SCENE = Scene(2.0, 1.0, omega=1.0)
+TIMES = [0.0, 1.5]
+MANY: Any = {"a": 2.0, "b": 1.0, "omega": [1.0, 2.0]}
+MIXED = [scenes.jump, scenes.report, scenes.slip]
+FLOW: dict[str, Any] = {"b": 1.0, "theta": 0.0, "omega": 1.0}
+
+
+def many(scenes: Any, **options: Any) -> Callable[[Path], Any]:
+    return lambda _: rl.simulate_many(scenes, TIMES, **options)
+
+
+class Pool(ThreadPoolExecutor):
+    """Workers of another process are not needed to be refused by one."""
+
+
+class Broken(ThreadPoolExecutor):
+    def submit(self, function: Any, /, *arguments: Any, **options: Any) -> Any:
+        return super().submit(lambda: 1 // 0)
+
+
+def made(folder: Path, scenes: Any = MANY, **options: Any) -> Path:
+    return Path(rl.simulate_many(scenes, TIMES, out=folder / "many", **options))
+
+
+def other_folder(folder: Path) -> None:
+    (folder / "many").mkdir()
+    (folder / "many" / "notes.txt").write_text("mine")
+    made(folder)
+
+
+def again(folder: Path, t: Any = TIMES, omega: float = 1.0, **options: Any) -> None:
+    path = made(folder)
+    rl.simulate_many({"a": 2.0, "b": 1.0, "omega": [omega, 2.0]}, t, out=path, **options)
+
+
+def more(folder: Path) -> None:
+    """A scene behind a chunk that was full."""
+    path = made(folder, [SCENE] * 16)
+    rl.simulate_many([SCENE] * 17, TIMES, out=path)
+
+
+def mixed(folder: Path) -> None:
+    """A chunk of another request."""
+    path = made(folder)
+    shutil.copy(next(path.glob("0*.npz")), path / f"{7:08d}-{'0' * 16}-{'0' * 16}.npz")
+    rl.simulate_many(MANY, TIMES, out=path)
+
+
+def fewer(folder: Path) -> None:
+    path = made(folder)
+    (path / "end.json").unlink()
+    chunk = next(path.glob("0*.npz"))
+    shutil.copy(chunk, path / f"{7:08d}-{chunk.name[9:]}")
+    rl.simulate_many(MANY, TIMES, out=path)
+
+
+def broken(folder: Path) -> None:
+    with Broken(1) as pool:
+        made(folder, workers=pool)
+
+
+def spoilt(change: Callable[[Path], Any], scenes: Any = MANY) -> Callable[[Path], Any]:
+    def call(folder: Path) -> Any:
+        path = made(folder, scenes)
+        change(path)
+        return list(rl.load_many(path))
+
+    return call
+
+
+def forged(name: str = "0*.npz", **changes: Callable[[Any], Any]) -> Row:
+    """Other arrays in the one chunk, or in another file; None takes one away."""
+
+    def change(path: Path) -> None:
+        file = next(path.glob(name))
+        with np.load(file) as data:
+            arrays = dict(data)
+        new = {key: change(arrays.pop(key)) for key, change in changes.items()}
+        arrays |= {key: value for key, value in new.items() if value is not None}
+        with file.open("wb") as whole:
+            np.savez(whole, **arrays)
+
+    return "path", spoilt(change, MIXED)
+
+
+def put(place: Any, value: float) -> Callable[[Any], Any]:
+    """Another number at a place of an array."""
+
+    def change(values: Any) -> Any:
+        values[place] = value
+        return values
+
+    return change
+
+
+def of_schema(number: int) -> Callable[[Any], Any]:
+    return lambda about: np.array(json.dumps(json.loads(str(about)) | {"schema": number}))
+
+
+def negative_count(path: Path) -> None:
+    (path / "end.json").write_text('{"scenes": -1, "digest": ""}')
+
+
+def another_digest(path: Path) -> None:
+    (path / "end.json").write_text('{"scenes": 2, "digest": ""}')
+
+
+def renamed(folder: Path) -> Any:
+    """Scenes that nobody could have had, under their right name."""
+    path = made(folder)
+    file = next(path.glob("0*.npz"))
+    with np.load(file) as data:
+        arrays = dict(data)
+    arrays["scenes"][0, 0] = -1.0
+    request = str(arrays["request"])
+    file.unlink()
+    with (path / _name(0, request, arrays["scenes"])).open("wb") as new:
+        np.savez(new, **arrays)
+    digest = _digest_of_all(request, 2, _chunks(path))
+    (path / "end.json").write_text(json.dumps({"scenes": 2, "digest": digest}))
+    return list(rl.load_many(path))
+
+
+REFUSALS: list[Row] = [
+    # asked
+    ("scenes", many(1)),
+    ("scenes[0]", many([1])),
+    ("scenes", many({"c": 1.0})),
+    ("scenes", many({"a": 1.0})),
+    ("scenes['impulse']", many({"a": 2.0, "b": 1.0, "impulse": 1})),
+    ("scenes['z'][1]", many({**MANY, "z": [2.0, math.nan]})),
+    ("scenes['a'][1]", many({"a": [2.0, -1.0], "b": 1.0})),
+    ("scenes[1]", many({"a": [2.0, 1e5], "b": 1.0})),
+    ("progress", many([SCENE], progress=1)),
+    ("out", other_folder),
+    ("out", lambda folder: again(folder, rtol=1e-3)),
+    ("out", lambda folder: again(folder, t=[0.0, 1.0])),
+    ("out", lambda folder: again(folder, omega=9.0)),
+    ("out", more),
+    ("out", mixed),
+    ("out", fewer),
+    (rl.WorkerError, broken),
+    ("a[1]", lambda _: rl.flow([1.0, 1.0], a=[2.0, -1.0], **FLOW, workers=Pool())),
+    # folders
+    ("path", lambda folder: rl.load_many(folder)),
+    ("path", spoilt(lambda path: (path / "end.json").unlink())),
+    ("path", spoilt(lambda path: next(path.glob("0*.npz")).unlink())),
+    ("path", spoilt(negative_count)),
+    ("path", spoilt(another_digest)),
+    ("path", renamed),
+    forged("request.npz", about=of_schema(99)),
+    forged("request.npz", t=lambda _: np.array([1.0, 0.0])),
+    forged(mode=lambda _: None), forged(mode=lambda v: v + 9),
+    forged(codes=lambda v: v[:1]), forged(codes=lambda v: v.astype(float)),
+    *(forged(codes=put(place, value)) for place, value in (
+        ((0, 0), 77), ((0, 1), 99), ((0, 3), -1), ((0, 3), 1), ((0, 9), 2**62))),
+    forged(rolling=put(0, math.nan)), forged(numbers=put(0, math.nan)),
+    forged(contact=lambda v: v * math.nan),
+    forged(events=put((0, 1), 0.5)), forged(events=put((0, 8), 9.0)),
+    forged(text=lambda v: np.append(v, np.int8(1))),
+    forged(scenes=put((0, 0), 3.0)), forged(scenes=lambda v: v[:, :17]),
+]  # fmt: skip

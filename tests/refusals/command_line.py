@@ -1,0 +1,23 @@
+"""Refusals of the command line."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from rolling_ellipse.__main__ import _motion
+from rolling_ellipse._show.command.options import joined, motion_parser
+
+from refusals import Row
+
+
+def told(*arguments: str) -> Callable[[Path], Any]:
+    """What the command line says in one line before it ends."""
+    return lambda _: _motion(motion_parser().parse_args(joined(list(arguments))))
+
+
+REFUSALS: list[Row] = [
+    ("--time", told("--time=nan")),
+    ("--plot", told("--plot=no/such/folder.png")),
+    ("--press", told("--press", "-1", "1")),
+    ("impulse", told("--a=1e-2", "--b=1e-2")),
+]

@@ -1,0 +1,155 @@
+"""Refusals of pictures, films and the explorer."""
+
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import numpy as np
+import rolling_ellipse as rl
+from matplotlib.animation import FFMpegWriter
+from matplotlib.figure import Figure
+from rolling_ellipse import Scene, report, scenes
+from rolling_ellipse._pictures.animation import movies
+
+from refusals import ANYTHING, Row, but, wrong
+
+MOTION = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 0.5, 6))
+SLOPED = rl.simulate(scenes.slope, [0.0, 0.5])
+LATER = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 1.0, 6))
+TOO_LONG = rl.simulate(
+    rl.Scene(2.0, 2.0, omega=1e6), 1e10, model="rolling", method="radau", step=5e9,
+    raise_on_failure=False,
+)  # fmt: skip
+EMPTY = MOTION.sol([])
+ANGLES_UNKNOWN = rl.simulate(Scene(2.0, 1.0, theta=1e16, omega=1.0), 0.5, model="rolling")
+FAR = rl.simulate(Scene(2.0, 1.0, x=1e24), [0.0, 1.0])
+Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
+OWN_START: Any = report.simulate(Q, Q_DOT, [0.0, 0.1], a=2.0, b=1.0)
+WRONG: Any = 1
+FILM: dict[str, Any] = {"width": 160, "dpi": 50}
+
+
+CURVES: list[Any] = [
+    rl.plot_paths, rl.plot_phase, rl.plot_forces, rl.plot_energy, rl.plot_constraints,
+    rl.plot_error,
+]  # fmt: skip
+PAIRS = (rl.plot_forces, rl.plot_constraints)  # in two axes
+
+
+class Lying:
+    """It says that it is an array, and is none."""
+
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        return "no array"
+
+
+NO_PLACES: list[Any] = [*ANYTHING, [[1], [2, 3]], [[[1]], 2], Lying(), [Lying()], Figure()]
+
+
+def axes(count: int) -> Any:
+    return Figure().subplots(count)
+
+
+def film_that_fails(folder: Path) -> None:
+    program = folder / "ffmpeg"
+    program.write_text("#!/bin/sh\ncat > /dev/null\necho the disk is full >&2\nexit 1\n")
+    program.chmod(0o755)
+    with mock.patch.object(movies, "ffmpeg", lambda: str(program)):
+        rl.animate(MOTION, folder / "roll.mp4", **FILM)
+
+
+def film_that_is_stopped(folder: Path) -> None:
+    """An exception in a frame is not covered by the failure of the program that it leaves."""
+    program = folder / "ffmpeg"
+    program.write_text("#!/bin/sh\ncat > /dev/null\nexit 1\n")
+    program.chmod(0o755)
+    film = rl.animate(MOTION, **FILM)
+    draw = mock.Mock(side_effect=[ArithmeticError("stopped")] * 9)
+    with (
+        mock.patch.object(movies, "ffmpeg", lambda: str(program)),
+        mock.patch.object(film, "_func", draw),
+    ):
+        film.save(folder / "roll.mp4")
+
+
+def film_without_ffmpeg(folder: Path) -> None:
+    with (
+        mock.patch("importlib.util.find_spec", return_value=None),
+        mock.patch.object(FFMpegWriter, "isAvailable", return_value=False),
+    ):
+        rl.animate(MOTION, folder / "roll.mp4", **FILM)
+
+
+def folder_called_gif(folder: Path) -> None:
+    (folder / "roll.gif").mkdir()
+    rl.animate(MOTION, folder / "roll.gif", **FILM)
+
+
+def long_film(folder: Path) -> None:
+    """Of more frames than a player has samples, and a motion that needs more."""
+    turning = rl.simulate(Scene(2.0, 1.0, omega=3.2), [0.0, 20_000.0])
+    rl.animate(turning, folder / "roll.html", speed=20.0, fps=50.0, **FILM)
+
+
+def page(folder: Path, **options: Any) -> None:
+    rl.animate(MOTION, **FILM).save(folder / "roll.html", **options)
+
+
+REFUSALS: list[Row] = [
+    # curves
+    *wrong(rl.plot, {}, trajectory=[None, *ANYTHING, EMPTY, [MOTION, MOTION]]),
+    *wrong(rl.plot, {"trajectory": MOTION}, figure=ANYTHING, t_end=ANYTHING, count=[*but(42), 0]),
+    *wrong(rl.plot_strobe, {}, trajectory=[None, *ANYTHING, [MOTION, MOTION], FAR]),
+    *wrong(rl.plot_strobe, {"trajectory": MOTION}, t_end=[9.0], count=["x", 0, 10**6, 10**12],
+           ax=[*ANYTHING, Figure(), axes(3), axes(3).tolist()]),
+    *(row for draw in CURVES for row in wrong(
+        draw, {}, trajectories=[None, *ANYTHING, [MOTION, WRONG]])),
+    *(row for draw in CURVES for row in wrong(
+        draw, {"trajectories": MOTION},
+        ax=[*NO_PLACES, axes(3), *([] if draw in PAIRS else [axes(3).tolist()])])),
+    ("every trajectory", lambda _: rl.plot_paths([MOTION, EMPTY])),
+    ("trajectories", lambda _: rl.plot_paths([MOTION, SLOPED])),
+    ("trajectories", lambda _: rl.plot_phase(ANGLES_UNKNOWN)),
+    *wrong(rl.plot_phase, {"trajectories": MOTION}, colors=ANYTHING, fold=[*ANYTHING, 1]),
+    *wrong(rl.plot_forces, {"trajectories": MOTION}, labels=[*ANYTHING, ["a", "b"]]),
+    *wrong(rl.plot_energy, {"trajectories": MOTION}, kind=ANYTHING),
+    *wrong(rl.plot_error, {"trajectories": MOTION}, quantity=ANYTHING, reference=ANYTHING),
+    ("reference", lambda _: rl.plot_error(LATER, reference=MOTION)),
+    ("reference", lambda _: rl.plot_error(OWN_START)),
+    ("reference", lambda _: rl.plot_error(TOO_LONG)),
+    # maps
+    *wrong(rl.plot_phase_map, {"resolution": 2}, x=ANYTHING, ax=ANYTHING, b=[-1.0], aspect=[2.0],
+           friction=[-1.0], x_range=[*but([1, 2], np.array([1.0, 2.0])), (2.0, 1.0)]),
+    ("resolution", lambda _: rl.plot_phase_map(resolution=0)),
+    ("x", lambda _: rl.plot_phase_map("energy", "speed", resolution=2)),
+    ("energy", lambda _: rl.plot_phase_map(energy=1.0, speed=1.0)),
+    # films
+    *wrong(rl.animate, {}, trajectories=[None, *ANYTHING]),
+    *wrong(rl.animate, {"trajectories": MOTION},
+           figure=ANYTHING, progress=ANYTHING, t_end=[*ANYTHING, 9.0], max_frames=[*but(42), 2],
+           fps=[*but(42, 1.5), 1e-320, 1e-4, 1e4, 1e308], speed=[*but(42, 1.5), 1e-320, 1e300],
+           width=[*but(42, 1.5), 1, 1e-9, 10**9], dpi=[*but(42, 1.5), 1e-300, 1, 1e5],
+           path=[42, 1.5, b"a.gif", object(), ["a.gif"], np.array("x.gif"), "", "roll\0.gif"]),
+    ("ax", lambda _: rl.animate(MOTION, ax=axes(1), figure=Figure())),
+    ("ax", lambda _: rl.animate([MOTION, LATER], ax=axes(1))),
+    *(("t_end", lambda _, how=how: rl.animate(LATER, **how))
+      for how in ({"speed": 1e-6, "fps": 1e3}, {"speed": 1e-12})),
+    (IsADirectoryError, folder_called_gif),
+    (FileNotFoundError, lambda folder: rl.animate(MOTION, folder / "no" / "roll.gif")),
+    ("fps", lambda folder: rl.animate(MOTION, folder / "a.gif", fps=30.0)),
+    ("fps", lambda folder: rl.animate(MOTION, folder / "a.gif", fps=1e-3)),
+    ("path", lambda folder: rl.animate(MOTION, folder / "roll.txt")),
+    (FileNotFoundError, film_without_ffmpeg),
+    (OSError, film_that_fails),
+    (ArithmeticError, film_that_is_stopped),
+    ("i", lambda _: rl.animate(MOTION, **FILM).draw(10**6)),
+    *wrong(rl.animate(MOTION, **FILM).save, {}, filename=[42, 1.5, object(), ["roll.gif"]]),
+    *wrong(rl.animate(MOTION, **FILM).save, {"filename": "roll.gif"},
+           writer=[WRONG, 42, [], np.array(["pillow"]), "no_such"]),
+    ("options", lambda folder: page(folder, codec="x")),
+    # players
+    ("t_end", long_film),
+    ("t_end", lambda _: rl.explore(scenes.report, t_end=1e9)),
+    ("scene", lambda _: rl.explore(scenes.report.replace(x=1e30))),
+    ("path", lambda folder: rl.explore(scenes.report).to_html(folder / "a.gif")),
+]  # fmt: skip

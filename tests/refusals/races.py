@@ -1,0 +1,98 @@
+"""Refusals of comparisons of work and precision, and of their files."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import rolling_ellipse as rl
+from rolling_ellipse import Scene, WorkPrecision, scenes
+
+from refusals import Row
+
+SCENE = Scene(2.0, 1.0, omega=1.0)
+
+WRONG: Any = 1
+
+QUICK: dict[str, Any] = {"tolerances": [1e-3], "steps": [0.1], "samples": 2, "rounds": 1}
+
+
+def race(scene: Scene = SCENE, t_end: Any = 0.5, **options: Any) -> Callable[[Path], Any]:
+    return lambda _: rl.work_precision(scene, t_end, **{**QUICK, "methods": "exact", **options})
+
+
+class Peer:
+    name = "peer"
+
+    def __init__(self, run: Any = WRONG) -> None:
+        self.run = run
+
+    def prepare(self, scene: Any, t_end: float, setting: float) -> Any:
+        return self.run
+
+
+def result(ask: Callable[[WorkPrecision], Any]) -> Callable[[Path], Any]:
+    return lambda _: ask(race()(Path()))
+
+
+def raced(change: Callable[[Any], Any]) -> Callable[[Path], Any]:
+    """A file of a race in which something was changed."""
+
+    def call(folder: Path) -> Any:
+        path = folder / "race.json"
+        race()(folder).save(path)
+        known = json.loads(path.read_text())
+        change(known)
+        path.write_text(json.dumps(known))
+        return WorkPrecision.load(path)
+
+    return call
+
+
+def jammed() -> Scene:
+    return scenes.slip.replace(friction=5.0, theta=1.0)
+
+
+def of_run(**facts: Any) -> Callable[[Path], Any]:
+    return raced(lambda known: known["runs"][0].update(facts))
+
+
+def negative_floor(known: Any) -> None:
+    known["references"][0]["floor"] = -1.0
+
+
+REFUSALS: list[Row] = [
+    # asked
+    ("methods", race(methods=1)),
+    ("methods", race(methods=[1])),
+    ("name of a method", race(methods=[{"model": "rolling", "name": 1}])),
+    ("methods", race(methods=["x"])),
+    ("methods", race(methods=[])),
+    ("methods", race(methods=["exact", "exact"])),
+    ("peers", race(peers=[1])),
+    ("peers", race(peers=1)),
+    ("reference", race(reference=1)),
+    ("reference", race(reference=lambda times: (1.0, 2.0))),
+    ("tolerances", race(tolerances=[])),
+    ("tolerances", race(tolerances=[-1.0])),
+    ("t_end", race(t_end=[1.0, 0.5])),
+    ("t_end", race(jammed(), 5.0)),
+    ("margin", result(lambda found: found.unbeaten(0.5))),
+    ("x", result(lambda found: found.best(1.0, x="time"))),
+    ("y", result(lambda found: found.best(1.0, y="x"))),
+    ("t_end", result(lambda found: found.best(1.0, t_end=9.0))),
+    ("at", result(lambda found: found.best(-1.0))),
+    ("tags", result(lambda found: found.plot(tags="x"))),
+    (KeyError, result(lambda found: found.runs[0].errors["x"])),
+    # files
+    ("path", raced(lambda known: known.update(schema=99))),
+    ("path", raced(lambda known: known.update(runs=[]))),
+    ("path", raced(lambda known: known.update(machine=1))),
+    ("path", of_run(t_end=9.0)),
+    ("path", raced(lambda known: known["scene"].update(a=2))),
+    ("path", of_run(tags=1)),
+    ("path", raced(negative_floor)),
+    ("path", of_run(time="x")),
+    ("path", of_run(steps=-1)),
+    ("path", of_run(status=1)),
+]  # fmt: skip

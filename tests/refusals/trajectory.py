@@ -1,0 +1,76 @@
+"""Refusals of a trajectory: what it is made of, and what it is asked."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+from unittest import mock
+
+import numpy as np
+import rolling_ellipse as rl
+from rolling_ellipse import Scene, scenes
+
+from refusals import Row, wrong
+
+MOTION = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 0.5, 6))
+
+TURNING = rl.simulate(Scene(2.0, 1.0, omega=3.2), [0.0, 1e9])
+
+CONTACT = rl.simulate(scenes.jump, np.linspace(0.0, 2.0, 6))
+
+STEPPED = rl.simulate(Scene(2.0, 1.0, omega=1.0), [0.5], model="multipliers")
+
+SPINNING = rl.simulate(
+    Scene(1.0, 1 + 1e-8, z=100.0, omega=1e4, friction=0.0, restitution=1.0), 200.0
+)
+
+N = MOTION.t.size
+
+assert CONTACT.contact is not None
+
+
+def contact(**changes: Any) -> Any:
+    assert CONTACT.contact is not None
+    return CONTACT.contact._replace(**changes)
+
+
+def without(package: str, call: Callable[[], Any]) -> Any:
+    with mock.patch.dict("sys.modules", {package: None}):
+        return call()
+
+
+NO_ARRAYS = [1j * np.zeros(N), ["a"] * N, [[0.0], [1.0, 2.0]], None]
+TABLE = np.zeros((N, 5))
+
+REFUSALS: list[Row] = [
+    *wrong(
+        partial(replace, CONTACT), {},
+        t=[*NO_ARRAYS, np.zeros((N, 1))], theta=[*NO_ARRAYS, np.zeros(N + 1)],
+        omega=[*NO_ARRAYS, 1.0], x=[*NO_ARRAYS, np.zeros(3)],
+        coordinates=[1, (TABLE,), (TABLE[1:],) * 2, (TABLE, np.zeros(5))],
+        start=[1, (TABLE,) * 2], contact=[1, (1, 2)], scene=[None], settings=[1],
+        status=[None, "COMPLETED"], reason=[3.5], message=[None], model=["auto"], method=[None],
+        kept_events=[(1,), []], stats=[None], t_end=[None, "late"], span=["late"],
+        valid_until=["late"],
+    ),
+    ("theta", lambda _: replace(MOTION, t=[0.0])),  # type: ignore[arg-type]
+    ("z", lambda _: replace(CONTACT, contact=contact(z=np.zeros(4)))),
+    *(("mode", lambda _, mode=mode: replace(CONTACT, contact=contact(mode=mode)))
+      for mode in (np.zeros(4), np.full(N, 9), np.full(N, 0.5))),
+    ("t", lambda _: MOTION.sol([[0.1]])),
+    ("t", lambda _: MOTION.sol(1.0)),
+    ("t", lambda _: MOTION._solution.sample_rolling(np.ones(1))),
+    ("direction", lambda _: MOTION.when(theta=0.1, direction=2)),
+    ("exactly one of theta", lambda _: MOTION.when()),
+    ("function", lambda _: MOTION.when(function=1)),  # type: ignore[call-overload]
+    ("theta", lambda _: MOTION.when(theta=np.ones((1, 1)))),
+    ("theta", lambda _: MOTION.when(theta=math.nan)),
+    ("function", lambda _: MOTION.when(function=lambda at: [1.0])),
+    ("function", lambda _: MOTION.when(function=lambda at: np.full(at.t.shape, math.nan))),
+    ("z", lambda _: TURNING.when(z=1.5)),
+    ("function", lambda _: TURNING.when(function=lambda at: at.x)),
+    ("function", lambda _: SPINNING.when(function=lambda at: at.normal_force)),
+    (AttributeError, lambda _: rl.nothing),
+    (ImportError, lambda _: without("xarray", MOTION.to_xarray)),
+]  # fmt: skip
