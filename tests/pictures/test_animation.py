@@ -404,9 +404,9 @@ def test_saving_shows_progress_when_asked(
     assert capsys.readouterr() == ("", "")
     short.save(tmp_path / "roll.gif", progress=True)
     assert "11/11" in capsys.readouterr().err
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr("rolling_ellipse._progress.find_spec", lambda name: None)
     short.save(tmp_path / "roll.gif", progress=True)
-    assert capsys.readouterr().err.endswith("frame 11 of 11\n")
+    assert capsys.readouterr().err.endswith("roll.gif 11 of 11 frames\n")
 
 
 def test_matplotlibs_own_writers_stay_open(short: RollingAnimation, tmp_path: Path) -> None:

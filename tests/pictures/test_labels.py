@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
-from rolling_ellipse._pictures.comparison import Comparison
-from rolling_ellipse._pictures.labels import labels_of
+from rolling_ellipse._pictures.comparison import Comparison, labels_of
 from rolling_ellipse._scene import SCENE_UNITS
 
 ROLLING = rl.simulate(rl.scenes.rolling, 1.0)

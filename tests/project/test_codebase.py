@@ -38,7 +38,7 @@ FOLDERS = (
 MODULES = (
     "_core", "_fields", "_quantities", "_check", "_samples", "_faces", "geometry", "_constraints",
     "_status", "_impulse", "_start_words", "_scene", "scenes", "_settings", "_events",
-    "_when", "_at", "_trajectory", "_stability", "_simulate",
+    "_when", "_at", "_trajectory", "_stability", "_simulate", "_progress",
     "_workers", "_flow", "_certify", "_outcome", "_blows", "_blow_to", "_errors", "_export",
     "_batches", "_work_precision", "impacts", "report", "_pictures", "_player", "", "_command",
     "__main__",

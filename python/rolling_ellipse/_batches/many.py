@@ -8,6 +8,7 @@ from typing import Any
 
 from .. import _core
 from .._check import flag
+from .._progress import told
 from .._scene import Scene
 from .._settings import DEFAULTS, Method, Model, Stabilization, settings
 from .._simulate import sample_times
@@ -16,7 +17,6 @@ from .._workers import Lost, in_order, threads_of
 from .answers import SAMPLE_BYTES, Answer, Request, answers, solve, solve_task
 from .asked import Chunk, Grid, Listed, asked, sizes
 from .folders import Folder
-from .progress import told
 
 
 def simulate_many(
@@ -98,7 +98,7 @@ def simulate_many(
     request = Request(how, times, flag("raise_on_failure", raise_on_failure))
     threads_of(workers)
     wanted = asked(scenes)
-    with told(progress, wanted.total) as tell:
+    with told(progress, "scenes") as tell:
         if out is not None:
             return _to_folder(Folder(out, request), request, wanted, workers, tell)
         found: list[Answer] = []

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from .._errors import constraint_errors, energy_error, worst
 from .artists import Artists
-from .axes import figure_of, leaving_no_figure
+from .axes import figure_of, picture
 from .comparison import Comparison
 from .legends import name_curves
 from .modes import mode_handles
@@ -61,7 +61,7 @@ class Overview(Artists):
     marks: tuple[Artist, ...]
 
 
-@leaving_no_figure
+@picture
 def plot(
     trajectory: Trajectory,
     *,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import SymmetricalLogLocator
 
+from .legends import name_curves, title_beside_legend
 from .modes import mark_events, name_events, shade_invalid, shade_modes
 from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns, ranges
@@ -172,8 +173,13 @@ def note_of(shown: Comparison) -> str:
     return f"{max(map(half_turns, long)):_.0f} half turns: ranges".replace("_", "\u202f")
 
 
-def dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
-    """Dress one panel, or two of which the upper one leaves a shared time axis to the lower."""
+def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) -> tuple[Artist, ...]:
+    """Dress one panel or two, and give the first its legend and its title.
+
+    Of two the upper one leaves a shared time axis to the lower.
+    """
+    name_curves(panels[0], handles)
+    title_beside_legend(panels[0], note_of(shown))
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=panel is panels[0])

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from .._core import EventKind
 from . import ground as drawing
 from .artists import Artists
-from .axes import axes_of, leaving_no_figure
+from .axes import axes_of, picture
 from .comparison import Comparison, Style
 from .ground import HALF_TURNS, SHOWN_TURNS
 from .legends import name_curves, title_beside_legend
@@ -59,7 +59,7 @@ class Paths(Artists):
     marks: tuple[Line2D, ...]
 
 
-@leaving_no_figure
+@picture
 def plot_paths(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -80,27 +80,8 @@ def plot_paths(
     ----------
     trajectories : Trajectory or sequence of Trajectory
         On the same slope.
-    ax : matplotlib Axes, optional
-        Where to draw; without it, in a new pyplot figure.
-    labels : sequence of str, optional
-        Names of the motions; without it, what they differ in.
-    colors : sequence of matplotlib colours, optional
-        One for each motion.
-    **options
-        Properties of `matplotlib.lines.Line2D` for all paths.
-
-    Returns
-    -------
-    Paths
-        The artists.
-
-    Raises
-    ------
-    ValueError
-        If there is no trajectory, one has no samples, their slopes differ or the number of labels
-        or colours is wrong.
-    TypeError
-        If something is no trajectory.
+    {ax}
+    {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
     motions = shown.motions

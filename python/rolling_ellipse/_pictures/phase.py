@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .._check import flag
 from .artists import Artists
-from .axes import axes_of, leaving_no_figure
+from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import name_curves, title_beside_legend
 from .modes import draw_invalid_ground
@@ -52,7 +52,7 @@ class Phase(Artists):
     marks: tuple[Line2D, ...]
 
 
-@leaving_no_figure
+@picture
 def plot_phase(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -75,30 +75,12 @@ def plot_phase(
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
-    ax : matplotlib Axes, optional
-        Where to draw; without it, in a new pyplot figure.
-    labels : sequence of str, optional
-        Names of the motions; without it, what they differ in.
-    colors : sequence of matplotlib colours, optional
-        One for each motion.
+        Of angles of which a double knows thousandths of a radian.
     fold : bool, optional
         Whether to show theta within one half turn around the flat position, after which an
         ellipse is the same again; without it, where a motion goes through more than two turns.
-    **options
-        Properties of `matplotlib.lines.Line2D` for the lines of all motions.
-
-    Returns
-    -------
-    Phase
-        The artists.
-
-    Raises
-    ------
-    ValueError
-        If there is no trajectory, one has no samples, the number of labels or
-        colours is wrong, or theta is so large that a double knows no thousandths of a radian.
-    TypeError
-        If something is no trajectory.
+    {ax}
+    {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
     _require_parts_of_a_turn(shown.motions)

@@ -16,8 +16,8 @@ from .._work_precision.results import require_quantity
 from .._work_precision.run import ERRORS, NOT_RUN, OF_STATES
 from .._work_precision.words import beyond, end_alone
 from .artists import Artists
-from .axes import axes_of, leaving_no_figure
-from .margin import label_ends
+from .axes import axes_of, picture
+from .labels import label_ends
 from .palette import palette_of
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ class _Look:
     width: float
 
 
-@leaving_no_figure
+@picture
 def draw(
     found: WorkPrecision,
     x: str,

@@ -14,7 +14,7 @@ import numpy as np
 
 from ... import _core
 from ..._check import FloatArray, choice, number, positive, shown
-from .discs import roll_over_speed
+from ..._scene import Scene
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")
 _LEVELS = {"energy", "speed"}  # of which one follows from the other
@@ -56,12 +56,17 @@ class Plane:
         values: dict[str, Any] = {**self.fixed, self.axes[0]: x, self.axes[1]: y}
         speed = values.get("speed")
         if speed is None:
-            over = roll_over_speed(values["aspect"], self.b, self.gravity)
-            speed = np.sqrt(values["energy"]) * over
+            aspects, places = np.unique(values["aspect"], return_inverse=True)
+            over = np.array([self._roll_over_speed(aspect) for aspect in aspects.tolist()])
+            speed = np.sqrt(values["energy"]) * over[places].reshape(np.shape(values["aspect"]))
         return {
             "a": values["aspect"] * self.b, "b": self.b, "omega": speed,
             "friction": values["friction"], "gravity": self.gravity,
         }  # fmt: skip
+
+    def _roll_over_speed(self, aspect: float) -> float:
+        disc = Scene(aspect * self.b, self.b, gravity=self.gravity)
+        return _core.roll_over_speed(disc.core)
 
     def told(self) -> str:
         """What is fixed, as one says it: "μ = 0.5"; the scale too where it matters."""
