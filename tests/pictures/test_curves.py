@@ -6,13 +6,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -21,7 +17,7 @@ from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
 from oracles.pictures import figure_of, shows_something
 from rolling_ellipse._pictures import sampling
-from rolling_ellipse._pictures.comparison import Comparison, labels_of
+from rolling_ellipse._pictures.comparison import Comparison
 
 OVER_TIME = (rl.plot_forces, rl.plot_energy, rl.plot_constraints)
 
@@ -51,29 +47,6 @@ def test_every_motion_has_its_name(
     assert legend_of(ax)[:3] == ["one", "two", "three"]
     with pytest.raises(ValueError, match="labels"):
         picture(several, ax=new_axes(), labels=["one"])
-
-
-def test_without_labels_the_name_is_what_differs(
-    picture: Callable[..., Any], several: list[rl.Trajectory]
-) -> None:
-    several[1] = dataclasses.replace(several[1], method="rk4")
-    ax = new_axes()
-    picture(several, ax=ax)
-    assert legend_of(ax)[:3] == labels_of(several, None)
-
-
-@pytest.mark.filterwarnings("ignore:the samples of a trajectory are not those")
-def test_names_say_what_differs(report: rl.Trajectory) -> None:
-    faster = dataclasses.replace(report, scene=dataclasses.replace(report.scene, omega=3.2))
-    other = dataclasses.replace(report, method="rk4")
-    for motions, names in (
-        ([report, other], ["exact", "rk4"]),
-        ([report, faster], ["omega = 0 rad/s", "omega = 3.2 rad/s"]),
-        ([report, report, report], ["1", "2", "3"]),
-    ):
-        ax = new_axes()
-        rl.plot_phase(motions, ax=ax)
-        assert legend_of(ax)[:-1] == names
 
 
 def test_one_motion_needs_no_name(picture: Callable[..., Any], report: rl.Trajectory) -> None:

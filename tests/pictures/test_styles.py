@@ -5,12 +5,9 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import rolling_ellipse as rl
 from cycler import cycler
 from matplotlib.colors import to_hex, to_rgb
@@ -159,13 +156,6 @@ def test_properties_of_lines_are_taken(
             assert (line.get_alpha(), line.get_linewidth()) == (0.4, 3.3)
     with pytest.raises(AttributeError, match="nonsense"):
         picture(several[0], ax=new_axes(), nonsense=1)
-
-
-def test_properties_of_bodies_are_taken() -> None:
-    motion = rl.simulate(rl.scenes.report, 2.0)
-    shown = rl.plot_strobe(motion, ax=new_axes(), facecolor="red", lw=0.5)
-    for body in shown.bodies:
-        assert to_rgb(body.get_facecolor()) == to_rgb("red") and body.get_linewidth() == 0.5
 
 
 def test_a_legend_made_anew_follows_restyled_artists(several: list[rl.Trajectory]) -> None:

@@ -44,31 +44,11 @@ class Style:
 
 
 class Comparison:
-    """One motion or several of one picture, in the order given.
+    """One motion or several of one picture, in the order given, each with samples.
 
     Iteration gives each motion with its style. A motion that is alone, and has no colour given, has
-    None instead: then colours are free to tell its quantities apart.
-
-    Attributes
-    ----------
-    motions : tuple of Trajectory
-        At least one, each with samples.
-    styles : tuple of Style
-        The look and the name of each motion among the others.
-    alone : bool
-        Whether there is a single motion.
-    palette : Palette
-        The colours of what is drawn in.
-    options : dict
-        Properties of Line2D that the curves of all motions are to have.
-
-    Raises
-    ------
-    TypeError
-        If something is no Trajectory.
-    ValueError
-        If there is none, one has no samples, or there are not as many labels or colours as
-        trajectories.
+    None instead: then colours are free to tell its quantities apart. `options` are properties of
+    Line2D that the curves of all motions are to have.
     """
 
     def __init__(
@@ -187,11 +167,6 @@ def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) 
     they differ: "rk4", or "omega = 3.2 rad/s, friction = 0.8". More than three of them end in an
     ellipsis. Where that does not tell all apart, the names are "1", "2", "3"; a single
     trajectory needs no name and has an empty one.
-
-    Raises
-    ------
-    ValueError
-        If there are not as many labels as trajectories, or one is no string.
     """
     count = len(trajectories)
     if labels is not None:

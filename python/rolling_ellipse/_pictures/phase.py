@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from .. import _core
 from .._check import flag
 from .artists import Artists
 from .axes import axes_of, picture
@@ -17,7 +18,7 @@ from .legends import name_curves, title_beside_legend
 from .modes import draw_invalid_ground
 from .palette import palette_of
 from .sampling import FEW, between, half_turns, is_at_hand, span_of
-from .separatrix import QUARTER, flat_angle, flat_angles, separatrix, separatrix_speed
+from .separatrix import QUARTER, flat_angle, flat_angles, separatrix
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -185,7 +186,7 @@ def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: boo
     flat = flat_angle(body)
     if fold:
         eyes = np.array([flat])
-    elif fastest == 0 or fastest > _SMALL * separatrix_speed(np.array([flat]), body)[0]:
+    elif fastest == 0 or fastest > _SMALL * _core.roll_over_speed(body.core):
         left = min(float(np.min(motion.theta)) for motion in motions)
         right = max(float(np.max(motion.theta)) for motion in motions)
         eyes = flat_angles(left, right, body)

@@ -102,16 +102,7 @@ def movie_writer(
 ) -> AbstractMovieWriter | None:
     """Return what writes the frames to the file; None for an .html, whose player needs none.
 
-    Raises
-    ------
-    ValueError
-        If the suffix is unknown, or a GIF cannot keep the time.
-    TypeError
-        If the path is none.
-    OSError
-        If there is no such folder, or the path is one.
-    FileNotFoundError
-        If an .mp4 is asked for and there is no ffmpeg.
+    It raises what `animate` does, before anything is written.
     """
     target = Path(file_name(argument, path))
     suffix = target.suffix.lower()

@@ -138,8 +138,7 @@ def plot_phase_map(
     count = _count(resolution)
     edges = [plane.spaced(axis, count + 1) for axis in plane.axes]
     middles = [_middles(axis, places) for axis, places in zip(plane.axes, edges, strict=True)]
-    columns, rows = np.meshgrid(*middles)
-    codes = classify(**plane.scenes(columns, rows), workers=workers)
+    codes = classify(**plane.scenes(middles[0], middles[1][:, np.newaxis]), workers=workers)
     ax = axes_of(ax, (6.4, 4.4))
     colours = ListedColormap([COLOURS[outcome] for outcome in Outcome])
     free = ax.get_autoscalex_on(), ax.get_autoscaley_on()

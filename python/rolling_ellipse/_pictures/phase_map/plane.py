@@ -52,21 +52,19 @@ class Plane:
         return places
 
     def scenes(self, x: FloatArray, y: FloatArray) -> dict[str, Any]:
-        """Arguments of `classify` at points of the plane."""
+        """Arguments of `classify` at points of the plane; x and y broadcast."""
         values: dict[str, Any] = {**self.fixed, self.axes[0]: x, self.axes[1]: y}
         speed = values.get("speed")
         if speed is None:
-            aspects, places = np.unique(values["aspect"], return_inverse=True)
-            over = np.array([self._roll_over_speed(aspect) for aspect in aspects.tolist()])
-            speed = np.sqrt(values["energy"]) * over[places].reshape(np.shape(values["aspect"]))
+            speed = np.sqrt(values["energy"]) * np.vectorize(self._over)(values["aspect"])
         return {
             "a": values["aspect"] * self.b, "b": self.b, "omega": speed,
             "friction": values["friction"], "gravity": self.gravity,
         }  # fmt: skip
 
-    def _roll_over_speed(self, aspect: float) -> float:
-        disc = Scene(aspect * self.b, self.b, gravity=self.gravity)
-        return _core.roll_over_speed(disc.core)
+    def _over(self, aspect: float) -> float:
+        """The roll-over speed of a disc [rad/s]."""
+        return _core.roll_over_speed(Scene(aspect * self.b, self.b, gravity=self.gravity).core)
 
     def told(self) -> str:
         """What is fixed, as one says it: "μ = 0.5"; the scale too where it matters."""
@@ -86,13 +84,7 @@ def plane_of(
     b: float,
     gravity: float,
 ) -> Plane:
-    """Return the plane of these arguments of `plot_phase_map`.
-
-    Raises
-    ------
-    ValueError, TypeError
-        As `plot_phase_map` says.
-    """
+    """Return the plane of these arguments of `plot_phase_map`, or raise what that says."""
     for argument, axis in zip("xy", axes, strict=True):
         choice(argument, axis, QUANTITIES)
     if axes[0] == axes[1] or set(axes) == _LEVELS:

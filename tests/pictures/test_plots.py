@@ -1,0 +1,359 @@
+"""The pictures of motions one by one, read back from their artists."""
+
+import dataclasses
+import itertools
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from matplotlib.figure import Figure
+from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, seen, two_axes
+from oracles.pictures import ORDINARY_SCENES, figure_of, points_of
+from rolling_ellipse._pictures import ground as drawing
+from rolling_ellipse._pictures import sampling
+
+own_samples = pytest.mark.filterwarnings("ignore:the samples of a trajectory are not those")
+OVER_TIME: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {  # curves by the data they show
+    "forces": (
+        lambda motion: rl.plot_forces(motion, ax=two_axes()),
+        {"normal": "normal_force", "friction": "friction_force", "needed": "friction_needed"},
+    ),
+    "energy": (
+        lambda motion: rl.plot_energy(motion, ax=new_axes()),
+        {"total": "energy", "kinetic": "kinetic_energy", "potential": "potential_energy"},
+    ),
+    "overview": (
+        lambda motion: rl.plot(motion, figure=Figure(layout="constrained")),
+        {
+            "theta": "theta", "omega": "omega", "height": "z", "normal_force": "normal_force",
+            "friction_force": "friction_force", "energy": "energy",
+            "kinetic_energy": "kinetic_energy", "potential_energy": "potential_energy",
+        },
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OVER_TIME)
+def test_curves_over_time_are_the_trajectory(name: str, trajectory: rl.Trajectory) -> None:
+    draw, curves = OVER_TIME[name]
+    shown = draw(trajectory)
+    for artist, quantity in curves.items():
+        (line,) = np.ravel(getattr(shown, artist))
+        at = seen(trajectory, line)
+        assert np.array_equal(data(line)[0], at.t)
+        assert np.array_equal(data(line)[1], getattr(at, quantity)), artist
+
+
+# ------------------------------------------------------------------------------- constraints
+
+
+def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
+    """The motion with residuals of the given size: f1 ... f4, df2 ... df4, gap, slip."""
+    found = motion.constraint_residuals()
+    position, velocity = found.position.copy(), found.velocity.copy()
+    gap, slip = found.gap.copy(), found.slip.copy()
+    columns = {"gap": gap, "slip": slip, "f1": velocity[:, 0]}
+    for i in (2, 3, 4):
+        columns |= {f"f{i}": position[:, i - 2], f"df{i}": velocity[:, i - 1]}
+    for name, error in errors.items():
+        columns[name][:] = error
+    residuals = rl.ConstraintResiduals(position, velocity, gap, slip)
+    other = dataclasses.replace(motion, theta=motion.theta + 1e-3)  # samples of its own
+    object.__setattr__(other, "constraint_residuals", lambda: residuals)
+    return other
+
+
+def test_constraints_have_a_line_each(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_constraints(trajectory, ax=two_axes())
+    names = [[text.removesuffix(" = 0") for text in legend_of(ax)] for ax in shown.axes]
+    assert names == [
+        ["f2", "f3", "f4", "gap"],
+        ["f1", "df2/dt", "df3/dt", "df4/dt", "slip"],
+    ]
+    for line in itertools.chain(*shown.lines):
+        assert np.array_equal(data(line)[0], seen(trajectory, line).t)
+        # the motion is exact: a few hundred roundings, and 2/0.02 times as many for the thin body
+        assert np.all(data(line)[1] < 1e-13)
+
+
+@own_samples
+def test_errors_of_constraints_have_no_unit(report: rl.Trajectory) -> None:
+    position = {"f2": -1e-3, "f3": 2e-5, "f4": -1e-7, "gap": -4e-3}
+    velocity = {"f1": 3e-3, "df2": 1e-4, "df3": -1e-6, "df4": 1e-5, "slip": -7e-3}
+    shown = rl.plot_constraints(missing(report, **position, **velocity), ax=two_axes())
+    rate = np.abs(report.omega).max()
+    lengths = [2.0, 2.0, 1.0, 2.0], [2 * rate, 2 * rate, 2 * rate, rate, 2 * rate]
+    for lines, errors, units in zip(shown.lines, (position, velocity), lengths, strict=True):
+        for line, error, unit in zip(lines, errors.values(), units, strict=True):
+            assert data(line)[1] == pytest.approx(abs(error) / unit, rel=1e-12)
+
+
+@own_samples
+def test_several_motions_show_the_worst_of_their_constraints(report: rl.Trajectory) -> None:
+    motions = [report, missing(report, f2=1e-6, f3=1e-3), missing(report, f1=1e-2, f4=1e-5)]
+    positions, velocities = rl.plot_constraints(motions, ax=two_axes()).lines
+    largest = [[data(line)[1].max() for line in panel] for panel in (positions, velocities)]
+    speed = 2 * np.abs(report.omega).max()
+    assert largest[0][1:] == pytest.approx([5e-4, 1e-5], rel=1e-12)
+    assert largest[1][2] == pytest.approx(1e-2 / speed, rel=1e-12)
+    assert max(largest[0][0], largest[1][0], largest[1][1]) < 1e-14
+    (all_of_it,) = rl.plot_constraints(motions, ax=new_axes()).lines
+    worst = [data(line)[1].max() for line in all_of_it]
+    assert worst[1:] == pytest.approx([5e-4, 1e-2 / speed], rel=1e-12)
+
+
+@own_samples
+def test_one_motion_in_one_axes_shows_the_worst_of_each_kind(report: rl.Trajectory) -> None:
+    shown = rl.plot_constraints(missing(report, f1=1e-2, f3=1e-3), ax=new_axes())
+    assert legend_of(shown.axes[0]) == ["positions", "velocities"]
+    position, velocity = (data(line)[1] for line in shown.lines[0])
+    speed = 2 * np.abs(report.omega).max()
+    assert position.max() == pytest.approx(5e-4) and velocity.max() == pytest.approx(1e-2 / speed)
+
+
+# ------------------------------------------------------------------------------------ energy
+
+
+def test_several_motions_show_the_error_of_their_energies(several: list[rl.Trajectory]) -> None:
+    shown = rl.plot_energy(several, ax=new_axes())
+    assert shown.total == shown.kinetic == shown.potential == ()
+    assert shown.ax.get_yscale() == "log"
+    for line, motion in zip(shown.error, several, strict=True):
+        # both energies are >= 0 on level ground from z = 0: the energy itself is the scale
+        energy = seen(motion, line).energy
+        expected = np.abs(energy - energy[0]) / energy.max()
+        assert data(line)[1] == pytest.approx(expected, rel=1e-12, abs=1e-15)
+    largest = [data(line)[1].max() for line in shown.error]
+    assert largest[0] < 1e-14 and largest[1] > 1e-4 and largest[2] > 1e-3
+    assert shown.ax.get_ylim()[0] < 1e-16 and shown.ax.get_ylim()[1] > max(largest)
+
+
+def test_the_kind_of_energy_picture_is_a_choice(several: list[rl.Trajectory]) -> None:
+    energies = rl.plot_energy(several, ax=new_axes(), kind="energies")
+    assert len(energies.total) == len(energies.potential) == 3 and energies.error == ()
+    assert legend_of(energies.ax)[3:] == ["total", "kinetic", "potential"]
+    assert len(rl.plot_energy(several[0], ax=new_axes(), kind="error").error) == 1
+
+
+def test_an_energy_without_any_error_is_said_to_be_0() -> None:
+    still = rl.simulate(rl.Scene(2.0, 1.0), 1.0)
+    ax = rl.plot_energy([still, still], ax=new_axes(), labels=["one", "two"]).ax
+    legend = ax.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["one = 0", "two = 0"]
+
+
+# ------------------------------------------------------------------------------------ forces
+
+
+def test_one_axes_for_the_forces_alone(report: rl.Trajectory) -> None:
+    shown = rl.plot_forces(report, ax=new_axes())
+    assert len(shown.axes) == 1 and shown.needed == () and shown.available == ()
+    assert legend_of(shown.axes[0]) == ["normal", "friction"]
+
+
+def test_needed_friction_is_shown_up_to_a_bound_where_n_vanishes() -> None:
+    with pytest.warns(rl.ValidityWarning):
+        jump = rl.simulate(rl.scenes.jump, 2.0, model="rolling")
+    assert np.isinf(jump.friction_needed).any()
+    upper, lower = rl.plot_forces(jump, ax=two_axes()).axes
+    assert lower.get_ylim() == pytest.approx((0.0, 3.45))
+    assert upper.get_ylim()[0] < jump.normal_force.min() < 0
+    assert legend_of(lower) == ["μ"]
+
+
+def test_needed_friction_fills_its_panel(report: rl.Trajectory) -> None:
+    shown = rl.plot_forces(report, ax=two_axes())
+    largest = data(shown.needed[0])[1].max()
+    assert largest == pytest.approx(report.friction_needed.max(), rel=1e-3)
+    assert shown.axes[1].get_ylim()[1] == pytest.approx(1.15 * largest)
+    _, lower = rl.plot_forces(rough(report, 0.9), ax=two_axes()).axes
+    assert lower.get_ylim()[1] == pytest.approx(1.15 * 0.9)
+
+
+def test_spikes_leave_room_for_ordinary_forces(report: rl.Trajectory) -> None:
+    thin = rl.simulate(rl.scenes.thin, np.linspace(0.0, 2.0, 8001))
+    weight = 9.81
+    assert thin.normal_force.max() > 100 * weight
+    ax = rl.plot_forces(thin, ax=new_axes()).axes[0]
+    bottom, ordinary, top = ax.transData.transform([(0, 0), (0, weight), (0, 100 * weight)])[:, 1]
+    assert ordinary - bottom > 0.3 * (top - bottom)
+    assert rl.plot_forces(report, ax=new_axes()).axes[0].get_yscale() == "linear"
+
+
+def test_the_band_of_friction_is_that_of_its_coefficient(report: rl.Trajectory) -> None:
+    shown = rl.plot_forces([report, rough(report, 0.7)], ax=two_axes())
+    assert shown.limits[0] is None and shown.available[0] is None
+    corners = points_of(shown.limits[1])[:, 1]
+    bound = 0.7 * data(shown.normal[1])[1].max()
+    assert (corners.min(), corners.max()) == (-bound, bound)
+    available = shown.available[1]
+    assert available is not None and list(np.asarray(available.get_ydata())) == [0.7, 0.7]
+
+
+@pytest.mark.parametrize("picture", TWO_PANELS)
+def test_axes_are_one_or_two(picture: Callable[..., Any], report: rl.Trajectory) -> None:
+    three = list(Figure().subplots(3))
+    for kind, wrongs in ((ValueError, (three, [])), (TypeError, ("here", [three[0], None]))):
+        for wrong in wrongs:
+            with pytest.raises(kind, match="ax must be one matplotlib Axes or two, got"):
+                picture(report, ax=wrong)
+
+
+# ------------------------------------------------------------------------------------- paths
+
+
+def test_paths_are_the_trajectory(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_paths(trajectory, ax=new_axes())
+    until = sampling.turned_until(trajectory, 3.0, "x_dot")
+    trajectory = sampling.between(trajectory, 0.0, until, 6.0)
+    assert np.array_equal(
+        np.asarray(shown.centres[0].get_xydata()), np.column_stack([trajectory.x, trajectory.z])
+    )
+    assert np.array_equal(data(shown.contacts[0])[0], trajectory.contact_x)
+    assert np.all(data(shown.contacts[0])[1] == 0)
+    tips = np.asarray(shown.tips[0].get_xydata())
+    for i in range(0, trajectory.t.size, 100):
+        end = drawing.body_patch(trajectory, i).get_patch_transform().transform((1.0, 0.0))
+        assert tips[i] == pytest.approx(end, rel=1e-13, abs=1e-12)  # theta passed through degrees
+
+
+def test_paths_of_several_motions_share_one_view(report: rl.Trajectory) -> None:
+    small = rl.simulate(rl.Scene(0.5, 0.5, omega=-4.0, x=-3.0), 6.0)
+    shown = rl.plot_paths([report, small], ax=new_axes(), labels=["large", "small"])
+    assert legend_of(shown.ax) == ["large", "small", "centre", "end of axis a"]
+    figure_of(shown.ax).draw_without_rendering()
+    (left, right), (bottom, top) = shown.ax.get_xlim(), shown.ax.get_ylim()
+    for line in (*shown.centres, *shown.tips, *shown.contacts):
+        x, z = data(line)
+        assert left < x.min() and x.max() < right and bottom < z.min() and z.max() < top
+    window = shown.ax.get_window_extent()
+    # matplotlib leaves limits alone that are equal within 0.5 %
+    assert window.width / (right - left) == pytest.approx(window.height / (top - bottom), rel=5e-3)
+    earth = shown.ground.get_xy()
+    assert earth[:, 0].min() < left and earth[:, 0].max() > right
+
+
+@pytest.mark.parametrize("span", [20, 1000])
+def test_a_long_way_is_shown_over_three_turns(report: rl.Trajectory, span: int) -> None:
+    rolling = rl.simulate(rl.scenes.rolling, np.linspace(0.0, span, 20_001))
+    ax = rl.plot_paths(rolling, ax=new_axes()).ax
+    assert ax.get_title(loc="left") == f"the first 13.1 s of {span} s"
+    assert ax.get_xlim()[1] < 4 * 9.69  # turns of the perimeter
+    assert rl.plot_paths(report, ax=new_axes()).ax.get_title(loc="left") == ""
+
+
+def test_paths_on_a_slope_are_tilted() -> None:
+    downhill = rl.simulate(rl.scenes.slope, 1.0)
+    shown = rl.plot_paths(downhill, ax=new_axes())
+    ax = shown.ax
+    for line in (shown.centres[0], shown.tips[0], shown.contacts[0]):
+        seen = ax.transData.inverted().transform(line.get_transform().transform((1.0, 0.0)))
+        assert seen == pytest.approx([math.cos(0.1), -math.sin(0.1)], rel=1e-9)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("horizontal [m]", "vertical [m]")
+
+
+# ------------------------------------------------------------------------------------- phase
+
+
+def test_phase_is_the_trajectory(trajectory: rl.Trajectory) -> None:
+    shown = rl.plot_phase(trajectory, ax=new_axes(), fold=False)
+    theta, omega = data(shown.motions[0])
+    drawn = sampling.between(trajectory, 0.0, 4.0, sampling.half_turns(trajectory))
+    assert np.array_equal(theta, drawn.theta) and np.array_equal(omega, drawn.omega)
+    assert data(shown.starts[0]) == (trajectory.theta[:1], trajectory.omega[:1])
+
+
+@pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.7, 1.9), (2.0, 0.02)])
+def test_separatrix_is_between_rocking_and_rolling_over(a: float, b: float) -> None:
+    shown = rl.plot_phase(rl.simulate(rl.Scene(a, b, omega=1.0), 3.0), ax=new_axes())
+    theta, omega = data(shown.separatrices[0])
+    flat = 0.0 if a > b else math.pi / 2
+    # nearer to a tip, rounding of max(a, b) - h is no longer small against that difference
+    ours = (np.abs(theta - flat) < 1.5) & (omega != 0)
+    assert np.count_nonzero(ours) > 800
+    theta, omega = theta[ours], omega[ours]
+    # from a millionth beside it the way to the tip takes some ln(1e6)/lambda = 8 s at most
+    for factor, over in ((1 + 1e-6, True), (1 - 1e-6, False)):
+        later, _, _ = rl.flow(30.0, a=a, b=b, theta=theta, omega=factor * omega)
+        assert np.all((np.abs(later - flat) > math.pi / 2) == over)
+
+
+def test_separatrix_goes_through_the_tips(report: rl.Trajectory) -> None:
+    shown = rl.plot_phase(report, ax=new_axes())
+    theta, omega = data(shown.separatrices[0])
+    centres, saddles = shown.equilibria
+    for tip in data(saddles)[0]:
+        assert np.any((np.abs(theta - tip) < 1e-12) & (np.abs(omega) < 1e-7))
+    flats = data(centres)[0]
+    assert flats == pytest.approx(np.pi * np.arange(-1, 5), abs=1e-12)
+    assert omega.max() == pytest.approx(rl.thresholds(2.0, 1.0).roll_over_speed, rel=1e-12)
+
+
+def test_separatrix_keeps_the_spike_of_a_thin_body() -> None:
+    shown = rl.plot_phase(rl.simulate(rl.Scene(1.0, 1e-3, theta=0.3), 1.0), ax=new_axes())
+    _, omega = data(shown.separatrices[0])
+    peak = rl.thresholds(1.0, 1e-3).roll_over_speed
+    assert omega.max() == pytest.approx(peak, rel=1e-12)
+    # |d omega| <= peak per point of the curve: a tenth is no visible corner
+    assert np.max(np.abs(np.diff(omega))) < 0.1 * peak
+
+
+def test_no_separatrix_for_a_circle_or_on_a_slope() -> None:
+    circle = rl.simulate(rl.scenes.circle, 2.0)
+    downhill = rl.simulate(rl.scenes.slope, 1.0)
+    for motion in (circle, downhill):
+        shown = rl.plot_phase(motion, ax=new_axes())
+        assert shown.separatrices == () and shown.equilibria == ()
+        assert legend_of(shown.ax) == []
+
+
+def test_one_separatrix_for_each_body(report: rl.Trajectory) -> None:
+    same = rl.simulate(rl.scenes.rocking, 1.0)
+    other = rl.simulate(rl.Scene(1.5, 1.0, omega=1.0), 1.0)
+    assert len(rl.plot_phase([report, same], ax=new_axes()).separatrices) == 1
+    assert len(rl.plot_phase([report, same, other], ax=new_axes()).separatrices) == 2
+
+
+def test_a_small_swing_fills_the_picture() -> None:
+    ax = rl.plot_phase(rl.simulate(rl.Scene(2.0, 1.0, theta=0.01), 3.0), ax=new_axes()).ax
+    assert 0.01 < ax.get_xlim()[1] < 0.012
+    assert legend_of(ax) == []  # the separatrix is far outside
+
+
+@pytest.mark.parametrize("scene", [rl.scenes.rolling, ORDINARY_SCENES["standing"]])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_long_rotation_is_folded_into_half_a_turn(scene: rl.Scene, sign: float) -> None:
+    start = dataclasses.replace(scene, theta=0.1, omega=sign * scene.omega)
+    motion = rl.simulate(start, 40.0)
+    motion = sampling.between(motion, 0.0, 40.0, sampling.half_turns(motion))
+    theta, omega = data(rl.plot_phase(motion, ax=new_axes()).motions[0])
+    flat = 0.0 if scene.a > scene.b else math.pi / 2
+    breaks = np.flatnonzero(np.isnan(theta))
+    half_turns = np.floor((motion.theta - flat) / math.pi + 0.5)
+    assert breaks.size == np.count_nonzero(np.diff(half_turns)) > 10
+    assert np.array_equal(np.isnan(omega), np.isnan(theta))
+    # the line leaves at one side and comes back at the other, with the same speed
+    assert theta[breaks - 1] == pytest.approx(np.full(breaks.size, flat + sign * math.pi / 2))
+    assert theta[breaks + 1] == pytest.approx(np.full(breaks.size, flat - sign * math.pi / 2))
+    assert omega[breaks - 1] == pytest.approx(omega[breaks + 1], rel=1e-12)
+    # all else are the samples
+    ours = np.setdiff1d(np.arange(theta.size), np.concatenate([breaks + i for i in (-1, 0, 1)]))
+    assert np.array_equal(omega[ours], motion.omega)
+    turned = (motion.theta - theta[ours]) / math.pi
+    assert turned == pytest.approx(np.round(turned), abs=1e-12)
+
+
+def test_folding_is_a_choice(report: rl.Trajectory) -> None:
+    folded = data(rl.plot_phase(report, ax=new_axes(), fold=True).motions[0])[0]
+    assert np.nanmax(np.abs(folded)) <= math.pi / 2 < report.theta.max()
+
+
+def test_ticks_of_the_phase_plane_are_quarter_turns(report: rl.Trajectory) -> None:
+    ax = rl.plot_phase(report, ax=new_axes(9.0, 4.0)).ax
+    figure_of(ax).draw_without_rendering()
+    texts = [label.get_text() for label in ax.get_xticklabels()]
+    assert texts == ["−π/2", "0", "π/2", "π", "3π/2", "2π", "5π/2", "3π", "7π/2"]
