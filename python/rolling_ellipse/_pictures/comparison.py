@@ -35,20 +35,23 @@ _MARKERS = (".", "x", "+", "1", "2")
 
 @dataclass(frozen=True)
 class Style:
-    """How one motion of several looks."""
+    """How one motion of several looks; without a colour, its quantities have theirs."""
 
-    label: str
-    colour: str
-    dash: Any
-    marker: str
+    label: str = ""
+    colour: Any = None
+    dash: Any = "-"
+    marker: str = ""
+
+
+PLAIN = Style()
 
 
 class Comparison:
     """One motion or several of one picture, in the order given, each with samples.
 
-    Iteration gives each motion with its style. A motion that is alone, and has no colour given, has
-    None instead: then colours are free to tell its quantities apart. `options` are properties of
-    Line2D that the curves of all motions are to have.
+    Iteration gives each motion with its style. A motion that is alone, and has no colour given, is
+    `PLAIN`: then colours are free to tell its quantities apart. `options` are properties of Line2D
+    that the curves of all motions are to have.
     """
 
     def __init__(
@@ -69,9 +72,8 @@ class Comparison:
         self.alone = len(self.motions) == 1
         self._plain = self.alone and colors is None
 
-    def __iter__(self) -> Iterator[tuple[Trajectory, Style | None]]:
-        styles = [None] if self._plain else self.styles
-        return zip(self.motions, styles, strict=True)
+    def __iter__(self) -> Iterator[tuple[Trajectory, Style]]:
+        return zip(self.motions, [PLAIN] if self._plain else self.styles, strict=True)
 
     def over_time(self) -> Comparison:
         """Sample the motions as finely as curves over time are drawn, and return itself."""

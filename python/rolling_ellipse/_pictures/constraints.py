@@ -79,14 +79,13 @@ def plot_constraints(
     return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
 
 
-def _errors_of(motion: Trajectory, panels: int, style: Style | None) -> list[Errors]:
+def _errors_of(motion: Trajectory, panels: int, style: Style) -> list[Errors]:
     """For each panel the errors to draw by name: all of one motion, the worst of one of several."""
     positions, velocities = constraint_errors(motion)
-    alone = style is None or not style.label
-    if alone and panels == 2:
-        return [positions, velocities]
-    if style is None or alone:
-        return [{"positions": worst(positions), "velocities": worst(velocities)}]
-    if panels == 2:
+    if style.label and panels == 2:
         return [{style.label: worst(positions)}, {style.label: worst(velocities)}]
-    return [{style.label: worst({**positions, **velocities})}]
+    if style.label:
+        return [{style.label: worst({**positions, **velocities})}]
+    if panels == 2:
+        return [positions, velocities]
+    return [{"positions": worst(positions), "velocities": worst(velocities)}]

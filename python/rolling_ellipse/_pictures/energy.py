@@ -78,7 +78,7 @@ def plot_energy(
         if wanted == "energies":
             energies.append(draw_energies(ax, motion, style))
         else:
-            label = style.label if style is not None and style.label else "energy error"
+            label = style.label or "energy error"
             errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, style))
     for lines in (*energies, errors):
         shown.restyle(*lines)

@@ -16,7 +16,7 @@ from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
 from .palette import palette_of
-from .panels import DASHES, dress_errors, finish
+from .panels import dress_errors, finish
 from .sampling import are_ranges, ranges
 
 if TYPE_CHECKING:
@@ -127,12 +127,10 @@ def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:
     return error
 
 
-def _draw_error(ax: Axes, motion: Trajectory, style: Style | None, error: FloatArray) -> Line2D:
-    colour, dash, label = palette_of(ax).ink, DASHES[0], "error"
-    if style is not None:
-        colour, dash, label = style.colour, style.dash, style.label or label
+def _draw_error(ax: Axes, motion: Trajectory, style: Style, error: FloatArray) -> Line2D:
+    colour, label = style.colour or palette_of(ax).ink, style.label or "error"
     label = label if np.nan_to_num(error).any() else f"{label} = 0"
     t = motion.t
     if are_ranges(motion):
         t, _, error = ranges(t, error)
-    return ax.plot(t, error, color=colour, ls=dash, label=label)[0]
+    return ax.plot(t, error, color=colour, ls=style.dash, label=label)[0]

@@ -96,20 +96,18 @@ def plot_forces(
     return Forces(tuple(panels), normal, friction, limits, tuple(needed), tuple(available), marks)
 
 
-def _draw_needed(ax: Axes, motion: Trajectory, style: Style | None) -> Line2D:
-    ink = palette_of(ax).ink
-    colour, dash = (ink, "-") if style is None else (style.colour, style.dash)
-    label = "needed" if style is None else style.label
+def _draw_needed(ax: Axes, motion: Trajectory, style: Style) -> Line2D:
+    colour, label = style.colour or palette_of(ax).ink, style.label or "needed"
     look: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
     t, needed = curve(motion.t, motion.friction_needed)
-    return ax.plot(t, needed, color=colour, ls=dash, label=label, **look)[0]
+    return ax.plot(t, needed, color=colour, ls=style.dash, label=label, **look)[0]
 
 
-def _draw_available(ax: Axes, motion: Trajectory, style: Style | None) -> Line2D | None:
+def _draw_available(ax: Axes, motion: Trajectory, style: Style) -> Line2D | None:
     friction = motion.scene.friction
     if not math.isfinite(friction):
         return None
-    colour = palette_of(ax).grey if style is None else style.colour
+    colour = style.colour or palette_of(ax).grey
     return ax.axhline(friction, color=colour, lw=1.2, ls=_LIMIT, label="available")
 
 

@@ -119,7 +119,7 @@ def _headline(trajectory: Trajectory, note: str) -> str:
 
 def _draw_state(ax: Axes, motion: Trajectory, values: FloatArray, label: str) -> Line2D:
     ax.set_ylabel(label)
-    return draw_curve(ax, motion, values, f"_{label}", 0, None)
+    return draw_curve(ax, motion, values, f"_{label}", 0)
 
 
 def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line2D]:
@@ -131,7 +131,7 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
         "energy change" if trajectory.events else "energy": energy_error(trajectory),
     }
     position, velocity, energy = (
-        draw_dots(ax, trajectory, values, name, rank, None)
+        draw_dots(ax, trajectory, values, name, rank)
         for rank, (name, values) in enumerate(errors.items())
     )
     word = "error, change" if trajectory.events else "relative error"

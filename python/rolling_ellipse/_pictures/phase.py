@@ -17,6 +17,7 @@ from .comparison import Comparison
 from .legends import name_curves, title_beside_legend
 from .modes import draw_invalid_ground
 from .palette import palette_of
+from .panels import dress_grid
 from .sampling import FEW, between, half_turns, is_at_hand, span_of
 from .separatrix import QUARTER, flat_angle, flat_angles, separatrix
 
@@ -230,13 +231,10 @@ def _is_in_view(ax: Axes, line: Line2D) -> bool:
 
 
 def _dress_phase(ax: Axes) -> None:
-    palette = palette_of(ax)
-    ax.axhline(0, color=palette.grey, lw=0.8, zorder=1.5)
+    ax.axhline(0, color=palette_of(ax).grey, lw=0.8, zorder=1.5)
     ax.set_xlabel("θ [rad]")
     ax.set_ylabel("ω [rad/s]")
-    ax.grid(color=palette.shade(0.08), lw=0.8)
-    ax.set_axisbelow(True)
-    ax.spines[["top", "right"]].set_visible(False)
+    dress_grid(ax)
     left, right = ax.get_xlim()
     if QUARTER < right - left < _FEW_TURNS * 3 * math.pi:
         ax.xaxis.set_major_locator(_QuarterTurns())
