@@ -180,12 +180,12 @@ def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) ->
 
     Of two the upper one leaves a shared time axis to the lower.
     """
-    name_curves(panels[0], handles)
-    title_beside_legend(panels[0], note_of(shown))
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=panel is panels[0])
     if len(panels) == 2 and panels[0].get_shared_x_axes().joined(*panels):
         panels[0].set_xlabel("")
         panels[0].figure.align_ylabels(panels)
+    name_curves(panels[0], handles)
+    title_beside_legend(panels[0], note_of(shown))
     return tuple(marks)
