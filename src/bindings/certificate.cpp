@@ -147,7 +147,11 @@ void bind_certificate(py::module_& m) {
     m.def("required_friction", required_friction, "scene"_a);
     m.def("sticking_friction", sticking_friction, "scene"_a);
     m.def("press_to", press_to, "scene"_a, "distance"_a, "omega"_a);
-    m.def("speed_to_the_tip", speed_to_the_tip, "scene"_a);
+    m.def("speed_to_the_tip", py::vectorize([](Scene scene, double theta) {
+              scene.theta = theta;
+              return speed_to_the_tip(scene);
+          }),
+          "scene"_a, "theta"_a);
     m.def("certify", certificate, "scene"_a);
     m.def(
         "roll_over_speed", [](const Scene& scene) { return roll_over_speed(scene.body()); },

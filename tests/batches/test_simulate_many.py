@@ -218,7 +218,7 @@ def test_progress_is_shown(
     bar: bool, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if not bar:
-        monkeypatch.setattr("rolling_ellipse._verbs.batches.progress.find_spec", lambda name: None)
+        monkeypatch.setattr("rolling_ellipse._ask.progress.find_spec", lambda name: None)
     simulate_many([scenes.rocking] * 20, 1.0, progress=True)
     said = capfd.readouterr().err
     assert ("20/20" if bar else "\r20 of 20 scenes\n") in said

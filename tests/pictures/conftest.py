@@ -25,7 +25,7 @@ def trajectory(request: pytest.FixtureRequest) -> rl.Trajectory:
     return rl.simulate(request.param, 4.0, model="rolling")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def report() -> rl.Trajectory:
     return rl.simulate(rl.scenes.report, 6.0)
 
@@ -40,7 +40,12 @@ def several(report: rl.Trajectory) -> list[rl.Trajectory]:
 
 
 @pytest.fixture(autouse=True)
-def nothing_left_open() -> Iterator[None]:
-    """A picture drawn where it was told leaves pyplot alone."""
+def nothing_left_open(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """No picture shows itself; one drawn where it was told leaves pyplot alone."""
+
+    def show(*_: object, **__: object) -> None:
+        raise AssertionError("plt.show() was called")
+
+    monkeypatch.setattr(plt, "show", show)
     yield
     assert plt.get_fignums() == []

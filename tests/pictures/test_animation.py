@@ -1,7 +1,6 @@
 """The moving picture, read back from its artists and from the files it writes."""
 
 import gc
-import importlib.util
 import io
 import math
 import re
@@ -11,14 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import rolling_ellipse as rl
-from matplotlib.animation import FFMpegWriter, HTMLWriter
+from matplotlib.animation import HTMLWriter
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -173,32 +169,6 @@ def test_axes_tip_and_traces_belong_to_the_body(report: rl.Trajectory) -> None:
         assert np.asarray(strip.tip_trace.get_xydata()) == pytest.approx(np.array(ends), abs=1e-13)
 
 
-def test_frames_may_be_drawn_in_any_order(short: RollingAnimation) -> None:
-    strip = only(short)
-    short.draw(7)
-    first = [centre_of(strip.body), strip.body.angle, np.asarray(strip.contact.get_xdata())[0]]
-    short.draw(2)
-    assert centre_of(strip.body) != first[0]
-    assert strip.body in short.draw(7)
-    assert [
-        centre_of(strip.body),
-        strip.body.angle,
-        np.asarray(strip.contact.get_xdata())[0],
-    ] == first
-
-
-def test_no_contact_is_drawn_in_flight() -> None:
-    dropped = rl.simulate(rl.scenes.drop, 1.0)
-    animation = rl.animate(dropped, fps=10, width=160)
-    contact = only(animation).contact
-    seen = []
-    for i in frames(animation):
-        animation.draw(i)
-        seen.append(bool(np.isfinite(np.asarray(contact.get_xdata())[0])))
-    # it falls for sqrt(2 · 1 m / 9.81 m/s²) = 0.45 s
-    assert seen == [False] * 5 + [True] * 6
-
-
 def test_the_caption_says_when_rolling_is_no_longer_valid() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rl.ValidityWarning)
@@ -238,16 +208,6 @@ def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
         assert (right - left) / width == pytest.approx((top - bottom) / height, rel=0.02)  # 2 px
         views.add((left, right))
     assert len(views) == (len(frames(animation)) if follows else 1)
-
-
-def test_the_body_is_always_seen_whole(trajectory: rl.Trajectory) -> None:
-    animation = rl.animate(trajectory, fps=25, width=160)
-    for i in frames(animation):
-        animation.draw(i)
-        (left, right), (_, top) = view_of(animation)
-        points = outline(only(animation).body)
-        assert left < points[:, 0].min() and points[:, 0].max() < right
-        assert points[:, 1].max() < top
 
 
 def test_the_ground_is_ruled_where_the_body_is() -> None:
@@ -348,52 +308,6 @@ def test_html_by_matplotlib_has_every_frame(short: RollingAnimation, tmp_path: P
     assert embedded == [str(i) for i in frames(short)]
 
 
-def test_mp4_keeps_the_time(short: RollingAnimation, tmp_path: Path) -> None:
-    import imageio_ffmpeg
-
-    path = tmp_path / "roll.mp4"
-    short.save(path)
-    count, _ = imageio_ffmpeg.count_frames_and_secs(str(path))
-    assert count == len(frames(short))
-    reader = imageio_ffmpeg.read_frames(str(path))
-    says = next(reader)
-    reader.close()
-    assert says["fps"] == 25
-    assert says["duration"] == pytest.approx(11 / 25, abs=0.011)  # printed with two digits
-
-
-def test_mp4_without_ffmpeg_names_the_extra(
-    report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    monkeypatch.setattr(FFMpegWriter, "isAvailable", lambda: False)
-    with pytest.raises(FileNotFoundError, match=r"rolling_ellipse\[video\]"):
-        rl.animate(report, tmp_path / "roll.mp4")
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("name", ["roll.avi", "roll", "gif", "roll.gif.png"])
-def test_another_suffix_is_refused_by_name(
-    report: rl.Trajectory, tmp_path: Path, name: str
-) -> None:
-    with pytest.raises(ValueError, match=r"path must end in one of \.gif, \.mp4, \.html, got .*"):
-        rl.animate(report, tmp_path / name)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_suffixes_may_be_written_large(short: RollingAnimation, tmp_path: Path) -> None:
-    short.save(str(tmp_path / "ROLL.GIF"))
-    assert (tmp_path / "ROLL.GIF").read_bytes()[:3] == b"GIF"
-
-
-@pytest.mark.parametrize("fps", [30, 24, 60, 100, 1e-3 + 25])
-def test_a_gif_that_could_not_keep_the_time_is_refused(
-    report: rl.Trajectory, tmp_path: Path, fps: float
-) -> None:
-    with pytest.raises(ValueError, match="fps must be 100 over a whole number of at least 2"):
-        rl.animate(report, tmp_path / "roll.gif", fps=fps)
-
-
 def test_saving_shows_progress_when_asked(
     short: RollingAnimation,
     tmp_path: Path,
@@ -404,9 +318,9 @@ def test_saving_shows_progress_when_asked(
     assert capsys.readouterr() == ("", "")
     short.save(tmp_path / "roll.gif", progress=True)
     assert "11/11" in capsys.readouterr().err
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr("rolling_ellipse._progress.find_spec", lambda name: None)
     short.save(tmp_path / "roll.gif", progress=True)
-    assert capsys.readouterr().err.endswith("frame 11 of 11\n")
+    assert capsys.readouterr().err.endswith("roll.gif 11 of 11 frames\n")
 
 
 def test_matplotlibs_own_writers_stay_open(short: RollingAnimation, tmp_path: Path) -> None:
@@ -471,12 +385,14 @@ def test_the_whole_motion_is_shown(options: dict[str, Any], count: int, last: fl
     assert animation.t[-1] == pytest.approx(last, abs=1e-14)
 
 
-@pytest.mark.parametrize("speed", [0.25, 1.0, 4.0])
+@pytest.mark.parametrize("speed", [0.25, 4.0])
 @pytest.mark.parametrize("fps", [25, 50, 60])
 @pytest.mark.parametrize("suffix", [".gif", ".mp4", ".html"])
 def test_a_film_is_as_long_as_its_motion(
     report: rl.Trajectory, tmp_path: Path, suffix: str, fps: float, speed: float
 ) -> None:
+    import imageio_ffmpeg
+
     path, seconds = tmp_path / f"roll{suffix}", 0.48 / speed
     if (suffix, fps) == (".gif", 60):
         with pytest.raises(ValueError, match=r"near it is 100 / 2 = 50$"):
@@ -490,16 +406,10 @@ def test_a_film_is_as_long_as_its_motion(
     if suffix == ".gif":
         found = sum(gif_frames(path.read_bytes())[1]) / 1000
     else:
-        found = count_frames(path) / fps
+        count, found = imageio_ffmpeg.count_frames_and_secs(str(path))  # printed with two digits
+        assert count == 1 + round(seconds * fps)
     # the last time that a frame has is shown for a frame, too
-    assert 0 < found - seconds < 1 / fps + 1e-9
-
-
-def count_frames(path: Path) -> int:
-    import imageio_ffmpeg
-
-    count, _ = imageio_ffmpeg.count_frames_and_secs(str(path))
-    return int(count)
+    assert found - seconds == pytest.approx(1 / fps, abs=0.011 if suffix == ".mp4" else 1e-9)
 
 
 @pytest.mark.parametrize(
@@ -542,43 +452,12 @@ def test_the_last_frame_never_leaves_the_trajectory() -> None:
         assert animation.t[-1] <= end and animation.t.size == k + 1
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"fps": 0}, "fps must be positive and finite, got 0"),
-        ({"speed": -1.0}, "speed must be positive and finite, got -1.0"),
-        ({"speed": math.nan}, "speed must be positive and finite, got nan"),
-        ({"width": 0}, "width must be positive and finite, got 0"),
-        ({"dpi": math.inf}, "dpi must be positive and finite, got inf"),
-        ({"max_frames": 0}, "max_frames must be at least 1, got 0"),
-        ({"max_frames": 250}, "max_frames must hold the whole film, 301 frames .*, got 250: .*"),
-        ({"speed": 1e-6}, "t_end must be shown in at most 1000000 frames, got 6.0, which is 3e"),
-        ({"t_end": 6.1}, r"t_end must be within \[0, 6\] s, got 6.1"),
-        ({"t_end": math.nan}, r"t_end must be within \[0, 6\] s, got nan"),
-    ],
-)
-def test_wrong_options_are_refused_by_name(
-    report: rl.Trajectory, options: dict[str, Any], message: str
-) -> None:
-    with pytest.raises(ValueError, match=message):
-        rl.animate(report, **options)
-
-
 def test_size_and_resolution_are_what_was_asked_for(report: rl.Trajectory, tmp_path: Path) -> None:
     with matplotlib.rc_context({"savefig.dpi": 37, "savefig.bbox": "tight"}):
         rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=322, dpi=80)
     with Image.open(tmp_path / "roll.gif") as gif:
         assert gif.size[0] == 322
         assert gif.size[1] % 2 == 0
-
-
-def test_it_draws_into_a_figure_it_is_given(report: rl.Trajectory) -> None:
-    figure = Figure(figsize=(5, 5))
-    animation = rl.animate(report, t_end=0.2, figure=figure)
-    assert animation.figure is figure
-    assert tuple(figure.get_size_inches()) == (5, 5)
-    (left, right), (bottom, top) = view_of(animation)
-    assert right - left == pytest.approx(top - bottom)
 
 
 def test_nothing_is_written_and_nothing_left_open(

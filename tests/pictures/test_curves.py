@@ -1,28 +1,26 @@
-"""What all pictures of one motion or several have in common, read back from their artists."""
+"""What all pictures of motions have in common, read back from their artists."""
 
 import dataclasses
 import itertools
 import math
+import re
 from collections.abc import Callable
 from typing import Any
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
 from oracles.pictures import figure_of, shows_something
 from rolling_ellipse._pictures import sampling
-from rolling_ellipse._pictures.comparison import Comparison
-from rolling_ellipse._pictures.labels import labels_of
+from rolling_ellipse._pictures.comparison import Comparison, labels_of
+from rolling_ellipse._ask.scene import SCENE_UNITS
 
 OVER_TIME = (rl.plot_forces, rl.plot_energy, rl.plot_constraints)
 
@@ -52,29 +50,6 @@ def test_every_motion_has_its_name(
     assert legend_of(ax)[:3] == ["one", "two", "three"]
     with pytest.raises(ValueError, match="labels"):
         picture(several, ax=new_axes(), labels=["one"])
-
-
-def test_without_labels_the_name_is_what_differs(
-    picture: Callable[..., Any], several: list[rl.Trajectory]
-) -> None:
-    several[1] = dataclasses.replace(several[1], method="rk4")
-    ax = new_axes()
-    picture(several, ax=ax)
-    assert legend_of(ax)[:3] == labels_of(several, None)
-
-
-@pytest.mark.filterwarnings("ignore:the samples of a trajectory are not those")
-def test_names_say_what_differs(report: rl.Trajectory) -> None:
-    faster = dataclasses.replace(report, scene=dataclasses.replace(report.scene, omega=3.2))
-    other = dataclasses.replace(report, method="rk4")
-    for motions, names in (
-        ([report, other], ["exact", "rk4"]),
-        ([report, faster], ["omega = 0 rad/s", "omega = 3.2 rad/s"]),
-        ([report, report, report], ["1", "2", "3"]),
-    ):
-        ax = new_axes()
-        rl.plot_phase(motions, ax=ax)
-        assert legend_of(ax)[:-1] == names
 
 
 def test_one_motion_needs_no_name(picture: Callable[..., Any], report: rl.Trajectory) -> None:
@@ -110,21 +85,22 @@ def test_an_empty_picture_is_seen() -> None:
     assert not shows_something(figure_of(ax))
 
 
-@pytest.mark.parametrize("span", [0.0, 1e-6, 1e4])
-def test_any_span_and_a_single_sample(picture: Callable[..., Any], span: float) -> None:
-    trajectory = rl.simulate(rl.scenes.rolling, span)
-    ax = new_axes()
-    picture([trajectory, trajectory], ax=ax)
-    figure_of(ax).draw_without_rendering()
-    assert shows_something(figure_of(ax))
-
-
-@pytest.mark.parametrize("scene", [rl.Scene(2.0, 1.0), rl.Scene(1.0, 1.0)])
-def test_a_body_at_rest(picture: Callable[..., Any], scene: rl.Scene) -> None:
-    ax = new_axes()
-    picture(rl.simulate(scene, 1.0), ax=ax)
-    figure_of(ax).draw_without_rendering()
-    assert shows_something(figure_of(ax))
+@pytest.mark.parametrize(
+    ("scene", "span"),
+    [
+        (rl.scenes.rolling, 0.0), (rl.scenes.rolling, 1e-6), (rl.scenes.rolling, 1e4),
+        (rl.Scene(2.0, 1.0), 1.0), (rl.Scene(1.0, 1.0), 1.0),
+    ],
+)  # fmt: skip
+def test_any_span_a_single_sample_and_rest(
+    picture: Callable[..., Any], scene: rl.Scene, span: float
+) -> None:
+    trajectory = rl.simulate(scene, span)
+    for motions in (trajectory, [trajectory, trajectory]):
+        ax = new_axes()
+        picture(motions, ax=ax)
+        figure_of(ax).draw_without_rendering()
+        assert shows_something(figure_of(ax))
 
 
 @pytest.fixture(params=["one", "several", "thin"])
@@ -220,3 +196,110 @@ def test_paths_that_are_not_valid_have_grey_ground(
         report, 0.0, 6.0, 6.0 if picture is rl.plot_paths else sampling.half_turns(report)
     )
     assert np.array_equal(np.isfinite(data(ground)[1]), drawn.t >= 2.5)
+
+
+MOTION = rl.simulate(rl.scenes.jump, 1.0)
+DRAWN: dict[str, tuple[Callable[..., Any], str]] = {
+    "Overview": (
+        lambda: rl.plot(MOTION, figure=Figure()), "figure, strobe, theta, .*, 18 marks"
+    ),
+    "Strobe": (lambda: rl.plot_strobe(MOTION, ax=axes(), count=7), "ax, 7 bodies, 7 hands, .*"),
+    "Phase": (lambda: rl.plot_phase([MOTION, MOTION], ax=axes()), "ax, 2 motions, .*"),
+    "Energy": (lambda: rl.plot_energy(MOTION, ax=axes()), "ax, 1 total, 1 kinetic, .*"),
+    "Forces": (lambda: rl.plot_forces(MOTION, ax=[axes(), axes()]), "2 axes, 1 normal, .*"),
+    "Constraints": (lambda: rl.plot_constraints(MOTION, ax=axes()), "1 axes, 1 lines, .*"),
+    "Paths": (lambda: rl.plot_paths(MOTION, ax=axes()), "ax, 1 centres, 1 tips, .*"),
+    "PhaseMap": (lambda: rl.plot_phase_map(resolution=3, ax=axes()), "ax, cells, .* marks, .*"),
+}  # fmt: skip
+
+
+def axes() -> Any:
+    return Figure().add_subplot()
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_the_repr_names_the_artists(name: str) -> None:
+    draw, said = DRAWN[name]
+    text = repr(draw())
+    assert " at 0x" not in text and "\n" not in text
+    assert re.fullmatch(rf"<{name}: {said}>", text), text
+
+
+ROLLING = rl.simulate(rl.scenes.rolling, 1.0)
+
+
+def motions(*scenes: rl.Scene) -> list[rl.Trajectory]:
+    """Trajectories of scenes; none is integrated, labels only read what was asked for."""
+    return [dataclasses.replace(ROLLING, scene=scene) for scene in scenes]
+
+
+def varied(**fields: Any) -> rl.Scene:
+    return dataclasses.replace(rl.scenes.rolling, **fields)
+
+
+@pytest.mark.parametrize(
+    ("scenes", "names"),
+    [
+        ([varied(), varied(omega=4.0)], ["omega = 3.2 rad/s", "omega = 4 rad/s"]),
+        ([varied(), varied(friction=0.8)], ["friction = ∞", "friction = 0.8"]),
+        ([varied(), varied(inertia=2.0)], ["inertia by default", "inertia = 2 kg m²"]),
+        ([varied(), varied(omega=-4.0)], ["omega = 3.2 rad/s", "omega = −4 rad/s"]),
+        (
+            [varied(), varied(mass=2.0), varied(mass=2.0, x=1.0)],
+            ["mass = 1 kg, x = 0 m", "mass = 2 kg, x = 0 m", "mass = 2 kg, x = 1 m"],
+        ),
+        (
+            [varied(), varied(impulse=rl.Impulse.press(4.0, -0.5))],
+            ["no impulse", "impulse (0, −4) N s at (−0.5, 0) m"],
+        ),
+        (
+            [rl.scenes.thin, rl.scenes.circle],
+            ["a = 2 m, b = 0.02 m, theta = 0.3 rad, …", "a = 1 m, b = 1 m, theta = 0 rad, …"],
+        ),
+    ],
+)
+def test_scenes_are_named_by_the_fields_that_differ(
+    scenes: list[rl.Scene], names: list[str]
+) -> None:
+    assert labels_of(motions(*scenes), None) == names
+
+
+@pytest.mark.parametrize("difference", [1e-3, 1e-9, 2**-52])
+def test_values_have_the_digits_that_tell_them_apart(difference: float) -> None:
+    other = 3.2 * (1 + difference)
+    names = labels_of(motions(varied(), varied(omega=other)), None)
+    shown = [float(name.removeprefix("omega = ").removesuffix(" rad/s")) for name in names]
+    assert shown == pytest.approx([3.2, other], rel=difference / 2, abs=0)
+
+
+def test_methods_come_first() -> None:
+    other = dataclasses.replace(ROLLING, method="rk4")
+    assert labels_of([ROLLING, other], None) == ["exact", "rk4"]
+    faster = dataclasses.replace(other, scene=varied(omega=4.0))
+    assert labels_of([ROLLING, faster], None) == [
+        "exact, omega = 3.2 rad/s",
+        "rk4, omega = 4 rad/s",
+    ]
+    model = dataclasses.replace(ROLLING, model="multipliers")
+    assert labels_of([ROLLING, model], None) == ["rolling", "multipliers"]
+
+
+def test_what_nothing_tells_apart_is_numbered() -> None:
+    assert labels_of([ROLLING] * 3, None) == ["1", "2", "3"]
+    two_alike = [ROLLING, ROLLING, dataclasses.replace(ROLLING, method="rk4")]
+    assert labels_of(two_alike, None) == ["1", "2", "3"]
+
+
+def test_labels_of_one_motion() -> None:
+    assert labels_of([ROLLING], None) == [""]
+    assert labels_of([ROLLING], ["mine"]) == ["mine"]
+
+
+def test_names_given_are_kept() -> None:
+    assert labels_of([ROLLING, ROLLING], ("same", "same")) == ["same", "same"]
+
+
+def test_every_number_of_a_scene_has_a_unit() -> None:
+    numbers = {field.name for field in dataclasses.fields(rl.Scene)} - {"impulse"}
+    assert set(SCENE_UNITS) == numbers
+    assert math.isinf(varied().friction)  # so that "friction = ∞" above is what it says

@@ -5,12 +5,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import matplotlib
 import numpy as np
 import pytest
-
-matplotlib.use("Agg")
-
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from oracles.curves import Array, data, new_axes

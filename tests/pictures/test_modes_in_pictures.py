@@ -4,24 +4,18 @@ import itertools
 import math
 from typing import Any
 
-import matplotlib
 import numpy as np
 import pytest
-
-matplotlib.use("Agg")
-
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
-from numpy.typing import NDArray
-from oracles.curves import seen
+from oracles.curves import Array, legend_of, new_axes, seen, two_axes
 from oracles.pictures import figure_of, legend_in, outline, support
 from rolling_ellipse._pictures import sampling
 
-Array = NDArray[np.float64]
 SCENES = {
     "jump": rl.scenes.jump,  # rolls, slides, flies, hits and rolls on
     "slope": rl.scenes.slope,  # slips twice, jumps twice
@@ -44,22 +38,10 @@ def jump() -> rl.Trajectory:
     return rl.simulate(rl.scenes.jump, 3.0)
 
 
-def new_axes(width: float = 7.0, height: float = 3.4) -> Axes:
-    return Figure(figsize=(width, height), layout="constrained").add_subplot()
-
-
-def two_axes(width: float = 7.0, height: float = 5.0) -> list[Axes]:
-    return list(Figure(figsize=(width, height), layout="constrained").subplots(2, sharex=True))
-
-
 def drawn(ax: Axes) -> Axes:
     """The same, laid out."""
     FigureCanvasAgg(figure_of(ax)).draw()
     return ax
-
-
-def legend_of(ax: Axes) -> list[str]:
-    return [text.get_text() for text in legend_in(ax).get_texts()]
 
 
 def event_names(ax: Axes) -> list[Annotation]:

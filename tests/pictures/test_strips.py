@@ -2,18 +2,13 @@
 
 import math
 import warnings
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 import pytest
-
-matplotlib.use("Agg")
-
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
-from oracles.pictures import centre_of, frames_of, outline, shows_something
-from PIL import Image
+from oracles.pictures import centre_of, outline, shows_something
 from rolling_ellipse._pictures.animation import RollingAnimation
 
 
@@ -139,13 +134,6 @@ def test_a_motion_that_ends_earlier_stays_where_it_ended() -> None:
         assert second.caption.get_text() == "long"
 
 
-def test_a_strip_says_when_its_rolling_is_no_longer_valid() -> None:
-    animation = rl.animate(moved(1.0, rl.scenes.jump, SLOW), labels=["jump", "slow"])
-    animation.draw(25)
-    captions = [strip.caption.get_text() for strip in animation.strips]
-    assert captions == ["jump   rolling is no longer valid", "slow"]
-
-
 @pytest.mark.parametrize("width", [320, 640])
 def test_texts_are_clear_of_one_another_and_of_the_bodies(
     motions: list[rl.Trajectory], width: int
@@ -174,25 +162,6 @@ def test_it_draws_into_a_figure_it_is_given() -> None:
             points = outline(strip.body)
             assert bottom < 0 and points[:, 1].max() < top
             assert left < points[:, 0].min() and points[:, 0].max() < right
-
-
-def test_a_file_of_several_motions(tmp_path: Path) -> None:
-    path = tmp_path / "race.gif"
-    rl.animate(REPORT_AND_ROCKING, path, t_end=0.2, fps=25, width=160, dpi=50)
-    with Image.open(path) as gif:
-        assert frames_of(gif) == 6
-        assert gif.size[0] == 160 and gif.size[1] % 2 == 0
-
-
-def test_wrong_input_is_refused_by_name() -> None:
-    with pytest.raises(ValueError, match="labels must be 2, one for each trajectory, got 1"):
-        rl.animate(FOLLOWED, labels=["one"])
-    with pytest.raises(ValueError, match=r"trajectories must be .*, got none"):
-        rl.animate([])
-    with pytest.raises(TypeError, match=r"trajectories must be .*, got Scene\("):
-        rl.animate([SLOW])  # type: ignore[list-item]
-    with pytest.raises(ValueError, match=r"t_end must be within \[0, 20\] s, got 21"):
-        rl.animate([*FOLLOWED, *PARTED], t_end=21)
 
 
 def test_the_user_s_layout_is_left_alone() -> None:

@@ -5,12 +5,9 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import rolling_ellipse as rl
 from cycler import cycler
 from matplotlib.colors import to_hex, to_rgb
@@ -111,7 +108,7 @@ def test_films_follow_the_style() -> None:
 
 
 def curves_of(shown: Any) -> list[Line2D]:
-    names = (
+    names = [
         "motions",
         "normal",
         "friction",
@@ -121,7 +118,7 @@ def curves_of(shown: Any) -> list[Line2D]:
         "lines",
         "centres",
         "tips",
-    )
+    ]
     found = [getattr(shown, name, ()) for name in names]
     return [line for lines in found for line in np.ravel(np.array(lines, dtype=object)).tolist()]
 
@@ -161,13 +158,6 @@ def test_properties_of_lines_are_taken(
         picture(several[0], ax=new_axes(), nonsense=1)
 
 
-def test_properties_of_bodies_are_taken() -> None:
-    motion = rl.simulate(rl.scenes.report, 2.0)
-    shown = rl.plot_strobe(motion, ax=new_axes(), facecolor="red", lw=0.5)
-    for body in shown.bodies:
-        assert to_rgb(body.get_facecolor()) == to_rgb("red") and body.get_linewidth() == 0.5
-
-
 def test_a_legend_made_anew_follows_restyled_artists(several: list[rl.Trajectory]) -> None:
     ax = new_axes()
     shown = rl.plot_phase(several, ax=ax, labels=["a", "b", "c"])
@@ -202,52 +192,3 @@ def test_a_figure_or_a_part_of_one_is_laid_out() -> None:
         for one, other in itertools.combinations([b.padded(-1.0) for b in boxes if b], 2):
             assert not one.overlaps(other)
     assert all(ax.get_window_extent().x1 < 0.51 * whole.bbox.width for ax in part.axes)
-
-
-# ------------------------------------------------------------------------------------- plot_error
-
-
-def test_the_error_is_that_beside_the_exact_motion() -> None:
-    scene = rl.scenes.rolling
-    rough = rl.simulate(scene, 6.0, method="rk4", step=0.02)
-    exact = rl.simulate(scene, 6.0, method="exact")
-    shown = rl.plot_error([rough, exact], ax=new_axes())
-    t, error = np.asarray(shown.errors[0].get_data())
-    theta, _, _ = rl.flow(t, a=2.0, b=1.0, theta=0.0, omega=3.2)
-    # what remains between two exact ways: some units of an angle of 10
-    assert error == pytest.approx(np.abs(rough.sol(t).theta - theta), abs=1e-14)
-    assert 1e-7 < error.max() < 1e-2 and shown.ax.get_yscale() == "log"
-    assert shown.ax.get_ylabel() == "error of θ [rad]"
-    assert shown.errors[1].get_label() == "exact = 0"
-
-
-def test_the_error_has_a_reference_for_every_model() -> None:
-    scene = rl.Scene(2.0, 1.0, slope=0.1, omega=1.0)
-    slope = rl.simulate(scene, 1.0, rtol=1e-6, model="rolling", method="dop853")
-    ours = rl.simulate(rl.scenes.rolling, 3.0, model="multipliers", rtol=1e-7)
-    jump = rl.simulate(rl.scenes.jump, 2.0)
-    for motion, least, most in ((slope, 1e-12, 1e-4), (ours, 1e-12, 1e-5), (jump, 0.0, 1e-9)):
-        line = rl.plot_error(motion, "omega", ax=new_axes()).errors[0]
-        assert least <= np.asarray(line.get_ydata()).max() <= most
-
-
-def test_a_reference_may_be_given() -> None:
-    one = rl.simulate(rl.scenes.rolling, 2.0)
-    other = rl.simulate(rl.Scene(2.0, 1.0, omega=3.3), 2.0)
-    shown = rl.plot_error(one, "x", other, ax=new_axes())
-    t, error = np.asarray(shown.errors[0].get_data())
-    assert error == pytest.approx(np.abs(one.sol(t).x - other.sol(t).x), abs=1e-15)
-    with pytest.raises(ValueError, match="reference must reach the last time"):
-        rl.plot_error(one, reference=rl.simulate(one.scene, 1.0), ax=new_axes())
-    with pytest.raises(TypeError, match="reference must be a Trajectory or None, got 3"):
-        rl.plot_error(one, reference=3, ax=new_axes())  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="quantity must be one of 'theta'"):
-        rl.plot_error(one, "q", ax=new_axes())
-
-
-def test_pictures_are_methods_too() -> None:
-    motion = rl.simulate(rl.scenes.report, 2.0)
-    for name in ("strobe", "paths", "phase", "forces", "energy", "constraints", "error"):
-        ax = new_axes()
-        getattr(motion, f"plot_{name}")(ax=ax)
-        assert ax.lines

@@ -335,18 +335,6 @@ def test_map_sliders_and_words_go_with_the_blow(opened: Opened) -> None:
     assert made["blow"] == rl.Impulse.press(explorer.strengths[-1], 0.0)
 
 
-def test_how_long_a_frame_of_a_drag_takes(opened: Opened) -> None:
-    """A figure, printed; only that every move was drawn is asked for."""
-    page = opened(document("", rl.explore(rl.scenes.slope)._repr_html_()), reduced_motion="reduce")
-    told(page, "player => { window.drawn = []; const paint = player.paint.bind(player);"
-         "player.paint = () => { paint(); window.drawn.push(performance.now()) } }")  # fmt: skip
-    drag(page, (-200, 30), steps=60)
-    page.mouse.up()
-    times = np.array(told(page, "player => window.drawn"))
-    assert times.size >= 10
-    print(f"median frame of a drag: {np.median(np.diff(times)):.1f} ms")
-
-
 def test_an_exported_notebook_without_a_kernel_still_drags(opened: Opened) -> None:
     exporters = pytest.importorskip("nbconvert.exporters", reason="there is no nbconvert")
     output = nbformat.v4.new_output(

@@ -1,10 +1,12 @@
-"""Where pictures are drawn: in what is given, or in a new pyplot figure."""
+"""Where pictures are drawn: in what is given, or in a new pyplot figure; and how they say so."""
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar
 from functools import wraps
+from threading import RLock
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib.pyplot as plt
@@ -14,15 +16,40 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from .._ask.check import shown
-from .alone import with_figures
 
 _Given = ParamSpec("_Given")
 _Drawn = TypeVar("_Drawn")
 _opened: ContextVar[list[Figure]] = ContextVar("_opened")  # by the plot function that is at work
+_with_figures = RLock()  # pyplot numbers its figures: two threads could get the same number
+
+_SHARED = {
+    "ax": """ax : matplotlib Axes, optional
+    Where to draw; without it, in a new pyplot figure.""",
+    "motions": """labels : sequence of str, optional
+    Names of the motions; without it, what they differ in.
+colors : sequence of matplotlib colours, optional
+    One for each motion.
+**options
+    Properties of `matplotlib.lines.Line2D` for all curves.
+
+Returns
+-------
+{drawn}
+    The artists.
+
+Raises
+------
+ValueError
+    If there is no trajectory, one has no samples, there are not as many labels or colours as
+    trajectories, or another argument is not as above.
+TypeError
+    If something is no trajectory, or an argument of another wrong kind.""",
+}
+"""Parts of docstrings, which stand there as `{name}`."""
 
 
-def leaving_no_figure(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
-    """Make a plot function close the pyplot figures that it has opened if it fails."""
+def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
+    """Complete the docstring of a plot function; if it fails, close the figures it has opened."""
 
     @wraps(draw)
     def drawn(*args: _Given.args, **options: _Given.kwargs) -> _Drawn:
@@ -31,21 +58,23 @@ def leaving_no_figure(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn
         try:
             return draw(*args, **options)
         except BaseException:
-            with with_figures():
+            with _with_figures:
                 for figure in figures:
                     plt.close(figure)
             raise
         finally:
             _opened.reset(before)
 
+    text = inspect.getdoc(draw) or ""
+    for name, part in _SHARED.items():
+        text = text.replace(f"{{{name}}}", part)
+    drawn.__doc__ = text.replace("{drawn}", draw.__annotations__["return"])
     return drawn
 
 
 def axes_of(ax: Axes | None, size: tuple[float, float]) -> Axes:
     """Return the Axes given, or those of a new pyplot figure of a size [inch]."""
-    if ax is None:
-        return _new_figure(size).add_subplot()
-    return require_axes(ax)
+    return _new_figure(size).add_subplot() if ax is None else require_axes(ax)
 
 
 def require_axes(ax: Any) -> Axes:
@@ -58,9 +87,7 @@ def require_axes(ax: Any) -> Axes:
 def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
     """Return the one or two Axes given, or two of a new pyplot figure over one time axis."""
     if ax is None:
-        figure = _new_figure((7, 5))
-        upper, lower = figure.subplots(2, sharex=True)
-        return [upper, lower]
+        return list(_new_figure((7, 5)).subplots(2, sharex=True))
     panels = listed(ax)
     if not all(isinstance(panel, Axes) for panel in panels):
         raise TypeError(f"ax must be one matplotlib Axes or two, got {shown(ax)}")
@@ -70,14 +97,12 @@ def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
 
 
 def listed(ax: Any) -> list[Any]:
-    """Return the entries of a list or an array, also of those in rows, or what else was given."""
-
-    def entries(value: Any) -> list[Any]:
-        if isinstance(value, np.ndarray):
-            return list(value.ravel())
-        return list(value) if isinstance(value, (list, tuple)) else [value]
-
-    return [each for row in entries(ax) for each in entries(row)]
+    """Return the entries of a list or an array, also of those in rows, or the only one given."""
+    if isinstance(ax, np.ndarray):
+        return list(ax.ravel())
+    if isinstance(ax, (list, tuple)):
+        return [each for row in ax for each in listed(row)]
+    return [ax]
 
 
 def figure_of(figure: Any, size: tuple[float, float]) -> Figure:
@@ -93,8 +118,8 @@ def figure_of(figure: Any, size: tuple[float, float]) -> Figure:
 
 
 def pyplot_figure(**options: Any) -> Figure:
-    """Open a pyplot figure: one thread at a time, or two could get the same number."""
-    with with_figures():
+    """Open a pyplot figure, which is closed if the plot function fails."""
+    with _with_figures:
         figure = plt.figure(**options)
         _opened.get().append(figure)
     return figure

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from .._motion.relative_errors import constraint_errors, worst
 from .artists import Artists
-from .axes import leaving_no_figure, panels_of
+from .axes import panels_of, picture
 from .comparison import Comparison, Style
-from .legends import name_curves, some_of, title_beside_legend
+from .legends import name_curves, some_of
 from .modes import mode_handles
-from .panels import draw_dots, dress_errors, dress_panels, note_of
+from .panels import draw_dots, dress_errors, finish
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,7 +33,7 @@ class Constraints(Artists):
     marks: tuple[Artist, ...]
 
 
-@leaving_no_figure
+@picture
 def plot_constraints(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -58,25 +58,7 @@ def plot_constraints(
     ax : matplotlib Axes or two of them, optional
         Where to draw the panels; in a single one both are drawn, of each the worst. Without it,
         in a new pyplot figure.
-    labels : sequence of str, optional
-        Names of the motions; without it, what they differ in.
-    colors : sequence of matplotlib colours, optional
-        One for each motion.
-    **options
-        Properties of `matplotlib.lines.Line2D` for all dots.
-
-    Returns
-    -------
-    Constraints
-        The artists.
-
-    Raises
-    ------
-    ValueError
-        If there is no trajectory, one has no samples, or the numbers of labels, colours or Axes are
-        wrong.
-    TypeError
-        If something is no trajectory.
+    {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options).for_dots()
     panels = panels_of(ax)
@@ -90,22 +72,20 @@ def plot_constraints(
     names = ("positions", "velocities") if len(panels) == 2 else ("constraint error",)
     for panel, drawn, name in zip(panels, lines, names, strict=True):
         dress_errors(panel, drawn, name)
-        if shown.alone or panel is panels[0]:
-            modes = mode_handles(shown.motions, shown.palette) if panel is panels[0] else []
-            name_curves(panel, [*some_of(drawn), *modes])
-    title_beside_legend(panels[0], note_of(shown))
-    marks = dress_panels(panels, shown)
+    if shown.alone:
+        name_curves(panels[-1], some_of(lines[-1]))
+    handles = [*some_of(lines[0]), *mode_handles(shown.motions, shown.palette)]
+    marks = finish(panels, shown, handles)
     return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
 
 
-def _errors_of(motion: Trajectory, panels: int, style: Style | None) -> list[Errors]:
+def _errors_of(motion: Trajectory, panels: int, style: Style) -> list[Errors]:
     """For each panel the errors to draw by name: all of one motion, the worst of one of several."""
     positions, velocities = constraint_errors(motion)
-    alone = style is None or not style.label
-    if alone and panels == 2:
-        return [positions, velocities]
-    if style is None or alone:
-        return [{"positions": worst(positions), "velocities": worst(velocities)}]
-    if panels == 2:
+    if style.label and panels == 2:
         return [{style.label: worst(positions)}, {style.label: worst(velocities)}]
-    return [{style.label: worst({**positions, **velocities})}]
+    if style.label:
+        return [{style.label: worst({**positions, **velocities})}]
+    if panels == 2:
+        return [positions, velocities]
+    return [{"positions": worst(positions), "velocities": worst(velocities)}]

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal
 from .._ask.check import choice
 from .._motion.relative_errors import energy_error
 from .artists import Artists
-from .axes import axes_of, leaving_no_figure
+from .axes import axes_of, picture
 from .comparison import Comparison
-from .legends import name_curves, some_of, title_beside_legend
+from .legends import some_of
 from .modes import mode_handles
-from .panels import DASHES, draw_dots, draw_energies, dress_errors, dress_over_time, note_of
+from .panels import DASHES, draw_dots, draw_energies, dress_errors, finish
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,7 +41,7 @@ class Energy(Artists):
     marks: tuple[Artist, ...]
 
 
-@leaving_no_figure
+@picture
 def plot_energy(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -56,35 +56,16 @@ def plot_energy(
     The error is |E - E0| over the largest |kinetic| + |potential| energy of its motion, on a
     logarithmic scale without a place for exact zeros; E0 is the energy of the first sample. What
     friction and impacts take is no error: with them it is called a change. Its dots are at the
-    samples, or, of fewer than 100, as fine as curves. Modes, events, lost
-    validity and long spans are drawn as in `plot_forces`.
+    samples, or, of fewer than 100, as fine as curves. Modes, events, lost validity and long spans
+    are drawn as in `plot_forces`.
 
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
-    ax : matplotlib Axes, optional
-        Where to draw; without it, in a new pyplot figure.
-    labels : sequence of str, optional
-        Names of the motions; without it, what they differ in.
-    colors : sequence of matplotlib colours, optional
-        One for each motion.
     kind : {"energies", "error"}, optional
         What to draw: without it the energies of one motion, the errors of several.
-    **options
-        Properties of `matplotlib.lines.Line2D` for all curves.
-
-    Returns
-    -------
-    Energy
-        The artists.
-
-    Raises
-    ------
-    ValueError
-        If there is no trajectory, one has no samples, the number of labels or colours is wrong or
-        the kind is unknown.
-    TypeError
-        If something is no trajectory.
+    {ax}
+    {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
     default = "energies" if shown.alone else "error"
@@ -97,20 +78,17 @@ def plot_energy(
         if wanted == "energies":
             energies.append(draw_energies(ax, motion, style))
         else:
-            label = style.label if style is not None and style.label else "energy error"
+            label = style.label or "energy error"
             errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, style))
     for lines in (*energies, errors):
         shown.restyle(*lines)
-    if wanted == "error":
-        # what friction and impacts take is no error
-        word = "change" if any(motion.events for motion in shown.motions) else "error"
-        dress_errors(ax, errors, f"relative energy {word}")
-        handles: list[Artist] = [*some_of(errors)]
-    else:
+    handles: list[Artist] = [*some_of(errors)]
+    if wanted == "energies":
         quantities = list(zip(("total", "kinetic", "potential"), DASHES, strict=True))
         handles = shown.handles(ax, quantities)
-    name_curves(ax, [*handles, *mode_handles(shown.motions, shown.palette)])
-    title_beside_legend(ax, note_of(shown))
-    marks = dress_over_time(ax, shown)
+    else:  # what friction and impacts take is no error
+        word = "change" if any(motion.events for motion in shown.motions) else "error"
+        dress_errors(ax, errors, f"relative energy {word}")
+    marks = finish([ax], shown, [*handles, *mode_handles(shown.motions, shown.palette)])
     total, kinetic, potential = zip(*energies, strict=True) if energies else ((), (), ())
     return Energy(ax, total, kinetic, potential, tuple(errors), marks)

@@ -7,15 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._ask.check import choice, shown
-from .._ask.settings import DEFAULTS
+from .._ask.check import (
+    choice,
+    shown,
+)
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
+from .._ask.settings import DEFAULTS
 from .._motion.trajectory import Trajectory
-from .axes import axes_of, leaving_no_figure
+from .artists import Artists
+from .axes import axes_of, picture
 from .comparison import Comparison
-from .legends import name_curves, some_of, title_beside_legend
+from .legends import some_of
 from .palette import palette_of
-from .panels import DASHES, dress_errors, dress_over_time, note_of
+from .panels import dress_errors, finish
 from .sampling import are_ranges, ranges
 
 if TYPE_CHECKING:
@@ -37,7 +41,7 @@ _UNITS = {each.name: "" if each.unit == "1" else f" [{each.unit}]" for each in U
 
 
 @dataclass(frozen=True, repr=False)
-class Error:
+class Error(Artists):
     """Artists of `plot_error`; item i of `errors` and of `references` belongs to motion i."""
 
     ax: Axes
@@ -46,7 +50,7 @@ class Error:
     marks: tuple[Artist, ...]
 
 
-@leaving_no_figure
+@picture
 def plot_error(
     trajectories: Trajectory | Sequence[Trajectory],
     quantity: str = "theta",
@@ -70,29 +74,11 @@ def plot_error(
         "theta", "omega", "x", "z", "x_dot", "z_dot", "contact_x", "turns", "normal_force",
         "friction_force", "energy", "kinetic_energy" or "potential_energy".
     reference : Trajectory, optional
-        What all motions are held against, at the times of each: it must reach as far.
-    ax : matplotlib Axes, optional
-        Where to draw; without it, in a new pyplot figure.
-    labels : sequence of str, optional
-        Names of the motions; without it, what they differ in.
-    colors : sequence of matplotlib colours, optional
-        One for each motion.
-    **options
-        Properties of `matplotlib.lines.Line2D` for all curves.
-
-    Returns
-    -------
-    Error
-        The artists, and the motions that were taken for right.
-
-    Raises
-    ------
-    ValueError
-        If there is no trajectory, one has no samples, the quantity is unknown, the number of labels
-        or colours is wrong, the reference ends too early, or none is given for a motion that
-        started from coordinates of its own or lasts longer than 1e15 half turns.
-    TypeError
-        If something is no trajectory.
+        What all motions are held against, at the times of each: it must reach as far. It must be
+        given for a motion that started from coordinates of its own or lasts longer than 1e15 half
+        turns; those that are taken for right are among the artists.
+    {ax}
+    {motions}
     """
     quantity = choice("quantity", quantity, tuple(QUANTITIES))
     compared = Comparison(trajectories, labels, colors, ax=ax, options=options)
@@ -105,9 +91,7 @@ def plot_error(
     ]
     compared.restyle(*errors)
     dress_errors(ax, errors, f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}")
-    name_curves(ax, [] if compared.alone else some_of(errors))
-    title_beside_legend(ax, note_of(compared))
-    marks = dress_over_time(ax, compared)
+    marks = finish([ax], compared, [] if compared.alone else some_of(errors))
     return Error(ax, tuple(errors), references, marks)
 
 
@@ -146,12 +130,10 @@ def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:
     return error
 
 
-def _draw_error(ax: Axes, motion: Trajectory, style: Style | None, error: FloatArray) -> Line2D:
-    colour, dash, label = palette_of(ax).ink, DASHES[0], "error"
-    if style is not None:
-        colour, dash, label = style.colour, style.dash, style.label or label
+def _draw_error(ax: Axes, motion: Trajectory, style: Style, error: FloatArray) -> Line2D:
+    colour, label = style.colour or palette_of(ax).ink, style.label or "error"
     label = label if np.nan_to_num(error).any() else f"{label} = 0"
     t = motion.t
     if are_ranges(motion):
         t, _, error = ranges(t, error)
-    return ax.plot(t, error, color=colour, ls=dash, label=label)[0]
+    return ax.plot(t, error, color=colour, ls=style.dash, label=label)[0]

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .artists import Artists
-from .axes import leaving_no_figure, panels_of
+from .axes import panels_of, picture
 from .comparison import Comparison, Style
-from .legends import name_curves, quantity_handles, title_beside_legend
+from .legends import name_curves, quantity_handles
 from .modes import mode_handles
 from .palette import palette_of
-from .panels import DASHES, RANGE, draw_forces, dress_forces, dress_panels, note_of
+from .panels import DASHES, RANGE, draw_forces, dress_forces, finish
 from .sampling import are_ranges, curve
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Forces(Artists):
     marks: tuple[Artist, ...]
 
 
-@leaving_no_figure
+@picture
 def plot_forces(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -76,25 +76,7 @@ def plot_forces(
     ax : matplotlib Axes or two of them, optional
         Where to draw the forces, and |F|/N if there is a second one; without it, both in a new
         pyplot figure.
-    labels : sequence of str, optional
-        Names of the motions; without it, what they differ in.
-    colors : sequence of matplotlib colours, optional
-        One for each motion.
-    **options
-        Properties of `matplotlib.lines.Line2D` for all curves.
-
-    Returns
-    -------
-    Forces
-        The artists.
-
-    Raises
-    ------
-    ValueError
-        If there is no trajectory, one has no samples, or the numbers of labels, colours or Axes are
-        wrong.
-    TypeError
-        If something is no trajectory.
+    {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options).over_time()
     panels = panels_of(ax)
@@ -107,30 +89,25 @@ def plot_forces(
             needed.append(_draw_needed(panels[1], motion, style))
             available.append(_draw_available(panels[1], motion, style))
         _dress_needed(panels[1], shown, any(available))
-    marks = dress_panels(panels, shown)
-    quantities = [("normal", DASHES[0]), ("friction", DASHES[1])]
     normal, friction, limits = zip(*drawn, strict=True)
     shown.restyle(*normal, *friction, *needed)
-    handles = shown.handles(panels[0], quantities)
-    name_curves(panels[0], [*handles, *mode_handles(shown.motions, shown.palette)])
-    title_beside_legend(panels[0], note_of(shown))
+    handles = shown.handles(panels[0], [("normal", DASHES[0]), ("friction", DASHES[1])])
+    marks = finish(panels, shown, [*handles, *mode_handles(shown.motions, shown.palette)])
     return Forces(tuple(panels), normal, friction, limits, tuple(needed), tuple(available), marks)
 
 
-def _draw_needed(ax: Axes, motion: Trajectory, style: Style | None) -> Line2D:
-    ink = palette_of(ax).ink
-    colour, dash = (ink, "-") if style is None else (style.colour, style.dash)
-    label = "needed" if style is None else style.label
+def _draw_needed(ax: Axes, motion: Trajectory, style: Style) -> Line2D:
+    colour, label = style.colour or palette_of(ax).ink, style.label or "needed"
     look: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
     t, needed = curve(motion.t, motion.friction_needed)
-    return ax.plot(t, needed, color=colour, ls=dash, label=label, **look)[0]
+    return ax.plot(t, needed, color=colour, ls=style.dash, label=label, **look)[0]
 
 
-def _draw_available(ax: Axes, motion: Trajectory, style: Style | None) -> Line2D | None:
+def _draw_available(ax: Axes, motion: Trajectory, style: Style) -> Line2D | None:
     friction = motion.scene.friction
     if not math.isfinite(friction):
         return None
-    colour = palette_of(ax).grey if style is None else style.colour
+    colour = style.colour or palette_of(ax).grey
     return ax.axhline(friction, color=colour, lw=1.2, ls=_LIMIT, label="available")
 
 

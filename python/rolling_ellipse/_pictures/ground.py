@@ -75,10 +75,7 @@ def view(path: Trajectory) -> tuple[float, float, float, float]:
 def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
     """Return left, right, bottom, top [m] of what the eye sees of a body with centres at x, z [m].
 
-    Raises
-    ------
-    ValueError
-        If they are so far away that a double does not know a thousandth of the body there.
+    Refused if they are so far away that a double does not know a thousandth of the body there.
     """
     size = max(scene.a, scene.b)
     farthest = max(float(np.max(np.abs(x))), float(np.max(np.abs(z))))

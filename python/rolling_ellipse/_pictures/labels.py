@@ -1,88 +1,250 @@
-"""What tells the motions of one picture apart, in words."""
+"""Places of labels, none over another: beside the axes, upright at a time, along lines."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
-from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .._ask.check import shown
-from .._ask.scene import SCENE_UNITS, Impulse, Scene
+import numpy as np
+from matplotlib.font_manager import FontProperties
+from matplotlib.patheffects import withStroke
+
+from .palette import INK, palette_of
 
 if TYPE_CHECKING:
-    from .._motion.trajectory import Trajectory
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+    from matplotlib.text import Annotation, Text
 
-MOST_FACTS = 3  # in one label; more would be longer than a small picture is wide
+    from .._ask.check import FloatArray
+
+_SMALL = "x-small"
+_PITCH = 1.25  # of lines of text, in font sizes
+_WIDTH = 0.56  # of a letter, in font sizes
+_MARGIN_SIZES = 4.5, 7.0  # of the letters beside the axes [points]
+_TALLEST = 0.35  # of upright labels, over the height of the axes
+_RISE = 0.65  # from a line to the middle of the letters on it, in font sizes
+_CLEAR = 0.9  # from there to the next line or name: then it is a good place
+_TIGHT = 0.5  # and with less it is none
+_FINE = 16  # pieces of a segment, to find where it enters the view
+_SHIFTS = (0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.4, -0.4, 0.5, -0.5, 0.6, -0.6)
 
 
-def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) -> list[str]:
-    """Return one name for each trajectory: the given ones, or what differs among them.
+def apart(wanted: FloatArray, gap: float, low: float, high: float) -> FloatArray:
+    """Return places next to those wanted, which rise, at least a gap apart, from low to high.
 
-    Without `labels`, a name holds the method, the model and the fields of the scene, as far as
-    they differ: "rk4", or "omega = 3.2 rad/s, friction = 0.8". More than three of them end in an
-    ellipsis. Where that does not tell all apart, the names are "1", "2", "3"; a single
-    trajectory needs no name and has an empty one.
-
-    Raises
-    ------
-    ValueError
-        If there are not as many labels as trajectories, or one is no string.
+    The least squares of the moves: what is too near becomes a block around its mean.
     """
-    if labels is not None:
-        return _given(labels, len(trajectories))
-    if len(trajectories) == 1:
-        return [""]
-    facts = [texts for texts in _facts(trajectories) if len(set(texts)) > 1]
-    names = [", ".join(parts) for parts in zip(*facts[:MOST_FACTS], strict=True)]
-    if len(set(names)) < len(trajectories):
-        return [str(i + 1) for i in range(len(trajectories))]
-    return [f"{name}, …" if len(facts) > MOST_FACTS else name for name in names]
+    steps = gap * np.arange(wanted.size)
+    blocks: list[tuple[float, int]] = []  # mean of the starts that members want, and their count
+    for start, count in zip((wanted - steps).tolist(), [1] * wanted.size, strict=True):
+        while blocks and blocks[-1][0] > start:
+            before, members = blocks.pop()
+            start = (before * members + start * count) / (members + count)
+            count += members
+        blocks.append((start, count))
+    starts = np.repeat([start for start, _ in blocks], [count for _, count in blocks])
+    places: FloatArray = np.minimum(np.maximum(starts, low), high - gap * (wanted.size - 1)) + steps
+    return places
 
 
-def _given(labels: Sequence[str], count: int) -> list[str]:
-    listed = isinstance(labels, Sequence) and not isinstance(labels, str)
-    if not listed or not all(isinstance(label, str) for label in labels):
-        raise ValueError(f"labels must be a sequence of strings, got {shown(labels)}")
-    if len(labels) != count:
-        raise ValueError(
-            f"labels must be {count}, one for each trajectory, got {len(labels)}: {shown(labels)}"
+def size_in_points(ax: Axes) -> FloatArray:
+    """Return the width and height of the axes on the page [points]."""
+    window = ax.get_window_extent()
+    return np.array([window.width, window.height]) * 72 / ax.figure.dpi
+
+
+def label_ends(
+    ax: Axes, lines: Mapping[Any, tuple[Line2D, str]], own_figure: bool
+) -> dict[Any, Annotation]:
+    """Write the name of each line beside the axes, as near as there is room to its right end.
+
+    Of more lines than there is room for, evenly spread ones are named. In a figure of its own the
+    room is known once the names have their margin: they are written twice.
+    """
+    if not lines:
+        return {}
+    found = _label_ends(ax, lines)
+    if own_figure:
+        ax.figure.draw_without_rendering()  # type: ignore[union-attr]
+        for name in found.values():
+            name.remove()
+        found = _label_ends(ax, lines)
+    return found
+
+
+def _label_ends(ax: Axes, lines: Mapping[Any, tuple[Line2D, str]]) -> dict[Any, Annotation]:
+    ends = {key: _right_end(ax, line) for key, (line, _) in lines.items()}
+    height = size_in_points(ax)[1]
+    size = float(np.clip(height / (_PITCH * len(ends)), *_MARGIN_SIZES))
+    room = min(len(ends), max(1, int(height / (_PITCH * size))))
+    keys = sorted(ends, key=lambda key: float(ends[key][1]))
+    keys = [keys[i] for i in np.linspace(0, len(keys) - 1, room).round().astype(int)]
+    places = apart(np.array([ends[key][1] for key in keys]), _PITCH * size / height, 0.0, 1.0)
+    found = {}
+    for key, place in zip(keys, places, strict=True):
+        line, name = lines[key]
+        found[key] = ax.annotate(
+            name, tuple(ends[key]), xycoords="axes fraction", xytext=(1.03, place),
+            textcoords="axes fraction", va="center", ha="left", fontsize=size,
+            color=line.get_color(), annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "lw": 0.4, "color": line.get_color(), "alpha": 0.6,
+                        "shrinkA": 1, "shrinkB": 3},
+        )  # fmt: skip
+    return found
+
+
+def _right_end(ax: Axes, line: Line2D) -> FloatArray:
+    """Return where a line is farthest to the right, in shares of the axes."""
+    shown = ax.transAxes.inverted().transform(ax.transData.transform(line.get_xydata()))
+    end: FloatArray = shown[np.argmax(shown[:, 0])]
+    return np.clip(end, 0.0, 1.0)
+
+
+def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation]:
+    """Write names upright at times, above the curves; nothing where they crowd."""
+    if not names:
+        return []
+    points = FontProperties(size=_SMALL).get_size_in_points()
+    width, height = size_in_points(ax)
+    low, high = ax.get_xlim()
+    wanted = np.array([(t - low) / (high - low) * width for t, _ in names])
+    shifts = apart(wanted, 1.3 * points, 0.65 * points, width - 0.65 * points) - wanted
+    share = (0.62 * points * max(len(name) for _, name in names) + 6) / height
+    if np.max(np.abs(shifts)) > 2 * points or share > _TALLEST:
+        return []
+    scale = ax.yaxis.get_transform()
+    bottom, top = scale.transform(ax.get_ylim())
+    ax.set_ylim(top=float(scale.inverted().transform(bottom + (top - bottom) / (1 - share))))
+    palette = palette_of(ax)
+    return [
+        ax.annotate(
+            name, (t, 1), (shift, -2), xycoords=ax.get_xaxis_transform(),
+            textcoords="offset points", rotation=90, ha="center", va="top", color=palette.ink,
+            fontsize=_SMALL,
+            bbox={"fc": palette.background, "ec": "none", "alpha": 0.75, "pad": 0.5},
         )
-    return list(labels)
+        for (t, name), shift in zip(names, shifts, strict=True)
+    ]  # fmt: skip
 
 
-def _facts(trajectories: Sequence[Trajectory]) -> list[list[str]]:
-    """What may differ, most telling first: for each fact, its text for each trajectory."""
-    facts: list[list[str]] = [
-        [each.method for each in trajectories],
-        [each.model for each in trajectories],
-    ]
-    for field in fields(Scene):
-        facts.append(_texts(field.name, [getattr(each.scene, field.name) for each in trajectories]))
-    return facts
+def visible_part(ax: Axes, x: FloatArray, y: FloatArray) -> FloatArray:
+    """The longest piece of a line in view, as points (n, 2) in shares of the axes; n may be 0."""
+    with np.errstate(invalid="ignore"):
+        corners = (ax.transData - ax.transAxes).transform(np.column_stack([x, y]))
+    steps = np.linspace(0, len(corners) - 1, _FINE * (len(corners) - 1) + 1)
+    points = _at(steps, np.arange(len(corners), dtype=float), corners)
+    inside = np.all((points >= -1e-9) & (points <= 1 + 1e-9), axis=1)
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], inside, [False]]).astype(int)))
+    if not ends.size:
+        return points[:0]
+    first, last = max(ends.reshape(-1, 2).tolist(), key=lambda run: run[1] - run[0])
+    return points[first:last]
 
 
-def _texts(name: str, values: list[Any]) -> list[str]:
-    """Texts of one field of several scenes, with the digits that tell its values apart."""
-    texts: list[str] = []
-    for digits in (6, 12, 17):
-        texts = [_text(name, value, digits) for value in values]
-        if _distinct(texts) == _distinct(values):
+class Label(NamedTuple):
+    """Names along a line, from long to short, and where the middle of one is to be.
+
+    `line` is in shares of the axes, `place` a share of its length; `above` is the side of the line,
+    as one reads.
+    """
+
+    line: FloatArray
+    names: Sequence[str]
+    place: float
+    above: bool
+
+
+def label_lines(ax: Axes, labels: Mapping[str, Label]) -> dict[str, Text]:
+    """Write along each line its first name that finds a place, clear of other lines and names."""
+    font, page = FontProperties(size=_SMALL).get_size_in_points(), size_in_points(ax)
+    lines = {key: _dotted(label.line * page, font / 4) for key, label in labels.items()}
+    taken, found = np.empty((0, 2)), {}
+    for key, label in labels.items():
+        others = np.vstack([*(line for other, line in lines.items() if other != key), taken])
+        for name in label.names:
+            spot = _best(_spots(lines[key], others, font, _WIDTH * font * len(name), label))
+            if spot is not None:
+                taken = np.vstack([taken, spot.dots])
+                found[key] = _written(ax, name, spot, page)
+                break
+    return found
+
+
+class _Spot(NamedTuple):
+    """A place of a name on the page [points].
+
+    The middle of its foot, its direction and side, dots along the middle of its letters, and its
+    distance from other lines and names [font sizes].
+    """
+
+    foot: FloatArray
+    lead: FloatArray
+    above: bool
+    dots: FloatArray
+    clear: float
+
+
+def _spots(
+    line: FloatArray, others: FloatArray, font: float, width: float, label: Label
+) -> Iterator[_Spot]:
+    along, margin = _along(line), (width + font) / 2
+    for shift in _SHIFTS:
+        middle = (label.place + shift) * along[-1]
+        if not margin <= middle <= along[-1] - margin:
+            continue
+        first, foot, last = _at(np.array([-width / 2, 0, width / 2]) + middle, along, line)
+        lead = last - first
+        if lead[0] < -1e-6 or (lead[0] < 1e-6 and lead[1] < 0):
+            lead = -lead  # as one reads
+        lead = lead / np.hypot(*lead)
+        for above in (label.above, not label.above):
+            up = np.array([-lead[1], lead[0]]) * (1 if above else -1)
+            dots = foot + up * _RISE * font + np.outer(np.linspace(-width / 2, width / 2, 25), lead)
+            own = _distance(dots, line) * _CLEAR / _RISE
+            clear = min(own, _distance(dots, others)) / font
+            yield _Spot(foot, lead, above, dots, clear)
+
+
+def _best(spots: Iterator[_Spot]) -> _Spot | None:
+    """Return the first good place, or else the best one that will do."""
+    best = None
+    for spot in spots:
+        if best is None or spot.clear > best.clear + 1e-6:
+            best = spot
+        if best.clear >= _CLEAR:
             break
-    return texts
+    return best if best is not None and best.clear >= _TIGHT else None
 
 
-def _distinct(values: Sequence[Hashable]) -> int:
-    return len(set(values))
+def _written(ax: Axes, name: str, spot: _Spot, page: FloatArray) -> Text:
+    to_data = (ax.transData - ax.transAxes).inverted()
+    foot, ahead = to_data.transform([spot.foot, spot.foot + 1e-3 * spot.lead] / page)
+    halo: Any = withStroke(linewidth=2, foreground="white", alpha=0.8)
+    return ax.text(
+        float(foot[0]), float(foot[1]), name, color=INK, fontsize=_SMALL, ha="center",
+        va="bottom" if spot.above else "top", zorder=4, path_effects=[halo],
+        rotation=math.degrees(math.atan2(*(ahead - foot)[::-1])), rotation_mode="anchor",
+        transform_rotates_text=True, clip_on=True,
+    )  # fmt: skip
 
 
-def _text(name: str, value: float | Impulse | None, digits: int) -> str:
-    def figure(number: float) -> str:
-        return f"{number:.{digits}g}".replace("-", "−").replace("inf", "∞")
+def _along(line: FloatArray) -> FloatArray:
+    """Length of a line up to each of its points."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
 
-    if isinstance(value, Impulse):
-        push, place = (value.jx, value.jz), (value.dx, value.dz)
-        force, lever = (f"({figure(x)}, {figure(z)})" for x, z in (push, place))
-        return f"impulse {force} N s at {lever} m"
-    if value is None:
-        return "no impulse" if name == "impulse" else f"{name} by default"
-    return f"{name} = {figure(value)} {SCENE_UNITS[name]}".rstrip()
+
+def _at(places: FloatArray, along: FloatArray, line: FloatArray) -> FloatArray:
+    return np.column_stack([np.interp(places, along, column) for column in line.T])
+
+
+def _dotted(line: FloatArray, step: float) -> FloatArray:
+    """Return points of the line that are at most a step apart."""
+    along = _along(line)
+    return _at(np.linspace(0, along[-1], max(int(along[-1] / step) + 2, 2)), along, line)
+
+
+def _distance(dots: FloatArray, points: FloatArray) -> float:
+    apart = dots[:, None] - points[None]
+    return float(np.sqrt(np.min(np.sum(apart**2, axis=2), initial=math.inf)))

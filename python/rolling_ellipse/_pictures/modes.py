@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
 
 from .._core import EventKind, Mode
+from .labels import label_times
 from .palette import palette_of
 
 if TYPE_CHECKING:
@@ -33,8 +33,6 @@ _SHADES: dict[Mode, tuple[float, float, str]] = {  # of face and edge, and the h
     Mode.REST: (0.02, 0.28, "..."),
 }
 _ROW = 0.05  # height of one of several motions, over that of the axes
-_NAME_SIZE = "x-small"
-_MOST_NAMES_HEIGHT = 0.35  # of the axes; in less room events have no names
 
 
 def events_shown(motion: Trajectory) -> list[Event]:
@@ -109,28 +107,7 @@ def mark_events(ax: Axes, motion: Trajectory, colour: str) -> list[Artist]:
 def name_events(ax: Axes, motion: Trajectory) -> list[Artist]:
     """Write what the events are along their lines, above the curves; nothing where they crowd."""
     events = events_shown(motion) if motion.model == "contact" else []
-    names = [EVENT_NAMES[event.kind] for event in events]
-    if not names:
-        return []
-    points = FontProperties(size=_NAME_SIZE).get_size_in_points()
-    window, scale = ax.get_window_extent(), 72 / ax.figure.dpi
-    low, high = ax.get_xlim()
-    places = [(event.t - low) / (high - low) * window.width * scale for event in events]
-    shifts = _shifts(places, 1.3 * points, window.width * scale)
-    height = (0.62 * points * max(map(len, names)) + 6) / (window.height * scale)
-    if max(map(abs, shifts)) > 2 * points or height > _MOST_NAMES_HEIGHT:
-        return []
-    _raise_top(ax, height)
-    palette = palette_of(ax)
-    return [
-        ax.annotate(
-            name, (event.t, 1), (shift, -2), xycoords=ax.get_xaxis_transform(),
-            textcoords="offset points", rotation=90, ha="center", va="top", color=palette.ink,
-            fontsize=_NAME_SIZE,
-            bbox={"fc": palette.background, "ec": "none", "alpha": 0.75, "pad": 0.5},
-        )
-        for name, event, shift in zip(names, events, shifts, strict=True)
-    ]  # fmt: skip
+    return [*label_times(ax, [(event.t, EVENT_NAMES[event.kind]) for event in events])]
 
 
 def shade_invalid(
@@ -156,22 +133,3 @@ def draw_invalid_ground(ax: Axes, x: FloatArray, y: FloatArray, **options: Any) 
         label="_invalid", **options,
     )  # fmt: skip
     return ground
-
-
-def _shifts(places: list[float], width: float, room: float) -> list[float]:
-    """Return how far to move texts of one width, at ascending places, to be clear of each other."""
-    moved: list[float] = []
-    for place in places:
-        moved.append(max(place, moved[-1] + width if moved else width / 2))
-    bound = room - width / 2
-    for i in reversed(range(len(moved))):
-        moved[i] = min(moved[i], bound)
-        bound = moved[i] - width
-    return [new - old for new, old in zip(moved, places, strict=True)]
-
-
-def _raise_top(ax: Axes, share: float) -> None:
-    """Leave the uppermost share of the axes free of curves, whatever their scale."""
-    scale = ax.yaxis.get_transform()
-    bottom, top = scale.transform(ax.get_ylim())
-    ax.set_ylim(top=float(scale.inverted().transform(bottom + (top - bottom) / (1 - share))))

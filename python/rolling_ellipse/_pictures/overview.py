@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from .._motion.relative_errors import constraint_errors, energy_error, worst
 from .artists import Artists
-from .axes import figure_of, leaving_no_figure
+from .axes import figure_of, picture
 from .comparison import Comparison
 from .legends import name_curves
 from .modes import mode_handles
@@ -61,7 +61,7 @@ class Overview(Artists):
     marks: tuple[Artist, ...]
 
 
-@leaving_no_figure
+@picture
 def plot(
     trajectory: Trajectory,
     *,
@@ -119,7 +119,7 @@ def _headline(trajectory: Trajectory, note: str) -> str:
 
 def _draw_state(ax: Axes, motion: Trajectory, values: FloatArray, label: str) -> Line2D:
     ax.set_ylabel(label)
-    return draw_curve(ax, motion, values, f"_{label}", 0, None)
+    return draw_curve(ax, motion, values, f"_{label}", 0)
 
 
 def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line2D]:
@@ -131,7 +131,7 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
         "energy change" if trajectory.events else "energy": energy_error(trajectory),
     }
     position, velocity, energy = (
-        draw_dots(ax, trajectory, values, name, rank, None)
+        draw_dots(ax, trajectory, values, name, rank)
         for rank, (name, values) in enumerate(errors.items())
     )
     word = "error, change" if trajectory.events else "relative error"

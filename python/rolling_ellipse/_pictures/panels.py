@@ -1,6 +1,6 @@
 """Curves over time: forces, energies, errors, each drawn into Axes that are given.
 
-A `style` says which of several motions a curve belongs to; without one the motion is alone, and
+A `style` says which of several motions a curve belongs to; if it is plain, the motion is alone, and
 colours tell the quantities apart.
 """
 
@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import SymmetricalLogLocator
 
+from .comparison import PLAIN
+from .legends import name_curves, title_beside_legend
 from .modes import mark_events, name_events, shade_invalid, shade_modes
 from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns, ranges
@@ -36,15 +38,12 @@ _SPIKE = 20.0  # times the weight: what is higher leaves nothing to see of ordin
 
 
 def draw_curve(
-    ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style | None
+    ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style = PLAIN
 ) -> Line2D:
     """Draw the quantity of the given rank (0, 1, 2) of a motion over its times."""
     t, values = curve(motion.t, values)
-    if style is None:
-        colour, name, look = palette_of(ax).curves[rank], label, {}
-    else:
-        name = ", ".join(filter(None, (style.label, label)))
-        colour, look = style.colour, sparse_markers(style)
+    name = ", ".join(filter(None, (style.label, label)))
+    colour, look = style.colour or palette_of(ax).curves[rank], sparse_markers(style)
     dash = DASHES[rank]
     if are_ranges(motion):
         dash, look = "-", look | {"alpha": RANGE}
@@ -53,28 +52,27 @@ def draw_curve(
 
 def sparse_markers(style: Style) -> dict[str, Any]:
     """Options of a line: a few markers, evenly along it, that tell whose it is."""
-    return {"marker": style.marker, "ms": 6, "mew": 0.8, "markevery": 0.1}
+    return {"marker": style.marker, "ms": 6, "mew": 0.8, "markevery": 0.1} if style.marker else {}
 
 
 def draw_dots(
-    ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style | None
+    ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style = PLAIN
 ) -> Line2D:
     """Draw an error as dots, because rounding jumps; exact zeros have no place on a log scale."""
     palette = palette_of(ax)
-    colour = (*palette.curves[:3], palette.plum, palette.grey)[rank]
-    marker = _DOTS[rank]
-    if style is not None:
-        colour, marker = style.colour, style.marker or marker
+    colour = style.colour or (*palette.curves[:3], palette.plum, palette.grey)[rank]
     label = label if np.nan_to_num(values).any() else f"{label} = 0"
     t = motion.t
     if are_ranges(motion):
         t, _, values = ranges(t, values)
-    (line,) = ax.plot(t, values, ls="none", marker=marker, ms=3, mew=0.7, color=colour, label=label)
-    return line
+    return ax.plot(
+        t, values, ls="none", marker=style.marker or _DOTS[rank], ms=3, mew=0.7, color=colour,
+        label=label,
+    )[0]  # fmt: skip
 
 
 def draw_forces(
-    ax: Axes, motion: Trajectory, style: Style | None = None
+    ax: Axes, motion: Trajectory, style: Style = PLAIN
 ) -> tuple[Line2D, Line2D, PolyCollection | None]:
     """Draw N and F over the band +-friction N that F must stay in (none if it has no limit)."""
     limit = None
@@ -82,7 +80,7 @@ def draw_forces(
         t, bound = motion.t, motion.scene.friction * motion.normal_force
         if are_ranges(motion):
             t, _, bound = ranges(t, bound)
-        colour, alpha = (palette_of(ax).shade(0.25), 1.0) if style is None else (style.colour, 0.15)
+        colour, alpha = (style.colour, 0.15) if style.colour else (palette_of(ax).shade(0.25), 1.0)
         limit = ax.fill_between(
             t, -bound, bound, color=colour, alpha=alpha, lw=0, label="friction ≤ μN"
         )
@@ -119,7 +117,7 @@ def _fit_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
 
 
 def draw_energies(
-    ax: Axes, motion: Trajectory, style: Style | None = None
+    ax: Axes, motion: Trajectory, style: Style = PLAIN
 ) -> tuple[Line2D, Line2D, Line2D]:
     """Draw the energy and its two parts."""
     ax.set_ylabel("energy [J]")
@@ -138,6 +136,13 @@ def dress_errors(ax: Axes, lines: Sequence[Line2D], label: str) -> None:
     ax.set_ylabel(label)
 
 
+def dress_grid(ax: Axes) -> None:
+    """A discreet grid, and no frame on the right and at the top."""
+    ax.grid(color=palette_of(ax).shade(0.08), lw=0.8)
+    ax.set_axisbelow(True)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
 def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple[Artist, ...]:
     """Label the time axis; shade modes, mark events and where a model is not valid.
 
@@ -145,13 +150,11 @@ def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple
     """
     ax.set_xlabel("t [s]")
     ax.margins(x=0.01)
+    dress_grid(ax)
     palette = palette_of(ax)
-    ax.grid(color=palette.shade(0.08), lw=0.8)
-    ax.set_axisbelow(True)
-    ax.spines[["top", "right"]].set_visible(False)
     marks: list[Artist] = []
     for row, (motion, style) in enumerate(shown):
-        if style is None or shown.alone:
+        if shown.alone:
             marks += shade_modes(ax, motion)
             marks += mark_events(ax, motion, palette.grey)
             marks += shade_invalid(ax, motion)
@@ -172,12 +175,17 @@ def note_of(shown: Comparison) -> str:
     return f"{max(map(half_turns, long)):_.0f} half turns: ranges".replace("_", "\u202f")
 
 
-def dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
-    """Dress one panel, or two of which the upper one leaves a shared time axis to the lower."""
+def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) -> tuple[Artist, ...]:
+    """Dress one panel or two, and give the first its legend and its title.
+
+    Of two the upper one leaves a shared time axis to the lower.
+    """
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=panel is panels[0])
     if len(panels) == 2 and panels[0].get_shared_x_axes().joined(*panels):
         panels[0].set_xlabel("")
         panels[0].figure.align_ylabels(panels)
+    name_curves(panels[0], handles)
+    title_beside_legend(panels[0], note_of(shown))
     return tuple(marks)

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from .._core import EventKind
 from . import ground as drawing
 from .artists import Artists
-from .axes import axes_of, leaving_no_figure
+from .axes import axes_of, picture
 from .comparison import Comparison, Style
 from .ground import HALF_TURNS, SHOWN_TURNS
 from .legends import name_curves, title_beside_legend
@@ -59,7 +59,7 @@ class Paths(Artists):
     marks: tuple[Line2D, ...]
 
 
-@leaving_no_figure
+@picture
 def plot_paths(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -80,27 +80,8 @@ def plot_paths(
     ----------
     trajectories : Trajectory or sequence of Trajectory
         On the same slope.
-    ax : matplotlib Axes, optional
-        Where to draw; without it, in a new pyplot figure.
-    labels : sequence of str, optional
-        Names of the motions; without it, what they differ in.
-    colors : sequence of matplotlib colours, optional
-        One for each motion.
-    **options
-        Properties of `matplotlib.lines.Line2D` for all paths.
-
-    Returns
-    -------
-    Paths
-        The artists.
-
-    Raises
-    ------
-    ValueError
-        If there is no trajectory, one has no samples, their slopes differ or the number of labels
-        or colours is wrong.
-    TypeError
-        If something is no trajectory.
+    {ax}
+    {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
     motions = shown.motions
@@ -121,7 +102,7 @@ def plot_paths(
     quantities = [("centre", _CENTRE), ("end of axis a", _TIP)]
     handles = shown.handles(ax, quantities)
     ink = shown.palette.ink
-    events = [_draw_events(ax, m, ink if style is None else style.colour) for m, style in shown]
+    events = [_draw_events(ax, motion, style.colour or ink) for motion, style in shown]
     centres, tips, contacts = zip(*drawn, strict=True)
     shown.restyle(*centres, *tips, *contacts)
     marks = tuple(_draw_invalid(ax, m) for m in motions if m.valid_until < m.t[-1])
@@ -143,18 +124,16 @@ def _view(motions: Sequence[Trajectory], end: float) -> tuple[float, float, floa
 
 
 def _draw_paths(
-    ax: Axes, motion: Trajectory, style: Style | None, share: float
+    ax: Axes, motion: Trajectory, style: Style, share: float
 ) -> tuple[Line2D, Line2D, Line2D]:
     """Draw the three paths of a motion; `share` of the motions are drawn before it."""
     on_slope = drawing.tilted(motion.scene) + ax.transData
     palette = palette_of(ax)
-    colours = (palette.orange, palette.blue, palette.ink)
-    colours = colours if style is None else (style.colour,) * 3
-    name = "" if style is None or not style.label else f"{style.label}, "
-    marks: dict[str, Any] = {} if style is None else sparse_markers(style)
+    colours = [style.colour or own for own in (palette.orange, palette.blue, palette.ink)]
+    name = f"{style.label}, " if style.label else ""
     (centre,) = ax.plot(
         motion.x, motion.z, color=colours[0], ls=_CENTRE, lw=1.8, label=f"{name}centre",
-        transform=on_slope, zorder=5, **marks,
+        transform=on_slope, zorder=5, **sparse_markers(style),
     )  # fmt: skip
     (tip,) = ax.plot(
         *drawing.tip(motion), color=colours[1], ls=_TIP, lw=1.2, label=f"{name}end of axis a",

@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from .. import _core
 from .._ask.check import flag
 from .artists import Artists
-from .axes import axes_of, leaving_no_figure
+from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import name_curves, title_beside_legend
 from .modes import draw_invalid_ground
 from .palette import palette_of
+from .panels import dress_grid
 from .sampling import FEW, between, half_turns, is_at_hand, span_of
-from .separatrix import QUARTER, flat_angle, flat_angles, separatrix, separatrix_speed
+from .separatrix import QUARTER, flat_angle, flat_angles, separatrix
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,7 +54,7 @@ class Phase(Artists):
     marks: tuple[Line2D, ...]
 
 
-@leaving_no_figure
+@picture
 def plot_phase(
     trajectories: Trajectory | Sequence[Trajectory],
     *,
@@ -75,30 +77,12 @@ def plot_phase(
     Parameters
     ----------
     trajectories : Trajectory or sequence of Trajectory
-    ax : matplotlib Axes, optional
-        Where to draw; without it, in a new pyplot figure.
-    labels : sequence of str, optional
-        Names of the motions; without it, what they differ in.
-    colors : sequence of matplotlib colours, optional
-        One for each motion.
+        Of angles of which a double knows thousandths of a radian.
     fold : bool, optional
         Whether to show theta within one half turn around the flat position, after which an
         ellipse is the same again; without it, where a motion goes through more than two turns.
-    **options
-        Properties of `matplotlib.lines.Line2D` for the lines of all motions.
-
-    Returns
-    -------
-    Phase
-        The artists.
-
-    Raises
-    ------
-    ValueError
-        If there is no trajectory, one has no samples, the number of labels or
-        colours is wrong, or theta is so large that a double knows no thousandths of a radian.
-    TypeError
-        If something is no trajectory.
+    {ax}
+    {motions}
     """
     shown = Comparison(trajectories, labels, colors, ax=ax, options=options)
     _require_parts_of_a_turn(shown.motions)
@@ -203,7 +187,7 @@ def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: boo
     flat = flat_angle(body)
     if fold:
         eyes = np.array([flat])
-    elif fastest == 0 or fastest > _SMALL * separatrix_speed(np.array([flat]), body)[0]:
+    elif fastest == 0 or fastest > _SMALL * _core.roll_over_speed(body.core):
         left = min(float(np.min(motion.theta)) for motion in motions)
         right = max(float(np.max(motion.theta)) for motion in motions)
         eyes = flat_angles(left, right, body)
@@ -247,13 +231,10 @@ def _is_in_view(ax: Axes, line: Line2D) -> bool:
 
 
 def _dress_phase(ax: Axes) -> None:
-    palette = palette_of(ax)
-    ax.axhline(0, color=palette.grey, lw=0.8, zorder=1.5)
+    ax.axhline(0, color=palette_of(ax).grey, lw=0.8, zorder=1.5)
     ax.set_xlabel("θ [rad]")
     ax.set_ylabel("ω [rad/s]")
-    ax.grid(color=palette.shade(0.08), lw=0.8)
-    ax.set_axisbelow(True)
-    ax.spines[["top", "right"]].set_visible(False)
+    dress_grid(ax)
     left, right = ax.get_xlim()
     if QUARTER < right - left < _FEW_TURNS * 3 * math.pi:
         ax.xaxis.set_major_locator(_QuarterTurns())

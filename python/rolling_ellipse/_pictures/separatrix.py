@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..geometry import support, support_slope
+from .. import _core
 
 if TYPE_CHECKING:
     from .._ask.check import FloatArray
@@ -18,19 +18,6 @@ if TYPE_CHECKING:
 
 QUARTER = math.pi / 2
 _POINTS = 801, 100_000  # in one half turn and in all
-
-
-def separatrix_speed(theta: FloatArray, scene: Scene) -> FloatArray:
-    """Speed |omega| with which a body rolling on level ground just reaches its tip [rad/s].
-
-    At theta [rad], from the energy: D omega^2/2 + g h = g max(a, b), D = k^2 + h^2 + h'^2.
-    """
-    height = support(theta, a=scene.a, b=scene.b)
-    lead = support_slope(theta, a=scene.a, b=scene.b)
-    rise = np.maximum(max(scene.a, scene.b) - height, 0.0)  # rounding may go below 0
-    inertia = scene.gyration2 + height**2 + lead**2
-    speed: FloatArray = np.sqrt(2 * scene.gravity * rise / inertia)
-    return speed
 
 
 def flat_angle(scene: Scene) -> float:
@@ -56,6 +43,6 @@ def separatrix(scene: Scene, flats: FloatArray) -> tuple[FloatArray, FloatArray]
     reach = math.asinh(100 / width)  # to 0.01 rad from the tip, where it is straight
     within = np.arctan(width * np.sinh(np.linspace(-reach, reach, count)))
     within[[0, -1]] = -QUARTER, QUARTER
-    speed = separatrix_speed(flat_angle(scene) + within, scene)
+    speed = _core.speed_to_the_tip(scene.core, flat_angle(scene) + within)
     theta: FloatArray = np.add.outer(flats, within).ravel()
     return theta, np.tile(speed, flats.size)

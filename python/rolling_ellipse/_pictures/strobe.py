@@ -13,7 +13,7 @@ from .._ask.check import number, whole_within
 from .._motion.samples import even_times
 from . import ground as drawing
 from .artists import Artists
-from .axes import axes_of, leaving_no_figure
+from .axes import axes_of, picture
 from .comparison import require_motion
 from .ground import HALF_TURNS, SHOWN_TURNS, SKID
 from .legends import name_curves, title_beside_legend
@@ -52,7 +52,7 @@ class Strobe(Artists):
     ground: Polygon
 
 
-@leaving_no_figure
+@picture
 def plot_strobe(
     trajectory: Trajectory,
     *,
@@ -71,8 +71,7 @@ def plot_strobe(
     Parameters
     ----------
     trajectory : Trajectory
-    ax : matplotlib Axes, optional
-        Where to draw; without it, in a new pyplot figure.
+    {ax}
     count : int
         Number of positions, even in time from the first sample to `t_end`.
     t_end : float, optional

@@ -18,8 +18,8 @@ from .._verbs.work_precision.results import (
 )
 from .._verbs.work_precision.verdict import end_alone
 from .artists import Artists
-from .axes import axes_of, leaving_no_figure
-from .margin import label_ends
+from .axes import axes_of, picture
+from .labels import label_ends
 from .palette import palette_of
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ class WorkPrecisionChart(Artists):
     stamp: Text | None
 
 
-@leaving_no_figure
+@picture
 def draw(
     found: WorkPrecision, x: str, y: str, tags: Sequence[str] | None, ax: Axes | None,
     t_end: float | None,

@@ -170,14 +170,11 @@ export class Explorer extends Player {
   over(ink) {
     const { strip, look, views: [view] } = this, end = strip.motion.end;
     ink.globalAlpha = 0.4;
-    Object.assign(ink, { strokeStyle: look.orange, lineWidth: 1.2 });
-    path(ink, strip.points.map(([, x, z]) => view.at(x, z)));
-    ink.stroke();
+    line(ink, look.orange, 1.2, strip.points.map(([, x, z]) => view.at(x, z)));
     for (let k = 1; k <= STROBES; k++) {
       outline(ink, strip, strip.motion.at((k / STROBES) * end), view);
       ink.globalAlpha = 0.2 + (0.3 * k) / STROBES;
-      Object.assign(ink, { strokeStyle: look.blue, lineWidth: 1 });
-      ink.stroke();
+      stroke(ink, look.blue, 1);
     }
     ink.globalAlpha = this.t > 0 ? 0.45 : 1;
     const { top, point, F } = this.hand(view);
@@ -190,8 +187,8 @@ export class Explorer extends Player {
   paint() {
     super.paint();
     if (!this.box.clientWidth || !this.map) return;
-    this.paintMap(sized(this.map));
-    this.paintPlot(sized(this.plot));
+    this.paintMap(sized(this.map, this.map.clientHeight));
+    this.paintPlot(sized(this.plot, this.plot.clientHeight));
   }
 
   cells() {
@@ -233,45 +230,24 @@ export class Explorer extends Player {
     const high = Math.min(5, Math.max(1.5, ...all)), low = Math.max(-3, Math.min(-0.5, ...all));
     const x = (time) => left + (time / end) * across;
     const y = (part) => top + up * ((high - Math.min(high, Math.max(low, part))) / (high - low));
-    Object.assign(ink, { strokeStyle: look.faint, lineWidth: 1 });
     for (let part = Math.ceil(low); part <= high; part++) {
-      path(ink, [[left, y(part)], [left + across, y(part)]]);
-      ink.stroke();
-      text(ink, look.grey, `${part}`.replace("-", "−"), left - 6, y(part) + 4, "right", 11);
+      line(ink, look.faint, 1, [[left, y(part)], [left + across, y(part)]]);
+      text(ink, look.grey, round(part), left - 6, y(part) + 4, "right", 11);
     }
     text(ink, look.grey, "0", left, top + up + 14, "center", 11);
     text(ink, look.grey, `${round(end)} s`, left + across, top + up + 14, "right", 11);
+    ink.lineJoin = "round";
     for (const [forces, colour, name, place] of [[N, look.blue, "N", 0], [F, look.orange, "F", 18]]) {
-      path(ink, Array.from(t, (time, k) => [x(time), y(forces[k] / weight)]));
-      Object.assign(ink, { strokeStyle: colour, lineWidth: 1.8, lineJoin: "round" });
-      ink.stroke();
+      line(ink, colour, 1.8, Array.from(t, (time, k) => [x(time), y(forces[k] / weight)]));
       text(ink, colour, name, left + across - 20 + place, top + 8);
     }
-    Object.assign(ink, { strokeStyle: look.plum, lineWidth: 1 });
-    for (const [time] of strip.events.filter((event) => event[1] === "impact")) {
-      path(ink, [[x(time), top], [x(time), top + up]]);
-      ink.stroke();
-    }
-    Object.assign(ink, { strokeStyle: look.ink, lineWidth: 1 });
-    path(ink, [[x(this.t), top], [x(this.t), top + up]]);
-    ink.stroke();
+    const upright = (colour, time) => line(ink, colour, 1, [[x(time), top], [x(time), top + up]]);
+    for (const [time, kind] of strip.events) if (kind === "impact") upright(look.plum, time);
+    upright(look.ink, this.t);
   }
 }
 
 function nearest(values, value) {
   return values.reduce((best, each, i) =>
     (Math.abs(each - value) < Math.abs(values[best] - value) ? i : best), 0);
-}
-
-function round(value) {
-  return `${+value.toPrecision(3)}`.replace("-", "−");
-}
-
-/** The ink of a canvas as large as it is shown. */
-function sized(canvas) {
-  const dots = window.devicePixelRatio || 1, { clientWidth, clientHeight } = canvas;
-  Object.assign(canvas, { width: clientWidth * dots, height: clientHeight * dots });
-  const ink = canvas.getContext("2d");
-  ink.setTransform(dots, 0, 0, dots, 0, 0);
-  return ink;
 }

@@ -28,12 +28,23 @@ const STYLE = `
 
 /** Where the page, or else the reader's system, wants dark paper. */
 export function isDark(host) {
-  const marked = (words) => host.closest(words);
   const dark = ".dark, .vscode-dark, [data-theme=dark], [data-jp-theme-light=false]";
   const light = ".light, .vscode-light, [data-theme=light], [data-jp-theme-light=true]";
-  const [night, day] = [marked(dark), marked(light)];
+  const [night, day] = [host.closest(dark), host.closest(light)];
   if (night && day) return day.contains(night);
   return night ? true : day ? false : matchMedia("(prefers-color-scheme: dark)").matches;
+}
+
+/** The ink of a canvas as wide as it is shown, and so high, with the dots of the screen. */
+export function sized(canvas, height) {
+  const dots = window.devicePixelRatio || 1, { clientWidth: width } = canvas;
+  const across = Math.round(width * dots), down = Math.round(height * dots);
+  if (canvas.width !== across || canvas.height !== down)
+    Object.assign(canvas, { width: across, height: down });
+  const ink = canvas.getContext("2d");
+  ink.setTransform(across / width, 0, 0, down / height, 0, 0);
+  ink.clearRect(0, 0, width, height);
+  return ink;
 }
 
 export class Player {
@@ -212,16 +223,10 @@ export class Player {
     const { film, canvas, box } = this;
     const width = box.clientWidth, height = Math.round(width * film.shape);
     if (!width) return;
-    const dots = window.devicePixelRatio || 1;
-    const across = Math.round(width * dots), down = Math.round(height * dots);
-    if (canvas.width !== across || canvas.height !== down) {
-      Object.assign(canvas, { width: across, height: down });
-      canvas.style.height = `${height}px`;
-    }
+    canvas.style.height = `${height}px`;
+    const ink = sized(canvas, height);
     this.look = film.look[isDark(this.host) ? "dark" : "light"];
     for (const name in this.look) box.style.setProperty(`--${name}`, this.look[name]);
-    const ink = (this.ink = canvas.getContext("2d"));
-    ink.setTransform(across / width, 0, 0, down / height, 0, 0);
     ink.fillStyle = this.look.paper;
     ink.fillRect(0, 0, width, height);
     const states = film.strips.map((strip) => strip.motion.at(this.t));

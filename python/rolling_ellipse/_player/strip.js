@@ -46,7 +46,28 @@ export function text(ink, colour, words, x, y, align = "center", size = 13) {
 
 export function path(ink, points) {
   ink.beginPath();
-  points.forEach(([x, y], i) => (i ? ink.lineTo(x, y) : ink.moveTo(x, y)));
+  for (const point of points) ink.lineTo(...point);
+}
+
+/** The path that was begun, as a line. */
+export function stroke(ink, strokeStyle, lineWidth) {
+  Object.assign(ink, { strokeStyle, lineWidth });
+  ink.stroke();
+}
+
+export function line(ink, colour, width, points) {
+  path(ink, points);
+  stroke(ink, colour, width);
+}
+
+export function fill(ink, colour) {
+  ink.fillStyle = colour;
+  ink.fill();
+}
+
+/** A number of a few digits, as one writes it. */
+export function round(value, digits = 3) {
+  return `${+value.toPrecision(digits)}`.replace("-", "−");
 }
 
 /** An arrow from one pixel to another, with a head that a short one has, too. */
@@ -55,22 +76,17 @@ export function arrow(ink, colour, [x, y], [u, v], width = 2.5) {
   if (length < 1) return;
   const [c, s] = [(u - x) / length, (v - y) / length], head = Math.min(10, 0.7 * length);
   const corner = (along, across) => [u - c * along - s * across, v - s * along + c * across];
-  Object.assign(ink, { strokeStyle: colour, fillStyle: colour, lineWidth: width, lineCap: "round" });
-  path(ink, [[x, y], corner(0.8 * head, 0)]);
-  ink.stroke();
+  ink.lineCap = "round";
+  line(ink, colour, width, [[x, y], corner(0.8 * head, 0)]);
   path(ink, [[u, v], corner(head, head / 2.4), corner(head, -head / 2.4)]);
-  ink.closePath();
-  ink.fill();
+  fill(ink, colour);
 }
 
-export function disc(ink, fill, edge, [x, y], radius) {
+export function disc(ink, colour, edge, [x, y], radius) {
   ink.beginPath();
   ink.arc(x, y, radius, 0, 2 * Math.PI);
-  ink.fillStyle = fill;
-  ink.fill();
-  if (!edge) return;
-  Object.assign(ink, { strokeStyle: edge, lineWidth: 1.5 });
-  ink.stroke();
+  fill(ink, colour);
+  if (edge) stroke(ink, edge, 1.5);
 }
 
 /** The edge of a body, as a path. */
@@ -87,11 +103,8 @@ function paintGround(ink, look, strip, view, { floor, width, tall }) {
   const [x] = view.ground(width / 2, floor + tall);
   path(ink, [view.at(x - far, 0), view.at(x + far, 0), view.at(x + far, -far),
     view.at(x - far, -far)]);
-  ink.fillStyle = look.earth;
-  ink.fill();
-  Object.assign(ink, { strokeStyle: look.grey, lineWidth: 1 });
-  path(ink, [view.at(x - far, 0), view.at(x + far, 0)]);
-  ink.stroke();
+  fill(ink, look.earth);
+  line(ink, look.grey, 1, [view.at(x - far, 0), view.at(x + far, 0)]);
   const span = width / view.scale / Math.cos(strip.slope), least = span / Math.min(24, width / 25);
   const power = 10 ** Math.floor(Math.log10(least));
   const step = power * [1, 2, 5, 10].find((n) => n * power >= least * (1 - 1e-12));
@@ -107,7 +120,7 @@ function paintGround(ink, look, strip, view, { floor, width, tall }) {
     ink.save();
     ink.translate(...view.at(i * step, -unit * 3));
     ink.rotate(strip.slope);
-    text(ink, look.grey, `${+(i * step).toPrecision(10)} m`.replace("-", "−"), 0, 0, "center", 11);
+    text(ink, look.grey, `${round(i * step, 10)} m`, 0, 0, "center", 11);
     ink.restore();
   }
 }
@@ -125,7 +138,6 @@ function past(points, t) {
 
 /** Where the contact has slid. */
 function paintSkids(ink, look, { a, b, points }, at, view) {
-  Object.assign(ink, { strokeStyle: look.plum, lineWidth: 6, lineCap: "butt", globalAlpha: 0.5 });
   ink.beginPath();
   let slid = false;
   for (const [, x, , , , mode, theta] of past(points, at.t)) {
@@ -135,18 +147,17 @@ function paintSkids(ink, look, { a, b, points }, at, view) {
     slid = mode === SLIDING;
   }
   if (slid) ink.lineTo(...view.at(at.x + support(at.theta, a, b)[1], 0));
-  ink.stroke();
+  Object.assign(ink, { lineCap: "butt", globalAlpha: 0.5 });
+  stroke(ink, look.plum, 6);
   ink.globalAlpha = 1;
 }
 
 /** The part of a trace up to now; it ends where the body is. */
 function paintTrace(ink, colour, width, points, column, at, view, alpha) {
   if (!points.length) return;
-  ink.beginPath();
-  for (const point of past(points, at.t)) ink.lineTo(...view.at(point[column], point[column + 1]));
-  ink.lineTo(...(column === 1 ? view.at(at.x, at.z) : view.at(...at.tip)));
-  Object.assign(ink, { strokeStyle: colour, lineWidth: width, globalAlpha: alpha });
-  ink.stroke();
+  const seen = past(points, at.t).map((point) => view.at(point[column], point[column + 1]));
+  ink.globalAlpha = alpha;
+  line(ink, colour, width, [...seen, column === 1 ? view.at(at.x, at.z) : view.at(...at.tip)]);
   ink.globalAlpha = 1;
 }
 
@@ -154,21 +165,16 @@ function paintBody(ink, look, strip, at, view) {
   const { a, b } = strip, sine = Math.sin(at.theta), cosine = Math.cos(at.theta);
   if (at.mode === FLIGHT) {
     const half = support(at.theta + Math.PI / 2, a, b)[0];
-    Object.assign(ink, { strokeStyle: look.grey, lineWidth: 5, lineCap: "round" });
-    path(ink, [view.at(at.x - half, 0), view.at(at.x + half, 0)]);
-    ink.stroke();
+    ink.lineCap = "round";
+    line(ink, look.grey, 5, [view.at(at.x - half, 0), view.at(at.x + half, 0)]);
   }
   outline(ink, strip, at, view);
-  ink.fillStyle = look.body;
-  ink.fill();
-  Object.assign(ink, { strokeStyle: look.ink, lineWidth: 1.8 });
-  ink.stroke();
-  ink.lineWidth = 1.2;
-  path(ink, [-1, 1].map((n) => view.at(at.x + n * a * cosine, at.z - n * a * sine)));
-  ink.stroke();
+  fill(ink, look.body);
+  stroke(ink, look.ink, 1.8);
+  const axis = (x, z) => [-1, 1].map((n) => view.at(at.x + n * x, at.z + n * z));
+  line(ink, look.ink, 1.2, axis(a * cosine, -a * sine));
   ink.setLineDash([5, 4]);
-  path(ink, [-1, 1].map((n) => view.at(at.x + n * b * sine, at.z + n * b * cosine)));
-  ink.stroke();
+  line(ink, look.ink, 1.2, axis(b * sine, b * cosine));
   ink.setLineDash([]);
   disc(ink, look.blue, null, view.at(...at.tip), 4);
 }
@@ -185,9 +191,8 @@ function paintContact(ink, look, { a, b }, at, view) {
   path(ink, [[9, 0], [-5.5, 6], [-5.5, -6]].map(([along, up]) =>
     view.at(place + way * along * pixel, up * pixel)));
   ink.closePath();
-  Object.assign(ink, { fillStyle: look.plum, strokeStyle: look.paper, lineWidth: 0.8 });
-  ink.fill();
-  ink.stroke();
+  fill(ink, look.plum);
+  stroke(ink, look.paper, 0.8);
 }
 
 /** The force of the ground; the body's weight is as long as its longer semi-axis. */
@@ -212,25 +217,24 @@ function paintBlow(ink, look, strip, view, lasting) {
   const [u, v] = view.at(...start);
   ink.globalAlpha = 1 - lasting / FADES;
   arrow(ink, look.plum, [u, v], view.at(...end), 3.5);
-  text(ink, look.plum, `${+size.toPrecision(3)} N s`, u + 10, v + 12, "left");
+  text(ink, look.plum, `${round(size)} N s`, u + 10, v + 12, "left");
   ink.globalAlpha = 1;
 }
 
 /** A tick on the ground for every event that has been, and its name while it is new. */
 function paintEvents(ink, look, strip, at, view, { width, lasting }) {
   let named = null;
-  ink.fillStyle = look.plum;
   for (const [t, kind, x] of strip.events) {
     if (t > at.t) break;
     const [u, v] = view.at(x, 0);
     if (u < -5 || u > width + 5) continue;
     path(ink, [[u, v], [u - 3.5, v + 8], [u + 3.5, v + 8]]);
-    ink.fill();
+    fill(ink, look.plum);
     const age = lasting * (1 - t / Math.max(at.t, 1e-300));
-    if (age < FADES) named = [kind, u, v + 38, 1 - age / FADES];
+    if (age < FADES) named = { kind, place: [u, v + 38], alpha: 1 - age / FADES };
   }
   if (!named) return;
-  ink.globalAlpha = named[3];
-  text(ink, look.plum, named[0], named[1], named[2], "center", 11);
+  ink.globalAlpha = named.alpha;
+  text(ink, look.plum, named.kind, ...named.place, "center", 11);
   ink.globalAlpha = 1;
 }

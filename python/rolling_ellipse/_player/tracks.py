@@ -28,12 +28,7 @@ def track(motion: Trajectory, end: float, tolerance: float, frames: FloatArray) 
 
     Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m].
     Where this would take more than `MOST_SAMPLES`, the motion is there at the times of the
-    `frames` alone, and `stepped`: nothing is put between them.
-
-    Raises
-    ------
-    ValueError
-        If the frames are more than that, too.
+    `frames` alone, and `stepped`: nothing is put between them. More frames are refused.
     """
     times = sample_times(motion, end, tolerance)
     stepped = times is None

@@ -106,7 +106,7 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
         raise ValueError(f"omega must be given on a slope, got None with slope {scene.slope!r}")
     if outcome(scene) is Outcome.ROLLS_OVER:
         raise ValueError("scene must not roll over without a blow")
-    least = _core.speed_to_the_tip(scene.core)
+    least = _core.speed_to_the_tip(scene.core, scene.theta)
     if least == 0:
         raise ValueError("omega must be given for a circle and on the tip: the least press is none")
     backwards, forwards = (_core.press_to(scene.core, distance, s * least) for s in (-1, 1))

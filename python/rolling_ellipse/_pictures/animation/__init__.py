@@ -11,7 +11,7 @@ from matplotlib.backends.registry import backend_registry
 from matplotlib.figure import Figure, SubFigure
 
 from ..._ask.check import flag, number, shown
-from ..axes import leaving_no_figure, pyplot_figure, require_axes
+from ..axes import picture, pyplot_figure, require_axes
 from ..comparison import Comparison
 from .film import RollingAnimation
 from .movies import movie_writer
@@ -28,7 +28,7 @@ WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # more does not fit into memory
 WINDOWS = ("gtk3", "gtk4", "macosx", "qt", "qt5", "qt6", "tk", "wx")  # where plt.show() opens them
 
 
-@leaving_no_figure
+@picture
 def animate(
     trajectories: Trajectory | Sequence[Trajectory],
     path: str | PathLike[str] | None = None,

@@ -19,30 +19,18 @@ BEHIND, AHEAD = 5.0, 4.0  # sizes of the body on either side of a motion that is
 
 @dataclass(frozen=True)
 class Cameras:
-    """Views of the strips, at one scale.
+    """Views of the strips, at one scale: left, right, bottom, top [m], as the eye sees them."""
 
-    Attributes
-    ----------
-    views : tuple of ndarray, shape (n, 4)
-        For each strip left, right, bottom, top [m] of each frame, as the eye sees them.
-    heights : tuple of float
-        Part of the picture's height that each strip takes.
-    shape : float
-        Height of the picture over its width.
-    together : bool
-        Whether all strips show the same stretch of ground.
-    windows : tuple of tuple of float
-        For each strip the view relative to what its camera follows.
-    follows : str
-        "nothing", the "middle" of all motions, or each strip its "own".
-    """
+    views: tuple[FloatArray, ...]  # for each strip those of each frame, (n, 4)
+    heights: tuple[float, ...]  # part of the picture's height that each strip takes
+    shape: float  # height of the picture over its width
+    windows: tuple[tuple[float, float, float, float], ...]  # relative to what is followed
+    follows: str  # "nothing", the "middle" of all motions, or each strip its "own"
 
-    views: tuple[FloatArray, ...]
-    heights: tuple[float, ...]
-    shape: float
-    together: bool
-    windows: tuple[tuple[float, float, float, float], ...]
-    follows: str
+    @property
+    def together(self) -> bool:
+        """Whether all strips show the same stretch of ground."""
+        return self.follows != "own"
 
 
 def cameras(
@@ -106,7 +94,6 @@ def _framed(
         ),
         tuple((top - bottom) / (wide * shape) for bottom, top in depths),
         shape,
-        follows != "own",
         windows,
         follows,
     )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from html import escape
 from os import PathLike
 from pathlib import Path
+from threading import RLock
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -15,12 +16,18 @@ from matplotlib.animation import AbstractMovieWriter, FuncAnimation, writers
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
-from ..._ask.check import choice, file_name, flag, shown, whole
+from ..._ask.check import (
+    choice,
+    file_name,
+    flag,
+    shown,
+    whole,
+)
 from ..._motion.export.atomic import replacing
-from ..alone import Alone, with_settings
+from ..._ask.progress import told
 from ..palette import palette_of
 from .camera import cameras
-from .movies import ffmpeg, movie_writer, progress_bar, told
+from .movies import explained, ffmpeg, movie_writer
 from .strip import Strip
 
 if TYPE_CHECKING:
@@ -31,7 +38,8 @@ if TYPE_CHECKING:
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
-_drawing_late = Alone()
+_drawing_late = RLock()
+_with_settings = RLock()  # rcParams while some of matplotlib's own writers work
 
 
 class RollingAnimation(FuncAnimation):
@@ -96,7 +104,7 @@ class RollingAnimation(FuncAnimation):
             A page needs no figure. The reference cycles of a figure take long to collect, and a
             Ctrl-C that comes meanwhile is lost in the callback of some weak reference.
             """
-            with _drawing_late():
+            with _drawing_late:
                 if (undrawn := self.__dict__.pop("_undrawn", None)) is not None:
                     try:
                         self._make_picture(*undrawn)
@@ -193,16 +201,17 @@ class RollingAnimation(FuncAnimation):
             self._save_page(path, options)
             return
         options = {"dpi": self.figure.dpi, **options}
-        if progress:
-            options["progress_callback"] = progress_bar(path)
-        if writer is not None:
-            with with_settings():
-                super().save(path, writer=_known(writer), **options)
-            return
-        chosen = movie_writer(path, self.fps, "filename")
-        self.draw(self.t.size - 1)  # of which a GIF takes its colours
-        with replacing(path) as film, told(path):
-            super().save(str(film), writer=chosen, **options)
+        with told(progress, "frames", path) as tell:
+            if progress:
+                options["progress_callback"] = lambda i, n: tell(i + 1, n)
+            if writer is not None:
+                with _with_settings:
+                    super().save(path, writer=_known(writer), **options)
+                return
+            chosen = movie_writer(path, self.fps, "filename")
+            self.draw(self.t.size - 1)  # of which a GIF takes its colours
+            with replacing(path) as film, explained(path):
+                super().save(str(film), writer=chosen, **options)
 
     def _save_page(self, path: str, options: dict[str, Any]) -> None:
         """Write the page with the player."""
@@ -231,7 +240,7 @@ class RollingAnimation(FuncAnimation):
             except ValueError as error:
                 return f"<p>{escape(str(error))}</p>"
         settings = {"animation.ffmpeg_path": ffmpeg()} if wanted == "html5" else {}
-        with with_settings(), rc_context(settings):  # type: ignore[arg-type]
+        with _with_settings, rc_context(settings):  # type: ignore[arg-type]
             return str(super()._repr_html_())
 
 

@@ -7,10 +7,9 @@ import importlib
 import importlib.util
 import math
 import os
-import sys
 from contextlib import contextmanager, suppress
 from io import BytesIO
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 from subprocess import CalledProcessError
 from typing import TYPE_CHECKING, Any
@@ -21,7 +20,7 @@ from PIL import Image
 from ..._ask.check import file_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from matplotlib.figure import Figure
 
@@ -103,16 +102,7 @@ def movie_writer(
 ) -> AbstractMovieWriter | None:
     """Return what writes the frames to the file; None for an .html, whose player needs none.
 
-    Raises
-    ------
-    ValueError
-        If the suffix is unknown, or a GIF cannot keep the time.
-    TypeError
-        If the path is none.
-    OSError
-        If there is no such folder, or the path is one.
-    FileNotFoundError
-        If an .mp4 is asked for and there is no ffmpeg.
+    It raises what `animate` does, before anything is written.
     """
     target = Path(file_name(argument, path))
     suffix = target.suffix.lower()
@@ -137,7 +127,7 @@ def movie_writer(
 
 
 @contextmanager
-def told(path: str) -> Iterator[None]:
+def explained(path: str) -> Iterator[None]:
     """Make of ffmpeg's failure a sentence with the name of the file."""
     try:
         yield
@@ -159,24 +149,3 @@ def ffmpeg() -> str:
     raise FileNotFoundError(
         "an .mp4 needs ffmpeg: pip install 'rolling_ellipse[video]', or write a .gif"
     )
-
-
-def progress_bar(path: str | PathLike[str]) -> Callable[[int, int], None]:
-    """Return a function of (frame, frames) that moves a tqdm bar, or counts without tqdm."""
-    name = fspath(path)
-    if importlib.util.find_spec("tqdm") is None:
-
-        def count(i: int, n: int) -> None:
-            end = "\n" if i + 1 == n else ""
-            print(f"\r{name}: frame {i + 1} of {n}", end=end, file=sys.stderr, flush=True)
-
-        return count
-    bar = importlib.import_module("tqdm.auto").tqdm(desc=name, unit=" frames")
-
-    def advance(i: int, n: int) -> None:
-        bar.total = n
-        bar.update()
-        if i + 1 == n:
-            bar.close()
-
-    return advance

@@ -18,6 +18,7 @@ from ..palette import palette_of
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
     from ..._ask.check import FloatArray
     from ..._motion.trajectory import Trajectory
@@ -27,35 +28,27 @@ if TYPE_CHECKING:
 class Strip:
     """The body of one motion on its ground, where a frame has it.
 
-    Parameters
-    ----------
-    ax : Axes
-        Where to draw, without axes of its own to see.
-    motion : Trajectory
-        Its sample i is what frame i shows.
-    times : ndarray, shape (n,)
-        The clock at each frame [s]; a motion that ends earlier stays at its last sample.
-    views : ndarray, shape (n, 4)
-        Left, right, bottom and top of each frame [m], as the eye sees them.
-    label : str
-        Name of the motion.
-    show_place : bool
-        Whether the caption says where the body is.
+    Sample i of the motion is what frame i shows, with the clock at `times[i]` [s] (a motion that
+    ends earlier stays at its last sample) and left, right, bottom and top of `views[i]` [m].
+    `show_place` lets the caption say where the body is.
 
-    Attributes
-    ----------
-    motion, ax
-        As given.
-    body, axis_a, axis_b, tip, contact, slip, shadow, centre_trace, tip_trace, skid_trace
-        The moving artists, their data in ground axes (x along the ground, z normal to it) [m].
-        `tip` is the end of axis a that lies on the right at theta = 0. `contact` is where the body
-        touches; while it slides, `slip` is there too and points to where it slides. In flight
-        neither is seen, but the `shadow` below the body.
-    ruler
-        The ticks of the ground and their figures.
-    caption
-        Name of the motion, and what has to be said of this frame.
+    The data of `body`, `axis_a`, `axis_b`, `tip` (the end of axis a that lies on the right at
+    theta = 0), `contact`, `slip`, `shadow`, `centre_trace`, `tip_trace` and `skid_trace` are in
+    ground axes: x along the ground, z normal to it [m]. `contact` is where the body touches; while
+    it slides, `slip` is there too and points to where it slides. In flight neither is seen, but the
+    `shadow` below the body. `ruler` has the ticks of the ground and their figures, `caption` the
+    name of the motion and what has to be said of this frame.
     """
+
+    shadow: Line2D
+    skid_trace: Line2D
+    tip_trace: Line2D
+    centre_trace: Line2D
+    axis_a: Line2D
+    axis_b: Line2D
+    tip: Line2D
+    contact: Line2D
+    slip: Line2D
 
     def __init__(
         self,
@@ -88,14 +81,8 @@ class Strip:
         )
         self.body.set_transform(on_slope)
         ax.add_patch(self.body)
-        lines = {
-            name: ax.plot([], [], transform=on_slope, **look)[0]
-            for name, look in _looks(palette).items()
-        }
-        self.shadow, self.skid_trace = lines["shadow"], lines["skid_trace"]
-        self.tip_trace, self.centre_trace = lines["tip_trace"], lines["centre_trace"]
-        self.axis_a, self.axis_b = lines["axis_a"], lines["axis_b"]
-        self.tip, self.contact, self.slip = lines["tip"], lines["contact"], lines["slip"]
+        for name, look in _looks(palette).items():
+            setattr(self, name, ax.plot([], [], transform=on_slope, **look)[0])
         self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=palette.ink)
 
     def draw(self, i: int) -> list[Artist]:

@@ -15,7 +15,7 @@ from ..._ask.check import shown, whole
 from ..._core import Outcome
 from ..._verbs.classify import classify
 from ..artists import Artists
-from ..axes import axes_of, leaving_no_figure, require_axes
+from ..axes import axes_of, picture, require_axes
 from ..legends import name_curves
 from ..palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
 from .marks import draw_marks, marks_of
@@ -64,7 +64,7 @@ class PhaseMap(Artists):
     names: dict[str, Text]
 
 
-@leaving_no_figure
+@picture
 def plot_phase_map(
     x: str = "aspect",
     y: str = "energy",
@@ -135,10 +135,10 @@ def plot_phase_map(
         require_axes(ax)  # before the work
     fixed = {"aspect": aspect, "energy": energy, "speed": speed, "friction": friction}
     plane = plane_of((x, y), (x_range, y_range), fixed, b, gravity)
-    edges = [_edges(plane, axis, _count(resolution)) for axis in plane.axes]
+    count = _count(resolution)
+    edges = [plane.spaced(axis, count + 1) for axis in plane.axes]
     middles = [_middles(axis, places) for axis, places in zip(plane.axes, edges, strict=True)]
-    columns, rows = np.meshgrid(*middles)
-    codes = classify(**plane.scenes(columns, rows), workers=workers)
+    codes = classify(**plane.scenes(middles[0], middles[1][:, np.newaxis]), workers=workers)
     ax = axes_of(ax, (6.4, 4.4))
     colours = ListedColormap([COLOURS[outcome] for outcome in Outcome])
     free = ax.get_autoscalex_on(), ax.get_autoscaley_on()
@@ -162,16 +162,11 @@ def _count(resolution: Any) -> int:
     raise ValueError(f"resolution must be an int from 1 to {_FINEST}, got {shown(resolution)}")
 
 
-def _edges(plane: Plane, axis: str, count: int) -> FloatArray:
-    return plane.spaced(axis, count + 1)
-
-
 def _middles(axis: str, edges: FloatArray) -> FloatArray:
     """Return the middles of cells as one sees them: those of the logarithms for the aspect."""
-    middles: FloatArray = (
-        np.sqrt(edges[:-1] * edges[1:]) if axis == "aspect" else (edges[:-1] + edges[1:]) / 2
-    )
-    return middles
+    if axis == "aspect":
+        return np.sqrt(edges[:-1] * edges[1:])
+    return (edges[:-1] + edges[1:]) / 2
 
 
 def _handle(outcome: Outcome) -> Patch:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..._verbs.classify import thresholds
+from ..labels import Label, label_lines, visible_part
 from ..palette import INK, PLUM
-from .discs import LAST_WITHIN, TIP_ASPECT, last_aspect_to_roll_over
-from .names import Names, visible_part
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -23,6 +23,17 @@ if TYPE_CHECKING:
     from ..._verbs.classify import Thresholds
     from .plane import Plane
 
+TIP_ASPECT = math.sqrt(3)
+"""Up to this a/b of a uniform disc the N of rolling vanishes at the tip first.
+
+Exactly: at the speed at which N(h) of physics (33) vanishes at the tip, its slope there, with
+k^2 = (a^2 + b^2)/4, has the sign of a^2 - 3 b^2: beyond, N is least before the tip.
+"""
+LAST_ASPECT = 9.75321681656
+"""Above this a/b of a uniform disc rolling ends before the tip, whatever the friction.
+
+There the speed that N > 0 allows is the one that rolling over takes, both of `thresholds`.
+"""
 _POINTS = 49  # of a curve: each is one call of `thresholds`, some milliseconds
 _LIFT_OFF = {"color": PLUM, "ls": (0, (6, 1.5, 1.5, 1.5)), "lw": 1.2}
 _LOOK: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
@@ -56,11 +67,9 @@ def marks_of(plane: Plane) -> Iterator[Mark]:
         if low < TIP_ASPECT < high:
             names = ("beyond √3 N fails midway", "√3")
             yield _straight(plane, "tip", "aspect", TIP_ASPECT, names)
-        if low < LAST_WITHIN[1] and LAST_WITHIN[0] < high:
-            last = last_aspect_to_roll_over()
-            if low < last < high:
-                names = (f"beyond {last:.4g} none rolls over", f"{last:.3g}")
-                yield _straight(plane, "last to roll over", "aspect", last, names)
+        if low < LAST_ASPECT < high:
+            names = (f"beyond {LAST_ASPECT:.4g} none rolls over", f"{LAST_ASPECT:.3g}")
+            yield _straight(plane, "last to roll over", "aspect", LAST_ASPECT, names)
 
 
 def _level_marks(plane: Plane) -> Iterator[Mark]:
@@ -125,9 +134,5 @@ def draw_marks(ax: Axes, marks: Iterable[Mark]) -> tuple[dict[str, Line2D], dict
         mark.key: ax.plot(mark.x, mark.y, scalex=False, scaley=False, **(_LOOK | mark.look))[0]
         for mark, _ in seen
     }
-    names = Names(ax, [part for _, part in seen])
-    texts = {
-        mark.key: names.write(i, mark.names, mark.place, mark.above)
-        for i, (mark, _) in enumerate(seen)
-    }
-    return lines, {key: text for key, text in texts.items() if text is not None}
+    labels = {mark.key: Label(part, mark.names, mark.place, mark.above) for mark, part in seen}
+    return lines, label_lines(ax, labels)

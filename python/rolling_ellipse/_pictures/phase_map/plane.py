@@ -13,8 +13,14 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ..._ask.check import FloatArray, choice, number, positive, shown
-from .discs import roll_over_speed
+from ..._ask.check import (
+    FloatArray,
+    choice,
+    number,
+    positive,
+    shown,
+)
+from ..._ask.scene import Scene
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")
 _LEVELS = {"energy", "speed"}  # of which one follows from the other
@@ -52,16 +58,19 @@ class Plane:
         return places
 
     def scenes(self, x: FloatArray, y: FloatArray) -> dict[str, Any]:
-        """Arguments of `classify` at points of the plane."""
+        """Arguments of `classify` at points of the plane; x and y broadcast."""
         values: dict[str, Any] = {**self.fixed, self.axes[0]: x, self.axes[1]: y}
         speed = values.get("speed")
         if speed is None:
-            over = roll_over_speed(values["aspect"], self.b, self.gravity)
-            speed = np.sqrt(values["energy"]) * over
+            speed = np.sqrt(values["energy"]) * np.vectorize(self._over)(values["aspect"])
         return {
             "a": values["aspect"] * self.b, "b": self.b, "omega": speed,
             "friction": values["friction"], "gravity": self.gravity,
         }  # fmt: skip
+
+    def _over(self, aspect: float) -> float:
+        """The roll-over speed of a disc [rad/s]."""
+        return _core.roll_over_speed(Scene(aspect * self.b, self.b, gravity=self.gravity).core)
 
     def told(self) -> str:
         """What is fixed, as one says it: "μ = 0.5"; the scale too where it matters."""
@@ -81,13 +90,7 @@ def plane_of(
     b: float,
     gravity: float,
 ) -> Plane:
-    """Return the plane of these arguments of `plot_phase_map`.
-
-    Raises
-    ------
-    ValueError, TypeError
-        As `plot_phase_map` says.
-    """
+    """Return the plane of these arguments of `plot_phase_map`, or raise what that says."""
     for argument, axis in zip("xy", axes, strict=True):
         choice(argument, axis, QUANTITIES)
     if axes[0] == axes[1] or set(axes) == _LEVELS:

@@ -8,15 +8,25 @@ from typing import Any
 
 from ... import _core
 from ..._ask.check import flag
+from ..._ask.progress import told
 from ..._ask.scene import Scene
-from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
-from ..._motion.status import WorkerError
+from ..._ask.settings import (
+    DEFAULTS,
+    Method,
+    Model,
+    Stabilization,
+    settings,
+)
 from ..simulate import sample_times
-from ..workers import Lost, in_order, threads_of
+from ..._motion.status import WorkerError
+from ..workers import (
+    Lost,
+    in_order,
+    threads_of,
+)
 from .answers import SAMPLE_BYTES, Answer, Request, answers, solve, solve_task
 from .asked import Chunk, Grid, Listed, asked, sizes
 from .folders import Folder
-from .progress import told
 
 
 def simulate_many(
@@ -98,7 +108,7 @@ def simulate_many(
     request = Request(how, times, flag("raise_on_failure", raise_on_failure))
     threads_of(workers)
     wanted = asked(scenes)
-    with told(progress, wanted.total) as tell:
+    with told(progress, "scenes") as tell:
         if out is not None:
             return _to_folder(Folder(out, request), request, wanted, workers, tell)
         found: list[Answer] = []

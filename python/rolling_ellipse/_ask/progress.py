@@ -1,0 +1,42 @@
+"""Progress of long work on stderr: a bar of tqdm's where it is installed, else a line."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+from .check import shown
+
+Tell = Callable[[int, int | None], Any]
+
+
+@contextmanager
+def told(progress: bool | Tell, unit: str, name: str = "") -> Iterator[Tell]:
+    """Yield a function of how much is done, and of all where that is known.
+
+    It is `progress` itself, or if that is True shows a bar with `name` before it.
+    """
+    if callable(progress):
+        yield progress
+    elif progress is False:
+        yield lambda done, total: None
+    elif progress is not True:
+        raise TypeError(f"progress must be True, False or a function, got {shown(progress)}")
+    elif find_spec("tqdm") is None:
+        yield lambda done, total: print(
+            f"\r{name}{' ' * bool(name)}{done}{'' if total is None else f' of {total}'} {unit}",
+            end="", file=sys.stderr, flush=True,
+        )  # fmt: skip
+        print(file=sys.stderr)
+    else:
+        with import_module("tqdm.auto").tqdm(desc=name or None, unit=f" {unit}") as bar:
+
+            def move(done: int, total: int | None) -> None:
+                bar.total = total
+                bar.update(done - bar.n)
+
+            yield move
