@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from rolling_ellipse import Scene, _core, flow, scenes, simulate, thresholds
-from rolling_ellipse import _settings as settings
-from rolling_ellipse._fields import cached_property
+from rolling_ellipse._ask import settings
+from rolling_ellipse._ask.records import cached_property
 
 SCENE = scenes.rolling.core
 TWO, THREE, FIVES = np.ones(2), np.ones(3), np.ones((2, 5))

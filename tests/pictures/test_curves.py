@@ -18,9 +18,9 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
 from oracles.pictures import figure_of, shows_something
+from rolling_ellipse._ask.scene import SCENE_UNITS
 from rolling_ellipse._pictures import sampling
 from rolling_ellipse._pictures.comparison import Comparison, labels_of
-from rolling_ellipse._ask.scene import SCENE_UNITS
 
 OVER_TIME = (rl.plot_forces, rl.plot_energy, rl.plot_constraints)
 

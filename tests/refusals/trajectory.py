@@ -71,6 +71,6 @@ REFUSALS: list[Row] = [
     ("z", lambda _: TURNING.when(z=1.5)),
     ("function", lambda _: TURNING.when(function=lambda at: at.x)),
     ("function", lambda _: SPINNING.when(function=lambda at: at.normal_force)),
-    (AttributeError, lambda _: rl.nothing),
+    (AttributeError, lambda _: rl.nothing),  # type: ignore[attr-defined]
     (ImportError, lambda _: without("xarray", MOTION.to_xarray)),
 ]  # fmt: skip

@@ -8,7 +8,7 @@ import pytest
 import rolling_ellipse as rl
 from numpy.typing import ArrayLike
 from oracles.margins import told
-from oracles.report import Q_DOT, SHAPE, Array, Q, off_by, start
+from oracles.report import BODY, Q_DOT, SHAPE, Array, Q, off_by, start
 from rolling_ellipse import report
 from rolling_ellipse.report._runge_kutta import Steps, integrate
 

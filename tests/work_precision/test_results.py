@@ -11,11 +11,7 @@ from typing import Any
 import pytest
 import rolling_ellipse as rl
 from rolling_ellipse import Scene, WorkPrecision
-from rolling_ellipse._verbs.work_precision.results import (
-    Errors,
-    Reference,
-    Run,
-)
+from rolling_ellipse._verbs.work_precision.run import Errors, Reference, Run
 
 
 def run(name: str, error: float, time: float, **other: Any) -> Run:

@@ -11,8 +11,8 @@ from .._ask.check import (
     choice,
     shown,
 )
-from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._ask.settings import DEFAULTS
+from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import axes_of, picture

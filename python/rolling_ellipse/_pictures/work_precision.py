@@ -10,12 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._ask.check import shown
-from .._verbs.work_precision.results import (
-    ERRORS,
-    NOT_RUN,
-    OF_STATES,
-    require_quantity,
-)
+from .._verbs.work_precision.run import ERRORS, NOT_RUN, OF_STATES, require_quantity
 from .._verbs.work_precision.verdict import end_alone
 from .artists import Artists
 from .axes import axes_of, picture
@@ -30,10 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.text import Text
 
-    from .._verbs.work_precision.results import (
-        Run,
-        WorkPrecision,
-    )
+    from .._verbs.work_precision.results import WorkPrecision
+    from .._verbs.work_precision.run import Run
     from .palette import Palette
 
 _NAMES = {

@@ -23,8 +23,8 @@ from ..._ask.check import (
     shown,
     whole,
 )
-from ..._motion.export.atomic import replacing
 from ..._ask.progress import told
+from ..._motion.export.atomic import replacing
 from ..palette import palette_of
 from .camera import cameras
 from .movies import explained, ffmpeg, movie_writer

@@ -17,8 +17,8 @@ from ..._ask.settings import (
     Stabilization,
     settings,
 )
-from ..simulate import sample_times
 from ..._motion.status import WorkerError
+from ..simulate import sample_times
 from ..workers import (
     Lost,
     in_order,

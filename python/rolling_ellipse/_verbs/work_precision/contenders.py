@@ -14,11 +14,6 @@ from ..._ask.check import (
     choice,
     shown,
 )
-from ..flow import (
-    arguments_of,
-    flow,
-    period,
-)
 from ..._ask.scene import Scene
 from ..._ask.settings import (
     DEFAULTS,
@@ -27,10 +22,15 @@ from ..._ask.settings import (
     STABILIZATIONS,
     settings,
 )
-from ..simulate import sample_times
 from ..._motion.stability import advice
 from ..._motion.status import Status
 from ..._motion.trajectory import Trajectory
+from ..flow import (
+    arguments_of,
+    flow,
+    period,
+)
+from ..simulate import sample_times
 
 TOLERANCES, STEPS = "tolerances", "steps"
 

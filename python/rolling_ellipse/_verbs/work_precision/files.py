@@ -9,9 +9,10 @@ import json
 import math
 import os
 from dataclasses import asdict, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..._ask.check import file_name
+from ..._motion.export.atomic import replacing
 from ..._motion.export.strict import (
     OBJECT,
     field_names,
@@ -20,8 +21,10 @@ from ..._motion.export.strict import (
     restored,
     scene_of,
 )
-from ..._motion.export.atomic import replacing
-from .results import Errors, Reference, Run, WorkPrecision
+from .run import Errors, Reference, Run
+
+if TYPE_CHECKING:
+    from .results import WorkPrecision
 
 _SCHEMA = 2
 _PARTS = ("scene", "machine", "references", "runs")
@@ -31,13 +34,13 @@ _KINDS = {"float": "a number of at least 0", "int": "a count", "str": "a text"}
 def write(found: WorkPrecision, path: str | os.PathLike[str]) -> None:
     name = file_name("path", path)
     text = json.dumps(_about(found), indent=1, allow_nan=False)
-    _restored(text)
+    _restored(type(found), text)
     with replacing(name) as new:
         new.write_text(text + "\n", encoding="utf-8")
 
 
-def read(path: str | os.PathLike[str]) -> WorkPrecision:
-    return restored(path, lambda content: _restored(content.decode("utf-8")), OBJECT)
+def read(kind: type[WorkPrecision], path: str | os.PathLike[str]) -> WorkPrecision:
+    return restored(path, lambda content: _restored(kind, content.decode("utf-8")), OBJECT)
 
 
 def _about(found: WorkPrecision) -> Any:
@@ -55,7 +58,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _restored(text: str) -> WorkPrecision:
+def _restored(kind: type[WorkPrecision], text: str) -> WorkPrecision:
     """Return the race of a text, if it is just what is written of it."""
     about = parsed("the file", text)
     require_names("the file", about, ("schema", *_PARTS))
@@ -64,7 +67,7 @@ def _restored(text: str) -> WorkPrecision:
     for name in ("references", "runs"):
         if not isinstance(about[name], list) or not about[name]:
             raise ValueError(f"{name} must be a list that is not empty, got {about[name]!r}")
-    found = WorkPrecision(
+    found = kind(
         scene_of({name: _unbounded(value) for name, value in about["scene"].items()}),
         tuple(_made(Run, "a run", each) for each in about["runs"]),
         tuple(_made(Reference, "a reference", each) for each in about["references"]),

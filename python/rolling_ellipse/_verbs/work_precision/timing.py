@@ -15,7 +15,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from .contenders import STEPS, Contender, Stopped
-from .results import COMPLETED, NOT_RUN, Errors, Run
+from .run import COMPLETED, NOT_RUN, Errors, Run
 from .truth import Judge
 
 Told = Callable[[str], Any]

@@ -11,23 +11,23 @@ from typing import Any
 
 import numpy as np
 
-from ..certify import certify
 from ..._ask.check import FloatArray
+from ..._ask.scene import Scene
+from ..._ask.settings import DEFAULTS
 from ..._core import Validity
 from ..._motion.relative_errors import (
     constraint_errors,
     energy_error,
 )
+from ..._motion.status import Status
+from ..._motion.trajectory import Trajectory
+from ..certify import certify
 from ..flow import (
     arguments_of,
     flow,
 )
-from ..._ask.scene import Scene
-from ..._ask.settings import DEFAULTS
 from ..simulate import simulate
-from ..._motion.status import Status
-from ..._motion.trajectory import Trajectory
-from .results import Errors, Reference
+from .run import Errors, Reference
 
 Columns = tuple[Any, Any, Any]  # theta, omega, x, (n,) each
 Truth = Callable[[FloatArray], Columns]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from .results import NOT_RUN, Reference, Run
+from .run import NOT_RUN, Reference, Run
 
 if TYPE_CHECKING:
     from .results import WorkPrecision
