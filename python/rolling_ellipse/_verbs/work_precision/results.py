@@ -12,7 +12,7 @@ from ..._ask.printing import Row, html_table
 from ..._ask.scene import Scene
 from ..._motion.export.tables import required
 from . import files
-from .run import ERRORS, OF_STATES, Reference, Run, require_quantity
+from .run import ERRORS, NOT_RUN, OF_STATES, Reference, Run, require_quantity
 from .verdict import verdict
 
 if TYPE_CHECKING:
