@@ -44,7 +44,6 @@ THROW = re.compile(r"\b(?:refuse|std::(?:invalid_argument|logic_error|runtime_er
 
 #: What no caller is to see, with its reason.
 UNREACHABLE: dict[str, str] = {
-    "raise NotImplementedError": "of classes that are there to be derived from",
     "trajectory must have finite samples": "pictures refuse what is too far away before",
     "there is no integrator for the method '": "settings refuse such a method before",
     "t must be empty, for the motion ended before it began: ": "no slide is known that is too quick"
