@@ -734,44 +734,6 @@ def test_max_steps_counts_all_arcs() -> None:
     assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == whole - 1
 
 
-BAD: dict[str, Any] = {
-    "max_events": [0, -3],
-    "rest_speed": [0.0, -1e-3, math.nan, math.inf, 0.04],
-    "friction": [-0.1, math.nan],
-    "restitution": [-0.01, 1.01, math.nan],
-}
-
-
-@pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
-def test_bad_numbers_are_refused_by_name(name: str, value: float) -> None:
-    given: dict[str, Any] = {name: value}
-    with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value}"):
-        if name in ("friction", "restitution"):
-            Scene(2.0, 1.0, **given)
-        else:
-            simulate(rl.scenes.drop, 1.0, **given)
-
-
-@pytest.mark.parametrize("scene", [rl.scenes.rolling, rl.scenes.slip, rl.scenes.drop])
-def test_no_more_turns_than_a_double_knows(scene: Scene) -> None:
-    with pytest.raises(ValueError, match=r"^t must be at most 1e15 half turns .*, got 1e\+25$"):
-        simulate(scene, 1e25, model="contact")
-
-
-def test_a_velocity_beyond_any_scene_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"^x_dot must be at most .* for this body, got 1000\.0$"):
-        Scene(1e-20, 1e-20, x_dot=1e3)
-    with pytest.raises(ValueError, match=r"^z_dot must be at most .* for this body, got -1000\.0$"):
-        Scene(1e-20, 1e-20, z=1e-9, z_dot=-1e3)
-
-
-def test_a_start_in_the_ground_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"^z must be at least h\(theta\) = 1.0 \[m\].*got 0.9"):
-        Scene(2.0, 1.0, z=0.9)
-    with pytest.raises(ValueError, match=r"^z_dot must be at least .*got -0.1"):
-        Scene(2.0, 1.0, z_dot=-0.1)
-
-
 # ----------------------------------------------------------------------------- the start
 
 

@@ -3,7 +3,6 @@ pair of coefficients to a series of them."""
 
 import itertools
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -369,87 +368,6 @@ def test_what_sticks_bounds_friction_from_below() -> None:
 
 
 # --------------------------------------------------------------------------------- bad input
-
-GOOD: dict[str, Any] = {
-    "theta": 0.3, "x_dot": 1.0, "z_dot": -1.0, "omega": 0.5, "a": 0.7, "b": 0.3, "friction": 0.3,
-    "restitution": 0.5, "gyration2": 0.1,
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize(
-    ("name", "value", "message"),
-    [
-        ("theta", math.nan, r"theta must be a finite number \[rad\].*, got nan"),
-        ("x_dot", math.inf, r"x_dot must be a finite number \[m/s\].*, got inf"),
-        ("z_dot", math.nan, r"z_dot must be a finite number \[m/s\].*, got nan"),
-        ("omega", -math.inf, r"omega must be a finite number \[rad/s\].*, got -inf"),
-        ("a", -1.0, r"a must be a positive finite length \[m\], got -1.0"),
-        ("b", 0.0, r"b must be a positive finite length \[m\], got 0.0"),
-        ("a", 400.0, r"a/b must be between 1e-3 and 1e3, got 1333.3"),
-        ("gyration2", 0.0, r"gyration2 must be a positive finite area \[m\^2\], got 0.0"),
-        ("friction", -0.1, r"friction must be a coefficient from 0 to 1e6, or inf, got -0.1"),
-        ("friction", math.nan, "friction must be a coefficient from 0 to 1e6, or inf, got nan"),
-        ("restitution", 1.1, "restitution must be between 0 and 1, got 1.1"),
-        ("restitution", -0.1, "restitution must be between 0 and 1, got -0.1"),
-    ],
-)
-def test_numbers_out_of_range(law: Any, name: str, value: float, message: str) -> None:
-    for wrong in (value, [GOOD[name], value]):  # alone, and as one of several
-        with pytest.raises(ValueError, match=f"^{message}"):
-            impacts.collide(**GOOD | {name: wrong}, law=law)
-
-
-def test_names_and_kinds() -> None:
-    with pytest.raises(ValueError, match="law must be one of 'stronge', 'poisson', 'newton', got"):
-        impacts.collide(**GOOD, law="kane")  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="omega must be a number or an array of numbers, got 'x'"):
-        impacts.collide(**GOOD | {"omega": "x"})
-    with pytest.raises(
-        ValueError, match=r"must broadcast together, .*theta \(2,\), .*omega \(3,\)"
-    ):
-        impacts.collide(**GOOD | {"theta": [0.1, 0.2], "omega": [1.0, 2.0, 3.0]})
-    with pytest.raises(ValueError, match=r"gyration2 must be a positive finite area .*, got -1.0"):
-        impacts.kinetic_speed(1.0, 2.0, 3.0, gyration2=-1.0)
-    with pytest.raises(ValueError, match="z_dot must be finite, got nan"):
-        impacts.kinetic_speed(1.0, [2.0, math.nan], 3.0, gyration2=1.0)
-
-
-def changed(of: np.ndarray, row: int, value: float) -> np.ndarray:
-    copy = of.copy()
-    copy[row, 3] = value
-    return copy
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (lambda b, a: (b[:3], a), r"before must be 4 columns .*, got shape \(3, 8\)"),
-        (lambda b, a: (b, a[0]), r"after must be 3 columns .*, got shape \(8,\)"),
-        (lambda b, a: (b[:, :0], a[:, :0]), r"before must be 4 columns .*, got shape \(4, 0\)"),
-        (lambda b, a: (b, a[:, :5]), "after must have as many impacts as before, 8, got 5"),
-        (lambda b, a: (changed(b, 1, math.nan), a), "before must be finite, got nan"),
-        (lambda b, a: (b, changed(a, 2, math.inf)), "after must be finite, got inf"),
-        (lambda b, a: (changed(b, 2, 50.0), a), "before must be moving into the ground .*, got 49"),
-    ],
-)
-def test_series_that_cannot_be_fitted(
-    change: Callable[[Any, Any], tuple[Any, Any]], message: str
-) -> None:
-    with pytest.raises(ValueError, match=f"^{message}"):
-        impacts.fit(*change(*series("stronge", 0.0, 8)), **BODY)
-
-
-def test_fit_names_its_options() -> None:
-    good = series("stronge", 0.0, 8)
-    with pytest.raises(ValueError, match="minimise must be one of 'median', 'rms', got 'mean'"):
-        impacts.fit(*good, **BODY, minimise="mean")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"law must be one of .*, got 'kane'"):
-        impacts.fit(*good, **BODY, law="kane")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match=r"b must be a positive finite length \[m\], got -0.3"):
-        impacts.fit(*good, a=0.7, b=-0.3)
-    with pytest.raises(ValueError, match=r"gyration2 must be a positive finite area .*, got 0.0"):
-        impacts.fit(*good, **BODY, gyration2=0.0)
 
 
 @pytest.mark.filterwarnings("error")

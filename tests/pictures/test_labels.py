@@ -4,7 +4,6 @@ import dataclasses
 import math
 from typing import Any
 
-import numpy as np
 import pytest
 import rolling_ellipse as rl
 from rolling_ellipse._pictures.comparison import Comparison
@@ -85,47 +84,9 @@ def test_names_given_are_kept() -> None:
     assert labels_of([ROLLING, ROLLING], ("same", "same")) == ["same", "same"]
 
 
-@pytest.mark.parametrize(
-    ("labels", "message"),
-    [
-        (["a"], r"labels must be 2, one for each trajectory, got 1: \['a'\]"),
-        (["a", "b", "c"], "labels must be 2, one for each trajectory, got 3"),
-        ("ab", "labels must be a sequence of strings, got 'ab'"),
-        ([1, 2], r"labels must be a sequence of strings, got \[1, 2\]"),
-        (3, "labels must be a sequence of strings, got 3"),
-    ],
-)
-def test_wrong_labels_are_refused_by_name(labels: Any, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        labels_of([ROLLING, ROLLING], labels)
-
-
 def test_one_or_several() -> None:
     assert Comparison(ROLLING).motions == (ROLLING,)
     assert Comparison([ROLLING, ROLLING]).motions == (ROLLING, ROLLING)
-
-
-@pytest.mark.parametrize(
-    ("trajectories", "error", "message"),
-    [
-        ([], ValueError, "trajectories must be a Trajectory or a sequence of them, got none"),
-        (3, TypeError, "trajectories must be a Trajectory or a sequence of them, got 3"),
-        ([ROLLING, 3], TypeError, "trajectories must be .*, got 3 among them"),
-        (
-            dataclasses.replace(
-                ROLLING,
-                **dict.fromkeys(("t", "theta", "omega", "x"), np.empty(0)),  # type: ignore[arg-type]
-            ),
-            ValueError,
-            "every trajectory must have samples, got <Trajectory rolling/exact: no samples",
-        ),
-    ],
-)
-def test_what_is_no_motion_is_refused_by_name(
-    trajectories: Any, error: type[Exception], message: str
-) -> None:
-    with pytest.raises(error, match=message):
-        Comparison(trajectories)
 
 
 def test_every_number_of_a_scene_has_a_unit() -> None:

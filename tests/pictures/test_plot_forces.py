@@ -1,8 +1,5 @@
 """`plot_forces`, read back from its artists."""
 
-from collections.abc import Callable
-from typing import Any
-
 import matplotlib
 import numpy as np
 import pytest
@@ -10,8 +7,7 @@ import pytest
 matplotlib.use("Agg")
 
 import rolling_ellipse as rl
-from matplotlib.figure import Figure
-from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, seen, two_axes
+from oracles.curves import data, legend_of, new_axes, rough, seen, two_axes
 from oracles.pictures import figure_of, points_of
 
 
@@ -71,12 +67,3 @@ def test_spikes_leave_room_for_ordinary_forces(report: rl.Trajectory) -> None:
     bottom, ordinary, top = ax.transData.transform([(0, 0), (0, weight), (0, 100 * weight)])[:, 1]
     assert ordinary - bottom > 0.3 * (top - bottom)
     assert rl.plot_forces(report, ax=new_axes()).axes[0].get_yscale() == "linear"
-
-
-@pytest.mark.parametrize("picture", TWO_PANELS)
-def test_axes_are_one_or_two(picture: Callable[..., Any], report: rl.Trajectory) -> None:
-    three = list(Figure().subplots(3))
-    for kind, wrongs in ((ValueError, (three, [])), (TypeError, ("here", [three[0], None]))):
-        for wrong in wrongs:
-            with pytest.raises(kind, match="ax must be one matplotlib Axes or two, got"):
-                picture(report, ax=wrong)

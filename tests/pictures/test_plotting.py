@@ -4,7 +4,6 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import matplotlib
 import numpy as np
@@ -186,30 +185,6 @@ def test_strobe_makes_its_own_figure_without_an_ax(report: rl.Trajectory) -> Non
     shown = rl.plot_strobe(report)
     assert plt.get_fignums() == [figure_of(shown.ax).number]
     plt.close(figure_of(shown.ax))
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"count": 0}, "count must be at least 1, got 0"),
-        ({"t_end": 6.5}, r"t_end must be within \[0, 6\] s, got 6.5"),
-        ({"t_end": -1.0}, r"t_end must be within \[0, 6\] s, got -1.0"),
-        ({"t_end": math.nan}, r"t_end must be within \[0, 6\] s, got nan"),
-    ],
-)
-def test_strobe_refuses_by_name(
-    report: rl.Trajectory, options: dict[str, Any], message: str
-) -> None:
-    with pytest.raises(ValueError, match=message):
-        rl.plot_strobe(report, ax=new_axes(), **options)
-
-
-def test_no_samples_no_picture(report: rl.Trajectory) -> None:
-    none = np.empty(0)
-    empty = dataclasses.replace(report, t=none, theta=none, omega=none, x=none)
-    for draw in (rl.plot, rl.plot_strobe, rl.animate):
-        with pytest.raises(ValueError, match="trajectory must have samples"):
-            draw(empty)
 
 
 def test_a_slope_is_drawn_as_a_slope() -> None:

@@ -184,17 +184,6 @@ def test_a_file_of_several_motions(tmp_path: Path) -> None:
         assert gif.size[0] == 160 and gif.size[1] % 2 == 0
 
 
-def test_wrong_input_is_refused_by_name() -> None:
-    with pytest.raises(ValueError, match="labels must be 2, one for each trajectory, got 1"):
-        rl.animate(FOLLOWED, labels=["one"])
-    with pytest.raises(ValueError, match=r"trajectories must be .*, got none"):
-        rl.animate([])
-    with pytest.raises(TypeError, match=r"trajectories must be .*, got Scene\("):
-        rl.animate([SLOW])  # type: ignore[list-item]
-    with pytest.raises(ValueError, match=r"t_end must be within \[0, 20\] s, got 21"):
-        rl.animate([*FOLLOWED, *PARTED], t_end=21)
-
-
 def test_the_user_s_layout_is_left_alone() -> None:
     with matplotlib.rc_context({"figure.constrained_layout.use": True}):
         animation = rl.animate(rl.simulate(rl.scenes.rocking, 0.1))  # any warning is an error
