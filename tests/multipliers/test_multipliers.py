@@ -421,6 +421,3 @@ def test_max_steps_leaves_what_there_is() -> None:
     assert cut.status is Status.MAX_STEPS and 0 < cut.t_end < 4
     assert cut.q.shape == (cut.t.size, 5) and cut.t[-1] <= cut.t_end
     assert np.all(np.isfinite(cut.sol(cut.t_end).q))
-
-
-# ---------------------------------------------------------------------- wrong questions

@@ -26,7 +26,6 @@ QUICK = (
     "work_precision/test_results.py",
     "refusals/test_numbers.py",
     "export/test_atomic.py",
-    "impacts/test_laws_and_fit.py::test_series_that_cannot_be_fitted",
     "impacts/test_laws_and_fit.py::test_stronge_and_poisson_create_no_energy",
     "report/test_errata.py",
     "pictures/test_labels.py",

@@ -301,6 +301,3 @@ def test_without_axes_it_opens_a_figure() -> None:
     assert shown.ax.figure is plt.gcf()
     assert shown.ax.get_xlabel() == "a/b   (at μ = ∞)"
     plt.close(figure_of(shown.ax))
-
-
-# ------------------------------------------------------------------------------- refusals
