@@ -24,6 +24,7 @@ QUICK = (
     "trajectory/test_sol.py",
     "trajectory/test_trajectory.py",
     "work_precision/test_results.py",
+    "border/test_faces.py",
     "refusals/test_numbers.py",
     "export/test_atomic.py",
     "impacts/test_laws_and_fit.py::test_stronge_and_poisson_create_no_energy",
