@@ -144,13 +144,6 @@ def test_another_request_is_refused(changes: dict[str, Any], said: str, out: Pat
     simulate_many(**asked, out=out)
 
 
-def test_more_scenes_than_a_complete_folder_has_are_refused(out: Path) -> None:
-    """Even where the last chunk was full, so that none differs."""
-    simulate_many([scenes.rocking] * 32, [1.0], out=out)
-    with pytest.raises(ValueError, match=r"same scenes.* which has 32$"):
-        simulate_many([scenes.rocking] * 33, [1.0], out=out)
-
-
 def test_another_version_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     simulate_many(GRID, TIMES, out=out)
     monkeypatch.setattr(folders, "version", lambda name: "0.0.9")
@@ -245,16 +238,6 @@ def test_other_files_in_their_places(name: str, content: bytes, small: Path) -> 
     path.write_bytes(content)
     with pytest.raises(ValueError, match=rf"^path must name a file written by sim.*{path.name}"):
         list(load_many(small))
-
-
-def test_what_is_missing(small: Path) -> None:
-    (path,) = chunks(small)
-    path.unlink()
-    with pytest.raises(ValueError, match=r"^path must have the file 00000000-….npz"):
-        list(load_many(small))
-    (small / "end.json").unlink()
-    with pytest.raises(ValueError, match=r"^path must be a complete folder, .* the same arguments"):
-        load_many(small)
 
 
 @pytest.mark.parametrize("count", [-1, 0, 2, 4, 49, 10**6, 10**18, "3", 3.0, True, None])

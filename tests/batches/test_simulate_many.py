@@ -6,7 +6,6 @@ import math
 import signal
 import weakref
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -103,38 +102,6 @@ def test_every_argument_of_a_scene_has_its_place() -> None:
     require_same(given, found)
 
 
-@pytest.mark.parametrize(
-    ("scenes", "error", "said"),
-    [
-        ({"a": [1, 2, 3, -1.0], "b": 1}, ValueError,
-         r"^scenes\['a'\]\[3\] must be a positive finite length \[m\], got -1.0$"),
-        ({"a": 0, "b": [1, 1]}, ValueError, r"^scenes\['a'\] must be a positive .* got 0.0"),
-        ({"a": 1, "b": [[1], [math.nan]], "theta": [0, 1, 2]}, ValueError,
-         r"^scenes\['b'\]\[1, 0\] must be a positive .* got nan"),
-        ({"a": 1, "b": 1, "z": [2, math.nan]}, ValueError, r"^scenes\['z'\]\[1\] must .* got nan"),
-        ({"a": 1, "b": 1, "z": [2, 0.5]}, ValueError, r"^scenes\['z'\]\[1\] must be at least"),
-        ({"a": 1, "b": 1, "inertia": math.nan}, ValueError, r"^scenes\['inertia'\] must"),
-        ({"a": [1, 1e9], "b": 1}, ValueError, r"^scenes\[1\]: a/b must be between"),
-        ({"a": [1, 2], "b": [1, 2, 3]}, ValueError, r"must broadcast .*scenes\['b'\] \(3,\)"),
-        ({"a": "1", "b": 1}, TypeError, r"^scenes\['a'\] must be a number"),
-        ({"a": None, "b": 1}, TypeError, r"^scenes\['a'\] must be a number"),
-        ({"a": 1}, TypeError, r"^scenes must have 'b'"),
-        ({}, TypeError, r"^scenes must have 'a'"),
-        ({"a": 1, "b": 1, "omga": 2}, TypeError, r"^scenes must have names of a, b, .*'omga'"),
-        ({"a": 1, "b": 1, "impulse": 3}, TypeError, r"^scenes\['impulse'\] must be an Impulse"),
-        ({"a": 1, "b": 1, "impulse": Impulse(0, -1, dx=[0, 4])}, ValueError,
-         r"^scenes\[1\]: impulse must be along a line that meets"),
-        ([scenes.rocking] * 3 + ["rocking"], TypeError, r"^scenes\[3\] must be a Scene, got 'r"),
-        (scenes.rocking, TypeError, r"^scenes must be Scenes, as an iterable, or a mapping"),
-        (7, TypeError, r"^scenes must be Scenes"),
-        (np.array("1"), TypeError, r"^scenes must be Scenes"),
-    ],
-)  # fmt: skip
-def test_wrong_scenes(scenes: Any, error: type[Exception], said: str) -> None:
-    with pytest.raises(error, match=said):
-        simulate_many(scenes, 1.0)
-
-
 def test_a_wrong_number_far_behind_is_refused_before_anything_is_computed() -> None:
     theta = np.zeros(200_000)
     theta[170_001] = math.nan
@@ -150,35 +117,6 @@ def test_no_scenes(nothing: Any) -> None:
 
 
 # ------------------------------------------------------------------------------- other arguments
-
-
-@pytest.mark.parametrize(
-    ("wrong", "error", "said"),
-    [
-        ({"t": -1.0}, ValueError, "^t must not be negative"),
-        ({"rtol": -1.0}, ValueError, "^rtol must"),
-        ({"model": "roling"}, ValueError, "^model must be one of"),
-        ({"method": "rk4"}, ValueError, "^step must"),
-        ({"raise_on_failure": 1}, TypeError, "^raise_on_failure must be True or False"),
-        ({"progress": "yes"}, TypeError, "^progress must be True, False or a function"),
-        ({"out": 3}, TypeError, "^out must be a path"),
-        ({"workers": 0}, ValueError, "^workers must be an int from 1 to 1024"),
-        ({"workers": 2.0}, TypeError, "^workers must be a whole number, or an executor"),
-        ({"workers": True}, TypeError, "^workers must be a whole number, or an executor"),
-        ({"workers": "2"}, TypeError, "^workers must be a whole number, or an executor"),
-        ({"workers": None}, TypeError, "^workers must be a whole number, or an executor"),
-        ({"workers": ThreadPoolExecutor}, TypeError, "^workers must be .* an executor"),
-    ],
-)
-def test_wrong_arguments(wrong: dict[str, Any], error: type[Exception], said: str) -> None:
-    """Before a scene is looked at: what is wrong for all is not said of each."""
-    with pytest.raises(error, match=said):
-        simulate_many([], **({"t": 1.0} | wrong))
-    if "workers" in wrong:
-        for call in (rl.flow, rl.classify):
-            arguments = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0} | wrong
-            with pytest.raises(error, match=said):
-                call(1.0, **arguments) if call is rl.flow else call(**arguments)
 
 
 def test_arguments_are_those_of_simulate() -> None:

@@ -25,104 +25,7 @@ COORDINATES = simulate(scenes.rolling, 0.1, model="multipliers")
 SETTINGS = COORDINATES.settings.core
 
 
-def numbered(count: int, wrong: int) -> list[Any]:
-    """Arguments of two numbers each, but for one of three."""
-    return [THREE if i == wrong else TWO for i in range(count)]
-
-
 # ------------------------------------------------------------------------- sizes of arrays
-
-CALLS: dict[str, tuple[Callable[[], Any], str]] = {
-    "detail of rolling, omega": (
-        lambda: _core.rolling_detail(SCENE, THREE, TWO, THREE),
-        r"^omega must have shape \(3,\), got \(2,\)$",
-    ),
-    "detail of rolling, x": (
-        lambda: _core.rolling_detail(SCENE, TWO, TWO, THREE),
-        r"^x must have shape \(2,\), got \(3,\)$",
-    ),
-    "forces of rolling": (
-        lambda: _core.rolling_contact(SCENE, THREE, TWO),
-        r"^omega must have shape \(3,\), got \(2,\)$",
-    ),
-    "equation of rolling": (
-        lambda: _core.rolling_equation(SCENE, THREE, TWO),
-        r"^omega must have shape \(3,\), got \(2,\)$",
-    ),
-    "detail of contact": (
-        lambda: _core.contact_detail(SCENE, *numbered(8, 6)),
-        r"^normal_force must have shape \(2,\), got \(3,\)$",
-    ),
-    "detail of multipliers": (
-        lambda: _core.multiplier_detail(SCENE, SETTINGS, FIVES, FIVES[:1]),
-        r"^q_dot must have shape \(2, 5\), got \(1, 5\)$",
-    ),
-    "columns of multipliers": (
-        lambda: _core.multiplier_detail(SCENE, SETTINGS, FIVES[:, :4], FIVES[:, :4]),
-        r"^q must have shape \(n, 5\), got \(2, 4\)$",
-    ),
-    "start in coordinates": (
-        lambda: _core.simulate_coordinates(SCENE, FIVES, FIVES, SETTINGS, 1.0),
-        r"^q must have shape \(1, 5\), got \(2, 5\)$",
-    ),
-    "projection": (
-        lambda: _core.project(SCENE, FIVES[:1], FIVES),
-        r"^q_dot must have shape \(1, 5\), got \(2, 5\)$",
-    ),
-    "constraints": (
-        lambda: _core.constraints(FIVES, TWO, 2.0, 1.0),
-        r"^q_dot must have shape \(2, 5\), got \(2,\)$",
-    ),
-    "rows of constraints": (
-        lambda: _core.constraint_system(FIVES[0], FIVES, 2.0, 1.0),
-        r"^q must have shape \(n, 5\), got \(5,\)$",
-    ),
-    "kinematics": (
-        lambda: _core.kinematics(2, TWO, THREE, 2.0, 1.0),
-        r"^omega must have shape \(2,\), got \(3,\)$",
-    ),
-    "geometry": (
-        lambda: _core.support(3, [TWO, np.ones(1), np.ones(1)]),
-        r"^theta must have shape \(3,\), got \(2,\)$",
-    ),
-    "flow": (
-        lambda: _core.flow_array(2, numbered(7, 4), 1),
-        r"^omega must have shape \(2,\), got \(3,\)$",
-    ),
-    "flow of many times": (
-        lambda: _core.flow_times(FIVES, 2.0, 1.0, 0.1, 1.0, 9.81, None, 1),
-        r"^t must have shape \(10,\), got \(2, 5\)$",
-    ),
-    "classify": (
-        lambda: _core.classify_array(2, numbered(7, 6), 1),
-        r"^gyration2 must have shape \(2,\), got \(3,\)$",
-    ),
-    "collisions": (
-        lambda: _core.collide_arrays(2, numbered(9, 8)),
-        r"^restitution must have shape \(2,\), got \(3,\)$",
-    ),
-    "samples": (
-        lambda: TIMES.sample_rolling(FIVES),
-        r"^t must have shape \(10,\), got \(2, 5\)$",
-    ),
-}
-
-
-@pytest.mark.parametrize(("call", "message"), CALLS.values(), ids=CALLS.keys())
-def test_arrays_of_another_size_are_refused_by_name(call: Callable[[], Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        call()
-
-
-@pytest.mark.parametrize("t", [-1e-9, 1.0 + 1e-9, np.nan, np.inf])
-def test_times_that_a_solution_does_not_know_are_refused(t: float) -> None:
-    for sample in (
-        TIMES.sample_rolling,
-        SLIDES.sample_contact,
-        COORDINATES._solution.sample_coordinates,
-    ):
-        with pytest.raises(ValueError, match=r"^t must be within \[0, "):
-            sample(np.array([0.0, t]))
 
 
 def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
@@ -140,12 +43,6 @@ def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
 
 
 # --------------------------------------------------------------------------------- threads
-
-
-@pytest.mark.parametrize("workers", [0, -2, 1025, 2**40])
-def test_no_more_threads_than_a_machine_may_have(workers: int) -> None:
-    with pytest.raises(ValueError, match=rf"^workers must be .* 1 to 1024.*, got {workers}$"):
-        flow(1.0, a=2.0, b=1.0, theta=0.0, omega=1.0, workers=workers)
 
 
 def test_threads_that_cannot_start_are_not_missed() -> None:

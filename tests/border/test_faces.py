@@ -239,12 +239,6 @@ def test_events_as_a_dataframe() -> None:
     assert none["t"].dtype == frame["t"].dtype == float
 
 
-def test_without_pandas_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "pandas", None)
-    with pytest.raises(ImportError, match=r"to_dataframe needs pandas: pip install"):
-        Events().to_dataframe()
-
-
 def test_infinite_friction_is_not_said_to_fail() -> None:
     """The slip before a lift-off is the limit of infinite friction."""
     events = rl.simulate(rl.Scene(2.0, 1.0, omega=5.2), 1.0).events

@@ -727,22 +727,6 @@ def test_max_steps_stops_where_the_steps_ended() -> None:
     assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == steps - 1
 
 
-BAD = {"max_events": (0, -3), "rest_speed": (0.0, -1e-3, math.nan, math.inf, 0.04)}
-
-
-@pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
-def test_bad_numbers_are_refused_by_name(name: str, value: float) -> None:
-    given: dict[str, Any] = {name: value}
-    with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value}"):
-        simulate(rl.scenes.drop, 1.0, **given)
-
-
-@pytest.mark.parametrize("scene", [rl.scenes.rolling, rl.scenes.slip, rl.scenes.drop])
-def test_no_more_turns_than_a_double_knows(scene: Scene) -> None:
-    with pytest.raises(ValueError, match=r"^t must be at most 1e15 half turns .*, got 1e\+25$"):
-        simulate(scene, 1e25, model="contact")
-
-
 # ----------------------------------------------------------------------------- the start
 
 

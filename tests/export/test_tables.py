@@ -1,7 +1,6 @@
 """Tables of a trajectory: the same numbers, in the units they say, in files and back."""
 
 import dataclasses
-import sys
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -181,15 +180,3 @@ def test_a_trajectory_without_samples_makes_empty_tables() -> None:
     assert len(frame) == found.sizes["t"] == 0
     assert list(frame.columns) == [each.name for each in (*QUANTITIES, *MULTIPLIERS, MODE)]
     assert scene_in(found.attrs) == jams
-
-
-@pytest.mark.parametrize(
-    ("package", "method"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")]
-)
-def test_a_missing_package_names_the_extra(
-    package: str, method: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    motion = rl.simulate(rl.scenes.rocking, 1.0)
-    monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ImportError, match=rf"{method} needs {package}: .*rolling_ellipse\[data\]"):
-        getattr(motion, method)()

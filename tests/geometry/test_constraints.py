@@ -296,19 +296,3 @@ def test_lists_are_welcome_and_left_alone() -> None:
     found, again = constraints(q, q_dot, a=2.0, b=1.0), constraints(*arrays, a=2.0, b=1.0)
     assert np.array_equal(found.velocity, again.velocity)
     assert np.array_equal(arrays[0], q) and np.array_equal(arrays[1], q_dot)
-
-
-@pytest.mark.parametrize("length", [0, 4, 6, 10])
-def test_a_wrong_length_is_refused_by_name(length: int) -> None:
-    good = np.zeros(5)
-    with pytest.raises(ValueError, match=rf"\bq\b.*\b{length}\b"):
-        constraints(np.zeros(length), good, a=2.0, b=1.0)
-    with pytest.raises(ValueError, match=rf"\bq_dot\b.*\b{length}\b"):
-        constraints(good, np.zeros((3, length)), a=2.0, b=1.0)
-
-
-def test_shapes_that_do_not_broadcast_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"q_dot"):
-        constraints(np.zeros((3, 5)), np.zeros((4, 5)), a=2.0, b=1.0)
-    with pytest.raises(ValueError, match=r"omega"):
-        kinematics(np.zeros(3), np.zeros(4), a=2.0, b=1.0)

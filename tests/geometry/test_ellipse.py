@@ -277,13 +277,3 @@ def test_inputs_are_not_modified(function: Callable[..., object]) -> None:
     before = theta.copy()
     function(theta, a=2.0, b=1.0)
     assert np.array_equal(theta, before)
-
-
-@pytest.mark.parametrize("function", FUNCTIONS)
-@pytest.mark.parametrize("name", ["a", "b"])
-@pytest.mark.parametrize("value", [0.0, -1.0, math.inf, math.nan])
-def test_bad_axes_are_refused_by_name(
-    function: Callable[..., object], name: str, value: float
-) -> None:
-    with pytest.raises(ValueError, match=rf"\b{name}\b.*{value}"):
-        function(0.3, **{"a": 2.0, "b": 1.0, name: value})

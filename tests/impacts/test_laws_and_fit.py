@@ -3,7 +3,6 @@ pair of coefficients to a series of them."""
 
 import itertools
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -337,85 +336,6 @@ def test_what_sticks_bounds_friction_from_below() -> None:
 
 
 # --------------------------------------------------------------------------------- bad input
-
-GOOD: dict[str, Any] = {
-    "theta": 0.3, "x_dot": 1.0, "z_dot": -1.0, "omega": 0.5, "a": 0.7, "b": 0.3, "friction": 0.3,
-    "restitution": 0.5, "gyration2": 0.1,
-}  # fmt: skip
-
-
-BAD: dict[str, tuple[float, ...]] = {
-    "theta": (math.nan,), "x_dot": (math.inf,), "z_dot": (math.nan,), "omega": (-math.inf,),
-    "a": (-1.0,), "a/b": (400.0,), "b": (0.0,), "gyration2": (0.0,), "friction": (-0.1, math.nan),
-    "restitution": (1.1, -0.1),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
-def test_numbers_out_of_range(law: Any, name: str, value: float) -> None:
-    argument = name.partition("/")[0]
-    for wrong in (value, [GOOD[argument], value]):  # alone, and as one of several
-        with pytest.raises(ValueError, match=f"^{name} must be"):
-            impacts.collide(**GOOD | {argument: wrong}, law=law)
-
-
-stronge = impacts.kinetic_speed
-
-
-def collide(**changed: Any) -> Any:
-    return impacts.collide(**(GOOD | changed))
-
-
-def fit(before: Any, then: Any, **changed: Any) -> Any:
-    return impacts.fit(before, then, **(BODY | changed))
-
-
-def test_names_and_kinds() -> None:
-    before_after = series("stronge", 0.0, 8)
-    lengths = {"theta": [0.1, 0.2], "omega": [1.0, 2.0, 3.0]}
-    for said, call in (
-        ("law must be one of 'stronge', 'poisson', 'newton', got", lambda: collide(law="kane")),
-        (r".*must broadcast together, .*theta \(2,\), .*omega \(3,\)", lambda: collide(**lengths)),
-        ("gyration2 must be a positive", lambda: stronge(1.0, 2.0, 3.0, gyration2=-1.0)),
-        (
-            "z_dot must be finite, got nan",
-            lambda: stronge(1.0, [2.0, math.nan], 3.0, gyration2=1.0),
-        ),
-        ("minimise must be one of 'median', 'rms'", lambda: fit(*before_after, minimise="mean")),
-        ("law must be one of .*, got 'kane'", lambda: fit(*before_after, law="kane")),
-        ("b must be a positive finite length", lambda: fit(*before_after, b=-0.3)),
-        ("gyration2 must be a positive finite area", lambda: fit(*before_after, gyration2=0.0)),
-    ):
-        with pytest.raises(ValueError, match=f"^{said}"):
-            call()
-    with pytest.raises(TypeError, match="omega must be a number or an array of numbers, got 'x'"):
-        collide(omega="x")
-
-
-def changed(of: np.ndarray, row: int, value: float) -> np.ndarray:
-    copy = of.copy()
-    copy[row, 3] = value
-    return copy
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (lambda b, a: (b[:3], a), r"before must be 4 columns .*, got shape \(3, 8\)"),
-        (lambda b, a: (b, a[0]), r"after must be 3 columns .*, got shape \(8,\)"),
-        (lambda b, a: (b[:, :0], a[:, :0]), r"before must be 4 columns .*, got shape \(4, 0\)"),
-        (lambda b, a: (b, a[:, :5]), "after must have as many impacts as before, 8, got 5"),
-        (lambda b, a: (changed(b, 1, math.nan), a), "before must be finite, got nan"),
-        (lambda b, a: (b, changed(a, 2, math.inf)), "after must be finite, got inf"),
-        (lambda b, a: (changed(b, 2, 50.0), a), "before must be moving into the ground .*, got 49"),
-    ],
-)
-def test_series_that_cannot_be_fitted(
-    change: Callable[[Any, Any], tuple[Any, Any]], message: str
-) -> None:
-    with pytest.raises(ValueError, match=f"^{message}"):
-        impacts.fit(*change(*series("stronge", 0.0, 8)), **BODY)
 
 
 @pytest.mark.filterwarnings("error")

@@ -596,29 +596,6 @@ def test_tolerances_much_too_loose_give_no_nonsense_numbers(name: str, tolerance
 
 # ---------------------------------------------------------------------------------- bad input
 
-STEPPED: dict[str, Any] = {"method": "gauss", "step": 0.1}
-BAD: list[tuple[str, list[Any], dict[str, Any]]] = [
-    ("step", [None, 0.0, -0.1, math.nan, math.inf, 2.5, 1e-300], STEPPED),
-    ("step", [0.1], {"method": "exact"}),
-    ("step", [0.1], {"method": "auto"}),
-    ("rtol", [-1e-3, math.nan, math.inf], {"method": "dop853"}),
-    ("atol", [-1e-9, math.nan, math.inf], {"method": "dopri5"}),
-    ("rtol and atol", [0.0], {"method": "dopri5", "atol": 0.0}),
-    ("stages", [1, 5], STEPPED),
-    ("stages", [4], {"method": "rk4", "step": 0.1}),
-    ("stages", [2], {"method": "exact"}),
-    ("max_steps", [0, -3, 2**40], {"method": "dop853"}),
-    ("method", ["heun", "DOP853", None], {}),
-]
-CASES = [(name, value, how) for name, values, how in BAD for value in values]
-
-
-@pytest.mark.parametrize(("name", "value", "how"), CASES)
-def test_wrong_settings_are_refused_by_name(name: str, value: Any, how: dict[str, Any]) -> None:
-    how = how | {name.partition(" ")[0]: value}
-    with pytest.raises(ValueError, match=f"^{name} must"):
-        rl.simulate(rl.scenes.rolling, 2.0, model="rolling", **how)
-
 
 def test_auto_is_exact_on_level_ground_and_on_slopes() -> None:
     assert rl.simulate(rl.scenes.rolling, 1.0).method == "exact"

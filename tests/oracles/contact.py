@@ -115,6 +115,11 @@ def kinetic_energy(scene: Scene, state: InitialState) -> float:
     return 0.5 * (linear + inertia * state.omega**2)
 
 
+def energy(scene: Scene, state: InitialState) -> float:
+    height = state.z * math.cos(scene.slope) - state.x * math.sin(scene.slope)
+    return kinetic_energy(scene, state) + scene.mass * scene.gravity * height
+
+
 def random_scenes(count: int, seed: int, **given: Any) -> Iterator[Scene]:
     """In the air, sliding or rolling, lying or standing, a tenth of them circles."""
     rng = np.random.default_rng(seed)

@@ -120,12 +120,6 @@ def test_impulses_broadcast_and_replace_that_of_the_scene() -> None:
         assert isinstance(empty, np.ndarray) and empty.shape == (0,) and empty.dtype == np.int8
 
 
-def test_a_blow_too_strong_is_told_by_its_number() -> None:
-    light = Scene(2.0, 1.0, mass=1e-20)
-    with pytest.raises(ValueError, match=r"^impulse must be weak enough .*, by blow 1$"):
-        outcome(light, Impulse([0.0, 1e40], dz=1.0))
-
-
 # ------------------------------------------------------------------------------- required friction
 
 
@@ -260,36 +254,6 @@ def test_a_harder_press_may_need_less_friction() -> None:
     assert outcome(after) is Outcome.ROLLS_OVER
     assert required_friction(after) == pytest.approx(0.055, rel=1e-5)
     assert 1.1 < after.initial_state.omega / rl.thresholds(1.1, 1.0).roll_over_speed < 2
-
-
-@pytest.mark.parametrize(
-    ("scene", "distance", "omega", "reason"),
-    [
-        (replace(REPORT, friction=0.3), 1.5, None, "slip.*needs? 0.666667|would need 0.666667"),
-        (replace(REPORT, friction=0.3), 1.5, 1.0, "omega must be one.*would need 0.666667"),
-        (REPORT, 0.0, None, "distance must not be right over the contact"),
-        (REPORT, 0.0, 1.0, "distance must not be right over the contact"),
-        (REPORT, 1e-300, None, "distance must not be right over the contact"),
-        (REPORT, 1e-300, 1.0, "distance must not be right over the contact"),
-        (REPORT, 2.01, None, r"distance must be over the body, at most 2.0 \[m\]"),
-        (REPORT, math.inf, None, "distance must be over the body"),
-        (REPORT, 1.5, -1.0, "distance must be on the other side.*pull"),
-        (REPORT, 1.5, 0.0, "omega must differ"),
-        (REPORT, math.nan, None, "distance must be over the body"),
-        (REPORT, 1.5, math.nan, "omega must be a finite"),
-        (rl.scenes.drop, 1.0, None, "scene must touch the ground"),
-        (rl.scenes.rolling, 1.0, None, "scene must not roll over without"),
-        (Scene(20.0, 1.0), 5.0, None, "distance must be one.*N would have to pull"),
-        (Scene(2.0, 1.0, slope=0.1), 1.0, None, "omega must be given on a slope"),
-        (Scene(1.0, 1.0), 0.5, None, "omega must be given for a circle"),
-        (Scene(2.0, 1.0, theta=1.2), 1.1, 40.0, "omega must be one.*flies"),
-    ],
-)
-def test_blow_to_says_why_not(
-    scene: Scene, distance: float, omega: float | None, reason: str
-) -> None:
-    with pytest.raises(ValueError, match=reason):
-        blow_to(scene, distance, omega=omega)
 
 
 def test_blow_to_where_presses_are_as_large_as_they_may_be() -> None:

@@ -229,35 +229,3 @@ def test_workers_and_inputs() -> None:
     assert isinstance(one, np.ndarray) and one.shape == (20_000,)
     assert np.array_equal(one, two) and np.array_equal(one, every)
     assert all(np.array_equal(was, field) for was, field in zip(copies, big, strict=True))
-
-
-GOOD: dict[str, Any] = {"a": 2.0, "b": 1.0, "omega": 3.0}
-NAN, INF = math.nan, math.inf
-BAD = {
-    "a": (0.0, -1.0, NAN, INF), "b": (0.0, NAN), "omega": (NAN, -INF), "theta": (NAN, INF),
-    "friction": (-1.0, NAN), "gravity": (0.0, -9.81, INF), "gyration2": (-1.0, 0.0, NAN),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("name", "value"), [(n, v) for n, values in BAD.items() for v in values])
-def test_bad_numbers_are_refused_by_name(name: str, value: float) -> None:
-    """Alone, and as the last of an array of good ones; in threads too."""
-    with pytest.raises(ValueError, match=rf"^{name} must be .*, got {value}"):
-        classify(**(GOOD | {name: value}))
-    usual = {"theta": 0.0, "friction": 0.5, "gravity": 9.81, "gyration2": 1.25} | GOOD
-    with pytest.raises(ValueError, match=rf"^{name}\[999\] must be"):
-        classify(**(GOOD | {name: [usual[name]] * 999 + [value], "workers": 2}))
-
-
-def test_other_bad_arguments() -> None:
-    wrongs: list[tuple[type[Exception], str, dict[str, Any]]] = [
-        (ValueError, "a/b must be between", {"a": 1001.0}),
-        (ValueError, r".*broadcast.*a \(2,\), b \(3,\)", {"a": [1.0, 2.0], "b": [1.0, 2.0, 3.0]}),
-        (ValueError, "workers", {"workers": 0}),
-        *((TypeError, f"{name} must be", {name: "1.0"}) for name in BAD),
-    ]
-    for refusal, said, wrong in wrongs:
-        with pytest.raises(refusal, match=f"^{said}"):
-            classify(**(GOOD | wrong))
-    with pytest.raises(TypeError):
-        classify(2.0, 1.0, 3.0)  # type: ignore[call-arg]

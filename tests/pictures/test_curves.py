@@ -28,20 +28,6 @@ OVER_TIME = (rl.plot_forces, rl.plot_energy, rl.plot_constraints)
 # ------------------------------------------------------------------------------------ every picture
 
 
-def test_nothing_to_draw_is_refused(picture: Callable[..., Any], report: rl.Trajectory) -> None:
-    none = np.empty(0)
-    empty = dataclasses.replace(report, t=none, theta=none, omega=none, x=none)
-    for wrong in (empty, [report, empty]):
-        with pytest.raises(ValueError, match="every trajectory must have samples"):
-            picture(wrong, ax=new_axes())
-    with pytest.raises(ValueError, match=r"trajectories must .*, got none"):
-        picture([], ax=new_axes())
-    with pytest.raises(TypeError, match=r"trajectories must .*, got 3"):
-        picture(3, ax=new_axes())
-    with pytest.raises(TypeError, match=r"trajectories must .*, got 'b'"):
-        picture([report, "b"], ax=new_axes())
-
-
 def test_every_motion_has_its_name(
     picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:

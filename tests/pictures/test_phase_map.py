@@ -282,34 +282,3 @@ def test_without_axes_it_opens_a_figure() -> None:
     assert shown.ax.figure is plt.gcf()
     assert shown.ax.get_xlabel() == "a/b   (at μ = ∞)"
     plt.close(figure_of(shown.ax))
-
-
-# ------------------------------------------------------------------------------- refusals
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"y": "aspect"}, r"x and y must be two of .*, got 'aspect' and 'aspect'"),
-        ({"x": "energy", "y": "speed"}, r"x and y must be two of .*, got 'energy' and 'speed'"),
-        ({"speed": 3}, r"speed must not be given where x = 'aspect' and y = 'energy', got 3"),
-        ({"friction": math.nan}, r"friction must be 0 or more, inf allowed, got nan"),
-        ({"x": "friction", "aspect": 1}, r"aspect must be above 1, up to 1000, got 1.0"),
-        ({"x": "friction", "aspect": 1001}, r"aspect must be above 1, up to 1000, got 1001.0"),
-        ({"y": "friction", "energy": math.inf}, r"energy must be 0 or more, finite, got inf"),
-        ({"b": 1.4e166, "workers": 1}, r"b must be a length .*, got 1.4e\+166"),
-        ({"x_range": (0.9, 2)}, r"x_range must be two ascending .* not below 1 .*1000, got \(0.9"),
-        ({"x_range": (2, 2)}, r"x_range must be two ascending finite numbers, .*, got \(2, 2\)"),
-        ({"y_range": (0, math.inf)}, r"y_range must be two ascending finite .*, got \(0, inf\)"),
-        ({"y_range": (0, 1, 2)}, r"y_range must be two ascending finite numbers, .*\(0, 1, 2\)"),
-        ({"resolution": 2.5}, r"resolution must be an int from 1 to 10000, got 2.5"),
-        ({"resolution": True}, r"resolution must be an int from 1 to 10000, got True"),
-        ({"workers": 0}, r"workers must be an int from 1 to 1024, or -1 for all cores, got 0"),
-    ],
-)
-def test_refusals(options: dict[str, Any], message: str) -> None:
-    """By name, and before anything is drawn."""
-    ax = new_axes()
-    with pytest.raises(ValueError, match=message):
-        plot_phase_map(**{"ax": ax, "resolution": COARSE, **options})
-    assert not ax.collections and not ax.lines

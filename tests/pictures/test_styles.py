@@ -139,14 +139,6 @@ def test_colors_are_those_of_the_motions(
     assert {to_rgb(line.get_color()) for line in curves_of(one)} == {to_rgb("red")}
 
 
-@pytest.mark.parametrize("wrong", ["red", ["red"], ["red", "blue", "no colour"], 3, [1, 2, 3]])
-def test_colors_must_be_one_for_each(
-    picture: Callable[..., Any], several: list[rl.Trajectory], wrong: Any
-) -> None:
-    with pytest.raises(ValueError, match="colors must be a sequence of 3 matplotlib colours"):
-        picture(several, ax=new_axes(), colors=wrong)
-
-
 def test_properties_of_lines_are_taken(
     picture: Callable[..., Any], several: list[rl.Trajectory]
 ) -> None:

@@ -113,10 +113,3 @@ def test_pages(tmp_path: Path) -> None:
         explorer.to_html(42)  # type: ignore[arg-type]
     with pytest.raises(FileNotFoundError):
         explorer.to_html(tmp_path / "no" / "x.html")
-
-
-@pytest.mark.parametrize("t_end", [0.0, -1.0, math.nan, math.inf, 18.1, 1e9])
-def test_times_that_are_no_time_to_look_at(t_end: float) -> None:
-    """40 sqrt(2 m / 9.81 m/s²) = 18.06 s."""
-    with pytest.raises(ValueError, match=r"^t_end must be (positive and finite|at most 18\.06)"):
-        rl.explore(rl.scenes.report, t_end=t_end)

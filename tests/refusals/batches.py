@@ -13,7 +13,8 @@ import rolling_ellipse as rl
 from rolling_ellipse import Scene, scenes
 from rolling_ellipse._verbs.batches.folders import _chunks, _digest_of_all, _name
 
-from refusals import Row
+from refusals import Row, wrong
+from refusals.functions import WORKERS
 
 SCENE = Scene(2.0, 1.0, omega=1.0)
 TIMES = [0.0, 1.5]
@@ -140,15 +141,21 @@ def renamed(folder: Path) -> Any:
 
 REFUSALS: list[Row] = [
     # asked
-    ("scenes", many(1)),
-    ("scenes[0]", many([1])),
-    ("scenes", many({"c": 1.0})),
-    ("scenes", many({"a": 1.0})),
-    ("scenes['impulse']", many({"a": 2.0, "b": 1.0, "impulse": 1})),
-    ("scenes['z'][1]", many({**MANY, "z": [2.0, math.nan]})),
-    ("scenes['a'][1]", many({"a": [2.0, -1.0], "b": 1.0})),
-    ("scenes[1]", many({"a": [2.0, 1e5], "b": 1.0})),
-    ("progress", many([SCENE], progress=1)),
+    *(("scenes", many(asked)) for asked in (
+        1, scenes.rocking, np.array("1"), {}, {"a": 1.0}, {"a": 1, "b": 1, "omga": 2})),
+    *(("scenes" + place, many({"a": 1.0, "b": 1.0, **asked})) for place, asked in (
+        ("['a']", {"a": "1"}), ("['a']", {"a": None}), ("['a']", {"a": 0}),
+        ("['a'][3]", {"a": [1, 2, 3, -1.0]}),
+        ("['b'][1, 0]", {"b": [[1], [math.nan]], "theta": [0, 1, 2]}),
+        ("['z'][1]", {"z": [2.0, math.nan]}), ("['z'][1]", {"z": [2, 0.5]}),
+        ("['inertia']", {"inertia": math.nan}), ("['impulse']", {"impulse": 1}),
+        ("[1]", {"a": [2.0, 1e5]}), ("[1]", {"impulse": rl.Impulse(0, -1, dx=[0, 4])}))),
+    ("scenes[0]", many([1])), ("scenes[3]", many([SCENE] * 3 + ["rocking"])),
+    ("arguments", many({"a": [1, 2], "b": [1, 2, 3]})),
+    *wrong(rl.simulate_many, {"scenes": [], "t": 1.0},
+           t=[-1.0], rtol=[-1.0], model=["roling"], raise_on_failure=[1], progress=[1, "yes"],
+           out=[3], workers=WORKERS),
+    ("step", many([], method="rk4")),
     ("out", other_folder),
     ("out", lambda folder: again(folder, rtol=1e-3)),
     ("out", lambda folder: again(folder, t=[0.0, 1.0])),

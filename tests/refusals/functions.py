@@ -1,12 +1,13 @@
 """Refusals of numbers and arrays, and of the functions that are asked of scenes."""
 
+from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal
 from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
 from oracles.quantities import Pint
-from rolling_ellipse import Impulse, Scene, _core, geometry, impacts, scenes
+from rolling_ellipse import Impulse, Scene, geometry, impacts, scenes
 
 from refusals import INF, NAN, NOT_FINITE, NOT_POSITIVE, Row, wrong
 
@@ -16,10 +17,14 @@ AT_REST = Scene(2.0, 1.0)
 Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
 AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
 FLOW: dict[str, Any] = {"t": 1.0, **AXES, "theta": 0.2, "omega": 1.0}
-HIT: dict[str, Any] = {
-    "x_dot": 0.0, "z_dot": -1.0, "omega": 0.0, "friction": 0.3, "restitution": 0.5, **AXES,
+TURN: dict[str, Any] = {
+    **AXES, "theta": 0.0, "omega": 1.0, "friction": 0.5, "gravity": 9.81, "gyration2": 1.25,
 }  # fmt: skip
-SEVEN = [np.array([value]) for value in (1.0, 2.0, 1.0, 0.2, 1.0, 9.81, 1.25)]  # of the core
+WORKERS = [0, -2, 1025, 2**40, "x", 2.0, 1.5, True, None, ThreadPoolExecutor]
+HIT: dict[str, Any] = {
+    "theta": 0.3, "x_dot": 0.0, "z_dot": -1.0, "omega": 0.0, "friction": 0.3, "restitution": 0.5,
+    **AXES,
+}  # fmt: skip
 #: Four columns of what is measured before an impact, three after.
 BEFORE: Any = np.array([[0.0], [0.0], [-1.0], [0.0]])
 AFTER: Any = np.zeros((3, 1))
@@ -41,40 +46,63 @@ REFUSALS: list[Row] = [
            10**400, np.array([np.longdouble("1e400")]), [1.0, INF]],
         a=NOT_POSITIVE, b=NOT_POSITIVE, gravity=NOT_POSITIVE,
         gyration2=[*NOT_POSITIVE, 1e40, 3.6e-6, 4.4e6],
-        theta=[*NOT_FINITE, [1.0, NAN]], omega=[*NOT_FINITE, [1.0, NAN]], workers=[0, -2, "x"],
+        theta=[*NOT_FINITE, [1.0, NAN]], omega=[*NOT_FINITE, [1.0, NAN]], workers=WORKERS,
     ),
+    *wrong(rl.classify, TURN, a=NOT_POSITIVE, b=NOT_POSITIVE, gravity=NOT_POSITIVE,
+           gyration2=NOT_POSITIVE, theta=NOT_FINITE, omega=NOT_FINITE, friction=[-1.0, NAN],
+           workers=WORKERS),
+    *((f"{name}[999]", lambda _, name=name, value=value: rl.classify(
+        **{**TURN, name: [TURN[name]] * 999 + [value], "workers": 2}))
+      for name, value in (*dict.fromkeys(TURN, NAN).items(), ("a", -1.0), ("friction", -1.0))),
+    ("a/b", lambda _: rl.classify(a=1001.0, b=1.0, omega=0.0)),
     *(("a[1]", lambda _, value=value: rl.flow(**{**FLOW, "a": [2.0, value]}))
       for value in NOT_POSITIVE),
     ("a/b", lambda _: rl.flow(**{**FLOW, "a": 1001.0})),
-    ("arguments", lambda _: rl.flow(**{**FLOW, "t": [1.0, 2.0], "a": [2.0, 2.0, 2.0]})),
+    *(("arguments", lambda _, call=call: call([1.0, 2.0], [2.0, 2.0, 2.0])) for call in (
+        lambda two, three: rl.flow(**{**FLOW, "t": two, "a": three}),
+        lambda two, three: rl.classify(**{**TURN, "a": two, "b": three}),
+        lambda two, three: rl.kinematics(two, three, **AXES),
+        lambda two, three: rl.constraints([Q] * 2, [Q_DOT] * 3, **AXES),
+        lambda two, three: impacts.collide(**{**HIT, "theta": two, "omega": three}))),
     *wrong(rl.thresholds, AXES, a=NOT_POSITIVE, b=NOT_POSITIVE, gravity=NOT_POSITIVE,
            gyration2=NOT_POSITIVE, friction=[-0.1, -INF, NAN]),
     ("a/b", lambda _: rl.thresholds(1001.0, 1.0)),
     *wrong(geometry.support, {"theta": 0.3, **AXES}, theta=[NAN, np.zeros((1,) * 33), [DEEP]]),
+    *(row for name in geometry.__all__ for row in wrong(
+        getattr(geometry, name), {"theta": 0.3, **AXES}, a=NOT_POSITIVE, b=NOT_POSITIVE)),
     *wrong(rl.kinematics, {"theta": 0.3, "omega": 1.0, **AXES},
            theta=NOT_FINITE, omega=NOT_FINITE, a=NOT_POSITIVE, b=NOT_POSITIVE),
     *wrong(rl.constraints, {"q": Q, "q_dot": Q_DOT, **AXES},
-           q=[[1.0], [NAN] * 5], a=NOT_POSITIVE, b=NOT_POSITIVE),
+           q=[[1.0], [NAN] * 5, *map(np.zeros, (0, 4, 6, 10))], a=NOT_POSITIVE, b=NOT_POSITIVE,
+           q_dot=[np.zeros((3, length)) for length in (0, 4, 6, 10)]),
     # questions to scenes
     *wrong(rl.certify, {}, scene=[None, 1, "report", (2.0, 1.0), [1.0] * 10**5, "x" * 10**5]),
     *wrong(rl.period, {}, scene=[None, 1, AIR, scenes.slope]),
     *wrong(rl.outcome, {"scene": ROLLING}, impulse=[1, Impulse.press(1.0, [0.0, 5.0])]),
-    ("scenes", lambda _: _core.first_refused(np.ones((2, 2)), False)),
-    ("level", lambda _: _core.flow_array(1, SEVEN, 1, "x")),
-    ("scene", press(AIR, distance=1.0)),
-    ("scene", press(Scene(2.0, 1.0, omega=3.2), distance=1.0)),
-    ("distance", press(ROLLING, distance=3.0)),
-    ("distance", press(AT_REST, distance=-1.0, omega=1.0)),
-    ("distance", press(AT_REST, distance=0.0, omega=1.0)),
+    *wrong(rl.outcome, {}, scene=["flat"]),
+    ("impulse", lambda _: rl.outcome(Scene(2.0, 1.0, mass=1e-20), Impulse([0.0, 1e40], dz=1.0))),
+    *wrong(rl.blow_to, {"distance": 1.0}, scene=[None, AIR, scenes.drop, scenes.rolling]),
+    *wrong(rl.blow_to, {"scene": ROLLING}, distance=["1", 3.0, INF, NAN]),
+    *wrong(rl.blow_to, {"scene": AT_REST, "distance": 1.0}, omega=["1", 0.0, NAN]),
+    *wrong(rl.blow_to, {"scene": AT_REST, "omega": 1.0}, distance=[-1.0, 0.0, 1e-300]),
+    *wrong(rl.blow_to, {"scene": scenes.report}, distance=[0.0, 1e-300, 2.01]),
     ("distance", press(Scene(2.0, 1.0, friction=0.05), distance=1.5)),
+    ("distance", press(Scene(20.0, 1.0), distance=5.0)),
     ("omega", press(Scene(2.0, 1.0, friction=0.1), distance=1.5, omega=1.0)),
-    ("omega", press(AT_REST, distance=1.0, omega=0.0)),
+    ("omega", press(Scene(2.0, 1.0, theta=1.2), distance=1.1, omega=40.0)),
     ("omega", press(Scene(2.0, 1.0, slope=0.1), distance=1.0)),
     ("omega", press(Scene(1.0, 1.0), distance=0.5)),
     # impacts
     *wrong(impacts.kinetic_speed, {"x_dot": 0.0, "z_dot": 1.0, "omega": 0.0, "gyration2": 1.0},
-           x_dot=[NAN], gyration2=[-1.0]),
-    *wrong(impacts.collide, {"theta": 0.3, **HIT}, theta=[NAN]),
+           x_dot=[NAN], z_dot=[[2.0, NAN]], gyration2=[-1.0]),
+    *(row for law in impacts.LAWS for row in wrong(
+        impacts.collide, {**HIT, "law": law},
+        theta=[NAN, [0.3, NAN]], x_dot=[INF], z_dot=[NAN], omega=[-INF, "x"], a=[-1.0], b=[0.0],
+        gyration2=[0.0], friction=[-0.1, NAN, [0.3, NAN]], restitution=[1.1, -0.1])),
+    ("a/b", lambda _: impacts.collide(**{**HIT, "a": 4000.0})),
+    *wrong(impacts.collide, HIT, law=["kane"]),
     *wrong(impacts.fit, {"before": BEFORE, "after": AFTER, **AXES},
-           before=[[1.0], UPWARDS], after=[TWO_IMPACTS]),
+           before=[[1.0], UPWARDS, BEFORE[:3], BEFORE[:, :0], np.where(BEFORE < 0, NAN, BEFORE)],
+           after=[TWO_IMPACTS, AFTER[0], AFTER + INF], minimise=["mean"], law=["kane"], b=[-0.3],
+           gyration2=[0.0]),
 ]  # fmt: skip

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from rolling_ellipse import Scene, report, scenes
 from rolling_ellipse._pictures.animation import movies
 
-from refusals import ANYTHING, Row, but, wrong
+from refusals import ANYTHING, INF, NAN, Row, but, wrong
 
 MOTION = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 0.5, 6))
 SLOPED = rl.simulate(scenes.slope, [0.0, 0.5])
@@ -107,11 +107,18 @@ REFUSALS: list[Row] = [
     *(row for draw in CURVES for row in wrong(
         draw, {"trajectories": MOTION},
         ax=[*NO_PLACES, axes(3), *([] if draw in PAIRS else [axes(3).tolist()])])),
-    ("every trajectory", lambda _: rl.plot_paths([MOTION, EMPTY])),
+    *(("every trajectory", lambda _, draw=draw, motions=motions: draw(motions))
+      for draw in CURVES for motions in (EMPTY, [MOTION, EMPTY])),
+    ("trajectory", lambda _: rl.plot_strobe(EMPTY)),
+    ("every trajectory", lambda _: rl.animate(EMPTY)),
     ("trajectories", lambda _: rl.plot_paths([MOTION, SLOPED])),
     ("trajectories", lambda _: rl.plot_phase(ANGLES_UNKNOWN)),
     *wrong(rl.plot_phase, {"trajectories": MOTION}, colors=ANYTHING, fold=[*ANYTHING, 1]),
-    *wrong(rl.plot_forces, {"trajectories": MOTION}, labels=[*ANYTHING, ["a", "b"]]),
+    *wrong(rl.plot_forces, {"trajectories": MOTION}, labels=[*ANYTHING, ["a", "b"], "ab"],
+           ax=[[], "here", [axes(1), None]]),
+    *wrong(rl.plot_paths, {"trajectories": [MOTION, LATER]},
+           labels=[["a"], ["a", "b", "c"], "ab", [1, 2], 3],
+           colors=["red", ["red"], ["red", "no colour"], 3, [1, 2]]),
     *wrong(rl.plot_energy, {"trajectories": MOTION}, kind=ANYTHING),
     *wrong(rl.plot_error, {"trajectories": MOTION}, quantity=ANYTHING, reference=ANYTHING),
     ("reference", lambda _: rl.plot_error(LATER, reference=MOTION)),
@@ -120,9 +127,14 @@ REFUSALS: list[Row] = [
     # maps
     *wrong(rl.plot_phase_map, {"resolution": 2}, x=ANYTHING, ax=ANYTHING, b=[-1.0], aspect=[2.0],
            friction=[-1.0], x_range=[*but([1, 2], np.array([1.0, 2.0])), (2.0, 1.0)]),
-    ("resolution", lambda _: rl.plot_phase_map(resolution=0)),
-    ("x", lambda _: rl.plot_phase_map("energy", "speed", resolution=2)),
-    ("energy", lambda _: rl.plot_phase_map(energy=1.0, speed=1.0)),
+    *wrong(rl.plot_phase_map, {}, resolution=[0, 2.5, True, np.timedelta64(3, "s")],
+           gravity=[INF, "one"], b=[0, "one", 1.4e166], y=[None], speed=[3], workers=[0],
+           friction=[NAN, "one"], x_range=[(0.9, 2), (2, 2)], y_range=[(0, INF), (0, 1, 2), 4]),
+    *wrong(rl.plot_phase_map, {"x": "friction", "resolution": 2}, aspect=[1, 1001]),
+    *wrong(rl.plot_phase_map, {"y": "friction", "resolution": 2}, energy=[INF], speed=[-1]),
+    *(("x and y", lambda _, x=x, y=y: rl.plot_phase_map(x, y, resolution=2))
+      for x, y in (("energy", "speed"), ("aspect", "aspect"))),
+    ("energy", lambda _: rl.plot_phase_map(y="friction", energy=1.0, speed=1.0)),
     # films
     *wrong(rl.animate, {}, trajectories=[None, *ANYTHING]),
     *wrong(rl.animate, {"trajectories": MOTION},
@@ -136,8 +148,8 @@ REFUSALS: list[Row] = [
       for how in ({"speed": 1e-6, "fps": 1e3}, {"speed": 1e-12})),
     (IsADirectoryError, folder_called_gif),
     (FileNotFoundError, lambda folder: rl.animate(MOTION, folder / "no" / "roll.gif")),
-    ("fps", lambda folder: rl.animate(MOTION, folder / "a.gif", fps=30.0)),
-    ("fps", lambda folder: rl.animate(MOTION, folder / "a.gif", fps=1e-3)),
+    *(("fps", lambda folder, fps=fps: rl.animate(MOTION, folder / "a.gif", fps=fps))
+      for fps in (30, 24, 60, 100, 25.001, 1e-3)),
     ("path", lambda folder: rl.animate(MOTION, folder / "roll.txt")),
     (FileNotFoundError, film_without_ffmpeg),
     (OSError, film_that_fails),
@@ -149,7 +161,9 @@ REFUSALS: list[Row] = [
     ("options", lambda folder: page(folder, codec="x")),
     # players
     ("t_end", long_film),
-    ("t_end", lambda _: rl.explore(scenes.report, t_end=1e9)),
+    *wrong(rl.explore, {}, scene=[None, 42, "report", scenes, MOTION]),
+    *wrong(rl.explore, {"scene": scenes.report},  # up to 40 sqrt(2 m / 9.81 m/s^2) = 18.06 s
+           t_end=[0.0, -1.0, NAN, INF, 18.1, 1e9, "1", [1.0], object()]),
     ("scene", lambda _: rl.explore(scenes.report.replace(x=1e30))),
     ("path", lambda folder: rl.explore(scenes.report).to_html(folder / "a.gif")),
 ]  # fmt: skip

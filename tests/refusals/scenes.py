@@ -17,7 +17,7 @@ REFUSALS: list[Row] = [
         inertia=[*NOT_POSITIVE, 1e40, 3.6e-6, 4.4e6], slope=[math.pi / 2, -2.0, 30.0, *NOT_FINITE],
         friction=[-0.1, -1e-300, -INF, NAN, 1e7], restitution=[-0.1, 1.0000001, *NOT_FINITE],
         theta=[*NOT_FINITE, 1e51], omega=[*NOT_FINITE, 1e51, 1e8], x=[*NOT_FINITE, 1e51],
-        x_dot=[*NOT_FINITE, 1e8], z=[*NOT_FINITE, 1e13, 0.5], z_dot=[*NOT_FINITE, -1.0, 1e8],
+        x_dot=[*NOT_FINITE, 1e8], z=[*NOT_FINITE, 1e13, 0.5, 0.9], z_dot=[*NOT_FINITE, -0.1, 1e8],
         impulse=[1, 48.0, (0.0, -48.0), "press", Impulse(1e9), Impulse([1.0, 2.0]),
                  Impulse(0.0, -1.0, dx=3.0)],
     ),
@@ -28,6 +28,7 @@ REFUSALS: list[Row] = [
         for name in ("jx", "jz", "dx", "dz")
     }),
     *wrong(Impulse.press, {"F": 48.0, "d": 1.5}, F=[*NOT_FINITE, 1e51], d=[*NOT_FINITE, -1e51]),
+    *wrong(Scene, {"a": 1e-20, "b": 1e-20, "z": 1e-9}, x_dot=[1e3], z_dot=[-1e3]),
     ("changes", lambda _: ROLLING.replace(color=1)),
     *wrong(ROLLING.replace, {}, omega=[NAN], z=[0.5], b=[-1.0]),
 ]  # fmt: skip

@@ -24,31 +24,43 @@ def run(**options: Any) -> Callable[[Path], Any]:
     return lambda _: rl.simulate(**{**USUAL, **options})
 
 
-multipliers = partial(run, model="multipliers")
+rolling = partial(rl.simulate, **USUAL, model="rolling")
+multipliers = partial(rl.simulate, **USUAL, model="multipliers")
 
 REFUSALS: list[Row] = [
     *wrong(
         rl.simulate, USUAL,
         scene=[None, 2.0, "report", (2.0, 1.0), [1.0] * 10**5, "x" * 10**5],
         t=[(0, 6), NAN, INF, -1.0, [[1.0]], [[0.0, 1.0]], [1.0, 1.0], [0.0, 2.0, 1.0], [-1.0, 0.0],
-           [0.0, NAN], [0.0, INF], [], 1e30, (0.0, 2.5), (-0.0, 1e9)],
-        model=UNKNOWN, method=UNKNOWN, rtol=[-1.0], max_steps=[0, 2**31, 500.0], baumgarte=[1.0],
-        rest_speed=[-1.0], step=[0.1],
+           [0.0, NAN], [0.0, INF], [], 1e25, 1e30, "1", (0.0, 2.5), (-0.0, 1e9)],
+        model=[*UNKNOWN, "falling"], method=UNKNOWN, rtol=[-1.0, NAN, INF, "tight"],
+        atol=[-1e-9, NAN, INF], max_steps=[0, 2**31, 500.0, 1e6], max_events=[0, -3],
+        baumgarte=[1.0, (1.0,), (1.0, 2.0, 3.0)], rest_speed=[-1.0, 0.0, NAN, INF],
+        step=[0.1], stabilization=["glue", None],
     ),
-    ("model", run(scene=AIR, model="rolling")),
+    *(("model", run(scene=scene, model=model))
+      for scene in (AIR, scenes.drop, scenes.slip) for model in ("rolling", "multipliers")),
     ("rtol", run(rtol=0.0, atol=0.0)),
-    ("baumgarte", multipliers(baumgarte=(-1.0, 1.0))),
-    ("step", run(method="rk4")),
-    *wrong(rl.simulate, {**USUAL, "method": "rk4"}, step=[0.0, 2.0, 1e-18]),
+    *wrong(multipliers, {}, baumgarte=[
+        (-1.0, 1.0), (1.0, NAN), (INF, 1.0), (1.0, 1e308), ("a", 1.0)]),
+    *wrong(multipliers, {"method": "rk4"}, step=[-0.1]),
+    *wrong(multipliers, {}, method=["exact", "gauss"], stages=[3]),
+    *(("step", run(method=method)) for method in ("rk4", "gauss", "radau")),
+    *wrong(rolling, {"method": "rk4"}, step=[0.0, -0.1, 2.0, 1e-18, [0.1, 0.2]]),
+    *(("step", run(method=method, step=step)) for method, step in (
+        ("dop853", NAN), ("gauss", INF), ("radau", 2.5), ("exact", 0.1))),
+    *wrong(rolling, {"method": "gauss", "step": 0.1}, stages=[1, 5, 2.5]),
+    *(("stages", run(method=method, stages=3, **step))
+      for method, step in (("rk4", {"step": 0.1}), ("exact", {}))),
     *(("method", run(model="contact", method=name))
       for name in ("exact", "dop853", "dopri5", "rk4", "gauss", "radau")),
-    ("method", multipliers(method="exact")),
-    ("stabilization", run(model="rolling", stabilization="none")),
-    ("stabilization", multipliers(method="radau", step=0.1)),
-    ("stabilization", multipliers(method="rk4", step=0.1, stabilization="ggl")),
-    ("stages", run(method="rk4", step=0.1, stages=3)),
-    ("stages", run(method="gauss", step=0.1, stages=5)),
-    ("rest_speed", run(scene=scenes.drop, rest_speed=1.0)),
+    *(("stabilization", run(model=model, stabilization=name))
+      for model, name in (("rolling", "none"), ("auto", "ggl"))),
+    *(("stabilization", run(model="multipliers", method="radau", step=0.1, stabilization=name))
+      for name in ("projection", "none")),
+    *(("stabilization", run(model="multipliers", method=method, step=step, stabilization="ggl"))
+      for method, step in (("auto", None), ("dop853", None), ("dopri5", None), ("rk4", 0.1))),
+    *(("rest_speed", run(scene=scenes.drop, rest_speed=speed)) for speed in (0.04, 1.0)),
     (rl.IntegrationError, run(scene=scenes.jump, t=5.0, max_events=1)),
     *wrong(report.simulate, PRINTED, t=[(0.0, 6.0)]),
     *(("step", lambda _, method=method, t=t, step=step: report.simulate(

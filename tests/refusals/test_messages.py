@@ -22,6 +22,7 @@ from refusals import (
     Row,
     batches,
     command_line,
+    core,
     files,
     functions,
     pictures,
@@ -33,7 +34,8 @@ from refusals import (
 )
 
 ROOMS = (
-    scenes, functions, simulate, trajectory, files, batches, races, pictures, command_line, report,
+    scenes, functions, core, simulate, trajectory, files, batches, races, pictures, command_line,
+    report,
 )  # fmt: skip
 TABLE: list[Row] = [row for room in ROOMS for row in room.REFUSALS]
 PACKAGE = Path(rolling_ellipse.__file__).resolve().parent

@@ -1,6 +1,5 @@
 """Refusals of a trajectory: what it is made of, and what it is asked."""
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -11,7 +10,7 @@ import numpy as np
 import rolling_ellipse as rl
 from rolling_ellipse import Scene, scenes
 
-from refusals import Row, wrong
+from refusals import INF, NAN, Row, wrong
 
 MOTION = rl.simulate(Scene(2.0, 1.0, omega=1.0), np.linspace(0.0, 0.5, 6))
 
@@ -58,19 +57,22 @@ REFUSALS: list[Row] = [
     ("z", lambda _: replace(CONTACT, contact=contact(z=np.zeros(4)))),
     *(("mode", lambda _, mode=mode: replace(CONTACT, contact=contact(mode=mode)))
       for mode in (np.zeros(4), np.full(N, 9), np.full(N, 0.5))),
-    ("t", lambda _: MOTION.sol([[0.1]])),
-    ("t", lambda _: MOTION.sol(1.0)),
-    ("t", lambda _: MOTION._solution.sample_rolling(np.ones(1))),
-    ("direction", lambda _: MOTION.when(theta=0.1, direction=2)),
-    ("exactly one of theta", lambda _: MOTION.when()),
-    ("function", lambda _: MOTION.when(function=1)),  # type: ignore[call-overload]
-    ("theta", lambda _: MOTION.when(theta=np.ones((1, 1)))),
-    ("theta", lambda _: MOTION.when(theta=math.nan)),
-    ("function", lambda _: MOTION.when(function=lambda at: [1.0])),
-    ("function", lambda _: MOTION.when(function=lambda at: np.full(at.t.shape, math.nan))),
+    *wrong(MOTION.sol, {}, t=[[[0.1]], 1.0, -1e-9, NAN, [0.0, 0.6], INF, "now"]),
+    *wrong(MOTION.at, {}, t=[-1e-9, 0.6, NAN, "now"]),
+    *wrong(
+        MOTION.when, {},
+        theta=[np.ones((1, 1)), NAN], x=[INF, [0.5, NAN]], omega=["1"], z=[["1"]],
+        function=[1.0, lambda at: [1.0], lambda at: 1.0, lambda at: at.q, lambda at: at.t * NAN],
+    ),
+    *wrong(MOTION.when, {"theta": 0.1}, direction=[2, True]),
+    ("function's result", lambda _: MOTION.when(function=lambda at: "x")),
+    *(("exactly one of theta", lambda _, given=given: MOTION.when(**given))
+      for given in ({}, {"theta": 1.0, "x": 2.0})),
     ("z", lambda _: TURNING.when(z=1.5)),
     ("function", lambda _: TURNING.when(function=lambda at: at.x)),
     ("function", lambda _: SPINNING.when(function=lambda at: at.normal_force)),
     (AttributeError, lambda _: rl.nothing),  # type: ignore[attr-defined]
     (ImportError, lambda _: without("xarray", MOTION.to_xarray)),
+    (ImportError, lambda _: without("pandas", MOTION.to_dataframe)),
+    (ImportError, lambda _: without("pandas", CONTACT.events.to_dataframe)),
 ]  # fmt: skip

@@ -296,35 +296,6 @@ def test_a_motion_that_stopped_early() -> None:
     assert np.all(motion.when(omega=0.0) <= motion.t_end)
 
 
-# ----------------------------------------------------------------------------------------- refusals
-
-
-@pytest.mark.parametrize(
-    ("given", "error", "words"),
-    [
-        ({}, ValueError, "exactly one of theta, x, z, omega, contact_x, function .* got none"),
-        ({"theta": 1.0, "x": 2.0}, ValueError, "exactly one of .* got theta and x"),
-        ({"theta": math.nan}, ValueError, "theta must be finite, got nan"),
-        ({"x": math.inf}, ValueError, "x must be finite, got inf"),
-        ({"x": [0.5, math.nan]}, ValueError, "x must be finite, got nan"),
-        ({"omega": "1"}, TypeError, "omega must be a number or an array of numbers, got '1'"),
-        ({"z": ["1"]}, TypeError, "z must be a number or an array of numbers"),
-        ({"z": [[1.0]]}, ValueError, r"z must be a number or a 1-D array, got shape \(1, 1\)"),
-        ({"theta": 1.0, "direction": 2}, ValueError, "direction must be 1, -1 or 0, got 2"),
-        ({"theta": 1.0, "direction": True}, TypeError, "direction must be a whole number"),
-        ({"function": 1.0}, TypeError, "function must be a function of a Trajectory, got 1.0"),
-        ({"function": lambda m: 1.0}, ValueError, "function must return one number a sample"),
-        ({"function": lambda m: m.q}, ValueError, "function must return one number a sample"),
-        ({"function": lambda m: m.t * math.nan}, ValueError, "function must return .* t = 0.0"),
-        ({"function": lambda m: "x"}, TypeError, "function's result must be a number"),
-    ],
-)
-def test_when_refuses(given: dict[str, Any], error: type[Exception], words: str) -> None:
-    motion = simulate(rl.scenes.report, 1.0)
-    with pytest.raises(error, match=f"^{words}"):
-        motion.when(**given)
-
-
 # ----------------------------------------------------------------------------------------------- at
 
 
@@ -341,14 +312,6 @@ def test_one_state_is_a_row_of_the_samples(name: str) -> None:
             value = getattr(found, field)
             assert type(value) is float and value == getattr(row, field)[0], field
         assert found.mode is Mode(int(row.mode[0]))
-
-
-@pytest.mark.parametrize("t", [-1e-9, 3.1, math.nan])
-def test_at_refuses_times_outside(t: float) -> None:
-    with pytest.raises(ValueError, match=rf"^t must lie in \[0, 3.0\], got {t}"):
-        simulate(rl.scenes.report, 3.0).at(t)
-    with pytest.raises(TypeError, match=r"^t must be a number, got 'now'"):
-        simulate(rl.scenes.report, 3.0).at("now")  # type: ignore[arg-type]
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")

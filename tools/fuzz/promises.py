@@ -41,15 +41,17 @@ def raised(check: Callable[..., Finds]) -> Callable[..., None]:
 
 
 def of_result(value: Any, finite: bool) -> Finds:
-    """What any result promises; `finite` if all that went in was finite."""
+    """What any result promises; `finite` if all that went in was finite. No scene takes NaN."""
     if isinstance(value, rl.Trajectory):
         yield from of_trajectory(value)
-    elif finite and (where := _nan_in(value)) is not None:
+    elif (finite or isinstance(value, rl.Scene)) and (where := _nan_in(value)) is not None:
         yield "nan", f"NaN in {where}"
 
 
 def of_trajectory(found: rl.Trajectory) -> Finds:
     t = found.t
+    if (where := _nan_in(found.scene)) is not None:
+        yield "nan", f"a scene with NaN in {where}"
     if not isinstance(found.status, rl.Status) or not found.message:
         yield "broken", "status is no Status, or has no sentence"
     for name in (*_ONE_EACH, "t"):

@@ -111,7 +111,9 @@ class Draw:
         kind = self.whole(0, 3)
         if kind == 0:
             return repr(self.pick(1, 1, -1) * 2.0 ** self.whole(-1074, 1023))
-        return repr(self._draw(st.floats())) if kind == 1 else self.pick(*EXTREMES)
+        if kind == 1:
+            return self.pick("nan", "inf", "-inf", repr(self._draw(st.floats())))
+        return self.pick(*EXTREMES)
 
     def hostile(self) -> str:
         """Anything that a caller might pass by mistake."""
