@@ -278,7 +278,7 @@ inline T angle_of(T sin, T cos) {
     return copysign(angle, sin);
 }
 
-// What numerics/double_double.hpp has for doubles.
+// The operations of numerics/double_double.hpp for a Pack.
 
 using rolling_ellipse::quick_two_sum;
 using rolling_ellipse::two_product;

@@ -27,7 +27,7 @@ def citations(text: str) -> list[int]:
 
 
 DEFINED = [number for cell in CELLS for number in headings(cell)]
-CITED = {path.name: citations(path.read_text(encoding="utf-8")) for path in SOURCES}
+CITED = {str(path): citations(path.read_text(encoding="utf-8")) for path in SOURCES}
 
 
 def test_citations_are_told_from_other_brackets() -> None:
@@ -50,8 +50,8 @@ def test_every_citation_is_defined() -> None:
 
 
 def test_the_core_says_once_what_the_numbers_are() -> None:
-    texts = {path.name: path.read_text(encoding="utf-8") for path in SOURCES}
-    assert [name for name, text in texts.items() if "02_physics.ipynb" in text] == ["simulate.hpp"]
+    texts = [(path.name, path.read_text(encoding="utf-8")) for path in SOURCES]
+    assert [name for name, text in texts if "02_physics.ipynb" in text] == ["simulate.hpp"]
 
 
 def test_every_formula_is_shown_by_the_cell_below_it() -> None:

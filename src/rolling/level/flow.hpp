@@ -31,7 +31,7 @@ struct RollingMotion : PhaseMotion<double> {
     FlatView start;
 };
 
-// And what samples of many times and events are counted from.
+// The times and paths from which samples of many times and events are counted.
 struct RollingFlow : RollingMotion {
     DoubleDouble start_time;
     QuarterPosition start_position;

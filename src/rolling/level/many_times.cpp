@@ -31,7 +31,7 @@ class TableMaker {
     FlowTable make() {
         // In the coordinate y, in which all that is singular is half_pi away from the motion: what
         // series of this order reach in nearly all motions.
-        for (const double spacing : {0.128, 0.1, 0.07, 0.05}) {
+        for (const double spacing : {0.122, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
             if (!expand()) continue;

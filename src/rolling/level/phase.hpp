@@ -73,7 +73,7 @@ struct PhasePoint {
     T cos;
 };
 
-// What a way along y takes, or its rate: time [s], angle [rad], path of the centre [m].
+// A way along y, or its rate: time [s], angle [rad], path of the centre [m].
 template <class T>
 struct PhaseWay {
     T time;
