@@ -47,7 +47,8 @@ CHANGES = {
     "tolerance": [(r"\b(\d+)e-(\d+)\b", r"\1e-3"), (r"\b(\d+) \* epsilon\b", r"1000000 * epsilon")],
 }  # fmt: skip
 
-# The tests nearest to a folder of the sources; others have the folder of their own name.
+# The tests nearest to a folder of the sources, the innermost counts; others have the folder of
+# their own name.
 NEAREST = {
     "bindings": ["refusals", "trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
@@ -57,10 +58,13 @@ NEAREST = {
     "proof": ["proof", "outcome", "contact"],
     "rolling": ["rolling", "integrator", "contact"],
     "scene": ["scene", "contact", "refusals"],
-    "_export": ["export", "refusals", "trajectory"],
-    "_batches": ["batches", "refusals"],
-    "_faces": ["border", "trajectory"],
-    "_command": ["project"],
+    "_ask": ["scene", "refusals", "border"],
+    "_motion": ["trajectory", "contact", "border"],
+    "_show": ["border", "trajectory"],
+    "_verbs": ["trajectory", "outcome", "refusals", "proof", "rolling"],
+    "batches": ["batches", "refusals"],
+    "command": ["project"],
+    "export": ["export", "refusals", "trajectory"],
     "python": ["trajectory", "scene", "outcome", "refusals", "border", "batches"],
 }
 
@@ -260,11 +264,12 @@ def renew(source: str, target: str) -> None:
 
 def nearest(path: str) -> list[str]:
     parts = Path(path).parts
-    if parts[0] == "src":
-        folder = parts[1] if len(parts) > 2 else "core"
-    else:
-        folder = parts[2] if len(parts) > 3 else "python"
-    return NEAREST.get(folder, [folder.removeprefix("_")])
+    side, begin = ("core", 1) if parts[0] == "src" else ("python", 2)
+    for folder in reversed(parts[begin:-1]):
+        own = folder.removeprefix("_")
+        if folder in NEAREST or (ROOT / "tests" / own).is_dir():
+            return NEAREST.get(folder, [own])
+    return NEAREST[side]
 
 
 def stages(path: str, thorough: bool) -> Iterator[tuple[str, tuple[str, ...]]]:

@@ -359,4 +359,5 @@ def test_every_source_is_built_and_included_once() -> None:
 
 def test_it_carries_its_types() -> None:
     installed = Path(rolling_ellipse.__file__).resolve().parent
-    assert (installed / "py.typed").exists() and (installed / "_core.pyi").exists()
+    for name in ("py.typed", "_core.pyi", "__init__.pyi"):
+        assert (installed / name).exists(), name
