@@ -34,6 +34,7 @@ import signal
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -380,18 +381,32 @@ def sizes(scene: Scene) -> list[float]:
     return [tau, 1.0, 1 / tau, length, length, length / tau, length / tau]
 
 
-def distance(judged: list[Judged], case: Case, other: Answer, long_rows: list[Row]) -> float:
+def rows_of(found: Answer, far: list[Row]) -> dict[str, Row]:
+    """All rows of an answer, by what they are."""
+    rows = {f"event {i}": row for i, row in enumerate(found.events)}
+    rows |= {f"sample {i}": one.row for i, one in enumerate(found.samples) if one}
+    return rows | {f"long {i}": row for i, row in enumerate(far)}
+
+
+def alike(what: str, *found: Answer) -> bool:
+    """Whether the same happened in several answers up to an event or a sample."""
+    kind, number = what.split()
+    i = int(number)
+    if kind == "event":
+        return len({tuple(row.kind for row in one.events[: i + 1]) for one in found}) == 1
+    samples = [one.samples[i] if kind == "sample" else None for one in found]
+    return kind == "long" or len({tuple(one.before) if one else None for one in samples}) == 1
+
+
+def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
     """From the rows of another road, in units."""
-    rows = {f"event {i}": row for i, row in enumerate(other.events)}
-    rows |= {f"sample {i}": one.row for i, one in enumerate(other.samples) if one}
-    rows |= {f"long {i}": row for i, row in enumerate(long_rows)}
     least = [LEAST_UNIT * size for size in sizes(case.scene)]
     shares = [
         apart / max(unit, smallest)
         for one in judged
-        if one.what in rows
+        if one.what in other
         for apart, unit, smallest in zip(
-            differences(rows[one.what], one.row), one.strict, least, strict=True
+            differences(other[one.what], one.row), one.strict, least, strict=True
         )
     ]
     return max(shares, default=0.0)
@@ -417,56 +432,31 @@ def reference(
             long_base = long_answer(case, road, long_times)
         except Undecided:
             long_times = []
-    kept = len(exact.events)
-    names = [f"event {i}" for i in range(kept)]
-    loose = {name: [0.0] * len(VALUES) for name in names}
-    loose |= {f"sample {i}": [0.0] * len(VALUES) for i in range(len(times))}
-    loose |= {f"long {i}": [0.0] * len(VALUES) for i in range(len(long_times))}
-    strict = {name: list(row) for name, row in loose.items()}
+    rows, bases = rows_of(exact, long_rows), rows_of(base, long_base)
+    loose = {key: [0.0] * len(VALUES) for key in rows}
+    strict = {key: [0.0] * len(VALUES) for key in rows}
     at_limit = ""
-
-    def add(name: str, key: str, times_: int, found: list[float] | None) -> None:
-        for which, table in (("theta", loose), ("strict", strict)):
-            if name in ("theta", "strict") and name != which:
-                continue
-            for i in range(len(VALUES)):
-                table[key][i] += math.inf if found is None else times_ * found[i]
-
-    def note(name: str, key: str, kind: str) -> None:
-        nonlocal at_limit
-        at_limit = at_limit or f"{name} at {key} ({kind})"
-
     for name, count, changed in changed_cases(case):
         again = answer(changed, road, times, end)
-        same = True
-        for i, row in enumerate(exact.events):
-            reached = i < min(len(again.events), len(base.events))
-            same = same and reached and again.events[i].kind == row.kind == base.events[i].kind
-            if not same:
-                note(name, f"event {i}", row.kind)
-            add(name, f"event {i}", count,
-                differences(again.events[i], base.events[i]) if same else None)  # fmt: skip
-        for i, sample in enumerate(exact.samples):
-            new, old = again.samples[i], base.samples[i]
-            if sample and new and old and sample.before == new.before == old.before:
-                add(name, f"sample {i}", count, differences(new.row, old.row))
-            else:
-                add(name, f"sample {i}", count, None)
+        far: list[Row] = []
         if long_times:
-            try:
+            with suppress(Undecided):
                 far = long_answer(changed, road, long_times)
-            except Undecided:
-                far = []
-            for i, row in enumerate(long_base):
-                add(name, f"long {i}", count, differences(far[i], row) if far else None)
+        others = rows_of(again, far)
+        for key, row in rows.items():
+            effect = [math.inf] * len(VALUES)
+            if key in others and key in bases and alike(key, exact, base, again):
+                effect = differences(others[key], bases[key])
+            elif key.startswith("event"):
+                at_limit = at_limit or f"{name} at {key} ({row.kind})"
+            for which, table in (("theta", loose), ("strict", strict)):
+                if name not in ("theta", "strict") or name == which:
+                    table[key] = [u + count * e for u, e in zip(table[key], effect, strict=True)]
     judged = []
     limits = [UNIT_LIMIT * size for size in sizes(case.scene)]
-    rows = [(f"event {i}", row) for i, row in enumerate(exact.events)]
-    rows += [(f"sample {i}", one.row) for i, one in enumerate(exact.samples) if one]
-    rows += [(f"long {i}", row) for i, row in enumerate(long_rows)]
     rates = {f"event {i}": one for i, one in enumerate(exact.rates)}
     shift = ROUNDING * abs(case.scene.x)
-    for key, row in rows:
+    for key, row in rows.items():
         for i, name in enumerate(VALUES):
             rounding = 2 * float(np.spacing(abs(float(row[1 + i])))) + (shift if name == "x" else 0)
             loose[key][i] += rounding
@@ -478,13 +468,14 @@ def reference(
             ]
         if all(unit <= limit for unit, limit in zip(strict[key], limits, strict=True)):
             judged.append(Judged(key, row, loose[key], strict[key]))
-    apart = distance(judged, case, base, long_base)
+    apart = distance(judged, case, bases)
     if apart > FARTHEST and level + 3 < len(ROADS):
         return reference(case, times, end, long_times, check, level + 1)
     # what is still apart is left out
-    judged = [one for one in judged if distance([one], case, base, long_base) <= FARTHEST]
+    judged = [one for one in judged if distance([one], case, bases) <= FARTHEST]
     if check:
-        apart = distance(judged, case, answer(case, ROADS[level + 2], times, end), [])
+        finest = answer(case, ROADS[level + 2], times, end)
+        apart = distance(judged, case, rows_of(finest, []))
     else:
         apart = min(apart, FARTHEST)
     kinds: list[str] = []
