@@ -89,6 +89,13 @@ def test_any_span_a_single_sample_and_rest(
         assert shows_something(figure_of(ax))
 
 
+@pytest.mark.parametrize("span", [0.0, 1e-6, 1e5])
+def test_an_overview_of_any_span(span: float) -> None:
+    shown = rl.plot(rl.simulate(rl.scenes.rolling, span), figure=Figure(layout="constrained"))
+    shown.figure.draw_without_rendering()
+    assert shows_something(shown.figure) and len(shown.strobe.bodies) == 13
+
+
 @pytest.fixture(params=["one", "several", "thin"])
 def crowd(
     request: pytest.FixtureRequest, report: rl.Trajectory, several: list[rl.Trajectory]

@@ -67,15 +67,11 @@ def skids(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
     return np.where(sliding, trajectory.contact_x, np.nan), np.where(sliding, 0.0, np.nan)
 
 
-def view(path: Trajectory) -> tuple[float, float, float, float]:
-    """Return left, right, bottom, top [m] of what the eye sees of a motion, with a little air."""
-    return view_of(path.scene, path.x, path.z)
-
-
 def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
     """Return left, right, bottom, top [m] of what the eye sees of a body with centres at x, z [m].
 
-    Refused if they are so far away that a double does not know a thousandth of the body there.
+    There is a little air around them. Refused if they are so far away that a double does not know
+    a thousandth of the body there.
     """
     size = max(scene.a, scene.b)
     farthest = max(float(np.max(np.abs(x))), float(np.max(np.abs(z))))
@@ -91,13 +87,9 @@ def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, f
     return left - 0.2 * size, right + 0.2 * size, bottom - 0.35 * size, top + 0.25 * size
 
 
-def draw_ground(ax: Axes, path: Trajectory, span: float = 0.0) -> Polygon:
-    """Fill the earth below z = 0, past any view of the path, or past `span` [m] around it."""
-    return fill_earth(ax, path.scene, float(path.x.min()) - span, float(path.x.max()) + span)
-
-
-def fill_earth(ax: Axes, scene: Scene, left: float, right: float) -> Polygon:
-    """Fill the earth below z = 0 between two places [m], and well past both."""
+def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Polygon:
+    """Fill the earth below z = 0, well past `span` [m] around all places x [m]."""
+    left, right = float(np.min(x)) - span, float(np.max(x)) + span
     reach = right - left + 100 * max(scene.a, scene.b)
     left, right = left - reach, right + reach
     palette = palette_of(ax)

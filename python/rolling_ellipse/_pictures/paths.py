@@ -94,7 +94,7 @@ def plot_paths(
     view = _view(motions, end)
     ax = axes_of(ax, figure_size(view))
     places = np.concatenate([motion.x for motion in motions])
-    ground = drawing.fill_earth(ax, motions[0].scene, places.min(), places.max())
+    ground = drawing.draw_ground(ax, motions[0].scene, places)
     drawn = [
         _draw_paths(ax, motion, style, rank / len(motions))
         for rank, (motion, style) in enumerate(shown)

@@ -97,9 +97,9 @@ def plot_strobe(
     end = turned_until(trajectory, SHOWN_TURNS, "omega") if t_end is None else t_end
     at = at_times(trajectory, even_times(first, end, count))
     path = between(trajectory, first, end, HALF_TURNS)
-    view = drawing.view(path)
+    view = drawing.view_of(path.scene, path.x, path.z)
     ax = axes_of(ax, figure_size(view))
-    ground = drawing.draw_ground(ax, path)
+    ground = drawing.draw_ground(ax, path.scene, path.x)
     bodies, hands = _draw_bodies(ax, at)
     for body in bodies:
         body.set(**options)

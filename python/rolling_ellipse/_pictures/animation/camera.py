@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..ground import SHOWN_TURNS, tilted, view
+from ..ground import SHOWN_TURNS, tilted, view_of
 
 if TYPE_CHECKING:
     from ..._ask.check import FloatArray
@@ -47,7 +47,7 @@ def cameras(
     """
     size = max(_size(motion) for motion in motions)
     widest = 2 * np.pi * size * SHOWN_TURNS + 4 * size
-    seen = [view(motion) for motion in motions]
+    seen = [view_of(motion.scene, motion.x, motion.z) for motion in motions]
     left, right = min(each[0] for each in seen), max(each[1] for each in seen)
     depths = [(bottom, top) for _, _, bottom, top in seen]
     targets = [np.zeros((motion.t.size, 2)) for motion in motions]

@@ -72,7 +72,7 @@ class Strip:
         ax.autoscale(False)
         on_slope = drawing.tilted(motion.scene) + ax.transData
         span = float(self._views[0, 1] - self._views[0, 0])
-        drawing.draw_ground(ax, motion, span)
+        drawing.draw_ground(ax, motion.scene, motion.x, span)
         self.ruler = drawing.Ruler(ax, motion.scene, span)
 
         palette = palette_of(ax)
