@@ -73,7 +73,7 @@ QuarterPosition position_at(const RollingFlow& flow, const PhasePoint<double>& p
 
 namespace {
 
-// How far from its centre a series is as good as a double, beside its own size there: the last
+// The radius within which a series is as good as a double, beside its own size there: the last
 // terms are one rounding then, and what is left out, smaller by another tenth, is less.
 double reach(const Series& series) {
     constexpr double rest = 1e-16;  // half an ulp

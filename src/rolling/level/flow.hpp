@@ -20,7 +20,7 @@ struct QuarterPosition {
 
 enum class MotionKind { rest, uniform, libration, rotation };
 
-// What one state needs.
+// A motion, for single states.
 struct RollingMotion : PhaseMotion<double> {
     MotionKind kind;
     // The start.

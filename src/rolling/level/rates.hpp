@@ -100,7 +100,7 @@ inline void phase_rates(const PhaseRate<Pack>& rate, const PhaseMap<Pack>& map, 
     }
 }
 
-// Those of one body, at places side by side; after the last of them there is room for a Pack.
+// The rates of one body at places side by side; after the last there is room for a Pack.
 inline void phase_rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
                         double* offsets, int count, PhaseWays<double>& found) {
     for (int i = count; i % widest_pack != 0; ++i) offsets[i] = offsets[count - 1];

@@ -197,7 +197,7 @@ void look_up(const FlowReader& motion, int n, Block& block) {
     }
 }
 
-// What the motion is at these times; theta is NaN beyond its pieces. Returns whether one is.
+// The motion at these times; theta is NaN beyond its pieces. Returns whether one is.
 bool combine(const FlowReader& motion, const double* times, int n, const Block& block,
              const FlowColumns& out) {
     bool some_lost = false;

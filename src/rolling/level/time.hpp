@@ -125,7 +125,7 @@ inline WayTo<double> way_between(const PhaseTime<double>& phase, double quarters
     if (map.quarter <= edge || abs(end - begin) <= long_way) {
         return way_by_panels(phase, quarters, begin, end);
     }
-    // Where that begins and ends, in size of the offset.
+    // The ends of that part, in size of the offset.
     const double from = quarters == 0 ? edge : 0.0;
     const double to = quarters == 0 ? 2 * map.quarter - edge : map.quarter - edge;
     for (const double limit : {-to, -from, from, to}) {
