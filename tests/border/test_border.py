@@ -45,7 +45,9 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
         r"^omega must have shape \(3,\), got \(2,\)$",
     ),
     "detail of contact": (
-        lambda: _core.contact_detail(SCENE, *numbered(8, 6)),
+        lambda: _core.contact_detail(
+            SCENE, dict(zip(_core.COLUMNS["contact"], numbered(8, 6), strict=True))
+        ),
         r"^normal_force must have shape \(2,\), got \(3,\)$",
     ),
     "detail of multipliers": (
