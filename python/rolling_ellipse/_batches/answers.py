@@ -68,16 +68,19 @@ def answers(
     """
     cut = _Cut(tables, frozen(np.array(request.times)))
     found: list[Answer] = []
-    code = {name: values.tolist() for name, values in columns("codes", tables).items()}
+    code, times = (
+        dict(zip(_COLUMNS[name], tables[name].T.tolist(), strict=True))
+        for name in ("codes", "numbers")
+    )
     of_each = (code[n] for n in ("ending", "model", "method", "samples", "events", "letters"))
     counts = zip(*(code[name] for name in _STATS), strict=True)
-    times, span = columns("numbers", tables), float(request.times[-1])
+    span = float(request.times[-1])
     for scene, ending, model, method, samples, events, letters, count, t_end, valid_until in zip(
         scenes,
         *of_each,
         counts,
-        times["t_end"].tolist(),
-        times["valid_until"].tolist(),
+        times["t_end"],
+        times["valid_until"],
         strict=True,
     ):
         message = cut.text(letters)
