@@ -44,12 +44,6 @@ class Outcome(enum.IntEnum):
     JAMS = 5
     EDGE = 6
 
-class Model(enum.Enum):
-    AUTO = 0
-    ROLLING = 1
-    MULTIPLIERS = 2
-    CONTACT = 3
-
 class EventKind(enum.Enum):
     """What changes at an event."""
 
@@ -60,22 +54,6 @@ class EventKind(enum.Enum):
     IMPACT = 4
     REST = 5
     JAM = 6
-
-class Stabilization(enum.Enum):
-    NONE = 0
-    BAUMGARTE = 1
-    PROJECTION = 2
-    PROJECTION_ENERGY = 3
-    GGL = 4
-
-class Method(enum.Enum):
-    AUTO = 0
-    EXACT = 1
-    DOP853 = 2
-    DOPRI5 = 3
-    RK4 = 4
-    GAUSS = 5
-    RADAU = 6
 
 class Ending(enum.Enum):
     COMPLETED = 0
@@ -96,88 +74,25 @@ class Quantity(enum.Enum):
     omega = 3
     contact_x = 4
 
+FIELDS: dict[str, dict[str, str]]  # units of the numbers of each struct, by name
+COLUMNS: dict[str, tuple[str, ...]]  # of the tables that `simulate_table` takes and returns
+STATS: tuple[str, ...]
+MODELS: tuple[_settings.Model, ...]  # by their codes, as the others
+METHODS: tuple[_settings.Method, ...]
+STABILIZATIONS: tuple[_settings.Stabilization, ...]
+
 class Settings:
-    def __init__(
-        self,
-        *,
-        model: Model,
-        method: Method,
-        rtol: float,
-        atol: float,
-        step: float | None,
-        stages: int | None,
-        stabilization: Stabilization,
-        baumgarte: tuple[float, float],
-        max_steps: int,
-        max_events: int,
-        rest_speed: float | None,
-    ) -> None: ...
+    def __init__(self, fields: dict[str, Any]) -> None: ...
 
 class Impulse:
     def __init__(self, jx: float, jz: float, dx: float, dz: float) -> None: ...
 
 class Scene:
     def __init__(
-        self,
-        a: float,
-        b: float,
-        mass: float,
-        gravity: float,
-        inertia: float | None,
-        slope: float,
-        friction: float,
-        restitution: float,
-        theta: float,
-        omega: float,
-        x: float,
-        z: float | None,
-        x_dot: float | None,
-        z_dot: float | None,
-        impulse: Impulse | None,
-        reached: bool,
+        self, numbers: dict[str, float | None], impulse: Impulse | None, reached: bool
     ) -> None: ...
     @property
     def gyration2(self) -> float: ...
-
-class State:
-    @property
-    def theta(self) -> float: ...
-    @property
-    def omega(self) -> float: ...
-    @property
-    def x(self) -> float: ...
-    @property
-    def z(self) -> float: ...
-    @property
-    def x_dot(self) -> float: ...
-    @property
-    def z_dot(self) -> float: ...
-    @property
-    def mode(self) -> Mode: ...
-
-class InitialState:
-    @property
-    def state(self) -> State: ...
-    @property
-    def reaction_x(self) -> float: ...
-    @property
-    def reaction_z(self) -> float: ...
-    @property
-    def free_omega(self) -> float: ...
-    @property
-    def energy_lost(self) -> float: ...
-    @property
-    def touching(self) -> bool: ...
-    @property
-    def slip_removal(self) -> str: ...
-
-class Continuation:
-    @property
-    def mode(self) -> Mode: ...
-    @property
-    def paradox(self) -> Painleve: ...
-    @property
-    def why_it_rolls(self) -> str: ...
 
 class Losses:
     @property
@@ -225,9 +140,8 @@ def contact_distance(n: int, arguments: list[FloatArray]) -> FloatArray: ...
 def contact_angle(n: int, arguments: list[FloatArray]) -> FloatArray: ...
 def centre_path(n: int, arguments: list[FloatArray]) -> FloatArray: ...
 def arc_length(n: int, arguments: list[FloatArray]) -> FloatArray: ...
-def initial_state(scene: Scene) -> InitialState: ...
-def first_continuation(scene: Scene, start: State) -> Continuation: ...
-def energy_lost(scene: Scene, before: Sequence[float], after: Sequence[float]) -> float: ...
+def initial_state(scene: Scene) -> dict[str, Any]: ...
+def event_state(scene: Scene, row: Sequence[float], after: bool) -> dict[str, float]: ...
 def certify(scene: Scene) -> dict[str, Any]: ...
 def validate_length(name: str, value: float) -> None: ...
 def classify_array(n: int, arguments: list[FloatArray], workers: int) -> npt.NDArray[np.int8]: ...
@@ -263,17 +177,7 @@ def simulate_table(
 def multiplier_detail(
     scene: Scene, settings: Settings, q: FloatArray, q_dot: FloatArray
 ) -> tuple[FloatArray, FloatArray]: ...
-def contact_detail(
-    scene: Scene,
-    theta: FloatArray,
-    omega: FloatArray,
-    x: FloatArray,
-    z: FloatArray,
-    x_dot: FloatArray,
-    z_dot: FloatArray,
-    normal_force: FloatArray,
-    friction_force: FloatArray,
-) -> dict[str, FloatArray]: ...
+def contact_detail(scene: Scene, samples: dict[str, FloatArray]) -> dict[str, FloatArray]: ...
 def project(scene: Scene, q: FloatArray, q_dot: FloatArray) -> tuple[FloatArray, FloatArray]: ...
 def constraint_system(
     q: FloatArray, q_dot: FloatArray, a: float, b: float

@@ -12,30 +12,20 @@ namespace {
 using Codes = py::array_t<std::int64_t>;
 using Bytes = py::array_t<std::int8_t>;
 
-constexpr py::ssize_t scene_numbers = 18;
+constexpr std::size_t scene_numbers = std::size(scene_fields) + std::size(impulse_fields);
 constexpr int refused = -1;  // in the place of an Ending
 
 // A row of the table; NaN is what was not given.
-Scene scene_of(const double* row, double most) {
-    const auto given = [&](int i) {
-        return std::isnan(row[i]) ? std::nullopt : std::optional<double>(row[i]);
+Scene scene_in(const double* row, double most) {
+    const auto given = [](double value) {
+        return std::isnan(value) ? std::nullopt : std::optional(value);
     };
-    Scene scene{};
-    scene.a = row[0];
-    scene.b = row[1];
-    scene.mass = row[2];
-    scene.gravity = row[3];
-    scene.slope = row[4];
-    scene.friction = row[5];
-    scene.restitution = row[6];
-    scene.theta = row[7];
-    scene.omega = row[8];
-    scene.x = row[9];
-    scene.inertia = given(10).value_or(scene.mass * uniform_disc_gyration2(scene.a, scene.b));
-    scene.z = given(11);
-    scene.x_dot = given(12);
-    scene.z_dot = given(13);
-    if (given(14)) scene.impulse = Impulse{row[14], row[15], row[16], row[17]};
+    SceneNumbers numbers;
+    const double* const blow = row + numbers.size();
+    std::transform(row, blow, numbers.begin(), given);
+    std::optional<Impulse> impulse;
+    if (given(*blow)) read(impulse.emplace(), impulse_fields, blow);
+    const Scene scene = scene_of(numbers, impulse);
     validate(scene, most);
     return scene;
 }
@@ -47,7 +37,7 @@ py::object first_refused(const Array& scenes, bool reached) {
     py::ssize_t at = 0;
     try {
         run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-            for (at = begin; at < end; ++at) scene_of(scenes.data(at, 0), most);
+            for (at = begin; at < end; ++at) scene_in(scenes.data(at, 0), most);
         });
     } catch (const std::invalid_argument& error) {
         return py::make_tuple(at, error.what());
@@ -83,7 +73,7 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     Answer found;
     Solution& solution = found.solution;
     try {
-        solution = simulate(scene_of(row, most_energy_reached), settings, times[n - 1], checkpoint);
+        solution = simulate(scene_in(row, most_energy_reached), settings, times[n - 1], checkpoint);
     } catch (const std::invalid_argument& error) {
         solution.message = error.what();
         return found;
@@ -110,35 +100,50 @@ py::ssize_t total(const std::vector<Answer>& answers, py::ssize_t (*count)(const
     return sum;
 }
 
-// How each ended, one row a scene.
-py::dict facts(const std::vector<Answer>& answers) {
-    const py::ssize_t n = answers.size();
-    Codes codes({n, py::ssize_t{10}});
-    Array numbers = matrix(n, 2);
-    Bytes text(total(
-        answers, [](const Answer& each) -> py::ssize_t { return each.solution.message.size(); }));
-    std::int8_t* letters = text.mutable_data();
-    for (py::ssize_t i = 0; i < n; ++i) {
-        const auto& [ending, solution, segments, samples, r, c, q] = answers[i];
-        const auto& [steps, rejected, evaluations] = solution.counts;
-        const std::int64_t row[] = {
-            ending,
-            static_cast<int>(solution.model),
-            static_cast<int>(solution.method),
-            samples,
-            static_cast<std::int64_t>(solution.motion.events.size()),
+// How an answer ended, and the sizes of its parts of the other tables.
+std::array<Figure, 10> codes_of(const Answer& answer) {
+    const Solution& solution = answer.solution;
+    const py::ssize_t events = solution.motion.events.size();
+    const py::ssize_t letters = solution.message.size();
+    const auto [segments, steps, rejected, evaluations] =
+        stats_of(answer.segments, solution.counts);
+    return {Figure{"ending", answer.ending},
+            Figure{"model", static_cast<int>(solution.model)},
+            Figure{"method", static_cast<int>(solution.method)},
+            Figure{"samples", answer.samples},
+            Figure{"events", events},
             segments,
             steps,
             rejected,
             evaluations,
-            static_cast<std::int64_t>(solution.message.size()),
-        };
-        std::copy(std::begin(row), std::end(row), codes.mutable_data(i, 0));
+            Figure{"letters", letters}};
+}
+
+// How each ended, one row a scene.
+py::dict facts(const std::vector<Answer>& answers) {
+    const py::ssize_t n = answers.size();
+    Codes codes({n, static_cast<py::ssize_t>(codes_of({}).size())});
+    Array numbers = matrix(n, 2);
+    Bytes text(total(
+        answers, [](const Answer& each) -> py::ssize_t { return each.solution.message.size(); }));
+    std::int64_t* code = codes.mutable_data();
+    std::int8_t* letters = text.mutable_data();
+    for (py::ssize_t i = 0; i < n; ++i) {
+        for (const auto& [name, value] : codes_of(answers[i])) *code++ = value;
+        const Solution& solution = answers[i].solution;
         const double times[] = {solution.followed_until, solution.valid_until};
         store(numbers, i, times);
         letters = std::copy(solution.message.begin(), solution.message.end(), letters);
     }
     return py::dict("codes"_a = codes, "numbers"_a = numbers, "text"_a = text);
+}
+
+// The columns of each table; those of samples are its rows.
+py::dict columns() {
+    return py::dict(
+        "scenes"_a = names_of(scene_fields, impulse_fields), "codes"_a = names_of(codes_of({})),
+        "numbers"_a = py::make_tuple("t_end", "valid_until"), "events"_a = event_columns(),
+        "rolling"_a = names_of(flow_fields), "contact"_a = names_of(state_fields, force_fields));
 }
 
 Array event_table(const std::vector<Answer>& answers) {
@@ -163,7 +168,8 @@ py::dict samples(const std::vector<Answer>& answers) {
         count([](const Answer& each) -> py::ssize_t { return each.contact.size(); });
     const py::ssize_t constrained =
         count([](const Answer& each) -> py::ssize_t { return each.coordinates.size(); });
-    Array rolling = matrix(3, rolled), contact = matrix(8, touched);
+    Array rolling = matrix(std::size(flow_fields), rolled);
+    Array contact = matrix(std::size(state_fields) + std::size(force_fields), touched);
     Array q = matrix(constrained, 5), q_dot = matrix(constrained, 5);
     Bytes mode(touched);
     double* to_rolling = rolling.mutable_data();
@@ -172,17 +178,11 @@ py::dict samples(const std::vector<Answer>& answers) {
     py::ssize_t row = 0;
     for (const Answer& each : answers) {
         for (const FlowSample& sample : each.rolling) {
-            const double values[] = {sample.theta, sample.omega, sample.x};
-            for (int c = 0; c < 3; ++c) to_rolling[c * rolled] = values[c];
-            ++to_rolling;
+            store(sample, flow_fields, to_rolling++, rolled);
         }
         for (const auto& [state, force] : each.contact) {
-            double values[8];
-            double* const forces = store_state(state, values);
-            forces[0] = force.normal;
-            forces[1] = force.friction;
-            for (int c = 0; c < 8; ++c) to_contact[c * touched] = values[c];
-            ++to_contact;
+            double* const forces = store(state, state_fields, to_contact++, touched);
+            store(force, force_fields, forces, touched);
             *to_mode++ = static_cast<std::int8_t>(state.mode);
         }
         for (const CoordinateState& state : each.coordinates) {
@@ -216,6 +216,7 @@ void bind_batch(py::module_& m) {
         "validate_settings",
         [](const Settings& settings, double t_end) { validate(settings, t_end); }, "settings"_a,
         "t_end"_a);
+    m.attr("COLUMNS") = columns();
     m.def("simulate_table", simulate_table, "scenes"_a, "settings"_a, "times"_a, "workers"_a);
 }
 

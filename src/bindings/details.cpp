@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <utility>
+#include <map>
 
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
@@ -9,29 +9,27 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// q, q_dot, q_ddot and multipliers of the contact model, from its samples.
-py::dict contact_arrays(const Scene& scene, const Array& theta, const Array& omega, const Array& x,
-                        const Array& z, const Array& x_dot, const Array& z_dot,
-                        const Array& normal_force, const Array& friction_force) {
-    const py::ssize_t n = theta.size();
-    const std::pair<const char*, const Array&> columns[] = {{"theta", theta},
-                                                            {"omega", omega},
-                                                            {"x", x},
-                                                            {"z", z},
-                                                            {"x_dot", x_dot},
-                                                            {"z_dot", z_dot},
-                                                            {"normal_force", normal_force},
-                                                            {"friction_force", friction_force}};
-    for (const auto& [name, column] : columns) require_length(name, column, n);
+// q, q_dot, q_ddot and multipliers of the contact model, from its samples by name.
+py::dict contact_arrays(const Scene& scene, const std::map<std::string, Array>& samples) {
+    const py::ssize_t n = samples.at("theta").size();
+    std::vector<const double*> columns;
+    const auto add = [&](const auto& field) {
+        const Array& column = samples.at(field.name);
+        require_length(field.name, column, n);
+        columns.push_back(column.data());
+    };
+    for_each(add, state_fields, force_fields);
     Array q = matrix(n, 5);
     Array q_dot = matrix(n, 5);
     Array q_ddot = matrix(n, 5);
     Array multipliers = matrix(n, 4);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         for (py::ssize_t i = begin; i < end; ++i) {
-            const State state{theta.data()[i], omega.data()[i], x.data()[i], z.data()[i],
-                              x_dot.data()[i], z_dot.data()[i], Mode::flight};
-            const ContactForce force{normal_force.data()[i], friction_force.data()[i]};
+            State state{};
+            ContactForce force{};
+            auto column = columns.begin();
+            for (const auto& field : state_fields) state.*field.number = (*column++)[i];
+            for (const auto& field : force_fields) force.*field.number = (*column++)[i];
             const CoordinateState at = coordinate_state(scene.axes(), state);
             const MultiplierSolution found = accelerations(scene, at, force);
             store(q, i, at.q.data());
@@ -151,8 +149,7 @@ py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const 
 
 void bind_details(py::module_& m) {
     m.def("multiplier_detail", multiplier_arrays, "scene"_a, "settings"_a, "q"_a, "q_dot"_a);
-    m.def("contact_detail", contact_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a, "z"_a,
-          "x_dot"_a, "z_dot"_a, "normal_force"_a, "friction_force"_a);
+    m.def("contact_detail", contact_arrays, "scene"_a, "samples"_a);
     m.def("project", projected, "scene"_a, "q"_a, "q_dot"_a);
     m.def("rolling_contact", rolling_contact_arrays, "scene"_a, "theta"_a, "omega"_a);
     m.def("rolling_detail", rolling_arrays, "scene"_a, "theta"_a, "omega"_a, "x"_a);

@@ -19,22 +19,35 @@ CoordinateState single_state(const Array& q, const Array& q_dot) {
     return state_at(q, q_dot, 0);
 }
 
-double* store_state(const State& state, double* to) {
-    for (const double value :
-         {state.theta, state.omega, state.x, state.z, state.x_dot, state.z_dot}) {
-        *to++ = value;
+py::tuple event_columns() {
+    py::list names;
+    names.append("t");
+    names.append("kind");
+    for (const char* when : {"_before", "_after"}) {
+        for (const auto& field : state_fields) names.append(std::string(field.name) + when);
+        names.append(std::string("mode") + when);
     }
-    return to;
+    return names;
 }
 
 double* store_event(const Event& event, double* to) {
     *to++ = event.t;
     *to++ = static_cast<int>(event.kind);
     for (const State* state : {&event.before, &event.after}) {
-        to = store_state(*state, to);
+        to = store(*state, state_fields, to);
         *to++ = static_cast<int>(state->mode);
     }
     return to;
+}
+
+Event event_of(const EventRow& row) {
+    Event event{row[0], static_cast<EventKind>(row[1]), {}, {}};
+    const double* from = row.data() + 2;
+    for (State* state : {&event.before, &event.after}) {
+        from = read(*state, state_fields, from);
+        state->mode = static_cast<Mode>(*from++);
+    }
+    return event;
 }
 
 FlowColumns columns(std::vector<Array>& arrays) {

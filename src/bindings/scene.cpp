@@ -1,4 +1,5 @@
 #include "bindings/bindings.hpp"
+#include "bindings/fields.hpp"
 #include "reason.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -40,13 +41,48 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
     return py::make_tuple(out[0], out[1], out[2]);
 }
 
-// By theta, omega, x, z, x_dot, z_dot just before and just after a collision.
-double energy_lost_between(const Scene& scene, const std::array<double, 6>& before,
-                           const std::array<double, 6>& after) {
-    const auto state = [](const std::array<double, 6>& of) {
-        return State{of[0], of[1], of[2], of[3], of[4], of[5], Mode::flight};
-    };
-    return energy_lost(scene, state(before), state(after));
+// The names of a table as Python keeps its own: looked up by their address.
+template <class Table>
+std::vector<py::str> interned(const Table& table) {
+    std::vector<py::str> names;
+    for (const auto& field : table) {
+        names.push_back(py::reinterpret_steal<py::str>(PyUnicode_InternFromString(field.name)));
+    }
+    return names;
+}
+
+// Makes a scene of numbers by the names of its fields; None is what is not given.
+class SceneMaker {
+  public:
+    Scene operator()(const py::dict& fields, const std::optional<Impulse>& impulse,
+                     bool reached) const {
+        SceneNumbers numbers;
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            PyObject* const given = PyDict_GetItemWithError(fields.ptr(), names_[i].ptr());
+            if (given == nullptr) throw py::key_error(scene_fields[i].name);
+            if (given != Py_None) numbers[i] = PyFloat_AsDouble(given);
+        }
+        const Scene scene = scene_of(numbers, impulse);
+        validate(scene, reached ? most_energy_reached : most_energy);
+        return scene;
+    }
+
+  private:
+    std::vector<py::str> names_ = interned(scene_fields);
+};
+
+// The state just after the blow, the mode that forces allow, and what there is to say of both.
+py::dict start_of(const Scene& scene) {
+    const InitialState start = initial_state(scene);
+    const Continuation next = first_continuation(scene, start.state);
+    py::dict found = numbers_of(start);
+    found["touching"] = start.touching;
+    found["slip_removal"] = slip_removal(start);
+    found["mode_by_velocity"] = start.state.mode;
+    found["mode"] = next.mode;
+    found["paradox"] = next.paradox;
+    found["why_it_rolls"] = why_it_rolls(next);
+    return found;
 }
 
 }  // namespace
@@ -71,60 +107,13 @@ void bind_scene(py::module_& m) {
              }),
              "jx"_a, "jz"_a, "dx"_a, "dz"_a);
     bind_class<Scene>(m, "Scene")
-        .def(py::init(
-                 [](double a, double b, double mass, double gravity, std::optional<double> inertia,
-                    double slope, double friction, double restitution, double theta, double omega,
-                    double x, std::optional<double> z, std::optional<double> x_dot,
-                    std::optional<double> z_dot, std::optional<Impulse> impulse, bool reached) {
-                     Scene scene{};
-                     scene.a = a;
-                     scene.b = b;
-                     scene.mass = mass;
-                     scene.gravity = gravity;
-                     scene.inertia = inertia.value_or(mass * uniform_disc_gyration2(a, b));
-                     scene.slope = slope;
-                     scene.friction = friction;
-                     scene.restitution = restitution;
-                     scene.theta = theta;
-                     scene.omega = omega;
-                     scene.x = x;
-                     scene.z = z;
-                     scene.x_dot = x_dot;
-                     scene.z_dot = z_dot;
-                     scene.impulse = impulse;
-                     validate(scene, reached ? most_energy_reached : most_energy);
-                     return scene;
-                 }),
-             "a"_a, "b"_a, "mass"_a, "gravity"_a, "inertia"_a, "slope"_a, "friction"_a,
-             "restitution"_a, "theta"_a, "omega"_a, "x"_a, "z"_a, "x_dot"_a, "z_dot"_a, "impulse"_a,
-             "reached"_a)
+        .def(py::init(SceneMaker()), "numbers"_a, "impulse"_a, "reached"_a)
         .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
-    bind_class<State>(m, "State")
-        .def_readonly("theta", &State::theta)
-        .def_readonly("omega", &State::omega)
-        .def_readonly("x", &State::x)
-        .def_readonly("z", &State::z)
-        .def_readonly("x_dot", &State::x_dot)
-        .def_readonly("z_dot", &State::z_dot)
-        .def_readonly("mode", &State::mode);
-    bind_class<InitialState>(m, "InitialState")
-        .def_readonly("state", &InitialState::state)
-        .def_readonly("reaction_x", &InitialState::reaction_x)
-        .def_readonly("reaction_z", &InitialState::reaction_z)
-        .def_readonly("free_omega", &InitialState::free_omega)
-        .def_readonly("energy_lost", &InitialState::energy_lost)
-        .def_readonly("touching", &InitialState::touching)
-        .def_property_readonly("slip_removal", slip_removal);
-    bind_class<Continuation>(m, "Continuation")
-        .def_readonly("mode", &Continuation::mode)
-        .def_readonly("paradox", &Continuation::paradox)
-        .def_property_readonly("why_it_rolls", why_it_rolls);
-    m.def("initial_state", initial_state, "scene"_a);
-    m.def(
-        "first_continuation",
-        [](const Scene& scene, const State& start) { return first_continuation(scene, start); },
-        "scene"_a, "start"_a);
-    m.def("energy_lost", energy_lost_between, "scene"_a, "before"_a, "after"_a);
+    m.attr("FIELDS") =
+        py::dict("Scene"_a = units_of(scene_fields), "Impulse"_a = units_of(impulse_fields),
+                 "State"_a = units_of(state_fields),
+                 "InitialState"_a = units_of(state_fields, start_fields));
+    m.def("initial_state", start_of, "scene"_a);
     m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a);
 }
 

@@ -80,40 +80,31 @@ py::tuple sample_coordinates(const Solution& solution, const Array& t) {
     return py::make_tuple(read_only(q), read_only(q_dot));
 }
 
-constexpr std::pair<const char*, double State::*> state_columns[] = {
-    {"theta", &State::theta}, {"omega", &State::omega}, {"x", &State::x},
-    {"z", &State::z},         {"x_dot", &State::x_dot}, {"z_dot", &State::z_dot}};
-constexpr std::pair<const char*, double ContactForce::*> force_columns[] = {
-    {"normal_force", &ContactForce::normal}, {"friction_force", &ContactForce::friction}};
-
 // State and force at each time, an array by name for each of their numbers.
 py::dict sample_contact(const Solution& solution, const Array& t) {
     py::dict found;
     std::vector<double*> columns;
-    const auto add = [&](const char* name) {
+    const auto add = [&](const auto& field) {
         Array column(t.size());
         columns.push_back(column.mutable_data());
-        found[name] = read_only(column);
+        found[field.name] = read_only(column);
     };
-    for (const auto& [name, number] : state_columns) add(name);
-    for (const auto& [name, number] : force_columns) add(name);
+    for_each(add, state_fields, force_fields);
     py::array_t<std::int8_t> mode(t.size());
     std::int8_t* const modes = mode.mutable_data();
     look<ContactSample>(solution, t,
                         [&](const ContactSample* samples, py::ssize_t begin, py::ssize_t end) {
                             auto column = columns.begin();
-                            for (const auto& [name, number] : state_columns) {
-                                double* const values = *column++;
-                                for (py::ssize_t i = begin; i < end; ++i) {
-                                    values[i] = samples[i - begin].state.*number;
+                            const auto fill = [&](const auto& table, const auto& part) {
+                                for (const auto& field : table) {
+                                    double* const values = *column++;
+                                    for (py::ssize_t i = begin; i < end; ++i) {
+                                        values[i] = samples[i - begin].*part.*field.number;
+                                    }
                                 }
-                            }
-                            for (const auto& [name, number] : force_columns) {
-                                double* const values = *column++;
-                                for (py::ssize_t i = begin; i < end; ++i) {
-                                    values[i] = samples[i - begin].force.*number;
-                                }
-                            }
+                            };
+                            fill(state_fields, &ContactSample::state);
+                            fill(force_fields, &ContactSample::force);
                             for (py::ssize_t i = begin; i < end; ++i) {
                                 modes[i] = static_cast<std::int8_t>(samples[i - begin].state.mode);
                             }
@@ -175,9 +166,22 @@ py::tuple zeros_of(const Solution& solution, const py::function& function, int d
 }
 
 py::dict stats(const Solution& solution) {
-    const auto& [steps, rejected, evaluations] = solution.counts;
-    return py::dict("segments"_a = solution.motion.segments.size(), "steps"_a = steps,
-                    "rejected_steps"_a = rejected, "evaluations"_a = evaluations);
+    py::dict found;
+    for (const auto& [name, value] : stats_of(solution.motion.segments.size(), solution.counts)) {
+        found[name] = value;
+    }
+    return found;
+}
+
+// The state just before an event, or just after it, and the code of its mode.
+py::dict event_state(const Scene& scene, const EventRow& row, bool after) {
+    const Event event = event_of(row);
+    const State& before = event.before;
+    const InitialState start =
+        after ? start_after(scene, event) : InitialState{before, 0.0, 0.0, before.omega};
+    py::dict found = numbers_of(start);
+    found["mode"] = static_cast<int>(start.state.mode);
+    return found;
 }
 
 }  // namespace
@@ -233,6 +237,8 @@ void bind_solution(py::module_& m) {
         .def("sample_rolling", sample_rolling, "t"_a)
         .def("sample_coordinates", sample_coordinates, "t"_a)
         .def("sample_contact", sample_contact, "t"_a);
+    m.attr("STATS") = names_of(stats_of(0, {}));
+    m.def("event_state", event_state, "scene"_a, "row"_a, "after"_a);
     m.def("are_sample_times", are_sample_times, "t"_a);
     m.def("simulate", simulate_interruptible, "scene"_a, "settings"_a, "t_end"_a);
     m.def("simulate_coordinates", simulate_coordinates, "scene"_a, "q"_a, "q_dot"_a, "settings"_a,

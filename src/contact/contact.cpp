@@ -37,7 +37,7 @@ class ContactRun {
                const EndOfRolling& end_of_rolling, const Settings& settings, double t_end,
                const Checkpoint& checkpoint)
         : units_(natural_units(scene)),
-          scene_(body_in_units(scene, units_)),
+          scene_(in_units(scene, units_)),
           settings_(settings),
           t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
           checkpoint_(checkpoint),

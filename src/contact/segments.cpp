@@ -148,6 +148,16 @@ void turn(CoordinateState& state, const DoubleDouble& by) {
 
 }  // namespace
 
+InitialState start_after(const Scene& scene, const Event& event) {
+    const auto& [t, kind, before, after] = event;
+    InitialState start{after, 0.0, 0.0, before.omega};
+    if (kind != EventKind::impact) return start;
+    start.reaction_x = scene.mass * (after.x_dot - before.x_dot);
+    start.reaction_z = scene.mass * (after.z_dot - before.z_dot);
+    start.energy_lost = energy_lost(scene, before, after);
+    return start;
+}
+
 Motion single(const Scene& scene, decltype(Segment::law) law) {
     Motion motion{Units{}, scene, {}, {}};
     motion.segments.push_back({0.0, std::move(law)});

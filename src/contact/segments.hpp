@@ -15,6 +15,7 @@
 #include "rolling/level/many_times.hpp"
 #include "rolling/slope/flow.hpp"
 #include "rolling/stepped/steps.hpp"
+#include "scene/impact.hpp"
 
 namespace rolling_ellipse {
 
@@ -26,6 +27,9 @@ struct Event {
     State before;
     State after;
 };
+
+// The state just after an event; after an impact with what the ground did.
+InitialState start_after(const Scene& scene, const Event& event);
 
 // Bounces that are too small to tell apart, with what they do on average.
 struct Settling {

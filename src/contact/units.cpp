@@ -2,8 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace rolling_ellipse {
+namespace {
+
+// A loop over the table that is unrolled, since every sample goes through it.
+template <std::size_t... Row>
+State scaled(State state, const Units& units, std::index_sequence<Row...>) {
+    ((state.*state_fields[Row].number *= units.of(state_fields[Row].unit)), ...);
+    return state;
+}
+
+}  // namespace
 
 Units natural_units(const Scene& scene) {
     const double long_axis = std::max(scene.a, scene.b);
@@ -12,35 +24,24 @@ Units natural_units(const Scene& scene) {
             std::ldexp(1.0, std::ilogb(scene.mass))};
 }
 
-Scene body_in_units(const Scene& scene, const Units& units) {
+Scene in_units(const Scene& scene, const Units& units) {
     Scene scaled{};
-    scaled.a = scene.a / units.length;
-    scaled.b = scene.b / units.length;
-    scaled.mass = scene.mass / units.mass;
-    scaled.gravity = scene.gravity / units.speed() * units.time;
-    scaled.inertia = scene.inertia / units.mass / units.length / units.length;
-    scaled.slope = scene.slope;
-    scaled.friction = scene.friction;
-    scaled.restitution = scene.restitution;
+    for (const SceneField& field : scene_fields) {
+        if (const auto value = field.of(scene)) field.set(scaled, *value / units.of(field.unit));
+    }
     return scaled;
 }
 
 State in_units(const State& state, const Units& units) {
-    return {state.theta,
-            state.omega * units.time,
-            state.x / units.length,
-            state.z / units.length,
-            state.x_dot / units.speed(),
-            state.z_dot / units.speed(),
-            state.mode};
+    return in_si(state, {1 / units.length, 1 / units.time, 1 / units.mass});
 }
 
 State in_si(const State& state, const Units& units) {
-    return in_units(state, {1 / units.length, 1 / units.time, 1 / units.mass});
+    return scaled(state, units, std::make_index_sequence<std::size(state_fields)>());
 }
 
 ContactSample in_si(const ContactSample& sample, const Units& units) {
-    const double force = units.mass * units.speed() / units.time;
+    const double force = units.of(unit::force);
     return {in_si(sample.state, units),
             {sample.force.normal * force, sample.force.friction * force}};
 }

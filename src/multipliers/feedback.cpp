@@ -39,8 +39,7 @@ double largest_factor(double alpha, double beta, double step) {
 
 double feedback_growth(const Settings& settings) {
     if (settings.stabilization != Stabilization::baumgarte || !settings.step) return 0.0;
-    const double alpha = settings.baumgarte_alpha;
-    const double beta = settings.baumgarte_beta;
+    const auto [alpha, beta] = settings.baumgarte;
     switch (settings.method) {
         case Method::rk4:
             return largest_factor<RungeKutta4>(alpha, beta, *settings.step);

@@ -250,10 +250,10 @@ MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& se
         return body.solve(state.q, state.q_dot);
     }
     const Axes& axes = body.axes();
-    const double beta2 = square(settings.baumgarte_beta);
+    const auto [alpha, beta] = settings.baumgarte;
     Eigen::Vector4d demand = -constraint_drift(axes, state.q, state.q_dot);
-    demand -= 2 * settings.baumgarte_alpha * (constraint_matrix(axes, state.q) * state.q_dot);
-    demand.tail<3>() -= beta2 * position_residuals(axes, state.q);
+    demand -= 2 * alpha * (constraint_matrix(axes, state.q) * state.q_dot);
+    demand.tail<3>() -= square(beta) * position_residuals(axes, state.q);
     return body.solve(state.q, demand);
 }
 

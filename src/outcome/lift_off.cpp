@@ -180,7 +180,7 @@ LiftOff lift_off(const Body& body, double friction, double slip_speed, double pa
     if (at.c2 == 0) return {infinity, {}};
     const Scene level = level_scene(body, friction);
     const Units units = natural_units(level);
-    const Scene scene = body_in_units(level, units);
+    const Scene scene = in_units(level, units);
     Follower follower(scene, checkpoint);
     const double low = std::max(slip_speed, too_slow(body, at)) * units.time;
     const bool may_jam = std::isfinite(friction) && friction > painleve_friction;

@@ -20,6 +20,12 @@ struct InitialState {
     bool touching = false;      // whether the body was on the ground before
 };
 
+inline constexpr Field<InitialState> start_fields[] = {
+    {"reaction_x", &InitialState::reaction_x, unit::impulse},
+    {"reaction_z", &InitialState::reaction_z, unit::impulse},
+    {"free_omega", &InitialState::free_omega, unit::angular_velocity},
+    {"energy_lost", &InitialState::energy_lost, unit::energy}};
+
 InitialState initial_state(const Scene& scene);
 
 // The kinetic energy, beside m g times the long semi-axis, that the impulse alone makes; the ground

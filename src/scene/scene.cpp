@@ -68,6 +68,27 @@ void require_in_size(std::string_view name, const std::string& unit, double valu
 
 }  // namespace
 
+std::optional<double> SceneField::of(const Scene& scene) const {
+    return std::visit([&](auto at) -> std::optional<double> { return scene.*at; }, number);
+}
+
+void SceneField::set(Scene& scene, std::optional<double> value) const {
+    if (!value && otherwise) value = otherwise(scene);
+    if (const auto* at = std::get_if<double Scene::*>(&number)) {
+        scene.** at = value.value_or(std::nan(""));
+    } else {
+        scene.*std::get<std::optional<double> Scene::*>(number) = value;
+    }
+}
+
+Scene scene_of(const SceneNumbers& numbers, const std::optional<Impulse>& impulse) {
+    Scene scene{};
+    scene.impulse = impulse;
+    auto number = numbers.begin();
+    for (const SceneField& field : scene_fields) field.set(scene, *number++);
+    return scene;
+}
+
 void validate_length(std::string_view name, double value) {
     require_positive(name, "length [m]", value);
 }

@@ -1,11 +1,15 @@
 // What is physically there, as plain numbers, and the rules these numbers must obey.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string_view>
+#include <variant>
 
 #include "geometry/ellipse.hpp"
+#include "scene/field.hpp"
 #include "scene/state.hpp"
 
 namespace rolling_ellipse {
@@ -28,6 +32,11 @@ struct Impulse {
     double dz = 0.0;
 };
 
+inline constexpr Field<Impulse> impulse_fields[] = {{"jx", &Impulse::jx, unit::impulse},
+                                                    {"jz", &Impulse::jz, unit::impulse},
+                                                    {"dx", &Impulse::dx, unit::length},
+                                                    {"dz", &Impulse::dz, unit::length}};
+
 // Gravity as the ground has it: into it, g cos(slope), and along it, g sin(slope) [m/s^2].
 struct GroundGravity {
     double into;
@@ -37,6 +46,9 @@ struct GroundGravity {
 inline GroundGravity ground_gravity(double gravity, double slope) {
     return {gravity * std::cos(slope), gravity * std::sin(slope)};
 }
+
+// k^2 of a uniform disc, physics (16): the default wherever a body is given.
+inline double uniform_disc_gyration2(double a, double b) { return (a * a + b * b) / 4; }
 
 struct Scene {
     double a;
@@ -61,8 +73,39 @@ struct Scene {
     GroundGravity ground_gravity() const { return rolling_ellipse::ground_gravity(gravity, slope); }
 };
 
-// k^2 of a uniform disc, physics (16): the default wherever a body is given.
-inline double uniform_disc_gyration2(double a, double b) { return (a * a + b * b) / 4; }
+// A number of a Scene, and its default where that follows from the fields before it.
+struct SceneField {
+    const char* name;
+    std::variant<double Scene::*, std::optional<double> Scene::*> number;
+    Unit unit;
+    double (*otherwise)(const Scene&) = nullptr;
+
+    std::optional<double> of(const Scene& scene) const;
+    // NaN, which `validate` refuses, for a number that must be given and is absent.
+    void set(Scene& scene, std::optional<double> value) const;
+};
+
+// In the order of the columns of a table of scenes, and of the files of `simulate_many`.
+inline constexpr SceneField scene_fields[] = {
+    {"a", &Scene::a, unit::length},
+    {"b", &Scene::b, unit::length},
+    {"mass", &Scene::mass, unit::mass},
+    {"gravity", &Scene::gravity, unit::acceleration},
+    {"slope", &Scene::slope, unit::angle},
+    {"friction", &Scene::friction, unit::none},
+    {"restitution", &Scene::restitution, unit::none},
+    {"theta", &Scene::theta, unit::angle},
+    {"omega", &Scene::omega, unit::angular_velocity},
+    {"x", &Scene::x, unit::length},
+    {"inertia", &Scene::inertia, unit::inertia,
+     [](const Scene& s) { return s.mass * uniform_disc_gyration2(s.a, s.b); }},
+    {"z", &Scene::z, unit::length},
+    {"x_dot", &Scene::x_dot, unit::speed},
+    {"z_dot", &Scene::z_dot, unit::speed}};
+
+// The scene of its numbers in the order of their rows; not validated.
+using SceneNumbers = std::array<std::optional<double>, std::size(scene_fields)>;
+Scene scene_of(const SceneNumbers& numbers, const std::optional<Impulse>& impulse);
 
 inline Body body(double a, double b, std::optional<double> gyration2, double gravity) {
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};

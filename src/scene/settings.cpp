@@ -1,7 +1,6 @@
 #include "scene/settings.hpp"
 
 #include <cmath>
-#include <initializer_list>
 #include <stdexcept>
 
 #include "scene/refuse.hpp"
@@ -82,7 +81,7 @@ void validate_method(const Settings& settings) {
 
 void validate_baumgarte(const Settings& settings) {
     constexpr double largest_gain = 1e50;  // its square times a residual is still a force
-    for (const double gain : {settings.baumgarte_alpha, settings.baumgarte_beta}) {
+    for (const double gain : settings.baumgarte) {
         if (!(gain >= 0 && gain <= largest_gain)) {
             refuse("baumgarte", "two finite gains of at least 0 and at most 1e50 [1/s]", gain);
         }
@@ -102,56 +101,6 @@ void validate_stages(const Settings& settings) {
 }
 
 }  // namespace
-
-std::string name(Model model) {
-    switch (model) {
-        case Model::automatic:
-            return "auto";
-        case Model::rolling:
-            return "rolling";
-        case Model::multipliers:
-            return "multipliers";
-        case Model::contact:
-            return "contact";
-    }
-    return {};
-}
-
-std::string name(Stabilization stabilization) {
-    switch (stabilization) {
-        case Stabilization::none:
-            return "none";
-        case Stabilization::baumgarte:
-            return "baumgarte";
-        case Stabilization::projection:
-            return "projection";
-        case Stabilization::projection_energy:
-            return "projection+energy";
-        case Stabilization::ggl:
-            return "ggl";
-    }
-    return {};
-}
-
-std::string name(Method method) {
-    switch (method) {
-        case Method::automatic:
-            return "auto";
-        case Method::exact:
-            return "exact";
-        case Method::dop853:
-            return "dop853";
-        case Method::dopri5:
-            return "dopri5";
-        case Method::rk4:
-            return "rk4";
-        case Method::gauss:
-            return "gauss";
-        case Method::radau:
-            return "radau";
-    }
-    return {};
-}
 
 void no_integrator_for(Method method) {
     throw std::logic_error("there is no integrator for the method '" + name(method) + "'");

@@ -1,9 +1,12 @@
 // How a motion is to be computed, and the rules these choices must obey.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 
 namespace rolling_ellipse {
 
@@ -16,6 +19,23 @@ enum class Method { automatic, exact, dop853, dopri5, rk4, gauss, radau };
 // Gupta and Leimkuhler.
 enum class Stabilization { none, baumgarte, projection, projection_energy, ggl };
 
+// What people call the choices, in their order.
+template <class Choice>
+inline constexpr std::array<const char*, 0> names{};
+template <>
+inline constexpr std::array names<Model>{"auto", "rolling", "multipliers", "contact"};
+template <>
+inline constexpr std::array names<Method>{"auto", "exact", "dop853", "dopri5",
+                                          "rk4",  "gauss", "radau"};
+template <>
+inline constexpr std::array names<Stabilization>{"none", "baumgarte", "projection",
+                                                 "projection+energy", "ggl"};
+
+template <class Choice>
+std::string name(Choice choice) {
+    return names<Choice>[static_cast<std::size_t>(choice)];
+}
+
 struct Settings {
     Model model;
     Method method;
@@ -24,19 +44,26 @@ struct Settings {
     std::optional<double> step;  // [s]; absent: chosen by error control
     std::optional<int> stages;   // of Gauss; absent: 4
     Stabilization stabilization;
-    double baumgarte_alpha;  // [1/s]
-    double baumgarte_beta;   // [1/s]
+    std::array<double, 2> baumgarte;  // alpha and beta [1/s]
     long max_steps;
     long max_events;
     std::optional<double> rest_speed;  // [m/s] under which bounces are summed; absent: by size
 };
 
+inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model},
+                                            std::pair{"method", &Settings::method},
+                                            std::pair{"rtol", &Settings::rtol},
+                                            std::pair{"atol", &Settings::atol},
+                                            std::pair{"step", &Settings::step},
+                                            std::pair{"stages", &Settings::stages},
+                                            std::pair{"stabilization", &Settings::stabilization},
+                                            std::pair{"baumgarte", &Settings::baumgarte},
+                                            std::pair{"max_steps", &Settings::max_steps},
+                                            std::pair{"max_events", &Settings::max_events},
+                                            std::pair{"rest_speed", &Settings::rest_speed}};
+
 // Called now and then during long work; throws to stop it.
 using Checkpoint = std::function<void()>;
-
-std::string name(Model model);
-std::string name(Method method);
-std::string name(Stabilization stabilization);
 
 // Throws std::logic_error: a method that no model may be asked for has come where integrators are
 // chosen.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "geometry/ellipse.hpp"
+#include "scene/field.hpp"
 
 namespace rolling_ellipse {
 
@@ -19,6 +20,11 @@ struct State {
     Mode mode;
 };
 
+inline constexpr Field<State> state_fields[] = {
+    {"theta", &State::theta, unit::angle}, {"omega", &State::omega, unit::angular_velocity},
+    {"x", &State::x, unit::length},        {"z", &State::z, unit::length},
+    {"x_dot", &State::x_dot, unit::speed}, {"z_dot", &State::z_dot, unit::speed}};
+
 // Whether the contact has no slip.
 inline bool rolls(const State& state) {
     return state.mode == Mode::rolling || state.mode == Mode::rest;
@@ -28,6 +34,10 @@ struct ContactForce {
     double normal;    // [N]
     double friction;  // [N], on the body, along x
 };
+
+inline constexpr Field<ContactForce> force_fields[] = {
+    {"normal_force", &ContactForce::normal, unit::force},
+    {"friction_force", &ContactForce::friction, unit::force}};
 
 struct ContactSample {
     State state;

@@ -12,6 +12,7 @@ from rolling_ellipse import _core
 STUB = ast.parse((Path(rolling_ellipse.__file__).parent / "_core.pyi").read_text(encoding="utf-8"))
 FUNCTIONS = {each.name: each for each in STUB.body if isinstance(each, ast.FunctionDef)}
 CLASSES = {each.name: each for each in STUB.body if isinstance(each, ast.ClassDef)}
+CONSTANTS = {ast.unparse(each.target) for each in STUB.body if isinstance(each, ast.AnnAssign)}
 
 
 def declared(function: ast.FunctionDef) -> list[str]:
@@ -31,7 +32,7 @@ def public(of: object) -> set[str]:
 
 
 def test_the_names_are_those_of_the_extension() -> None:
-    assert public(_core) == FUNCTIONS.keys() | CLASSES.keys()
+    assert public(_core) == FUNCTIONS.keys() | CLASSES.keys() | CONSTANTS
     assert len(FUNCTIONS) > 20 and len(CLASSES) > 10
 
 

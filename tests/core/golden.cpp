@@ -262,7 +262,7 @@ void print_motion(const Asked& asked) {
     const Scene& scene = asked.scene;
     Settings settings = settings_of(asked.model, asked.method, asked.step, asked.stabilization);
     settings.stages = asked.stages;
-    settings.baumgarte_alpha = settings.baumgarte_beta = 10.0;
+    settings.baumgarte = {10.0, 10.0};
     print(std::string("motion ") + asked.name + " " + name(asked.model) + " " + name(asked.method) +
               " " + name(asked.stabilization),
           {asked.t_end, static_cast<double>(asked.samples), or_nan(asked.step),

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
-from rolling_ellipse import _core
 
 
 def pickled(protocol: int, thing: Any) -> Any:
@@ -61,9 +60,4 @@ def core_objects() -> dict[str, Any]:
         "Losses": rl.simulate(
             rl.scenes.rolling, 1.0, model="rolling", method="dop853"
         )._solution.losses(),
-        "State": _core.initial_state(motion.scene.core).state,
-        "InitialState": _core.initial_state(motion.scene.core),
-        "Continuation": _core.first_continuation(
-            motion.scene.core, _core.initial_state(motion.scene.core).state
-        ),
     }

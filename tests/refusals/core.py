@@ -21,12 +21,15 @@ def numbered(count: int, wrong: int) -> list[Any]:
     return [THREE if i == wrong else TWO for i in range(count)]
 
 
+CONTACT = dict(zip(_core.COLUMNS["contact"], numbered(8, 6), strict=True))
+
+
 REFUSALS: list[Row] = [
     ("omega", lambda _: _core.rolling_detail(SCENE, THREE, TWO, THREE)),
     ("x", lambda _: _core.rolling_detail(SCENE, TWO, TWO, THREE)),
     ("omega", lambda _: _core.rolling_contact(SCENE, THREE, TWO)),
     ("omega", lambda _: _core.rolling_equation(SCENE, THREE, TWO)),
-    ("normal_force", lambda _: _core.contact_detail(SCENE, *numbered(8, 6))),
+    ("normal_force", lambda _: _core.contact_detail(SCENE, CONTACT)),
     ("q_dot", lambda _: _core.multiplier_detail(SCENE, SETTINGS, FIVES, FIVES[:1])),
     ("q", lambda _: _core.multiplier_detail(SCENE, SETTINGS, FIVES[:, :4], FIVES[:, :4])),
     ("q", lambda _: _core.simulate_coordinates(SCENE, FIVES, FIVES, SETTINGS, 1.0)),

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import pickle
 import re
 from collections.abc import Callable
 from typing import Any
@@ -127,14 +126,6 @@ def test_scene_equality_and_hash() -> None:
     for name, value in changes.items():
         assert scene() != scene(**{name: value}), name
     assert scene() != "a scene"
-
-
-def test_scene_can_be_changed_by_replacing_and_carried_by_pickling() -> None:
-    faster = dataclasses.replace(scene(omega=1.0, friction=0.3), omega=2.0)
-    assert faster == scene(omega=2.0, friction=0.3)
-    assert pickle.loads(pickle.dumps(faster)) == faster
-    struck = scene(impulse=Impulse.press(48.0, 1.5))
-    assert pickle.loads(pickle.dumps(struck)).initial_state == struck.initial_state
 
 
 @pytest.mark.parametrize("name", ["initial_state", "core", "gyration2"])

@@ -133,8 +133,7 @@ Settings settings_from(Bytes& bytes, double t_end) {
     settings.atol = bytes.power(-14, -3);
     if (bytes.chance(96)) settings.step = t_end * bytes.power(-2, 0);
     if (bytes.chance(32)) settings.stages = bytes.choice(6);
-    settings.baumgarte_alpha = bytes.power(0, 2);
-    settings.baumgarte_beta = bytes.power(0, 2);
+    for (double& gain : settings.baumgarte) gain = bytes.power(0, 2);
     settings.max_steps = bytes.chance(16) ? bytes.choice(3) : 40;
     settings.max_events = bytes.chance(16) ? bytes.choice(3) : 10;
     if (bytes.chance(32)) settings.rest_speed = bytes.power(-9, 0);

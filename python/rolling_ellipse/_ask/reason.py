@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .. import _core
 from .._core import Mode
@@ -33,33 +33,33 @@ def blow(impulse: Impulse) -> str:
     )
 
 
-def what_the_blow_did(scene: Scene, start: _core.InitialState) -> str:
+def what_the_blow_did(scene: Scene, start: dict[str, Any]) -> str:
     """Say how the contact took it."""
-    if start.slip_removal:
-        return start.slip_removal
+    if start["slip_removal"]:
+        return str(start["slip_removal"])
     if scene.impulse is None:
         return "no impulse"
-    if not start.touching:
+    if not start["touching"]:
         return "the body is in the air, and the blow changes its flight only"
-    if start.state.mode is Mode.FLIGHT:
+    if start["mode_by_velocity"] is Mode.FLIGHT:
         return "with the blow the body leaves the ground"
-    if start.state.mode is Mode.SLIDING:
+    if start["mode_by_velocity"] is Mode.SLIDING:
         return (
             f"the blow makes the contact slip: friction {scene.friction:g} gives an impulse of "
-            f"{start.reaction_x:.6g} N s against {start.reaction_z:.6g} N s of pressure"
+            f"{start['reaction_x']:.6g} N s against {start['reaction_z']:.6g} N s of pressure"
         )
     return (
-        f"the contact sticks: the ground gives {start.reaction_x:.6g} N s along and "
-        f"{start.reaction_z:.6g} N s away from it; without it omega would be "
-        f"{start.free_omega:.6g} rad/s"
+        f"the contact sticks: the ground gives {start['reaction_x']:.6g} N s along and "
+        f"{start['reaction_z']:.6g} N s away from it; without it omega would be "
+        f"{start['free_omega']:.6g} rad/s"
     )
 
 
-def what_follows(scene: Scene, start: _core.InitialState, follows: _core.Continuation) -> str:
+def what_follows(scene: Scene, start: dict[str, Any]) -> str:
     """Say what the body does, and why where its velocities alone look like something else."""
-    mode, paradox = follows.mode, follows.paradox
-    if follows.why_it_rolls:
-        return f"the body rolls; {follows.why_it_rolls}"
+    mode, paradox = start["mode"], start["paradox"]
+    if start["why_it_rolls"]:
+        return f"the body rolls; {start['why_it_rolls']}"
     if paradox is _core.Painleve.NO_MOTION:
         return "the contact slides and jams: no motion of a rigid body goes on (Painleve)"
     if paradox is _core.Painleve.TWO_MOTIONS:
@@ -67,7 +67,7 @@ def what_follows(scene: Scene, start: _core.InitialState, follows: _core.Continu
             "the contact slides and two motions go on (Painleve), in flight and pressed against "
             "the ground: rigid mechanics does not choose"
         )
-    if mode is start.state.mode or mode is Mode.REST:
+    if mode is start["mode_by_velocity"] or mode is Mode.REST:
         return f"the body {_DOES[mode]}"
     if mode is Mode.SLIDING and math.isinf(scene.friction):
         return "the ground would have to pull: the body slides, not pressed (infinite friction)"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, fields
 from typing import Any, ClassVar
 
@@ -16,14 +16,7 @@ from .impulse import Impulse as Impulse
 from .printing import Listed, Row, brief, with_unit
 from .records import FieldsOnly, cached_property
 
-_OPTIONAL = ("inertia", "z", "x_dot", "z_dot")
-STATE_UNITS = {
-    "theta": "rad", "omega": "rad/s", "x": "m", "z": "m", "x_dot": "m/s", "z_dot": "m/s",
-}  # fmt: skip
-SCENE_UNITS = {
-    "a": "m", "b": "m", "mass": "kg", "gravity": "m/s²", "inertia": "kg m²", "slope": "rad",
-    "friction": "", "restitution": "", **STATE_UNITS,
-}  # fmt: skip
+STATE_UNITS, SCENE_UNITS = _core.FIELDS["State"], _core.FIELDS["Scene"]
 
 
 @dataclass(frozen=True, repr=False)
@@ -49,10 +42,7 @@ class InitialState(Listed):
         One sentence on what the blow did, what the body then does, and why.
     """
 
-    _units: ClassVar[dict[str, str]] = {
-        **STATE_UNITS, "reaction_x": "N s", "reaction_z": "N s", "free_omega": "rad/s",
-        "energy_lost": "J",
-    }  # fmt: skip
+    _units: ClassVar[dict[str, str]] = _core.FIELDS["InitialState"]
 
     theta: float
     omega: float
@@ -163,18 +153,16 @@ class Scene(FieldsOnly, Listed):
         z_dot: float | None = z_dot,
         impulse: Impulse | None = impulse,
     ) -> None:
-        numbers: dict[str, Any] = {
-            "a": a, "b": b, "mass": mass, "gravity": gravity, "inertia": inertia, "slope": slope,
-            "friction": friction, "restitution": restitution, "theta": theta, "omega": omega,
-            "x": x, "z": z, "x_dot": x_dot, "z_dot": z_dot,
-        }  # fmt: skip
-        self._hold(numbers, impulse)
+        given = locals()
+        del given["self"]
+        self._hold(given)
 
-    def _hold(self, numbers: dict[str, Any], impulse: Any, *, reached: bool = False) -> None:
-        """Keep the arguments, in the order of the fields, if they are valid."""
-        for name, value in numbers.items():
-            if type(value) is not float and not (value is None and name in _OPTIONAL):
-                numbers[name] = number(name, value)
+    def _hold(self, given: dict[str, Any], *, reached: bool = False) -> None:
+        """Keep the arguments if they are valid."""
+        impulse = given.pop("impulse")
+        for name, value in given.items():
+            if type(value) is not float and not (value is None and name in OPTIONAL):
+                given[name] = number(name, value)
         if impulse is not None and not isinstance(impulse, Impulse):
             raise TypeError(f"impulse must be an Impulse or None, got {shown(impulse)}")
         if impulse is not None and impulse.shape != ():
@@ -182,14 +170,14 @@ class Scene(FieldsOnly, Listed):
                 f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
                 "use outcome(scene, impulse)"
             )
-        core = _for_core(numbers.values(), impulse, reached)  # the core validates
-        object.__setattr__(self, "__dict__", numbers | {"impulse": impulse, "core": core})
+        core = _for_core(given, impulse, reached)  # the core validates
+        object.__setattr__(self, "__dict__", given | {"impulse": impulse, "core": core})
 
     @cached_property
     def core(self) -> _core.Scene:
         """The same for the core, which pickles do not hold."""
-        *numbers, impulse = self.__getstate__().values()
-        return _for_core(numbers, impulse, reached=True)
+        numbers = self.__getstate__()
+        return _for_core(numbers, numbers.pop("impulse"), reached=True)
 
     def replace(self, **changes: Any) -> Scene:
         """Return the scene with some of its arguments changed.
@@ -216,23 +204,9 @@ class Scene(FieldsOnly, Listed):
     def initial_state(self) -> InitialState:
         """State just after the impulse: the collision law without restitution (InitialState)."""
         start = _core.initial_state(self.core)
-        follows = _core.first_continuation(self.core, start.state)
-        did, then = words.what_the_blow_did(self, start), words.what_follows(self, start, follows)
-        state = start.state
-        return InitialState(
-            theta=state.theta,
-            omega=state.omega,
-            x=state.x,
-            z=state.z,
-            x_dot=state.x_dot,
-            z_dot=state.z_dot,
-            mode=follows.mode,
-            reaction_x=start.reaction_x,
-            reaction_z=start.reaction_z,
-            free_omega=start.free_omega,
-            energy_lost=start.energy_lost,
-            reason=f"{did}; {then}",
-        )
+        known = {name: start[name] for name in (*_core.FIELDS["InitialState"], "mode")}
+        did, then = words.what_the_blow_did(self, start), words.what_follows(self, start)
+        return InitialState(**known, reason=f"{did}; {then}")
 
     def _changed(self) -> dict[str, Any]:
         """What is not as it is by default; the semi-axes have no default."""
@@ -257,8 +231,11 @@ class Scene(FieldsOnly, Listed):
         return [*rows, ("start", words.WHERE[start.mode] + after)]
 
 
-def _for_core(numbers: Iterable[Any], impulse: Impulse | None, reached: bool) -> _core.Scene:
-    return _core.Scene(*(*numbers, None if impulse is None else impulse.core, reached))
+OPTIONAL = frozenset(field.name for field in fields(Scene) if field.default is None)
+
+
+def _for_core(numbers: dict[str, Any], impulse: Impulse | None, reached: bool) -> _core.Scene:
+    return _core.Scene(numbers, None if impulse is None else impulse.core, reached)
 
 
 def reached_scene(arguments: Mapping[str, Any]) -> Scene:
@@ -266,9 +243,8 @@ def reached_scene(arguments: Mapping[str, Any]) -> Scene:
 
     Down a slope that may have more energy than a scene that is typed.
     """
-    *numbers, impulse = (field.name for field in fields(Scene))
     scene = object.__new__(Scene)
-    scene._hold({name: arguments[name] for name in numbers}, arguments[impulse], reached=True)
+    scene._hold({field.name: arguments[field.name] for field in fields(Scene)}, reached=True)
     return scene
 
 

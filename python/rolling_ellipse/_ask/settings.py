@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
-from functools import lru_cache
+from functools import lru_cache, partial
 from operator import is_
 from typing import Any, Literal, get_args
 
@@ -23,51 +24,26 @@ STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
 class Settings(FieldsOnly):
     """The arguments of `simulate` that say how, as they came; ranges are checked by the core."""
 
-    model: Model
-    method: Method
-    rtol: float
-    atol: float
-    step: float | None
-    stages: int | None
-    stabilization: Stabilization
-    baumgarte: tuple[float, float]
-    max_steps: int
-    max_events: int
-    rest_speed: float | None
+    model: Model = "auto"
+    method: Method = "auto"
+    rtol: float = 1e-10
+    atol: float = 1e-12
+    step: float | None = None
+    stages: int | None = None
+    stabilization: Stabilization = "projection"
+    baumgarte: tuple[float, float] = (10.0, 10.0)
+    max_steps: int = 1_000_000
+    max_events: int = 10_000
+    rest_speed: float | None = None
 
     def __post_init__(self) -> None:
-        checked = {
-            "model": choice("model", self.model, MODELS),
-            "method": choice("method", self.method, METHODS),
-            "stabilization": choice("stabilization", self.stabilization, STABILIZATIONS),
-            "rtol": number("rtol", self.rtol),
-            "atol": number("atol", self.atol),
-            "step": optional_number("step", self.step),
-            "stages": None if self.stages is None else _whole("stages", self.stages),
-            "baumgarte": _pair("baumgarte", self.baumgarte),
-            "max_steps": _whole("max_steps", self.max_steps),
-            "max_events": _whole("max_events", self.max_events),
-            "rest_speed": optional_number("rest_speed", self.rest_speed),
-        }
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        given = self.__dict__
+        given.update({name: check(name, given[name]) for name, check in _CHECKS.items()})
 
     @cached_property
     def core(self) -> _core.Settings:
         """The settings as the core takes them."""
-        return _core.Settings(
-            model=_core.Model[self.model.upper()],
-            method=_core.Method[self.method.upper()],
-            rtol=self.rtol,
-            atol=self.atol,
-            step=self.step,
-            stages=self.stages,
-            stabilization=_core.Stabilization[self.stabilization.upper().replace("+", "_")],
-            baumgarte=self.baumgarte,
-            max_steps=self.max_steps,
-            max_events=self.max_events,
-            rest_speed=self.rest_speed,
-        )
+        return _core.Settings(self.__getstate__())
 
 
 def settings(*given: Any) -> Settings:
@@ -100,20 +76,18 @@ def _whole(name: str, value: Any) -> int:
     return found
 
 
-# What `simulate` takes where nothing is said. Not defaults of the fields: a file names all of them.
-DEFAULTS = Settings(
-    model="auto",
-    method="auto",
-    rtol=1e-10,
-    atol=1e-12,
-    step=None,
-    stages=None,
-    stabilization="projection",
-    baumgarte=(10.0, 10.0),
-    max_steps=1_000_000,
-    max_events=10_000,
-    rest_speed=None,
-)
+_CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # by the types of the fields
+    "Model": partial(choice, valid=MODELS),
+    "Method": partial(choice, valid=METHODS),
+    "Stabilization": partial(choice, valid=STABILIZATIONS),
+    "float": number,
+    "float | None": optional_number,
+    "int": _whole,
+    "int | None": lambda name, value: None if value is None else _whole(name, value),
+    "tuple[float, float]": _pair,
+}
+_CHECKS = {field.name: _CHECK_OF[str(field.type)] for field in fields(Settings)}
+DEFAULTS = Settings()
 _NAMES = tuple(field.name for field in fields(Settings))
 _GIVEN_BY_DEFAULT = tuple(getattr(DEFAULTS, name) for name in _NAMES)
 _PLAIN = (float, int, str, type(None))  # whose values never change

@@ -9,16 +9,31 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 from .. import _core
-from .._ask.printing import Row, brief, html_table, text_table
-from .._ask.records import FieldsOnly, find_late, trusted
-from .._ask.scene import InitialState, Scene
-from .._core import EventKind, Mode
+from .._ask.printing import (
+    Row,
+    brief,
+    html_table,
+    text_table,
+)
+from .._ask.records import (
+    FieldsOnly,
+    find_late,
+    trusted,
+)
+from .._ask.scene import (
+    STATE_UNITS,
+    InitialState,
+    Scene,
+)
+from .._core import (
+    EventKind,
+    Mode,
+)
 
 if TYPE_CHECKING:
     from .export import event_table
 
-_STATE = ("theta", "omega", "x", "z", "x_dot", "z_dot", "mode")
-_numbers = attrgetter(*_STATE[:-1])
+_numbers = attrgetter(*STATE_UNITS)
 _KINDS: dict[float, EventKind] = {kind.value: kind for kind in EventKind}
 _MODES: dict[float, Mode] = {mode.value: mode for mode in Mode}
 _SENTENCES = {
@@ -30,9 +45,7 @@ _SENTENCES = {
     EventKind.REST: "the body has come to rest",
     EventKind.JAM: "the sliding body jams: no motion of a rigid body goes on, or more than one",
 }
-_SLIP_WITHOUT_LIMIT = (
-    "the ground would have to pull: the body slides, not pressed (infinite friction)"
-)
+_PULLED = "the ground would have to pull: the body slides, not pressed (infinite friction)"
 _HEAD = ("t [s]", "kind", "theta [rad]", "x [m]", "what changes")
 _FIRST, _LAST = 12, 4  # of many events, those shown
 
@@ -117,46 +130,27 @@ class Events(tuple[Event, ...]):
 
 
 def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:
-    """Make the events of what the core, or a file, says; their states when they are asked for.
-
-    A row holds t and the code of the kind, then theta, omega, x, z, x_dot, z_dot and the code of
-    the mode, just before and just after.
-    """
+    """Make the events of what the core, or a file, says; their states when they are asked for."""
     return Events(
         [
             trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_found": row, "_scene": scene})
-            for row in rows
+            for row in rows  # of the columns `_core.COLUMNS["events"]`
         ]
     )
 
 
 def _before(event: Any) -> InitialState:
-    return _state(event._found[2:9], event._found[3], "just before", 0.0, 0.0, 0.0)
+    return _state(event, after=False, reason="just before")
 
 
 def _after(event: Any) -> InitialState:
-    row, scene, kind = event._found, event._scene, event.kind
-    hit = kind is EventKind.IMPACT
-    pulled = kind is EventKind.SLIP and math.isinf(scene.friction)
-    reaction_x = scene.mass * (row[13] - row[6]) if hit else 0.0
-    reaction_z = scene.mass * (row[14] - row[7]) if hit else 0.0
-    lost = _core.energy_lost(scene.core, row[2:8], row[9:15]) if hit else 0.0
-    says = _SLIP_WITHOUT_LIMIT if pulled else _SENTENCES[kind]
-    return _state(row[9:16], row[3], says, reaction_x, reaction_z, lost)
+    pulled = event.kind is EventKind.SLIP and math.isinf(event._scene.friction)
+    return _state(event, after=True, reason=_PULLED if pulled else _SENTENCES[event.kind])
 
 
-def _state(
-    numbers: Sequence[float],
-    free_omega: float,
-    reason: str,
-    reaction_x: float,
-    reaction_z: float,
-    energy_lost: float,
-) -> InitialState:
-    values: dict[str, Any] = dict(zip(_STATE, numbers, strict=True))
-    values |= {"mode": _MODES[values["mode"]], "reaction_x": reaction_x, "reaction_z": reaction_z}
-    values |= {"free_omega": free_omega, "energy_lost": energy_lost, "reason": reason}
-    return trusted(InitialState, values)
+def _state(event: Any, after: bool, reason: str) -> InitialState:
+    found: dict[str, Any] = _core.event_state(event._scene.core, event._found, after)
+    return trusted(InitialState, found | {"mode": _MODES[found["mode"]], "reason": reason})
 
 
 find_late(Event, state_before=_before, state_after=_after)
@@ -175,7 +169,8 @@ def from_numbers(numbers: list[Any]) -> list[Any]:
     t, kind, before, after = numbers
     row = [t, EventKind[kind].value]
     for state in (before, after):
-        if len(state) != len(_STATE):
-            raise ValueError(f"events must hold states of {len(_STATE)} numbers, got {state!r}")
+        if len(state) != len(STATE_UNITS) + 1:
+            size = len(STATE_UNITS) + 1
+            raise ValueError(f"events must hold states of {size} numbers, got {state!r}")
         row += [*state[:-1], Mode(state[-1])]
     return row

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -30,6 +31,10 @@ class ContactSamples(NamedTuple):
     def __reduce__(self) -> tuple[Any, ...]:
         """Come back read-only, which arrays in a plain tuple would not."""
         return _frozen_contact, tuple(self)
+
+
+_known_of_all = itemgetter("t", "theta", "omega", "x")
+_beside = itemgetter(*ContactSamples._fields)
 
 
 def _frozen_contact(*arrays: Any) -> ContactSamples:
@@ -65,19 +70,27 @@ def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
 
 
 def _ascending(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
-    found: dict[str, Any] = {"t": frozen(np.array(times))}
+    t = frozen(np.array(times))
     if solution.model == "rolling":
-        found["theta"], found["omega"], found["x"] = solution.sample_rolling(times)
-    elif solution.model == "contact":
-        columns = solution.sample_contact(times)
-        for name in ("theta", "omega", "x"):
-            found[name] = columns.pop(name)
-        found["contact"] = ContactSamples(**columns)
-    else:
-        q, q_dot = found["coordinates"] = solution.sample_coordinates(times)
-        theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
-        found.update(theta=frozen(theta), omega=frozen(omega), x=frozen(x))
-    return found
+        theta, omega, x = solution.sample_rolling(times)
+        return {"t": t, "theta": theta, "omega": omega, "x": x}
+    if solution.model == "contact":
+        return of_contact(solution.sample_contact(times) | {"t": t})
+    return of_coordinates(t, *solution.sample_coordinates(times))
+
+
+def of_contact(columns: dict[str, Any]) -> dict[str, Any]:
+    """Return what a Trajectory holds of the samples of a contact motion by their names."""
+    t, theta, omega, x = _known_of_all(columns)
+    contact = ContactSamples._make(_beside(columns))
+    return {"t": t, "theta": theta, "omega": omega, "x": x, "contact": contact}
+
+
+def of_coordinates(t: FloatArray, q: FloatArray, q_dot: FloatArray) -> dict[str, Any]:
+    """Return what a Trajectory holds of samples in coordinates."""
+    theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
+    held = {"theta": frozen(theta), "omega": frozen(omega), "x": frozen(x)}
+    return {"t": t, **held, "coordinates": (q, q_dot)}
 
 
 class _Rolling:
@@ -121,9 +134,9 @@ class _Contact:
         assert of.contact is not None
         held = of.contact._asdict()
         del held["mode"]
-        found = _core.contact_detail(of.scene.core, of.theta, of.omega, of.x, **held)
-        forces = of.contact.normal_force, of.contact.friction_force
-        return found | dict(zip(("normal_force", "friction_force"), forces, strict=True))
+        held |= {"theta": of.theta, "omega": of.omega, "x": of.x}
+        found = _core.contact_detail(of.scene.core, held)
+        return found | {name: held[name] for name in ("normal_force", "friction_force")}
 
     @staticmethod
     def touch(of: Trajectory) -> Mapping[str, FloatArray]:

@@ -53,7 +53,6 @@ _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 _MODELS = tuple(model for model in MODELS if model != "auto")  # which a motion has
 _METHODS = tuple(method for method in METHODS if method != "auto")
-STATS = ("segments", "steps", "rejected_steps", "evaluations")
 
 
 def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Values]:
@@ -418,8 +417,8 @@ def _kept(found: Any) -> tuple[Event, ...] | None:
 
 
 def _require_counts(stats: Any) -> None:
-    if not (isinstance(stats, dict) and set(stats) <= set(STATS)):
-        raise ValueError(f"stats must have no names but {STATS}, got {shown(stats)}")
+    if not (isinstance(stats, dict) and set(stats) <= set(_core.STATS)):
+        raise ValueError(f"stats must have no names but {_core.STATS}, got {shown(stats)}")
     for name, count in stats.items():
         if type(count) is not int or not 0 <= count < 2**63:
             raise ValueError(f"{name} must be a count, got {shown(count)}")

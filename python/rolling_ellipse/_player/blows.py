@@ -67,7 +67,7 @@ def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
 def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str, Any]:
     """Return all blows as JSON knows them, those of one place after the other."""
     wide = WIDE * max(scene.a, scene.b)
-    touching = _core.initial_state(scene.core).touching
+    touching = _core.initial_state(scene.core)["touching"]
     names = NAMES if touching else NAMES | {Outcome.LOSES_CONTACT: "is in the air"}
     blows = [Impulse.press(force, place) for place in d for force in F]
     motions = [struck(scene, blow, t_end) for blow in blows]

@@ -11,7 +11,7 @@ from ... import scenes
 from ..._ask.scene import Impulse, Scene
 from ..._ask.settings import METHODS, MODELS
 
-_SCENE_OPTIONS = {
+SCENE_OPTIONS = {
     "a": "semi-axis parallel to the ground at theta = 0 [m]",
     "b": "the other semi-axis [m]",
     "mass": "mass [kg]",
@@ -20,6 +20,16 @@ _SCENE_OPTIONS = {
     "friction": "coefficient of friction",
     "restitution": "coefficient of restitution",
     "slope": "angle of the ground [rad]",
+}
+# The fields of a Scene that have no option of their own, and why.
+NOT_TYPED = {
+    "gravity": "other units of time show the same",
+    "inertia": "the bodies of the command line are uniform discs",
+    "x": "a motion is the same from every place",
+    "z": "the body starts on the ground, where a blow can press it down",
+    "x_dot": "as z: it starts rolling",
+    "z_dot": "as z: it starts rolling",
+    "impulse": "--press",
 }
 _BASE = (
     "The scene is the report's, a = 2 m, b = 1 m, 10 kg, pressed down by 48 N s at 1.5 m from its "
@@ -41,7 +51,7 @@ class OneLineParser(argparse.ArgumentParser):
 
 def _scene_parser(prog: str, description: str, epilog: str | None = None) -> OneLineParser:
     found = OneLineParser(prog=prog, description=f"{description} {_BASE}", epilog=epilog)
-    for name, meaning in _SCENE_OPTIONS.items():
+    for name, meaning in SCENE_OPTIONS.items():
         found.add_argument(f"--{name}", type=float, metavar="NUMBER", help=meaning)
     found.add_argument(
         "--press", type=float, nargs=2, metavar=("F", "D"),
@@ -119,7 +129,7 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
         If a number is out of its range, or the blow misses the body.
     """
     given: dict[str, Any] = {
-        name: value for name in _SCENE_OPTIONS if (value := getattr(options, name)) is not None
+        name: value for name in SCENE_OPTIONS if (value := getattr(options, name)) is not None
     }
     if options.press is not None:
         if options.press[0] < 0:

@@ -17,16 +17,24 @@ from ..._ask.scene import Scene
 from ..._ask.settings import Settings
 from ..._motion.events import Events
 from ..._motion.events import events as made_events
-from ..._motion.samples import ContactSamples, frozen
-from ..._motion.status import STATUSES, IntegrationError, Status
-from ..._motion.trajectory import STATS, Trajectory
+from ..._motion.samples import (
+    frozen,
+    of_contact,
+    of_coordinates,
+)
+from ..._motion.status import (
+    STATUSES,
+    IntegrationError,
+    Status,
+)
+from ..._motion.trajectory import Trajectory
 
 Tables = dict[str, npt.NDArray[Any]]
 Answer: TypeAlias = Trajectory | Exception
 
 REFUSED = -1  # in the place of an ending
-MODELS = {model.value: model.name.lower() for model in _core.Model}
-METHODS = {method.value: method.name.lower() for method in _core.Method}
+MODELS, METHODS = _core.MODELS, _core.METHODS  # by their codes
+_COLUMNS, _STATS = _core.COLUMNS, _core.STATS
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}  # in the tables
 _AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
 
@@ -53,6 +61,11 @@ def solve_task(task: bytes) -> Tables:
     return _core.simulate_table(table, settings.core, times, 1)
 
 
+def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
+    """Return the columns of a table by their names."""
+    return dict(zip(_COLUMNS[name], tables[name].T, strict=True))
+
+
 def answers(
     request: Request, scenes: Sequence[Scene], tables: Tables, *, keep_events: bool = False
 ) -> list[Answer]:
@@ -63,11 +76,22 @@ def answers(
     """
     cut = _Cut(tables, frozen(np.array(request.times)))
     found: list[Answer] = []
-    for scene, codes, (t_end, valid_until) in zip(
-        scenes, tables["codes"].tolist(), tables["numbers"].tolist(), strict=True
+    code, times = (
+        dict(zip(_COLUMNS[name], tables[name].T.tolist(), strict=True))
+        for name in ("codes", "numbers")
+    )
+    of_each = (code[n] for n in ("ending", "model", "method", "samples", "events", "letters"))
+    counts = zip(*(code[name] for name in _STATS), strict=True)
+    span = float(request.times[-1])
+    for scene, ending, model, method, samples, events, letters, count, t_end, valid_until in zip(
+        scenes,
+        *of_each,
+        counts,
+        times["t_end"],
+        times["valid_until"],
+        strict=True,
     ):
-        ending, model, method, samples, events, *counts, message_size = codes
-        message = cut.text(message_size)
+        message = cut.text(letters)
         if ending == REFUSED:
             found.append(ValueError(message))
             continue
@@ -83,10 +107,10 @@ def answers(
             message=message or status.value,
             valid_until=valid_until,
             t_end=t_end,
-            span=float(cut.times[-1]),
+            span=span,
             settings=request.settings,
             start=None,
-            stats=dict(zip(STATS, counts, strict=True)),
+            stats=dict(zip(_STATS, count, strict=True)),
             kept_events=kept,
         )
         failed = request.raise_on_failure and status not in _AT_AN_END
@@ -120,12 +144,11 @@ class _Cut:
         t = self.times if size == self.times.size else frozen(self.times[:size].copy())
         if model == "multipliers":
             q, q_dot = (frozen(tables[name][here].copy()) for name in ("q", "q_dot"))
-            theta, omega, x = (frozen(v.copy()) for v in (q[:, 2], q_dot[:, 2], q[:, 0]))
-            return {"t": t, "theta": theta, "omega": omega, "x": x, "coordinates": (q, q_dot)}
+            return of_coordinates(t, q, q_dot)
+        rows = frozen(tables[model][:, here].copy())
+        found: dict[str, Any] = {"t": t}
+        found.update(zip(_COLUMNS[model], rows, strict=True))
         if model == "contact":
-            theta, omega, x, *columns = frozen(tables["contact"][:, here].copy())
-            columns.append(frozen(tables["mode"][here].copy()))
-            contact = ContactSamples._make(columns)
-            return {"t": t, "theta": theta, "omega": omega, "x": x, "contact": contact}
-        theta, omega, x = frozen(tables["rolling"][:, here].copy())
-        return {"t": t, "theta": theta, "omega": omega, "x": x}
+            found["mode"] = frozen(tables["mode"][here].copy())
+            return of_contact(found)
+        return found

@@ -16,14 +16,22 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ..._ask.check import FloatArray, array, common_shape, shown
-from ..._ask.scene import Impulse, Scene
+from ..._ask.check import (
+    FloatArray,
+    array,
+    common_shape,
+    shown,
+)
+from ..._ask.scene import (
+    OPTIONAL,
+    Impulse,
+    Scene,
+)
 from .tables import BLOW, NAMES, WIDTH, scenes_of, table_of
 
 _FIRST, _MOST = 16, 2048  # scenes of a chunk
 _SHARE = 32  # the next chunk is this part of all before it
 _SAMPLES = 2**18  # of a chunk
-_OPTIONAL = ("inertia", "z", "x_dot", "z_dot", "impulse")
 _DEFAULTS: dict[str, Any] = {field.name: field.default for field in fields(Scene)}
 
 
@@ -89,13 +97,13 @@ class Grid:
                 raise TypeError(f"scenes must have {name!r}, got {list(arguments)}")
         self._arrays: dict[str, FloatArray] = {}
         for name, value in arguments.items():
-            if value is None and name in _OPTIONAL:
+            if value is None and name in OPTIONAL:
                 continue
             if name == "impulse":
                 self._take_blow(value)
                 continue
             self._arrays[name] = array(_entry(name), value)
-            if name in _OPTIONAL:
+            if name in OPTIONAL:
                 self._require_numbers(name)
         entries = {_entry(name): values for name, values in self._arrays.items()}
         self._shape = common_shape(entries, slice(None))

@@ -11,13 +11,10 @@ import numpy.typing as npt
 from ... import _core
 from ..._ask.check import FloatArray
 from ..._motion.status import STATUSES
-from .answers import METHODS, MODELS, REFUSED, Tables
-from .tables import WIDTH
+from .answers import METHODS, MODELS, REFUSED, Tables, columns
 
-_CODES = 10
-_SAMPLES, _EVENTS = 3, 4  # columns of the codes; the last is the length of a text
-_EVENT_WIDTH = 16
-_OF_MODES = [8, 15]  # columns of an event
+_WIDTH = {name: len(names) for name, names in _core.COLUMNS.items()}
+_COUNTS = _core.COLUMNS["codes"].index("samples")  # from which on all codes are counts
 NAMES = (
     "codes", "numbers", "text", "events", "rolling", "contact", "mode", "q", "q_dot",
 )  # fmt: skip
@@ -28,25 +25,26 @@ def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> No
     for name in NAMES:
         if name not in tables:
             raise ValueError(f"it must hold the array {name!r}")
-    _require("scenes", scenes, np.float64, (n, WIDTH))
+    _require("scenes", scenes, np.float64, (n, _WIDTH["scenes"]))
     codes = tables["codes"]
-    _require("codes", codes, np.int64, (n, _CODES))
-    ending, model, method = codes[:, :3].T
-    _require_known("codes of endings", ending, [REFUSED, *STATUSES])
-    _require_known("codes of models", model, MODELS)
-    _require_known("codes of methods", method, METHODS)
-    if codes[:, _SAMPLES:].min(initial=0) < 0 or codes[:, _SAMPLES].max(initial=0) > times:
+    _require("codes", codes, np.int64, (n, _WIDTH["codes"]))
+    code = columns("codes", tables)
+    model, counted = code["model"], code["samples"]
+    _require_known("codes of endings", code["ending"], [REFUSED, *STATUSES])
+    _require_known("codes of models", model, range(len(MODELS)))
+    _require_known("codes of methods", code["method"], range(len(METHODS)))
+    if codes[:, _COUNTS:].min(initial=0) < 0 or counted.max(initial=0) > times:
         raise ValueError(f"codes must hold counts, of samples at most {times}")
     samples = {
-        name: int(codes[[MODELS[code] == name for code in model.tolist()], _SAMPLES].sum())
-        for name in MODELS.values()
+        name: int(counted[[MODELS[each] == name for each in model.tolist()]].sum())
+        for name in MODELS
     }
     rolled, touched, constrained = (samples[n] for n in ("rolling", "contact", "multipliers"))
-    _require("numbers", tables["numbers"], np.float64, (n, 2))
-    _require("text", tables["text"], np.int8, (int(codes[:, -1].sum()),))
-    _require("events", tables["events"], np.float64, (int(codes[:, _EVENTS].sum()), _EVENT_WIDTH))
-    _require("rolling", tables["rolling"], np.float64, (3, rolled))
-    _require("contact", tables["contact"], np.float64, (8, touched))
+    _require("numbers", tables["numbers"], np.float64, (n, _WIDTH["numbers"]))
+    _require("text", tables["text"], np.int8, (int(code["letters"].sum()),))
+    _require("events", tables["events"], np.float64, (int(code["events"].sum()), _WIDTH["events"]))
+    _require("rolling", tables["rolling"], np.float64, (_WIDTH["rolling"], rolled))
+    _require("contact", tables["contact"], np.float64, (_WIDTH["contact"], touched))
     _require("mode", tables["mode"], np.int8, (touched,))
     for name in ("q", "q_dot"):
         _require(name, tables[name], np.float64, (constrained, 5))
@@ -56,9 +54,11 @@ def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> No
     if np.isnan(tables["numbers"]).any():
         raise ValueError("numbers must be none but numbers")
     _require_known("mode", tables["mode"], list(_core.Mode))
-    _require_known("modes of events", tables["events"][:, _OF_MODES], list(_core.Mode))
+    event = columns("events", tables)
+    for name in ("mode_before", "mode_after"):
+        _require_known("modes of events", event[name], list(_core.Mode))
     kinds = [kind.value for kind in _core.EventKind]
-    _require_known("kinds of events", tables["events"][:, 1], kinds)
+    _require_known("kinds of events", event["kind"], kinds)
 
 
 def _require(name: str, values: npt.NDArray[Any], dtype: Any, shape: tuple[int, ...]) -> None:

@@ -1,6 +1,6 @@
 """Scenes as the rows of a table, which is how they go to workers and into files.
 
-A row holds the numbers of a Scene in the order of `NAMES`, then jx, jz, dx, dz of its impulse; NaN,
+A row holds the numbers of a Scene as the core has them in a row, then those of its impulse; NaN,
 which no scene has, is what was not given.
 """
 
@@ -9,26 +9,29 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
+from ... import _core
 from ..._ask.check import FloatArray
-from ..._ask.scene import Impulse, Scene
+from ..._ask.records import trusted
+from ..._ask.scene import (
+    OPTIONAL,
+    Impulse,
+    Scene,
+)
 
-NAMES = (
-    "a", "b", "mass", "gravity", "slope", "friction", "restitution", "theta", "omega", "x",
-    "inertia", "z", "x_dot", "z_dot",
-)  # fmt: skip
-BLOW = ("jx", "jz", "dx", "dz")
+NAMES, BLOW = tuple(_core.FIELDS["Scene"]), tuple(_core.FIELDS["Impulse"])
 WIDTH = len(NAMES) + len(BLOW)
-_OPTIONAL = NAMES.index("inertia")
+_OPTIONAL = tuple(OPTIONAL & set(NAMES))
 
 _numbers = attrgetter(*NAMES)
 _blow = attrgetter(*BLOW)
 
 
 def table_of(scenes: Sequence[Scene]) -> FloatArray:
-    """Return the table of some scenes, (n, 18)."""
+    """Return the table of some scenes, a row each."""
     table = np.full((len(scenes), WIDTH), math.nan)
     if scenes:
         table[:, : len(NAMES)] = np.array([_numbers(scene) for scene in scenes], dtype=np.float64)
@@ -44,12 +47,11 @@ def scenes_of(table: FloatArray) -> list[Scene]:
 
 
 def _scene(row: list[float]) -> Scene:
-    numbers: list[float | None] = [*row[: len(NAMES)]]
-    for i in range(_OPTIONAL, len(NAMES)):
-        if math.isnan(row[i]):
-            numbers[i] = None
-    jx, jz, dx, dz = row[len(NAMES) :]
-    impulse = None if math.isnan(jx) else Impulse(jx, jz, dx=dx, dz=dz)
-    made = object.__new__(Scene)
-    made.__dict__.update(zip(NAMES, numbers, strict=True), impulse=impulse)
-    return made
+    known: dict[str, Any] = dict(zip(NAMES, row, strict=False))
+    for name in _OPTIONAL:
+        if math.isnan(known[name]):
+            known[name] = None
+    blow = row[len(NAMES) :]
+    struck = not math.isnan(blow[0])
+    known["impulse"] = trusted(Impulse, dict(zip(BLOW, blow, strict=True))) if struck else None
+    return trusted(Scene, known)

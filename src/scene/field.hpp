@@ -1,0 +1,37 @@
+// Numbers of a struct by name and unit. What copies, scales or names all numbers of a struct reads
+// its table, which stands below the struct.
+#pragma once
+
+namespace rolling_ellipse {
+
+// A unit as it is printed (in UTF-8; C2 B2 is a raised 2), and its exponents of metre, second and
+// kilogram.
+struct Unit {
+    const char* symbol;
+    int length = 0;
+    int time = 0;
+    int mass = 0;
+};
+
+namespace unit {
+inline constexpr Unit none{""};
+inline constexpr Unit angle{"rad"};
+inline constexpr Unit angular_velocity{"rad/s", 0, -1};
+inline constexpr Unit length{"m", 1};
+inline constexpr Unit speed{"m/s", 1, -1};
+inline constexpr Unit acceleration{"m/s\xC2\xB2", 1, -2};
+inline constexpr Unit mass{"kg", 0, 0, 1};
+inline constexpr Unit inertia{"kg m\xC2\xB2", 2, 0, 1};
+inline constexpr Unit force{"N", 1, -2, 1};
+inline constexpr Unit impulse{"N s", 1, -1, 1};
+inline constexpr Unit energy{"J", 2, -2, 1};
+}  // namespace unit
+
+template <class Struct>
+struct Field {
+    const char* name;
+    double Struct::* number;
+    Unit unit;
+};
+
+}  // namespace rolling_ellipse

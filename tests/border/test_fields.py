@@ -1,0 +1,190 @@
+"""No field is forgotten on its way: each row of the core's tables comes back from everywhere.
+
+A contact motion is the same in all units that are powers of two, bit by bit: so each field has the
+dimension that its unit says.
+"""
+
+import dataclasses
+import json
+import pickle
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rolling_ellipse as rl
+from rolling_ellipse import Impulse, Scene, _core
+from rolling_ellipse._ask.settings import (
+    DEFAULTS,
+    Settings,
+)
+from rolling_ellipse._motion.events import (
+    as_numbers,
+    from_numbers,
+)
+from rolling_ellipse._motion.export.strict import scene_of
+from rolling_ellipse._show.command.options import (
+    NOT_TYPED,
+    SCENE_OPTIONS,
+    chosen_scene,
+    motion_parser,
+)
+
+UNITS: dict[str, dict[str, str]] = _core.FIELDS
+FIELDS = list(UNITS["Scene"])
+BLOW = Impulse(3.0, -5.0, dx=0.3, dz=-0.2)
+# In the air over a slope, so that x_dot, z and z_dot count; a field that is new is small.
+GIVEN = {
+    "a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.0, "inertia": 11.0, "slope": 0.2,
+    "friction": 0.3, "restitution": 0.6, "theta": 0.5, "omega": 1.5, "x": 0.7, "z": 2.5,
+    "x_dot": 0.4, "z_dot": -0.3,
+}  # fmt: skip
+START = Scene(**{name: GIVEN.get(name, 2**-6) for name in FIELDS}, impulse=BLOW)
+TIMES = np.linspace(0.0, 2.0, 21)
+
+
+def names(kind: Any) -> list[str]:
+    return [field.name for field in dataclasses.fields(kind)]
+
+
+def changed(name: str) -> Scene:
+    """Another scene, by this number alone."""
+    return START.replace(**{name: getattr(START, name) * (1 + 2**-6)})
+
+
+def by_file(scene: Scene, folder: Path) -> Scene:
+    rl.simulate(scene, [0.0], model="contact").save(folder / "motion.npz")
+    return rl.load(folder / "motion.npz").scene
+
+
+def by_folder(scene: Scene, folder: Path) -> Scene:
+    rl.simulate_many([scene], [0.0], out=folder / "many")
+    (found,) = rl.load_many(folder / "many")
+    return found.scene  # type: ignore[union-attr]
+
+
+def by_arrays(scene: Scene, folder: Path) -> Scene:
+    numbers = {name: np.array([getattr(scene, name)]) for name in FIELDS}
+    (found,) = rl.simulate_many({**numbers, "impulse": scene.impulse}, [0.0])
+    return found.scene
+
+
+ROADS: dict[str, Callable[[Scene, Path], Scene]] = {
+    "repr": lambda scene, folder: eval(repr(scene)),
+    "replace": lambda scene, folder: dataclasses.replace(scene),
+    "pickle": lambda scene, folder: pickle.loads(pickle.dumps(scene)),
+    "JSON": lambda scene, folder: scene_of(json.loads(json.dumps(dataclasses.asdict(scene)))),
+    "npz": by_file,
+    "folder": by_folder,
+    "arrays": by_arrays,
+}
+
+
+def test_scenes_have_the_fields_of_the_core() -> None:
+    assert sorted(names(Scene)) == sorted([*FIELDS, "impulse"])
+    assert names(Impulse) == list(UNITS["Impulse"])
+    assert _core.COLUMNS["scenes"] == (*UNITS["Scene"], *UNITS["Impulse"])
+
+
+@pytest.mark.parametrize("road", ROADS)
+@pytest.mark.parametrize("name", FIELDS)
+def test_a_scene_keeps_its_numbers(road: str, name: str, tmp_path: Path) -> None:
+    assert ROADS[road](changed(name), tmp_path) == changed(name) != START
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_a_number_changes_the_motion(name: str) -> None:
+    """The core has it, and the units of a contact motion do."""
+    one, other = (rl.simulate(scene, TIMES, model="contact") for scene in (START, changed(name)))
+    assert any(getattr(one, each).tobytes() != getattr(other, each).tobytes() for each in STATE)
+
+
+STATE = {**UNITS["State"], "normal_force": "N", "friction_force": "N"}
+DIMENSIONS = {
+    "m": (1, 0, 0), "s": (0, 1, 0), "kg": (0, 0, 1), "rad": (0, 0, 0), "N": (1, -2, 1),
+    "J": (2, -2, 1),
+}  # fmt: skip
+
+
+def exponents(unit: str) -> np.ndarray[Any, Any]:
+    """Of metre, second and kilogram in a unit as it is printed: "kg m²", "m/s²"."""
+    found = np.zeros(3, int)
+    for k, part in enumerate(unit.split("/")):
+        for symbol, power in re.findall(r"([A-Za-z]+)(²?)", part):
+            found += (-1) ** k * (2 if power else 1) * np.array(DIMENSIONS[symbol])
+    return found
+
+
+@pytest.mark.parametrize("units", [(3, 0, 0), (0, -2, 0), (0, 0, 5), (-7, 4, 2)])
+def test_a_motion_is_the_same_in_other_units(units: tuple[int, int, int]) -> None:
+    """Powers of two: of the metre, the second and the kilogram."""
+
+    def scaled(value: Any, unit: str) -> Any:
+        return value * 2.0 ** int(exponents(unit) @ units)
+
+    of_scene = {name: scaled(getattr(START, name), unit) for name, unit in UNITS["Scene"].items()}
+    blow = Impulse(**{n: scaled(getattr(BLOW, n), unit) for n, unit in UNITS["Impulse"].items()})
+    one = rl.simulate(START, TIMES, model="contact")
+    other = rl.simulate(Scene(**of_scene, impulse=blow), scaled(TIMES, "s"), model="contact")
+    for name, unit in STATE.items():
+        assert scaled(getattr(one, name), unit).tobytes() == getattr(other, name).tobytes(), name
+    assert len(one.events) > 3
+    for before, after in zip(one.events, other.events, strict=True):
+        assert scaled(before.t, "s") == after.t
+        for name, unit in UNITS["InitialState"].items():
+            wanted = scaled(getattr(before.state_after, name), unit)
+            assert wanted == getattr(after.state_after, name), name
+
+
+def test_the_dimension_of_every_number_is_seen() -> None:
+    """The tester of `exponents`."""
+    assert exponents("kg m²").tolist() == [2, 0, 1]
+    assert exponents("N s").tolist() == [1, -1, 1]
+    assert exponents("m/s²").tolist() == [1, -2, 0]
+    assert exponents("").tolist() == [0, 0, 0]
+
+
+def test_each_field_is_an_option_or_has_a_reason() -> None:
+    assert {*SCENE_OPTIONS, *NOT_TYPED} == set(names(Scene))
+    assert not set(SCENE_OPTIONS) & set(NOT_TYPED)
+    for name in SCENE_OPTIONS:
+        scene = chosen_scene(motion_parser().parse_args([f"--{name}=0.75", "--press", "0", "0"]))
+        assert getattr(scene, name) == 0.75
+
+
+def test_settings_have_the_fields_of_the_core() -> None:
+    """All that the core reads is there (or DEFAULTS had no core), and it reads all."""
+    given = DEFAULTS.__getstate__()
+    for name in names(Settings):
+        with pytest.raises(KeyError, match=name):
+            _core.Settings({key: value for key, value in given.items() if key != name})
+
+
+def test_starts_have_the_fields_of_the_core() -> None:
+    assert set(names(type(START.initial_state))) == {*UNITS["InitialState"], "mode", "reason"}
+    assert set(UNITS["State"]) < set(UNITS["InitialState"])
+
+
+def test_an_event_keeps_its_numbers() -> None:
+    motion = rl.simulate(START, TIMES, model="contact")
+    row = motion._solution.events.tolist()[0]
+    named = dict(zip(_core.COLUMNS["events"], row, strict=True))
+    event = motion.events[0]
+    assert (named["t"], named["kind"]) == (event.t, event.kind.value)
+    for when in ("before", "after"):
+        state = getattr(event, f"state_{when}")
+        for name in (*UNITS["State"], "mode"):
+            assert named[f"{name}_{when}"] == getattr(state, name)
+    assert from_numbers(as_numbers(event)) == row
+
+
+def test_statistics_and_columns_have_their_names() -> None:
+    assert set(rl.simulate(START, TIMES).stats) == set(_core.STATS) <= set(_core.COLUMNS["codes"])
+    tables = _core.simulate_table(
+        np.empty((0, len(_core.COLUMNS["scenes"]))), DEFAULTS.core, TIMES, 1
+    )
+    for name, columns in _core.COLUMNS.items():
+        if name != "scenes":
+            assert len(columns) in tables[name].shape, name
