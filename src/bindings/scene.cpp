@@ -5,8 +5,8 @@ namespace rolling_ellipse::bindings {
 namespace {
 
 // theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution, each with n elements, or one:
-// x_dot, z_dot, omega just after the collision of a touching body, by the law of scene/impact.hpp.
-py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
+// x_dot, z_dot, omega just after the collision of a touching body.
+py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, Restitution law) {
     std::vector<Array> out = empty_arrays(3, n);
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
     const std::array<Argument, 9> of = arguments_of<9>(
@@ -31,7 +31,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
             validate(scene, most_energy_reached);  // beside a gravity that does not matter
             const State before = state_before_impulse(scene);
             const double approach = gap_rate(before, geometry(scene.axes(), before.theta));
-            const State after = collision(scene, before, approach).after;
+            const State after = collision(scene, before, approach, law).after;
             columns[0][i] = after.x_dot;
             columns[1][i] = after.z_dot;
             columns[2][i] = after.omega;
@@ -107,6 +107,11 @@ void bind_scene(py::module_& m) {
         .def_readonly("x_dot", &State::x_dot)
         .def_readonly("z_dot", &State::z_dot)
         .def_readonly("mode", &State::mode);
+    py::native_enum<Restitution>(m, "Restitution", "enum.Enum", "What restitution means.")
+        .value("STRONGE", Restitution::stronge)
+        .value("POISSON", Restitution::poisson)
+        .value("NEWTON", Restitution::newton)
+        .finalize();
     bind_class<InitialState>(m, "InitialState")
         .def_readonly("state", &InitialState::state)
         .def_readonly("reaction_x", &InitialState::reaction_x)
@@ -125,7 +130,7 @@ void bind_scene(py::module_& m) {
         [](const Scene& scene, const State& start) { return first_continuation(scene, start); },
         "scene"_a, "start"_a);
     m.def("energy_lost", energy_lost_between, "scene"_a, "before"_a, "after"_a);
-    m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a);
+    m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a, "law"_a);
 }
 
 }  // namespace rolling_ellipse::bindings

@@ -93,7 +93,7 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
         r"^gyration2 must have shape \(2,\), got \(3,\)$",
     ),
     "collisions": (
-        lambda: _core.collide_arrays(2, numbered(9, 8)),
+        lambda: _core.collide_arrays(2, numbered(9, 8), _core.Restitution.STRONGE),
         r"^restitution must have shape \(2,\), got \(3,\)$",
     ),
     "samples": (
