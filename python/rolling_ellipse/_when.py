@@ -41,8 +41,7 @@ def passages(
     if unproved:
         warnings.warn(
             f"the times at which {name} passes are not proved to be all of them "
-            f"{' and '.join(unproved)}: two passages closer together than the looks, 16 a "
-            "step or 64 a quarter turn, may be missed",
+            f"{' and '.join(unproved)}: two passages close together may be missed",
             CompletenessWarning,
             stacklevel=3,
         )
