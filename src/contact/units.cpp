@@ -1,16 +1,6 @@
 #include "contact/units.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace rolling_ellipse {
-
-Units natural_units(const Scene& scene) {
-    const double long_axis = std::max(scene.a, scene.b);
-    const int time2 = std::ilogb(long_axis / scene.gravity);
-    return {std::ldexp(1.0, std::ilogb(long_axis)), std::ldexp(1.0, time2 >> 1),
-            std::ldexp(1.0, std::ilogb(scene.mass))};
-}
 
 Scene body_in_units(const Scene& scene, const Units& units) {
     Scene scaled{};

@@ -68,6 +68,13 @@ void require_in_size(std::string_view name, const std::string& unit, double valu
 
 }  // namespace
 
+Units natural_units(const Body& body, double mass) {
+    const double long_axis = std::max(body.a, body.b);
+    const int time2 = std::ilogb(long_axis / body.gravity);
+    return {std::ldexp(1.0, std::ilogb(long_axis)), std::ldexp(1.0, time2 >> 1),
+            std::ldexp(1.0, std::ilogb(mass))};
+}
+
 void validate_length(std::string_view name, double value) {
     require_positive(name, "length [m]", value);
 }

@@ -61,6 +61,20 @@ struct Scene {
     GroundGravity ground_gravity() const { return rolling_ellipse::ground_gravity(gravity, slope); }
 };
 
+// Units of a body's own size, powers of two: a number in them keeps its bits, and what is computed
+// in them neither depends on the units that it came in nor leaves the range of doubles.
+struct Units {
+    double length = 1.0;  // [m]
+    double time = 1.0;    // [s]
+    double mass = 1.0;    // [kg]
+
+    double speed() const { return length / time; }
+    bool are_si() const { return length == 1 && time == 1 && mass == 1; }
+};
+
+// Next to the long semi-axis L, sqrt(L/g) and the mass.
+Units natural_units(const Body& body, double mass = 1.0);
+
 // k^2 of a uniform disc, physics (16): the default wherever a body is given.
 inline double uniform_disc_gyration2(double a, double b) { return (a * a + b * b) / 4; }
 
