@@ -104,53 +104,18 @@ void validate_stages(const Settings& settings) {
 }  // namespace
 
 std::string name(Model model) {
-    switch (model) {
-        case Model::automatic:
-            return "auto";
-        case Model::rolling:
-            return "rolling";
-        case Model::multipliers:
-            return "multipliers";
-        case Model::contact:
-            return "contact";
-    }
-    return {};
+    constexpr const char* names[] = {"auto", "rolling", "multipliers", "contact"};
+    return names[static_cast<int>(model)];
 }
 
 std::string name(Stabilization stabilization) {
-    switch (stabilization) {
-        case Stabilization::none:
-            return "none";
-        case Stabilization::baumgarte:
-            return "baumgarte";
-        case Stabilization::projection:
-            return "projection";
-        case Stabilization::projection_energy:
-            return "projection+energy";
-        case Stabilization::ggl:
-            return "ggl";
-    }
-    return {};
+    constexpr const char* names[] = {"none", "baumgarte", "projection", "projection+energy", "ggl"};
+    return names[static_cast<int>(stabilization)];
 }
 
 std::string name(Method method) {
-    switch (method) {
-        case Method::automatic:
-            return "auto";
-        case Method::exact:
-            return "exact";
-        case Method::dop853:
-            return "dop853";
-        case Method::dopri5:
-            return "dopri5";
-        case Method::rk4:
-            return "rk4";
-        case Method::gauss:
-            return "gauss";
-        case Method::radau:
-            return "radau";
-    }
-    return {};
+    constexpr const char* names[] = {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"};
+    return names[static_cast<int>(method)];
 }
 
 void no_integrator_for(Method method) {
