@@ -24,6 +24,7 @@ struct QuarterView {
 
 inline QuarterView quarter_view(const DoubleDouble& angle) {
     const double quarters = std::nearbyint(angle.high / half_pi);
+    if (quarters == 0) return {quarters, angle};  // mostly
     return {quarters, angle - half_pi_exact * quarters};
 }
 
