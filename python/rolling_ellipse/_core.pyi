@@ -18,6 +18,13 @@ class Mode(enum.IntEnum):
     FLIGHT = 2
     REST = 3
 
+class Restitution(enum.Enum):
+    """What restitution means."""
+
+    STRONGE = 0
+    POISSON = 1
+    NEWTON = 2
+
 class Painleve(enum.Enum):
     """Does exactly one motion go on?"""
 
@@ -207,7 +214,7 @@ def flow_array(
 ) -> tuple[FloatArray, FloatArray, FloatArray]: ...
 def flow_levels() -> list[str]: ...
 def collide_arrays(
-    n: int, arguments: list[FloatArray]
+    n: int, arguments: list[FloatArray], law: Restitution
 ) -> tuple[FloatArray, FloatArray, FloatArray]: ...
 def constraints(
     q: FloatArray, q_dot: FloatArray, a: float, b: float

@@ -6,8 +6,8 @@ namespace rolling_ellipse::bindings {
 namespace {
 
 // theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution, each with n elements, or one:
-// x_dot, z_dot, omega just after the collision of a touching body, by the law of scene/impact.hpp.
-py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
+// x_dot, z_dot, omega just after the collision of a touching body.
+py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, Restitution law) {
     std::vector<Array> out = empty_arrays(3, n);
     double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
     const std::array<Argument, 9> of = arguments_of<9>(
@@ -32,7 +32,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments) {
             validate(scene, most_energy_reached);  // beside a gravity that does not matter
             const State before = state_before_impulse(scene);
             const double approach = gap_rate(before, geometry(scene.axes(), before.theta));
-            const State after = collision(scene, before, approach).after;
+            const State after = collision(scene, before, approach, law).after;
             columns[0][i] = after.x_dot;
             columns[1][i] = after.z_dot;
             columns[2][i] = after.omega;
@@ -109,12 +109,17 @@ void bind_scene(py::module_& m) {
     bind_class<Scene>(m, "Scene")
         .def(py::init(SceneMaker()), "numbers"_a, "impulse"_a, "reached"_a)
         .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
+    py::native_enum<Restitution>(m, "Restitution", "enum.Enum", "What restitution means.")
+        .value("STRONGE", Restitution::stronge)
+        .value("POISSON", Restitution::poisson)
+        .value("NEWTON", Restitution::newton)
+        .finalize();
     m.attr("FIELDS") =
         py::dict("Scene"_a = units_of(scene_fields), "Impulse"_a = units_of(impulse_fields),
                  "State"_a = units_of(state_fields),
                  "InitialState"_a = units_of(state_fields, start_fields));
     m.def("initial_state", start_of, "scene"_a);
-    m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a);
+    m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a, "law"_a);
 }
 
 }  // namespace rolling_ellipse::bindings

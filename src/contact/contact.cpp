@@ -6,29 +6,21 @@
 #include <optional>
 
 #include "contact/continuation.hpp"
+#include "contact/settling.hpp"
 #include "geometry/half_turns.hpp"
 #include "proof/certificate.hpp"
 #include "proof/law.hpp"
 #include "proof/slope_end.hpp"
 #include "scene/impact.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-// What an event is called that leads to a mode; sliding has two names.
+// The name of an event that leads to a mode; sliding has two.
 EventKind kind_of(Mode next, EventKind sliding) {
-    switch (next) {
-        case Mode::rest:
-            return EventKind::rest;
-        case Mode::rolling:
-            return EventKind::stick;
-        case Mode::flight:
-            return EventKind::lift_off;
-        case Mode::sliding:
-            return sliding;
-    }
-    return sliding;
+    if (next == Mode::rest) return EventKind::rest;
+    if (next == Mode::rolling) return EventKind::stick;
+    return next == Mode::flight ? EventKind::lift_off : sliding;
 }
 
 class ContactRun {
@@ -36,14 +28,14 @@ class ContactRun {
     ContactRun(const Scene& scene, const State& start, double gap_rate,
                const EndOfRolling& end_of_rolling, const Settings& settings, double t_end,
                const Checkpoint& checkpoint)
-        : units_(natural_units(scene)),
+        : units_(natural_units(scene.body(), scene.mass)),
           scene_(in_units(scene, units_)),
           settings_(settings),
           t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
           checkpoint_(checkpoint),
           state_(in_units(start, units_)),
           first_end_(end_of_rolling),
-          rest_speed_(rest_speed()),
+          rest_speed_(rest_speed(scene_, units_, settings)),
           gap_rate_(gap_rate / units_.speed()),
           motion_{units_, scene_, {}, {}} {}
 
@@ -263,11 +255,12 @@ class ContactRun {
         const auto [after, rebound_or_less] = collision(scene_, before, approach);
         state_ = after;
         // Below a rounding of the speed of a fall it is none.
-        const double rebound = rebound_or_less > epsilon * speed_of_fall() ? rebound_or_less : 0.0;
+        const double rebound =
+            rebound_or_less > epsilon * speed_of_fall(scene_) ? rebound_or_less : 0.0;
         const Geometry at = geometry(axes(), before.theta);
         const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
         const double ratio = rebound / -approach;
-        if (rebound > 0 && !settles(rebound, ratio, c)) {
+        if (rebound > 0 && !settles(scene_, state_.omega, {rebound, ratio, c}, rest_speed_)) {
             return go_on_with({Mode::flight}, EventKind::impact, before, rebound);
         }
         if (rebound > 0) {
@@ -279,55 +272,13 @@ class ContactRun {
         go_on_with(continuation(scene_, state_), EventKind::impact, before);
     }
 
-    // Whether a rebound is the first of bounces that are too small and too short to tell apart.
-    // They take place under one c and h', an error of the square of how long they last beside the
-    // time in which a body falls or turns by b/a: no more than the share of the speed at which it
-    // rests.
-    bool settles(double rebound, double ratio, double c) const {
-        if (rebound > rest_speed_ || c <= 0 || !(ratio < largest_ratio_that_settles)) return false;
-        const auto [least, most] = std::minmax(scene_.a, scene_.b);
-        const double rate =
-            std::max(std::sqrt(scene_.gravity / least), std::abs(state_.omega) * most / least);
-        const double longest = std::sqrt(rest_speed_ / speed_of_fall());
-        return 2 * rebound * rate <= longest * c * (1 - ratio);
-    }
-
-    // Infinitely many bounces that shrink by a ratio take a finite time, physics (57); so small
-    // ones do it in place, under the c of their beginning.
     void settle(double rebound, double c) {
-        constexpr double negligible_share = 1e-12;  // of the rebound: what is left adds no digit
-        const Geometry at = geometry(axes(), state_.theta);
-        const GroundGravity gravity = scene_.ground_gravity();
-        State moving = state_;
-        double lasts = 0.0;
-        double turned = 0.0;
-        double moved = 0.0;
-        double speed = rebound;
-        while (speed > negligible_share * rebound) {
-            const double hop = 2 * speed / c;
-            const double gained =
-                (gravity.along - at.dh * square(moving.omega)) * hop;  // slip in flight
-            // of the centre, which moves as the slip and (h + h' turned) omega say
-            const double velocity = moving.x_dot + at.dh * turned * moving.omega;
-            moved += (velocity + 0.5 * gravity.along * hop) * hop;
-            lasts += hop;
-            turned += moving.omega * hop;
-            moving.x_dot += gained;
-            moving.z_dot = at.dh * moving.omega - speed;
-            const auto [after, next] = collision(scene_, moving, -speed);
-            moving = after;
-            if (!(next < largest_ratio_that_settles * speed)) break;
-            speed = std::max(next, 0.0);
-        }
-        DoubleDouble end = two_sum(state_.theta, turned);
-        const double theta = end.high;
-        const State settled =
-            in_contact(geometry(axes(), theta), theta, zero_if_negligible(moving.omega),
-                       state_.x + moved, slip_beyond_rounding(moving, at), Mode::flight);
-        add_segment(Settling{lasts, state_, settled});
-        if (t_ + lasts > t_end_) return finish();
-        t_ += lasts;
-        state_ = recounted(settled, end);
+        const Settled found = settled(scene_, state_, rebound, c);
+        DoubleDouble end = found.angle;
+        add_segment(Settling{found.lasts, state_, found.state});
+        if (t_ + found.lasts > t_end_) return finish();
+        t_ += found.lasts;
+        state_ = recounted(found.state, end);
         const State before = state_;
         const Continuation next = continuation(scene_, state_);
         go_on_with(next, kind_of(next.mode, EventKind::slip), before);
@@ -365,30 +316,7 @@ class ContactRun {
         if (!ending_) ending_ = Ending::completed;
     }
 
-    double speed_of_fall() const {
-        return std::sqrt(scene_.gravity * std::min(scene_.a, scene_.b));
-    }
-
-    double rest_speed() const {
-        constexpr double small = 1e-6;
-        // Where bounces are summed, c and h' stay what they are: an error of this size.
-        constexpr double large = 1e-2;
-        const double unit = speed_of_fall();
-        if (!settings_.rest_speed) return small * unit;
-        const double speed = *settings_.rest_speed / units_.speed();
-        if (speed > large * unit) {
-            refuse("rest_speed",
-                   "at most " + text(large * unit * units_.speed()) +
-                       " [m/s], a hundredth of sqrt(g min(a, b))",
-                   *settings_.rest_speed);
-        }
-        return speed;
-    }
-
     long steps_left() const { return settings_.max_steps - counts_.steps; }
-
-    // The ratio of a rebound to the last up to which bounces are summed: 1e5 of them at most.
-    static constexpr double largest_ratio_that_settles = 0.9999;
 
     // Times, states and segments are in units, which the settings are not.
     const Units units_;

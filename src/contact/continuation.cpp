@@ -96,7 +96,7 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
 
 Continuation first_continuation(const Scene& scene, const State& start, bool may_roll) {
     if (start.mode == Mode::flight) return {Mode::flight};
-    const Units units = natural_units(scene);
+    const Units units = natural_units(scene.body(), scene.mass);
     const Scene body = in_units(scene, units);
     const State state = in_units(start, units);
     const QuarterView angle = quarter_view({resolved(state.theta), 0.0});

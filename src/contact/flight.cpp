@@ -9,12 +9,6 @@
 namespace rolling_ellipse {
 namespace {
 
-// The root of f between two points at which it has different signs, to the last bit.
-template <class Function>
-double root_between(const Function& f, double low, double high) {
-    return bisect_root(low, high, f).high;
-}
-
 // sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, as series in which nothing cancels.
 struct BeyondSmall {
     double sine;
@@ -218,16 +212,16 @@ double first_touch(const Flight& flight, const Gap& gap, bool leaves_slowly) {
         const double after = gap.rate(end);
         if (now.convex) {
             if (before < 0) {
-                const double lowest = after > 0 ? root_between(rate, now.begin, end) : end;
-                if (gap.value(lowest) <= 0) return root_between(value, now.begin, lowest);
+                const double lowest = after > 0 ? bisect_root(now.begin, end, rate).high : end;
+                if (gap.value(lowest) <= 0) return bisect_root(now.begin, lowest, value).high;
                 // Where the tip passes below a centre no higher than that, it touches, though the
                 // gap may be rounded to more than nothing where the body spins fast for its fall.
                 const double tip = curvature.tip_time(now);
                 if (now.begin < tip && tip <= end && gap.height(tip) <= tall) return lowest;
             }
         } else if (after < 0 && gap.value(end) <= 0) {
-            return root_between(value, before > 0 ? root_between(rate, now.begin, end) : now.begin,
-                                end);
+            const double from = before > 0 ? bisect_root(now.begin, end, rate).high : now.begin;
+            return bisect_root(from, end, value).high;
         }
         const Curvature::Interval next = curvature.after(now);
         // Half a turn between two doubles, or from the beginning of a convex interval to its tip.

@@ -8,8 +8,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// Each law at times since its begin. Every law knows state and force; the other samples, which some
-// laws know at first hand, follow from them.
+// Each law at times since its begin. Those that roll know theta, omega and x, from which state and
+// force follow; the others know state and force, from which all other samples follow.
 
 void look_at(const Scene&, const RollingFlow& flow, const double* times, std::size_t n,
              FlowSample* samples) {
@@ -29,34 +29,6 @@ void look_at(const Scene&, const SteppedRolling& motion, const double* times, st
 void look_at(const Scene&, const SteppedMultipliers& motion, const double* times, std::size_t n,
              CoordinateState* samples) {
     sample(motion, times, n, samples);
-}
-
-template <class Rolling>
-void look_at_rolling(const Scene& scene, const Rolling& rolling, const double* times, std::size_t n,
-                     ContactSample* samples) {
-    const RollingDynamics dynamics(scene);
-    std::vector<FlowSample> states(n);
-    look_at(scene, rolling, times, n, states.data());
-    for (const auto& [theta, omega, x] : states) {
-        const Geometry at = geometry(scene.axes(), theta);
-        *samples++ = {in_contact(at, theta, omega, x, 0.0, Mode::rolling),
-                      dynamics.force(at, omega)};
-    }
-}
-
-void look_at(const Scene& scene, const RollingFlow& flow, const double* times, std::size_t n,
-             ContactSample* samples) {
-    look_at_rolling(scene, flow, times, n, samples);
-}
-
-void look_at(const Scene& scene, const SlopeFlow& flow, const double* times, std::size_t n,
-             ContactSample* samples) {
-    look_at_rolling(scene, flow, times, n, samples);
-}
-
-void look_at(const Scene& scene, const SteppedRolling& motion, const double* times, std::size_t n,
-             ContactSample* samples) {
-    look_at_rolling(scene, motion, times, n, samples);
 }
 
 void look_at(const Scene&, const SteppedMultipliers& motion, const double* times, std::size_t n,
@@ -126,10 +98,20 @@ void take(const Scene& scene, const ContactSample& from, CoordinateState& to) {
 template <class Law, class Sample>
 void look_at(const Scene& scene, const Law& law, const double* times, std::size_t n,
              Sample* samples) {
-    static_assert(!std::is_same_v<Sample, ContactSample>, "every law must know state and force");
-    std::vector<ContactSample> found(n);
-    look_at(scene, law, times, n, found.data());
-    for (std::size_t i = 0; i < n; ++i) take(scene, found[i], samples[i]);
+    if constexpr (std::is_same_v<Sample, ContactSample>) {  // of a law that rolls
+        const RollingDynamics dynamics(scene);
+        std::vector<FlowSample> states(n);
+        look_at(scene, law, times, n, states.data());
+        for (const auto& [theta, omega, x] : states) {
+            const Geometry at = geometry(scene.axes(), theta);
+            *samples++ = {in_contact(at, theta, omega, x, 0.0, Mode::rolling),
+                          dynamics.force(at, omega)};
+        }
+    } else {
+        std::vector<ContactSample> found(n);
+        look_at(scene, law, times, n, found.data());
+        for (std::size_t i = 0; i < n; ++i) take(scene, found[i], samples[i]);
+    }
 }
 
 void turn(FlowSample& sample, const DoubleDouble& by) {

@@ -62,11 +62,9 @@ std::pair<double, double> sin_cos(const DoubleDouble& angle) {
     return {sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin};
 }
 
-// The height by which the centre is lower than over the tip; nothing cancels near the tip.
+// The height by which the centre is lower than over the tip.
 double under_tip(const Axes& axes, const Geometry& at) {
-    const double to_tip = axes.a > axes.b ? at.cos : at.sin;
-    return std::abs(axes.a - axes.b) * (axes.a + axes.b) * square(to_tip) /
-           (at.h + std::max(axes.a, axes.b));
+    return under_tip(flat_view(axes, at.sin, at.cos), at.h);
 }
 
 double energy_of(const SlidingBody& body, const DoubleDouble& angle, double omega) {

@@ -1,7 +1,5 @@
 #include "contact/units.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -16,13 +14,6 @@ State scaled(State state, const Units& units, std::index_sequence<Row...>) {
 }
 
 }  // namespace
-
-Units natural_units(const Scene& scene) {
-    const double long_axis = std::max(scene.a, scene.b);
-    const int time2 = std::ilogb(long_axis / scene.gravity);
-    return {std::ldexp(1.0, std::ilogb(long_axis)), std::ldexp(1.0, time2 >> 1),
-            std::ldexp(1.0, std::ilogb(scene.mass))};
-}
 
 Scene in_units(const Scene& scene, const Units& units) {
     Scene scaled{};

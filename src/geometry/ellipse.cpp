@@ -124,11 +124,13 @@ double path_from_tip(double long_axis, double short_axis, double s, double c) {
 }
 
 FlatView flat_view(const Axes& axes, double theta) {
+    return flat_view(axes, std::sin(theta), std::cos(theta));
+}
+
+FlatView flat_view(const Axes& axes, double sin, double cos) {
     const bool a_is_long = axes.a >= axes.b;
     const double long_axis = a_is_long ? axes.a : axes.b;
     const double short_axis = a_is_long ? axes.b : axes.a;
-    const double sin = std::sin(theta);
-    const double cos = std::cos(theta);
     const double s = a_is_long ? sin : -cos;
     const double c = a_is_long ? cos : sin;
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);

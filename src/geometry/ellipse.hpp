@@ -57,6 +57,16 @@ struct FlatView {
 };
 
 FlatView flat_view(const Axes& axes, double theta);
+FlatView flat_view(const Axes& axes, double sin, double cos);
+
+// How much lower the centre at a height h is than over the tip, and how much higher than over the
+// flat: as products, since differences of the heights would have lost their digits.
+inline double under_tip(const FlatView& at, double h) {
+    return at.c2 * square(at.cos) / (at.long_axis + h);
+}
+inline double over_flat(const FlatView& at, double h) {
+    return at.c2 * square(at.sin) / (at.short_axis + h);
+}
 
 // Is the contact right below the centre, to within 8 ulp of the height and of the angle? On a slope
 // the vertical meets the ground h tan(slope) = h incline downhill of the foot of h.

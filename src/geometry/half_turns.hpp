@@ -12,16 +12,19 @@ inline double within_a_turn(double angle) {
     return std::abs(angle) > pi ? std::atan2(std::sin(angle), std::cos(angle)) : angle;
 }
 
+inline bool is_odd(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
+
 // An angle from the flat position or tip beside it, where it has the most digits.
 struct QuarterView {
     double quarters;
     DoubleDouble rest;
 
-    bool is_odd() const { return std::fmod(quarters, 2.0) != 0.0; }
+    bool is_odd() const { return rolling_ellipse::is_odd(quarters); }
 };
 
 inline QuarterView quarter_view(const DoubleDouble& angle) {
     const double quarters = std::nearbyint(angle.high / half_pi);
+    if (quarters == 0) return {quarters, angle};  // mostly
     return {quarters, angle - half_pi_exact * quarters};
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "numerics/bisect.hpp"
 #include "numerics/polynomial.hpp"
 
 namespace rolling_ellipse {
@@ -131,34 +132,21 @@ int sign_changes(const Bernstein<N>& p) {
     return changes;
 }
 
-// The one sign change of p in (0, 1), by bisection with Newton's speed (regula falsi, Illinois).
+// The one sign change of p in (0, 1).
 template <int N>
 double single_root(const Bernstein<N>& p) {
-    double low = 0.0;
-    double high = 1.0;
-    double f_low = p.coefficients.front().value;
-    double f_high = p.coefficients.back().value;
-    int kept = 0;
-    for (int i = 0; i < 100 && high - low > epsilon * high; ++i) {
-        double x =
-            i % 4 == 3 ? 0.5 * (low + high) : (low * f_high - high * f_low) / (f_high - f_low);
+    RootBracket bracket(0.0, 1.0, p.coefficients.front().value, p.coefficients.back().value);
+    for (int i = 0; i < 100; ++i) {
+        const auto [low, high] = bracket.ends();
+        if (!(high - low > epsilon * high)) break;
+        double x = i % 4 == 3 ? 0.5 * (low + high) : bracket.secant();
         if (!(x > low && x < high)) x = 0.5 * (low + high);
         if (x == low || x == high) break;
         const double f = value(p, x);
         if (f == 0.0) return x;
-        if ((f > 0) == (f_high > 0)) {
-            high = x;
-            f_high = f;
-            if (kept == 1) f_low /= 2;
-            kept = 1;
-        } else {
-            low = x;
-            f_low = f;
-            if (kept == -1) f_high /= 2;
-            kept = -1;
-        }
+        bracket.take(x, f);
     }
-    return 0.5 * (low + high);
+    return 0.5 * (bracket.ends().low + bracket.ends().high);
 }
 
 template <int N>

@@ -3,10 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <numeric>
 #include <optional>
-#include <vector>
 
 #include "numerics/numbers.hpp"
 
@@ -43,7 +40,7 @@ class RootBracket {
         const auto [low, high] = ends_;
         const double few = 4 * epsilon * std::max(std::abs(low), std::abs(high));
         if (secants_ < most_secants && high - low > 2 * few) {
-            const double secant = (low * f_high_ - high * f_low_) / (f_high_ - f_low_);
+            const double secant = RootBracket::secant();
             const bool halve = secants_++ % 4 == 3 || !(secant >= low && secant <= high);
             return std::clamp(halve ? 0.5 * (low + high) : secant, low + few, high - few);
         }
@@ -66,6 +63,10 @@ class RootBracket {
         }
     }
 
+    double secant() const {
+        return (ends_.low * f_high_ - ends_.high * f_low_) / (f_high_ - f_low_);
+    }
+
     Bracket ends() const { return ends_; }
 
   private:
@@ -76,27 +77,6 @@ class RootBracket {
     int secants_ = 0;
     int kept_ = 0;  // the end that was taken last: +1 the upper one, -1 the lower one
 };
-
-// Refines many brackets side by side, so that their function may share work. It takes the places,
-// one in each of some brackets and in the order of these, and the numbers of these brackets.
-template <class Function>
-void refine(std::vector<RootBracket>& brackets, const Function& values) {
-    std::vector<std::size_t> open(brackets.size());
-    std::iota(open.begin(), open.end(), std::size_t{0});
-    std::vector<double> places;
-    for (;;) {
-        places.clear();
-        const auto is_done = [&](std::size_t i) {
-            const auto x = brackets[i].next();
-            if (x) places.push_back(*x);
-            return !x;
-        };
-        open.erase(std::remove_if(open.begin(), open.end(), is_done), open.end());
-        if (open.empty()) return;
-        const std::vector<double> found = values(places, open);
-        for (std::size_t k = 0; k < open.size(); ++k) brackets[open[k]].take(places[k], found[k]);
-    }
-}
 
 template <class Function>
 Bracket bisect_root(double low, double high, const Function& f) {

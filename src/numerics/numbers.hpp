@@ -18,6 +18,9 @@ inline constexpr double equal_ulps = 8;
 // products of a few of them stay within the doubles.
 inline constexpr double largest_number = 1e50;
 
+// 1.5 2^52, beside which only integers are left: a sum with it is rounded to one.
+inline constexpr double to_integer = 6755399441055744.0;
+
 constexpr double square(double x) { return x * x; }
 
 // sqrt(x^2 + y^2) of lengths and the like, whose squares stay within the doubles: within 1.5 ulp.

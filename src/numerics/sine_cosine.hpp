@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "numerics/numbers.hpp"
+
 namespace rolling_ellipse {
 
 inline constexpr double largest_in_quarters = 1e5;
@@ -18,13 +20,12 @@ struct QuarterAngle {
 
 inline QuarterAngle nearest_quarter(double angle) {
     constexpr double per_radian = 6.36619772367581382433e-01;
-    constexpr double whole = 6755399441055744.0;  // 1.5 2^52: beside it only integers are left
     // pi/2 in parts of 33 bits, whose multiples are exact, and the rest
     constexpr double first = 1.5707963267341256;
     constexpr double second = 6.077100506303966e-11;
     constexpr double third = 2.0222662487959506e-21;
-    const double shifted = angle * per_radian + whole;
-    const double quarters = shifted - whole;
+    const double shifted = angle * per_radian + to_integer;
+    const double quarters = shifted - to_integer;
     std::uint64_t bits;
     std::memcpy(&bits, &shifted, sizeof bits);
     const double rest = ((angle - quarters * first) - quarters * second) - quarters * third;

@@ -51,7 +51,6 @@ Eigen::Matrix<double, degree + 1, 1> coefficients(const double* values) {
 struct Part {
     double low;
     double high;
-    double missed = infinity;  // by the polynomial on the part that this one is half of
     int depth = 0;
 };
 
@@ -60,7 +59,7 @@ bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
                std::vector<double>& times) {
     constexpr double roundings = 1000;  // the inverse of the basis has a norm of 300
     constexpr int deepest = 16;
-    constexpr int trials = 6;  // halvings after which the polynomial has to be better than before
+    std::size_t halvings = 64 * parts.size();  // all that there may be: no help for noise
     bool all_met = true;
     while (!parts.empty()) {
         std::vector<double> at;
@@ -71,7 +70,7 @@ bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
         const std::vector<double> values = measure(at);
         std::vector<Part> halves;
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            const auto& [low, high, missed_before, depth] = parts[i];
+            const auto& [low, high, depth] = parts[i];
             const double* const here = values.data() + i * places.size();
             const auto bernstein = coefficients(here);
             const double missed =
@@ -81,10 +80,10 @@ bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
                 epsilon * (roundings * size + 8 * high / (high - low) * (*most - *least));
             if (missed > noise) {
                 const double middle = low + 0.5 * (high - low);
-                if (depth < deepest && low < middle && middle < high &&
-                    (depth < trials || missed < 0.5 * missed_before)) {
-                    halves.push_back({low, middle, missed, depth + 1});
-                    halves.push_back({middle, high, missed, depth + 1});
+                if (depth < deepest && low < middle && middle < high && halvings > 0) {
+                    --halvings;
+                    halves.push_back({low, middle, depth + 1});
+                    halves.push_back({middle, high, depth + 1});
                     times.push_back(middle);
                     continue;
                 }

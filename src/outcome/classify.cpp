@@ -138,8 +138,8 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     const EnergyRange range = energy_range(from);
     const ForcePolynomials forces = force_polynomials(range);
     const bool rises = at.sin * from.omega > 0 && at.cos > equal_ulps * epsilon;
-    const double over_flat = at.c2 * square(at.sin) / (here.h + at.short_axis) / at.long_axis;
-    const double start = rises ? std::min(over_flat / range.width, 1.0) : 0.0;
+    const double height = over_flat(at, here.h) / at.long_axis;
+    const double start = rises ? std::min(height / range.width, 1.0) : 0.0;
     const bool grips_always = std::isinf(friction);
     const Bernstein<5> normal = from_place(forces.normal, start);
     const Sign contact = sign_on_unit_interval(normal);

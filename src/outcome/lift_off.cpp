@@ -29,9 +29,8 @@ Scene level_scene(const Body& body, double friction) {
 // to the tip h'' falls, so that c h'^2 = g h'^2 + h'' h'^2 omega^2 falls as well, but to g h'^2
 // where omega vanishes.
 bool reaches_the_tip(const Scene& scene, const State& start) {
-    const FlatView at = flat_view(scene.axes(), start.theta);
     const double h = geometry(scene.axes(), start.theta).h;
-    const double to_tip = at.c2 * square(at.cos) / (at.long_axis + h);
+    const double to_tip = under_tip(flat_view(scene.axes(), start.theta), h);
     return square(start.z_dot) >= 2 * scene.gravity * to_tip;
 }
 
@@ -179,7 +178,7 @@ LiftOff lift_off(const Body& body, double friction, double slip_speed, double pa
     const FlatView at = flat_view(body.axes(), 0.0);
     if (at.c2 == 0) return {infinity, {}};
     const Scene level = level_scene(body, friction);
-    const Units units = natural_units(level);
+    const Units units = natural_units(level.body(), level.mass);
     const Scene scene = in_units(level, units);
     Follower follower(scene, checkpoint);
     const double low = std::max(slip_speed, too_slow(body, at)) * units.time;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "outcome/turning_points.hpp"
+#include "outcome/stretches.hpp"
 
 namespace rolling_ellipse {
 

@@ -10,34 +10,20 @@ namespace rolling_ellipse {
 namespace {
 
 // A place on the ellipse, and what rolling needs there.
-struct Place {
+struct Place : ShapePlace {
     double angle;      // phi
     double over_flat;  // h - S
-    double h;
-    double dh;
-    double kh;           // k^2 + h^2
-    double d;            // D
-    double normal_part;  // N/m = (kh + omega^2 normal_part)/D, physics (23)
 };
 
-Place place_at(const Shape& shape, double sin2, double cos2) {
-    const double b = shape.short_axis;
-    const double h = std::sqrt(square(b) * cos2 + sin2);
-    const double dh = shape.c2 * std::sqrt(sin2 * cos2) / h;
-    const double ddh = shape.c2 * (b * cos2 - sin2) * (b * cos2 + sin2) / (h * h * h);
-    const double kh = shape.gyration2 + h * h;
-    return {std::atan2(std::sqrt(sin2), std::sqrt(cos2)),
-            shape.c2 * sin2 / (h + b),
-            h,
-            dh,
-            kh,
-            kh + dh * dh,
-            ddh * kh - h * dh * dh};
+Place place_on(const Shape& shape, double sin2, double cos2) {
+    const ShapePlace at = place_at(shape, sin2, cos2);
+    return {at, std::atan2(std::sqrt(sin2), std::sqrt(cos2)),
+            shape.c2 * sin2 / (at.h + shape.short_axis)};
 }
 
 // Energy over the flat position, H - S, of a motion that has omega^2 at the place: physics (26).
 double energy_over_flat(const Place& at, double omega2) {
-    return 0.5 * at.d * omega2 + at.over_flat;
+    return 0.5 * at.inertia() * omega2 + at.over_flat;
 }
 
 // The least value of a quantity from which on something happens, and where it first does.
@@ -65,7 +51,7 @@ Onset contact_loss(const Shape& shape) {
         const double over_flat = range.width * x;
         const double under_tip = range.width * (1 - x);
         const double h = shape.short_axis + over_flat;
-        const Place at = place_at(shape, over_flat * (h + shape.short_axis) / shape.c2,
+        const Place at = place_on(shape, over_flat * (h + shape.short_axis) / shape.c2,
                                   under_tip * (1 + h) / shape.c2);
         if (at.normal_part >= 0) continue;
         take_if_lower(onset, energy_over_flat(at, -at.kh / at.normal_part), at.angle);
@@ -76,12 +62,13 @@ Onset contact_loss(const Shape& shape) {
 // The least omega^2 at which rolling needs |F| >= mu N at a place, physics (47):
 //     |h'| |omega^2 (D - h rho) - h| = mu (kh + omega^2 normal_part),  rho h = S^2/h^2.
 double slip_omega2(const Shape& shape, const Place& at, double friction) {
-    if (at.h * at.dh >= friction * at.kh) return 0.0;
-    const double inertial = at.dh * (at.d - square(shape.short_axis / at.h));
+    const double dh = std::sqrt(at.dh2);
+    if (at.h * dh >= friction * at.kh) return 0.0;
+    const double inertial = dh * (at.inertia() - square(shape.short_axis / at.h));
     double least = infinity;
     for (const double side : {-1.0, 1.0}) {
         const double slope = side * inertial - friction * at.normal_part;
-        const double omega2 = (friction * at.kh + side * at.h * at.dh) / slope;
+        const double omega2 = (friction * at.kh + side * at.h * dh) / slope;
         if (omega2 >= 0) least = std::min(least, omega2);
     }
     return least;
@@ -97,7 +84,7 @@ Onset slip_at_rest(const Shape& shape, double friction) {
     const double discriminant = square(half) - 4 * (1 + mu2) * mu2 * square(flat_inertia);
     if (half <= 0 || discriminant < 0) return {};
     const double y = 2 * mu2 * square(flat_inertia) / (half + std::sqrt(discriminant));
-    const Place at = place_at(shape, y / shape.c2, (shape.c2 - y) / shape.c2);
+    const Place at = place_on(shape, y / shape.c2, (shape.c2 - y) / shape.c2);
     return {at.over_flat, at.angle};
 }
 
@@ -110,7 +97,7 @@ Onset slip(const Shape& shape, double friction) {
     constexpr double last = 20.0;    // near the flat, and over 1/friction near the tip
     const auto energy_at = [&](double log_tan) {
         const double tan2 = std::exp(2 * log_tan);
-        const Place at = place_at(shape, tan2 / (1 + tan2), 1 / (1 + tan2));
+        const Place at = place_on(shape, tan2 / (1 + tan2), 1 / (1 + tan2));
         return Onset{energy_over_flat(at, slip_omega2(shape, at, friction)), at.angle};
     };
     constexpr double step = (last - first) / scan;

@@ -21,11 +21,6 @@ Polynomial<11> needed_derivative(const ForcePolynomials& p) {
     return derivative(p.slope_square) * p.friction * p.normal + 2.0 * (p.slope_square * bracket);
 }
 
-// D = k^2 + h^2 + h'^2: physics (16).
-double inertia(const EnergyRange& range, double h2, double sin2, double cos2) {
-    return range.gyration2 + h2 + square(range.c2) * sin2 * cos2 / h2;
-}
-
 }  // namespace
 
 EnergyRange energy_range(const RollingStart& start) {
@@ -75,23 +70,13 @@ ForcePolynomials force_polynomials(const EnergyRange& range) {
     return p;
 }
 
-double RollingForces::angle() const { return std::atan2(sin, cos); }
-
-double RollingForces::angle_to_tip() const { return std::atan2(cos, sin); }
-
-double RollingForces::needed() const { return friction_needed({normal, friction}); }
-
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2) {
-    const double b = range.short_axis;
-    const double h2 = square(b) * cos2 + sin2;
-    const double h = std::sqrt(h2);
-    const double dh2 = square(range.c2) * sin2 * cos2 / h2;
-    const double ddh = range.c2 * (b * cos2 - sin2) * (b * cos2 + sin2) / (h * h2);
-    const double kh = range.gyration2 + h2;
-    const double d = inertia(range, h2, sin2, cos2);
-    const double normal = (kh + omega2 * (ddh * kh - h * dh2)) / d;  // physics (23)
+    const ShapePlace at = place_at(range, sin2, cos2);
+    const double d = at.inertia();
+    const double normal = (at.kh + omega2 * at.normal_part) / d;  // physics (23)
     // physics (24): F = h theta'' + h' omega^2 with theta'' of physics (18), rho h = S^2/h^2
-    const double friction = std::sqrt(dh2) * std::abs(omega2 * (d - square(b) / h2) - h) / d;
+    const double inertial = omega2 * (d - square(range.short_axis) / at.h2);
+    const double friction = std::sqrt(at.dh2) * std::abs(inertial - at.h) / d;
     return {std::sqrt(sin2), std::sqrt(cos2), normal, friction};
 }
 
@@ -102,17 +87,17 @@ RollingForces rolling_forces(const EnergyRange& range, double x) {
     const double sin2 = over_flat * (h + range.short_axis) / range.c2;
     const double cos2 = (range.tip_gap + to_top) * (1 + h) / range.c2;
     const double energy = range.energy_gap + to_top;
-    return rolling_forces(range, sin2, cos2, 2 * energy / inertia(range, h * h, sin2, cos2));
+    const double inertia = place_at(range, h * h, sin2, cos2).inertia();
+    return rolling_forces(range, sin2, cos2, 2 * energy / inertia);
 }
 
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2) {
-    const double h2 = square(range.short_axis) * cos2 + sin2;
-    const double h = std::sqrt(h2);
-    const double to_tip = range.c2 * cos2 / (1 + h);
-    const double over_flat = range.c2 * sin2 / (h + range.short_axis);
+    const ShapePlace at = place_at(range, sin2, cos2);
+    const double to_tip = range.c2 * cos2 / (1 + at.h);
+    const double over_flat = range.c2 * sin2 / (at.h + range.short_axis);
     const double to_top = sin2 > cos2 ? to_tip - range.tip_gap : range.width - over_flat;
     const double energy = range.energy_gap + std::max(to_top, 0.0);
-    return rolling_forces(range, sin2, cos2, 2 * energy / inertia(range, h2, sin2, cos2));
+    return rolling_forces(range, sin2, cos2, 2 * energy / at.inertia());
 }
 
 ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& polynomials) {

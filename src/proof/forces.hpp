@@ -11,6 +11,7 @@
 #pragma once
 
 #include "numerics/bernstein.hpp"
+#include "proof/law.hpp"
 #include "rolling/level/start.hpp"
 
 namespace rolling_ellipse {
@@ -49,9 +50,11 @@ struct RollingForces {
     double normal;    // N/(m g)
     double friction;  // |F|/(m g)
 
-    double angle() const;         // from the flat position, 0 .. pi/2
-    double angle_to_tip() const;  // pi/2 - angle, with its own digits
-    double needed() const;        // |F|/N; infinite where N <= 0 without N = F = 0
+    // From the flat position, 0 .. pi/2, and what is left to the tip, with its own digits.
+    double angle() const { return std::atan2(sin, cos); }
+    double angle_to_tip() const { return std::atan2(cos, sin); }
+    // |F|/N; infinite where N <= 0 without N = F = 0.
+    double needed() const { return friction_needed({normal, friction}); }
 };
 
 RollingForces rolling_forces(const EnergyRange& range, double x);

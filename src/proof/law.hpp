@@ -8,11 +8,16 @@
 
 namespace rolling_ellipse {
 
-// What is left of the law, which holds where this is positive; with infinite friction only the
-// normal force counts.
-inline double law_margin(const ContactForce& force, double friction) {
+// What is left of the law for friction to one side, -1 or 1; with infinite friction only the normal
+// force counts.
+inline double law_margin(const ContactForce& force, double friction, double side) {
     if (std::isinf(friction)) return force.normal;
-    return friction * force.normal - std::abs(force.friction);
+    return friction * force.normal - side * force.friction;
+}
+
+// The same to either side: the law holds where it is positive.
+inline double law_margin(const ContactForce& force, double friction) {
+    return law_margin(force, friction, std::copysign(1.0, force.friction));
 }
 
 // Behind a margin, of the operations from the angle on; beside the sum of its terms.

@@ -23,25 +23,10 @@ struct LawPolynomial {
     double size = 0.0;  // the sum of the sizes of its terms
 };
 
-struct Weights {
-    double normal;
-    double friction;
-};
-
-// So that any coefficient of friction fits.
-Weights weights(double friction) {
-    if (std::isinf(friction)) return {1.0, 0.0};
-    return friction > 1 ? Weights{1.0, 1 / friction} : Weights{friction, 1.0};
-}
-
-// What is left of the law for friction to one side.
-double law_margin(const Weights& by, const ContactForce& force, double side) {
-    return by.normal * force.normal - side * by.friction * force.friction;
-}
-
 LawPolynomial law_polynomial(const SlopeBody& body, const SlopePiece& piece, double friction,
                              double side) {
-    const auto [normal, needed] = weights(friction);
+    const double normal = std::isinf(friction) ? 1.0 : friction;
+    const double needed = std::isinf(friction) ? 0.0 : 1.0;
     const double per_unit2 = 1 / square(piece.unit);
     const double z = piece.lasts / piece.unit;
     LawPolynomial law{};
@@ -68,12 +53,6 @@ LawPolynomial law_polynomial(const SlopeBody& body, const SlopePiece& piece, dou
 bool is_resolved(const LawPolynomial& law) {
     const double last = std::abs(law.coefficients[degree - 1]) + std::abs(law.coefficients[degree]);
     return !(last > rounding * law.size);
-}
-
-double value(const LawPolynomial& law, double x) {
-    double sum = 0.0;
-    for (int k = degree; k >= 0; --k) sum = sum * x + law.coefficients[k];
-    return sum;
 }
 
 // The places at which the law passes a value.
@@ -108,7 +87,6 @@ LawMeetings law_in_half_turn(const SlopeFlow& flow, double friction, const Slope
 double broken_about(const SlopeFlow& flow, const SlopeRun& run, double friction) {
     constexpr int looks = 64;
     const SlopeBody& body = flow.body;
-    const Weights by = weights(friction);
     const SlopeEnergy energy = energy_of(body, run.from);
     const double start = path_at(body, 0.0, double(run.from.angle));
     double least = infinity;
@@ -128,8 +106,8 @@ double broken_about(const SlopeFlow& flow, const SlopeRun& run, double friction)
         place.omega = std::sqrt(omega2);
         const ContactForce moving = contact_force(body, place);
         for (const double side : {1.0, -1.0}) {
-            const double now = law_margin(by, moving, side);
-            const double change = (now - law_margin(by, at_rest, side)) / omega2 * gain;
+            const double now = law_margin(moving, friction, side);
+            const double change = (now - law_margin(at_rest, friction, side)) / omega2 * gain;
             if (change < 0) least = std::min(least, -now / change);
         }
     }
@@ -220,7 +198,7 @@ Meeting LawWatch::meeting(const SlopePiece& piece, double share) const {
 
 double LawWatch::margin(const SlopePiece& piece, double share, double side) const {
     const SlopePlace place = place_in(piece, share * piece.lasts);
-    return law_margin(weights(friction_), contact_force(body_, place), side);
+    return law_margin(contact_force(body_, place), friction_, side);
 }
 
 template <class Law>
@@ -232,7 +210,7 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, double tolerance
     std::sort(places.begin(), places.end());
     for (std::size_t i = 0; i + 1 < places.size(); ++i) {
         if (places[i] == places[i + 1]) continue;
-        const double here = value(law, 0.5 * (places[i] + places[i + 1]));
+        const double here = value(law.coefficients, 0.5 * (places[i] + places[i + 1]));
         if (here > tolerance) {
             if (near.is && !near.from_start && !met_.touched) met_.touched = near.since;
             near = {};

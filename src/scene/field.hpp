@@ -13,6 +13,14 @@ struct Unit {
     int mass = 0;
 };
 
+// An integer power.
+inline double power(double base, int exponent) {
+    double found = 1.0;
+    for (int i = 0; i < exponent; ++i) found *= base;
+    for (int i = 0; i > exponent; --i) found /= base;
+    return found;
+}
+
 namespace unit {
 inline constexpr Unit none{""};
 inline constexpr Unit angle{"rad"};

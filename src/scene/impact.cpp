@@ -52,9 +52,13 @@ struct Reaction {
 };
 
 // mu = infinity: the limit of the law below, physics (42) (no product infinity * 0 is ever formed).
-Reaction unlimited_friction(const Contact& c, double restitution) {
+Reaction unlimited_friction(const Contact& c, double restitution, Restitution law) {
     const double u_without_slip = c.u_without_slip;
     const double rebound = -restitution * c.u;
+    if (law == Restitution::newton && u_without_slip <= rebound) {
+        const double normal = (rebound - u_without_slip) * c.gtt / c.determinant;
+        return {-(c.v + c.gtn * normal) / c.gtt, normal, rebound, true};
+    }
     if (u_without_slip <= 0) {
         // v = 0 and u = -e times that without slip: the full 2 x 2 system.
         const double normal = -(1 + restitution) * u_without_slip * c.gtt / c.determinant;
@@ -65,12 +69,16 @@ Reaction unlimited_friction(const Contact& c, double restitution) {
 }
 
 // The impulse path of Coulomb friction, physics (41), its normal impulse p as time: u and v change
-// linearly while it slips, and while it sticks. Compression ends with u = 0, restitution when its
-// normal work is -e^2 times that of compression (Stronge's energetic coefficient), physics (56).
+// linearly while it slips, and while it sticks. Compression ends with u = 0, restitution as its law
+// says.
 class ImpulsePath {
   public:
-    ImpulsePath(const Contact& c, double restitution)
-        : u_(c.u), restitution2_(restitution * restitution) {}
+    ImpulsePath(const Contact& c, double restitution, Restitution law)
+        : u_(c.u),
+          restitution_(restitution),
+          restitution2_(restitution * restitution),
+          rebound_(-restitution * c.u),
+          law_(law) {}
 
     // Go on with du/dp and a tangential impulse per normal one, for at most p; false at the end.
     bool go_on(double du, double tangential, double most) {
@@ -82,10 +90,9 @@ class ImpulsePath {
             advance(p, compressed ? 0.0 : u_ + du * p, tangential);
             left -= p;
             if (!compressed) return true;
+            last_normal_ = (1 + restitution_) * normal_;
         }
-        // The rest of the work, u p + du p^2/2: physics (56).
-        const double end = std::sqrt(u_ * u_ + 2 * du * work_);
-        const double p = work_ == 0 ? 0.0 : 2 * work_ / (u_ + end);
+        const auto [p, end] = to_end(du);
         if (p < left) {
             advance(p, end, tangential);
             return false;
@@ -101,6 +108,22 @@ class ImpulsePath {
     Reaction result(bool sticks) const { return {tangential_, normal_, u_, sticks}; }
 
   private:
+    // The normal impulse until restitution ends, and u there.
+    struct End {
+        double p;
+        double u;
+    };
+    End to_end(double du) const {
+        if (law_ == Restitution::newton) return {(rebound_ - u_) / du, rebound_};
+        if (law_ == Restitution::poisson) {
+            const double p = last_normal_ - normal_;
+            return {p, u_ + du * p};
+        }
+        // The rest of the work, u p + du p^2/2: physics (56).
+        const double end = std::sqrt(u_ * u_ + 2 * du * work_);
+        return {work_ == 0 ? 0.0 : 2 * work_ / (u_ + end), end};
+    }
+
     void advance(double p, double u, double tangential) {
         normal_ += p;
         tangential_ += tangential * p;
@@ -108,14 +131,18 @@ class ImpulsePath {
     }
 
     double u_;
+    double restitution_;
     double restitution2_;
-    double work_ = 0.0;  // that restitution still has to do
+    double rebound_;  // by Newton's law
+    Restitution law_;
+    double work_ = 0.0;         // that restitution still has to do, by Stronge's law
+    double last_normal_ = 0.0;  // where restitution ends by Poisson's
     double normal_ = 0.0;
     double tangential_ = 0.0;
 };
 
-Reaction coulomb_friction(const Contact& c, double friction, double restitution) {
-    ImpulsePath path(c, restitution);
+Reaction coulomb_friction(const Contact& c, double friction, double restitution, Restitution law) {
+    ImpulsePath path(c, restitution, law);
     if (c.v != 0) {
         const double side = std::copysign(1.0, c.v);
         const double v_gain = c.gtn - friction * side * c.gtt;
@@ -168,9 +195,9 @@ void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, Sta
     state.z_dot = std::abs(turning) > largest ? pushed : turning + reaction.rebound;
 }
 
-Reaction reaction_to(const Scene& scene, const Contact& c, double restitution) {
-    return std::isinf(scene.friction) ? unlimited_friction(c, restitution)
-                                      : coulomb_friction(c, scene.friction, restitution);
+Reaction reaction_to(const Scene& scene, const Contact& c, double restitution, Restitution law) {
+    return std::isinf(scene.friction) ? unlimited_friction(c, restitution, law)
+                                      : coulomb_friction(c, scene.friction, restitution, law);
 }
 
 bool is_struck(const Scene& scene) {
@@ -216,7 +243,7 @@ InitialState initial_state(const Scene& scene) {
         result.gap_rate = rate;
         return result;
     }
-    const Reaction reaction = reaction_to(scene, c, 0.0);
+    const Reaction reaction = reaction_to(scene, c, 0.0, Restitution::stronge);
     result.reaction_x = reaction.tangential;
     result.reaction_z = reaction.normal;
     const State free = state;
@@ -272,11 +299,11 @@ double gap_rate(const State& state, const Geometry& at) {
     return state.z_dot - at.dh * state.omega;
 }
 
-Collision collision(const Scene& scene, const State& before, double gap_rate) {
+Collision collision(const Scene& scene, const State& before, double gap_rate, Restitution law) {
     const Geometry at = geometry(scene.axes(), before.theta);
     const Contact c = contact(scene, at, before, gap_rate);
     if (!(c.u < 0)) return {before, c.u};
-    const Reaction reaction = reaction_to(scene, c, scene.restitution);
+    const Reaction reaction = reaction_to(scene, c, scene.restitution, law);
     Collision found{before, reaction.rebound};
     apply(scene, at, reaction, found.after);
     return found;

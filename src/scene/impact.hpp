@@ -7,6 +7,11 @@
 
 namespace rolling_ellipse {
 
+// What the coefficient e of restitution means. Stronge: restitution does e^2 of the work of
+// compression. Poisson: it has e times the normal impulse of compression (Traite de mecanique,
+// 1833). Newton: the gap opens e times as fast as it closed.
+enum class Restitution { stronge, poisson, newton };
+
 // The state just after the applied impulse (or the scene's own state, where there is none). Its
 // mode is what its velocities look like; what forces make of it, contact/continuation.hpp says.
 struct InitialState {
@@ -49,6 +54,7 @@ struct Collision {
     State after;
     double rebound;
 };
-Collision collision(const Scene& scene, const State& before, double gap_rate);
+Collision collision(const Scene& scene, const State& before, double gap_rate,
+                    Restitution law = Restitution::stronge);
 
 }  // namespace rolling_ellipse

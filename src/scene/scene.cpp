@@ -89,6 +89,13 @@ Scene scene_of(const SceneNumbers& numbers, const std::optional<Impulse>& impuls
     return scene;
 }
 
+Units natural_units(const Body& body, double mass) {
+    const double long_axis = std::max(body.a, body.b);
+    const int time2 = std::ilogb(long_axis / body.gravity);
+    return {std::ldexp(1.0, std::ilogb(long_axis)), std::ldexp(1.0, time2 >> 1),
+            std::ldexp(1.0, std::ilogb(mass))};
+}
+
 void validate_length(std::string_view name, double value) {
     require_positive(name, "length [m]", value);
 }

@@ -107,6 +107,24 @@ inline constexpr SceneField scene_fields[] = {
 using SceneNumbers = std::array<std::optional<double>, std::size(scene_fields)>;
 Scene scene_of(const SceneNumbers& numbers, const std::optional<Impulse>& impulse);
 
+// Units of a body's own size, powers of two: a number in them keeps its bits, and what is computed
+// in them neither depends on the units that it came in nor leaves the range of doubles.
+struct Units {
+    double length = 1.0;  // [m]
+    double time = 1.0;    // [s]
+    double mass = 1.0;    // [kg]
+
+    double speed() const { return length / time; }
+    double of(const Unit& unit) const {
+        return power(length, unit.length) * power(time, unit.time) * power(mass, unit.mass);
+    }
+    bool are_si() const { return length == 1 && time == 1 && mass == 1; }
+};
+
+// Next to the long semi-axis L, sqrt(L/g) and the mass.
+Units natural_units(const Body& body, double mass = 1.0);
+
+
 inline Body body(double a, double b, std::optional<double> gyration2, double gravity) {
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
 }

@@ -10,6 +10,7 @@
 
 namespace rolling_ellipse {
 
+// Names, which are in the order of the values, are in settings.cpp.
 enum class Model { automatic, rolling, multipliers, contact };
 
 enum class Method { automatic, exact, dop853, dopri5, rk4, gauss, radau };

@@ -184,6 +184,19 @@ def test_newton_is_the_ratio_of_gap_rates() -> None:
     assert np.max(np.abs(rates + 0.4 * contact(state, state[1:])[1])) < 1000 * EPS
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.1, 0.4, 1.1, math.inf])
+def test_poisson_is_the_ratio_of_impulses(friction: float) -> None:
+    """Beside that of compression, which is all without restitution. An impulse is what z_dot gains
+    (0.1 to 10 m/s of up to 10 m/s), by some ten roundings of what goes into it."""
+    state = approaching(300)
+    compression, all_of_it = (
+        impacts.collide(*state, **BODY, friction=friction, restitution=e, law="poisson")[1]
+        - state[2]
+        for e in (0.0, 0.4)
+    )
+    assert np.max(np.abs(all_of_it - 1.4 * compression)) < 1000 * EPS
+
+
 def test_without_friction_or_restitution_the_laws_are_one() -> None:
     """No corner in the path: work, impulse and speed are in the same proportion; and e = 0 ends
     each at the end of compression."""

@@ -41,7 +41,7 @@ REFUSALS: list[Row] = [
     ("omega", lambda _: _core.flow_array(2, numbered(7, 4), 1)),
     ("t", lambda _: _core.flow_times(FIVES, 2.0, 1.0, 0.1, 1.0, 9.81, None, 1)),
     ("gyration2", lambda _: _core.classify_array(2, numbered(7, 6), 1)),
-    ("restitution", lambda _: _core.collide_arrays(2, numbered(9, 8))),
+    ("restitution", lambda _: _core.collide_arrays(2, numbered(9, 8), _core.Restitution.STRONGE)),
     ("t", lambda _: TIMES.sample_rolling(FIVES)),
     *(("t", lambda _, sample=sample, t=t: sample(np.array([0.0, t])))
       for sample in (TIMES.sample_rolling, SLIDES.sample_contact,

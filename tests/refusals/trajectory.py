@@ -20,10 +20,6 @@ CONTACT = rl.simulate(scenes.jump, np.linspace(0.0, 2.0, 6))
 
 STEPPED = rl.simulate(Scene(2.0, 1.0, omega=1.0), [0.5], model="multipliers")
 
-SPINNING = rl.simulate(
-    Scene(1.0, 1 + 1e-8, z=100.0, omega=1e4, friction=0.0, restitution=1.0), 200.0
-)
-
 N = MOTION.t.size
 
 assert CONTACT.contact is not None
@@ -70,7 +66,6 @@ REFUSALS: list[Row] = [
       for given in ({}, {"theta": 1.0, "x": 2.0})),
     ("z", lambda _: TURNING.when(z=1.5)),
     ("function", lambda _: TURNING.when(function=lambda at: at.x)),
-    ("function", lambda _: SPINNING.when(function=lambda at: at.normal_force)),
     (AttributeError, lambda _: rl.nothing),  # type: ignore[attr-defined]
     (ImportError, lambda _: without("xarray", MOTION.to_xarray)),
     (ImportError, lambda _: without("pandas", MOTION.to_dataframe)),

@@ -85,6 +85,11 @@ def test_tables_of_values_beside_brute_force(first: int) -> None:
             values = [seen[0], seen[-1], seen.min(), seen.max(), *rng.uniform(-4, 4, 1)]
             values += rng.uniform(seen.min(), seen.max(), 2).tolist()
             passages += check(motion, dense, name, values)
+            noise = 16 * EPS * (np.abs(seen).max() + max(motion.scene.a, motion.scene.b))
+            if (
+                seen.size > 1 and abs(seen[-1] - seen[-2]) > noise
+            ):  # not kept: it ends with its last value
+                assert all_times(motion, name, float(seen[-1]))[-1] >= motion.t_end * (1 - 8 * EPS)
     assert passages > 1000  # about 2000 in each twenty
 
 

@@ -59,11 +59,10 @@ def when(
     """Return all times in [0, t_end] at which the motion passes a value.
 
     They are those of the motion, to the last bits, and not of its samples. None is missed where
-    the turning points of the quantity are known: of exact rolling all five quantities have them
-    in closed form; of steps, slides and flight they are those of polynomials of degree 8 that
-    meet the quantity to 1000 ulp, found by their Bernstein coefficients. Where none does, there
-    is a `CompletenessWarning`, and for each `function`: that is looked at 16 times a step and
-    64 times a quarter turn.
+    the turning points of the quantity are known: as those of polynomials of degree 8 that meet it
+    to 1000 ulp, found by their Bernstein coefficients. Where none does, there is a
+    `CompletenessWarning`, and for each `function`, of which nothing is known between the places
+    that polynomials are compared at.
 
     A jump of omega across the value counts, at the event. A value that is only touched, as at a
     turning point, or that the motion starts or ends with, counts once; one that is kept for a
@@ -116,8 +115,7 @@ def when(
     if unproved:
         warnings.warn(
             f"the times at which {name} passes are not proved to be all of them "
-            f"{' and '.join(unproved)}: two passages closer together than the looks, 16 a "
-            "step or 64 a quarter turn, may be missed",
+            f"{' and '.join(unproved)}: two passages close together may be missed",
             CompletenessWarning,
             stacklevel=2,
         )

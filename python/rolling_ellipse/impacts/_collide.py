@@ -8,7 +8,6 @@ import numpy as np
 
 from .. import _core
 from .._ask.check import FloatArray, broadcast, choice, evaluate, require, shaped
-from . import _restitution
 
 Law = Literal["stronge", "poisson", "newton"]
 LAWS: tuple[Law, ...] = get_args(Law)
@@ -30,8 +29,8 @@ def collide(
     """Return the velocities just after the collision of a body that touches the ground.
 
     Coulomb friction acts all along the collision: the slip may stop, stick or reverse in it. The
-    laws differ in where restitution ends. Simulations use "stronge", which runs in the C++ core;
-    the others are there to compare it with. All arguments broadcast by NumPy's rules.
+    laws differ in where restitution ends. Simulations use "stronge"; the others are there to
+    compare it with. All arguments broadcast by NumPy's rules.
 
     Parameters
     ----------
@@ -62,6 +61,7 @@ def collide(
     References
     ----------
     W. J. Stronge, Impact Mechanics, Cambridge University Press, 2000, ch. 3 to 5.
+    S. D. Poisson, Traité de mécanique, 1833.
     """
     choice("law", law, LAWS)
     found = evaluate(
@@ -72,8 +72,7 @@ def collide(
 
 
 def _after(count: int, columns: list[FloatArray], law: str) -> tuple[FloatArray, ...]:
-    after = _core.collide_arrays(count, columns)  # for every law: it refuses what is out of range
-    return after if law == "stronge" else _restitution.collide(law, columns)
+    return _core.collide_arrays(count, columns, _core.Restitution[law.upper()])
 
 
 def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:

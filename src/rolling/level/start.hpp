@@ -14,6 +14,21 @@ struct Shape {
 
 Shape shape(const Body& body, const FlatView& view);
 
+// What a body of a shape has at a place, by the squares of the sine and cosine of its angle from
+// the flat position; of D = kh + h'^2 and of N = (kh + omega^2 normal_part)/D, physics (16, 23).
+struct ShapePlace {
+    double h2;
+    double h;
+    double dh2;
+    double kh;  // k^2 + h^2
+    double normal_part;
+
+    double inertia() const { return kh + dh2; }
+};
+
+ShapePlace place_at(const Shape& shape, double sin2, double cos2);
+ShapePlace place_at(const Shape& shape, double h2, double sin2, double cos2);
+
 // The height H = E/(m g) of the energy [m], and how far it is over the tip (H - L, negative in
 // libration) and over the flat position (H - S), by forms that do not cancel: physics (26).
 struct EnergyHeight {

@@ -3,20 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/half_turns.hpp"
 #include "numerics/bisect.hpp"
 
 namespace rolling_ellipse {
 namespace {
-
-bool at_tip(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
-
-// The nearest flat position or tip.
-void normalize(SlopePlace& place) {
-    const double over = std::nearbyint(place.angle.high / half_pi);
-    if (over == 0) return;
-    place.quarters += over;
-    place.angle = place.angle - half_pi_exact * over;
-}
 
 // h times the moment of gravity about the contact, per unit mass. Next to an equilibrium the
 // difference of its terms would be a rounding: it is the product of physics (62) wherever there is
@@ -28,7 +19,7 @@ double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, doub
     }
     const double over_lying = double(at.angle + -body.equilibria->lying);
     const double over_upright = double(at.angle + -body.equilibria->upright);
-    return at_tip(at.quarters) ? body.pull * std::sin(over_upright) * std::cos(over_lying)
+    return is_odd(at.quarters) ? body.pull * std::sin(over_upright) * std::cos(over_lying)
                                : -body.pull * std::sin(over_lying) * std::cos(over_upright);
 }
 
@@ -49,8 +40,9 @@ SlopeBody slope_body(const Body& from, double slope) {
     const Axes axes = from.axes();
     const double long_axis = std::max(axes.a, axes.b);
     SlopeBody body{};
-    body.length = std::ldexp(1.0, std::ilogb(long_axis));
-    body.time = std::ldexp(1.0, std::ilogb(long_axis / from.gravity) >> 1);
+    const Units units = natural_units(from);
+    body.length = units.length;
+    body.time = units.time;
     body.side = slope < 0 ? -1.0 : 1.0;
     body.long_axis = long_axis / body.length;
     body.short_axis = std::min(axes.a, axes.b) / body.length;
@@ -79,13 +71,13 @@ Geometry geometry(const SlopeBody& body, double quarters, double angle) {
     const double s = std::sin(angle);
     const double c = std::cos(angle);
     const Axes axes{body.long_axis, body.short_axis};
-    return at_tip(quarters) ? geometry(axes, c, -s) : geometry(axes, s, c);
+    return is_odd(quarters) ? geometry(axes, c, -s) : geometry(axes, s, c);
 }
 
 double path_at(const SlopeBody& body, double quarters, double angle) {
     const double s = std::sin(std::abs(angle));
     const double c = std::cos(angle);
-    const double over = at_tip(quarters) ? path_from_tip(body.long_axis, body.short_axis, s, c)
+    const double over = is_odd(quarters) ? path_from_tip(body.long_axis, body.short_axis, s, c)
                                          : path_from_flat(body.long_axis, body.short_axis, s, c);
     return std::fma(quarters, body.quarter_path, std::copysign(over, angle));
 }
@@ -121,7 +113,7 @@ SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
     SlopeConstants constants = body.series;
     constants.gravity.into *= square(piece.unit);
     constants.gravity.along *= square(piece.unit);
-    const bool tip = at_tip(from.quarters);
+    const bool tip = is_odd(from.quarters);
     const double sin = tip ? c : s;
     const double cos = tip ? -s : c;
     const double drive = square(piece.unit) * gravity_drive(body, from, sin, cos);
@@ -137,7 +129,9 @@ SlopePlace place_in(const SlopePiece& piece, double since) {
     place.angle = place.angle + value(piece.series.angle, z);
     place.path = place.path + value(piece.series.path, z);
     place.omega = value(piece.series.omega, z) / piece.unit;
-    normalize(place);
+    const QuarterView nearest = quarter_view(place.angle);
+    place.quarters += nearest.quarters;
+    place.angle = nearest.rest;
     return place;
 }
 
@@ -176,7 +170,7 @@ double time_of_tip(const SlopePiece& piece) {
     const double to = angle_in(piece, until);
     double first = infinity;
     for (const double tip : {-half_pi, 0.0, half_pi}) {
-        const bool is_tip = (tip == 0) == at_tip(piece.from.quarters);
+        const bool is_tip = (tip == 0) == is_odd(piece.from.quarters);
         if (!is_tip || std::abs(from - tip) <= equal_ulps * epsilon) continue;
         if ((from < tip) == (to < tip)) continue;
         const auto passed = [&](double since) {
