@@ -141,7 +141,7 @@ void samples_allocate_nothing() {
 }
 
 void bodies_allocate_nothing() {
-    constexpr std::size_t n = 128;
+    constexpr std::size_t n = 512;
     std::vector<RollingStart> starts;
     std::vector<double> times;
     for (std::size_t i = 0; i < 2 * n; ++i) {

@@ -254,16 +254,6 @@ def test_a_perturbation_shows(shape: Shape, coordinate: int) -> None:
                 assert abs(found[k]) <= 1e-13, (name, k)
 
 
-def test_slip_and_gap_of_a_perturbed_state() -> None:
-    q, q_dot = kinematics(0.5, 1.3, a=2.0, b=1.0)
-    q, q_dot = q.copy(), q_dot.copy()
-    q[1] += 1e-3
-    q_dot[0] -= 1e-3
-    found = constraints(q, q_dot, a=2.0, b=1.0)
-    assert float(found.gap) == pytest.approx(1e-3, abs=1e-15)
-    assert float(found.slip) == pytest.approx(-1e-3, abs=1e-15)
-
-
 # ------------------------------------------------------------------------- shapes of arrays
 
 

@@ -101,17 +101,6 @@ def test_support_and_its_slope(shape: Shape, angles: list[float]) -> None:
         assert ulps(actual, exact, exact) <= 8
 
 
-def test_support_and_its_slope_by_maximisation(shape: Shape) -> None:
-    """The contact point found on the outline itself: no formula of h or h' involved."""
-    for theta in (0.0, 1e-6, 0.4, 1.3, 1.5708, 2.9, -0.8, 1e4):
-        t = oracles.geometry.lowest_point(theta, *shape)
-        right, up = oracles.geometry.boundary_point(t, mp.mpf(theta), *map(mp.mpf, shape))
-        assert ulps(geometry.support(theta, a=shape[0], b=shape[1]), -up, up) <= 4
-        slope = geometry.support_slope(theta, a=shape[0], b=shape[1])
-        # golden section finds the point to 1e-40 of a turn: absolute
-        assert abs(slope - right) <= 8 * EPS * abs(right) + mp.mpf(10) ** -35 * max(shape)
-
-
 def test_curvatures(shape: Shape, angles: list[float]) -> None:
     """rho = a^2 b^2 / h^3 carries 3 times the error of h (4 ulp) and a few roundings of its own;
     h'' = rho - h is a difference: relative to the terms, not to itself."""
@@ -168,19 +157,6 @@ def test_contact_angle_is_continuous_for_thousands_of_turns(shape: Shape) -> Non
     assert np.all(np.abs(psi[whole] - theta[whole]) <= slack)
 
 
-def test_polar_and_cartesian_contact_agree(shape: Shape, angles: list[float]) -> None:
-    """r cos(psi - theta) = h and r sin(psi - theta) = h': psi - theta is as fine as an ulp of psi,
-    which moves one coordinate by the other."""
-    a, b = shape
-    theta = np.array(angles)
-    h, slope = geometry.support(theta, a=a, b=b), geometry.support_slope(theta, a=a, b=b)
-    r, psi = geometry.contact_distance(theta, a=a, b=b), geometry.contact_angle(theta, a=a, b=b)
-    grain = np.spacing(np.maximum(np.abs(psi), np.abs(theta)))
-    small = 16 * EPS
-    assert np.all(np.abs(r * np.cos(psi - theta) - h) <= small * r + np.abs(slope) * grain)
-    assert np.all(np.abs(r * np.sin(psi - theta) - slope) <= small * r + h * grain)
-
-
 def test_arc_length(shape: Shape, angles: list[float]) -> None:
     """The outline's own length up to the contact point. The integrand is positive, so relative:
     the angle's double errors are of the order of one ulp of it, the integral's a few more."""
@@ -198,14 +174,6 @@ def test_centre_path(shape: Shape, angles: list[float]) -> None:
         exact = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
         actual = geometry.centre_path(theta, a=shape[0], b=shape[1])
         assert ulps(actual, exact, exact) <= 16
-
-
-def test_path_rolled_is_the_path_of_the_centre_and_the_offset(shape: Shape) -> None:
-    theta = np.linspace(-30.0, 30.0, 601)
-    a, b = shape
-    rolled = geometry.centre_path(theta, a=a, b=b) + geometry.support_slope(theta, a=a, b=b)
-    bound = 40 * EPS * (np.abs(rolled) + max(a, b))
-    assert np.all(np.abs(rolled - geometry.arc_length(theta, a=a, b=b)) <= bound)
 
 
 # --------------------------------------------------------------------------- known numbers
@@ -264,16 +232,7 @@ def test_broadcasting(function: Callable[..., np.ndarray]) -> None:
     assert function([0.0, 1.0], a=2.0, b=1.0).shape == (2,)
     transposed = np.asfortranarray(np.linspace(0.0, 1.0, 6).reshape(2, 3))
     strided = np.linspace(0.0, 1.0, 11)[::2].reshape(2, 3)
-    assert np.array_equal(
-        function(transposed, a=2.0, b=1.0),
-        function(np.ascontiguousarray(transposed), a=2.0, b=1.0),
-    )
-    assert np.array_equal(function(strided, a=2.0, b=1.0), function(strided.copy(), a=2.0, b=1.0))
-
-
-@pytest.mark.parametrize("function", FUNCTIONS)
-def test_inputs_are_not_modified(function: Callable[..., object]) -> None:
-    theta = np.linspace(-3.0, 3.0, 7)
-    before = theta.copy()
-    function(theta, a=2.0, b=1.0)
-    assert np.array_equal(theta, before)
+    for given in (transposed, strided):
+        before = np.ascontiguousarray(given).copy()
+        assert np.array_equal(function(given, a=2.0, b=1.0), function(before, a=2.0, b=1.0))
+        assert np.array_equal(given, before)
