@@ -116,6 +116,46 @@ def test_a_fork_beside_a_property_goes_on(name: str) -> None:
     assert done.returncode == 0
 
 
+# A thread is held while pyplot makes its figure; a forked child draws one meanwhile.
+FORK_BESIDE_A_FIGURE = """
+import os, signal, sys, threading, types, warnings
+import matplotlib.pyplot as plt
+import rolling_ellipse as rl
+warnings.simplefilter("ignore")  # newer Pythons warn of a fork beside threads
+motion = rl.simulate(rl.scenes.rocking, 1.0)
+begun, go_on = threading.Event(), threading.Event()
+main = threading.current_thread()
+
+def wait(figure):
+    if threading.current_thread() is not main:
+        begun.set()
+        go_on.wait()
+
+sys.modules["hooks"] = types.SimpleNamespace(wait=wait)
+plt.rcParams["figure.hooks"] = ["hooks:wait"]
+thread = threading.Thread(target=motion.plot_energy)
+thread.start()
+begun.wait()
+child = os.fork()
+if child == 0:
+    signal.alarm(30)
+    motion.plot_energy()
+    os._exit(0)
+code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+go_on.set()
+thread.join()
+raise SystemExit(code)
+"""
+
+
+def test_a_fork_beside_a_figure_goes_on() -> None:
+    environment = os.environ | {"MPLBACKEND": "agg"}
+    done = subprocess.run(
+        [sys.executable, "-c", FORK_BESIDE_A_FIGURE], env=environment, timeout=300, check=False
+    )
+    assert done.returncode == 0
+
+
 # The forking thread is the main thread of the child, where Ctrl-C comes.
 FORKED_BY_A_THREAD = """
 import os, signal, threading, warnings

@@ -6,7 +6,6 @@ import inspect
 from collections.abc import Callable, Sequence
 from contextvars import ContextVar
 from functools import wraps
-from threading import RLock
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib.pyplot as plt
@@ -16,11 +15,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from .._ask.check import shown
+from .alone import Alone
 
 _Given = ParamSpec("_Given")
 _Drawn = TypeVar("_Drawn")
 _opened: ContextVar[list[Figure]] = ContextVar("_opened")  # by the plot function that is at work
-_with_figures = RLock()  # pyplot numbers its figures: two threads could get the same number
+_with_figures = Alone()  # pyplot numbers its figures: two threads could get the same number
 
 _SHARED = {
     "ax": """ax : matplotlib Axes, optional
@@ -58,7 +58,7 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
         try:
             return draw(*args, **options)
         except BaseException:
-            with _with_figures:
+            with _with_figures():
                 for figure in figures:
                     plt.close(figure)
             raise
@@ -119,7 +119,7 @@ def figure_of(figure: Any, size: tuple[float, float]) -> Figure:
 
 def pyplot_figure(**options: Any) -> Figure:
     """Open a pyplot figure, which is closed if the plot function fails."""
-    with _with_figures:
+    with _with_figures():
         figure = plt.figure(**options)
         _opened.get().append(figure)
     return figure

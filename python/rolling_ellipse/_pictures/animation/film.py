@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from html import escape
 from os import PathLike
 from pathlib import Path
-from threading import RLock
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -25,6 +24,7 @@ from ..._ask.check import (
 )
 from ..._ask.progress import told
 from ..._motion.export.atomic import replacing
+from ..alone import Alone
 from ..palette import palette_of
 from .camera import cameras
 from .movies import explained, ffmpeg, movie_writer
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
-_drawing_late = RLock()
-_with_settings = RLock()  # rcParams while some of matplotlib's own writers work
+_drawing_late = Alone()
+_with_settings = Alone()  # rcParams while some of matplotlib's own writers work
 
 
 class RollingAnimation(FuncAnimation):
@@ -104,7 +104,7 @@ class RollingAnimation(FuncAnimation):
             A page needs no figure. The reference cycles of a figure take long to collect, and a
             Ctrl-C that comes meanwhile is lost in the callback of some weak reference.
             """
-            with _drawing_late:
+            with _drawing_late():
                 if (undrawn := self.__dict__.pop("_undrawn", None)) is not None:
                     try:
                         self._make_picture(*undrawn)
@@ -205,7 +205,7 @@ class RollingAnimation(FuncAnimation):
             if progress:
                 options["progress_callback"] = lambda i, n: tell(i + 1, n)
             if writer is not None:
-                with _with_settings:
+                with _with_settings():
                     super().save(path, writer=_known(writer), **options)
                 return
             chosen = movie_writer(path, self.fps, "filename")
@@ -240,7 +240,7 @@ class RollingAnimation(FuncAnimation):
             except ValueError as error:
                 return f"<p>{escape(str(error))}</p>"
         settings = {"animation.ffmpeg_path": ffmpeg()} if wanted == "html5" else {}
-        with _with_settings, rc_context(settings):  # type: ignore[arg-type]
+        with _with_settings(), rc_context(settings):  # type: ignore[arg-type]
             return str(super()._repr_html_())
 
 
