@@ -124,7 +124,6 @@ struct Units {
 // Next to the long semi-axis L, sqrt(L/g) and the mass.
 Units natural_units(const Body& body, double mass = 1.0);
 
-
 inline Body body(double a, double b, std::optional<double> gyration2, double gravity) {
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
 }

@@ -318,7 +318,7 @@ def test_saving_shows_progress_when_asked(
     assert capsys.readouterr() == ("", "")
     short.save(tmp_path / "roll.gif", progress=True)
     assert "11/11" in capsys.readouterr().err
-    monkeypatch.setattr("rolling_ellipse._progress.find_spec", lambda name: None)
+    monkeypatch.setattr("rolling_ellipse._ask.progress.find_spec", lambda name: None)
     short.save(tmp_path / "roll.gif", progress=True)
     assert capsys.readouterr().err.endswith("roll.gif 11 of 11 frames\n")
 
