@@ -8,16 +8,7 @@ from numbalsoda import dop853, lsoda, lsoda_sig
 from rolling_ellipse import Scene
 
 from .numba_rates import right_hand_side
-from .problem import (
-    MOST_STEPS,
-    Integration,
-    Peer,
-    Problem,
-    columns,
-    finite,
-    problem,
-    version,
-)
+from .problem import MOST_STEPS, Integration, Peer, Problem, columns, finite, problem, version
 
 _LEAST_OF_LSODA = 200 * np.finfo(float).eps  # it fails below, and tells only stderr why
 _right_hand_side = numba.cfunc(lsoda_sig)(right_hand_side)

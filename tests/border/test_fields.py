@@ -16,14 +16,8 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from rolling_ellipse import Impulse, Scene, _core
-from rolling_ellipse._ask.settings import (
-    DEFAULTS,
-    Settings,
-)
-from rolling_ellipse._motion.events import (
-    as_numbers,
-    from_numbers,
-)
+from rolling_ellipse._ask.settings import DEFAULTS, Settings
+from rolling_ellipse._motion.events import as_numbers, from_numbers
 from rolling_ellipse._motion.export.strict import scene_of
 from rolling_ellipse._show.command.options import (
     NOT_TYPED,

@@ -14,15 +14,7 @@ import numpy as np
 import pytest
 from oracles.contact import random_scenes, way_of_slide
 from oracles.geometry import support
-from rolling_ellipse import (
-    EventKind,
-    Mode,
-    Scene,
-    Status,
-    Trajectory,
-    scenes,
-    simulate,
-)
+from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, scenes, simulate
 
 EPSILON = float(np.finfo(float).eps)
 GRAVITY = 9.81

@@ -8,14 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rolling_ellipse import (
-    Impulse,
-    Mode,
-    Scene,
-    flow,
-    geometry,
-    simulate,
-)
+from rolling_ellipse import Impulse, Mode, Scene, flow, geometry, simulate
 
 INF, NAN = math.inf, math.nan
 

@@ -16,16 +16,7 @@ import scipy.integrate
 from oracles.geometry import support
 from oracles.margins import told
 from oracles.numbers import DIGITS, known
-from rolling_ellipse import (
-    EventKind,
-    Outcome,
-    Scene,
-    Validity,
-    certify,
-    classify,
-    period,
-    simulate,
-)
+from rolling_ellipse import EventKind, Outcome, Scene, Validity, certify, classify, period, simulate
 from stability_laws import GRAVITY, GYRATION2, A, B, exponent, rms, shortfall
 from stability_laws import GRAZING as SCENE
 

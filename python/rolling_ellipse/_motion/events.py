@@ -9,26 +9,10 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 from .. import _core
-from .._ask.printing import (
-    Row,
-    brief,
-    html_table,
-    text_table,
-)
-from .._ask.records import (
-    FieldsOnly,
-    find_late,
-    trusted,
-)
-from .._ask.scene import (
-    STATE_UNITS,
-    InitialState,
-    Scene,
-)
-from .._core import (
-    EventKind,
-    Mode,
-)
+from .._ask.printing import Row, brief, html_table, text_table
+from .._ask.records import FieldsOnly, find_late, trusted
+from .._ask.scene import STATE_UNITS, InitialState, Scene
+from .._core import EventKind, Mode
 
 if TYPE_CHECKING:
     from .export import event_table

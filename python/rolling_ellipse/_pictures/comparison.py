@@ -16,11 +16,7 @@ from matplotlib.colors import is_color_like, to_hex
 from matplotlib.lines import Line2D
 
 from .._ask.check import shown
-from .._ask.scene import (
-    SCENE_UNITS,
-    Impulse,
-    Scene,
-)
+from .._ask.scene import SCENE_UNITS, Impulse, Scene
 from .._motion.trajectory import Trajectory
 from . import sampling
 from .axes import listed

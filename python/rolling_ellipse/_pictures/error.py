@@ -7,10 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._ask.check import (
-    choice,
-    shown,
-)
+from .._ask.check import choice, shown
 from .._ask.settings import DEFAULTS
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory

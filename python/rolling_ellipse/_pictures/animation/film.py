@@ -15,13 +15,7 @@ from matplotlib.animation import AbstractMovieWriter, FuncAnimation, writers
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
-from ..._ask.check import (
-    choice,
-    file_name,
-    flag,
-    shown,
-    whole,
-)
+from ..._ask.check import choice, file_name, flag, shown, whole
 from ..._ask.progress import told
 from ..._motion.export.atomic import replacing
 from ..alone import Alone

@@ -13,13 +13,7 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ..._ask.check import (
-    FloatArray,
-    choice,
-    number,
-    positive,
-    shown,
-)
+from ..._ask.check import FloatArray, choice, number, positive, shown
 from ..._ask.scene import Scene
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")

@@ -17,16 +17,8 @@ from ..._ask.scene import Scene
 from ..._ask.settings import Settings
 from ..._motion.events import Events
 from ..._motion.events import events as made_events
-from ..._motion.samples import (
-    frozen,
-    of_contact,
-    of_coordinates,
-)
-from ..._motion.status import (
-    STATUSES,
-    IntegrationError,
-    Status,
-)
+from ..._motion.samples import frozen, of_contact, of_coordinates
+from ..._motion.status import STATUSES, IntegrationError, Status
 from ..._motion.trajectory import Trajectory
 
 Tables = dict[str, npt.NDArray[Any]]

@@ -16,17 +16,8 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ..._ask.check import (
-    FloatArray,
-    array,
-    common_shape,
-    shown,
-)
-from ..._ask.scene import (
-    OPTIONAL,
-    Impulse,
-    Scene,
-)
+from ..._ask.check import FloatArray, array, common_shape, shown
+from ..._ask.scene import OPTIONAL, Impulse, Scene
 from .tables import BLOW, NAMES, WIDTH, scenes_of, table_of
 
 _FIRST, _MOST = 16, 2048  # scenes of a chunk

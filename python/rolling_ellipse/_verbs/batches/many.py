@@ -10,20 +10,10 @@ from ... import _core
 from ..._ask.check import flag
 from ..._ask.progress import told
 from ..._ask.scene import Scene
-from ..._ask.settings import (
-    DEFAULTS,
-    Method,
-    Model,
-    Stabilization,
-    settings,
-)
+from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
 from ..._motion.status import WorkerError
 from ..simulate import sample_times
-from ..workers import (
-    Lost,
-    in_order,
-    threads_of,
-)
+from ..workers import Lost, in_order, threads_of
 from .answers import SAMPLE_BYTES, Answer, Request, answers, solve, solve_task
 from .asked import Chunk, Grid, Listed, asked, sizes
 from .folders import Folder

@@ -16,11 +16,7 @@ import numpy as np
 from ... import _core
 from ..._ask.check import FloatArray
 from ..._ask.records import trusted
-from ..._ask.scene import (
-    OPTIONAL,
-    Impulse,
-    Scene,
-)
+from ..._ask.scene import OPTIONAL, Impulse, Scene
 
 NAMES, BLOW = tuple(_core.FIELDS["Scene"]), tuple(_core.FIELDS["Impulse"])
 WIDTH = len(NAMES) + len(BLOW)

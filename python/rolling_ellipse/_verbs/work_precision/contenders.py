@@ -9,27 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from ..._ask.check import (
-    FloatArray,
-    choice,
-    shown,
-)
+from ..._ask.check import FloatArray, choice, shown
 from ..._ask.scene import Scene
-from ..._ask.settings import (
-    DEFAULTS,
-    METHODS,
-    MODELS,
-    STABILIZATIONS,
-    settings,
-)
+from ..._ask.settings import DEFAULTS, METHODS, MODELS, STABILIZATIONS, settings
 from ..._motion.stability import advice
 from ..._motion.status import Status
 from ..._motion.trajectory import Trajectory
-from ..flow import (
-    arguments_of,
-    flow,
-    period,
-)
+from ..flow import arguments_of, flow, period
 from ..simulate import sample_times
 
 TOLERANCES, STEPS = "tolerances", "steps"

@@ -13,14 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..._ask.check import file_name
 from ..._motion.export.atomic import replacing
-from ..._motion.export.strict import (
-    OBJECT,
-    field_names,
-    parsed,
-    require_names,
-    restored,
-    scene_of,
-)
+from ..._motion.export.strict import OBJECT, field_names, parsed, require_names, restored, scene_of
 from .run import Errors, Reference, Run
 
 if TYPE_CHECKING:

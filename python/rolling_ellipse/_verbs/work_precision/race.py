@@ -14,16 +14,8 @@ from typing import Any
 import numpy as np
 
 from ... import _core
-from ..._ask.check import (
-    array,
-    positive,
-    shown,
-    whole_within,
-)
-from ..._ask.scene import (
-    Scene,
-    require_scene,
-)
+from ..._ask.check import array, positive, shown, whole_within
+from ..._ask.scene import Scene, require_scene
 from .contenders import STEPS, TOLERANCES, default_steps, of_peer, own_contenders
 from .results import WorkPrecision
 from .timing import Lap, judge_all, progress, time_all
