@@ -105,6 +105,11 @@ bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
 
 }  // namespace
 
+void sort_once(std::vector<double>& times) {
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+}
+
 bool add_turns(const Measure& measure, double length, std::vector<double>& times) {
     constexpr std::size_t together = 1024;
     double size = length;
@@ -118,8 +123,7 @@ bool add_turns(const Measure& measure, double length, std::vector<double>& times
         }
         all_met &= add_turns(measure, size, std::move(parts), times);
     }
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
+    sort_once(times);
     return all_met;
 }
 

@@ -11,11 +11,6 @@
 namespace rolling_ellipse {
 namespace {
 
-void sort_once(std::vector<double>& times) {
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
-}
-
 // The quantity at ascending times, by the kind of sample that has it at the least cost.
 void measure(const Motion& motion, const Sampler& sample, Quantity quantity, const double* times,
              std::size_t n, double* values) {
