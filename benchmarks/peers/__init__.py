@@ -19,7 +19,7 @@ MODULES = {  # with the library that each needs; Boost's headers and g++ are loo
 
 
 def available() -> tuple[list[Any], dict[str, str]]:
-    """The peers at hand, and for each library that is not why."""
+    """The installed peers; for each missing library the reason."""
     found, missing = [], {}
     for module, library in MODULES.items():
         try:

@@ -1,4 +1,4 @@
-"""Boost.odeint: odeint.cpp, compiled for this machine, kept in the user's cache."""
+"""Boost.odeint: odeint.cpp, compiled for this machine and kept in the user's cache."""
 
 import ctypes
 import hashlib
@@ -7,26 +7,26 @@ import platform
 import shutil
 import subprocess
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rolling_ellipse import Scene
 
-from .problem import Integration, Peer, Problem, columns, finite, problem
+from .problem import Integration, Peer, Problem, columns, finite
 
 SOURCE = Path(__file__).with_name("odeint.cpp")
 FLAGS = ("-std=c++17", "-O3", "-march=native", "-shared", "-fPIC")
 STEPPERS = ("dopri5", "rkf78", "ck54", "bulirsch_stoer")
-DENSE = {
-    "dopri5"
-}  # the others stop at every sample; interpolation costs Bulirsch-Stoer its accuracy
+# Steppers with dense output. The others stop at every sample: interpolation costs Bulirsch-Stoer
+# its accuracy.
+DENSE = {"dopri5"}
 FAILURES = {1: "more than 1e6 steps", 2: "the step becomes too small", 3: "unknown stepper"}
 Doubles = ctypes.POINTER(ctypes.c_double)
 
 
 def output(*command: str) -> str:
-    """What a compiler prints; its last error line if it fails."""
+    """Output of a compiler; OSError with its first error line if it fails."""
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     if done.returncode:
         errors = [line for line in done.stderr.splitlines() if "error" in line]
@@ -53,12 +53,8 @@ def library() -> ctypes.CDLL:
     return ctypes.CDLL(str(built))
 
 
-def boost_version(program: ctypes.CDLL) -> str:
-    return (ctypes.c_char_p.in_dll(program, "boost_version").value or b"").decode()
-
-
 class BoostRun(Integration):
-    def __init__(self, roll: Any, given: Problem, stepper: str) -> None:
+    def __init__(self, roll: Any, stepper: str, given: Problem) -> None:
         values = (*given.body, *given.start, *given[2:])
         self.roll, self.stepper = roll, ctypes.c_int(STEPPERS.index(stepper))
         self.dense = ctypes.c_int(stepper in DENSE)
@@ -87,15 +83,10 @@ class BoostRun(Integration):
         return columns(states)
 
 
-class BoostPeer(Peer):
-    def __init__(self, program: ctypes.CDLL, stepper: str) -> None:
-        self.name, self.roll, self.stepper = f"Boost {stepper}", program.roll, stepper
-        self.library = f"Boost {boost_version(program)}"
-
-    def prepare(self, scene: Scene, t_end: float, setting: float) -> BoostRun:
-        return BoostRun(self.roll, problem(scene, t_end, setting), self.stepper)
-
-
-def peers() -> list[BoostPeer]:
+def peers() -> list[Peer]:
     program = library()
-    return [BoostPeer(program, stepper) for stepper in STEPPERS]
+    version = (ctypes.c_char_p.in_dll(program, "boost_version").value or b"").decode()
+    return [
+        Peer(f"Boost {stepper}", f"Boost {version}", partial(BoostRun, program.roll, stepper))
+        for stepper in STEPPERS
+    ]

@@ -7,19 +7,8 @@ import diffrax
 import jax
 import jax.numpy as jnp
 import numpy as np
-from rolling_ellipse import Scene
 
-from .problem import (
-    MOST_STEPS,
-    Integration,
-    Peer,
-    Problem,
-    columns,
-    finite,
-    problem,
-    rates_with,
-    version,
-)
+from .problem import MOST_STEPS, Integration, Peer, Problem, columns, finite, rates_with, version
 
 jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_platforms", "cpu")
@@ -44,7 +33,7 @@ def _integrate(solver: Any, ends: bool, start: Any, body: Any, times: Any, rtol:
 
 
 class DiffraxRun(Integration):
-    def __init__(self, given: Problem, solver: Any) -> None:
+    def __init__(self, solver: Any, given: Problem) -> None:
         self.counts, self.solver = {}, solver
         self.end = jnp.array([given.t_end])
         self.start, self.body = jnp.array(given.start), jnp.array(given.body)
@@ -66,15 +55,8 @@ class DiffraxRun(Integration):
         return columns(self.integrate(jnp.asarray(times), False))
 
 
-class DiffraxPeer(Peer):
-    library = version("diffrax")
-
-    def __init__(self, solver: Any) -> None:
-        self.name, self.solver = f"diffrax {solver.__name__}", solver()
-
-    def prepare(self, scene: Scene, t_end: float, setting: float) -> DiffraxRun:
-        return DiffraxRun(problem(scene, t_end, setting), self.solver)
-
-
-def peers() -> list[DiffraxPeer]:
-    return [DiffraxPeer(solver) for solver in SOLVERS]
+def peers() -> list[Peer]:
+    return [
+        Peer(f"diffrax {solver.__name__}", version("diffrax"), partial(DiffraxRun, solver()))
+        for solver in SOLVERS
+    ]

@@ -1,19 +1,19 @@
-"""heyoka's Taylor integrator, compiled once for each tolerance; the body is parameters."""
+"""heyoka's Taylor integrator, compiled once for each tolerance; the body is a set of parameters."""
 
 import copy
+from functools import cache
 from typing import Any
 
 import heyoka
 import numpy as np
-from rolling_ellipse import Scene
 
-from .problem import Integration, Peer, Problem, columns, finite, problem, version
+from .problem import Integration, Peer, Problem, columns, finite, version
 
-MANY = 20_000  # samples
+MANY = 20_000  # samples, from which compiled dense output is faster than a grid
 
 
 def equations(slope: bool) -> list[Any]:
-    """The system with as few products of series as it can be had; none for a level ground."""
+    """The system with as few products of series as possible; without a slope, level ground."""
     theta, omega, x = heyoka.make_vars("theta", "omega", "x")
     b2, spread, a2b2, total, gamma, sigma = (heyoka.par[i] for i in range(6))
     s, c = heyoka.sin(theta), heyoka.cos(theta)
@@ -25,9 +25,16 @@ def equations(slope: bool) -> list[Any]:
     return [(theta, omega), (omega, turn / (total * u - a2b2)), (x, h * omega)]
 
 
+@cache
+def compiled(tolerance: float, slope: bool) -> Any:
+    how = {"tol": tolerance, "fast_math": True, "compact_mode": False}
+    return heyoka.taylor_adaptive(equations(slope), [0.0] * 3, **how)
+
+
 class HeyokaRun(Integration):
-    def __init__(self, given: Problem, integrator: Any) -> None:
-        self.counts, self.solver = {}, integrator
+    def __init__(self, given: Problem) -> None:
+        sigma = given.body[5]
+        self.counts, self.solver = {}, copy.copy(compiled(given.rtol, sigma != 0))
         self.start, self.t_end = np.array(given.start), given.t_end
         self.solver.pars[:] = given.body[: len(self.solver.pars)]
         self.state = self.solver.state  # a view
@@ -48,7 +55,7 @@ class HeyokaRun(Integration):
         return finite(*self.state.tolist())
 
     def sample(self, times: Any) -> Any:
-        """Its function of time is compiled anew in every run, which pays for many samples only."""
+        """Dense output is compiled anew in every run, so it pays for many samples only."""
         self.begin()
         grid = np.concatenate(([0.0], times[int(times[0] == 0) :]))
         if len(times) < MANY and np.all(np.diff(grid) > 0):
@@ -60,21 +67,5 @@ class HeyokaRun(Integration):
         return columns(found[4](times))
 
 
-class HeyokaPeer(Peer):
-    library = version("heyoka")
-    name = "heyoka"
-
-    def __init__(self) -> None:
-        self.compiled: dict[tuple[float, bool], Any] = {}
-
-    def prepare(self, scene: Scene, t_end: float, setting: float) -> HeyokaRun:
-        given = problem(scene, t_end, setting)
-        kind = setting, scene.slope != 0
-        if kind not in self.compiled:
-            how = {"tol": setting, "fast_math": True, "compact_mode": False}
-            self.compiled[kind] = heyoka.taylor_adaptive(equations(kind[1]), [0.0] * 3, **how)
-        return HeyokaRun(given, copy.copy(self.compiled[kind]))
-
-
-def peers() -> list[HeyokaPeer]:
-    return [HeyokaPeer()]
+def peers() -> list[Peer]:
+    return [Peer("heyoka", version("heyoka"), HeyokaRun)]

@@ -1,21 +1,21 @@
 """numbalsoda: Hairer's dop853 and LSODA in compiled code, called with a numba function."""
 
+from functools import partial
 from typing import Any
 
 import numba
 import numpy as np
 from numbalsoda import dop853, lsoda, lsoda_sig
-from rolling_ellipse import Scene
 
 from .numba_rates import right_hand_side
-from .problem import MOST_STEPS, Integration, Peer, Problem, columns, finite, problem, version
+from .problem import MOST_STEPS, Integration, Peer, Problem, columns, finite, version
 
-_LEAST_OF_LSODA = 200 * np.finfo(float).eps  # it fails below, and tells only stderr why
+LEAST_RTOL = {dop853: 0.0, lsoda: 200 * np.finfo(float).eps}  # smaller: LSODA fails
 _right_hand_side = numba.cfunc(lsoda_sig)(right_hand_side)
 
 
 class NumbaRun(Integration):
-    def __init__(self, given: Problem, solve: Any) -> None:
+    def __init__(self, solve: Any, given: Problem) -> None:
         self.counts, self.solve, self.start = {}, solve, np.array(given.start)
         self.span = np.array([0.0, given.t_end])
         self.how = (np.array(given.body), given.rtol, given.atol, MOST_STEPS)
@@ -37,17 +37,9 @@ class NumbaRun(Integration):
         return columns(np.concatenate((np.tile(self.start, (later, 1)), states[1:])))
 
 
-class NumbaPeer(Peer):
+def peers() -> list[Peer]:
     library = version("numbalsoda")
-
-    def __init__(self, solve: Any) -> None:
-        self.name, self.solve = f"numbalsoda {solve.__name__}", solve
-
-    def prepare(self, scene: Scene, t_end: float, setting: float) -> NumbaRun:
-        if self.solve is lsoda and setting < _LEAST_OF_LSODA:
-            raise ValueError(f"LSODA asks for a tolerance of {_LEAST_OF_LSODA:.1e} at least")
-        return NumbaRun(problem(scene, t_end, setting), self.solve)
-
-
-def peers() -> list[NumbaPeer]:
-    return [NumbaPeer(solve) for solve in (dop853, lsoda)]
+    return [
+        Peer(f"numbalsoda {solve.__name__}", library, partial(NumbaRun, solve), least)
+        for solve, least in LEAST_RTOL.items()
+    ]

@@ -13,7 +13,7 @@ using Algebra = odeint::array_algebra;
 constexpr long most_steps = 1'000'000;
 
 struct Problem {
-    double b2, spread, a2b2, total, gamma, sigma;  // as in problem.py
+    double b2, spread, a2b2, total, gamma, sigma, gyration2;  // as in problem.py
     double theta, omega, x;
     double t_end, rtol, atol, pace;
 };
@@ -48,8 +48,8 @@ struct Samples {
     void put(long i, const State& y) const { std::copy(y.begin(), y.end(), states + 3 * i); }
 };
 
-// Any controlled stepper, stopped at every sample; the step that a stop cuts short is taken up
-// again.
+// Any controlled stepper, stopped at every sample. After a step that a stop has cut short, the step
+// size before it is tried again.
 template <class Stepper>
 Answer stop_at(Stepper stepper, const Rates& rates, double step, const Samples& samples) {
     State y{rates.body.theta, rates.body.omega, rates.body.x};

@@ -1,18 +1,19 @@
-"""What every peer is given: the equation of rolling, a scene's numbers, and when to refuse.
+"""The common problem of all peers: equation of rolling, numbers of a scene, refusals.
 
 With A = a^2, B = b^2, u = h^2 = B + (A - B) sin^2 and S = k^2 + A + B the inertia of rolling is
 D = S - AB/u, so that the equation of motion needs no h' and no radius of curvature:
 
     (S u - AB) theta'' = h u sigma - (A - B) sin cos (gamma h + AB omega^2 / u),  x' = h omega,
 
-sigma and gamma being gravity along the ground and into it. It is the equation of the notebook with
-fewer products, from which the peers gain: heyoka half of its time. S u - AB loses a factor
-A/(k^2 + B) of the last place near the flat: at most 4 for a uniform disc, however thin.
+where sigma and gamma are gravity along the ground and into it. It is the equation of the notebook
+with fewer products, which makes the peers faster: heyoka takes half of its time. S u - AB loses a
+factor A/(k^2 + B) of the last place near the flat: at most 4 for a uniform disc, however thin.
 """
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from dataclasses import dataclass
 from importlib import metadata
 from typing import Any, NamedTuple
 
@@ -26,16 +27,16 @@ MOST_STEPS = 1_000_000  # of one run
 class Problem(NamedTuple):
     """Body, start and end of one run, and its tolerances."""
 
-    body: tuple[float, ...]  # B, A - B, AB, S [m^2, m^4], gamma, sigma [m/s^2]
+    body: tuple[float, ...]  # B, A - B, AB, S [m^2, m^4], gamma, sigma [m/s^2], k^2 [m^2]
     start: tuple[float, float, float]  # theta [rad], omega [rad/s], x [m]
     t_end: float  # [s]
     rtol: float
     atol: float
-    pace: float  # [s] in which the motion changes
+    pace: float  # time scale of the motion [s]
 
 
 def problem(scene: Scene, t_end: float, setting: float) -> Problem:
-    """The numbers of a scene, or ValueError with the sentence that says why not."""
+    """The numbers of a scene; ValueError if it does not roll."""
     at = scene.initial_state
     if at.mode is not Mode.ROLLING:
         raise ValueError(f"peers integrate rolling only, and this scene starts {at.mode.name}")
@@ -45,7 +46,8 @@ def problem(scene: Scene, t_end: float, setting: float) -> Problem:
     a2, b2 = scene.a**2, scene.b**2
     spread = (scene.a - scene.b) * (scene.a + scene.b)
     gamma, sigma = (scene.gravity * part(scene.slope) for part in (math.cos, math.sin))
-    body = (b2, spread, a2 * b2, scene.gyration2 + a2 + b2, gamma, sigma)
+    k2 = scene.gyration2
+    body = (b2, spread, a2 * b2, k2 + a2 + b2, gamma, sigma, k2)
     pace = 1 / (abs(at.omega) + math.sqrt(scene.gravity / max(scene.a, scene.b)))
     start = (at.theta, at.omega, at.x)
     return Problem(body, start, float(t_end), setting, setting / 100, pace)
@@ -70,7 +72,7 @@ RATES = rates_with(math.sin, math.cos, math.sqrt)
 
 
 class Integration(ABC):
-    """A prepared run: the call is what is timed."""
+    """A prepared run of one problem; only the call is timed."""
 
     counts: dict[str, int]
 
@@ -79,17 +81,21 @@ class Integration(ABC):
         """theta, omega, x at the end, integrated anew."""
 
 
-class Peer(ABC):
-    """A contender; `prepare` compiles and allocates."""
+@dataclass(frozen=True)
+class Peer:
+    """A contender of a race: an integrator of some library."""
 
     name: str
     library: str  # with its version
-    ladder = "tolerances"
+    run: Callable[[Problem], Integration]  # compiles and allocates
+    least: float = 0.0  # smallest tolerance that the library takes
     tags: tuple[str, ...] = ("peer", "compiled")
 
-    @abstractmethod
     def prepare(self, scene: Scene, t_end: float, setting: float) -> Integration:
-        """Set up a new scene; ValueError if the peer cannot do it."""
+        """Set up a new scene; ValueError if the peer cannot integrate it."""
+        if setting < self.least:
+            raise ValueError(f"{self.name} takes tolerances from {self.least:.1e}, got {setting}")
+        return self.run(problem(scene, t_end, setting))
 
 
 def version(library: str) -> str:
@@ -104,7 +110,7 @@ def columns(states: Any) -> tuple[Any, Any, Any]:
 
 
 def finite(theta: float, omega: float, x: float) -> tuple[float, float, float]:
-    """The state, or RuntimeError where the integration has lost it."""
+    """The state; RuntimeError if it is not finite."""
     if not math.isfinite(theta + omega + x):
         raise RuntimeError(f"the state is not finite: {theta}, {omega}, {x}")
     return theta, omega, x

@@ -1,7 +1,7 @@
 """SciPy's solve_ivp, with the right-hand side compiled where numba is installed.
 
-It takes no relative tolerance below 100 ulp of 1 and would warn: smaller ones are raised to that
-here, while the absolute tolerance follows the setting.
+solve_ivp takes no relative tolerance below 100 ulp of 1 and would warn. Smaller ones are raised to
+that here; the absolute tolerance follows the setting.
 """
 
 from functools import partial
@@ -9,10 +9,9 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from rolling_ellipse import Scene
 from scipy.integrate import solve_ivp
 
-from .problem import RATES, Integration, Peer, Problem, Rates, columns, finite, problem, version
+from .problem import RATES, Integration, Peer, Problem, Rates, columns, finite, version
 
 LEAST_RTOL = 100 * np.finfo(float).eps
 METHODS = ("DOP853", "RK45", "LSODA", "Radau")
@@ -35,7 +34,7 @@ def equation(rates: Rates, compiled: bool) -> Any:
 
 
 class ScipyRun(Integration):
-    def __init__(self, given: Problem, right_hand_side: Any, method: str) -> None:
+    def __init__(self, right_hand_side: Any, method: str, given: Problem) -> None:
         self.counts, body = {}, np.array(given.body)
         how = {"rtol": max(given.rtol, LEAST_RTOL), "atol": given.atol, "args": (body,)}
         start, span = np.array(given.start), (0.0, given.t_end)
@@ -61,20 +60,14 @@ class ScipyRun(Integration):
         return columns(self.integrate(once).T[back])
 
 
-class ScipyPeer(Peer):
-    library = version("scipy")
-
-    def __init__(self, method: str, compiled: bool, rates: Rates = RATES) -> None:
-        self.name = f"SciPy {method}, {'numba' if compiled else 'Python'}"
-        self.tags = ("peer", "compiled" if compiled else "interpreted")
-        self.method, self.right_hand_side = method, equation(rates, compiled)
-
-    def prepare(self, scene: Scene, t_end: float, setting: float) -> ScipyRun:
-        return ScipyRun(problem(scene, t_end, setting), self.right_hand_side, self.method)
+def peer(method: str, compiled: bool, rates: Rates = RATES) -> Peer:
+    name = f"SciPy {method}, {'numba' if compiled else 'Python'}"
+    run = partial(ScipyRun, equation(rates, compiled), method)
+    return Peer(name, version("scipy"), run, tags=("peer", "compiled" * compiled or "interpreted"))
 
 
 def numba_works() -> bool:
-    """Is it installed, and not broken?"""
+    """Whether numba is installed and can be imported."""
     try:
         import_module("numba")
     except Exception:
@@ -82,5 +75,5 @@ def numba_works() -> bool:
     return True
 
 
-def peers() -> list[ScipyPeer]:
-    return [ScipyPeer(method, numba_works()) for method in METHODS]
+def peers() -> list[Peer]:
+    return [peer(method, numba_works()) for method in METHODS]

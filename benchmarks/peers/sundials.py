@@ -1,37 +1,27 @@
-"""SUNDIALS through scikit-sundae, which calls Python: here functions compiled by numba.
+"""SUNDIALS through scikit-sundae, which calls functions compiled by numba.
 
-CVODE integrates the equation. IDA has the body with its constraints z = h and x' = h omega:
-unknowns x, z, theta, their rates, and the forces N and F per mass, the constraints differentiated
-until the forces appear (index 1). That was the best of what was tried: the stabilised form of index
-2 (Gear, Gupta, Leimkuhler) costs as much and is less accurate. The forces are no part of the error
-test, by absolute tolerances that they never reach.
+CVODE integrates the equation. IDA integrates the body with its constraints z = h and x' = h omega:
+the unknowns are x, z, theta, their rates, and the forces N and F per mass; the constraints are
+differentiated until the forces appear (index 1). The stabilised form of index 2 (Gear, Gupta,
+Leimkuhler) costs as much and is less accurate. Huge absolute tolerances take the forces out of the
+error test.
 """
 
 import math
+from functools import partial
 from typing import Any
 
 import numba
 import numpy as np
-from rolling_ellipse import Scene
 from sksundae.cvode import CVODE
 from sksundae.ida import IDA
 
 from .numba_rates import right_hand_side
-from .problem import (
-    MOST_STEPS,
-    RATES,
-    Integration,
-    Peer,
-    Problem,
-    columns,
-    finite,
-    problem,
-    version,
-)
+from .problem import MOST_STEPS, RATES, Integration, Peer, Problem, columns, finite, version
 
 LEAST_RTOL = 1e-15
 _right_hand_side = numba.njit(right_hand_side)
-_FREE = 1e300  # absolute tolerance of a variable that no error test looks at
+_FREE = 1e300  # absolute tolerance of a variable outside the error test
 
 
 @numba.njit  # type: ignore[untyped-decorator]
@@ -59,15 +49,19 @@ def _residuals(t: float, y: Any, dy: Any, out: Any, body: Any) -> None:
 
 
 class CvodeRun(Integration):
-    order = (0, 1, 2)  # where theta, omega, x are
+    order = (0, 1, 2)  # places of theta, omega and x in y
 
-    def __init__(self, given: Problem, method: str) -> None:
+    def __init__(self, method: str, given: Problem) -> None:
         self.counts, self.t_end = {}, given.t_end
         self.initial = (np.array(given.start),)
         how = {"rtol": given.rtol, "atol": given.atol, "max_num_steps": MOST_STEPS}
-        self.solver = CVODE(_right_hand_side, userdata=given.body, method=method, **how)
-        self.solver.init_step(0.0, *self.initial)
-        self.solver.step(given.pace * 1e-6)  # compiles
+        self.begin(CVODE(_right_hand_side, userdata=given.body, method=method, **how), given)
+
+    def begin(self, solver: Any, given: Problem) -> None:
+        """A tiny first step, which compiles."""
+        self.solver = solver
+        solver.init_step(0.0, *self.initial)
+        solver.step(given.pace * 1e-6)
 
     def __call__(self) -> tuple[float, float, float]:
         self.solver.init_step(0.0, *self.initial)
@@ -92,20 +86,17 @@ class CvodeRun(Integration):
 class IdaRun(CvodeRun):
     order = (2, 5, 0)
 
-    def __init__(self, given: Problem, gyration2: float) -> None:
+    def __init__(self, given: Problem) -> None:
         self.counts, self.t_end = {}, given.t_end
-        body = (*given.body, gyration2)
-        self.initial = consistent(given, body)
+        self.initial = consistent(given)
         atol = np.array([given.atol] * 6 + [_FREE] * 2)
         how = {"rtol": given.rtol, "atol": atol, "max_num_steps": MOST_STEPS}
-        self.solver = IDA(_residuals, userdata=body, algebraic_idx=[6, 7], **how)
-        self.solver.init_step(0.0, *self.initial)
-        self.solver.step(given.pace * 1e-6)  # compiles
+        self.begin(IDA(_residuals, userdata=given.body, algebraic_idx=[6, 7], **how), given)
 
 
-def consistent(given: Problem, body: tuple[float, ...]) -> tuple[Any, Any]:
-    """All unknowns at the start, and their rates; those of the forces are not asked for."""
-    theta, omega, x = given.start
+def consistent(given: Problem) -> tuple[Any, Any]:
+    """All unknowns at the start, and their rates; IDA does not need those of the forces (0)."""
+    body, (theta, omega, x) = given.body, given.start
     h, slope, bend = _support(theta, body)
     turn, _ = RATES(theta, omega, body)
     push, lift = h * turn + slope * omega**2, slope * turn + bend * omega**2
@@ -114,20 +105,10 @@ def consistent(given: Problem, body: tuple[float, ...]) -> tuple[Any, Any]:
     return start, np.array([*rates, push, lift, turn, 0.0, 0.0])
 
 
-class SundialsPeer(Peer):
+def peers() -> list[Peer]:
+    runs = {f"CVODE {method}": partial(CvodeRun, method) for method in ("Adams", "BDF")}
     library = version("scikit-sundae")
-
-    def __init__(self, method: str) -> None:
-        self.name, self.method = f"SUNDIALS {method}", method
-
-    def prepare(self, scene: Scene, t_end: float, setting: float) -> CvodeRun:
-        given = problem(scene, t_end, setting)
-        if setting < LEAST_RTOL:
-            raise ValueError(f"SUNDIALS takes tolerances from {LEAST_RTOL}, got {setting}")
-        if self.method == "IDA":
-            return IdaRun(given, scene.gyration2)
-        return CvodeRun(given, self.method.removeprefix("CVODE "))
-
-
-def peers() -> list[SundialsPeer]:
-    return [SundialsPeer(method) for method in ("CVODE Adams", "CVODE BDF", "IDA")]
+    return [
+        Peer(f"SUNDIALS {name}", library, run, LEAST_RTOL)
+        for name, run in {**runs, "IDA": IdaRun}.items()
+    ]
