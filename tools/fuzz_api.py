@@ -1,10 +1,10 @@
-"""Call everything public with odd arguments, extremes of every argument included.
+"""Call all public functions with odd and extreme arguments.
 
-A case is a few lines: a call, then questions to what it returned. Hypothesis draws cases, the same
-for the same seed, and makes one that fails as short as it can; they run in a process of their own,
-so that what crashes or never comes back is a finding like any other. What is drawn is in
-`fuzz/calls.py`, `fuzz/scenes.py` and `fuzz/values.py`; what must not happen in `fuzz/judge.py` and
-`fuzz/promises.py`. A finding is printed as lines to be pasted.
+A case is a few lines: a call, then questions about its result. Hypothesis draws the cases, the same
+for the same seed, and shortens one that fails. The cases run in a process of their own, so that a
+crash or an endless call is a finding like any other. `fuzz/calls.py`, `fuzz/scenes.py` and
+`fuzz/values.py` draw; `fuzz/judge.py` and `fuzz/promises.py` say what must not happen. A finding is
+printed as lines to be pasted.
 
 Run:  python tools/fuzz_api.py --calls 20000 --seed 1
       python tools/fuzz_api.py --code "rl.certify(1)"        (judge these lines alone)
@@ -28,16 +28,16 @@ from fractions import Fraction
 from math import inf, nan, nextafter, pi
 from pathlib import Path
 import matplotlib.pyplot as plt, numpy as np, rolling_ellipse as rl
-from fuzz import damage, promises  # with tools/ in PYTHONPATH"""
-SLOW = ("deaf", "hang")  # these are not made shorter: each try takes as long
+from fuzz import damage, promises  # with tools/ and tests/ in PYTHONPATH"""
+SLOW = ("deaf", "hang")  # not shortened: each try takes as long
 
 
 def signature(found: Finding) -> tuple[str, str, str]:
-    """Findings alike in this are one: numbers and what was passed make no difference."""
+    """The identity of a finding: its kind, the call and the sentence without numbers and values."""
     what = re.sub(r"got .*", "", found.what, flags=re.DOTALL)
     what = re.sub(r"0x[0-9a-f]+|[-+]?\d[\d.e+-]*|'[^']*'", "#", what)
     does = re.sub(r"^\w+ = |\(.*", "", found.lines[-1], flags=re.DOTALL)
-    if "forged" in found.lines[-1]:  # many ways to fall over the same thing
+    if "forged" in found.lines[-1]:  # many calls fail for the same damage
         return found.kind, "forged", what.partition(":")[0]
     return found.kind, does, what[:120]
 
@@ -51,7 +51,7 @@ class Failed(AssertionError):
 
 
 class Hunt:
-    """Cases of one seed, until something new is found; and so on, until all are run."""
+    """Cases of one seed; each search ends at a new finding, until all cases are run."""
 
     def __init__(self, process: Process, seed: int) -> None:
         self.process, self.seed = process, seed
@@ -89,7 +89,7 @@ class Hunt:
 
         try:
             one()
-        except (Exception, KeyboardInterrupt):  # a case that does not fail again is one, too
+        except (Exception, KeyboardInterrupt):  # also of a case that does not fail again
             if target is None:
                 raise
         if target is not None:

@@ -1,4 +1,4 @@
-"""What hypothesis draws: bodies, grounds, starts and times, over all that the package accepts."""
+"""Strategies of Hypothesis: bodies, grounds, starts and times over the accepted ranges."""
 
 import math
 from typing import Any
@@ -8,9 +8,9 @@ from rolling_ellipse import Impulse, Scene, geometry
 
 from oracles.numbers import EPS
 
-Draw = Any  # what st.composite passes
+Draw = Any  # the argument that st.composite passes
 
-#: Angles that are hard: on and beside the quarter turns, and thousands of turns away.
+#: Hard angles: on and beside the quarter turns, and thousands of turns away.
 QUARTERS = st.builds(
     lambda k, beside: k * math.pi / 2 + beside,
     st.integers(-9, 9),
@@ -20,12 +20,12 @@ SIGNS = st.sampled_from([1.0, -1.0])
 
 
 def numbers(low: float, high: float) -> st.SearchStrategy[float]:
-    """Numbers in a range, 0 among them, none so small that its square is no normal double."""
+    """Numbers in a range; those whose square would be subnormal are 0."""
     return st.floats(low, high).map(lambda value: value if abs(value) > 1e-100 else 0.0)
 
 
 def powers(low: float, high: float) -> st.SearchStrategy[float]:
-    """Numbers whose size is anything between 10^low and 10^high."""
+    """Positive numbers between 10^low and 10^high, with even exponents."""
     return st.floats(low, high).map(lambda exponent: 10.0**exponent)
 
 
@@ -59,7 +59,7 @@ def bodies(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
 
 
 def rate(body: dict[str, float]) -> float:
-    """Of falling over: sqrt(g/long) [1/s]."""
+    """Rate of falling over, sqrt(g/long) [1/s]."""
     return math.sqrt(body["gravity"] / max(body["a"], body["b"]))
 
 
@@ -74,14 +74,14 @@ def motions(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
 
 @st.composite
 def spans(draw: Draw, motion: dict[str, float], most: float) -> float:
-    """A time of up to that many half turns, or swings."""
+    """A time of at most so many half turns or swings."""
     half_turns = draw(powers(-3, math.log10(most)))
     return float(half_turns * math.pi / max(abs(motion["omega"]), rate(motion)))
 
 
 def at_its_limit(values: dict[str, Any]) -> dict[str, Any]:
-    """The spin at which gravity just does not press a body any more (h'' omega^2 = -g cos(alpha)),
-    if there is one, or else the friction that it needs to roll: to rounding."""
+    """Spin of a weightless body, h'' omega^2 = -g cos(alpha), if there is one; else the friction
+    coefficient that rolling needs. Both are exact to rounding."""
     a, b, theta, slope = (values[name] for name in ("a", "b", "theta", "slope"))
     h, tilt = geometry.support(theta, a=a, b=b), geometry.support_slope(theta, a=a, b=b)
     radius = (a * b) ** 2 / h**3
@@ -98,18 +98,14 @@ def at_its_limit(values: dict[str, Any]) -> dict[str, Any]:
 
 
 @st.composite
-def scenes(draw: Draw, /, **given: Any) -> Scene:
-    """On every ground, rolling, sliding or in the air, some of them struck, some at a limit."""
+def scene_arguments(draw: Draw, /, **given: Any) -> dict[str, Any]:
+    """Keyword arguments of a Scene: on any ground, in any state, some struck, some at a limit."""
     of = draw(motions(thinnest=1.5))
     mass = draw(powers(-2, 2))
     values = {
-        "a": of["a"],
-        "b": of["b"],
+        **{name: of[name] for name in ("a", "b", "gravity", "theta", "omega")},
         "mass": mass,
-        "gravity": of["gravity"],
         "inertia": mass * of["gyration2"],
-        "theta": of["theta"],
-        "omega": of["omega"],
         "slope": draw(st.one_of(st.just(0.0), SLOPES)),
         "friction": draw(FRICTIONS),
         "restitution": draw(st.one_of(st.sampled_from([0.0, 1.0]), numbers(0.0, 1.0))),
@@ -133,9 +129,13 @@ def scenes(draw: Draw, /, **given: Any) -> Scene:
         jx, jz = (draw(numbers(-2.0, 2.0)) * mass * speed for _ in range(2))
         dx, dz = (draw(numbers(-0.7, 0.7)) * reach for _ in range(2))
         values["impulse"] = Impulse(jx, jz, dx=dx, dz=dz)
-    return Scene(**values)
+    return values
+
+
+def scenes(**given: Any) -> st.SearchStrategy[Scene]:
+    return scene_arguments(**given).map(lambda values: Scene(**values))
 
 
 def clock(scene: Scene) -> float:
-    """The time of falling over [s]."""
+    """Time of falling over [s]."""
     return math.sqrt(max(scene.a, scene.b) / scene.gravity)

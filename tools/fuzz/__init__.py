@@ -1,1 +1,6 @@
 """The fuzzer of the public API; `tools/fuzz_api.py` is its command."""
+
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "tests"))  # for the strategies of oracles

@@ -1,11 +1,10 @@
-"""Ways to spoil files and pickles of the package; places are shares of what there is.
+"""Damage to files and pickles of the package; a place is given as a share of the whole.
 
-Archives that are no longer what they say are in `tests/refusals/files.py`, one by one.
+Single kinds of broken archives are in `tests/refusals/files.py`.
 """
 
 from __future__ import annotations
 
-import json
 import pickle
 import pickletools
 import re
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from oracles.files import put_together, taken_apart
 
 
 def flip(path: str, share: float, mask: int) -> None:
@@ -27,43 +27,26 @@ def flip(path: str, share: float, mask: int) -> None:
 
 def member(path: str, name: str, values: Any) -> None:
     """Put other values into one array, or leave it out (None)."""
-    arrays = _arrays(path)
+    about, arrays = taken_apart(Path(path).read_bytes())
     arrays.pop(name, None)
-    if values is not None:
-        arrays[name] = values
-    _write(path, arrays)
+    new = {} if values is None else {name: values}
+    Path(path).write_bytes(put_together(about, {**arrays, **new}))
 
 
-def fact(path: str, key: str, value: Any) -> None:
-    """Put another value into the JSON."""
-    arrays = _arrays(path)
-    about = json.loads(str(arrays["about"]))
-    about[key] = value
-    _write(path, {**arrays, "about": np.array(json.dumps(about))})
-
-
-def inner_fact(path: str, share: float, value: Any) -> None:
-    """Put another value where anything lies in the JSON, however deep."""
-    arrays = _arrays(path)
-    about = json.loads(str(arrays["about"]))
+def fact(path: str, share: float, value: Any) -> None:
+    """Put another value somewhere into the JSON, however deep."""
+    about, arrays = taken_apart(Path(path).read_bytes())
     places = list(_places(about))
     holder, key = places[int(share * len(places))]
     holder[key] = value
-    _write(path, {**arrays, "about": np.array(json.dumps(about))})
-
-
-def line(path: str, share: float, old: str, new: str) -> None:
-    """Replace the part of a text file that begins at a place, up to the next `old`."""
-    content = Path(path).read_text()
-    begin = int(share * len(content))
-    Path(path).write_text(content[:begin] + content[begin:].replace(old, new, 1))
+    Path(path).write_bytes(put_together(about, arrays))
 
 
 def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
-    """Whether a pickle with some bits turned over still makes something that says what it is.
+    """Whether a pickle with some bits turned over still makes an object with a repr.
 
-    Pickles may raise anything when they are spoiled; here they must not end the interpreter. The
-    state of a dtype is left whole: what NumPy does with another one is not bounded.
+    A damaged pickle may raise anything, but must not end the interpreter. The state of a dtype is
+    left whole: NumPy may do anything with a wrong one.
     """
     data = bytearray(pickle.dumps(value, protocol))
     place = int(share * len(data))
@@ -72,10 +55,10 @@ def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
     data[place] ^= mask
     with (
         suppress(Exception),
-        np.errstate(all="ignore"),  # a number may be any other now
+        np.errstate(all="ignore"),
         warnings.catch_warnings(),
     ):
-        # NumPy's, of what its own part of the pickle has become
+        # of NumPy, for its own part of the pickle
         warnings.simplefilter("ignore", np.exceptions.VisibleDeprecationWarning)
         found = pickle.loads(bytes(data))
         for name in ("t", "energy", "events", "initial_state", "q"):
@@ -85,7 +68,7 @@ def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
 
 
 def _dtype_states(data: bytes | bytearray) -> Iterator[range]:
-    """Where a pickle says what a dtype is: from its short name on until it is set up."""
+    """Places of the dtypes in a pickle: from the short name to the end of the state."""
     begin = None
     for opcode, argument, position in pickletools.genops(bytes(data)):
         if isinstance(argument, str) and re.fullmatch(r"[biufcmMOSUV]\d+", argument):
@@ -96,21 +79,10 @@ def _dtype_states(data: bytes | bytearray) -> Iterator[range]:
             begin = None
 
 
-def _places(found: Any) -> list[tuple[Any, Any]]:
-    keys: Any = ()
-    if isinstance(found, dict):
-        keys = tuple(found)
-    elif isinstance(found, list):
-        keys = range(len(found))
-    places = [(found, key) for key in keys]
-    return places + [place for key in keys for place in _places(found[key])]
-
-
-def _arrays(path: str) -> dict[str, Any]:
-    with np.load(path) as data:
-        return dict(data)
-
-
-def _write(path: str, arrays: dict[str, Any]) -> None:
-    with open(path, "wb") as file:
-        np.savez(file, **arrays)
+def _places(found: Any) -> Iterator[tuple[Any, Any]]:
+    """Holders and keys of all values in JSON, those of the outermost object first."""
+    keys = range(len(found)) if isinstance(found, list) else list(found)
+    yield from ((found, key) for key in keys)
+    for key in keys:
+        if isinstance(found[key], dict | list):
+            yield from _places(found[key])

@@ -1,4 +1,4 @@
-"""Runs the lines of a case and says what must not happen."""
+"""Runs the lines of a case and finds what must not happen."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ import io
 import math
 import pickle
 import re
+import signal
 import tempfile
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -36,14 +37,15 @@ OWN_WARNINGS = (
     "ValidityWarning", "InconsistentStartWarning", "StabilityWarning", "CompletenessWarning",
 )  # fmt: skip
 _FIELDS = {field.name for kind in (rl.Scene, rl.Impulse) for field in fields(kind)}
-# Words of a message that name arguments without naming one.
+# Words of a message that stand for several arguments.
 _TOGETHER = ("arguments must broadcast", "missing 1 required", "unsupported pickle",
              "cannot pickle")  # fmt: skip
 _NOT_FINITE = re.compile(
     r"\bnan\b|\binf\b|NaN|longdouble|\bma\b|1e400|10\*\*400|NaT|e\+?30\d\b|e\+?29\d\b"
 )
+GRACE = 0.5  # within which Ctrl-C must end a call [s]
 _LINE = re.compile(r"(?:(\w+) = )?(.*)", re.DOTALL)
-# How many times as long as others some lines may take: pictures, whole batches, 1e6 steps.
+# Factors of the time limit: pictures, whole batches and 1e6 steps take longer than other lines.
 _PATIENCE = {
     "unpickled": 10, "plot": 6, "animate": 6, "work_precision": 6, "errata": 4, "fit": 3,
     "report.simulate": 4, "when": 20, "command": 8, "simulate_many": 8, "load_many": 8,
@@ -56,7 +58,7 @@ def patience(line: str) -> float:
 
 
 def command(arguments: list[str]) -> str:
-    """What the command line prints; as an expression."""
+    """Output of the command line."""
     said = io.StringIO()
     with (
         contextlib.redirect_stdout(said),
@@ -67,17 +69,8 @@ def command(arguments: list[str]) -> str:
     return said.getvalue()
 
 
-def caught(function: Callable[..., Any], *arguments: Any, **options: Any) -> Exception | None:
-    """What a call raises; as an expression."""
-    try:
-        function(*arguments, **options)
-    except rl.IntegrationError as error:
-        return error
-    return None
-
-
 NAMES: dict[str, Any] = {
-    "Decimal": Decimal, "Fraction": Fraction, "Path": Path, "caught": caught, "command": command,
+    "Decimal": Decimal, "Fraction": Fraction, "Path": Path, "command": command,
     "copy": copy, "damage": damage, "inf": math.inf, "nan": math.nan, "nextafter": math.nextafter,
     "np": np, "pi": math.pi, "pickle": pickle, "plt": plt, "promises": promises,
     "replace": replace, "rl": rl, "tempfile": tempfile,
@@ -85,25 +78,25 @@ NAMES: dict[str, Any] = {
 
 
 class Case:
-    """The lines of one case, and what is known after those that ran."""
+    """The values of one case after the lines that ran."""
 
-    def __init__(self, lines: list[str], seconds: float) -> None:
-        self.lines, self.seconds = lines, seconds
+    def __init__(self) -> None:
         self._values = dict(NAMES)
         self._finite = True
 
-    def run(self, i: int) -> tuple[bool, list[tuple[str, str]]]:
-        """Run line i; whether the lines after it can follow, and what is wrong with it."""
-        line = self.lines[i]
+    def run(self, line: str, limit: float) -> tuple[bool, list[tuple[str, str]]]:
+        """Run a line, for `limit` seconds of processor time; whether the next line can follow, and
+        the findings."""
         name, code = _LINE.fullmatch(line).groups()  # type: ignore[union-attr]
         forged = "forged" in line
         self._finite &= not _NOT_FINITE.search(re.sub(r"friction=inf\b", "", code))
         found: list[tuple[str, str]] = []
-        goes_on = interrupted = False
+        goes_on = False
         begin = time.process_time()
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             try:
+                signal.setitimer(signal.ITIMER_PROF, limit)
                 value = eval(code, self._values)
                 goes_on = True
             except rl.IntegrationError as error:
@@ -111,19 +104,17 @@ class Case:
             except promises.Broken as error:
                 found.append(error.args)
             except KeyboardInterrupt:
-                interrupted = True
+                late = time.process_time() - begin > limit + GRACE
+                found.append(("deaf", "Ctrl-C ends it late") if late else ("hang", "takes long"))
             except Exception as error:
                 found += self._of_exception(code, error, forged)
+            finally:
+                signal.setitimer(signal.ITIMER_PROF, 0)
             if goes_on:
                 self._values[name or "_"] = value
-                # what has no answer has NaN in a race
+                # the runs of a race that have no answer hold NaN
                 if not forged and not isinstance(value, rl.WorkPrecision):
                     found += promises.of_result(value, self._finite)
-        spent = time.process_time() - begin
-        if spent > self.seconds * patience(line):
-            found.append(("hang", f"takes long, {'until interrupted' if interrupted else ''}"))
-        elif interrupted:  # it was meant for another line
-            raise KeyboardInterrupt
         return goes_on, found + list(_of_warnings(said))
 
     def _of_exception(self, code: str, error: Exception, forged: bool) -> Finds:
@@ -131,9 +122,9 @@ class Case:
         if isinstance(error, ValueError | TypeError):
             names = self._argument_names(code)
             if forged:
-                names |= {"q", "q_dot"}  # what is made of arrays that somebody has put in
+                names |= {"q", "q_dot"}  # made of forged arrays
             if "trajectories" in names:
-                names.add("trajectory")  # one of them
+                names.add("trajectory")
             if not any(map(str(error).__contains__, _TOGETHER)) and not _names_one(error, names):
                 yield "unnamed", said
         elif not isinstance(error, OSError | MemoryError | ImportError):
@@ -150,7 +141,7 @@ class Case:
 
 
 def _names_one(error: Exception, names: set[str]) -> bool:
-    """Whether a message speaks of an argument; names of one letter also are words."""
+    """Whether a message names an argument; a name of one letter must be its subject."""
     message = str(error)
     long = "|".join(re.escape(name) for name in names if len(name) > 1)
     letters = "|".join(re.escape(name) for name in names if len(name) == 1) or "(?!)"

@@ -1,26 +1,30 @@
-"""Cases run in a process of their own, which may die or never come back.
+"""Cases run in a process of their own, which may die or never return.
 
-Each line of the pipes is one JSON value: to the process a case, from it the number and patience of
-the line that is about to run, at last what was found. A line that takes too long gets Ctrl-C, and
-a process that is deaf to it is killed.
+A timer limits the processor time of each line; its signal is handled as Ctrl-C is. A process that
+does not answer the signal is ended by faulthandler's watchdog.
 """
 
 from __future__ import annotations
 
-import json
+import faulthandler
+import multiprocessing
 import os
-import select
+import re
 import signal
-import subprocess
 import sys
 import tempfile
-import time
+from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
+from unittest import mock
 
-GRACE = 0.5  # within which Ctrl-C must end a call [s]
-PATIENT = 8  # wall clock for processor time: the machine has others to serve
+PATIENT = 8  # wall-clock seconds allowed for a second of processor time on a busy machine
 MEMORY = 4 * 2**30  # of the process [bytes]
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+# Lines of a report of death that name its cause.
+CAUSES = re.compile(
+    r"ERROR: AddressSanitizer|runtime error|Fatal|terminate|what\(\)|#[123] |SUMMARY|Error:"
+)
 
 
 class Finding(NamedTuple):
@@ -28,140 +32,93 @@ class Finding(NamedTuple):
 
     kind: str
     what: str
-    lines: tuple[str, ...]  # up to the one that did it
+    lines: tuple[str, ...]  # up to the line at fault
 
 
-def work(seconds: float, limit_memory: bool) -> None:
-    """In the process: run the cases that come in, one after the other."""
-    import faulthandler
+def work(pipe: Connection, folder: Path, seconds: float, limit_memory: bool) -> None:
+    """Body of the process: runs the cases that arrive, one after the other.
 
-    from . import judge
-
+    It answers with the number of each line before it runs it, and with the findings at the end.
+    """
+    os.setsid()  # a Ctrl-C in the terminal is for the parent alone
+    os.chdir(folder)
+    complaints = os.open("complaints", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    os.dup2(complaints, 1)
+    os.dup2(complaints, 2)
+    sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115  pytest may have replaced it
     faulthandler.enable()
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell lets run aside has none
+    for number in (signal.SIGINT, signal.SIGPROF):
+        signal.signal(number, signal.default_int_handler)
     if limit_memory:
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    pipe = os.dup(1)
-    os.dup2(2, 1)  # what the package would print
 
-    def say(message: Any) -> None:
-        os.write(pipe, (json.dumps(message) + "\n").encode())
+    from . import judge
 
-    say("ready")
-    while text := sys.stdin.readline():
-        lines = json.loads(text)
-        for _ in range(3):  # an interrupt meant for the line before starts the case again
-            case, found = judge.Case(lines, seconds), []
-            try:
-                for i, line in enumerate(lines):
-                    say([i, judge.patience(line)])
-                    goes_on, here = case.run(i)
-                    found += [(i, *each) for each in here]
-                    if not goes_on:
-                        break
-            except KeyboardInterrupt:
-                continue
-            break
-        say({"found": found})
+    while True:
+        lines = pipe.recv()
+        case, found = judge.Case(), []
+        for i, line in enumerate(lines):
+            pipe.send(i)
+            limit = seconds * judge.patience(line)
+            faulthandler.dump_traceback_later(PATIENT * limit, exit=True)
+            goes_on, here = case.run(line, limit)
+            faulthandler.cancel_dump_traceback_later()
+            found += [(i, *each) for each in here]
+            if not goes_on:
+                break
+        pipe.send(found)
 
 
 class Process:
-    """A process that runs cases, started again after each that ends it."""
+    """A process that runs cases; it is started anew after a case that ends it."""
 
     def __init__(self, seconds: float, limit_memory: bool = True) -> None:
-        self.seconds, self.limit_memory = seconds, limit_memory
+        self.options = seconds, limit_memory
         self._folder = tempfile.TemporaryDirectory(prefix="fuzz")
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: multiprocessing.process.BaseProcess | None = None
 
     def __enter__(self) -> Process:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._end()
+        if self._process is not None:
+            self._process.kill()
+            self._process.join()
         self._folder.cleanup()
 
-    def _end(self) -> int:
-        """The status with which the process ends, at the latest now."""
-        if self._process is None:
-            return 0
-        with self._process as process:
-            self._process = None
-            if process.poll() is None:
-                process.kill()
-        return process.returncode
-
-    def _start(self) -> subprocess.Popen[bytes]:
-        code = (
-            f"import sys; sys.path.insert(0, {str(Path(__file__).resolve().parents[1])!r})\n"
-            f"from fuzz.process import work\nwork({self.seconds}, {self.limit_memory})"
-        )
-        self._complaints = Path(self._folder.name, "stderr")
-        with open(self._complaints, "wb") as complaints:
-            process = subprocess.Popen(
-                [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                stderr=complaints, cwd=self._folder.name, start_new_session=True,  # not our Ctrl-C
-                env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
-            )  # fmt: skip
-        self._heard = b""
-        self._process = process
-        if self._next(process, 60.0) != "ready":
-            raise RuntimeError(f"the process does not begin: {self._complaints.read_text()}")
+    def _start(self) -> multiprocessing.process.BaseProcess:
+        spawn = multiprocessing.get_context("spawn")
+        self._pipe, end = spawn.Pipe()
+        folder = Path(self._folder.name)
+        process = spawn.Process(target=work, args=(end, folder, *self.options), daemon=True)
+        with mock.patch.dict(os.environ, ONE_THREAD):
+            process.start()
+        end.close()
         return process
 
     def findings(self, lines: list[str]) -> list[Finding]:
-        """What is wrong with a case."""
-        process = self._process or self._start()
-        assert process.stdin
-        process.stdin.write((json.dumps(lines) + "\n").encode())
-        process.stdin.flush()
-        i, factor = 0, 1.0
-        while True:
-            said = self._next(process, self.seconds * factor)
-            if said is None:
-                process.wait()
-                gone = self._end()
-                ended = tuple(lines[: i + 1])
-                if gone == -signal.SIGKILL:
-                    return [Finding("deaf", "takes long, and Ctrl-C does not end it", ended)]
-                gist = _gist(self._complaints.read_text(errors="replace"))
-                return [Finding("crash", f"ends the interpreter, status {gone}: {gist}", ended)]
-            if isinstance(said, dict):
-                return [Finding(k, what, tuple(lines[: i + 1])) for i, k, what in said["found"]]
-            i, factor = said
-
-    def _next(self, process: subprocess.Popen[bytes], limit: float) -> Any:
-        """What the process says next; None if it is gone, or was killed since it said nothing."""
-        assert process.stdout
-        begin, since = processor_time(process.pid), time.monotonic()
-        interrupted = False
-        while b"\n" not in self._heard:
-            if select.select([process.stdout], [], [], 0.05)[0]:
-                if not (said := os.read(process.stdout.fileno(), 1 << 20)):
-                    return None
-                self._heard += said
-            spent, waited = processor_time(process.pid) - begin, time.monotonic() - since
-            if spent > limit or waited > PATIENT * limit:
-                process.send_signal(signal.SIGKILL if interrupted else signal.SIGINT)
-                interrupted, limit = True, max(spent, limit) + GRACE
-        line, _, self._heard = self._heard.partition(b"\n")
-        return json.loads(line)
-
-
-def processor_time(process: int) -> float:
-    """Seconds that a process has computed; the wall clock where /proc does not tell."""
-    try:
-        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-    except OSError:
-        return time.monotonic()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        """The findings in a case."""
+        self._process = process = self._process or self._start()
+        i = 0
+        try:
+            self._pipe.send(lines)
+            while isinstance(said := self._pipe.recv(), int):
+                i = said
+        except (EOFError, OSError):
+            process.join()
+            self._process = None
+            complaints = Path(self._folder.name, "complaints").read_text(errors="replace")
+            kind, what = "deaf", "takes long, and Ctrl-C does not end it"
+            if "Timeout (" not in complaints:
+                kind, what = "crash", f"status {process.exitcode}: {_gist(complaints)}"
+            return [Finding(kind, what, tuple(lines[: i + 1]))]
+        return [Finding(kind, what, tuple(lines[: i + 1])) for i, kind, what in said]
 
 
 def _gist(complaints: str) -> str:
-    """The lines of a report of death that say most."""
+    """The lines of a report of death that name its cause, or its last lines."""
     lines = [line.strip() for line in complaints.splitlines() if line.strip()]
-    marks = ("ERROR: AddressSanitizer", "runtime error", "Fatal", "terminate", "what()", "#1 ",
-             "#2 ", "#3 ", "SUMMARY")  # fmt: skip
-    told = [line for line in lines if any(mark in line for mark in marks)]
-    return " | ".join(told[:8] or lines[-3:])[:1500]
+    causes = [line for line in lines if CAUSES.search(line)]
+    return " | ".join(causes[:8] or lines[-3:])[:1500]
