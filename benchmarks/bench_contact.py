@@ -3,9 +3,9 @@
 Each scene has about ten events. `simulate` is timed beside SciPy's solve_ivp (DOP853) with terminal
 events, started anew after each of them; both give the events, and theta, omega, x, z at the same
 1001 times. SciPy's right-hand sides and events are Python or compiled by numba; its flights are
-integrated like the rest, or are parabolas whose end brentq finds. Before anything is timed the
-motions are compared: other events than the package's make a gap in the table. Every case is run in
-each of many rounds; compare ratios of one run.
+parabolas whose end brentq finds. Before anything is timed the motions are compared: other events
+than the package's make a gap in the table. Every case is run in each of many rounds; compare ratios
+of one run.
 """
 
 import math
@@ -28,12 +28,11 @@ SCENES = {  # with their end times
 }
 TOLERANCES = (1e-10, 1e-6)  # atol is a hundredth
 SAMPLES = 1001  # what simulate gives
-MOST_EVENTS = 100  # of a motion that has gone astray
-FIRST_STEP = 1e-3  # [s] of flights: with no error to control solve_ivp steps over short hops
+MOST_EVENTS = 100  # more than any of the scenes has
 
 
 class Run(NamedTuple):
-    """What one call did."""
+    """The work of one call."""
 
     evaluations: int
     steps: int
@@ -43,7 +42,7 @@ Found = tuple[list[tuple[float, EventKind]], Any, Run]  # events; rows of theta,
 
 
 def laws(scene: Scene, compiled: Callable[..., Any]) -> SimpleNamespace:
-    """Rates and ends of arcs; y is theta, omega, x, then slip velocity, or z, x_dot, z_dot."""
+    """Rates and ends of rolling and sliding; y is theta, omega, x, then the slip velocity."""
     a2, b2, k2, mu = scene.a**2, scene.b**2, scene.gyration2, scene.friction
     along, down = (scene.gravity * part(scene.slope) for part in (math.sin, math.cos))
 
@@ -85,13 +84,10 @@ def laws(scene: Scene, compiled: Callable[..., Any]) -> SimpleNamespace:
     slips = compiled(lambda t, y: grip(float(y[0]), float(y[1]))[2])
     sticks = compiled(lambda t, y, side: side * y[3])
     leaves = compiled(lambda t, y, side: down + support(float(y[0]))[2] * y[1] * y[1])
-    fly = compiled(lambda t, y: np.array((y[1], 0.0, y[4], y[5], along, -down)))
-    hits = compiled(lambda t, y: y[3] - support(float(y[0]))[0])
     slide_ends = {EventKind.STICK: sticks, EventKind.LIFT_OFF: leaves, EventKind.JAM: jams}
-    for event in (slips, *slide_ends.values(), hits):
+    for event in (slips, *slide_ends.values()):
         event.terminal, event.direction = True, -1
     arcs = {Mode.ROLLING: (roll, {EventKind.SLIP: slips}), Mode.SLIDING: (slide, slide_ends)}
-    arcs[Mode.FLIGHT] = (fly, {EventKind.IMPACT: hits})
     return SimpleNamespace(support=support, grip=grip, arcs=arcs, along=along, down=down)
 
 
@@ -123,13 +119,13 @@ def collision(scene: Scene, h: float, dh: float, v: float, u: float) -> tuple[fl
 
 
 class SciPyMotion:
-    """A scene followed by SciPy arc after arc; in between it keeps time, mode and state."""
+    """A scene followed by SciPy, segment after segment."""
 
-    def __init__(self, scene: Scene, laws: Any, t_end: float, rtol: float, parabolas: bool) -> None:
+    def __init__(self, scene: Scene, laws: Any, t_end: float, rtol: float) -> None:
         how = {"method": "DOP853", "dense_output": True, "rtol": rtol, "atol": rtol * 1e-2}
         self.solve = partial(peer("scipy.integrate").solve_ivp, **how)
         self.root = partial(peer("scipy.optimize").brentq, xtol=1e-15, rtol=1e-15)
-        self.scene, self.laws, self.t_end, self.parabolas = scene, laws, t_end, parabolas
+        self.scene, self.laws, self.t_end = scene, laws, t_end
         self.times = np.linspace(0, t_end, SAMPLES)
         self.height = lambda theta: np.hypot(scene.a * np.sin(theta), scene.b * np.cos(theta))
 
@@ -161,9 +157,7 @@ class SciPyMotion:
         return EventKind.REVERSE if self.mode is Mode.SLIDING else kind
 
     def fly(self) -> EventKind | None:
-        step = min(FIRST_STEP, self.t_end - self.t)
-        kind, y = self.parabola() if self.parabolas else self.integrate(self.state, first_step=step)
-        theta, omega, x, _, x_dot, z_dot = y
+        kind, (theta, omega, x, _, x_dot, z_dot) = self.parabola()
         h, dh, _ = self.laws.support(theta)
         v, u = x_dot - h * omega, z_dot - dh * omega
         if kind:
@@ -189,7 +183,7 @@ class SciPyMotion:
         self.side = math.copysign(1, self.v or -friction)
 
     def integrate(self, y: Any, **how: Any) -> tuple[EventKind | None, list[float]]:
-        """An arc by solve_ivp: what ended it, and its last y."""
+        """A segment by solve_ivp: the event at its end, and its last y."""
         rates, ends = self.laws.arcs[self.mode]
         arc = self.solve(rates, (self.t, self.t_end), y, events=list(ends.values()), **how)
         if not arc.success:
@@ -200,7 +194,7 @@ class SciPyMotion:
         return kind, arc.y[:, -1].tolist()
 
     def parabola(self) -> tuple[EventKind | None, list[float]]:
-        """A flight in closed form: at ever rarer looks the gap is positive, then negative."""
+        """A flight in closed form: the gap is positive at ever rarer times, then negative."""
         (theta, omega, x, z, x_dot, z_dot), begin = self.state, self.t
         along, down, height = self.laws.along, self.laws.down, self.laws.support
 
@@ -208,18 +202,18 @@ class SciPyMotion:
             path = x + s * (x_dot + 0.5 * along * s), z + s * (z_dot - 0.5 * down * s)
             return [theta + omega * s, omega + 0 * s, *path, x_dot + along * s, z_dot - down * s]
 
-        fall = z - 0.99 * min(self.scene.a, self.scene.b)  # by which it has touched
+        fall = z - 0.99 * min(self.scene.a, self.scene.b)  # it touches before
         sure = (z_dot + math.sqrt(z_dot**2 + 2 * down * fall)) / down
-        looks = np.geomspace(1e-4 * sure, sure, 200)
-        y = at(looks)
+        times = np.geomspace(1e-4 * sure, sure, 200)
+        y = at(times)
         i = int(np.argmax(y[3] < self.height(y[0])))
-        lasts = self.root(lambda s: at(s)[3] - height(at(s)[0])[0], looks[i - 1], looks[i])
+        lasts = self.root(lambda s: at(s)[3] - height(at(s)[0])[0], times[i - 1], times[i])
         kind = EventKind.IMPACT if begin + lasts <= self.t_end else None
         self.record(begin + lasts, kind, lambda times: at(times - begin))
         return kind, at(lasts)
 
     def record(self, until: float, kind: EventKind | None, solution: Callable[..., Any]) -> None:
-        """Sample an arc; what holds after an event belongs to the next one."""
+        """Sample a segment; the state after an event belongs to the next one."""
         part = slice(*np.searchsorted(self.times, (self.t, until if kind else math.inf)))
         if part.start < part.stop:
             y = solution(self.times[part])
@@ -236,18 +230,17 @@ def own_motion(scene: Scene, t: Any) -> Found:
     return [(event.t, event.kind) for event in motion.events], samples, run
 
 
-def peers(scene: Scene, t_end: float, flies: bool) -> dict[str, SciPyMotion]:
-    """SciPy's ways to do it; what numba compiles is compiled by the first call."""
+def peers(scene: Scene, t_end: float) -> dict[str, SciPyMotion]:
+    """SciPy with each way to write the laws; numba compiles with the first call."""
     if peer("scipy.integrate") is None:
         return {}
     written = {"Python": laws(scene, lambda f: f)}
     if numba := peer("numba"):
         written["numba"] = laws(scene, numba.njit)
-    found = {}
-    for parabolas, rtol, name in product((False, True)[: 1 + flies], TOLERANCES, written):
-        title = f"SciPy, {name}, rtol {rtol:.0e}" + ", parabolas" * parabolas
-        found[title] = SciPyMotion(scene, written[name], t_end, rtol, parabolas)
-    return found
+    return {
+        f"SciPy, {name}, rtol {rtol:.0e}": SciPyMotion(scene, written[name], t_end, rtol)
+        for rtol, name in product(TOLERANCES, written)
+    }
 
 
 def compared(truth: Found, other: Found) -> str:
@@ -268,8 +261,7 @@ def compare(scene: Scene, t_end: float, rounds: int) -> None:
         "simulate, 1 sample": lambda: own_motion(scene, [t_end])[2],
         "certify": lambda: certify(scene) and Run(0, 0),
     }
-    flies = any(kind is EventKind.IMPACT for _, kind in truth[0])
-    for name, motion in peers(scene, t_end, flies).items():
+    for name, motion in peers(scene, t_end).items():
         try:
             notes[name] = compared(truth, motion())
             cases[name] = lambda motion=motion: motion()[2]
