@@ -413,12 +413,7 @@ def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
 
 
 def reference(
-    case: Case,
-    times: list[float],
-    end: float,
-    long_times: list[float],
-    check: bool,
-    level: int = 0,
+    case: Case, times: list[float], end: float, long_times: list[float], check: bool, level: int = 0
 ) -> Reference:
     """Events, samples and their units; by a finer road where this one is not fine enough."""
     road, finer = ROADS[level : level + 2]

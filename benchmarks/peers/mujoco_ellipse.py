@@ -21,10 +21,7 @@ from rolling_ellipse import Mode, Scene, flow, thresholds
 
 CONTACTS = {
     "default": ("", ""),
-    "tuned": (
-        'cone="elliptic"',
-        'solref="{constant!r} 1" solimp="0.9999 0.9999 0.001 0.5 2"',
-    ),
+    "tuned": ('cone="elliptic"', 'solref="{constant!r} 1" solimp="0.9999 0.9999 0.001 0.5 2"'),
 }
 BODY = """
 <mujoco>

@@ -12,10 +12,7 @@ AT_ONCE = {
     Mode.FLIGHT: Outcome.LOSES_CONTACT,
     Mode.REST: Outcome.RESTS,
 }
-ENDS_ROLLING = {
-    EventKind.SLIP: Outcome.SLIPS,
-    EventKind.LIFT_OFF: Outcome.LOSES_CONTACT,
-}
+ENDS_ROLLING = {EventKind.SLIP: Outcome.SLIPS, EventKind.LIFT_OFF: Outcome.LOSES_CONTACT}
 
 
 def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:

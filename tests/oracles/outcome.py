@@ -44,13 +44,7 @@ class Sample(NamedTuple):
         """Of mass 1, so that the moment of inertia is gyration2 itself."""
         a, b, omega, theta, friction, gravity, inertia = (float(field[row]) for field in self)
         return Scene(
-            a,
-            b,
-            omega=omega,
-            theta=theta,
-            friction=friction,
-            gravity=gravity,
-            inertia=inertia,
+            a, b, omega=omega, theta=theta, friction=friction, gravity=gravity, inertia=inertia
         )
 
 
@@ -86,10 +80,6 @@ def random_sample(count: int, seed: int) -> Sample:
     needed = oracles.rolling.extremes(one._replace(lift=still.lift + kinetic)).needed.astype(float)
     near = needed * (1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-5, -1, count))
     anything = 10 ** rng.uniform(-2, 0.7, count)
-    choices = [
-        rng.choice(FRICTIONS, count),
-        anything,
-        np.where(np.isfinite(needed), near, np.inf),
-    ]
+    choices = [rng.choice(FRICTIONS, count), anything, np.where(np.isfinite(needed), near, np.inf)]
     friction = np.choose(rng.integers(3, size=count), choices)
     return Sample(a, b, omega.astype(float), theta, friction, gravity, gyration2)

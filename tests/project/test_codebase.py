@@ -333,9 +333,7 @@ def test_nothing_is_fused_unless_written(fused: Callable[..., list[str]], tmp_pa
     assert len(fused(written)) == 1
 
 
-def test_nothing_is_fused_in_vectors_where_they_are_wanted(
-    fused: Callable[..., list[str]],
-) -> None:
+def test_nothing_is_fused_in_vectors_where_they_are_wanted(fused: Callable[..., list[str]]) -> None:
     """Packed ones would be; of single numbers are those that are written."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     found = re.search(

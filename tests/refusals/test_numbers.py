@@ -87,11 +87,7 @@ BEYOND = [
     10**400, -(10**400), 10**5000, Decimal("1e400"), Fraction(10**400), np.longdouble("1e400"),
     np.array(np.longdouble("-1e400")),
 ]  # fmt: skip
-MASKED = [
-    np.ma.masked,
-    np.ma.array(2.0, mask=True),
-    np.ma.array([0.25, 0.5], mask=[False, True]),
-]
+MASKED = [np.ma.masked, np.ma.array(2.0, mask=True), np.ma.array([0.25, 0.5], mask=[False, True])]
 
 
 def names(doors: list[tuple[str, Door]]) -> Any:

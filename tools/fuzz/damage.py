@@ -53,11 +53,7 @@ def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
     if any(place in state for state in _dtype_states(data)):
         return False
     data[place] ^= mask
-    with (
-        suppress(Exception),
-        np.errstate(all="ignore"),
-        warnings.catch_warnings(),
-    ):
+    with suppress(Exception), np.errstate(all="ignore"), warnings.catch_warnings():
         # of NumPy, for its own part of the pickle
         warnings.simplefilter("ignore", np.exceptions.VisibleDeprecationWarning)
         found = pickle.loads(bytes(data))
