@@ -1,15 +1,13 @@
 """Write src/integrator/collocation.hpp: Gauss and Radau IIA methods, rounded from 40 digits.
 
 Gauss with s stages has the nodes c of P_s(2c - 1), Radau IIA those of P_s - P_(s-1); the matrix a
-and the weights b are integrals of the Lagrange polynomials of the nodes (Hairer, Norsett, Wanner,
-Solving ODEs I, II.7).
+and the weights b integrate polynomials of degree s - 1 exactly (Hairer, Norsett, Wanner, Solving
+ODEs I, II.7).
 
 Run:  python tools/make_collocation.py > src/integrator/collocation.hpp    (needs mpmath)
 """
 
-from collections.abc import Callable
-
-from mpmath import eig, inverse, matrix, mp, mpf, polyroots, polyval, taylor
+from mpmath import eig, inverse, lu_solve, matrix, mp, mpf, polyroots, taylor
 
 DIGITS = 40
 STAGES = (2, 3, 4)
@@ -39,29 +37,25 @@ RADAU = """\
 struct RadauCoefficients {"""
 
 
-def lagrange_integral(c: list[mpf], j: int, end: mpf) -> mpf:
-    """Return the integral of the j-th Lagrange polynomial of the nodes from 0 to end."""
-    poly = [mpf(1)]
-    for k, node in enumerate(c):
-        if k != j:  # times (x - node) / (c_j - node)
-            scale = c[j] - node
-            raised = [*poly, mpf(0)]
-            poly = [
-                (up - node * down) / scale for up, down in zip(raised, [mpf(0), *poly], strict=True)
-            ]
-    powers = range(len(poly), 0, -1)
-    primitive = [p / n for p, n in zip(poly, powers, strict=True)]
-    return polyval([*primitive, mpf(0)], end)
+def weights(c: list[mpf], end: mpf) -> matrix:
+    """Weights w of the nodes: sum of w_j p(c_j) is the integral of p from 0 to end."""
+    powers = range(len(c))
+    moments = matrix([end ** (k + 1) / (k + 1) for k in powers])
+    return lu_solve(matrix([[node**k for node in c] for k in powers]), moments)
 
 
-def nodes(polynomial: Callable[[mpf], mpf], degree: int) -> list[mpf]:
-    """Return the roots of a polynomial in c on [0, 1], ascending."""
+def nodes(degree: int, less: int = 0) -> list[mpf]:
+    """Roots c of P_s(2c - 1) - less P_(s-1)(2c - 1), ascending."""
+
+    def polynomial(c: mpf) -> mpf:
+        return mp.legendre(degree, 2 * c - 1) - less * mp.legendre(degree - 1, 2 * c - 1)
+
     coefficients = taylor(polynomial, 0, degree)[::-1]
     return sorted(r.real for r in polyroots(coefficients, maxsteps=200, extraprec=200))
 
 
 def butcher_matrix(c: list[mpf]) -> matrix:
-    return matrix([[lagrange_integral(c, j, end) for j in range(len(c))] for end in c])
+    return matrix([list(weights(c, end)) for end in c])
 
 
 def symplectic(mu: matrix) -> list[list[float]]:
@@ -92,10 +86,10 @@ def print_matrix(name: str, rows: list[list[mpf]]) -> None:
 
 
 def print_gauss(s: int) -> None:
-    c = nodes(lambda x: mp.legendre(s, 2 * x - 1), s)
-    b = [lagrange_integral(c, j, mpf(1)) for j in range(s)]
+    c = nodes(s)
+    b = list(weights(c, mpf(1)))
     mu = butcher_matrix(c) * mp.diag([1 / w for w in b])
-    nu = [[(lagrange_integral(c, j, 1 + end) - b[j]) / b[j] for j in range(s)] for end in c]
+    nu = [[w / own - 1 for w, own in zip(weights(c, 1 + end), b, strict=True)] for end in c]
     print(f"\ntemplate <>\nstruct GaussCoefficients<{s}> {{")
     print_vector("c", c)
     print_vector("b", b)
@@ -106,7 +100,7 @@ def print_gauss(s: int) -> None:
 
 def print_radau() -> None:
     s = 3
-    c = nodes(lambda x: mp.legendre(s, 2 * x - 1) - mp.legendre(s - 1, 2 * x - 1), s)
+    c = nodes(s, 1)
     a = butcher_matrix(c)
     values, vectors = eig(inverse(a))
     real = min(range(s), key=lambda k: abs(values[k].imag))
@@ -118,9 +112,9 @@ def print_radau() -> None:
     print(RADAU)
     print_vector("c", c)
     print_matrix("a", a.tolist())
-    print(f"    static constexpr double gamma = {float(values[real].real)!r};")
-    print(f"    static constexpr double alpha = {float(values[lower].real)!r};")
-    print(f"    static constexpr double beta = {float(-values[lower].imag)!r};")
+    for name, value in {"gamma": values[real].real, "alpha": values[lower].real,
+                        "beta": -values[lower].imag}.items():  # fmt: skip
+        print(f"    static constexpr double {name} = {float(value)!r};")
     print_matrix("transform", transform.tolist())
     print_matrix("inverse_transform", inverse(transform).tolist())
     print("};")
