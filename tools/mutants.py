@@ -5,12 +5,12 @@
     python tools/mutants.py core --only src/contact/slide.cpp:52:3 --folder /tmp/mutants
 
 copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
-tolerances, and/or, min/max) from lines all over the sources, and for each builds what has changed
-and runs the tests nearest to it, the programs of tests/core, and some tests of every folder, up to
-the first that fails. What is left alive is listed, with --thorough after the whole suite has seen
-it. A mutant that does not compile counts for nothing; tests that notice one have to pass without
-it, which is looked at last. Results are kept in FOLDER/SIDE.json, with which the same command goes
-on where it was stopped. Needs the requirements of the build and of the tests.
+tolerances, and/or, min/max) from lines all over the sources, and for each builds the copy and runs
+the tests nearest to it, the programs of tests/core, and some tests of every folder, up to the first
+that fails. With --thorough the whole suite comes last. Mutants that nothing notices are listed; one
+that does not compile does not count. At the end the tests must pass without a mutant. Results are
+kept in FOLDER/SIDE.json; the same command goes on where it was stopped. Needs the requirements of
+the build and of the tests.
 """
 
 import argparse
@@ -29,7 +29,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 
-# What is changed into what. A change of what is written alone is none: no strings, no comments.
+# Patterns and their replacements. Strings and comments are left alone.
 CHANGES = {
     "sign": [(r" \+ ", " - "), (r" - ", " + "), (r"([=(,] ?)-(?=[\w(])", r"\1"),
              (r" \+= ", " -= "), (r" -= ", " += ")],
@@ -47,8 +47,8 @@ CHANGES = {
     "tolerance": [(r"\b(\d+)e-(\d+)\b", r"\1e-3"), (r"\b(\d+) \* epsilon\b", r"1000000 * epsilon")],
 }  # fmt: skip
 
-# The tests nearest to a folder of the sources, the innermost counts; others have the folder of
-# their own name.
+# Folders of tests for a folder of sources, of which the innermost counts. Others have tests in a
+# folder of the same name.
 NEAREST = {
     "bindings": ["refusals", "trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
@@ -68,42 +68,28 @@ NEAREST = {
     "python": ["trajectory", "scene", "outcome", "refusals", "border", "batches"],
 }
 
-# Of tests/core, those that need seconds.
+# Programs of tests/core that take seconds.
 PROGRAMS = ("core_test", "threads_test", "lanes_test", "golden")
 
-# An editable installation would be found before the copy, and no mutant ever be noticed.
+# An editable installation would be found before the copy.
 NOT_EDITABLE = """\
 import sys
 sys.meta_path = [finder for finder in sys.meta_path if "ScikitBuild" not in type(finder).__name__]
 """
 
-# Written by programs, or nothing but names.
+# Files written by programs, or of names only.
 LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "details.cpp", "build.cpp", "_core.pyi")
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A changed line.
+    """A changed line."""
 
-    Attributes
-    ----------
-    path : str
-        Of the source, in the project.
-    line : int
-        From 1 on.
-    number : int
-        Of this change among those of the line.
-    kind : str
-        Key of CHANGES.
-    was, now : str
-        The line, without what it is indented by.
-    """
-
-    path: str
-    line: int
-    number: int
-    kind: str
-    was: str
+    path: str  # of the source, in the project
+    line: int  # from 1 on
+    number: int  # of this change among those of the line
+    kind: str  # key of CHANGES
+    was: str  # the line without its indent
     now: str
 
     @property
@@ -137,7 +123,7 @@ def mutants_of(path: Path) -> Iterator[Mutant]:
 
 
 def drawn(side: str, count: int, seed: int) -> list[Mutant]:
-    """As many of each file as the root of what it has, in a mixed order."""
+    """Mutants of all files in a mixed order, as many of each as the root of its total."""
     folder, suffixes = ("src", (".cpp", ".hpp")) if side == "core" else ("python", (".py",))
     random_ = random.Random(seed)
     order = []
@@ -155,8 +141,8 @@ class Workshop:
     """A copy of the project in which one mutant after the other is built and tested."""
 
     def __init__(self, folder: Path, processes: int):
-        self.took: dict[tuple[str, ...], float] = {}  # seconds, of tests that passed
-        self.printed: dict[str, bytes] = {}  # by PROGRAMS, from the sources as they are
+        self.took: dict[tuple[str, ...], float] = {}  # seconds of tests that passed
+        self.printed: dict[str, bytes] = {}  # output of PROGRAMS from the unchanged sources
         self.spread = ["-n", str(processes), "--dist", "loadfile"] if processes > 1 else []
         self.copy = folder / "copy"
         self.objects = folder / "objects"
@@ -201,7 +187,7 @@ class Workshop:
             sys.exit(f"another installation is found first: {done.stdout}{done.stderr}")
 
     def failing(self, *arguments: str) -> str:
-        """Which test fails first, if any; one that hangs, for five times as long as usual, does."""
+        """The first test that fails, if any; taking five times as long as usual is a failure."""
         usual = 60.0 if arguments else 1500.0
         seconds = 60 + 5 * self.took.get(arguments, usual)
         begin = time.monotonic()
@@ -217,13 +203,13 @@ class Workshop:
         if done.returncode == 4:
             sys.exit(done.stderr)
         if done.returncode not in (0, 5):  # 5: no such tests there
-            told = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
-            return told[1] if told else f"exit code {done.returncode}"
+            named = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
+            return named[1] if named else f"exit code {done.returncode}"
         self.took[arguments] = time.monotonic() - begin
         return ""
 
     def failing_program(self) -> str:
-        """Which of PROGRAMS fails, or prints other bits than in the first call."""
+        """The first of PROGRAMS that fails, or prints other bits than in the first call."""
         for name in PROGRAMS:
             if not (program := self.objects / name).exists():
                 continue
@@ -236,7 +222,7 @@ class Workshop:
         return ""
 
     def judged(self, mutant: Mutant, thorough: bool) -> tuple[str, str]:
-        """What noticed it: "build", a stage of the tests or nothing ("alive"); and which test."""
+        """The stage that noticed it, "build" or "alive"; and the test."""
         path = self.copy / mutant.path
         whole = path.read_text(encoding="utf-8")
         lines = whole.splitlines(keepends=True)
@@ -257,7 +243,7 @@ class Workshop:
 
 
 def renew(source: str, target: str) -> None:
-    """Copy what is another file; a mutant that was left behind is built anew then."""
+    """Copy a file that differs; so a mutant that was left behind is undone and built anew."""
     if not (os.path.exists(target) and filecmp.cmp(source, target, shallow=False)):
         shutil.copyfile(source, target)
 
@@ -273,7 +259,7 @@ def nearest(path: str) -> list[str]:
 
 
 def stages(path: str, thorough: bool) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """What a mutant meets, by name, with what pytest is asked for."""
+    """Names of the stages of a mutant, with the arguments of pytest."""
     for folder in nearest(path):
         yield folder, (f"tests/{folder}", "-m", "quick")
     if path.startswith("src"):
@@ -293,9 +279,9 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, required=True)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", help="PATH:LINE:NUMBER, the name of one of them")
+    parser.add_argument("--only", help="PATH:LINE:NUMBER, the name of a mutant")
     parser.add_argument("--thorough", action="store_true")
-    parser.add_argument("--processes", type=int, default=1, help="that share the tests")
+    parser.add_argument("--processes", type=int, default=1, help="processes that share the tests")
     parser.add_argument("--list", action="store_true", help="draw and print, no more")
     options = parser.parse_args()
     if options.only:
