@@ -76,7 +76,7 @@ def main() -> int:
         worst = max(worst, count / before)
         print(f"{name:40} {count:12d} {before:12d} {count / before:6.3f}")
     if record["made by"] != by:
-        print(f"not judged: this is {by}, the record {record['built by']}")
+        print(f"not judged: this is {by}, the record {record['made by']}")
         return 0
     return 1 if worst > 1 + SLACK else 0
 

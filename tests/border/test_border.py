@@ -1,4 +1,4 @@
-"""The border to the C++ core: sizes of arrays, times, threads and Ctrl-C; names and help."""
+"""The border to the C++ core: arrays, threads and Ctrl-C; names and help."""
 
 import inspect
 import re
@@ -17,20 +17,16 @@ from rolling_ellipse import Scene, _core, flow, scenes, simulate, thresholds
 from rolling_ellipse._ask import settings
 from rolling_ellipse._ask.records import cached_property
 
-SCENE = scenes.rolling.core
-TWO, THREE, FIVES = np.ones(2), np.ones(3), np.ones((2, 5))
 TIMES = simulate(scenes.rolling, 1.0)._solution
 SLIDES = simulate(scenes.slip, 1.0)._solution
-COORDINATES = simulate(scenes.rolling, 0.1, model="multipliers")
-SETTINGS = COORDINATES.settings.core
 
 
-# ------------------------------------------------------------------------- sizes of arrays
+# ------------------------------------------------------------------------- arrays
 
 
 def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
-    """A `const double*` to them would be undefined behaviour, wherever the core reads them: all its
-    arguments are of one type, which is seen here to copy."""
+    """A `const double*` to them would be undefined behaviour. All arrays come in through one type,
+    which copies them."""
     aligned = np.linspace(0.0, 1.0, 100_001)
     there = np.frombuffer(b"-" + aligned.tobytes(), float, aligned.size, offset=1)
     copied = []
@@ -46,7 +42,7 @@ def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
 
 
 def test_threads_that_cannot_start_are_not_missed() -> None:
-    """With memory for a few stacks only: the same bits as by one thread, and no end of Python."""
+    """With memory for a few stacks only, the answer has the bits of one thread."""
     code = """
         import resource
         import numpy as np
@@ -106,7 +102,7 @@ LOOPS: dict[str, Callable[[], Any]] = {
 
 @pytest.mark.parametrize("loop", LOOPS.values(), ids=LOOPS.keys())
 def test_ctrl_c_ends_every_long_loop(loop: Callable[[], Any]) -> None:
-    """Each would go on for many seconds more than the quarter after which the signal comes."""
+    """The signal comes after a quarter of a second; each loop would take many seconds more."""
     usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.25)
@@ -159,7 +155,7 @@ def test_times_of_other_kinds_are(t: Any) -> None:
 
 
 class Dial:
-    """A number that may be turned."""
+    """A number whose value changes."""
 
     def __init__(self, value: float) -> None:
         self.value = value
@@ -169,7 +165,7 @@ class Dial:
 
 
 def test_settings_that_were_seen_before_are_checked_as_at_first() -> None:
-    """Equal numbers of another type are not the same, nor is an object whose value has changed."""
+    """An equal number of another type is checked anew, and so is an object that has changed."""
     scene, dial = rl.scenes.rolling, Dial(1e-4)
     how: dict[str, Any] = {"model": "rolling", "method": "dopri5"}
     assert rl.simulate(scene, [1.0], max_steps=500, **how).settings.max_steps == 500

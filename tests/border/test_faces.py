@@ -1,4 +1,4 @@
-"""What objects print as: names for codes, tables with units, HTML without colours of its own."""
+"""Printed objects: names for codes, tables with units, HTML without colours of its own."""
 
 import copy
 import dataclasses
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from oracles.pickles import fitted
 from rolling_ellipse._motion.events import Events
 
 SCENES = {name: getattr(rl.scenes, name) for name in rl.scenes.__all__}
@@ -18,12 +19,6 @@ WEIRD = rl.Scene(
     3e-20, 2e-17, mass=1e30, gravity=1e-30, inertia=1e-5, slope=-1.5, friction=0.0, theta=1e50,
     omega=-0.0, x=-1e50,
 )  # fmt: skip
-
-
-def fitted() -> rl.impacts.FittedImpacts:
-    before = [[0.3, 0.5], [1.0, 0.0], [-2.0, -1.0], [0.0, 0.5]]
-    after = rl.impacts.collide(*before, a=2.0, b=1.0, restitution=0.5, friction=0.1)
-    return rl.impacts.fit(before, after, a=2.0, b=1.0)
 
 
 def sliding() -> Events:
@@ -46,7 +41,7 @@ each_listed = pytest.mark.parametrize("make", LISTED.values(), ids=LISTED)
 
 
 class Reader(HTMLParser):
-    """The cells of HTML whose elements are closed in order; no colours are set."""
+    """The cells of HTML; its elements must be closed in order and set no colours."""
 
     def __init__(self, html: str) -> None:
         super().__init__()
@@ -105,7 +100,7 @@ def test_a_repr_is_one_line(make: Callable[[], Any]) -> None:
 @each_listed
 def test_values_are_equal_by_what_they_say(make: Callable[[], Any]) -> None:
     one, other = make(), make()
-    _ = one._repr_html_()  # what it keeps does not matter
+    _ = one._repr_html_()  # a cached value does not count
     for same in (other, copy.deepcopy(one), pickle.loads(pickle.dumps(one))):
         assert one == same and hash(one) == hash(same)
     for thing in (None, repr(one), rl.thresholds(3.0, 1.0), rl.Scene(1.0, 1.0)):
@@ -240,7 +235,7 @@ def test_events_as_a_dataframe() -> None:
 
 
 def test_infinite_friction_is_not_said_to_fail() -> None:
-    """The slip before a lift-off is the limit of infinite friction."""
+    """Its slip before a lift-off has a reason of its own."""
     events = rl.simulate(rl.Scene(2.0, 1.0, omega=5.2), 1.0).events
     kinds = [each.kind for each in events]
     assert kinds[:2] == [rl.EventKind.SLIP, rl.EventKind.LIFT_OFF]
@@ -262,7 +257,7 @@ MOTIONS = {
 
 
 def drawn(motion: rl.Trajectory) -> tuple[list[float], list[tuple[float, ...]], list[float]]:
-    """Width and height, (x, y, turn in degrees) of the bodies, and their half-axes."""
+    """Width and height; x, y and turn [deg] of the bodies; their semi-axes."""
     html = motion._repr_html_()
     Reader(html)
     view = re.search(r'viewBox="0 0 (\S+) (\S+)"', html)
@@ -289,7 +284,7 @@ def test_a_motion_shows_its_bodies(scene: rl.Scene) -> None:
 
 
 def test_the_bodies_are_where_the_motion_is() -> None:
-    """To the pixels' first decimal, over a long axis of `scale` pixels; clockwise is clockwise."""
+    """Pixels are written to the first decimal; clockwise in the picture is clockwise."""
     motion = rl.simulate(rl.scenes.report, 3.0)
     _, places, (rx, ry) = drawn(motion)
     assert rx == pytest.approx(2 * ry, rel=0.01)  # a = 2 b
@@ -303,7 +298,7 @@ def test_the_bodies_are_where_the_motion_is() -> None:
 
 
 def test_downhill_goes_down() -> None:
-    """The ground, the first line, is some 400 pixels long: its ends are known to 0.05 of them."""
+    """The first line is the ground: some 400 pixels long, its ends written to 0.05 pixels."""
     html = rl.simulate(rl.scenes.slope, 3.0)._repr_html_()
     ground = re.search(r'points="(\S+) (\S+) (\S+) (\S+)"', html)
     assert ground
@@ -318,7 +313,7 @@ def test_few_samples_are_shown_as_well(t: Any) -> None:
 
 
 def test_a_motion_too_far_away_to_be_drawn_has_no_picture() -> None:
-    """Bounces down a steep slope grow until doubles lie farther apart than the body is long."""
+    """Bounces down a steep slope grow until neighbouring doubles are farther apart than a body."""
     scene = rl.Scene(1.0, 1e-3, theta=3.54, omega=-1e-3, slope=-1.5, restitution=1.0)
     motion = rl.simulate(scene, np.linspace(1e60, 2e60, 15))
     assert "<svg" not in motion._repr_html_() and "COMPLETED" in motion._repr_html_()

@@ -1,4 +1,4 @@
-"""Whatever the package hands out goes through pickles, copies and pools of processes unchanged."""
+"""Objects of the package survive pickles, copies and pools of processes unchanged."""
 
 import copy
 import dataclasses
@@ -19,7 +19,7 @@ import pytest
 import rolling_ellipse as rl
 from matplotlib.figure import Figure
 from oracles.paths import TESTS
-from oracles.pickles import ROADS, core_objects, require_same
+from oracles.pickles import ROADS, core_objects, fitted, require_same
 from oracles.trajectory import MOTIONS, TIMES
 from rolling_ellipse import Trajectory, _core, simulate
 from rolling_ellipse._ask.settings import Settings
@@ -27,14 +27,9 @@ from rolling_ellipse._motion.samples import ContactSamples
 
 
 def printed() -> rl.report.PrintedMotion:
-    found = rl.report.simulate(
-        *rl.kinematics(0.3, 2.0, a=2.0, b=1.0),
-        TIMES / 4,
-        a=2.0,
-        b=1.0,
-        equations="printed",
-        consistent="project",
-    )
+    axes: dict[str, Any] = {"a": 2.0, "b": 1.0}
+    how: dict[str, Any] = {"equations": "printed", "consistent": "project"}
+    found = rl.report.simulate(*rl.kinematics(0.3, 2.0, **axes), TIMES / 4, **axes, **how)
     assert isinstance(found, rl.report.PrintedMotion)
     return found
 
@@ -43,12 +38,6 @@ def integration_error() -> rl.IntegrationError:
     with pytest.raises(rl.IntegrationError) as caught:
         simulate(rl.scenes.bounce, TIMES, max_events=1)
     return caught.value
-
-
-def fitted() -> rl.impacts.FittedImpacts:
-    before = [[0.3, 0.5], [1.0, 0.0], [-2.0, -1.0], [0.0, 0.5]]
-    after = rl.impacts.collide(*before, a=2.0, b=1.0, restitution=0.5, friction=0.1)
-    return rl.impacts.fit(before, after, a=2.0, b=1.0)
 
 
 @cache
@@ -126,7 +115,7 @@ def test_it_comes_back_as_it_went(make: Callable[[], Any], road: Callable[[Any],
 @each_road
 @pytest.mark.parametrize("make", MOTIONS.values(), ids=MOTIONS)
 def test_a_motion_goes_on(make: Callable[[], Trajectory], road: Callable[[Any], Any]) -> None:
-    """All that follows from it, the same at other times, and nothing that can be written to."""
+    """Computed properties, other times and later scenes are the same; arrays are read-only."""
     before = make()
     energy, others = before.energy, np.linspace(0.0, before.t_end, 17)[::-1]
     after = road(before)
@@ -154,7 +143,7 @@ def test_pickles_hold_no_more_than_needed() -> None:
     for name in ("q", "energy", "r_ddot", "contact_x", "events"):
         getattr(motion, name)
     assert len(pickle.dumps(motion)) == size < 9 * 8 * TIMES.size + 4000
-    assert copy.copy(motion).q is motion.q  # but what is shared is not computed again
+    assert copy.copy(motion).q is motion.q  # a shallow copy computes nothing again
     assert copy.copy(motion)._solution is motion._solution
 
 
@@ -180,12 +169,8 @@ def test_pools_return_motions(how: str, tmp_path: Path) -> None:
     program, path = tmp_path / "pools.py", tmp_path / "found"
     program.write_text(POOLS)
     jobs = [(rl.scenes.report, TIMES), (rl.scenes.rocking, 1.0), (rl.scenes.bounce, TIMES)]
-    subprocess.run(
-        [sys.executable, program, how],
-        input=pickle.dumps((jobs, os.fspath(path))),
-        timeout=120,
-        check=True,
-    )
+    given = pickle.dumps((jobs, os.fspath(path)))
+    subprocess.run([sys.executable, program, how], input=given, timeout=120, check=True)
     expected = [*(simulate(*job) for job in jobs), MOTIONS["stopped"]()]
     found = pickle.loads(path.read_bytes())
     require_same([motion.sol(0.01) for motion in expected], [motion.sol(0.01) for motion in found])
@@ -246,7 +231,7 @@ for thing in core_objects().values():
 
 
 def test_the_core_refuses() -> None:
-    """In a process of its own, which what is not refused may end."""
+    """In a process of its own, which an object that is pickled may end."""
     command = [sys.executable, "-c", CORE, os.fspath(TESTS)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""The roads out of a process and back, what is sent along them, and what it is to be the same."""
+"""Ways to pickle and copy, objects for them, and the comparison of the results."""
 
 import copy
 import dataclasses
@@ -23,7 +23,7 @@ ROADS: dict[str, Callable[[Any], Any]] = {
 
 
 def require_same(one: Any, other: Any, where: str = "it") -> None:
-    """The same type and bits all the way down, and arrays as writable as they were."""
+    """Require the same types and bits all the way down, and arrays with the same flag."""
     assert type(one) is type(other), where
     if isinstance(one, np.ndarray):
         assert one.dtype == other.dtype and one.shape == other.shape, where
@@ -48,6 +48,12 @@ def require_same(one: Any, other: Any, where: str = "it") -> None:
         require_same(one(), other(), where)
     else:
         assert one == other or (one != one and other != other), where
+
+
+def fitted() -> rl.impacts.FittedImpacts:
+    before = [[0.3, 0.5], [1.0, 0.0], [-2.0, -1.0], [0.0, 0.5]]
+    after = rl.impacts.collide(*before, a=2.0, b=1.0, restitution=0.5, friction=0.1)
+    return rl.impacts.fit(before, after, a=2.0, b=1.0)
 
 
 def core_objects() -> dict[str, Any]:

@@ -1,9 +1,9 @@
-"""What is refused: every wrong question to the package, in one table a room.
+"""Refusals: every wrong question to the package, in one table a room.
 
 **The next refusal goes into the table of its room**: a row is the name of the argument with which
 the message has to begin, and the call; `wrong` makes rows of one call with many wrong values. Where
-no argument is wrong (a package is missing), the kind of the exception stands in place of the name.
-`test_messages.py` makes the calls, looks at how the messages are built, and compares the lines that
+no argument is wrong (a package is missing), the row has the class of the exception instead.
+`test_messages.py` makes the calls, checks the grammar of the messages, and compares the lines that
 raise with the sources; `test_numbers.py` has the rules that all numbers share.
 """
 
@@ -21,7 +21,7 @@ Row = tuple[str | type[Exception], Callable[[Path], Any]]
 INF, NAN = math.inf, math.nan
 NOT_FINITE = [INF, -INF, NAN]
 NOT_POSITIVE = [0.0, -0.0, -1.0, *NOT_FINITE]
-#: No argument takes any of these; those that take a number, or an empty list, leave it out.
+#: Wrong values for every argument; `but` leaves out those that an argument takes.
 ANYTHING: list[Any] = [
     "a", "", b"a", 42, 1.5, -1, NAN, INF, 10**400, 2j, [], [1, 2], {}, object(), len, np.array([]),
     np.array([1.0, 2.0]), np.array("x"), np.array([None, 1.0]), np.ma.masked, Figure,

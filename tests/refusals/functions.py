@@ -15,6 +15,7 @@ ROLLING = Scene(2.0, 1.0, omega=1.0)
 AIR = Scene(2.0, 1.0, z=3.0)
 AT_REST = Scene(2.0, 1.0)
 Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
+WITH_WRONG = [[0.0, 1.0, value, 0.0, 1.0] for value in NOT_FINITE]
 AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
 FLOW: dict[str, Any] = {"t": 1.0, **AXES, "theta": 0.2, "omega": 1.0}
 TURN: dict[str, Any] = {
@@ -29,6 +30,7 @@ HIT: dict[str, Any] = {
 BEFORE: Any = np.array([[0.0], [0.0], [-1.0], [0.0]])
 AFTER: Any = np.zeros((3, 1))
 UPWARDS: Any = -BEFORE
+MASKED: list[Any] = [[0.0, 0.0], np.ma.array([-1.0, -1.0], mask=[0, 1]), [-1.0, -1.0], [0.0, 0.0]]
 TWO_IMPACTS: Any = np.zeros((3, 2))
 DEEP: list[Any] = []
 DEEP.append(DEEP)
@@ -67,14 +69,17 @@ REFUSALS: list[Row] = [
     *wrong(rl.thresholds, AXES, a=NOT_POSITIVE, b=NOT_POSITIVE, gravity=NOT_POSITIVE,
            gyration2=NOT_POSITIVE, friction=[-0.1, -INF, NAN]),
     ("a/b", lambda _: rl.thresholds(1001.0, 1.0)),
-    *wrong(geometry.support, {"theta": 0.3, **AXES}, theta=[NAN, np.zeros((1,) * 33), [DEEP]]),
+    *wrong(geometry.support, {"theta": 0.3, **AXES},
+           theta=[[[0.0, 1.0], [INF, 2.0]], np.zeros((1,) * 33), [DEEP]]),
     *(row for name in geometry.__all__ for row in wrong(
-        getattr(geometry, name), {"theta": 0.3, **AXES}, a=NOT_POSITIVE, b=NOT_POSITIVE)),
+        getattr(geometry, name), {"theta": 0.3, **AXES},
+        theta=NOT_FINITE, a=NOT_POSITIVE, b=NOT_POSITIVE)),
     *wrong(rl.kinematics, {"theta": 0.3, "omega": 1.0, **AXES},
            theta=NOT_FINITE, omega=NOT_FINITE, a=NOT_POSITIVE, b=NOT_POSITIVE),
     *wrong(rl.constraints, {"q": Q, "q_dot": Q_DOT, **AXES},
-           q=[[1.0], [NAN] * 5, *map(np.zeros, (0, 4, 6, 10))], a=NOT_POSITIVE, b=NOT_POSITIVE,
-           q_dot=[np.zeros((3, length)) for length in (0, 4, 6, 10)]),
+           q=[[1.0], *WITH_WRONG, np.ma.array(Q, mask=[0, 0, 1, 0, 0]), *map(np.zeros, (0, 4, 6))],
+           q_dot=[*WITH_WRONG, *(np.zeros((3, length)) for length in (0, 4, 6, 10))],
+           a=NOT_POSITIVE, b=NOT_POSITIVE),
     # questions to scenes
     *wrong(rl.certify, {}, scene=[None, 1, "report", (2.0, 1.0), [1.0] * 10**5, "x" * 10**5]),
     *wrong(rl.period, {}, scene=[None, 1, AIR, scenes.slope]),
@@ -102,7 +107,7 @@ REFUSALS: list[Row] = [
     ("a/b", lambda _: impacts.collide(**{**HIT, "a": 4000.0})),
     *wrong(impacts.collide, HIT, law=["kane"]),
     *wrong(impacts.fit, {"before": BEFORE, "after": AFTER, **AXES},
-           before=[[1.0], UPWARDS, BEFORE[:3], BEFORE[:, :0], np.where(BEFORE < 0, NAN, BEFORE)],
+           before=[[1.0], UPWARDS, MASKED, BEFORE[:3], BEFORE[:, :0], BEFORE + NAN],
            after=[TWO_IMPACTS, AFTER[0], AFTER + INF], minimise=["mean"], law=["kane"], b=[-0.3],
            gyration2=[0.0]),
 ]  # fmt: skip

@@ -11,9 +11,7 @@ from rolling_ellipse import Scene, WorkPrecision, scenes
 from refusals import Row
 
 SCENE = Scene(2.0, 1.0, omega=1.0)
-
 WRONG: Any = 1
-
 QUICK: dict[str, Any] = {"tolerances": [1e-3], "steps": [0.1], "samples": 2, "rounds": 1}
 
 
@@ -49,34 +47,16 @@ def raced(change: Callable[[Any], Any]) -> Callable[[Path], Any]:
     return call
 
 
-def jammed() -> Scene:
-    return scenes.slip.replace(friction=5.0, theta=1.0)
-
-
-def of_run(**facts: Any) -> Callable[[Path], Any]:
-    return raced(lambda known: known["runs"][0].update(facts))
-
-
-def negative_floor(known: Any) -> None:
-    known["references"][0]["floor"] = -1.0
-
-
 REFUSALS: list[Row] = [
     # asked
-    ("methods", race(methods=1)),
-    ("methods", race(methods=[1])),
+    *(("methods", race(methods=methods))
+      for methods in (1, [1], ["x"], [], ["exact", "exact"])),
     ("name of a method", race(methods=[{"model": "rolling", "name": 1}])),
-    ("methods", race(methods=["x"])),
-    ("methods", race(methods=[])),
-    ("methods", race(methods=["exact", "exact"])),
-    ("peers", race(peers=[1])),
-    ("peers", race(peers=1)),
-    ("reference", race(reference=1)),
-    ("reference", race(reference=lambda times: (1.0, 2.0))),
-    ("tolerances", race(tolerances=[])),
-    ("tolerances", race(tolerances=[-1.0])),
+    *(("peers", race(peers=peers)) for peers in ([1], 1)),
+    *(("reference", race(reference=reference)) for reference in (1, lambda times: (1.0, 2.0))),
+    *(("tolerances", race(tolerances=tolerances)) for tolerances in ([], [-1.0])),
     ("t_end", race(t_end=[1.0, 0.5])),
-    ("t_end", race(jammed(), 5.0)),
+    ("t_end", race(scenes.slip.replace(friction=5.0, theta=1.0), 5.0)),
     ("margin", result(lambda found: found.unbeaten(0.5))),
     ("x", result(lambda found: found.best(1.0, x="time"))),
     ("y", result(lambda found: found.best(1.0, y="x"))),
@@ -85,14 +65,10 @@ REFUSALS: list[Row] = [
     ("tags", result(lambda found: found.plot(tags="x"))),
     (KeyError, result(lambda found: found.runs[0].errors["x"])),
     # files
-    ("path", raced(lambda known: known.update(schema=99))),
-    ("path", raced(lambda known: known.update(runs=[]))),
-    ("path", raced(lambda known: known.update(machine=1))),
-    ("path", of_run(t_end=9.0)),
+    *(("path", raced(lambda known, facts=facts: known.update(facts)))
+      for facts in ({"schema": 99}, {"runs": []}, {"machine": 1})),
     ("path", raced(lambda known: known["scene"].update(a=2))),
-    ("path", of_run(tags=1)),
-    ("path", raced(negative_floor)),
-    ("path", of_run(time="x")),
-    ("path", of_run(steps=-1)),
-    ("path", of_run(status=1)),
+    ("path", raced(lambda known: known["references"][0].update(floor=-1.0))),
+    *(("path", raced(lambda known, facts=facts: known["runs"][0].update(facts)))
+      for facts in ({"t_end": 9.0}, {"tags": 1}, {"time": "x"}, {"steps": -1}, {"status": 1})),
 ]  # fmt: skip

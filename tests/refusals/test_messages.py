@@ -1,11 +1,12 @@
-"""Every refusal is provoked once, names its argument, and says what came: none is out of reach.
+"""Every refusal is provoked, names its argument and shows the value; none is out of reach.
 
-That they are all is seen from the sources: every `raise` of the package must have been on the way
-of some exception, and every text of the core in some message. What no call can reach is listed
-here, with its reason.
+The sources show that none is missing: every `raise` of the package must be on the way of some
+exception, and every text of the core in some message. Refusals that no call can reach are listed
+here, each with its reason.
 """
 
 import ast
+import importlib
 import re
 import warnings
 from collections.abc import Iterator
@@ -18,39 +19,28 @@ import rolling_ellipse
 from matplotlib import pyplot
 from oracles.paths import ROOT
 
-from refusals import (
-    Row,
-    batches,
-    command_line,
-    core,
-    files,
-    functions,
-    pictures,
-    races,
-    report,
-    scenes,
-    simulate,
-    trajectory,
-)
+from refusals import Row
 
 ROOMS = (
-    scenes, functions, core, simulate, trajectory, files, batches, races, pictures, command_line,
-    report,
+    "ask", "core", "functions", "trajectory", "files", "batches", "races", "report", "pictures",
+    "command_line",
 )  # fmt: skip
-TABLE: list[Row] = [row for room in ROOMS for row in room.REFUSALS]
+TABLE: list[Row] = [
+    row for room in ROOMS for row in importlib.import_module(f"refusals.{room}").REFUSALS
+]
 PACKAGE = Path(rolling_ellipse.__file__).resolve().parent
-#: Python: functions whose calls carry a requirement, as a `raise` does.
+#: Functions of the package that raise for their callers.
 REQUIRE = ("require", "_refuse", "_refuse_scenes")
-#: C++: what throws, with its texts.
+#: Functions and exceptions of the core whose arguments are texts of a message.
 THROW = re.compile(r"\b(?:refuse|std::(?:invalid_argument|logic_error|runtime_error))\(")
 
-#: What no caller is to see, with its reason.
+#: Parts of refusals that no call reaches, with the reasons.
 UNREACHABLE: dict[str, str] = {
     "trajectory must have finite samples": "pictures refuse what is too far away before",
     "there is no integrator for the method '": "settings refuse such a method before",
     "t must be empty, for the motion ended before it began: ": "no slide is known that is too quick"
     " for its first piece since angles below 1e-100 are none to endless friction",
-    # of one way in a race: the reason of its run, which has no answer
+    # the reason of a run in a race that has no answer
     "flow must be given a scene that rolls": "a reason",
     "raise Stopped(": "a reason",
     "of {name} must return a function": "a reason",
@@ -58,12 +48,12 @@ UNREACHABLE: dict[str, str] = {
 }
 
 
-#: What ends a message: what came, or of a whole scene, or an argument that is missing, its trouble.
+#: Beginnings of the last part of a message: the value, or the trouble with it.
 ENDS = ("got ", ", but ", ": ", " be given", " without a blow")
 
 
 class Provoked(NamedTuple):
-    """An exception, its text with those that led to it, and the lines of the package passed."""
+    """An exception, the texts of its chain, and the lines of the package in its tracebacks."""
 
     error: BaseException | None
     message: str
@@ -71,7 +61,7 @@ class Provoked(NamedTuple):
 
 
 def chain(error: BaseException | None) -> Iterator[BaseException]:
-    """An exception and those out of which it was made."""
+    """An exception with its causes."""
     while error is not None:
         yield error
         error = error.__cause__ or error.__context__
@@ -130,7 +120,7 @@ def test_a_picture_that_is_refused_leaves_no_figure(all_provoked: list[Provoked]
 
 
 def raising(path: Path) -> Iterator[tuple[int, int, str]]:
-    """First and last line of what raises in a file, and its source."""
+    """First line, last line and text of each statement of a file that raises."""
     source = path.read_text(encoding="utf-8")
     for node in ast.walk(ast.parse(source)):
         raises = isinstance(node, ast.Raise) and node.exc is not None
@@ -159,7 +149,7 @@ def test_no_raise_of_the_package_is_out_of_reach(all_provoked: list[Provoked]) -
 
 
 def thrown_texts(path: Path) -> Iterator[str]:
-    """The texts within what throws in a file of C++, neighbouring ones joined."""
+    """Texts of exceptions in a file of C++, neighbouring literals joined."""
     source = path.read_text(encoding="utf-8")
     for found in THROW.finditer(source):
         depth, end = 1, found.end()

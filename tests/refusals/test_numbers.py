@@ -1,4 +1,4 @@
-"""One rule for numbers, whatever takes them: what is none is refused by name, and nothing warns."""
+"""Rules of all arguments that are numbers: other values are refused by name, without a warning."""
 
 from collections import deque
 from collections.abc import Callable
@@ -19,7 +19,6 @@ SCENE = rl.Scene(2.0, 1.0, omega=1.0)
 MOTION = rl.simulate(SCENE, 1.0)
 Q, Q_DOT = rl.kinematics(0.3, 1.0, a=2.0, b=1.0)
 FLOW: dict[str, Any] = {"t": 1.0, "a": 2.0, "b": 1.0, "theta": 0.2, "omega": 1.0}
-BODY: dict[str, Any] = {"a": 2.0, "b": 1.0, "mass": 1.0, "gravity": 9.81}
 AXES: dict[str, Any] = {"a": 2.0, "b": 1.0}
 HIT: dict[str, Any] = {"x_dot": 0.0, "z_dot": -1.0, "omega": 0.0, "friction": 0.3}
 
@@ -29,7 +28,7 @@ OPTIONAL = ("z", "inertia", "gyration2", "x", "x_dot", "z_dot")
 
 Door = Callable[[Any], Any]
 
-#: What takes one number, by the name of the argument.
+#: Calls with one argument that is one number, by its name.
 SCALAR_DOORS: list[tuple[str, Door]] = [
     *((name, lambda v, name=name: rl.Scene(**{**AXES, name: v})) for name in SCENE_NUMBERS),
     *((name, lambda v, name=name: rl.thresholds(**{**AXES, name: v}))
@@ -51,7 +50,7 @@ SCALAR_DOORS: list[tuple[str, Door]] = [
     ("d", lambda v: report.struck_speed(48.0, v, **AXES, mass=10.0)),
 ]  # fmt: skip
 
-#: What takes one number or many.
+#: Calls with one argument that is a number or an array.
 ARRAY_DOORS: list[tuple[str, Door]] = [
     *((name, lambda v, name=name: rl.Impulse(**{name: v})) for name in ("jx", "jz", "dx", "dz")),
     *((name, lambda v, name=name: rl.Impulse.press(**{"F": 48.0, "d": 1.0, name: v}))
@@ -143,7 +142,7 @@ def test_masked_entries(name: str, door: Door) -> None:
 
 @names(SCALAR_DOORS + ARRAY_DOORS)
 def test_what_has_units(name: str, door: Door) -> None:
-    """They are never taken off; SI units are required, whatever the units are."""
+    """Units are never converted or taken off: plain numbers in SI units are required."""
     for value in quantities(2.0):
         refused(TypeError, name, "plain numbers in SI units", door, value)
 
@@ -168,18 +167,8 @@ def test_more_axes_than_numpy_broadcasts(name: str, door: Door) -> None:
         refused(ValueError, name, "at most 32 axes, got [[[[", door, value)
 
 
-def test_masked_columns_of_a_series() -> None:
-    column = np.ma.array([-1.0, -1.0], mask=[False, True])
-    before: list[Any] = [[0.0, 0.0], column, [-1.0, -1.0], [0.0, 0.0]]
-    after: Any = np.zeros((3, 2))
-    with pytest.raises(ValueError, match="before must have no masked entries"):
-        impacts.fit(before, after, **AXES)
-    with pytest.raises(ValueError, match="q must have no masked entries"):
-        rl.constraints(np.ma.array(Q, mask=[False, False, True, False, False]), Q_DOT, **AXES)
-
-
 def test_numbers_of_every_kind() -> None:
-    """They are worth what their doubles are, alone and in arrays."""
+    """Numbers of any type count as their doubles, alone and in arrays."""
     numbers: list[Any] = [
         2, np.float32(2), np.float16(2), np.longdouble(2), np.int8(2), np.uint64(2), Decimal(2),
         Fraction(2), np.array(2.0), np.array(2), np.array(2, dtype=">f4"), np.ma.array(2.0),
@@ -208,44 +197,6 @@ def test_numbers_of_every_kind() -> None:
     assert_array_equal(geometry.support([2**70, 1], **AXES), geometry.support([2.0**70, 1], **AXES))
 
 
-FINITE: list[tuple[str, Door]] = [
-    *(
-        ("theta", lambda v, name=name: getattr(geometry, name)(v, **AXES))
-        for name in geometry.__all__
-    ),
-    ("theta", lambda v: rl.kinematics(v, 1.0, **AXES)),
-    ("omega", lambda v: rl.kinematics(0.3, v, **AXES)),
-    ("q", lambda v: rl.constraints([0, 1, v, 0, 1], Q_DOT, **AXES)),
-    ("q_dot", lambda v: rl.constraints(Q, [v, 0, 0, 0, 0], **AXES)),
-    ("theta", lambda v: report.eq_5(v, **AXES)),
-    ("theta", lambda v: report.case_sign(v)),
-    ("theta", lambda v: report.case_lead(v, **AXES)),
-    ("theta", lambda v: report.appendix_b_radius(v, **AXES)),
-    ("q", lambda v: report.f1([0, 1, v, 0, 1], Q_DOT)),
-    ("q_dot", lambda v: report.f1(Q, [v, 0, 0, 0, 0])),
-    ("q", lambda v: report.f2([0, v, 0, 0, 1])),
-    ("q", lambda v: report.contact_x([v, 1, 0, 0, 1], **AXES)),
-    ("q", lambda v: report.constraint_matrix([0, 1, v, 0, 1], **AXES)),
-    ("omega", lambda v: report.consistent_rates(Q, v, **AXES)),
-    ("q_ddot", lambda v: report.eq_39(Q, [v, 0, 0, 0, 0], **BODY)),
-    ("multipliers", lambda v: report.eqs_33_to_37(Q, Q_DOT, [v, 0, 0, 0], **BODY)),
-    ("q", lambda v: report.simulate([0, 1, v, 0, 1], Q_DOT, 1.0, **AXES)),
-    ("impulse", lambda v: report.eq_48(v, 1.5, **AXES, mass=10.0)),
-]  # fmt: skip
-
-
-@names(FINITE)
-def test_what_must_be_finite(name: str, door: Door) -> None:
-    """What would be NaN in the answer is refused in the question."""
-    for value in (np.inf, -np.inf, np.nan):
-        refused(ValueError, name, f"finite, got {value}", door, value)
-
-
-def test_one_infinite_angle_of_many() -> None:
-    with pytest.raises(ValueError, match=r"^theta must be finite, got inf"):
-        geometry.support(np.array([[0.0, 1.0], [np.inf, 2.0]]), **AXES)
-
-
 @pytest.mark.parametrize(
     "value",
     [
@@ -261,8 +212,8 @@ def test_one_infinite_angle_of_many() -> None:
 def test_what_is_converted_in_pieces_is_what_is_converted_at_once(
     value: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of 16 numbers instead of 131072. No call of NumPy takes more of a list, so that Ctrl-C is
-    answered in between."""
+    """In pieces of 16 numbers instead of 131072. No call of NumPy takes more of a list, so that
+    Ctrl-C works in between."""
 
     def found() -> Any:
         try:
