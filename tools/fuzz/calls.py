@@ -28,6 +28,11 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     if inspect.isfunction(getattr(module, name))
 }
 PICTURES = tuple(name for name in FUNCTIONS if "plot" in name or "animate" in name)
+#: Functions with cases of their own.
+OWN = ("rl.simulate", "rl.simulate_many", "rl.load", "rl.load_many", *PICTURES)
+#: Functions that take seconds a call; tests/refusals has their arguments.
+SLOW = ("rl.explore", "rl.work_precision", "rl.report.errata", "rl.report.errata_table")
+PLAIN = tuple(name for name in FUNCTIONS if name not in (*OWN, *SLOW))
 
 Ask = Callable[[Draw, Body], object]
 
@@ -55,9 +60,7 @@ NUMBERS: dict[str, Callable[[Draw, Body], float]] = {
     **dict.fromkeys(("jx", "jz", "dx", "dz"), lambda d, _: d.between(-3, 3)),
 }  # fmt: skip
 #: Functions that take one number for each argument.
-OF_NUMBERS = (
-    "thresholds", "blow_to", "fit", "eq_48", "struck_speed", "simulate", "plot", "explore",
-)  # fmt: skip
+OF_NUMBERS = ("thresholds", "blow_to", "fit", "eq_48", "struck_speed", "simulate")
 
 
 def _vector(entries: int) -> Ask:
@@ -89,30 +92,13 @@ def _rows(count: int) -> Ask:
     return asked
 
 
-def _of_map(name: str) -> Ask:
-    def asked(draw: Draw, _: Body) -> object:
-        return draw.power(0, 3) if name == "aspect" else draw.pick(0.0, draw.between(0, 3))
-
-    return asked
-
-
-def _range(draw: Draw, _: Body) -> object:
-    first = draw.pick(0.5, draw.between(1, 3))
-    return f"({first}, {draw.pick(first, first * (1 + 2**-52), 2 * first)})"
-
-
 def _one(*texts: object) -> Ask:
     return lambda draw, _: draw.pick(*texts)
 
 
-WAYS = (
-    "flow", "exact", "dop853", "dopri5", "rk4", "gauss", "radau", "contact",
-    "multipliers/rk4/none", "multipliers/radau/ggl", "multipliers/dop853/projection",
-)  # fmt: skip
 #: Other arguments by name, as source text.
 OTHERS: dict[str, Ask] = {
     "scene": lambda d, of: d.hostile() if d.chance(0.02) else scenes.scene(d, of, 0.1),
-    "t_end": lambda d, of: d.pick("None", of.clock * d.between(0, 3), d.power(-30, 30)),
     "workers": _one(1, 1, 2, 3, -1, 100),
     "q": _state(0), "q_dot": _state(1), "q_ddot": _vector(5), "multipliers": _vector(4),
     "law": _one("'stronge'", "'poisson'", "'newton'"), "minimise": _one("'median'", "'rms'"),
@@ -120,29 +106,6 @@ OTHERS: dict[str, Ask] = {
     "printed": _one("()", "rl.report.CODE", "rl.report.MATRIX", "rl.report.EQ_32", "('tan', 'f1')"),
     "complete": _one("True", "False"), "case": _one("'1'", "'2'", "'as_it_is'"),
     "impulse": lambda d, of: d.pick("None", scenes.impulse(d, of)),
-    # pictures
-    "trajectory": _one("trajectory"),
-    "trajectories": _one("trajectory", "[trajectory, rl.simulate(rl.scenes.drop, 2)]"),
-    "ax": _one("None", "plt.figure().add_subplot()", "plt.subplots(2)[1]"),
-    "figure": _one("None", "plt.figure()", "plt.figure(figsize=(3, 9))"),
-    "labels": _one("['a']", "['a', 'b']", "'a'", "['$', '_b']"),
-    "colors": _one("None", "['C0']", "['C0', 'red']", "'C0'"),
-    "kind": _one("'energies'", "'error'"), "fold": _one("True", "False"),
-    "quantity": _one("'theta'", "'omega'", "'x'"), "reference": _one("None", "trajectory"),
-    "count": lambda d, of: d.count(30), "max_frames": lambda d, of: d.count(6),
-    "width": _one(160, 320), "dpi": _one(100.0, 50, 1.0), "progress": _one("False", "True"),
-    "fps": _one(25.0, 50, 10, 30), "speed": lambda d, of: d.pick(1.0, 0.1, d.power(-3, 3)),
-    "path": _one("'film.gif'", "'film.gif'", "'film.html'", "'film.png'", "'no/film.gif'"),
-    # the map
-    "x": _one("'aspect'", "'energy'", "'friction'", "'speed'"),
-    "y": _one("'energy'", "'friction'", "'speed'", "'aspect'"),
-    "aspect": _of_map("aspect"), "energy": _of_map("energy"),
-    "x_range": _range, "y_range": _range, "resolution": lambda d, of: d.count(30),
-    # races
-    "methods": lambda d, of: [d.pick(*WAYS) for _ in range(d.pick(1, 2))],
-    "tolerances": lambda d, of: [d.power(-14, 0), 1e-3],
-    "steps": lambda d, of: [of.clock * d.power(-2, 0)],
-    "samples": _one(4), "rounds": _one(2), "max_seconds": _one(0.2), "peers": _one("()"),
     # the report's motion
     "equations": _one("'corrected'", "'printed'"), "method": _one("'dopri5'", "'rk4'", "'dop853'"),
     "consistent": _one("'refuse'", "'project'", "'as_given'"),
@@ -150,9 +113,6 @@ OTHERS: dict[str, Ask] = {
     "rtol": _one(1e-6), "atol": _one(1e-6), "step": lambda d, of: of.clock * d.power(-2, 0),
     "max_steps": lambda d, of: d.count(100),
 }  # fmt: skip
-#: Arguments that bound the work are always given.
-BOUNDS = {"resolution", "max_steps", "max_seconds", "samples", "rounds", "tolerances", "steps",
-          "max_frames", "methods", "width"}  # fmt: skip
 
 
 def arguments(draw: Draw, of: Body, name: str) -> dict[str, str]:
@@ -161,9 +121,7 @@ def arguments(draw: Draw, of: Body, name: str) -> dict[str, str]:
     found = {}
     for each, parameter in inspect.signature(FUNCTIONS[name]).parameters.items():
         optional = parameter.default is not parameter.empty
-        if parameter.kind is parameter.VAR_KEYWORD or each == "options":
-            continue
-        if optional and each not in BOUNDS and draw.chance(0.6) and each != "gravity":
+        if optional and each not in ("max_steps", "gravity") and draw.chance(0.6):
             continue
         number = NUMBERS.get(each)
         if each in ("t", "step") and name == "rl.report.simulate":
@@ -184,35 +142,6 @@ def any_function(draw: Draw, of: Body) -> list[str]:
     name = draw.pick(*asked, *["rl.outcome", "rl.thresholds", "rl.impacts.collide"] * 2, *PLAIN)
     line = f"found = {call(name, **arguments(draw, of, name))}"
     return [line, "(repr(found), str(found), getattr(found, '_repr_html_', str)())"]
-
-
-# Functions of seconds of work, and those of files and motions, have cases of their own.
-RARE = ("rl.plot_phase_map", "rl.explore", "rl.work_precision", "rl.impacts.fit",
-        "rl.report.simulate", "rl.report.errata", "rl.report.errata_table")  # fmt: skip
-OWN = ("rl.simulate", "rl.simulate_many", "rl.load", "rl.load_many")
-PLAIN = tuple(name for name in FUNCTIONS if name not in (*RARE, *OWN, *PICTURES))
-
-
-def rare_function(draw: Draw, of: Body) -> list[str]:
-    name = draw.pick(*RARE)
-    if name == "rl.work_precision":  # another body may take a million steps in one call
-        of = Body({"a": 2.0, "b": 1.0, "gravity": 9.81}, {})
-    line = f"found = {call(name, **arguments(draw, of, name))}"
-    more = {
-        "rl.work_precision": [
-            "(found.verdict(), found.not_run(1e-8), repr(found))",
-            "found.save('race.json') or repr(rl.WorkPrecision.load('race.json'))",
-            "found.plot()",
-        ],
-        "rl.report.simulate": [
-            "(found.gap, found.energy, found.start, found.back_substitution(), repr(found))"
-            if "'printed'" in line
-            else f"found.{draw.pick(*QUANTITIES)}",
-            "found.constraint_residuals()",
-        ],
-        "rl.impacts.fit": ["(found.median_error, found.rms_error, repr(found))"],
-    }
-    return [line, *more.get(name, []), "plt.close('all')"]
 
 
 # -------------------------------------------------------------------- scenes, motions, and files
@@ -276,8 +205,6 @@ QUESTIONS: tuple[tuple[int, tuple[str, ...]], ...] = (
          "forged.sol(forged.t_end)")),
     (3, ("other = pickle.loads(pickle.dumps(trajectory, {protocol}))", SAME,
          "other.sol(other.t_end).x")),
-    (2, ("forged = damage.unpickled(trajectory, {protocol}, {share}, {mask})",
-         "forged = damage.unpickled(trajectory.scene, {protocol}, {share}, {mask})")),
     (2, ("other = {copied}(trajectory)", SAME, "other.sol(other.t_end).x")),
     (5, ("forged = replace(trajectory, {field}={array})", *FORGED,
          "forged.constraint_residuals()")),
@@ -298,7 +225,9 @@ def filled(draw: Draw, of: Body, line: str) -> str:
 
     def picture() -> str:
         name = draw.pick(*(name for name in PICTURES if name != "rl.plot_phase_map"))
-        return call(name, **arguments(draw, of, name))
+        first, *others = inspect.signature(FUNCTIONS[name]).parameters
+        odd = [draw.pick(*others)] if draw.chance(0.3) else []
+        return call(name, **{first: "trajectory"}, **{each: draw.odd(each) for each in odd})
 
     makes: dict[str, Callable[[], object]] = {
         "quantity": lambda: draw.pick(*QUANTITIES), "share": draw.share,
@@ -379,21 +308,9 @@ def many(draw: Draw, of: Body) -> list[str]:
     return lines
 
 
-def command(draw: Draw, _: Body) -> list[str]:
-    words = []
-    for name in ("a", "b", "mass", "theta", "omega", "friction", "restitution", "slope", "time"):
-        value = draw.pick("", "1", "0.5", "2", "-1", "x", "nan", "inf", "1e300", "1e-300", "1e9")
-        if draw.chance(0.2) and (name != "time" or "1e" not in value):  # work to be asked for
-            words.append(f"--{name}={value}")
-    if draw.chance(0.3):
-        words += ["--press", draw.pick("20", "-1e-3", "nan"), draw.pick("1", "-1.5", "1e9")]
-    words += draw.pick([], ["--model=contact"], ["--model=multipliers"], ["--json"])
-    return [f"command({words})"]
-
-
 #: Kinds of cases with their weights, the simplest first.
 CASES: dict[Callable[[Draw, Body], list[str]], int] = {
-    motion: 90, any_function: 70, scene: 16, many: 4, command: 1, rare_function: 2,
+    motion: 90, any_function: 70, scene: 16, many: 4,
 }  # fmt: skip
 _KINDS = tuple(kind for kind, weight in CASES.items() for _ in range(weight))
 

@@ -1,20 +1,14 @@
-"""Damage to files and pickles of the package; a place is given as a share of the whole.
+"""Damage to files of the package; a place is given as a share of the whole.
 
 Single kinds of broken archives are in `tests/refusals/files.py`.
 """
 
 from __future__ import annotations
 
-import pickle
-import pickletools
-import re
-import warnings
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from oracles.files import put_together, taken_apart
 
 
@@ -40,39 +34,6 @@ def fact(path: str, share: float, value: Any) -> None:
     holder, key = places[int(share * len(places))]
     holder[key] = value
     Path(path).write_bytes(put_together(about, arrays))
-
-
-def unpickled(value: Any, protocol: int, share: float, mask: int) -> bool:
-    """Whether a pickle with some bits turned over still makes an object with a repr.
-
-    A damaged pickle may raise anything, but must not end the interpreter. The state of a dtype is
-    left whole: NumPy may do anything with a wrong one.
-    """
-    data = bytearray(pickle.dumps(value, protocol))
-    place = int(share * len(data))
-    if any(place in state for state in _dtype_states(data)):
-        return False
-    data[place] ^= mask
-    with suppress(Exception), np.errstate(all="ignore"), warnings.catch_warnings():
-        # of NumPy, for its own part of the pickle
-        warnings.simplefilter("ignore", np.exceptions.VisibleDeprecationWarning)
-        found = pickle.loads(bytes(data))
-        for name in ("t", "energy", "events", "initial_state", "q"):
-            getattr(found, name, None)
-        return bool(repr(found))
-    return False
-
-
-def _dtype_states(data: bytes | bytearray) -> Iterator[range]:
-    """Places of the dtypes in a pickle: from the short name to the end of the state."""
-    begin = None
-    for opcode, argument, position in pickletools.genops(bytes(data)):
-        if isinstance(argument, str) and re.fullmatch(r"[biufcmMOSUV]\d+", argument):
-            begin = position
-        elif opcode.name == "BUILD" and begin is not None:
-            assert position is not None
-            yield range(begin, position + 1)
-            begin = None
 
 
 def _places(found: Any) -> Iterator[tuple[Any, Any]]:

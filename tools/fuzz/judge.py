@@ -6,7 +6,6 @@ import ast
 import contextlib
 import copy
 import inspect
-import io
 import math
 import pickle
 import re
@@ -27,7 +26,6 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import rolling_ellipse as rl
-from rolling_ellipse.__main__ import main
 
 from . import damage, promises
 
@@ -47,9 +45,8 @@ GRACE = 0.5  # within which Ctrl-C must end a call [s]
 _LINE = re.compile(r"(?:(\w+) = )?(.*)", re.DOTALL)
 # Factors of the time limit: pictures, whole batches and 1e6 steps take longer than other lines.
 _PATIENCE = {
-    "unpickled": 10, "plot": 6, "animate": 6, "work_precision": 6, "errata": 4, "fit": 3,
-    "report.simulate": 4, "when": 20, "command": 8, "simulate_many": 8, "load_many": 8,
-    "to_dataframe": 2, "_html": 20,
+    "plot": 6, "animate": 6, "fit": 3, "report.simulate": 4, "when": 20, "simulate_many": 8,
+    "load_many": 8, "to_dataframe": 2, "_html": 20,
 }  # fmt: skip
 
 
@@ -57,20 +54,8 @@ def patience(line: str) -> float:
     return max([1.0, *(factor for part, factor in _PATIENCE.items() if part in line)])
 
 
-def command(arguments: list[str]) -> str:
-    """Output of the command line."""
-    said = io.StringIO()
-    with (
-        contextlib.redirect_stdout(said),
-        contextlib.redirect_stderr(said),
-        contextlib.suppress(SystemExit),
-    ):
-        main(arguments)
-    return said.getvalue()
-
-
 NAMES: dict[str, Any] = {
-    "Decimal": Decimal, "Fraction": Fraction, "Path": Path, "command": command,
+    "Decimal": Decimal, "Fraction": Fraction, "Path": Path,
     "copy": copy, "damage": damage, "inf": math.inf, "nan": math.nan, "nextafter": math.nextafter,
     "np": np, "pi": math.pi, "pickle": pickle, "plt": plt, "promises": promises,
     "replace": replace, "rl": rl, "tempfile": tempfile,
@@ -112,8 +97,7 @@ class Case:
                 signal.setitimer(signal.ITIMER_PROF, 0)
             if goes_on:
                 self._values[name or "_"] = value
-                # the runs of a race that have no answer hold NaN
-                if not forged and not isinstance(value, rl.WorkPrecision):
+                if not forged:
                     found += promises.of_result(value, self._finite)
         return goes_on, found + list(_of_warnings(said))
 

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import rolling_ellipse as rl
-from oracles.pickles import require_same
 
 Finds = Iterator[tuple[str, str]]
 _ONE_EACH = (
@@ -128,11 +127,15 @@ def same_in_any_order(one: rl.Trajectory, other: rl.Trajectory, order: Any) -> N
 
 
 def same(one: Any, other: Any) -> None:
-    """Compare a copy, or a motion read back, with the original, bit for bit."""
-    try:
-        require_same(one, other)
-    except AssertionError as error:
-        raise Broken("copy", f"{error} is not the same") from None
+    """Compare copies, or motions read back, with the originals."""
+    if _comparable(one) != _comparable(other):
+        raise Broken("copy", "it is not the same")
+
+
+def _comparable(thing: Any) -> Any:
+    if isinstance(thing, list):
+        return [_comparable(each) for each in thing]
+    return (type(thing), str(thing)) if isinstance(thing, Exception) else thing
 
 
 def _nan_in(value: Any, path: str = "the result") -> str | None:

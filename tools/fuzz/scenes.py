@@ -6,14 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import rolling_ellipse as rl
 from oracles import drawn
 
 from .values import Draw, call
 
-NAMED = (
-    "report", "bounce", "circle", "drop", "jump", "rocking", "rolling", "separatrix", "slip",
-    "slope", "thin",
-)  # fmt: skip
 STEPPED = ("dop853", "dopri5", "rk4", "gauss", "radau")
 STABILIZATIONS = ("projection", "none", "baumgarte", "projection+energy")
 
@@ -105,7 +102,7 @@ def impulse(draw: Draw, of: Body) -> str:
 def scene(draw: Draw, of: Body, mutate: float = 0.0) -> str:
     """The scene of a body; with that probability one or two of its arguments are hostile."""
     if draw.chance(0.1):
-        return f"rl.scenes.{draw.pick(*NAMED)}"
+        return f"rl.scenes.{draw.pick(*rl.scenes.__all__)}"
     arguments = {name: repr(value) for name, value in of.values.items()}
     if of.blow:
         numbers = {name: repr(value) for name, value in of.blow.items()}

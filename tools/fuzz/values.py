@@ -64,7 +64,7 @@ MAKES = (
 )  # fmt: skip
 
 # Arguments that bound the work: they get no large numbers.
-WORK = ("max_steps", "max_events", "resolution", "max_seconds", "samples", "rounds", "count")
+WORK = ("max_steps", "max_events", "count", "max_frames", "width", "dpi")
 
 
 class Draw:
@@ -127,8 +127,12 @@ class Draw:
         found = dict(arguments)
         for _ in range(self.pick(*[0] * 20, *[1] * 4, 2) if found else 0):
             name = self.pick(*found)
-            found[name] = self.pick("0", "-1", "nan", *WRONG) if name in WORK else self.hostile()
+            found[name] = self.odd(name)
         return found
+
+    def odd(self, name: str) -> str:
+        """A hostile value of an argument."""
+        return self.pick("0", "-1", "nan", *WRONG) if name in WORK else self.hostile()
 
     def array(self, values: Sequence[float], shape: tuple[int, ...] | None = None) -> str:
         """An array-like of the numbers."""
