@@ -1,10 +1,10 @@
-"""Judge `simulate(model="contact")` by random scenes, followed by make_contact_reference.py.
+"""Judge `simulate(model="contact")` by random scenes, followed by contact_motion.py.
 
     python reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
 
 Half an hour to an hour on two cores. A file that is there is gone on with; `--only 17` judges one
 scene of a seed and prints all of its values, `--family well` draws of one family, `--report` only
-tells what a file has. The end is what was judged, by family, shape, friction and component, and a
+tells what a file has. The end is what was judged, by family, shape and friction, and a
 reproduction of each scene above `--limit` units.
 
 Scenes are drawn from the families below: aspects from 1e-3 to 1e3, friction from none to
@@ -32,7 +32,7 @@ import multiprocessing
 import random
 import signal
 import time
-from collections import defaultdict
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from itertools import pairwise
@@ -42,8 +42,7 @@ from typing import Any, NamedTuple
 import gmpy2
 import numpy as np
 import rolling_ellipse as rl
-from gmpy2 import mpfr
-from make_contact_reference import (
+from contact_motion import (
     FLIGHT,
     VALUES,
     Arc,
@@ -56,22 +55,24 @@ from make_contact_reference import (
     collide,
     peak_of_friction,
     standing,
-)
+    support,
+)  # fmt: skip
+from gmpy2 import mpfr
 from series import ROUNDING, Road, log_uniform
 
-# Units are told by one of them, values by the next; a check is done by the one after that.
+# One of them computes the units, the next the values; the one after that checks them.
 ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
 CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
-CHECKED = 20  # each such scene has its values checked, and not only its units
-FARTHEST = 0.1  # units that two roads may be apart; then the finer is millions of times better
+CHECKED = 20  # every 20th scene has its values checked, too
+FARTHEST = 0.1  # units between two roads; the finer one is then millions of times better
 LEAST_UNIT = 1e-3 * ROUNDING  # of the size: some values are zero whatever the inputs are
 RATE_STEP = 1e-8  # of a step, for rates
-UNIT_LIMIT = 1e-9  # of the size of the scene: beyond, the inputs do not fix the answer
-KIND_LIMIT = 1e-4  # of its time: until then they fix which event comes
-MOST_STEPS = 260  # of the first look
+UNIT_LIMIT = 1e-9  # of the size of the scene; above it the inputs do not fix the answer
+KIND_LIMIT = 1e-4  # of its time; up to it the inputs fix the kind of an event
+MOST_STEPS = 260  # of the plan
 MOST_SECONDS = 60.0  # for one scene
 LEAST_REBOUND = 2e-5  # times sqrt(g min(a, b)): below, the package may sum bounces
-NEARBY = 12  # scenes drawn to tell a limit from a fault
+NEARBY = 12  # scenes beside one, to distinguish a limit from a fault
 ROUTES = ("event", "table", "alone", "sol", "long")
 
 
@@ -85,21 +86,21 @@ class Blow(NamedTuple):
 
 
 class Case(NamedTuple):
-    """A scene of a family, how long to follow it, and how."""
+    """A scene of a family, and the plan of its judgement."""
 
     family: str
     scene: Scene
     blow: Blow | None = None
     longest: float = 1.0  # [s]
     most_events: int = 8
-    long_turns: float = 0.0  # swings or half turns after which it is looked at again
+    long_turns: float = 0.0  # swings or half turns to a late sample; 0: none
 
 
 # ---------------------------------------------------------------- the reference
 
 
 class Judge(Follower):
-    """A motion followed by the maker: also after blows, and slip that the ground takes off."""
+    """A motion that may begin with a blow, or with slip that unlimited friction stops."""
 
     most_steps = 4000
 
@@ -115,7 +116,7 @@ class Judge(Follower):
             self.strike()
 
     def strike(self) -> None:
-        """What the blow makes of a body that nothing holds."""
+        """Apply the blow to a free body."""
         if self.blow is None:
             return
         s, body, (jx, jz, dx, dz) = self.state, self.body, self.blow
@@ -126,7 +127,7 @@ class Judge(Follower):
         )
 
     def first_arc(self, slip: Any) -> Arc | None:
-        """After the blow, and the ground's answer to it without restitution."""
+        """The first arc after the blow and the reaction of the ground without restitution."""
         body = self.body
         unlimited = not gmpy2.is_finite(body.mu)
         touch = body.touch(self.state.phi)
@@ -134,7 +135,7 @@ class Judge(Follower):
             side = 1 if slip > 0 else -1
             c = body.level + (body.ab**2 / touch.h**3 - touch.h) * self.state.omega**2
             if c < 0 and touch.normal < body.mu * side * touch.coupling:
-                return None  # it may slide on or fly: two motions, no one
+                return None  # two motions are possible: sliding and flight
         if self.blow is None and not (unlimited and slip * touch.coupling >= 0 and slip != 0):
             return standing(body, self.state, slip)
         self.strike()
@@ -169,7 +170,7 @@ class Judge(Follower):
         super().step(end)
 
     def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
-        """Note how fast the state changes before what happens."""
+        """Record the rates of the state just before an event."""
         now, row, short = self.state, self.now(what), mpfr(RATE_STEP) * step  # t stays
         self.state, self.arc = self.started, arc
         self.move(found, step - short)
@@ -202,7 +203,7 @@ class Turning(Judge):
         self.fresh = self.state.omega == 0
 
     def watched(self, found: Series, arc: Arc) -> list[tuple[str, list[Any]]]:
-        """Also where omega changes its sign, and the end of half a turn."""
+        """Watch also the sign of omega and the end of half a turn."""
         omega = found.omega[1:] if self.fresh else found.omega
         side = 1 if omega[0] > 0 else -1
         self.fresh = False
@@ -216,7 +217,7 @@ class Turning(Judge):
         return [*super().watched(found, arc), *watched]
 
     def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
-        """Note turning points; the period is twice the time between two of them."""
+        """Record turning points; the period is twice the time between two of them."""
         if what == "turn":
             self.state = self.state._replace(omega=mpfr(0))
             self.fresh = True
@@ -227,7 +228,7 @@ class Turning(Judge):
             raise Undecided("not rolling for ever")
 
     def period(self) -> tuple[Any, Any, Any]:
-        """Time of a swing or half turn, and what it adds to theta and x."""
+        """Time of a swing or half turn, and its increments of theta and x."""
         starts_at_rest = self.fresh
         while len(self.turns) < (2 if starts_at_rest else 3):
             if self.steps > self.most_steps:
@@ -257,11 +258,6 @@ class Answer(NamedTuple):
     why: str
 
 
-def state_of(follower: Follower) -> Row:
-    """The state as a row."""
-    return follower.now("state")
-
-
 def answer(case: Case, road: Road, times: list[Any], end: Any, most_steps: int = 0) -> Answer:
     """The motion up to an end."""
     with road.context():
@@ -279,7 +275,7 @@ def answer(case: Case, road: Road, times: list[Any], end: Any, most_steps: int =
                 if follower.t < time_:
                     break
                 if i < len(times):
-                    samples[i] = Sample([one.kind for one in follower.rows], state_of(follower))
+                    samples[i] = Sample([one.kind for one in follower.rows], follower.now("state"))
         except Undecided as error:
             stopped, why = follower.t, str(error)
         if follower.lost is not None:
@@ -296,7 +292,7 @@ def long_answer(case: Case, road: Road, times: list[float]) -> list[Row]:
             whole = gmpy2.floor(mpfr(time_) / span)
             follower = Judge(case, road)
             follower.follow(mpfr(time_) - whole * span, 1)
-            row = state_of(follower)
+            row = follower.now("state")
             if follower.rows:
                 raise Undecided("not rolling for ever")
             theta, x = row.theta + whole * turn, row.x + whole * way
@@ -314,7 +310,7 @@ def distance_from_quarter_turn(theta: float) -> Any:
 
 
 def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
-    """All inputs, one after the other, changed by 2.2e-16; and how often each counts."""
+    """Cases with one input changed by 2.2e-16, and the weight of each."""
     scene = case.scene
     with ROADS[-1].context():
         k2 = Body(scene).k2
@@ -360,7 +356,7 @@ def differences(new: Row, old: Row) -> list[float]:
 
 
 class Reference(NamedTuple):
-    """What the package has to answer, as far as the inputs fix it."""
+    """The answers that the inputs fix."""
 
     judged: list[Judged]
     kinds: list[str]  # of the events that the inputs fix
@@ -376,7 +372,7 @@ def natural(scene: Scene) -> tuple[float, float]:
 
 
 def sizes(scene: Scene) -> list[float]:
-    """What a component is measured by where it says that the inputs do not fix an answer."""
+    """Sizes of the components, by which unfixed answers are recognised."""
     length, tau = natural(scene)
     return [tau, 1.0, 1 / tau, length, length, length / tau, length / tau]
 
@@ -389,7 +385,7 @@ def rows_of(found: Answer, far: list[Row]) -> dict[str, Row]:
 
 
 def alike(what: str, *found: Answer) -> bool:
-    """Whether the same happened in several answers up to an event or a sample."""
+    """Whether several answers have the same events up to an event or a sample."""
     kind, number = what.split()
     i = int(number)
     if kind == "event":
@@ -415,7 +411,7 @@ def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
 def reference(
     case: Case, times: list[float], end: float, long_times: list[float], check: bool, level: int = 0
 ) -> Reference:
-    """Events, samples and their units; by a finer road where this one is not fine enough."""
+    """Events, samples and their units; by a finer road if this one is too coarse."""
     road, finer = ROADS[level : level + 2]
     exact = answer(case, finer, times, end)
     base = answer(case, road, times, end)
@@ -544,7 +540,7 @@ def found_by_package(
 
 
 def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
-    """Times between events to ask for, and an end; why it ends there."""
+    """Sample times between events, an end, and its reason."""
     first = answer(case, CHANGED_ROAD, [], case.longest, MOST_STEPS)
     ends = [float(one.t) for one in first.events]
     if first.events and first.events[-1].kind == "jam":
@@ -595,8 +591,9 @@ def too_slow(*_: Any) -> None:
     raise TooSlow
 
 
-def judge(seed: int, number: int, family: str | None = None, tell: bool = False) -> dict[str, Any]:
-    """Judge one scene."""
+def judge(task: tuple[int, int, str | None], tell: bool = False) -> dict[str, Any]:
+    """Judge one scene: the number of a seed, of one family or of any."""
+    seed, number, family = task
     rng = random.Random(f"{seed}-{number}")
     case = drawn(rng, family)
     record: dict[str, Any] = {"number": number, "family": case.family}
@@ -635,7 +632,7 @@ def first_wrong(known: Reference, found: Found, end: float) -> int | None:
 
 
 def of_the_angle(case: Case, values: list[float], name: str) -> float:
-    """What half an ulp of the angle that is told does to a value of rolling that belongs to it."""
+    """Effect of half an ulp of the angle on a value of rolling at that angle."""
     row = dict(zip(VALUES, values, strict=True))
     _, slope, bend = support(case.scene.a, case.scene.b, row["theta"])
     rates = {"z": slope, "x_dot": slope * row["omega"], "z_dot": bend * row["omega"]}
@@ -671,7 +668,7 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
     loose: dict[str, float] = {}
     strict: dict[str, float] = {}
     tops: list[Any] = []
-    scale, seen = sizes(case.scene), 0.0
+    scale = sizes(case.scene)
     for one in known.judged:
         if float(one.row.t) >= cut:
             continue
@@ -695,13 +692,11 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
                     true = f"{one.row[1 + i]:.25e}"
                     tops.append([units, fine, one.what, route, name, float(one.row.t), values[i],
                                  true, errors[i] / scale[i], one.unit[i]])  # fmt: skip
-                if units > 8:
-                    seen = max(seen, errors[i] / scale[i]) if route != "sol" else seen
         if tell:
             print(one.what, [f"{float(v):.17g}" for v in one.row[1:]], one.unit)
     tops.sort(key=lambda top: -max(top[0], 1e-3 * top[1]))
     firsts = {(top[3], top[4]): top for top in reversed(tops)}  # the worst of each
-    record |= {"verdict": "judged", "rows": len(known.judged), "seen": seen}
+    record |= {"verdict": "judged", "rows": len(known.judged)}
     for key, by in (("by", loose), ("strict_by", strict)):
         record[key] = {name: round(value, 3) for name, value in by.items() if value > 1}
     record["tops"] = tops if tell else [top for top in tops if top in firsts.values()]
@@ -715,13 +710,6 @@ def worst(record: dict[str, Any], key: str = "by", sol: bool = False) -> float:
 
 
 # ---------------------------------------------------------------- the scenes
-
-
-def support(a: float, b: float, theta: float) -> tuple[float, float, float]:
-    """h, h' and h'' at theta, to draw with."""
-    h = math.hypot(a * math.sin(theta), b * math.cos(theta))
-    slope = (a - b) * (a + b) * math.sin(theta) * math.cos(theta) / h
-    return h, slope, (a * b) ** 2 / h**3 - h
 
 
 def power(rng: random.Random, low: float, high: float) -> float:
@@ -1082,50 +1070,32 @@ def mu(record: dict[str, Any]) -> str:
 
 
 def report(records: list[dict[str, Any]], limit: float) -> None:
-    """Print what a run has found."""
-    verdicts: dict[str, int] = defaultdict(int)
-    for one in records:
-        verdicts[one["verdict"]] += 1
+    """Print the findings of a run."""
+    verdicts = Counter(one["verdict"] for one in records)
     print(len(records), "scenes:", dict(verdicts), f"{sum(o['seconds'] for o in records):.0f} s")
     for word in ("refused", "undecided", "failed"):
-        reasons: dict[str, int] = defaultdict(int)
-        for one in records:
-            if one["verdict"] == word:
-                reasons[one.get("why", "")[:70]] += 1
-        print(f"  {word}:", dict(sorted(reasons.items(), key=lambda item: -item[1])[:8]))
-    judged_ones = [one for one in records if one["verdict"] == "judged"]
-    for word, which in (("in units", 0), ("of values", 1)):
-        own = [one["apart"] for one in judged_ones if (one["number"] % CHECKED == 0) == which]
+        reasons = Counter(one.get("why", "")[:70] for one in records if one["verdict"] == word)
+        print(f"  {word}:", dict(reasons.most_common(8)))
+    done = [one for one in records if one["verdict"] == "judged"]
+    for word, which in (("in units", False), ("of values", True)):
+        own = [one["apart"] for one in done if (one["number"] % CHECKED == 0) == which]
         print(f"differences of two roads {word}: {max(own, default=0):.1e} units")
-    events = sum(len(one["kinds"]) for one in judged_ones)
-    print(f"{events} events, {sum(one['rows'] for one in judged_ones)} rows")
+    print(f"{sum(len(o['kinds']) for o in done)} events, {sum(o['rows'] for o in done)} rows")
     for title, key in (("family", lambda one: one["family"]), ("aspect", aspect), ("mu", mu)):
-        print(f"\n{title:14} judged  worst units  > 4   > 8  > 8 and an ulp of the size  "
-              "by sol: worst  > 8   strict  > 8  wrong events (at a limit)")  # fmt: skip
-        groups = defaultdict(list)
-        for one in judged_ones:
-            groups[key(one)].append(one)
-        for name, group in sorted(groups.items()):
-            most = [worst(one) for one in group]
-            sol = [worst(one, sol=True) for one in group]
-            fine = [worst(one, "strict_by") for one in group]
+        print(f"\n{title:14} judged  worst units   > 8  by sol: worst  > 8   strict   > 8"
+              "  wrong events (at a limit)")  # fmt: skip
+        for name in sorted({key(one) for one in done}):
+            group = [one for one in done if key(one) == name]
+            columns = [
+                [worst(one) for one in group], [worst(one, sol=True) for one in group],
+                [worst(one, "strict_by") for one in group],
+            ]  # fmt: skip
+            cells = "".join(f"{max(each):12.3g} {sum(u > 8 for u in each):6}" for each in columns)
             wrong = [one.get("wrong") for one in group]
-            print(f"{name:14} {len(group):6} {max(most):12.3g} {sum(w > 4 for w in most):4} "
-                  f"{sum(w > 8 for w in most):5} {sum(o['seen'] > ROUNDING for o in group):25} "
-                  f"{max(sol):15.3g} {sum(w > 8 for w in sol):4} "
-                  f"{max(fine):8.2g} {sum(w > 8 for w in fine):4} "
-                  f"{wrong.count('fault'):6} ({wrong.count('limit')})")  # fmt: skip
-    parts: dict[str, list[float]] = defaultdict(list)
-    for one in judged_ones:
-        for name, value in one["by"].items():
-            parts[name].append(value)
-    print("\nworst by route and component")
-    for name, values in sorted(parts.items()):
-        print(f"  {name:14} {max(values):10.3g}   > 8 in {sum(v > 8 for v in values)} scenes")
+            print(f"{name:14} {len(group):6} {cells} {wrong.count('fault'):6} "
+                  f"({wrong.count('limit')})")  # fmt: skip
     print(f"\nscenes above {limit} units, or with wrong events")
-    bad = [
-        one for one in judged_ones if one.get("wrong") or max(one["by"].values(), default=0) > limit
-    ]
+    bad = [one for one in done if one.get("wrong") or max(one["by"].values(), default=0) > limit]
     for one in sorted(bad, key=lambda one: (one["family"], -worst(one))):
         print(f"\n# {one['number']} {one['family']}, {aspect(one)}, mu {mu(one)}: worst "
               f"{worst(one):.3g}, by sol {worst(one, sol=True):.3g}, strict "
@@ -1133,17 +1103,10 @@ def report(records: list[dict[str, Any]], limit: float) -> None:
         if one.get("wrong"):
             print(f"#   {one['wrong']}: event {one['wrong_event']}, found {one['found_kinds']}")
         print(f"{one['scene']}  # to {one['end']!r}")
-        told: set[tuple[str, str]] = set()
-        for units, _, what, route, name, t, value, true, off, unit in one["tops"]:
-            if units > limit and (what, name) not in told and len(told) < 8:
-                told.add((what, name))
-                print(f"#   {what} at t = {t!r} by {route}: {name} = {value!r}, true {true}, "
-                      f"{units:.3g} units of {unit:.1e}, {off:.1e} of the size")  # fmt: skip
-
-
-def work(task: tuple[int, int, str | None]) -> dict[str, Any]:
-    """One scene, in a process of its own."""
-    return judge(*task)
+        firsts = {(top[2], top[4]): top for top in reversed(one["tops"]) if top[0] > limit}
+        for units, _, what, route, name, t, value, true, off, unit in list(firsts.values())[:8]:
+            print(f"#   {what} at t = {t!r} by {route}: {name} = {value!r}, true {true}, "
+                  f"{units:.3g} units of {unit:.1e}, {off:.1e} of the size")  # fmt: skip
 
 
 def main() -> None:
@@ -1159,7 +1122,7 @@ def main() -> None:
     asked.add_argument("--report", action="store_true", help="only print what the file says")
     given = asked.parse_args()
     if given.only is not None:
-        record = judge(given.seed, given.only, given.family, tell=True)
+        record = judge((given.seed, given.only, given.family), tell=True)
         print(json.dumps(record, indent=1))
         return
     file = given.file or Path(f"judged-{given.seed}.jsonl")
@@ -1169,13 +1132,12 @@ def main() -> None:
     began = time.perf_counter()
     if not given.report:
         with multiprocessing.Pool(given.workers) as pool, file.open("a") as out:
-            for count, record in enumerate(pool.imap_unordered(work, tasks), 1):
+            for count, record in enumerate(pool.imap_unordered(judge, tasks), 1):
                 print(json.dumps(record), file=out, flush=True)
                 records.append(record)
                 if count % 25 == 0:
-                    print(
-                        f"{count} of {len(tasks)}, {time.perf_counter() - began:.0f} s", flush=True
-                    )
+                    spent = time.perf_counter() - began
+                    print(f"{count} of {len(tasks)}, {spent:.0f} s", flush=True)
     report(records, given.limit)
 
 

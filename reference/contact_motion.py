@@ -1,0 +1,652 @@
+"""Rolling, sliding, flight and impacts, followed by Taylor series in any number of digits.
+
+make_contact_reference.py makes a table with it, judge_contact.py judges random scenes. gmpy2 only:
+no code and no formula of the package.
+
+Motion. x along the ground, z away from it, theta clockwise, g down a slope alpha; per mass, with
+k^2 = I/m. The point that touches is P(phi) = (a sin phi, -b cos phi) of the body. With
+w = |dP/dphi|, c^2 = a^2 - b^2, the centre is h above the ground and o behind the contact:
+
+    w^2 = a^2 cos^2 phi + b^2 sin^2 phi,   tan theta = (b/a) tan phi,   phi' = omega w^2 / (a b)
+    h = a b / w,   o = dh/dtheta = c^2 sin phi cos phi / w,   r = w^3 / (a b)                    (1)
+
+r is the radius of curvature. The ground pushes with N and F per mass:
+
+    x'' = F + g sin alpha,   z'' = N - g cos alpha,   k^2 omega' = -h F - o N                    (2)
+
+Slip v = x' - h omega, and without pressure the gap z - h would open with -c, where
+c = g cos alpha + (r - h) omega^2. Modes, each until what it names is no longer positive:
+
+    rolling   v = 0: (k^2 + h^2 + o^2) omega' = h g sin alpha - o (g cos alpha + r omega^2), N and
+              F by (2); mu N - F, mu N + F; N, where mu is infinite
+    sliding   s = sign v: F = -mu s N, N = c / B, B = 1 + (o^2 - mu s h o) / k^2; s v, c, B.
+              Its limit for infinite mu: N = 0, F = k^2 c / (h o), where s o < 0; s v, c
+    flight    N = F = 0; z - h
+
+What begins without slip rolls if that needs no more friction than there is; else it slips to the
+side on which B > 0 and friction lets the slip grow. It flies if c < 0. With slip and B < 0 < c no
+motion goes on: a jam. Without friction slip has no side, and no event where it changes its sign.
+
+An impact adds up impulses per mass along and away from the ground by Coulomb's law, in pieces on
+which v and u = z' - o omega change linearly; it ends when the work done since u = 0 is e^2 times
+that taken before (W. J. Stronge, Proc. R. Soc. A 431 (1990) 169). Unlimited friction first ends
+the slip, as far as that needs no pull. Rebounds below 1e-6 sqrt(g min(a, b)) of a body dropped
+flat are summed, and it is at rest; other scenes end before rebounds are a thousand times that.
+
+Method. Taylor series in time of (1) and (2) by the recurrences for products, quotients and roots
+(A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99); the last two coefficients choose each step.
+The first event of a step is the first root of polynomials, found without sampling: Bernstein
+coefficients that do not change sign exclude a root, one change means exactly one, and otherwise
+the interval is halved. Where s v or z - h starts at zero those zeros are divided out: one where
+slip or rebound begins with a speed or a jump of the force, two where rolling turns to slip or a
+gap opens at once, three where a slide lifts off. So short slips are not taken for none.
+"""
+
+import math
+from functools import cache
+from itertools import pairwise
+from operator import mul
+from typing import Any, NamedTuple
+
+import gmpy2
+from gmpy2 import mpfr
+from series import Road, product, quotient, square_root, value
+
+MOST_STEPS = 3000  # of a motion
+REST_SPEED = 1e-6  # times sqrt(g min(a, b)): smaller rebounds are summed
+LEAST_REBOUND = 1e-3  # the same, of all other scenes
+
+
+class Undecided(Exception):
+    """The scene is too close to a scene of another kind, or is not modelled here."""
+
+
+class Scene(NamedTuple):
+    """Inputs of one motion: doubles in the table, mpfr when perturbed; None as in the package."""
+
+    a: Any
+    b: Any
+    mass: Any = 1.0
+    gravity: Any = 9.81
+    inertia: Any = None
+    slope: Any = 0.0
+    friction: Any = math.inf
+    restitution: Any = 0.0
+    theta: Any = 0.0
+    omega: Any = 0.0
+    x: Any = 0.0
+    z: Any = None
+    x_dot: Any = None
+    z_dot: Any = None
+
+
+class Row(NamedTuple):
+    """An event and the state just after it, all mpfr but the kind."""
+
+    kind: str
+    t: Any
+    theta: Any
+    omega: Any
+    x: Any
+    z: Any
+    x_dot: Any
+    z_dot: Any
+
+
+VALUES = Row._fields[1:]
+
+
+# ---------------------------------------------------------------- the first root of a polynomial
+
+
+@cache
+def bernstein_weights(degree: int, precision: int) -> list[list[Any]]:
+    """C(j, i) / C(degree, i): Bernstein coefficient j from power i; working precision."""
+    assert precision == gmpy2.get_context().precision
+    return [
+        [mpfr(math.comb(j, i)) / math.comb(degree, i) for i in range(j + 1)]
+        for j in range(degree + 1)
+    ]
+
+
+def halves(bernstein: list[Any]) -> tuple[list[Any], list[Any]]:
+    """Bernstein coefficients on both halves of the interval (de Casteljau)."""
+    left, right = [bernstein[0]], [bernstein[-1]]
+    while len(bernstein) > 1:
+        bernstein = [(p + q) / 2 for p, q in pairwise(bernstein)]
+        left.append(bernstein[0])
+        right.append(bernstein[-1])
+    return left, right[::-1]
+
+
+def first_root(coefficients: list[Any], end: Any) -> Any:
+    """The first root in (0, end] of a polynomial that is positive at 0, or None.
+
+    A polynomial has at most as many roots in an interval as its Bernstein coefficients there have
+    changes of sign, and an odd number if they are odd in number: 0 means none and 1 means one.
+    """
+    scaled = [one * end**i for i, one in enumerate(coefficients)]
+    if scaled[0] <= 0:
+        raise Undecided("nothing to start from")
+    if scaled[0] > sum(map(abs, scaled[1:])):
+        return None
+    weights = bernstein_weights(len(scaled) - 1, gmpy2.get_context().precision)
+    todo = [([sum(map(mul, row, scaled)) for row in weights], mpfr(0), mpfr(1))]
+    while todo:
+        bernstein, low, high = todo.pop()
+        signs = [one > 0 for one in bernstein if one != 0]
+        changes = sum(p != q for p, q in pairwise(signs))
+        if changes == 1 and bernstein[0] > 0:
+            return end * bisected(scaled, low, high)
+        if changes:
+            if high - low < 1e-9:
+                raise Undecided("a root that is nearly double")
+            middle = (low + high) / 2
+            left, right = halves(bernstein)
+            todo += [(right, middle, high), (left, low, middle)]
+    return None
+
+
+def bisected(coefficients: list[Any], low: Any, high: Any) -> Any:
+    """The only root in (low, high], where the polynomial falls through 0; Newton's method ends."""
+    slopes = [i * one for i, one in enumerate(coefficients)][1:]
+    for _ in range(20):
+        middle = (low + high) / 2
+        low, high = (middle, high) if value(coefficients, middle) > 0 else (low, middle)
+    root, width = (low + high) / 2, high - low
+    for _ in range(10):
+        root -= value(coefficients, root) / value(slopes, root)
+    if not low - width <= root <= high + width:
+        raise Undecided("a root that is nearly double")
+    return root
+
+
+# ---------------------------------------------------------------- the laws
+
+
+class Touch(NamedTuple):
+    """A touching body, and its response to impulses per mass along and away from the ground."""
+
+    h: Any
+    o: Any
+    tangential: Any
+    normal: Any
+    coupling: Any
+
+
+class Body:
+    """The constants of a motion, in the context of its precision."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.a, self.b, self.mass, self.g = map(mpfr, scene[:4])
+        self.ab, self.c2 = self.a * self.b, (self.a - self.b) * (self.a + self.b)
+        if scene.inertia is None:
+            self.k2 = (self.a**2 + self.b**2) / 4
+        else:
+            self.k2 = mpfr(scene.inertia) / self.mass
+        down, level = gmpy2.sin_cos(mpfr(scene.slope))
+        self.down, self.level = self.g * down, self.g * level
+        self.mu, self.e = mpfr(scene.friction), mpfr(scene.restitution)
+
+    def phi(self, theta: Any) -> Any:
+        """phi of theta, the same number of turns."""
+        sin, cos = gmpy2.sin_cos(theta)
+        return gmpy2.atan2(self.a * sin, self.b * cos) + theta - gmpy2.atan2(sin, cos)
+
+    def theta(self, phi: Any) -> Any:
+        """theta of phi, the same number of turns."""
+        sin, cos = gmpy2.sin_cos(phi)
+        return gmpy2.atan2(self.b * sin, self.a * cos) + phi - gmpy2.atan2(sin, cos)
+
+    def touch(self, phi: Any) -> Touch:
+        """The body touching the ground at phi."""
+        sin, cos = gmpy2.sin_cos(phi)
+        w = gmpy2.sqrt((self.a * cos) ** 2 + (self.b * sin) ** 2)
+        h, o = self.ab / w, self.c2 * sin * cos / w
+        return Touch(h, o, 1 + h**2 / self.k2, 1 + o**2 / self.k2, h * o / self.k2)
+
+
+ROLLING, SLIDING, FLIGHT = "rolling", "sliding", "flight"
+
+
+class State(NamedTuple):
+    """The motion at one time; the centre moves as x and z do."""
+
+    phi: Any
+    theta: Any
+    omega: Any
+    x: Any
+    x_dot: Any
+    z: Any
+    z_dot: Any
+
+
+class Arc(NamedTuple):
+    """A mode, the sign of its slip, and the order of the zero of slip or gap at its start."""
+
+    mode: str
+    side: int = 0
+    zeros: int = 0
+
+
+class Series(NamedTuple):
+    """Taylor coefficients in time; forces per mass, B = 1 on all arcs but slides."""
+
+    phi: list[Any]
+    theta: list[Any]
+    omega: list[Any]
+    x: list[Any]
+    x_dot: list[Any]
+    h: list[Any]
+    c: list[Any]
+    stiffness: list[Any]
+    normal: list[Any]
+    friction: list[Any]
+
+
+def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
+    """Coefficients 0 to order of the state, and one fewer of the other columns."""
+    phi, theta, omega, x, x_dot = ([one] for one in state[:5])
+    sin, cos = ([each] for each in gmpy2.sin_cos(state.phi))
+    rate: list[Any] = []  # of phi
+    w2: list[Any] = []
+    w: list[Any] = []
+    h: list[Any] = []
+    o: list[Any] = []
+    spin: list[Any] = []  # omega^2
+    bend: list[Any] = []  # h''
+    c: list[Any] = []
+    load: list[Any] = []  # g cos alpha + (h + h'') omega^2
+    stiffness: list[Any] = []  # D when rolling, B when sliding, h o of unlimited friction
+    normal: list[Any] = []
+    friction: list[Any] = []
+    spin_up: list[Any] = []  # of omega
+    a2, b2, k2, zero = body.a**2, body.b**2, body.k2, mpfr(0)
+    pull = -body.mu * arc.side if gmpy2.is_finite(body.mu) else zero
+    for n in range(order):
+        first = n == 0
+        level, down = (body.level, body.down) if first else (zero, zero)
+        w2.append((b2 - a2) * product(sin, sin) + (a2 if first else 0))
+        w.append(square_root(w2[n], w))
+        h.append(quotient(body.ab if first else zero, w, h))
+        o.append(quotient(body.c2 * product(sin, cos), w, o))
+        spin.append(product(omega, omega))
+        bend.append(product(w2, w) / body.ab - h[n])
+        turning = product(bend, spin)
+        c.append(level + turning)
+        if arc.mode == ROLLING:
+            stiffness.append((k2 if first else 0) + product(h, h) + product(o, o))
+            load.append(c[n] + product(h, spin))
+            torque = body.down * h[n] - product(o, load)
+            spin_up.append(quotient(torque, stiffness, spin_up))
+            normal.append(c[n] + product(o, spin_up))
+            friction.append(product(h, spin_up) + product(o, spin) - down)
+        elif arc.mode == FLIGHT:
+            normal.append(zero)
+            friction.append(zero)
+            spin_up.append(zero)
+        elif gmpy2.is_finite(body.mu):
+            arms = product(o, o) + pull * product(h, o)
+            stiffness.append((1 if first else 0) + arms / k2)
+            normal.append(quotient(c[n], stiffness, normal))
+            friction.append(pull * normal[n])
+            spin_up.append(-(product(h, friction) + product(o, normal)) / k2)
+        else:
+            stiffness.append(product(h, o))
+            normal.append(zero)
+            friction.append(quotient(k2 * c[n], stiffness, friction))
+            spin_up.append(-product(h, friction) / k2)
+        rate.append(product(omega, w2) / body.ab)
+        sin_next, cos_next = product(cos, rate), -product(sin, rate)
+        sin.append(sin_next / (n + 1))
+        cos.append(cos_next / (n + 1))
+        phi.append(rate[n] / (n + 1))
+        theta.append(omega[n] / (n + 1))
+        omega.append(spin_up[n] / (n + 1))
+        x.append(x_dot[n] / (n + 1))
+        x_dot.append((friction[n] + down) / (n + 1))
+    return Series(phi, theta, omega, x, x_dot, h, c, stiffness, normal, friction)
+
+
+def standing(body: Body, state: State, slip: Any) -> Arc | None:
+    """The next arc of a touching body whose gap rate is 0; None if it jams."""
+    h, o, tangential, normal, coupling = body.touch(state.phi)
+    spin = state.omega**2
+    c = body.level + (body.ab**2 / h**3 - h) * spin
+    unlimited = not gmpy2.is_finite(body.mu)
+    if slip == 0:
+        spin_up = (h * body.down - o * (c + h * spin)) / (body.k2 + h**2 + o**2)
+        pressure, needed = c + o * spin_up, h * spin_up + o * spin - body.down
+        if pressure > 0 and (unlimited or abs(needed) <= body.mu * pressure):
+            if body.mu == 0 and (spin_up != 0 or (spin != 0 and body.c2 != 0)):
+                raise Undecided("no slip for a moment")
+            return Arc(ROLLING)
+    if c <= 0:
+        return Arc(FLIGHT, zeros=2)
+    if slip != 0:
+        side = 1 if slip > 0 else -1
+        if unlimited and side * coupling > 0:
+            raise Undecided("unlimited friction would stop the slip at once")
+        return Arc(SLIDING, side) if unlimited or normal > body.mu * side * coupling else None
+    possible = []
+    free = body.down - o * spin
+    for side in (1, -1):
+        if unlimited:
+            allowed = side * coupling < 0
+            slip_up = free + tangential * c / coupling
+        else:
+            answer = normal - body.mu * side * coupling
+            allowed = answer > 0
+            slip_up = free + (coupling - body.mu * side * tangential) * c / answer
+        if allowed and side * slip_up > 0:
+            possible.append(Arc(SLIDING, side, 1))
+    if len(possible) != 1:
+        raise Undecided(f"{len(possible)} ways to slip")
+    return possible[0]
+
+
+class Hit(NamedTuple):
+    """Impulses per mass along and away from the ground, and slip and gap rate after them."""
+
+    along: Any
+    away: Any
+    slip: Any
+    rebound: Any
+
+
+def collide(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
+    """Impulses of a collision with slip v and gap rate u < 0."""
+    if gmpy2.is_finite(body.mu):
+        return collide_with_friction(body, touch, v, u)
+    tangential, normal, coupling = touch[2:]
+    stopped = u - v * coupling / tangential  # the gap rate when friction alone has ended the slip
+    if stopped <= 0:
+        away = (1 + body.e) * -stopped / (normal - coupling**2 / tangential)
+        along = -(v + coupling * away) / tangential
+        return Hit(along, away, mpfr(0), -body.e * stopped)
+    if stopped <= body.e * -u:
+        return Hit(-v / tangential, mpfr(0), mpfr(0), stopped)
+    along = (1 + body.e) * -u / coupling
+    return Hit(along, mpfr(0), v + tangential * along, -body.e * u)
+
+
+def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
+    """Piece by piece: over the impulse p away from the ground, v and u change linearly."""
+    tangential, normal, coupling = touch[2:]
+    along, away, work, compressing = mpfr(0), mpfr(0), mpfr(0), True
+    while True:
+        if v != 0:
+            side = 1 if v > 0 else -1
+        elif abs(coupling) > body.mu * tangential:
+            side = 1 if coupling > 0 else -1
+        else:
+            side = 0
+        push = -body.mu * side if side else -coupling / tangential
+        v_rate, u_rate = coupling + tangential * push, normal + coupling * push
+        ends = []
+        if v * v_rate < 0:
+            ends.append((-v / v_rate, "slip"))
+        if not compressing:  # u p + u_rate p^2 / 2 = work, with u >= 0
+            assert u_rate > 0
+            ends.append(((gmpy2.sqrt(u**2 + 2 * u_rate * work) - u) / u_rate, "end"))
+        elif u_rate > 0:
+            ends.append((-u / u_rate, "turn"))
+        p, what = min(ends)
+        along, away = along + push * p, away + p
+        work -= (u + u_rate * p / 2) * p
+        v, u = v + (v_rate * p if side else 0), u + u_rate * p
+        if what == "slip":
+            v = mpfr(0)
+        elif what == "turn":
+            u, compressing, work = mpfr(0), False, body.e**2 * work
+            if body.e == 0:
+                return Hit(along, away, v, u)
+        else:
+            return Hit(along, away, v, u)
+
+
+# ---------------------------------------------------------------- the motion
+
+
+class Followed(NamedTuple):
+    """Events, the state at the end, the error of the energy, and the time of an undecided end."""
+
+    rows: list[Row]
+    last: Row
+    energy: Any
+    lost: Any
+
+
+class Follower:
+    """One motion, followed from event to event."""
+
+    most_steps = MOST_STEPS
+    least_rebound = LEAST_REBOUND
+
+    def __init__(self, scene: Scene, road: Road) -> None:
+        self.body = body = Body(scene)
+        self.road = road
+        self.t = mpfr(0)
+        self.rows: list[Row] = []
+        self.energy_error = mpfr(0)
+        self.lost: Any = None
+        self.steps = 0
+        theta, omega, x = map(mpfr, (scene.theta, scene.omega, scene.x))
+        phi = body.phi(theta)
+        touch = body.touch(phi)
+        on_ground = scene.z is None
+        x_dot = touch.h * omega if on_ground and scene.x_dot is None else mpfr(scene.x_dot or 0)
+        z = touch.h if on_ground else mpfr(scene.z)
+        z_dot = touch.o * omega if on_ground else mpfr(scene.z_dot or 0)
+        self.state = State(phi, theta, omega, x, x_dot, z, z_dot)
+        self.arc: Arc | None = Arc(FLIGHT)
+        if on_ground:
+            slip = mpfr(0) if scene.x_dot is None else x_dot - touch.h * omega
+            self.arc = self.first_arc(slip)
+        self.size = self.energy() + 2 * body.g * max(body.a, body.b)
+        if self.arc is None:
+            self.happens("jam")
+
+    def first_arc(self, slip: Any) -> Arc | None:
+        """The first arc of a body on the ground; None if it jams."""
+        return standing(self.body, self.state, slip)
+
+    def energy(self) -> Any:
+        """Per mass."""
+        s, body = self.state, self.body
+        kinetic = (s.x_dot**2 + s.z_dot**2 + body.k2 * s.omega**2) / 2
+        return kinetic + body.level * s.z - body.down * s.x
+
+    def happens(self, kind: str) -> None:
+        """Record an event."""
+        self.rows.append(self.now(kind))
+
+    def now(self, kind: str) -> Row:
+        """The state as a row."""
+        s = self.state
+        return Row(kind, self.t, s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot)
+
+    def follow(self, end: Any, most_events: int) -> Followed:
+        """Follow the motion to a time, or to a lost end before it."""
+        while self.arc is not None and self.t < end and len(self.rows) < most_events:
+            if self.lost is not None:
+                break
+            self.step(end)
+        return Followed(self.rows, self.now("state"), self.energy_error / self.size, self.lost)
+
+    def step(self, end: Any) -> None:
+        """One series, up to its reach, the end or the first event."""
+        arc, body = self.arc, self.body
+        assert arc is not None
+        self.steps += 1
+        if self.steps > self.most_steps:
+            raise Undecided("too many steps")
+        found = motion(body, self.state, arc, self.road.order)
+        step, what = min(end - self.t, self.reach(found)), ""
+        for kind, coefficients in self.watched(found, arc):
+            root = first_root(coefficients, step)
+            if root is not None:
+                step, what = root, kind
+        before = self.energy()
+        heat = self.heat(found, step) if arc.mode == SLIDING else 0
+        self.move(found, step)
+        self.energy_error += abs(self.energy() - before - heat)
+        self.t += step
+        self.arc = arc._replace(zeros=0)
+        if what:
+            self.change(what, arc, found, step)
+
+    def reach(self, found: Series) -> Any:
+        """The step whose last terms are as small as the tolerance."""
+        columns = (found.phi, found.omega, found.h, found.normal, found.friction)
+        last = self.road.order - 1
+        growth = max(
+            abs(column[n]) ** (mpfr(1) / n) for column in columns for n in (last - 1, last)
+        )
+        reach = mpfr(self.road.tolerance) ** (mpfr(1) / self.road.order)
+        return reach / growth if growth > 0 else mpfr("inf")
+
+    def watched(self, found: Series, arc: Arc) -> list[tuple[str, list[Any]]]:
+        """Margins of the arc by the event that ends it, divided by their zeros at the start."""
+        mu, normal, friction = self.body.mu, found.normal, found.friction
+        if arc.mode == FLIGHT:
+            s = self.state
+            z = [s.z, s.z_dot, -self.body.level / 2] + [mpfr(0)] * (len(found.h) - 3)
+            return [("impact", [p - q for p, q in zip(z, found.h, strict=True)][arc.zeros :])]
+        if arc.mode == ROLLING:
+            if not gmpy2.is_finite(mu):
+                return [("slip", normal)]
+            if mu == 0:
+                return []
+            pairs = list(zip(normal, friction, strict=True))
+            return [("slip", [mu * n + side * f for n, f in pairs]) for side in (1, -1)]
+        if mu == 0:  # slip has no side without friction
+            return [("lift_off", found.c)]
+        slip = [arc.side * one for one in self.slip(found)]
+        watched = [("stick", slip[arc.zeros :]), ("lift_off", found.c)]
+        return [*watched, ("jam", found.stiffness)] if gmpy2.is_finite(mu) else watched
+
+    def slip(self, found: Series) -> list[Any]:
+        """Coefficients of the slip."""
+        orders = range(len(found.h))
+        return [found.x_dot[n] - product(found.h[: n + 1], found.omega[: n + 1]) for n in orders]
+
+    def heat(self, found: Series, step: Any) -> Any:
+        """The work of friction."""
+        slip, force = self.slip(found), found.friction
+        power = [product(force[: n + 1], slip[: n + 1]) for n in range(len(slip))]
+        return step * value([one / (n + 1) for n, one in enumerate(power)], step)
+
+    def move(self, found: Series, step: Any) -> None:
+        """Move the state within the reach of the series."""
+        assert self.arc is not None
+        phi, theta, omega, x, x_dot = (value(column, step) for column in found[:5])
+        if self.arc.mode == FLIGHT:
+            s, level = self.state, self.body.level
+            z, z_dot = s.z + (s.z_dot - level * step / 2) * step, s.z_dot - level * step
+        else:
+            h, o = self.body.touch(phi)[:2]
+            z, z_dot = h, o * omega
+        self.state = State(phi, theta, omega, x, x_dot, z, z_dot)
+
+    def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
+        """Change the arc at the root of a margin."""
+        body, s = self.body, self.state
+        if what == "impact":
+            self.hit()
+        elif what == "lift_off":
+            self.arc = Arc(FLIGHT, zeros=3)
+            self.happens(what)
+        elif what == "stick":
+            self.state = s._replace(x_dot=s.z * s.omega)
+            self.arc = standing(body, self.state, mpfr(0))
+            assert self.arc is not None
+            if self.arc.mode == SLIDING and self.arc.side == arc.side:
+                raise Undecided("a slip that ends and goes on")
+            self.happens({ROLLING: "stick", SLIDING: "reverse", FLIGHT: "lift_off"}[self.arc.mode])
+        elif what == "slip":
+            if gmpy2.is_finite(body.mu):
+                side = 1 if value(found.friction, step) < 0 else -1
+            else:
+                side = 1 if body.touch(s.phi).coupling < 0 else -1
+            h = s.z
+            c = body.level + (body.ab**2 / h**3 - h) * s.omega**2
+            if c > 0:
+                self.arc = Arc(SLIDING, side, 2)
+                self.happens("slip")
+            else:
+                self.arc = Arc(FLIGHT, zeros=2)
+                self.happens("lift_off")
+        else:
+            raise Undecided("a jam on the way")
+
+    def hit(self) -> None:
+        """An impact, and the arc after it."""
+        body, s = self.body, self.state
+        touch = body.touch(s.phi)
+        s = s._replace(z=touch.h)
+        v, u = s.x_dot - touch.h * s.omega, s.z_dot - touch.o * s.omega
+        hit = collide(body, touch, v, u)
+        before = self.energy()
+        omega = s.omega - (touch.h * hit.along + touch.o * hit.away) / body.k2
+        x_dot = touch.h * omega if hit.slip == 0 else s.x_dot + hit.along
+        z_dot = touch.o * omega if hit.rebound == 0 else s.z_dot + hit.away
+        self.state = s._replace(omega=omega, x_dot=x_dot, z_dot=z_dot)
+        work = (hit.along * (v + hit.slip) + hit.away * (u + hit.rebound)) / 2
+        self.energy_error += abs(self.energy() - before - work)
+        natural = gmpy2.sqrt(body.g * min(body.a, body.b))
+        flat = body.down == 0 and touch.o == 0 and omega == 0 and x_dot == 0
+        if hit.rebound > 0 and not flat and hit.rebound < self.least_rebound * natural:
+            self.lost = self.t
+            return
+        self.happens("impact")
+        if hit.rebound == 0:
+            self.arc = standing(body, self.state, hit.slip)
+            if self.arc is None:
+                self.happens("jam")
+        elif flat and hit.rebound < REST_SPEED * natural:
+            self.t += 2 * hit.rebound / body.g / (1 - body.e)
+            self.state = self.state._replace(z_dot=mpfr(0))
+            self.arc = Arc(ROLLING)
+            self.happens("rest")
+        else:
+            self.arc = Arc(FLIGHT, zeros=1)
+
+
+def follow(scene: Scene, end: Any, road: Road, most_events: int = 100) -> Followed:
+    """The motion up to a time, in the precision of its road."""
+    return Follower(scene, road).follow(mpfr(end), most_events)
+
+
+# ---------------------------------------------------------------- in doubles, to draw scenes with
+
+
+def support(a: float, b: float, theta: float) -> tuple[float, float, float]:
+    """h, h' and h''."""
+    h = math.hypot(a * math.sin(theta), b * math.cos(theta))
+    slope = (a - b) * (a + b) * math.sin(theta) * math.cos(theta) / h
+    return h, slope, (a * b) ** 2 / h**3 - h
+
+
+def peak_of_friction(scene: Scene) -> float:
+    """First maximum of |F|/N of a rolling body by Euler's method; 0 if there is none."""
+    a, b, g, theta, omega = scene.a, scene.b, scene.gravity, scene.theta, scene.omega
+    k2 = (a * a + b * b) / 4 if scene.inertia is None else scene.inertia / scene.mass
+    down, level = g * math.sin(scene.slope), g * math.cos(scene.slope)
+    step = 1e-3 * math.sqrt(min(a, b) / g)
+    needed: list[float] = []
+    for _ in range(5000):
+        h = math.hypot(a * math.sin(theta), b * math.cos(theta))
+        o = (a * a - b * b) * math.sin(theta) * math.cos(theta) / h
+        radius = (a * b) ** 2 / h**3
+        load = level + radius * omega**2
+        spin_up = (h * down - o * load) / (k2 + h * h + o * o)
+        normal = load - h * omega**2 + o * spin_up
+        if normal <= 0:
+            return 0.0
+        needed.append(abs(h * spin_up + o * omega**2 - down) / normal)
+        if len(needed) > 2 and needed[-2] > max(needed[-1], needed[-3]):
+            return needed[-2]
+        omega += step * spin_up
+        theta += step * omega
+    return 0.0
