@@ -1,7 +1,7 @@
-"""The code itself: linter, formatters, type checker, generated files, one version, walls.
+"""The sources: linters, formatters, type checker, generated files, one version, walls.
 
-Everything is found beside this file, so that the suite runs from a source checkout with the
-package installed as users install it.
+All paths start beside this file: the suite runs from a source checkout with the package installed
+as users install it.
 """
 
 import ast
@@ -34,8 +34,8 @@ FOLDERS = (
     "numerics", "integrator", "geometry", "scene", "rolling/level", "rolling/slope",
     "rolling/stepped", "proof", "multipliers", "contact", "outcome", "", "bindings",
 )  # fmt: skip
-# The same of the package, whose rooms and bare modules import only those before them ("" is the
-# package itself); what is slow to load may be imported by a function that needs it.
+# Rooms and bare modules of the package in the same order; "" is the package itself. Functions may
+# import a later room that is slow to load.
 PACKAGE = ROOT / "python" / "rolling_ellipse"
 ROOMS = (
     "_core", "_ask", "geometry", "scenes", "_motion", "_verbs", "impacts", "report", "_pictures",
@@ -56,7 +56,7 @@ void many(const double* __restrict x, const double* __restrict y, double* __rest
 
 
 def run(*command: str | Path) -> str:
-    """Output of a command in the checkout; what it says is the message if it fails."""
+    """Output of a command in the checkout, which is the message if it fails."""
     done = subprocess.run(
         [str(part) for part in command], cwd=ROOT, capture_output=True, text=True, timeout=300
     )
@@ -64,73 +64,51 @@ def run(*command: str | Path) -> str:
     return done.stdout
 
 
-def script(name: str) -> Path:
-    """A program that the test extra puts beside the interpreter."""
-    found = Path(sysconfig.get_path("scripts")) / name
-    assert found.exists(), f"{found} is missing: pip install '.[test]'"
-    return found
+SCRIPTS = Path(sysconfig.get_path("scripts"))  # where the test extra puts its programs
 
 
 # -------------------------------------------------------------------------------- tools
 
 
-def test_ruff() -> None:
-    run(sys.executable, "-m", "ruff", "check", "--no-cache", ".")
-
-
-def test_ruff_format() -> None:
-    """Python files; newer versions also take code in Markdown, where comments are aligned."""
-    run(sys.executable, "-m", "ruff", "format", "--no-cache", "--check", *PYTHON_FOLDERS)
-
-
-def test_mypy(tmp_path: Path) -> None:
-    """The package as written here and this suite, strict by the project's settings."""
-    run(sys.executable, "-m", "mypy", f"--cache-dir={tmp_path}")
-
-
-def test_clang_format() -> None:
-    run(script("clang-format"), "--dry-run", "-Werror", *(p for p in SOURCES if p not in GENERATED))
-
-
-@pytest.mark.parametrize(
-    ("name", "text", "command"),
-    [
-        ("unused.py", "import os\n", ["-m", "ruff", "check", "--no-cache"]),
-        ("quotes.py", "x = 'one'\n", ["-m", "ruff", "format", "--no-cache", "--check"]),
-        ("untyped.py", "def f(x):\n    return x\n", ["-m", "mypy", "--strict"]),
-    ],
+RUFF = [sys.executable, "-m", "ruff"]
+# Newer versions of `ruff format` also take code in Markdown, where comments are aligned.
+CHECKS: dict[str, tuple[list[str | Path], list[str | Path], str, str]] = {
+    "ruff": ([*RUFF, "check", "--no-cache"], ["."], "unused.py", "import os\n"),
+    "ruff format": (
+        [*RUFF, "format", "--no-cache", "--check"], [*PYTHON_FOLDERS], "quotes.py", "x = 'one'\n",
+    ),
+    "mypy": (
+        [sys.executable, "-m", "mypy", "--cache-dir=/dev/null", "--strict"], [], "untyped.py",
+        "def f(x):\n    return x\n",
+    ),
+    "clang-format": (
+        [SCRIPTS / "clang-format", "-n", "-Werror", f"--style=file:{ROOT / '.clang-format'}"],
+        [path for path in SOURCES if path not in GENERATED], "wide.cpp", "int   f( ){return 1;}\n",
+    ),
+    "oxlint": (
+        [SCRIPTS / "oxlint", "--deny-warnings"], ["python/rolling_ellipse/_player"], "unused.js",
+        "const x = 1;\n",
+    ),
+}  # fmt: skip
+each_tool = pytest.mark.parametrize(
+    ("command", "sources", "name", "text"), CHECKS.values(), ids=CHECKS.keys()
 )
-def test_the_tools_refuse_what_is_wrong(
-    name: str, text: str, command: list[str], tmp_path: Path
+
+
+@each_tool
+def test_the_tools_accept_the_sources(
+    command: list[str], sources: list[str], name: str, text: str
 ) -> None:
-    path = tmp_path / name
-    path.write_text(text)
-    done = subprocess.run(
-        [sys.executable, *command, str(path)], cwd=tmp_path, capture_output=True, timeout=300
-    )
+    run(*command, *sources)
+
+
+@each_tool
+def test_the_tools_refuse_what_is_wrong(
+    command: list[str], sources: list[str], name: str, text: str, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_text(text)
+    done = subprocess.run([*command, name], cwd=tmp_path, capture_output=True, timeout=300)
     assert done.returncode == 1, done.stderr
-
-
-def test_oxlint() -> None:
-    run(script("oxlint"), "--deny-warnings", "python/rolling_ellipse/_player")
-
-
-def test_oxlint_refuses_what_is_wrong(tmp_path: Path) -> None:
-    (tmp_path / "unused.js").write_text("const x = 1;\n")
-    done = subprocess.run(
-        [script("oxlint"), "--deny-warnings", "."], cwd=tmp_path, capture_output=True, timeout=60
-    )
-    assert done.returncode == 1
-
-
-def test_clang_format_refuses_what_is_wrong(tmp_path: Path) -> None:
-    (tmp_path / ".clang-format").write_text((ROOT / ".clang-format").read_text())
-    path = tmp_path / "wide.cpp"
-    path.write_text("int   f( ){return 1;}\n")
-    done = subprocess.run(
-        [script("clang-format"), "--dry-run", "-Werror", path], capture_output=True, timeout=60
-    )
-    assert done.returncode != 0
 
 
 # -------------------------------------------------------------- generated files and numbers
@@ -155,7 +133,7 @@ def test_one_version() -> None:
 
 
 def test_every_requirement_states_its_oldest_version() -> None:
-    """Those that tools/oldest_versions.py runs the suite with."""
+    """tools/oldest_versions.py runs the suite with these versions."""
     versions = run(sys.executable, ROOT / "tools" / "oldest_versions.py", "--list").split()
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     for needed in settings["project"]["dependencies"]:
@@ -166,7 +144,7 @@ def test_every_requirement_states_its_oldest_version() -> None:
 
 
 def test_no_test_imports_another() -> None:
-    """What two of them need is in tests/oracles."""
+    """Shared helpers are in tests/oracles."""
     files = sorted(TESTS.glob("*/test_*.py"))
     assert len(files) > 40 and len({path.name for path in files}) == len(files)
     for path in files:
@@ -334,7 +312,7 @@ def test_nothing_is_fused_unless_written(fused: Callable[..., list[str]], tmp_pa
 
 
 def test_nothing_is_fused_in_vectors_where_they_are_wanted(fused: Callable[..., list[str]]) -> None:
-    """Packed ones would be; of single numbers are those that are written."""
+    """A compiler fuses packed numbers; fused instructions of single numbers are written."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     found = re.search(
         r"set_source_files_properties\(([^)]*)PROPERTIES COMPILE_OPTIONS (.+)\)", build
