@@ -1,6 +1,6 @@
 #!/bin/sh
-# Build the core with clang's libFuzzer, AddressSanitizer and UndefinedBehaviorSanitizer, and let it
-# look for inputs that break it (tools/fuzz_core/fuzz_core.cpp says what must hold):
+# Build the core with clang's libFuzzer, AddressSanitizer and UndefinedBehaviorSanitizer, and search
+# for inputs that break it (tools/fuzz_core/fuzz_core.cpp says what must hold):
 #
 #   tools/fuzz_core.sh                          (ten minutes)
 #   tools/fuzz_core.sh -max_total_time=3600     (an hour; all options are libFuzzer's)
@@ -14,8 +14,8 @@ source=$(cd "$(dirname "$0")/.." && pwd)
 folder=$source/build/fuzz_core
 compiler=${CXX:-clang++}
 python=${PYTHON:-python3}
-# Bytes become numbers by arithmetic: what these are compared with tells libFuzzer nothing, and to
-# note it takes two thirds of the time.
+# Bytes become numbers by arithmetic: recording the comparisons of these numbers takes two thirds of
+# the time and does not help libFuzzer.
 untraced="-fno-sanitize-coverage=trace-cmp"
 checks="address,undefined -fno-sanitize-recover=all"
 eigen=$("$python" -c "import os, sys; print(';'.join(

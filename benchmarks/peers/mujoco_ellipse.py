@@ -1,23 +1,21 @@
-"""The same body in MuJoCo: python benchmarks/peers/mujoco_ellipse.py
+"""The same body in MuJoCo, for notebook 07.
 
-An ellipsoid on a plane, held in its plane by two slides and a hinge, with the mass and inertia of
-the scene: MuJoCo finds the contact of an ellipsoid and a plane exactly, so that all that differs is
-its contact law. That is soft; "default" is MuJoCo's own in everything, "tuned" the stiffest that
-the step allows (time constant of two steps, impedance 0.9999) with elliptic friction cones. Other
-integrators, more iterations and the no-slip solver change nothing or make it worse. The friction
-coefficient is MuJoCo's own 1, more than these motions need; with pyramidal cones more makes the
-contact softer.
+The body is an ellipsoid on a plane, held in its plane by two slides and a hinge, with the mass and
+inertia of the scene. MuJoCo finds the contact of an ellipsoid and a plane exactly, so only its
+contact law differs: it is soft. "default" has MuJoCo's own settings, "tuned" the stiffest contact
+that the step allows (time constant of two steps, impedance 0.9999) with elliptic friction cones.
+Other integrators, more iterations and the no-slip solver change nothing or make it worse. The
+friction coefficient is MuJoCo's 1, more than these motions need; with pyramidal cones a larger one
+makes the contact softer.
 """
 
-import argparse
 import math
-import time
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 from mujoco import rollout
-from rolling_ellipse import Mode, Scene, flow, thresholds
+from rolling_ellipse import Mode, Scene
 
 CONTACTS = {
     "default": ("", ""),
@@ -42,7 +40,7 @@ STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS  # time, positions, velocities
 
 
 class Motion(NamedTuple):
-    """One entry a step; the energy is that of the whole body, from lying at the origin."""
+    """One entry a step; the potential energy is 0 at the origin."""
 
     times: Any
     theta: Any
@@ -53,7 +51,7 @@ class Motion(NamedTuple):
 
 
 def model(scene: Scene, dt: float, contact: str = "default") -> Any:
-    """The scene's body for MuJoCo, z normal to the ground."""
+    """MuJoCo's model of a scene, with z normal to the ground."""
     option, parameters = CONTACTS[contact]
     return mujoco.MjModel.from_xml_string(
         BODY.format(
@@ -67,7 +65,7 @@ def model(scene: Scene, dt: float, contact: str = "default") -> Any:
 
 
 def motion(scene: Scene, t_end: float, dt: float, contact: str = "default") -> Motion:
-    """The motion from the scene's initial state, every step of it."""
+    """All steps of the motion from the scene's initial state."""
     at = scene.initial_state
     if at.mode is not Mode.ROLLING:
         raise ValueError(f"the comparison is of rolling, and this scene starts {at.mode.name}")
@@ -89,42 +87,3 @@ def energy_gain(scene: Scene, found: Motion) -> float:
     """Relative change of the energy above lying flat at rest, on level ground."""
     above = found.energy - scene.mass * scene.gravity * min(scene.a, scene.b)
     return float(above[-1] / above[0] - 1)
-
-
-def rolls_over(scene: Scene, dt: float, contact: str, t_end: float = 8.0) -> bool:
-    """Does it get over its tip? Exact motion with 1.001 x the threshold needs less than 3 s."""
-    return bool(np.abs(motion(scene, t_end, dt, contact).theta).max() > math.pi / 2)
-
-
-def main() -> None:
-    options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--steps", nargs="+", type=float, default=[1e-2, 2e-3, 1e-3, 1e-4])
-    steps = options.parse_args().steps
-    rotation = Scene(2.0, 1.0, theta=0.2, omega=3.2)
-    rocking = Scene(2.0, 1.0, theta=0.2, omega=1.0)
-    speed = thresholds(2.0, 1.0).roll_over_speed
-    exact = flow(5.0, a=2.0, b=1.0, theta=0.2, omega=3.2)
-    print(f"MuJoCo {mujoco.__version__}")
-    print(
-        f"{'contact':10}{'step [s]':>10}{'ms per s':>10}{'theta, 5 s':>12}{'omega':>10}{'x':>10}"
-        f"{'energy, 200 s of rocking':>26}{'rolls over at 0.999':>21}{'1.001':>7}"
-    )
-    for contact in CONTACTS:
-        for dt in steps:
-            begin = time.perf_counter()
-            found = motion(rotation, 5.0, dt, contact)
-            cost = (time.perf_counter() - begin) / 5
-            ends = (found.theta[-1], found.omega[-1], found.x[-1])
-            errors = "".join(f"{p - q:10.1e}" for p, q in zip(ends, exact, strict=True))
-            gain = energy_gain(rocking, motion(rocking, 200.0, dt, contact))
-            near = (Scene(2.0, 1.0, omega=factor * speed) for factor in (0.999, 1.001))
-            over = (rolls_over(scene, dt, contact) for scene in near)
-            first, second = ("yes" if yes else "no" for yes in over)
-            print(
-                f"{contact:10}{dt:10.0e}{cost * 1e3:10.1f}  {errors}{gain:+26.1%}"
-                f"{first:>21}{second:>7}"
-            )
-
-
-if __name__ == "__main__":
-    main()

@@ -1,5 +1,5 @@
-// Numbers out of the bytes of a fuzzer: tame ones, in the ranges in which bodies live, extremes,
-// and any bits at all. After the last byte all are zero.
+// Numbers from the bytes of a fuzzer: ordinary ones, extremes, and arbitrary bits. After the last
+// byte all bytes are zero.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ class Bytes {
 
     int choice(int count) { return byte() % count; }
 
-    // In [0, 1], 2^16 places.
+    // A number in [0, 1], a multiple of 2^-16.
     double share() {
         const int high = byte();
         return (256 * high + byte()) / 65535.0;
@@ -30,33 +30,20 @@ class Bytes {
         return wild() ? any() : low + share() * (high - low);
     }
 
-    // Of a size between 10^low and 10^high.
+    // A number between 10^low and 10^high.
     double power(double low, double high) {
         return wild() ? any() : std::pow(10.0, low + share() * (high - low));
     }
 
     double sign() { return chance(128) ? -1.0 : 1.0; }
 
-    // Any bits; a few of them are tried more often.
+    // Arbitrary bits, half of the time one of a few extremes.
     double any() {
+        using limits = std::numeric_limits<double>;
         static constexpr double extremes[] = {
-            0.0,
-            -0.0,
-            1.0,
-            -1.0,
-            5e-324,
-            2.2250738585072014e-308,
-            1e-100,
-            1e-30,
-            1e30,
-            1e50,
-            1e150,
-            std::numeric_limits<double>::max(),
-            std::numeric_limits<double>::infinity(),
-            std::numeric_limits<double>::quiet_NaN(),
-            1.5707963267948966,
-            3.141592653589793,
-        };
+            0.0,    -0.0, 1.0,  -1.0,  5e-324,        limits::min(),      1e-100,
+            1e-30,  1e30, 1e50, 1e150, limits::max(), limits::infinity(), limits::quiet_NaN(),
+            M_PI_2, M_PI};
         const int kind = byte();
         if (kind < 128) return extremes[kind % 16];
         std::uint64_t bits = 0;

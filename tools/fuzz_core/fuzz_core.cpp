@@ -1,8 +1,8 @@
-// The core under any numbers at all, for libFuzzer: tools/fuzz_core.sh builds and runs it.
+// The core with arbitrary numbers, for libFuzzer: tools/fuzz_core.sh builds and runs it.
 //
-// What must hold of every input: wrong numbers are refused by std::invalid_argument, in words that
-// name the argument, and nothing else is thrown; what is not refused is finite, has a status that
-// fits, and loses energy rather than gaining any.
+// For every input must hold: wrong numbers are refused by a std::invalid_argument that names the
+// argument, and nothing else is thrown; every answer is finite, has a status that fits, and gains
+// no energy.
 
 #include <algorithm>
 #include <cstdio>
@@ -28,34 +28,24 @@ using fuzz_core::Bytes;
 
 namespace {
 
-Scene scene;  // of the input
+Scene scene;  // made from the input
 
-// As Python takes it.
+// The scene as a call of Python.
 void print_scene() {
-    const auto number = [](const char* name, std::optional<double> value) {
-        if (value) std::fprintf(stderr, ", %s=%.17g", name, *value);
-    };
-    std::fprintf(stderr, "Scene(%.17g, %.17g", scene.a, scene.b);
-    number("mass", scene.mass);
-    number("gravity", scene.gravity);
-    number("inertia", scene.inertia);
-    number("slope", scene.slope);
-    number("friction", scene.friction);
-    number("restitution", scene.restitution);
-    number("theta", scene.theta);
-    number("omega", scene.omega);
-    number("x", scene.x);
-    number("z", scene.z);
-    number("x_dot", scene.x_dot);
-    number("z_dot", scene.z_dot);
+    std::fprintf(stderr, "Scene(");
+    for (const SceneField& field : scene_fields) {
+        if (const auto value = field.of(scene)) {
+            std::fprintf(stderr, "%s=%.17g, ", field.name, *value);
+        }
+    }
     if (const auto& blow = scene.impulse) {
-        std::fprintf(stderr, ", impulse=Impulse(%.17g, %.17g, dx=%.17g, dz=%.17g)", blow->jx,
+        std::fprintf(stderr, "impulse=Impulse(%.17g, %.17g, dx=%.17g, dz=%.17g)", blow->jx,
                      blow->jz, blow->dx, blow->dz);
     }
     std::fprintf(stderr, ")\n");
 }
 
-// A failure is an abort, whose input libFuzzer keeps.
+// Aborts on a failure; libFuzzer keeps the input.
 void check(bool holds, const char* what, int line) {
     if (holds) return;
     std::fprintf(stderr, "line %d: %s\n", line, what);
@@ -64,16 +54,16 @@ void check(bool holds, const char* what, int line) {
 }
 #define CHECK(...) check((__VA_ARGS__), #__VA_ARGS__, __LINE__)
 
-struct Interrupted {};  // what Ctrl-C throws
+struct Interrupted {};  // thrown as by Ctrl-C
 
-// Work without an end in sight is left as Ctrl-C leaves it.
+// A checkpoint that interrupts long work as Ctrl-C does.
 Checkpoint patience(int looks) {
     return [looks]() mutable {
         if (--looks < 0) throw Interrupted{};
     };
 }
 
-// Weightless, or with just the friction that it needs to roll: to rounding.
+// Makes the body weightless, or gives it the friction that rolling needs, to rounding.
 void put_at_its_limit(Scene& scene, Bytes& bytes) {
     const Geometry at = geometry(scene.axes(), scene.theta);
     const double beside = 1 + 0.5 * epsilon * (bytes.choice(7) - 3);
@@ -96,7 +86,7 @@ Scene scene_from(Bytes& bytes) {
     scene.inertia = bytes.chance(128) ? scene.mass * uniform_disc_gyration2(scene.a, scene.b)
                                       : scene.mass * longer * longer * bytes.power(-6, 0);
     if (bytes.chance(128)) {
-        const bool gentle = bytes.chance(96);  // long climbs, and motion that hardly changes
+        const bool gentle = bytes.chance(96);  // for long climbs and slow changes
         scene.slope = gentle ? bytes.sign() * bytes.power(-9, 0) : bytes.between(-1.5, 1.5);
     }
     scene.friction = bytes.chance(64) ? infinity : bytes.power(-3, 2);
@@ -145,8 +135,7 @@ bool is_finite(const State& state) {
            std::isfinite(state.z) && std::isfinite(state.x_dot) && std::isfinite(state.z_dot);
 }
 
-// Energy per mass, and what may be wrong about it: sums of rounded terms, and an angle that is
-// known to its ulp only.
+// Energy per mass and its error: rounded sums, and an angle known to one ulp.
 struct Energy {
     double value;
     double unsure;
@@ -186,7 +175,7 @@ void check_start(const Scene& scene) {
     CHECK(std::abs(next.side) <= 1);
 }
 
-// Blows of the ground itself: a body that moves into it, at any speed and slip.
+// Collisions of a body with the ground at any speed and slip.
 void check_collision(const Scene& scene, Bytes& bytes) {
     const Geometry at = geometry(scene.axes(), scene.theta);
     const double speed = std::max(scene.a, scene.b) / unit_of_time(scene);
@@ -210,7 +199,8 @@ void check_certificate(const Scene& scene, bool rougher_too) {
     if (!found.largest_friction_needed) return;
     const double needed = *found.largest_friction_needed;
     CHECK(needed >= 0);
-    // On a slope what holds for 1e15 half turns is valid, though more would ask for no end of it.
+    // On a slope a motion that holds for 1e15 half turns is valid, though more would need more
+    // friction.
     const bool holds = validity == Validity::valid;
     if (holds && std::isfinite(needed)) CHECK(needed <= scene.friction * (1 + 1e-6));
     if (!rougher_too || !holds) return;
@@ -276,13 +266,13 @@ void check_simulation(const Scene& scene, Bytes& bytes) {
     const double span = bytes.chance(48) ? bytes.power(0, 8) : bytes.power(-3, 1.3);
     const double t_end = bytes.chance(16) ? bytes.any() : unit * span;
     const Settings settings = settings_from(bytes, t_end);
-    if (!(t_end >= 0 && std::isfinite(t_end))) return;  // Python's to refuse
+    if (!(t_end >= 0 && std::isfinite(t_end))) return;  // Python refuses it
     const Solution solution = simulate(scene, settings, t_end, patience(20));
     check_solution(scene, solution, t_end);
     if (bytes.chance(16)) CHECK(!reason(scene, solution).empty());
 }
 
-// The report's coordinates, whether they meet the constraints or not.
+// The report's coordinates, on the constraints or off them.
 void check_coordinates(const Scene& scene, Bytes& bytes) {
     CoordinateState start = kinematics(scene.axes(), scene.theta, scene.omega);
     for (int i = 0; i < 5; ++i) {
@@ -292,7 +282,7 @@ void check_coordinates(const Scene& scene, Bytes& bytes) {
     if (!start.q.allFinite() || !start.q_dot.allFinite()) return;
     const double largest =
         std::max(start.q.cwiseAbs().maxCoeff(), start.q_dot.cwiseAbs().maxCoeff());
-    if (largest > largest_number) return;  // Python's to refuse
+    if (largest > largest_number) return;  // Python refuses it
     const double t_end = unit_of_time(scene) * bytes.power(-3, 1);
     Settings settings = settings_from(bytes, t_end);
     settings.model = Model::multipliers;
@@ -302,7 +292,7 @@ void check_coordinates(const Scene& scene, Bytes& bytes) {
     check_samples(scene, solution, t_end, false);
 }
 
-// Rolling at any time: one state, the same in the lanes of the processor, and a table of many.
+// Rolling at any time: one state, the same state in lanes, and a table of many times.
 void check_flow(const Scene& scene, Bytes& bytes) {
     const Body body = scene.body();
     const double t = bytes.sign() * unit_of_time(scene) * bytes.power(-6, 9);
