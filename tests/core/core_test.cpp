@@ -1,4 +1,4 @@
-// What Python cannot reach: the pieces under the models, and the core as a C++ program uses it.
+// Parts of the core that Python does not reach, and the core used by a C++ program.
 //
 //     cmake --preset release && cmake --build --preset release && ctest --preset release
 
@@ -56,7 +56,7 @@ void bisection_by_secants_ends_at_the_same_neighbours() {
     CHECK(f(falling.low) < 0 && f(falling.high) >= 0);
 }
 
-// The rows go round, and all multipliers are halves, so that nothing is rounded.
+// Elimination permutes the rows; all multipliers are halves, so nothing is rounded.
 template <class Number>
 void equations_are_solved_whatever_their_order(Number unit) {
     Eigen::Matrix<Number, 3, 3> rows;
@@ -66,7 +66,7 @@ void equations_are_solved_whatever_their_order(Number unit) {
     CHECK(!LU<Number, 3>(0.0 * rows).solve(right).allFinite());
 }
 
-// From 0.25 to 0.75 it is negative; with a constant added it touches zero, or stays above.
+// A polynomial that is negative from 0.25 to 0.75; a constant makes it touch zero, or stay above.
 void the_first_place_where_a_polynomial_is_negative() {
     const Polynomial<2> dips = polynomial(-0.25, 1.0) * polynomial(-0.75, 1.0);
     const auto place = first_negative(bernstein(dips));
@@ -74,7 +74,7 @@ void the_first_place_where_a_polynomial_is_negative() {
     CHECK(!first_negative(bernstein(dips + polynomial(0.0625))));
     const auto grazes = first_negative(bernstein(dips + polynomial(0.0625 - 1e-12)));
     CHECK(grazes && std::abs(*grazes - (0.5 - 1e-6)) < 1e-9);
-    // What starts at zero and rises has not ended there; what starts below has.
+    // A start at zero that rises is no end; a start below zero is.
     const auto later = first_negative(bernstein(polynomial(0.0, 1.0, -2.0)));
     CHECK(later && std::abs(*later - 0.5) <= 2 * epsilon);
     CHECK(first_negative(bernstein(polynomial(-1.0, 3.0))) == 0.0);
@@ -89,8 +89,8 @@ void a_polynomial_that_touches_zero_has_no_sign() {
     CHECK(sign_on_unit_interval(bernstein(touches - polynomial(1e-9))) != Sign::positive);
 }
 
-// A margin that is negative between two looks only, for a thousandth of their distance.
-void a_dip_between_two_looks_is_found() {
+// A margin that is negative between two knots only, over a thousandth of their distance.
+void a_dip_between_two_knots_is_found() {
     const auto margin = [](double t) {
         const double off = (t - 2.3) / 5e-4;
         return std::array<double, 1>{2.5e-7 * (off * off - 1)};
@@ -113,7 +113,7 @@ void a_dip_between_two_looks_is_found() {
     CHECK(steep.found() == infinity);
 }
 
-// It rolls, slides, leaves the ground and comes down again.
+// A body that rolls, slides, leaves the ground and lands.
 Scene jumping() {
     Scene scene = ellipse(0.0, 5.5, 0.3);
     scene.restitution = 0.5;
@@ -122,28 +122,29 @@ Scene jumping() {
 
 Settings automatic() { return settings_of(Model::automatic, Method::automatic); }
 
-// Whatever a segment is, it gives the coordinates and the state of one and the same motion.
+// Each segment gives coordinates, states and flow samples of the same motion.
 void every_segment_knows_every_kind_of_sample() {
     const Scene scene = jumping();
     const Solution solution = simulate(scene, automatic(), 3.0, [] {});
     CHECK(solution.model == Model::contact && solution.ending == Ending::completed);
     CHECK(solution.motion.segments.size() > 3);
-    const Sampler look(solution.motion, 301);
+    const Sampler sampler(solution.motion, 301);
     std::vector<double> times;
     for (int i = 0; i <= 300; ++i) times.push_back(0.01 * i);
     std::vector<ContactSample> states(times.size());
     std::vector<FlowSample> flows(times.size());
     std::vector<CoordinateState> coordinates(times.size());
-    look(times.data(), times.size(), states.data());
-    look(times.data(), times.size(), flows.data());
-    look(times.data(), times.size(), coordinates.data());
+    sampler(times.data(), times.size(), states.data());
+    sampler(times.data(), times.size(), flows.data());
+    sampler(times.data(), times.size(), coordinates.data());
     for (std::size_t i = 0; i < times.size(); ++i) {
         using namespace coordinate;
         const State& state = states[i].state;
         const auto& [q, q_dot] = coordinates[i];
-        const auto close = [](double one, double other) {  // rolling is sampled in two ways
-            return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
-        };
+        const auto close =
+            [](double one, double other) {  // flow samples of rolling have a formula of their own
+                return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
+            };
         CHECK(close(flows[i].theta, state.theta) && close(flows[i].omega, state.omega));
         CHECK(close(flows[i].x, state.x) && close(q[x], state.x) && close(q[z], state.z));
         CHECK(close(q_dot[x], state.x_dot) && close(q_dot[theta], state.omega));
@@ -177,14 +178,14 @@ void wrong_numbers_are_refused() {
     CHECK(message.rfind("friction must be", 0) == 0);
 }
 
-void friction_is_needed_where_something_is_to_be_held() {
+void needed_friction_of_special_forces() {
     CHECK(friction_needed({2.0, -1.0}) == 0.5);
     CHECK(friction_needed({0.0, 0.0}) == 0);
     CHECK(friction_needed({0.0, 1e-300}) == infinity);
     CHECK(friction_needed({-1.0, 0.0}) == infinity);
 }
 
-void of_equal_forces_the_first_is_told() {
+void of_equal_forces_the_first_is_reported() {
     const auto same = [](const double*, std::size_t n, ContactForce* found) {
         std::fill_n(found, n, ContactForce{2.0, 1.0});
     };
@@ -204,7 +205,7 @@ bool same_bits(const PlaceBatch& one, const PlaceBatch& other) {
     return std::memcmp(&one, &other, sizeof(PlaceBatch)) == 0;
 }
 
-// Places, series and times of one motion by each of them.
+// Places, series and times of one motion by the kernel of each level.
 void every_vector_level_has_the_same_bits() {
     const Body body{2.0, 1.0, 1.25, 9.81};
     for (const double omega : {1.0, 3.2}) {  // libration and rotation
@@ -251,13 +252,12 @@ int main() {
     equations_are_solved_whatever_their_order(std::complex<double>(0.0, 2.0));
     the_first_place_where_a_polynomial_is_negative();
     a_polynomial_that_touches_zero_has_no_sign();
-    a_dip_between_two_looks_is_found();
+    a_dip_between_two_knots_is_found();
     every_segment_knows_every_kind_of_sample();
     a_checkpoint_that_throws_ends_the_work();
     wrong_numbers_are_refused();
-    friction_is_needed_where_something_is_to_be_held();
-    of_equal_forces_the_first_is_told();
+    needed_friction_of_special_forces();
+    of_equal_forces_the_first_is_reported();
     every_vector_level_has_the_same_bits();
-    std::printf(failures == 0 ? "all hold\n" : "%d do not hold\n", failures);
-    return failures == 0 ? 0 : 1;
+    return verdict(failures);
 }

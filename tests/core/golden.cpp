@@ -1,10 +1,10 @@
-// Motions of every model and answers of every proof, as bits: what two builds of the core have to
-// agree on, to be compared by tests/core/test_core.py and tools/same_bits.py.
+// The bits of motions of every model and of answers of every proof. tests/core/test_core.py and
+// tools/same_bits.py compare those of several builds.
 //
 //     golden > tests/core/golden.txt
 //
-// One line a record: what it is, words, then numbers as hexadecimal floats. All that is needed to
-// ask the same through Python stands before the answer.
+// A line is a record: its kind, words, then numbers as hexadecimal floats. The arguments of a
+// motion stand before its answers.
 
 #include <cmath>
 #include <cstdint>
@@ -37,7 +37,7 @@ void print(const std::string& words, const std::vector<double>& numbers) {
     std::printf("\n");
 }
 
-// Numbers of 32 bits that look random, in [0, 1), by a rule that rounds nothing.
+// Pseudo-random multiples of 2^-32 in [0, 1), by a generator without rounding.
 class Draw {
   public:
     double operator()() {
@@ -51,7 +51,7 @@ class Draw {
 
 // ------------------------------------------------------------------------- the C library
 
-// FNV-1a of the bits of the functions that the core calls, at so many places.
+// FNV-1a hash of the values of the library functions that the core calls.
 std::uint64_t fingerprint() {
     Draw draw;
     std::uint64_t sum = 14695981039346656037ULL;
@@ -91,8 +91,8 @@ struct Asked {
     Stabilization stabilization = Stabilization::projection;
     std::optional<double> step = {};
     std::optional<int> stages = {};
-    int samples = 13;  // and how many of them are printed
-    int printed = 13;
+    int samples = 13;
+    int printed = 13;  // of the samples
 };
 
 Scene thin() {
@@ -117,11 +117,6 @@ Scene circle() {
 Scene separatrix(double beside) {
     Scene scene = ellipse(0.0, 0.0);
     scene.omega = roll_over_speed(scene.body()) * (1 + beside);
-    return scene;
-}
-
-Scene on_slope(Scene scene, double slope) {
-    scene.slope = slope;
     return scene;
 }
 
@@ -248,8 +243,8 @@ void print_samples(const Asked& asked, const Solution& solution, Numbers numbers
         if (t <= solution.followed_until) times.push_back(t);
     }
     std::vector<Sample> samples(times.size());
-    const Sampler look(solution.motion, times.size());
-    look(times.data(), times.size(), samples.data());
+    const Sampler sampler(solution.motion, times.size());
+    sampler(times.data(), times.size(), samples.data());
     const std::size_t every = (asked.samples - 1) / (asked.printed - 1);
     for (std::size_t i = 0; i < times.size(); i += every) {
         std::vector<double> line = numbers_of(samples[i]);
@@ -311,7 +306,7 @@ void print_certificate(const Asked& asked) {
 
 // ---------------------------------------------------------------------------- many bodies
 
-// Of all ratios of axes and kinds of motion, times to and fro.
+// Bodies of all aspect ratios in all kinds of motion, at times of both signs.
 void print_bodies() {
     constexpr int count = 96;
     Draw draw;

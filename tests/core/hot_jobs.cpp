@@ -1,4 +1,4 @@
-// Five standard jobs, one by its number, for tools/hot_loops.py to count the instructions of.
+// Five standard jobs, chosen by number; tools/hot_loops.py counts their instructions.
 
 #include <cstdio>
 #include <cstdlib>
@@ -59,16 +59,16 @@ constexpr void (*jobs[])() = {one_state, thousand_samples, ten_events, ten_half_
 
 }  // namespace
 
-// By this name callgrind knows what to count.
+// callgrind counts the instructions of the function of this name.
 [[gnu::noinline]] void counted(void (*job)()) {
     job();
-    asm volatile("");  // or the call would be a jump, and callgrind would not see its end
+    asm volatile("");  // prevents a tail call, whose end callgrind would not see
 }
 
 int main(int count, char** words) {
     const int which = count == 2 ? std::atoi(words[1]) : -1;
     if (which < 0 || which >= static_cast<int>(std::size(jobs))) return 2;
-    jobs[which]();  // what is made once for all is there
+    jobs[which]();  // makes the static tables
     counted(jobs[which]);
     std::puts(name(lane_levels().back()).c_str());
     return 0;

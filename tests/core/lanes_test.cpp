@@ -1,5 +1,5 @@
-// The functions of several doubles side by side against those of the C library in long double, at
-// the narrowest level; tests/rolling/test_lanes.py has all levels give the same bits.
+// Functions of packed doubles against the C library in long double, at the narrowest level.
+// tests/rolling/test_lanes.py shows that all levels give the same bits.
 
 #include "numerics/lanes.hpp"
 
@@ -12,8 +12,7 @@ namespace {
 
 int failures = 0;
 
-// The largest error of a function at places from low to high in equal ratios, in units in the last
-// place of the answer.
+// Checks the largest error [ulp] of a function at places from low to high in equal ratios.
 template <class Function, class Exact>
 void within(double ulps, const char* what, double low, double high, const Function& function,
             const Exact& exact) {
@@ -40,8 +39,8 @@ void within(double ulps, const char* what, double low, double high, const Functi
 
 }  // namespace
 
-// Half an ulp is the last rounding; each step before it, a quotient or a sum of two terms of one
-// size, adds as much again: three of them, four in sinh, five in asinh.
+// Bounds: half an ulp for the last rounding, and half an ulp for each quotient, or sum of two terms
+// of one size, before it: three of them, four in sinh, five in asinh.
 int main() {
     within(
         2.5, "sinh", 1e-300, 20.0, [](Pack v) { return hyperbolic(v).sinh; },

@@ -1,6 +1,7 @@
-// A body and settings that the programs have in common.
+// A scene and settings for the test programs.
 #pragma once
 
+#include <cstdio>
 #include <optional>
 
 #include "geometry/ellipse.hpp"
@@ -35,6 +36,17 @@ inline Settings settings_of(Model model, Method method, std::optional<double> st
     settings.max_steps = 1'000'000;
     settings.max_events = 10'000;
     return settings;
+}
+
+inline Scene on_slope(Scene scene, double slope) {
+    scene.slope = slope;
+    return scene;
+}
+
+// The end of a test program: a line, and the exit code.
+inline int verdict(int failures) {
+    std::printf(failures == 0 ? "all hold\n" : "%d do not hold\n", failures);
+    return failures == 0 ? 0 : 1;
 }
 
 }  // namespace rolling_ellipse

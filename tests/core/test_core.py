@@ -1,11 +1,10 @@
-"""The programs of C++: the core built once more, by the compiler of this machine without
-optimisation, and run.
+"""The C++ programs, in a second build of the core without optimisation.
 
-That build is as far from the installed one as a compiler gets, and promised to have the same bits:
-motions of every model and answers of every proof (golden.cpp) are compared with those of the
-installed extension, and with the committed ones (golden.txt) where the C library is the same. Its
-sin, cos, exp and log are rounded in another way by another version, and by the same one on a
-processor without fused multiply-add; then the bound of oracles/golden.py holds.
+It must have the bits of the installed extension: motions of every model and answers of every proof
+(golden.cpp) are compared with those of the extension, and with the committed ones (golden.txt) if
+the C library is the same. Another version of the library, or the same one on a processor without
+fused multiply-add, rounds sin, cos, exp and log in another way; then the bound of oracles/golden.py
+holds.
 """
 
 import os
@@ -129,7 +128,7 @@ def compare(mine: list[Record], through_python: list[Record], bound: float) -> N
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_motions_through_python(name: str) -> None:
-    """Within the bound wherever there is no compiler to tell what this C library's bits are."""
+    """Within the bound: without a compiler the bits of this C library are unknown."""
     motion = [each for each in blocks(RECORDS, "motion")[name] if each.kind not in OTHERS]
     compare(motion[2:], list(motion_through_python(motion)), OTHER_LIBRARY)
 
