@@ -1,1 +1,1 @@
-"""What more than one test needs: truths to judge the package by, scenes, tables, places."""
+"""Helpers of several tests: references for the package, scenes, tables, paths."""

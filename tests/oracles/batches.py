@@ -1,4 +1,4 @@
-"""Many scenes one by one, which is what `simulate_many` must come to."""
+"""Scenes simulated one by one, to be compared with `simulate_many`."""
 
 import warnings
 from collections.abc import Iterable
@@ -13,14 +13,14 @@ NAMED = [
     rl.scenes.circle, rl.scenes.thin, rl.scenes.slope, rl.scenes.slip, rl.scenes.jump,
     rl.scenes.drop, rl.scenes.bounce, rl.Scene(2.0, 1.0, friction=0.1, omega=3.0),
 ]  # fmt: skip
-# a scene that rolls takes hours, one at rest no time
+# hours for a rolling scene, no time for one at rest
 ENDLESS: dict[str, Any] = {
     "model": "rolling", "method": "rk4", "step": 1e-7, "max_steps": 2**31 - 1,
 }  # fmt: skip
 
 
 def singly(scenes: Iterable[rl.Scene], t: Any, **settings: Any) -> list[Any]:
-    """A motion of `simulate`, or the exception that it raises, for each scene."""
+    """The motion of each scene by `simulate`, or the exception that it raises."""
     found: list[Any] = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

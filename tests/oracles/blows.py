@@ -1,4 +1,4 @@
-"""Random blows, and what the computed motion comes to first after each."""
+"""Random blows, and their outcomes read off the computed motions."""
 
 import math
 
@@ -16,7 +16,7 @@ ENDS_ROLLING = {EventKind.SLIP: Outcome.SLIPS, EventKind.LIFT_OFF: Outcome.LOSES
 
 
 def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
-    """Any shape up to 30:1, at rest or rolling, and a blow about as strong as what rolls it over,
+    """Any shape up to 30:1, at rest or rolling, with a blow about strong enough to roll it over,
     mostly a press."""
     b = 10 ** rng.uniform(-1, 1)
     a = b * 10 ** rng.uniform(-1.5, 1.5) if rng.random() < 0.8 else b
@@ -46,13 +46,13 @@ def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
 
 
 def tips_passed(scene: Scene, theta: float) -> int:
-    """Half turns begun at a tip, for a circle at its start."""
+    """Half turns from a tip, or from the start of a circle."""
     first = math.pi / 2 if scene.a > scene.b else 0.0 if scene.a < scene.b else scene.theta
     return math.floor((theta - first) / math.pi)
 
 
 def met_first(scene: Scene) -> Outcome | None:
-    """Read off samples of the motion of the model "contact"; None if nothing is met."""
+    """The first outcome in samples of the model "contact"; None if there is none."""
     span = 4 * math.sqrt(max(scene.a, scene.b) / scene.gravity)
     for _ in range(SPANS):
         times = np.linspace(0, span, SAMPLES)

@@ -1,4 +1,4 @@
-"""The report's constraints f1 ... f4 written down once more, with q = (x, z, theta, psi, r)."""
+"""The report's constraints f1 ... f4 in mpmath, with q = (x, z, theta, psi, r)."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -30,7 +30,7 @@ def no_slip(q: Sequence[Any], q_dot: Sequence[Any]) -> Any:
 
 
 def along(function: Positions, q: Sequence[Any], q_dot: Sequence[Any], a: Any, b: Any) -> list[Any]:
-    """Rate of each entry of function(q, a, b) when q moves with q_dot."""
+    """Rates of the entries of function(q, a, b) for the rates q_dot."""
     return [
         mp.diff(
             lambda t, k=k: function(

@@ -1,4 +1,4 @@
-"""Bodies on every kind of ground and in every state, and what their contact has to obey."""
+"""Random bodies on every kind of ground, and the laws of their contact."""
 
 import math
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ SLOPES = [0.0, 0.0, 0.1, 0.4, -0.7]
 
 
 class Response(NamedTuple):
-    """Slip and gap rate, and what impulses along and away from the ground change of them."""
+    """Slip and gap rate, and their responses to impulses along and away from the ground."""
 
     slip: Any
     gap_rate: Any
@@ -25,7 +25,7 @@ class Response(NamedTuple):
 
 
 def response(scene: Scene, state: InitialState) -> Response:
-    """Of a touching body: v of the material point, and 1/m + arm^2/I."""
+    """Response of a touching body: rates of the material point, and 1/m + arm^2/I."""
     at = support(state.theta, scene.a, scene.b)
     mass, inertia = scene.mass, scene.mass * scene.gyration2
     return Response(
@@ -38,8 +38,8 @@ def response(scene: Scene, state: InitialState) -> Response:
 
 
 def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[float, float]:
-    """Each slip, stop, stick or reversal is a straight piece of u(p), v(p), p the normal impulse;
-    it ends when the normal work of restitution is e^2 that of compression."""
+    """Reaction by Stronge's law. Slip v and gap rate u are linear in the normal impulse p between a
+    stop, a stick and a reversal; it ends when restitution has done e^2 of compression's work."""
     slip, gap_rate, tangential, normal, coupling = contact
     along = across = work = 0.0
     owed = math.inf  # work of restitution, known when compression ends
@@ -77,8 +77,8 @@ def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[fl
 def reaction_in_small_pushes(
     contacts: Response, friction: Any, e: Any, pushes: int
 ) -> tuple[Any, Any]:
-    """Arrays of impacts at once: after each push the friction that stops the slip, cut off at the
-    cone; the work is summed as it comes."""
+    """Reactions of many impacts by small pushes: each push has the friction that stops the slip,
+    cut off at the cone, and its work is summed."""
     slip, gap_rate, tangential, normal, coupling = (np.array(part) for part in contacts)
     determinant = normal * tangential - coupling**2
     push = 2 * (np.abs(gap_rate) + np.abs(slip)) * (normal + tangential) / determinant / pushes
@@ -100,8 +100,8 @@ def reaction_in_small_pushes(
 
 
 def way_of_slide(scene: Scene, start: InitialState, friction: float, theta: Any, lasts: Any) -> Any:
-    """What x gains up to an angle, with F = friction N, the sign of which is that of F: as
-    z'' = N/m - g cos(slope) integrates to h."""
+    """Change of x in a slide up to an angle, with F = friction N (signed): the integral of N/m
+    follows from z'' = N/m - g cos(slope) and z = h."""
     h0, dh0, _ = (float(each) for each in support(start.theta, scene.a, scene.b))
     into, along = (scene.gravity * f(scene.slope) for f in (math.cos, math.sin))
     h = support(theta, scene.a, scene.b).h
@@ -121,7 +121,7 @@ def energy(scene: Scene, state: InitialState) -> float:
 
 
 def random_scenes(count: int, seed: int, **given: Any) -> Iterator[Scene]:
-    """In the air, sliding or rolling, lying or standing, a tenth of them circles."""
+    """Scenes in the air, sliding or rolling, lying or standing, a tenth of them circles."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         a, b = (10 ** rng.uniform(-0.5, 0.5, 2)).tolist()

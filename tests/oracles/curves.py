@@ -1,4 +1,4 @@
-"""Axes to draw on, motions to draw, and what is read back from the artists."""
+"""Axes for pictures, changed motions, and data of the artists."""
 
 import dataclasses
 
@@ -26,7 +26,7 @@ TWO_PANELS = (rl.plot_forces, rl.plot_constraints)
 
 
 def seen(motion: rl.Trajectory, line: Line2D) -> rl.Trajectory:
-    """The motion at the times of a curve over time, which are its own: all of the span."""
+    """The motion at the times of a curve over time, which cover the span of the motion."""
     times = data(line)[0]
     assert times[0] == motion.t[0] and times[-1] == motion.t[-1] and np.all(np.diff(times) >= 0)
     return motion.sol(times)

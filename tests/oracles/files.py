@@ -1,4 +1,4 @@
-"""Files of trajectories in parts, and what a writer may leave behind."""
+"""Files of trajectories in parts, and a write that stops halfway."""
 
 import io
 import json
@@ -14,7 +14,7 @@ def half_a_file(file: Any, **arrays: Any) -> None:
 
 
 def taken_apart(content: bytes) -> tuple[Any, dict[str, Any]]:
-    """What a file holds as JSON, and its arrays."""
+    """The JSON of a file, and its arrays."""
     with np.load(io.BytesIO(content)) as data:
         arrays: dict[str, Any] = {name: data[name] for name in data.files}
     return json.loads(str(arrays.pop("about"))), arrays

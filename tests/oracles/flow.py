@@ -1,7 +1,7 @@
-"""Units of the answers of `flow`: what one rounding of every input does to them, and two ulp.
+"""Units of the answers of `flow`: the effect of one rounding of every input, and two ulp.
 
-`grain` and `carried` come from `flow` itself: only bounds between answers of the package, and never
-its truth, may rest on them.
+`grain` and `carried` are computed by `flow` itself: they bound differences between answers of the
+package, never an error.
 """
 
 import math
@@ -13,7 +13,7 @@ from rolling_ellipse import flow, geometry
 from oracles.numbers import EPS
 
 # One unit is the unavoidable error of a backward stable method that rounds every input once; four
-# leave room for some roundings inside. A wrong digit anywhere in front of them shows.
+# allow some roundings inside.
 LARGEST_ERROR = 4.0
 
 PARAMETERS = ("a", "b", "gyration2", "gravity", "theta", "omega")
@@ -26,8 +26,7 @@ def arguments(motion: Motion) -> dict[str, Any]:
 
 
 def grain(t: float, motion: Motion) -> np.ndarray:
-    """Units of theta, omega, x at t, here by central differences of `flow` itself: only bounds
-    between answers of `flow` rest on them."""
+    """Units of theta, omega, x at t, by central differences of `flow` itself."""
     start, small = arguments(motion), 1e-7
     total = np.zeros(3)
     for name in PARAMETERS:
@@ -41,7 +40,7 @@ def grain(t: float, motion: Motion) -> np.ndarray:
 
 
 def carried(t1: float, motion: Motion, reached: Motion, t2: float) -> np.ndarray:
-    """What the error of a state at t1 can be t2 later, and that of the second way itself."""
+    """Bound of the error at t1 + t2 of a motion continued from the state reached at t1."""
     error, step = LARGEST_ERROR * grain(t1, motion), 1e-7
     start: dict[str, Any] = arguments(reached)
     total = LARGEST_ERROR * grain(t2, reached) + [0, 0, error[2]]

@@ -1,8 +1,8 @@
-"""The ellipse on its tangent, by definition and in the one closed form that the suite knows.
+"""The ellipse on its tangent, by definition and in the closed form of the suite.
 
-Nothing of the package is imported here. theta is clockwise positive; "flat" is the position of
-least height, "tip" of largest, and the reduced angle phi in [0, pi/2] is the rotation away from
-flat, whichever semi-axis is the longer.
+Nothing of the package is imported here. theta is clockwise positive. "flat" is the position of
+least height, "tip" the position of largest height. The reduced angle phi in [0, pi/2] is the
+rotation away from flat, whichever semi-axis is longer.
 """
 
 import math
@@ -18,7 +18,8 @@ from oracles.numbers import DIGITS, Long
 
 
 def boundary_point(t: Any, theta: Any, a: Any, b: Any) -> tuple[Any, Any]:
-    """Point t of the outline, from G, of the ellipse turned clockwise by theta: (right, up)."""
+    """Point t of the outline of the ellipse turned clockwise by theta: (right, up) of the
+    centre."""
     along, across = a * mp.cos(t), b * mp.sin(t)
     cosine, sine = mp.cos(theta), mp.sin(theta)
     return along * cosine + across * sine, across * cosine - along * sine
@@ -55,7 +56,7 @@ def height(theta: Any, a: float, b: float) -> Any:
 
 
 def height_slopes(theta: float, a: float, b: float) -> tuple[Any, Any, Any]:
-    """h, h', h'' [m] by numerical differentiation of h, good to 30 digits of the largest."""
+    """h, h', h'' [m] by numerical differentiation of h, to 30 digits of the largest."""
     with mp.workdps(2 * DIGITS):
         turned, long_axis, short_axis = mp.mpf(theta), mp.mpf(a), mp.mpf(b)
         derivatives = mp.diffs(lambda angle: height(angle, long_axis, short_axis), turned, 2)
@@ -74,7 +75,7 @@ class Support(NamedTuple):
 
 
 def support(theta: Any, a: Any, b: Any) -> Support:
-    """At angles, in their arithmetic: numbers, arrays of any float, or mpf (held against
+    """Support function at angles that are numbers, arrays of any float, or mpf (held against
     `height_slopes`, that is against the definition, by test_ellipse.py)."""
     values = (theta, a, b)
     arithmetic: Any = np
@@ -111,7 +112,7 @@ class Outline(NamedTuple):
 
 
 def outline(a: Long, b: Long, sine: Long, cosine: Long) -> Outline:
-    """At a reduced angle."""
+    """The outline at a reduced angle."""
     longer, shorter = np.maximum(a, b), np.minimum(a, b)
     h, slope, curvature = _support(sine, cosine, longer, shorter, np.sqrt)
     return Outline(h, slope, (a * b) ** 2 / h**3, curvature)

@@ -1,4 +1,4 @@
-"""The bits of tests/core/golden.cpp: read, compared, and asked for again through Python."""
+"""The records of tests/core/golden.cpp: read, compared, and made again through Python."""
 
 import math
 import os
@@ -17,8 +17,8 @@ from .paths import TESTS
 
 GOLDEN = TESTS / "core" / "golden.txt"
 
-# Another C library rounds its sin and cos in another way. What is exact or has fixed steps then
-# moves by roundings; what chooses its steps, to a tolerance of 1e-10, by no more than that.
+# Another C library rounds its sin and cos in another way. Exact motions and fixed steps then change
+# by roundings, steps of controlled error by no more than the tolerance of 1e-10.
 OTHER_LIBRARY = 1e-10
 
 _COLUMNS = {
@@ -34,7 +34,7 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class Record:
-    """A line: what it is, words and numbers."""
+    """A line: its kind, words and numbers."""
 
     kind: str
     words: tuple[str, ...]
@@ -55,7 +55,7 @@ def record(line: str) -> Record:
 
 
 def read(text: str) -> tuple[str, list[Record]]:
-    """The C library that it was made with, and the records."""
+    """The C library, and the records."""
     library, *lines = text.splitlines()
     assert library.startswith("library ")
     return library, [record(line) for line in lines]
@@ -67,7 +67,7 @@ def golden() -> tuple[str, list[Record]]:
 
 
 def printed(program: Path, **environment: str) -> tuple[str, list[Record]]:
-    """What the program golden of a build prints."""
+    """Records of the program golden of a build."""
     done = subprocess.run(
         [str(program)], env=os.environ | environment, capture_output=True, text=True, timeout=300
     )
@@ -76,7 +76,7 @@ def printed(program: Path, **environment: str) -> tuple[str, list[Record]]:
 
 
 def blocks(records: list[Record], first: str) -> dict[str, list[Record]]:
-    """What belongs to each record of a kind: itself, and those up to the next one of that kind."""
+    """Blocks of records, each from a record of a kind up to the next one of that kind."""
     starts = [i for i, each in enumerate(records) if each.kind == first]
     ends = [*starts[1:], len(records)]
     found: dict[str, list[Record]] = {}
@@ -87,21 +87,21 @@ def blocks(records: list[Record], first: str) -> dict[str, list[Record]]:
 
 
 def difference(one: list[Record], other: list[Record]) -> tuple[float, str]:
-    """The largest one of two numbers, relative above 1, and the records; words have to agree."""
+    """Largest difference of two numbers, relative above 1, and its records; words must agree."""
     assert len(one) == len(other)
     worst, where = 0.0, "the same bits"
     for mine, theirs in zip(one, other, strict=True):
-        told = f"\n{mine}\n{theirs}"
-        assert (mine.kind, mine.words) == (theirs.kind, theirs.words), told
-        assert len(mine.numbers) == len(theirs.numbers), told
+        pair = f"\n{mine}\n{theirs}"
+        assert (mine.kind, mine.words) == (theirs.kind, theirs.words), pair
+        assert len(mine.numbers) == len(theirs.numbers), pair
         for x, y in zip(mine.numbers, theirs.numbers, strict=True):
             if x == y and math.copysign(1, x) == math.copysign(1, y):
                 continue
             if math.isnan(x) and math.isnan(y):
                 continue
-            off = max(abs(x - y) / max(1.0, abs(x)), math.ulp(0.0))  # also if a zero has its sign
-            if not off <= worst:  # also if it is no number
-                worst, where = off, told
+            off = max(abs(x - y) / max(1.0, abs(x)), math.ulp(0.0))  # more than 0 for -0 and 0
+            if not off <= worst:  # also for NaN
+                worst, where = off, pair
     return worst, where
 
 
@@ -143,7 +143,7 @@ def motion_through_python(motion: list[Record]) -> Iterator[Record]:
         warnings.simplefilter("ignore", rl.StabilityWarning)
         found = rl.simulate(scene, times, **chosen)
     solution = next(each for each in motion if each.kind == "solution")
-    ending, followed_until, _ = solution.numbers  # which have no name in Python
+    ending, followed_until, _ = solution.numbers  # they have no name in Python
     yield Record("solution", (found.model, found.method),
                  (ending, followed_until, found.valid_until))  # fmt: skip
     for event in found.events:
@@ -162,7 +162,7 @@ def motion_through_python(motion: list[Record]) -> Iterator[Record]:
 
 
 def bodies_through_python(records: list[Record]) -> list[Record]:
-    """All records of many bodies: each, and its state at its time, side by side."""
+    """Records of many bodies, each followed by its state at its time."""
     bodies = [each for each in records if each.kind == "body"]
     columns = np.array([each.numbers for each in bodies]).T
     t, a, b, theta, omega, gravity, gyration2 = columns
@@ -173,7 +173,7 @@ def bodies_through_python(records: list[Record]) -> list[Record]:
 
 
 def outcomes_through_python(records: list[Record]) -> Iterator[Record]:
-    """All records of thresholds and of classify."""
+    """Records of thresholds and of classify."""
     theta, omega = np.array([0.2 * i for i in range(16)]), np.array([0.5 * i for i in range(16)])
     for one, other in pairwise(each for each in records if each.kind in ("thresholds", "classify")):
         if one.kind == "classify":

@@ -1,7 +1,7 @@
-"""Stepped runs of all kinds, fine and much too coarse, and what they have lost.
+"""Stepped runs of all kinds, fine and much too coarse, and their losses.
 
-Judged by the samples of the trajectory, eight to a step, and by the equation of motion solved here
-from the beginning of each step. "Lost" is, over the limit given for it:
+They are judged by samples of the trajectory, eight a step, and by the equation of motion solved
+here from the start of each step. A loss is divided by its limit:
 
 * the energy: its largest change at any time, over the largest kinetic + |potential| energy
   (x from the start), over 1e-2 or ten rtol;
@@ -20,11 +20,11 @@ from rolling_ellipse import Scene, StabilityWarning, Trajectory, simulate
 
 Floats = NDArray[np.float64]
 
-LOOKS = 8  # a step
+SAMPLES = 8  # in a step
 
 
 class Run(NamedTuple):
-    """A scene, the end of its motion [s] and how it is computed."""
+    """A scene, the end of its motion [s] and the settings."""
 
     scene: Scene
     t_end: float
@@ -32,8 +32,8 @@ class Run(NamedTuple):
 
 
 def drawn(seed: int) -> Run:
-    """Any body, level ground or a slope, x = 0 anywhere; all stepped methods and stabilizations,
-    steps of a hundredth to three times sqrt(L/g), tolerances from 1e-10 to 0.03."""
+    """A run of any body, on level ground or a slope, with any stepped method and stabilization,
+    with steps of a hundredth to three times sqrt(L/g) or tolerances from 1e-10 to 0.03."""
     rng = np.random.default_rng(seed)
     long_axis = 10 ** rng.uniform(-1, 1)
     ratio = rng.choice([1.0, 1.001, 10 ** rng.uniform(0, 0.7), 10 ** rng.uniform(0, 2)])
@@ -66,7 +66,7 @@ def drawn(seed: int) -> Run:
 
 
 def told(run: Run) -> tuple[Trajectory, list[str]]:
-    """A run, as far as it comes, and what was said of its stability."""
+    """The motion of a run, as far as it is followed, and the warnings of its stability."""
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         motion = simulate(run.scene, [0.0, run.t_end], raise_on_failure=False, **run.how)
@@ -74,9 +74,9 @@ def told(run: Run) -> tuple[Trajectory, list[str]]:
 
 
 def lost(run: Run, motion: Trajectory) -> float:
-    """The largest of the three losses over its limit: more than 1 is lost."""
+    """The largest of the three losses over its limit."""
     knots = np.unique([*motion._solution.knots(), motion.t_end])
-    inside = np.arange(LOOKS) / LOOKS
+    inside = np.arange(SAMPLES) / SAMPLES
     times = np.append((knots[:-1, None] + np.diff(knots)[:, None] * inside).ravel(), knots[-1])
     seen = motion.sol(times)
     surprise = 0.0 if "step" in run.how else 10 * run.how["rtol"]
@@ -85,14 +85,14 @@ def lost(run: Run, motion: Trajectory) -> float:
         missed = np.abs(seen.constraint_residuals().position)
         missed[:, :2] /= max(run.scene.a, run.scene.b)
         found.append(float(np.max(missed)) / 1e-3)
-    here = seen.theta[::LOOKS], seen.omega[::LOOKS]
-    beside = np.abs(seen.theta[LOOKS::LOOKS] - _solved(run.scene, *here, np.diff(knots)))
+    here = seen.theta[::SAMPLES], seen.omega[::SAMPLES]
+    beside = np.abs(seen.theta[SAMPLES::SAMPLES] - _solved(run.scene, *here, np.diff(knots)))
     found.append(float(np.max(beside / np.maximum(0.1, surprise * (1 + np.abs(here[0][:-1]))))))
     return max(math.inf if math.isnan(value) else value for value in found)
 
 
 def _energy(scene: Scene, seen: Trajectory) -> float:
-    """From the velocities; those of a rolling body are h omega and h' omega."""
+    """Largest relative change of the energy, computed from the velocities."""
     kinetic = (seen.x_dot**2 + seen.z_dot**2 + scene.gyration2 * seen.omega**2) / 2
     height = seen.z * math.cos(scene.slope) - (seen.x - seen.x[0]) * math.sin(scene.slope)
     energy = kinetic + scene.gravity * height
@@ -101,8 +101,9 @@ def _energy(scene: Scene, seen: Trajectory) -> float:
 
 
 def _solved(scene: Scene, theta: Floats, omega: Floats, steps: Floats) -> Floats:
-    """The angles at the ends of steps, all at once: physics (18) by the classical method, in ever
-    more parts until two solutions agree to 1e-4. Where they never do, nothing is judged (0 off)."""
+    """Angles at the ends of all steps: physics (18) by the classical method, in ever more parts
+    until two solutions agree to 1e-4. A step where they never do keeps its angle and is not
+    judged."""
     a2, b2, k2 = scene.a**2, scene.b**2, scene.gyration2
     into, along = scene.gravity * math.cos(scene.slope), scene.gravity * math.sin(scene.slope)
 

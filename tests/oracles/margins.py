@@ -1,6 +1,6 @@
-"""How far what was found is from what is allowed."""
+"""Figures of a test beside its bounds."""
 
 
 def told(*values: object) -> None:
-    """Printed: pytest shows it where a test fails, and of every test with -rP."""
+    """Print figures: pytest shows them for a test that fails, and for every test with -rP."""
     print(*values)

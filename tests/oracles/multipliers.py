@@ -1,4 +1,5 @@
-"""The model "multipliers": the suite's own matrix, its slopes and forces; scenes and settings."""
+"""The model "multipliers": a matrix, its slopes and forces apart from the core; scenes,
+settings."""
 
 import dataclasses
 import math

@@ -1,4 +1,4 @@
-"""The arithmetic of the truths: long double for thousands of scenes, mpmath for single points."""
+"""Arithmetic of the references: long double for thousands of scenes, mpmath for single points."""
 
 from typing import Any
 
@@ -6,19 +6,19 @@ import mpmath as mp
 import numpy as np
 from numpy.typing import NDArray
 
-Long = NDArray[Any]  # of np.longdouble, which NumPy's annotations lose in mixed arithmetic
+Long = NDArray[Any]  # of np.longdouble; NumPy's annotations lose it in mixed arithmetic
 EPS = 2.0**-52  # one ulp of 1.0 in double
 PI = np.longdouble("3.14159265358979323846264338327950288")
 DIGITS = 40
 
 
 def ulps(actual: float, exact: Any, scale: Any) -> float:
-    """Error of `actual` in units of 2^-52 of `scale` (inf where the scale is 0 and it is wrong)."""
+    """Error of `actual` in units of 2^-52 of `scale`; inf for an error at scale 0."""
     error = abs(mp.mpf(actual) - exact)
     return 0.0 if error == 0 else float(error / abs(scale) / EPS) if scale else float("inf")
 
 
 def known(value: float | None) -> float:
-    """A number that must be there."""
+    """The value, which must not be None."""
     assert value is not None
     return value

@@ -41,7 +41,7 @@ class Sample(NamedTuple):
         return found
 
     def scene(self, row: int) -> Scene:
-        """Of mass 1, so that the moment of inertia is gyration2 itself."""
+        """The scene of a row, with mass 1: its moment of inertia is gyration2."""
         a, b, omega, theta, friction, gravity, inertia = (float(field[row]) for field in self)
         return Scene(
             a, b, omega=omega, theta=theta, friction=friction, gravity=gravity, inertia=inertia
@@ -49,9 +49,9 @@ class Sample(NamedTuple):
 
 
 def random_sample(count: int, seed: int) -> Sample:
-    """Every shape up to 100:1, any angle, some exactly on an axis, some hundreds of turns away; at
-    rest, swinging or turning over up to beyond what the ground can hold; friction from a list, at
-    random, and close to what the whole motion needs."""
+    """Scenes of every shape up to 100:1 at any angle, some on an axis, some hundreds of turns away;
+    at rest, swinging or turning over, up to beyond the loss of contact; with friction from a list,
+    at random, or close to the friction that the whole motion needs."""
     rng = np.random.default_rng(seed)
     thin, ordinary = rng.uniform(-2, 2, count), rng.uniform(-0.5, 0.5, count)
     b = 10 ** rng.uniform(-1, 1, count)

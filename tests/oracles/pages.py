@@ -1,4 +1,4 @@
-"""What a page of the player carries."""
+"""The data in a page of the player."""
 
 import base64
 import gzip
@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 
 def carried(html: str) -> dict[str, Any]:
-    """The data of the first player in a fragment or a page; no NaN, which JSON does not know."""
+    """The data of the first player in a fragment or a page, read as JSON without NaN."""
 
     def refused(name: str) -> NoReturn:
         raise ValueError(name)

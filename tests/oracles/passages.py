@@ -1,4 +1,4 @@
-"""Random motions of every model, and their passages of a value as dense samples show them."""
+"""Random motions of every model, and dense times to find passages of a value."""
 
 import math
 import warnings
@@ -26,8 +26,8 @@ SETTINGS: tuple[dict[str, Any], ...] = (
 
 
 def random_motion(rng: np.random.Generator) -> Trajectory:
-    """Of a body of some metres: rolling as each method has it, on a slope in places, and contact
-    motions from the air, with slip, and bouncing."""
+    """A motion of a body of some metres: rolling by each method, some on a slope, and contact
+    motions that start in the air or with slip, some of them bouncing."""
     settings = SETTINGS[rng.integers(len(SETTINGS))]
     contact = settings["model"] == "contact"
     a, b = rng.uniform(0.3, 3.0, 2) if rng.random() < 0.9 else (1.5, 1.5)
@@ -53,7 +53,7 @@ def random_motion(rng: np.random.Generator) -> Trajectory:
 
 
 def some_value(rng: np.random.Generator, motion: Trajectory, name: str) -> float:
-    """One that the quantity has, one that it is near to, or one out of its range."""
+    """A value that the quantity has, one within its range, or one outside."""
     values = getattr(motion, name)
     low, high = float(values.min()), float(values.max())
     one = float(values[rng.integers(values.size)])
@@ -64,10 +64,10 @@ def times_of_events(motion: Trajectory) -> Floats:
     return np.array([event.t for event in motion.events if event.t <= motion.t_end])
 
 
-def dense_looks(motion: Trajectory) -> Floats:
+def dense_times(motion: Trajectory) -> Floats:
     """Even times, and close ones on both sides of each event."""
     events = times_of_events(motion)
-    slow = motion.method == "radau"  # each look solves for the stages of a step
+    slow = motion.method == "radau"  # each sample solves for the stages of a step
     even = np.linspace(0.0, motion.t_end, DENSE // 8 if slow else DENSE)
     both = np.concatenate([even, np.nextafter(events, 0), events])
     return np.unique(both[(both >= 0) & (both <= motion.t_end)])

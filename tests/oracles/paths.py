@@ -1,4 +1,4 @@
-"""Where things are in the checkout: the one place that counts folders upwards."""
+"""Folders of the checkout."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Scenes to draw, and what a drawn ellipse is, from matplotlib's own transform of it."""
+"""Scenes to draw, and the geometry of drawn ellipses by matplotlib's transforms."""
 
 from typing import Any
 
@@ -42,38 +42,39 @@ def outline(body: Ellipse, count: int = 200) -> NDArray[np.float64]:
 
 
 def figure_of(ax: Axes) -> Figure:
-    """The figure itself, not a part of one."""
+    """The figure of an axes, which must not be a subfigure."""
     figure = ax.figure
     assert isinstance(figure, Figure)
     return figure
 
 
 def legend_in(ax: Axes) -> Legend:
-    """The legend that must be there."""
+    """The legend of an axes, which must exist."""
     legend = ax.get_legend()
     assert legend is not None
     return legend
 
 
 def centre_of(body: Ellipse) -> tuple[float, float]:
-    """matplotlib's own annotation says it is a number."""
+    """Centre of a patch; matplotlib's annotation is wrong."""
     centre: Any = body.get_center()
     return centre[0], centre[1]
 
 
 def points_of(collection: Collection | None) -> NDArray[np.float64]:
-    """Corners (n, 2) of the first path of a band that must be there."""
+    """Corners (n, 2) of the first path of a band, which must exist."""
     assert collection is not None
     return np.asarray(collection.get_paths()[0].vertices)
 
 
 def frames_of(image: Image) -> int:
-    """Frames of a GIF; Pillow's annotation does not know of them."""
+    """Frames of a GIF; Pillow's annotation lacks them."""
     return int(image.n_frames)  # type: ignore[attr-defined]
 
 
 def shows_something(figure: Figure) -> bool:
-    """Every axes has finite limits and an artist at a finite place, and none at infinity."""
+    """Whether every axes has finite limits and an artist at a finite place, and none at
+    infinity."""
     for ax in figure.axes:
         points = [np.asarray(line.get_xydata(), float) for line in ax.lines]
         points += [np.asarray(body.get_extents().get_points()) for body in ax.patches]

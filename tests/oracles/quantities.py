@@ -1,4 +1,4 @@
-"""Numbers with units, made as libraries of units make them, and plain ones that look like such."""
+"""Numbers with units as libraries make them, and plain numbers that look like them."""
 
 from typing import Any
 
@@ -93,7 +93,7 @@ def quantities(value: Any) -> list[Any]:
 
 
 def plain(values: list[float]) -> list[Any]:
-    """Arrays without units that have attributes of such names."""
+    """Arrays without units that have attributes with the names of units."""
     return [
         np.array(values).view(Astropy), Labelled(np.array(values), units="m"), NetCDF(values),
     ]  # fmt: skip

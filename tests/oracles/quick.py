@@ -1,6 +1,6 @@
-"""What `pytest -m quick` runs: files, and single tests of slow files, from every folder.
+"""Tests of `pytest -m quick`: files, and single tests of slow files, from every folder.
 
-A minute that sees most mistakes; the whole suite is what counts.
+They take a minute and find most mistakes; the whole suite is what counts.
 """
 
 QUICK = (

@@ -1,8 +1,7 @@
 """Rolling on level ground by brute force; nothing of the package is imported here.
 
-mpmath for single points, `numpy.longdouble` for thousands of scenes x hundreds of samples. Forces
-come straight from Newton's law with the acceleration and the energy put in, never from a
-polynomial.
+mpmath serves single points, `numpy.longdouble` thousands of scenes with hundreds of samples. Forces
+come from Newton's law with the acceleration and the energy, never from a polynomial.
 """
 
 from collections.abc import Callable
@@ -50,7 +49,7 @@ class Motion(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """Per mass [m/s^2]; the errors are what double arithmetic may be off by."""
+    """Forces per mass [m/s^2], and bounds of the errors of double arithmetic."""
 
     normal: Long
     friction: Long
@@ -90,9 +89,9 @@ def speed(moving: Motion, sine: Long, cosine: Long) -> Long:
 def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:
     """Newton's law at a reduced angle; friction signed as for phi and h' >= 0.
 
-    The errors allow 1e-12 of the sum of the terms; what 16 ulp of the energy (measured from the
-    ground, as E/m - g h is formed) change in omega^2 and with it in the force; and what an ulp of
-    a or b changes, which near a circle, where all depends on a - b, is the largest.
+    The errors allow 1e-12 of the sum of the terms; the effect of 16 ulp of the energy (measured
+    from the ground, as E/m - g h is formed) on omega^2 and the force; and the effect of an ulp of a
+    or b, which is the largest near a circle, where all depends on a - b.
     """
     h, slope, rho, curvature = outline(moving.a, moving.b, sine, cosine)
     inertia = moving.gyration2 + h * h + slope * slope
@@ -137,7 +136,7 @@ class Chart(NamedTuple):
 
 
 def chart(moving: Motion) -> Chart:
-    """The part of the quarter turn that a motion reaches."""
+    """The chart of the part of the quarter turn that a motion reaches."""
     longer, shorter = np.maximum(moving.a, moving.b), np.minimum(moving.a, moving.b)
     rise = moving.lift / moving.gravity
     gap2 = (longer - shorter) * (longer + shorter)
@@ -152,8 +151,8 @@ def chart(moving: Motion) -> Chart:
 def golden_minimum(
     function: Callable[[Long], Long], low: Long, high: Long, rounds: int = 40
 ) -> Long:
-    """Where a function is least, for many brackets at once: to 1e-8 of the bracket, so its value
-    (flat there) to 1e-16 of the curvature; at an end, where it need not be flat, exactly."""
+    """Places of minima in many brackets: to 1e-8 of the bracket, so the value (flat there) is known
+    to 1e-16 of the curvature; a minimum at an end is exact."""
     ends = low, high
     golden = (np.sqrt(np.longdouble(5)) - 1) / 2
     left, right = high - golden * (high - low), low + golden * (high - low)
@@ -182,8 +181,8 @@ def local_minima(values: Long, keep: Long) -> tuple[NDArray[np.intp], NDArray[np
 
 
 class Extremes(NamedTuple):
-    """Over a whole motion: smallest N/m and largest |F|/N (inf where N <= 0), where (as v), and
-    what double arithmetic may be off by."""
+    """Smallest N/m and largest |F|/N (inf where N <= 0) of a whole motion, their places v, and
+    bounds of the errors of double arithmetic."""
 
     normal: Long
     normal_v: Long

@@ -1,7 +1,7 @@
-"""The 2:1 disc on Earth, thrown from flat a hair's breadth beside the speed that rolls it over.
+"""The 2:1 disc on Earth, thrown from flat close to the speed that rolls it over.
 
-Which side a double is on, how far, and when the body lies flat again: in mpmath, by the energy
-integral of reference/make_rolling_reference.py.
+mpmath and the energy integral of reference/make_rolling_reference.py give the side and distance of
+each double speed, and the time until the body lies flat again.
 """
 
 from functools import cache
@@ -16,7 +16,7 @@ A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81  # all but g are exact, k^2 too
 
 
 class Throw(NamedTuple):
-    """From theta = 0; what the double omega means."""
+    """A start from theta = 0 with a double omega."""
 
     omega: float  # [rad/s]
     distance: float  # omega/omega_R - 1
@@ -29,7 +29,7 @@ class Throw(NamedTuple):
 
 @cache
 def rule() -> reference.Rule:
-    """Of the quadrature: 30 nodes on panels that grow by 1.8 reach 1e-25 and more."""
+    """Rule of the quadrature: 30 nodes on panels that grow by 1.8 reach 1e-25."""
     with mp.workdps(DIGITS):
         return reference.gauss_rule(30, 1.8)
 
@@ -40,14 +40,15 @@ def roll_over_speed() -> Any:
 
 
 def tip_rate() -> float:
-    """lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), by which the fall from the tip grows [1/s]."""
+    """Growth rate lambda of the fall from the tip, g (a^2 - b^2)/(a (k^2 + a^2)) = lambda^2
+    [1/s]."""
     with mp.workdps(DIGITS):
         return float(mp.sqrt(mp.mpf(GRAVITY) * (A * A - B * B) / (A * (mp.mpf(GYRATION2) + A * A))))
 
 
 @cache
 def throw(k: int, side: int) -> Throw:
-    """With omega = omega_R (1 + side 10^-k), rounded to a double."""
+    """The throw with omega = omega_R (1 + side 10^-k), rounded to a double."""
     with mp.workdps(DIGITS):
         exact = roll_over_speed()
         omega = float(exact * (1 + side * mp.mpf(10) ** -k))

@@ -1,8 +1,7 @@
-"""By how much two answers may differ that are equal but for rounding.
+"""Bounds of the difference of two answers that are equal but for rounding.
 
-Nothing here is a derivative of the package's own: answers at inputs that were moved by their
-rounding are looked at as they are. Such bounds may stand between answers of the package, and never
-between an answer and its truth.
+They come from answers of the package at inputs that are moved by their rounding. So they bound
+differences between answers of the package, never an error.
 """
 
 import math
@@ -17,13 +16,13 @@ Floats = NDArray[np.float64]
 Inputs = Mapping[str, float]
 Answer = Callable[..., Floats]
 
-# A backward stable method answers a question whose every number is off by a rounding; four leave
-# room for some roundings inside. A wrong digit anywhere in front of them shows.
+# A backward stable method is exact for inputs that are off by one rounding each; four allow some
+# roundings inside.
 ROUNDINGS = 4
 
 
 def roundings(inputs: Inputs) -> dict[str, float]:
-    """What four roundings move every number by; angles are known to no more than those of 1."""
+    """Four roundings of every number, and of 1 at least for an angle."""
     return {
         name: ROUNDINGS * EPS * (max(abs(value), 1.0) if name == "theta" else abs(value))
         for name, value in inputs.items()
@@ -31,7 +30,7 @@ def roundings(inputs: Inputs) -> dict[str, float]:
 
 
 def spread(answer: Answer, inputs: Inputs, errors: Inputs) -> Floats:
-    """How far an answer goes when one input after the other is off by its error, both ways."""
+    """Sum of the changes of an answer when each input is off by its error, to either side."""
     middle = answer(**inputs)
     total = ROUNDINGS * np.spacing(np.abs(middle))
     for name, error in errors.items():
@@ -43,5 +42,5 @@ def spread(answer: Answer, inputs: Inputs, errors: Inputs) -> Floats:
 
 
 def known_to(answer: Answer, inputs: Inputs) -> Floats:
-    """What rounding may make of an answer."""
+    """Bound of the effect of rounding on an answer."""
     return spread(answer, inputs, roundings(inputs))

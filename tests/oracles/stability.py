@@ -1,5 +1,5 @@
-"""Motions kept on their constraints, or not, and a period by quadrature; all else that is measured
-of methods is in notebooks/stability_laws.py."""
+"""Motions with each stabilization, and a period by quadrature. notebooks/stability_laws.py has the
+other measurements of methods."""
 
 from functools import cache
 from typing import Any
@@ -14,8 +14,8 @@ from oracles.numbers import DIGITS
 
 
 def half_swing_of(omega: float) -> Any:
-    """Time of half a swing from the flat with that speed [s], by mpmath's own quadrature of the
-    energy integral: sin theta = sin(largest theta) sin u."""
+    """Time of half a swing from the flat with a speed [s], by mpmath's quadrature of the energy
+    integral in u: sin theta = sin(largest theta) sin u."""
     with mp.workdps(DIGITS):
         a2, b2 = mp.mpf(A) ** 2, mp.mpf(B) ** 2
         top = B + (GYRATION2 + b2) * mp.mpf(omega) ** 2 / (2 * mp.mpf(GRAVITY))
@@ -44,20 +44,20 @@ KEPT: dict[str, dict[str, Any]] = {
 
 @cache
 def kept(name: str) -> Trajectory:
-    """The same rotation by rk4, the same steps (127 a half turn), with a stabilization of KEPT."""
+    """A rotation by rk4 in 127 steps a half turn, with a stabilization of KEPT."""
     times = SPANS * half_turn(FED_BACK)
     how: dict[str, Any] = {"method": "rk4", "step": 2.0**-7, "max_steps": 10_000_000}
     return simulate(FED_BACK, times, **how, **KEPT[name])
 
 
 def worst_residual(trajectory: Trajectory) -> float:
-    """Of positions and velocities, in m, rad and s."""
+    """Largest residual of positions and velocities [m, rad, s]."""
     held = trajectory.constraint_residuals()
     return float(max(np.max(np.abs(held.position)), np.max(np.abs(held.velocity))))
 
 
 def grain(trajectory: Trajectory) -> NDArray[np.float64]:
-    """What rounding leaves of constraints at each sample: 16 ulp of theta as they feel it [m]."""
+    """Residual by rounding at each sample: the effect of 16 ulp of theta [m]."""
     scene = trajectory.scene
     size = np.maximum(np.abs(trajectory.theta), 1)
     found: NDArray[np.float64] = 16 * 2.0**-52 * size * max(scene.a, scene.b)

@@ -1,4 +1,4 @@
-"""The committed reference tables: decimal text of 30 digits and more, and how to be held to it."""
+"""The committed reference tables of 30 digits and more, and differences from them."""
 
 import csv
 from decimal import Context, Decimal

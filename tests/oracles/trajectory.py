@@ -1,4 +1,4 @@
-"""The scenes whose motions are looked at sample by sample, and motions of every make."""
+"""Scenes whose motions are compared sample by sample, and motions of every kind."""
 
 from collections.abc import Callable
 

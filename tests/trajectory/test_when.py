@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.numbers import EPS
-from oracles.passages import NAMES, Floats, dense_looks, random_motion, some_value, times_of_events
+from oracles.passages import NAMES, Floats, dense_times, random_motion, some_value, times_of_events
 from rolling_ellipse import CompletenessWarning, Mode, Scene, Status, Trajectory, simulate
 
 # ---------------------------------------------------------------------------- against dense samples
@@ -64,7 +64,7 @@ def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float])
 def test_none_is_missed_and_none_invented(seed: int) -> None:
     rng = np.random.default_rng(seed)
     motion = random_motion(rng)
-    dense = motion.sol(dense_looks(motion))
+    dense = motion.sol(dense_times(motion))
     for name in NAMES:
         value = some_value(rng, motion, name)
         check(motion, dense, name, [value])
@@ -79,7 +79,7 @@ def test_tables_of_values_beside_brute_force(first: int) -> None:
     for seed in range(first, first + 20):
         rng = np.random.default_rng(seed)
         motion = random_motion(rng)
-        dense = motion.sol(dense_looks(motion))
+        dense = motion.sol(dense_times(motion))
         for name in NAMES:
             seen = getattr(dense, name)
             values = [seen[0], seen[-1], seen.min(), seen.max(), *rng.uniform(-4, 4, 1)]
