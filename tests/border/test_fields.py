@@ -1,7 +1,7 @@
-"""No field is forgotten on its way: each row of the core's tables comes back from everywhere.
+"""Each field of the core's tables survives every way through the package.
 
-A contact motion is the same in all units that are powers of two, bit by bit: so each field has the
-dimension that its unit says.
+A contact motion has the same bits in all units that are powers of two. So each field has the
+dimension of its unit.
 """
 
 import dataclasses
@@ -29,7 +29,7 @@ from rolling_ellipse._show.command.options import (
 UNITS: dict[str, dict[str, str]] = _core.FIELDS
 FIELDS = list(UNITS["Scene"])
 BLOW = Impulse(3.0, -5.0, dx=0.3, dz=-0.2)
-# In the air over a slope, so that x_dot, z and z_dot count; a field that is new is small.
+# A start in the air over a slope uses x_dot, z and z_dot; a new field gets a small number.
 GIVEN = {
     "a": 2.0, "b": 1.0, "mass": 10.0, "gravity": 9.0, "inertia": 11.0, "slope": 0.2,
     "friction": 0.3, "restitution": 0.6, "theta": 0.5, "omega": 1.5, "x": 0.7, "z": 2.5,
@@ -44,7 +44,7 @@ def names(kind: Any) -> list[str]:
 
 
 def changed(name: str) -> Scene:
-    """Another scene, by this number alone."""
+    """A scene that differs in this number alone."""
     return START.replace(**{name: getattr(START, name) * (1 + 2**-6)})
 
 
@@ -90,7 +90,7 @@ def test_a_scene_keeps_its_numbers(road: str, name: str, tmp_path: Path) -> None
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_a_number_changes_the_motion(name: str) -> None:
-    """The core has it, and the units of a contact motion do."""
+    """The core reads it, and so do the units of a contact motion."""
     one, other = (rl.simulate(scene, TIMES, model="contact") for scene in (START, changed(name)))
     assert any(getattr(one, each).tobytes() != getattr(other, each).tobytes() for each in STATE)
 
@@ -103,7 +103,7 @@ DIMENSIONS = {
 
 
 def exponents(unit: str) -> np.ndarray[Any, Any]:
-    """Of metre, second and kilogram in a unit as it is printed: "kg m²", "m/s²"."""
+    """Exponents of metre, second and kilogram in a printed unit: "kg m²", "m/s²"."""
     found = np.zeros(3, int)
     for k, part in enumerate(unit.split("/")):
         for symbol, power in re.findall(r"([A-Za-z]+)(²?)", part):
@@ -113,7 +113,7 @@ def exponents(unit: str) -> np.ndarray[Any, Any]:
 
 @pytest.mark.parametrize("units", [(3, 0, 0), (0, -2, 0), (0, 0, 5), (-7, 4, 2)])
 def test_a_motion_is_the_same_in_other_units(units: tuple[int, int, int]) -> None:
-    """Powers of two: of the metre, the second and the kilogram."""
+    """The units are powers of two of the metre, the second and the kilogram."""
 
     def scaled(value: Any, unit: str) -> Any:
         return value * 2.0 ** int(exponents(unit) @ units)
@@ -133,7 +133,7 @@ def test_a_motion_is_the_same_in_other_units(units: tuple[int, int, int]) -> Non
 
 
 def test_the_dimension_of_every_number_is_seen() -> None:
-    """The tester of `exponents`."""
+    """A test of `exponents`."""
     assert exponents("kg m²").tolist() == [2, 0, 1]
     assert exponents("N s").tolist() == [1, -1, 1]
     assert exponents("m/s²").tolist() == [1, -2, 0]
@@ -149,7 +149,7 @@ def test_each_field_is_an_option_or_has_a_reason() -> None:
 
 
 def test_settings_have_the_fields_of_the_core() -> None:
-    """All that the core reads is there (or DEFAULTS had no core), and it reads all."""
+    """The core reads every field; it would refuse DEFAULTS if one were missing."""
     given = DEFAULTS.__getstate__()
     for name in names(Settings):
         with pytest.raises(KeyError, match=name):

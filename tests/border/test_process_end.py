@@ -1,4 +1,4 @@
-"""A process that ends or forks while a thread of it is at work: as if the thread were not there."""
+"""A process ends or forks while one of its threads works, as if the thread did not exist."""
 
 import os
 import subprocess
@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-# Every kind of call that is long, or is made again and again while the main thread ends; but for
-# what matplotlib draws, whose own code aborts there (a static map of ft2font outlives Python).
+# Calls of every kind, long ones or short ones that are repeated while the main thread ends.
+# Pictures are left out: matplotlib itself aborts there (a static map of ft2font outlives Python).
 LONG = {
     "rk4": "simulate(R, [1e5], model='rolling', method='rk4', step=1e-4, **ON)",
     "gauss": "simulate(R, [1e5], model='rolling', method='gauss', step=1e-4, **ON)",
@@ -63,7 +63,7 @@ assert thread.is_alive()
 
 @pytest.mark.parametrize("call", LONG.values(), ids=LONG)
 def test_a_daemon_thread_does_not_hinder_the_end(call: str, tmp_path: Path) -> None:
-    """The main thread ends in the midst of it, at two moments; so does the process, with 0."""
+    """The main thread ends during the call, at two moments; the process ends with exit code 0."""
     for seconds in ("0.15", "0.22"):
         script = DAEMON.replace("{call}", call).replace("{seconds}", seconds)
         done = subprocess.run(
@@ -73,8 +73,8 @@ def test_a_daemon_thread_does_not_hinder_the_end(call: str, tmp_path: Path) -> N
         assert (done.returncode, done.stderr) == (0, "")
 
 
-# A thread is held in the midst of a property; a child is forked meanwhile, and reads the same of
-# another motion. A child that waits for the thread, which it has not got, is ended by the alarm.
+# A thread is held inside a property. A child is forked meanwhile and reads the same property of
+# another motion. The alarm ends a child that waits for the thread, which it does not have.
 FORK = """
 import os, pickle, signal, threading, warnings
 import rolling_ellipse as rl
@@ -116,7 +116,7 @@ def test_a_fork_beside_a_property_goes_on(name: str) -> None:
     assert done.returncode == 0
 
 
-# A thread is held while pyplot makes its figure; a forked child draws one meanwhile.
+# A thread is held while pyplot makes its figure; a forked child draws a figure meanwhile.
 FORK_BESIDE_A_FIGURE = """
 import os, signal, sys, threading, types, warnings
 import matplotlib.pyplot as plt
@@ -156,7 +156,7 @@ def test_a_fork_beside_a_figure_goes_on() -> None:
     assert done.returncode == 0
 
 
-# The forking thread is the main thread of the child, where Ctrl-C comes.
+# The forking thread becomes the main thread of the child, which receives Ctrl-C.
 FORKED_BY_A_THREAD = """
 import os, signal, threading, warnings
 import rolling_ellipse as rl

@@ -1,4 +1,5 @@
-"""Films, pictures, pages and races: what all threads share is never changed, not even meanwhile."""
+"""Films, pictures, pages and races never change state that all threads share, not even for a
+while."""
 
 import sys
 import warnings
@@ -24,7 +25,7 @@ WARNED = 100
 
 @pytest.fixture(autouse=True)
 def style_of_a_user() -> Iterator[None]:
-    """Settings that films have to do without."""
+    """Settings that films must ignore."""
     with matplotlib.rc_context({"savefig.bbox": "tight", "animation.ffmpeg_path": "elsewhere"}):
         yield
     plt.close("all")
@@ -53,7 +54,7 @@ def explorer(path: Path) -> None:
 
 
 def refused_pictures() -> None:
-    """Five that fail when their figure is open."""
+    """Draw five pictures that fail when their figure is open."""
     for _ in range(5):
         with pytest.raises(ValueError):
             rl.plot_energy(ROLLED, color="no such colour")
@@ -65,7 +66,7 @@ def warned() -> None:
 
 
 def test_threads_leave_what_they_share(tmp_path: Path) -> None:
-    """Nine at once. Each warning is shown, and each figure is there under a number of its own."""
+    """Nine threads at once. Each warning is shown, and each figure has a number of its own."""
     films = [lambda i=i: film(tmp_path / f"film{i}.{'gif' if i else 'mp4'}") for i in range(3)]
     work: list[Callable[[], Any]] = [
         *films, pictures, pictures, race, lambda: explorer(tmp_path / "explorer.html"), warned,
@@ -102,7 +103,7 @@ def test_threads_leave_what_they_share(tmp_path: Path) -> None:
 def test_warnings_are_not_caught(
     deed: Callable[[Path], Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Python's way to silence them silences all threads."""
+    """`warnings.catch_warnings` would silence all threads."""
 
     def caught(*_: Any, **__: Any) -> None:
         raise AssertionError("warnings are caught")
@@ -116,21 +117,21 @@ def test_warnings_are_not_caught(
 def test_a_film_leaves_settings_alone_while_it_is_written(
     suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As seen from within each frame, where other threads are at work."""
+    """The settings are compared within each frame, when other threads may run."""
     before, seen, usual = dict(matplotlib.rcParams), [], Figure.savefig
 
-    def looked(self: Figure, *args: Any, **options: Any) -> None:
+    def compared(self: Figure, *args: Any, **options: Any) -> None:
         seen.append(dict(matplotlib.rcParams) == before)
         usual(self, *args, **options)
 
-    monkeypatch.setattr(Figure, "savefig", looked)
+    monkeypatch.setattr(Figure, "savefig", compared)
     film(tmp_path / f"film.{suffix}")
     assert len(seen) >= 11  # 1 s, 10 frames a second
     assert all(seen)
 
 
 def test_a_picture_that_fails_closes_its_own_figure_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Others open theirs meanwhile."""
+    """Other figures are opened meanwhile."""
     mine, usual = [], plt.figure
 
     def beside(**options: Any) -> Figure:

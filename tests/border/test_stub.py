@@ -1,4 +1,4 @@
-"""The stub of the core says what the extension is: names, arguments, members, codes."""
+"""The stub of the core agrees with the extension: names, arguments, members, codes."""
 
 import ast
 import enum
@@ -21,7 +21,7 @@ def declared(function: ast.FunctionDef) -> list[str]:
 
 
 def bound(function: object) -> list[str]:
-    """Names of the arguments, from the signature that pybind11 writes on top of the docstring."""
+    """Names of the arguments in the signature that pybind11 writes into the docstring."""
     signature = (inspect.getdoc(function) or "").splitlines()[0]
     inside = signature[signature.index("(") + 1 : signature.rindex(")")]
     return [name for name in re.findall(r"(?:^|, )(\w+): ", inside) if name != "self"]

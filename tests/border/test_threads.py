@@ -1,4 +1,4 @@
-"""Several Python threads at once: the bits of one thread alone, also where they share objects."""
+"""Several Python threads get the bits of one thread alone, also from shared objects."""
 
 import pickle
 import random
@@ -17,7 +17,7 @@ from rolling_ellipse._ask.records import cached_property
 from rolling_ellipse._motion import trajectory as trajectories
 
 THREADS, CALLS_EACH = 8, 1000
-PLACES = 5  # of each kind of call as many different ones, so that neighbours do different work
+PLACES = 5  # different calls of each kind, so that threads do different work at a time
 BODY = {"a": 2.0, "b": 1.0}
 TIMES = np.linspace(0.0, 1.0, 20)
 ROLLED = simulate(scenes.rolling, 4.0)
@@ -40,7 +40,7 @@ def all_of(motion: rl.Trajectory) -> list[Any]:
     return [getattr(motion, name) for name in names]
 
 
-# Each is a pure function of its place, 0 .. PLACES - 1.
+# Calls by kind: pure functions of a place, 0 .. PLACES - 1.
 KINDS: dict[str, Callable[[int], Any]] = {
     "flow": lambda i: rl.flow(0.3 * i, **BODY, theta=0.1, omega=3.2),
     "flow, times": lambda i: rl.flow(TIMES + i, **BODY, theta=0.1, omega=1.0 + i),
@@ -99,7 +99,7 @@ def refusal(call: Callable[[], Any]) -> str:
 
 @pytest.fixture(autouse=True)
 def eager_threads() -> Iterator[None]:
-    """Threads that change places a thousand times as often as usual."""
+    """Let threads switch a thousand times as often as usual."""
     usual = sys.getswitchinterval()
     sys.setswitchinterval(5e-6)
     yield
@@ -107,7 +107,7 @@ def eager_threads() -> Iterator[None]:
 
 
 def at_once(work: Callable[[int], Any]) -> list[Any]:
-    """What the work of each thread returns, all begun together."""
+    """Results of a work of all threads, which start together."""
     start = Barrier(THREADS)
 
     def begin(thread: int) -> Any:
@@ -119,7 +119,7 @@ def at_once(work: Callable[[int], Any]) -> list[Any]:
 
 
 def test_mixed_calls_have_the_bits_of_one_thread() -> None:
-    """8000 calls: each thread goes through all kinds and places in an order of its own."""
+    """8000 calls: each thread makes all calls in an order of its own."""
     alone = {(kind, place): call(place) for kind, call in KINDS.items() for place in range(PLACES)}
 
     def work(thread: int) -> int:
@@ -137,7 +137,7 @@ def test_mixed_calls_have_the_bits_of_one_thread() -> None:
 
 
 def late_names(of: Any) -> list[str]:
-    """What users see of what an object computes when it is first asked for."""
+    """Public properties of an object that are computed when they are first read."""
     return [
         name
         for kind in type(of).__mro__
@@ -159,10 +159,10 @@ LATE: dict[str, Callable[[], Any]] = {
 
 @pytest.mark.parametrize("make", LATE.values(), ids=LATE)
 def test_what_is_computed_late_is_the_same_for_all(make: Callable[[], Any]) -> None:
-    """Threads that ask a new object for it together, each beginning with another name."""
+    """Threads read the properties of a new object together, each in another order."""
 
     def comparable(found: Any) -> Any:
-        """Objects of the core, which have no fields in Python, by the names of their kinds."""
+        """The value; for an object of the core, which has no fields in Python, its class."""
         kind = type(found)
         return kind.__name__ if kind.__module__ == _core.__name__ else found
 
@@ -181,7 +181,7 @@ def test_what_is_computed_late_is_the_same_for_all(make: Callable[[], Any]) -> N
 
 
 def test_the_names_that_a_trajectory_keeps_are_seen() -> None:
-    """The test above asks for what follows from the samples, and for what the solver says late."""
+    """The test above reads properties of the samples and late answers of the solver."""
     seen = {"events", "psi", "energy", "normal_force", "turns", "reason", "stats"}
     assert seen <= set(late_names(ROLLED))
 
@@ -197,7 +197,7 @@ READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
 def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
     within: str, read: Callable[[rl.Trajectory], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One thread is held in the midst of it for as long as the other one takes."""
+    """One thread is held inside the property until the other thread is done."""
     held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
     begun, go_on, usual = Event(), Event(), getattr(trajectories, within)
 

@@ -1,5 +1,5 @@
-"""The installed extension as the machine sees it: its instructions, what it needs, what it does to
-the processor when it is loaded."""
+"""The installed extension: its instructions, its symbols, and the state of the processor after it
+is loaded."""
 
 import platform
 import re
@@ -11,8 +11,8 @@ import pytest
 from oracles.margins import told
 from rolling_ellipse import _core
 
-# Functions whose bits differ from version to version of the C library, and one that older systems
-# lack (GCC below 11, macOS below 13.3).
+# Functions whose bits depend on the version of the C library, and one that older systems lack (GCC
+# below 11, macOS below 13.3).
 UNWANTED = ("hypot", "hypotf", "cbrt", "lgamma", "tgamma", "_ZSt8to_charsPcS_d")
 
 SUBNORMALS = """
@@ -41,7 +41,7 @@ assert kept == [True] * 6, kept
 
 
 def disassembled(*options: str) -> str:
-    """What objdump tells of the extension."""
+    """Output of objdump for the extension."""
     objdump = shutil.which("objdump")
     if objdump is None:
         pytest.skip("there is no objdump on this machine")
@@ -55,8 +55,8 @@ def disassembled(*options: str) -> str:
 def test_nothing_is_fused_but_the_exact_products_of_lanes() -> None:
     """two_product of src/numerics/lanes.hpp is x y - round(x y), packed, in AVX2 and AVX-512.
 
-    A product and a sum that a compiler fuses by itself would be an addition somewhere, or of single
-    numbers. std::fma is a call.
+    A compiler that fuses a product and a sum by itself would make additions too, and instructions
+    of single numbers. std::fma is a call.
     """
     if platform.machine() != "x86_64":
         pytest.skip(f"the instructions are those of x86-64, not of {platform.machine()}")
@@ -66,7 +66,7 @@ def test_nothing_is_fused_but_the_exact_products_of_lanes() -> None:
     fused = re.findall(r"\bvfn?m(?:add|sub)\w+", disassembled("-d", "--no-show-raw-insn"))
     told(len(fused), sorted(set(fused)))
     assert all(re.fullmatch(r"vfmsub(?:132|213|231)pd", each) for each in fused), set(fused)
-    assert fused or "sse2" not in _core.flow_levels()  # else they are no longer recognised
+    assert fused or "sse2" not in _core.flow_levels()  # none: they are not recognised
 
 
 def test_it_calls_nothing_that_differs_between_systems() -> None:
@@ -76,7 +76,7 @@ def test_it_calls_nothing_that_differs_between_systems() -> None:
 
 
 def test_subnormal_numbers_survive_the_import() -> None:
-    """What is linked with -ffast-math sets the processor to make zeros of them, for everybody."""
+    """A library linked with -ffast-math would make the processor flush them to zero."""
     done = subprocess.run(
         [sys.executable, "-c", SUBNORMALS], capture_output=True, text=True, timeout=120
     )

@@ -1,4 +1,4 @@
-"""Measured figures in prose, charts and notebooks are those of the data in docs."""
+"""Measured figures in text, charts and notebooks agree with the data in docs."""
 
 import hashlib
 import json

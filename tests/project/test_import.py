@@ -1,4 +1,4 @@
-"""Importing the package and using it leave the process as it was: others live there too."""
+"""Importing and using the package leave the state of the process unchanged."""
 
 import os
 import platform
@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-# What a process has one of. MXCSR is where x86-64 keeps its rounding, its masks and whether tiny
-# numbers count as 0; its six lowest bits remember exceptions, which any sum may set.
+# State of a process. MXCSR of x86-64 holds the rounding mode, masks and the flushing of subnormal
+# numbers; its six lowest bits record exceptions, which any sum may set.
 STATE = """
 import ctypes, os, platform, signal, struct, sys, threading, warnings
 import matplotlib, numpy as np
@@ -80,7 +80,7 @@ ctypes.CDLL("libm.so.6").fesetenv(environment)
 
 
 def changed(deed: str) -> str:
-    """Names of what a deed changed in a process of its own."""
+    """Names of the state that a program changes, in a process of its own."""
     done = subprocess.run(
         [sys.executable, "-c", STATE.replace("{deed}", deed)],
         env=os.environ | {"MPLBACKEND": "agg"}, capture_output=True, text=True, timeout=300,
@@ -97,7 +97,7 @@ def test_the_process_is_left_as_it_was(deed: str) -> None:
 
 
 def test_no_backend_is_chosen_without_a_picture() -> None:
-    """Importing what draws leaves the choice open, as matplotlib itself does."""
+    """Importing the pictures leaves the choice open, as matplotlib itself does."""
     script = f"import matplotlib; {EVERY_NAME}; print(matplotlib.get_backend(auto_select=False))"
     environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
     done = subprocess.run(

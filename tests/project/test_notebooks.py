@@ -11,7 +11,7 @@ from oracles.paths import ROOT
 
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("**/*.ipynb"))
 LIMIT = 1_500_000  # bytes: more is slow to open on the web
-WIDTH = 105  # characters: what a cell of JupyterLab holds in a window of 1280 pixels
+WIDTH = 105  # characters of a JupyterLab cell in a window of 1280 pixels
 
 
 def code_cells(path: Path) -> list[nbformat.NotebookNode]:

@@ -1,4 +1,4 @@
-"""The benchmark's peers: those installed solve the problem, those missing are named."""
+"""Peers of the benchmark: installed ones solve the problem, missing ones are named."""
 
 import importlib
 import math
@@ -18,14 +18,14 @@ from rolling_ellipse import Mode, Scene, flow, period, simulate
 R = Scene(2.0, 1.0, theta=0.2, omega=3.2)
 T = 1.37 * period(R) / 2
 TOLERANCE = 1e-10
-# A tolerance is one of a step; a few hundred steps, each error growing tenfold at most on the way
-# over the tip, add up to less than 1e4 of them.
+# The tolerance bounds the error of a step. The errors of a few hundred steps, each growing tenfold
+# at most over the tip, add up to less than 1e4 tolerances.
 BOUND = 1e4 * TOLERANCE
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[list[Any], dict[str, str]]]:
-    """Who is there; what has to be compiled for it stays in a folder of the suite."""
+    """The installed and the missing peers; compiled files stay in a folder of the suite."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         installed, missing = peers.available()
@@ -114,7 +114,7 @@ def test_scenes_that_do_not_roll_are_refused(found: Any) -> None:
 
 
 def test_a_peer_with_a_wrong_equation_is_noticed() -> None:
-    """Gravity 1e-3 too strong: the error is what the exact motions differ by, and not small."""
+    """With gravity 1e-3 too strong the error is the difference of the exact motions."""
 
     def wrong(theta: Any, omega: Any, body: Any) -> Any:
         return RATES(theta, omega, (*body[:4], 1.001 * body[4], body[5]))
@@ -128,7 +128,7 @@ def test_a_peer_with_a_wrong_equation_is_noticed() -> None:
 def test_quick_benchmark(found: Any, capsys: pytest.CaptureFixture[str]) -> None:
     """Its judge is independent of the package, and its table has every contender.
 
-    No hour is too long here: what is judged must not depend on how busy the machine is.
+    An hour is allowed, so that the result does not depend on the load of the machine.
     """
     ((_, race),) = bench_peers.main(["--quick", "--seconds", "3600"]).items()
     printed = capsys.readouterr().out
@@ -145,7 +145,7 @@ def test_quick_benchmark(found: Any, capsys: pytest.CaptureFixture[str]) -> None
 
 
 def test_the_judge_sees_a_small_error() -> None:
-    """Against exact rolling, which it shares no line with: equal within a few roundings of 7."""
+    """It shares no line with exact rolling, and agrees with it within a few roundings of 7."""
     exact = bench_peers.in_40_digits(R)
     off = [float(v[0] - own) for v, own in zip(exact([T]), exact_end(T), strict=True)]
     assert 0 < max(map(abs, off)) < 1e-14
@@ -154,7 +154,7 @@ def test_the_judge_sees_a_small_error() -> None:
 
 
 def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
-    """Its error falls with the step; that of its own contacts does not."""
+    """The error of tuned contacts falls with the step, that of default contacts does not."""
     pytest.importorskip("mujoco")
     mujoco_ellipse = importlib.import_module("peers.mujoco_ellipse")
     t_end = 5.0

@@ -1,6 +1,6 @@
-"""The numbers that the physics gives for the 2:1 disc on Earth, to every digit that is known.
+"""Physical numbers of the 2:1 disc on Earth, to all known digits.
 
-Each through the public functions, and where a number says what a motion does, by that motion.
+Public functions give them, and motions confirm those that say what a motion does.
 """
 
 import math
@@ -27,7 +27,7 @@ def test_perimeter() -> None:
     exact = 4 * A * float(mp.ellipe(mp.mpf(3) / 4))
     assert exact == 9.6884482205476762
     assert rl.geometry.arc_length(turn, a=A, b=B) == pytest.approx(exact, rel=4 * EPS)
-    # the centre is where it was over the contact, so it has come as far
+    # the centre is above the contact as at the start, so it has moved as far
     times = np.array([0.0, period(rl.scenes.rolling)])
     trajectory = rl.simulate(rl.scenes.rolling, times)
     assert trajectory.x[1] == pytest.approx(exact, rel=16 * EPS)
@@ -35,7 +35,7 @@ def test_perimeter() -> None:
     assert trajectory.turns[1] == pytest.approx(1.0, rel=4 * EPS)
 
 
-def test_way_of_the_centre_in_space() -> None:
+def test_path_of_the_centre_in_space() -> None:
     """Project Euler 525: the centre of a 4:2 ellipse moves C = 21.38816906 m in one turn, the
     integral of |d(x, h)/d theta| = r; from the rates of a motion."""
     turning = Scene(4.0, 2.0, omega=3.0)
@@ -50,7 +50,7 @@ def test_way_of_the_centre_in_space() -> None:
 
 
 def test_roll_over_decides_between_rocking_and_turning() -> None:
-    """2.953 rad/s: a millionth of a millionth less comes back, as much more goes over."""
+    """2.953 rad/s: a body with 1e-12 less speed comes back, one with 1e-12 more rolls over."""
     speed = TWO_TO_ONE.roll_over_speed
     assert round(speed, 3) == 2.953
     exact = math.sqrt(2 * GRAVITY * (A - B) / (GYRATION2 + B * B))
@@ -60,8 +60,8 @@ def test_roll_over_decides_between_rocking_and_turning() -> None:
     faster = flow(times, a=A, b=B, theta=0.0, omega=speed * (1 + 1e-12))[0]
     assert np.max(slower) < math.pi / 2 and slower[-1] < 1
     assert np.all(np.diff(faster) > 0) and faster[-1] > math.pi
-    # it turns back where g c^2/(2 a) p^2, p before the tip, is what the energy misses: 2e-12 of
-    # g (a - b). In 6 ms samples around that time the angle changes by 1e-4 of p.
+    # it turns back at p before the tip, where g c^2/(2 a) p^2 is the missing energy: 2e-12 of
+    # g (a - b). Within 6 ms around that time the angle changes by 1e-4 of p.
     around = np.linspace(4, 15, 4001)
     reached = np.max(flow(around, a=A, b=B, theta=0.0, omega=speed * (1 - 1e-12))[0])
     turning_point = math.sqrt(4e-12 * (A - B) * A / (A * A - B * B))
@@ -70,7 +70,7 @@ def test_roll_over_decides_between_rocking_and_turning() -> None:
 
 
 def test_rolling_loses_contact() -> None:
-    """From 4.8432 rad/s at the flat N vanishes, at 62.36 deg."""
+    """From 4.8432 rad/s at the flat on, N vanishes at 62.36 deg."""
     speed = TWO_TO_ONE.contact_loss_speed
     assert round(speed, 4) == 4.8432
     assert round(math.degrees(known(TWO_TO_ONE.contact_loss_angle)), 2) == 62.36
@@ -80,8 +80,8 @@ def test_rolling_loses_contact() -> None:
     just_below = Scene(A, B, omega=speed * (1 - 1e-9))
     trajectory = rl.simulate(just_below, np.linspace(0, 0.6, 100_001))
     least = np.argmin(trajectory.normal_force)
-    # 2e-9 of the energy is missing, some 10 times that of the weight is left; N is flat there, a
-    # sample within 1e-5 rad of the place sees 1e-9 more
+    # 2e-9 of the energy is missing, so some 2e-8 of the weight is left; N is flat there and changes
+    # by 1e-9 within 1e-5 rad
     assert 0 < trajectory.normal_force[least] < 1e-7 * GRAVITY
     assert math.degrees(trajectory.theta[least]) == pytest.approx(62.36, abs=0.01)
 
@@ -130,7 +130,7 @@ def test_small_rocking() -> None:
     small, large = (
         period(Scene(A, B, theta=amplitude)) * rate / (2 * math.pi) for amplitude in (0.01, 0.02)
     )
-    # the amplitude counts: to 1e-4, not to rounding
+    # the amplitude changes the period by 1e-4, more than rounding
     assert 1e-5 < abs(small - 1) < 1e-3
     assert (large - 1) / (small - 1) == pytest.approx(4, rel=1e-2)
     assert (4 * small - large) / 3 == pytest.approx(1, abs=100 * 0.02**4)
@@ -147,14 +147,14 @@ def test_small_rocking_is_harmonic() -> None:
 
 
 def test_falling_from_the_tip() -> None:
-    """The distance grows by exp(1.6741735701106808 t): cosh, from rest."""
+    """The distance from the tip grows as cosh(1.6741735701106808 t) from rest."""
     rate = TWO_TO_ONE.tip_rate
     assert rate == pytest.approx(1.6741735701106808, rel=4 * EPS)
     side = 1e-7
     start = math.pi / 2 + side
     times = np.linspace(0, 5, 101)
     theta, omega, _ = flow(times, a=A, b=B, theta=start, omega=0.0)
-    away = (theta - start) + (mp.mpf(start) - mp.pi / 2)  # the double pi/2 is no tip
+    away = (theta - start) + (mp.mpf(start) - mp.pi / 2)  # the double pi/2 is not the tip
     away = np.array(away, dtype=float)
     first = float(mp.mpf(start) - mp.pi / 2)
     # next order: the square of the distance, 1e-7 cosh(8.4) = 2e-4 at the end; and an ulp of theta
@@ -169,8 +169,8 @@ def test_falling_from_the_tip() -> None:
 
 
 def test_the_report_scene() -> None:
-    """48 N s at 1.5 m on 10 kg: 3.2 rad/s. The report's eq 48 divides by k^2 instead of k^2 + b^2
-    and gives 5.76, 1 + b^2/k^2 = 1.8 times as much."""
+    """48 N s at 1.5 m on 10 kg give 3.2 rad/s. The report's eq 48 divides by k^2 instead of k^2 +
+    b^2 and gives 5.76 rad/s, 1 + b^2/k^2 = 1.8 times as much."""
     start = rl.scenes.report.initial_state
     assert start.omega == pytest.approx(48 * 1.5 / (10 * (GYRATION2 + B**2)), rel=2 * EPS)
     assert start.omega == pytest.approx(3.2, rel=2 * EPS)
@@ -178,7 +178,7 @@ def test_the_report_scene() -> None:
     assert start.free_omega / start.omega == pytest.approx(1.8, rel=4 * EPS)
     assert start.mode is Mode.ROLLING
     assert TWO_TO_ONE.roll_over_speed < start.omega < TWO_TO_ONE.contact_loss_speed
-    assert start.free_omega > TWO_TO_ONE.contact_loss_speed  # more than rolling can keep
+    assert start.free_omega > TWO_TO_ONE.contact_loss_speed  # too fast to roll
     assert certify(rl.scenes.report).validity is Validity.VALID
     assert rl.simulate(rl.scenes.report, 6.0).turns[-1] > 1  # it rolls over
 
@@ -214,7 +214,8 @@ def test_it_sticks_from_two_thirds_on() -> None:
 
 
 def test_little_friction_reverses_the_slip() -> None:
-    """theta = 0.5, mu = 0.2, J = (-1, -4) at dx = 0.6: -0.8618, not the sticking -0.7171."""
+    """theta = 0.5, mu = 0.2, J = (-1, -4) at dx = 0.6 give -0.8618 rad/s; sticking, -0.7171
+    rad/s."""
     scene = Scene(A, B, theta=0.5, friction=0.2, impulse=Impulse(-1.0, -4.0, dx=0.6))
     assert round(scene.initial_state.omega, 4) == -0.8618
     assert round(replace(scene, friction=math.inf).initial_state.omega, 4) == -0.7171

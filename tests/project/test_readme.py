@@ -1,4 +1,4 @@
-"""The lines of Python in the README run as they stand, one after the other."""
+"""The Python code of the README runs, one block after the other."""
 
 import re
 from pathlib import Path
