@@ -1,7 +1,7 @@
-"""What many motions cost in files: python benchmarks/bench_batches.py
+"""Time and bytes of many motions in files: python benchmarks/bench_batches.py
 
-Figures to plan a large run by: time of one core and bytes for a motion, exact or with slips and
-jumps, and what processes of a pool write side by side.
+Figures to plan a large run: time of one core and bytes for a motion, exact or with slips and jumps,
+and the rate of a pool of processes.
 """
 
 import argparse

@@ -2,8 +2,8 @@
 
     python benchmarks/bench_calls.py [--rounds 50]
 
-The core's own share stands beside: what is left is Python's. Import times are those of new
-interpreters, as they come and with NumPy alone.
+The core's share is a line of its own; the difference is Python's. Imports are timed in new
+interpreters, the package's and NumPy's alone.
 """
 
 import subprocess
@@ -55,7 +55,7 @@ def cases() -> dict[str, Case]:
 
 
 def import_seconds(module: str) -> float:
-    """Of a new interpreter, with its own start."""
+    """Time of a new interpreter that imports a module [s]."""
     return seconds(lambda: subprocess.run([sys.executable, "-c", f"import {module}"], check=True))
 
 

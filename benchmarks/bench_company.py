@@ -1,10 +1,9 @@
-"""What company costs: long calls beside a busy Python thread.
+"""Long calls beside a busy Python thread.
 
     python benchmarks/bench_company.py
 
-A call that computes asks Python for signals every 50 ms, for which it has to wait until the busy
-thread hands the GIL over, after 5 ms. It shares the processor with that thread, too: on one core
-nothing could be better than a ratio of 2.
+A call asks Python for signals every 50 ms; for that it waits 5 ms until the busy thread releases
+the GIL. It shares the processor with that thread, too: on one core the least possible ratio is 2.
 """
 
 import threading
@@ -35,7 +34,7 @@ CALLS: dict[str, Callable[[], Any]] = {
 
 @contextmanager
 def company() -> Iterator[None]:
-    """A thread that keeps the GIL as long as Python lets it."""
+    """A thread that holds the GIL as long as Python allows."""
     over = threading.Event()
 
     def busy() -> None:

@@ -1,8 +1,7 @@
 """What exact rolling costs, as ratios within one run: python benchmarks/bench_flow.py
 
-Machines differ and so does their load: every case is timed once in each of many rounds, one after
-the other, and the least time of each is kept. Only ratios (to the first line of a table) of one
-run are compared.
+Every case is timed once in each of many rounds, one after the other, and the least time is kept.
+Machines and their load differ: compare only ratios (to the first line of a table) of one run.
 """
 
 from typing import Any
@@ -61,7 +60,7 @@ def main() -> None:
     of_many = {
         "R: 1e6 samples of 100 half turns": samples(100),
         "R: 1e6 samples of 1 half turn": samples(1),
-        # what no method can beat by much
+        # a bound for every method
         "np.copyto of 3 doubles": Case(lambda: np.copyto(target, source), SAMPLES),
     }
     print_tables({ONE: one, MANY: many, "One sample of many": of_many}, rounds)

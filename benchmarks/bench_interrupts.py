@@ -2,13 +2,13 @@
 
     python benchmarks/bench_interrupts.py [--tries 50] [--only WORDS] [--company]
 
-Each kind of work is begun and interrupted so many times, at moments spread over half a second.
-Printed are the median, the 95th percentile and the longest of the times from the signal to the
-KeyboardInterrupt. A call afterwards must give the bits that it gave before: the script ends with 1
-where it does not, or where a 95th percentile is more than 200 ms. With --company a Python thread
-keeps the GIL as long as Python lets it. In the notebook the stack is told in one line: drawing it
-with the source around is Jupyter's work, which takes longer than the rest; the last line has it,
-and is not judged. The times are only worth something on a machine that has nothing else to do.
+Each kind of work is started and interrupted many times, at moments spread over half a second. The
+table has the median, the 95th percentile and the longest time from the signal to the
+KeyboardInterrupt. A call afterwards must give the same bits as before. The exit code is 1 if it
+does not, or if a 95th percentile is more than 200 ms. With --company a Python thread holds the GIL
+as long as Python allows. In the notebook the traceback is one line: Jupyter takes longer to draw it
+with the source. The last line has that time and is not judged. The times need a machine without
+other load.
 """
 
 import argparse
@@ -45,7 +45,7 @@ STEEP = Scene(2.0, 1.0, slope=0.3, omega=3.0, friction=0.4, restitution=0.5)
 
 
 def again(call: Callable[[], Any]) -> Callable[[], Any]:
-    """A call that is over too soon, a thousand times."""
+    """A short call, a thousand times."""
     return lambda: [call() for _ in range(1000)]
 
 
@@ -90,7 +90,7 @@ WORK: dict[str, Callable[[], Any]] = {
 TIMES = np.linspace(0.0, 500.0, 2_000_000)
 FORCES = np.linspace(1.0, 2.0, 20_000_000)
 LISTED = FORCES[::2].tolist()
-IN_NOTEBOOK = {  # the first is what Jupyter itself takes
+IN_NOTEBOOK = {  # the first line is Jupyter's own time
     "notebook, a loop of Python": "while True: pass",
     "notebook, rk4": "rl.simulate(rl.scenes.rolling, [1e5], model='rolling', method='rk4', "
     "step=1e-4, max_steps=2**31 - 1)",
@@ -101,7 +101,7 @@ CHECK = "rl.simulate(rl.scenes.drop, 2.0).theta.tobytes().hex()"
 
 
 def delay(call: Callable[[], Any], after: float) -> float:
-    """From Ctrl-C, so many seconds after the beginning, to its end [s]."""
+    """Time from Ctrl-C, sent at a moment of a call, to the end of the call [s]."""
     usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
     begin = time.perf_counter()
     signal.setitimer(signal.ITIMER_REAL, after)
@@ -131,12 +131,12 @@ class Notebook:
         self.client.execute(code, silent=True, reply=True, timeout=60)
 
     def value(self, code: str) -> str:
-        """What an expression is, as text."""
+        """The value of an expression, as text."""
         reply = self.client.execute("", user_expressions={"v": code}, reply=True, timeout=60)
         return str(reply["content"]["user_expressions"]["v"]["data"]["text/plain"])
 
     def delay(self, code: str, after: float) -> float:
-        """From the button Interrupt to the reply [s]."""
+        """Time from the button Interrupt to the reply [s]."""
         asked = self.client.execute(code, stop_on_error=False)  # or what comes next is dropped
         self.wait(self.client.get_iopub_msg, asked, "execute_input")
         time.sleep(after)
@@ -148,7 +148,7 @@ class Notebook:
         return found
 
     def wait(self, receive: Callable[..., dict[str, Any]], asked: str, kind: str) -> Any:
-        """What is said of a request in a message of a kind."""
+        """Content of the message of a kind that answers a request."""
         while True:
             message = receive(timeout=60)
             if message["msg_type"] == kind and message["parent_header"].get("msg_id") == asked:
@@ -159,8 +159,8 @@ class Notebook:
         self.manager.shutdown_kernel(now=True)
 
 
-def told(name: str, delays: list[float]) -> bool:
-    """Print a line; whether they are short enough."""
+def print_delays(name: str, delays: list[float]) -> bool:
+    """Print a line; whether the delays are short enough."""
     median, most, longest = 1e3 * np.percentile(delays, [50, 95, 100])
     print(f"{name:50} {median:7.0f} {most:7.0f} {longest:7.0f}", flush=True)
     return bool(most <= 1e3 * MOST)
@@ -178,17 +178,19 @@ def main() -> int:
     for name, call in WORK.items():
         if options.only in name:
             with company() if options.company else nullcontext():
-                good &= told(name, [delay(call, after) for after in moments])
+                good &= print_delays(name, [delay(call, after) for after in moments])
             good &= usable() == before
     if any(options.only in name for name in IN_NOTEBOOK):
         notebook = Notebook()
         try:
             for name, code in IN_NOTEBOOK.items():
                 if options.only in name:
-                    good &= told(name, [notebook.delay(code, after) for after in moments])
+                    delays = [notebook.delay(code, after) for after in moments]
+                    good &= print_delays(name, delays)
                     good &= notebook.value(CHECK) == repr(before.hex())
             notebook.do("%xmode Context")
-            told(f"{name}, stack drawn", [notebook.delay(code, after) for after in moments])
+            delays = [notebook.delay(code, after) for after in moments]
+            print_delays(f"{name}, stack drawn", delays)
         finally:
             notebook.close()
     print("usable afterwards, within 200 ms" if good else "NOT GOOD")

@@ -1,10 +1,10 @@
 """The package beside other people's integrators: python benchmarks/bench_peers.py
 
-Who is installed takes part (the extra "peers"; Boost.odeint needs g++ and its headers), who is
-missing is named. Everybody integrates theta, omega and x with compiled right-hand sides, from a
-ladder of tolerances or steps, in turns (`rolling_ellipse.work_precision`). What counts is the
-largest error, at samples and at the end, against 40 digits. What prepares a new scene, compiling
-it, too, is timed apart. Machines differ and so does their load: compare the ratios of one run.
+Installed libraries take part (the extra "peers"; Boost.odeint needs g++ and its headers), missing
+ones are named. All integrate theta, omega and x with compiled right-hand sides, from a ladder of
+tolerances or steps, in turns (`rolling_ellipse.work_precision`). The largest error at samples and
+at the end, against 40 digits, counts. The preparation of a new scene, with its compilation, is
+timed apart. Machines and their load differ: compare the ratios of one run.
 """
 
 import argparse
@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
 import make_rolling_reference as reference
 
 SCENES = {"R": Scene(2.0, 1.0, theta=0.2, omega=3.2), "L": Scene(2.0, 1.0, theta=0.2, omega=1.0)}
-HALF_TURNS = (1.37, 10.37, 100.37)  # no symmetry, at which an error of the phase would hide
+HALF_TURNS = (1.37, 10.37, 100.37)  # away from symmetries, which would hide errors of the phase
 METHODS = ("flow", "exact", "dop853", "dopri5", "rk4", "gauss")
 TOLERANCES = [10.0**-k for k in range(1, 16)]
 DECADES = [10.0**-k for k in range(2, 15, 2)]
@@ -33,7 +33,7 @@ WIDTH = 11  # of a column
 
 
 def in_40_digits(scene: Scene) -> Callable[[Any], Any]:
-    """theta, omega, x by an independent quadrature: what everybody is judged by."""
+    """theta, omega, x by an independent quadrature, the judge of all contenders."""
     with reference.mp.workdps(40):
         start = (scene.a, scene.b, scene.gyration2, scene.gravity, scene.theta, scene.omega)
         motion = reference.motion(reference.Scene(*start), reference.gauss_rule(28, 1.8))
@@ -74,7 +74,7 @@ def microseconds(seconds: float) -> str:
 
 
 def table(found: WorkPrecision) -> str:
-    """A row for each contender, a column for each error; then who is ahead."""
+    """A row for each contender, a column for each error; then the ratio of the best."""
     least = {decade: found.least(decade) for decade in DECADES}
     lines = [f"{'[us], least; error <=':28}" + "".join(f"{d:{WIDTH}.0e}" for d in DECADES)]
     lines[0] += f"{'best error':>12}{'set-up [ms]':>13}"

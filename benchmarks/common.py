@@ -1,4 +1,4 @@
-"""The machine, timings in turns and tables: what the timings share."""
+"""Shared by the benchmarks: facts of the machine, interleaved timings, tables."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from rolling_ellipse import Scene, _core, period
 
-SHORTEST = 5e-3  # of a timing [s]: short calls are repeated, warm
+SHORTEST = 5e-3  # least time of a timing [s]: short calls are repeated
 _LEVELS = {"avx512f": "AVX-512", "avx2": "AVX2", "avx": "AVX", "asimd": "NEON"}
 
 
@@ -70,7 +70,7 @@ def end_time(scene: Scene, half_turns: float) -> float:
 
 
 def seconds(call: Callable[[], Any], repeats: int = 1) -> float:
-    """Time of one of so many calls."""
+    """Mean time of a call in a row of calls [s]."""
     begin = time.perf_counter()
     for _ in range(repeats):
         call()
@@ -80,7 +80,7 @@ def seconds(call: Callable[[], Any], repeats: int = 1) -> float:
 def interleaved(
     calls: Mapping[Any, Callable[[], Any]], rounds: int, shortest: float = SHORTEST
 ) -> dict[Any, list[float]]:
-    """Seconds of a call of each in every round; they take turns, so that the load is shared."""
+    """Seconds of each call in every round; the calls take turns, so that the load is shared."""
     repeats = {}
     for name, call in calls.items():
         call()
@@ -93,7 +93,7 @@ def interleaved(
 
 
 class Case(NamedTuple):
-    """A call, and how many things it does, of each of which the time is told."""
+    """A call, and the number of things that it does; times are given per thing."""
 
     call: Callable[[], Any]
     count: int = 1

@@ -1,4 +1,4 @@
-"""Make all that is measured or drawn, and the text that quotes it: python docs/make.py
+"""Make all measurements, pictures and the text that quotes them: python docs/make.py
 
 On a quiet machine, with `pip install '.[test,peers]'`, gfortran (for numbalsoda), g++ and Boost's
 headers; it takes about an hour, and everything is then of one commit and one machine:
@@ -9,8 +9,8 @@ headers; it takes about an hour, and everything is then of one commit and one ma
     notebooks  the outputs of all notebooks, 06 with the races and beside the peers
     text       the marked parts of README.md, from the files of the first two
 
-Names of steps make these alone. --quick takes a few seconds where it takes minutes, to see that
-everything works: its figures are not for keeping.
+Named steps are made alone. --quick takes seconds instead of minutes and shows that everything
+works; its figures are not for keeping.
 """
 
 import argparse
@@ -55,7 +55,7 @@ def run(*command: str | Path) -> None:
 
 
 def notebooks(quick: bool) -> None:
-    """Run each in a folder of its own, and keep nothing but its outputs."""
+    """Run each notebook in a folder of its own, and keep its outputs."""
     os.environ["ROLLING_ELLIPSE_PEERS"] = str(BENCHMARKS)
     os.environ["ROLLING_ELLIPSE_SECONDS"] = "2" if quick else "60"
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
@@ -121,12 +121,12 @@ def speed() -> str:
 
 
 def half_turns(path: Path) -> float:
-    """Of the motion of a file of a race."""
+    """Half turns of the motion in a file of a race."""
     return float(path.stem.rpartition("_")[2])
 
 
 def throughput() -> str:
-    """Figures to plan a large run by, if they were measured."""
+    """Figures to plan a large run, if they were measured."""
     path = HERE / "batches.json"
     if not path.exists():
         return ""

@@ -25,7 +25,7 @@ METHODS = {
     "gauss, 0.02 s": {"method": "gauss", "step": 0.02},
     "exact": {"method": "exact"},
 }
-DRIFTS = {  # of the classical method in five coordinates, with their looks
+DRIFTS = {  # stabilizations of the classical method in five coordinates, with their lines
     "none": (PLUM, "-"),
     "baumgarte": (ORANGE, "--"),
     "projection": (BLUE, "-."),
@@ -71,7 +71,7 @@ def speed() -> Figure:
 
 
 def stability() -> Figure:
-    """By how much a rolling body misses the ground, and its angle, over a thousand half turns."""
+    """Distance from the ground and error of the angle of a rolling body over 1000 half turns."""
     figure = Figure(figsize=(7, 3.2), layout="constrained")
     left, right = figure.subplots(1, 2)
     scene = rl.Scene(1.5, 1.0, theta=0.2, omega=4.0)

@@ -1,6 +1,6 @@
 """Taylor coefficients one after the other (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 
-With what their makers draw scenes by, and write tables with.
+Also: a random number with an even logarithm, and the writing of tables.
 """
 
 import csv
@@ -18,7 +18,7 @@ ROUNDING = 2.2e-16
 
 
 class Road(NamedTuple):
-    """How a motion is computed: working digits, order of the series, first term left out."""
+    """Precision of a motion: working digits, order of the series, tolerance of the last terms."""
 
     digits: int
     order: int
@@ -40,7 +40,7 @@ def quotient(p: Any, q: list[Any], known: list[Any]) -> Any:
 
 
 def square_root(squared: Any, known: list[Any]) -> Any:
-    """The next coefficient of a root, from that of its square."""
+    """The next coefficient of a root, from the coefficient of its square."""
     if not known:
         return gmpy2.sqrt(squared)
     return (squared - sum(map(mul, known[1:], reversed(known[1:])))) / (2 * known[0])

@@ -1,17 +1,17 @@
-"""Build what users are given, install it as they do, and try it there.
+"""Build the source distribution and wheels, install them as users do, and try them.
 
     python tools/check_packaging.py FOLDER [INTERPRETER ...]
 
-makes FOLDER, which must not exist. In it are made
+makes FOLDER, which must not exist, and in it
 
-- the source distribution, whose files must be those that git knows;
-- an environment with spaces in its path, in which it is built, installed and tried;
-- for every INTERPRETER (a command; without one, that which runs this) a wheel, which auditwheel
-  makes fit for as many Linux systems as it can, and a new environment in which it is installed and
-  tried without a compiler.
+- the source distribution, whose files must be those of git;
+- an environment with spaces in its path, in which the distribution is built, installed and tried;
+- for every INTERPRETER (a command; default: the running Python) a wheel, made by auditwheel for as
+  many Linux systems as possible, and a new environment in which it is installed and tried without a
+  compiler.
 
-The trial, with the packages it needs, is that of [tool.cibuildwheel] in pyproject.toml; its tests
-are those of the source distribution. Needs git, a compiler and the net (PyPI).
+[tool.cibuildwheel] in pyproject.toml has the trial and the packages that it needs; its tests are
+those of the source distribution. Needs git, a compiler and the net (PyPI).
 """
 
 import argparse
@@ -33,7 +33,7 @@ PACKAGE = "python/rolling_ellipse/"
 
 
 def run(*command: str | Path, cwd: Path, **variables: str) -> str:
-    """What a command prints; if it fails, that is the message, and the end."""
+    """Output of a command; if it fails, the script ends with the output."""
     words = [str(word) for word in command]
     done = subprocess.run(
         words,
@@ -59,7 +59,7 @@ def install(python: Path, *what: str | Path, **variables: str) -> None:
 
 
 def the_one(folder: Path, pattern: str) -> Path:
-    """The file of a folder that its maker named."""
+    """The only file of a folder that matches a pattern."""
     (found,) = folder.glob(pattern)
     return found
 
@@ -92,7 +92,7 @@ def unpacked(sdist: Path, folder: Path) -> Path:
 
 
 def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
-    """That of the interpreter, with the widest tag that auditwheel grants it."""
+    """The wheel of an interpreter, with the widest tag that auditwheel allows."""
     built = folder / "built"
     run(interpreter, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", built, source, cwd=folder)
     first = the_one(built, "*.whl")

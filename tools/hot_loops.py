@@ -4,9 +4,9 @@
     python tools/hot_loops.py build/release/hot_jobs             (1 where one is 5 % more)
     python tools/hot_loops.py build/release/hot_jobs --write     (makes them the record)
 
-Instructions do not depend on what else the machine does, as times do. Valgrind counts them: it
-knows no AVX-512, of which it tells the program, so that the vectors are those of AVX2. Its counts
-are those of one compiler and one C library, which the record names; with others nothing is judged.
+Unlike times, instructions do not depend on the load of the machine. Valgrind counts them. It has no
+AVX-512, so the program uses AVX2. The counts belong to one compiler and one C library, which the
+record names; with others nothing is judged.
 """
 
 import argparse
@@ -31,7 +31,7 @@ SLACK = 0.05
 
 
 def instructions(program: Path, job: int) -> tuple[int, str]:
-    """How many, and the vector level that they are of."""
+    """Instructions of a job, and the vector level of the program."""
     with tempfile.TemporaryDirectory() as folder:
         command = [
             "valgrind", "--tool=callgrind", "--collect-atstart=no", "--toggle-collect=counted(*",
@@ -45,7 +45,7 @@ def instructions(program: Path, job: int) -> tuple[int, str]:
 
 
 def made_by(program: Path, level: str) -> dict[str, str]:
-    """What else the counts depend on: the compiler, as it signs its work, and the C library."""
+    """The compiler by its signature, the C library, the machine and the vector level."""
     compilers = set(re.findall(rb"(?:GCC: |clang version )[^\0\n]{3,60}", program.read_bytes()))
     return {
         "compiler": ", ".join(sorted(each.decode("ascii", "replace") for each in compilers)),

@@ -1,15 +1,15 @@
-"""Build tests/core/golden.cpp in many ways, and tell whether all of them print the same bits.
+"""Build tests/core/golden.cpp in many ways, and compare the bits that the programs print.
 
     python tools/same_bits.py FOLDER                 all builds whose compiler is on this machine
     python tools/same_bits.py FOLDER --only clang    those with this word in their name
     python tools/same_bits.py FOLDER --write         g++ -O3, and make tests/core/golden.txt of it
 
-The builds lie in FOLDER, to be kept or deleted; with ccache on the machine a second time is quick.
-Those of one target must agree to the last bit. Two other targets have another rounding of sin and
-cos in their C library: aarch64, which has no lanes either (g++-aarch64-linux-gnu and qemu-user),
-and Windows (g++-mingw-w64-x86-64-posix and wine64). Their builds must agree among each other, and
-with those of x86-64 Linux within the bound of tests/oracles/golden.py. Exit code 1 where they do
-not. libc++ is that of libc++-dev and libc++abi-dev.
+The builds stay in FOLDER; with ccache a second run is quick. Builds for one target must agree to
+the last bit. Two other targets have C libraries with another rounding of sin and cos: aarch64,
+which has no lanes either (g++-aarch64-linux-gnu and qemu-user), and Windows
+(g++-mingw-w64-x86-64-posix and wine64). Builds for each of them must agree too, and differ from
+those for x86-64 Linux by no more than the bound of tests/oracles/golden.py. Otherwise the exit code
+is 1. libc++ comes from libc++-dev and libc++abi-dev.
 """
 
 import argparse
@@ -29,7 +29,7 @@ from oracles.golden import GOLDEN, OTHER_LIBRARY, difference, read  # noqa: E402
 ARM = "aarch64-linux-gnu-g++"
 WINDOWS = "x86_64-w64-mingw32-g++-posix"
 
-# Of CMake, for the target of a compiler; with nothing said it is this machine.
+# Settings of CMake for cross compilers.
 SETTINGS = {
     ARM: ["-DCMAKE_SYSTEM_NAME=Linux", "-DCMAKE_SYSTEM_PROCESSOR=aarch64"],
     WINDOWS: [
@@ -41,7 +41,7 @@ SETTINGS = {
 
 @dataclass(frozen=True)
 class Build:
-    """A compiler and its flags; `target` is the compiler where that is for other machines."""
+    """A compiler and its flags; `target` is a cross compiler, or empty for this machine."""
 
     compiler: str
     flags: str
@@ -55,7 +55,7 @@ class Build:
         return self.compiler if self.compiler in SETTINGS else ""
 
     def command(self, folder: Path) -> list[str]:
-        """What runs the program."""
+        """The command that runs the program."""
         if self.target == ARM:
             qemu = shutil.which("qemu-aarch64") or shutil.which("qemu-aarch64-static")
             return [qemu or "qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", str(folder / "golden")]
@@ -74,7 +74,7 @@ BUILDS = (
 
 
 def output(build: Build, folder: Path, jobs: int) -> str:
-    """What the program prints; ends the script where it cannot be built."""
+    """Output of the program; the script ends if it cannot be built."""
     place = folder / build.name.replace(" ", "").replace("+", "p").replace("=", "-")
     eigen = [str(at) for part in sys.path if (at := Path(part, "cmeel.prefix")).is_dir()]
     launcher = shutil.which("ccache")
@@ -96,7 +96,7 @@ def output(build: Build, folder: Path, jobs: int) -> str:
 
 
 def compare(texts: dict[Build, str]) -> bool:
-    """Whether all is as promised; says what is not."""
+    """Whether all builds agree; prints the differences."""
     holds = True
     firsts: dict[str, Build] = {}
     for build, text in texts.items():

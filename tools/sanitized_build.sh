@@ -9,10 +9,9 @@
 #   tools/sanitized_build.sh -m pytest tests/contact/test_contact.py
 #   tools/sanitized_build.sh --threads --suite                 (all that runs in several threads)
 #
-# Without --threads they are the address and undefined-behaviour sanitizers: reads out of bounds,
-# undefined arithmetic and the like end the process with a report; the fuzzer counts that as a
-# crash. With --threads it is the thread sanitizer: two threads that touch the same memory, one of
-# them to write, with nothing between that orders them, are told, and the exit code is 66.
+# Without --threads the address and undefined-behaviour sanitizers are used: a read out of bounds or
+# undefined arithmetic ends the process with a report, which the fuzzer counts as a crash. With
+# --threads the thread sanitizer is used: it reports data races, and the exit code is 66.
 #
 # PYTHON names the interpreter (default python3; it must have the build requirements, and no editable
 # installation of the package); the builds lie in build/sanitized and build/sanitized-threads.
@@ -34,8 +33,8 @@ fi
     --target "$folder/site" -Cbuild-dir="$folder/objects" -Cinstall.strip=false \
     -Ccmake.build-type=None -Ccmake.define.CMAKE_CXX_FLAGS="$flags -fno-omit-frame-pointer -O1 -g1" .
 
-# Python itself is not built so: the runtime has to be there before it, and with it libstdc++, whose
-# exceptions the runtime watches.
+# Python itself is not sanitized: the runtime must be loaded first, with libstdc++, whose exceptions
+# it intercepts.
 preload="$(g++ -print-file-name=$runtime) $(g++ -print-file-name=libstdc++.so.6)"
 export PYTHONPATH="$folder/site${PYTHONPATH:+:$PYTHONPATH}"
 export PYTHONMALLOC=malloc # so that arrays of NumPy and bytes have their bounds
@@ -60,9 +59,9 @@ sys.exit(None if core.__file__.startswith('$folder/site') else f'not sanitized: 
 
 if [ "$1" = --suite ]; then
     shift
-    # Not where memory is limited: the runtimes reserve terabytes of addresses. Nor the browser, of
-    # which each process would have the runtime before it. The fuzzer runs as above, without its
-    # limit. What the runtimes print is not captured.
+    # Left out: tests with limited memory, since the runtimes reserve terabytes of addresses; the
+    # browser, whose processes would load the runtime; the fuzzer, which runs as above without its
+    # limit. The output of the runtimes is not captured.
     set -- -m pytest -p no:cacheprovider --capture=sys "$@" \
         --deselect tests/border/test_border.py::test_threads_that_cannot_start_are_not_missed \
         --ignore tests/border/test_fuzz.py --ignore tests/player/test_browser.py
