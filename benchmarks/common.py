@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import datetime
-import importlib
 import os
 import platform
 import time
@@ -40,15 +39,6 @@ def machine() -> dict[str, str]:
         "rolling_ellipse": version("rolling-ellipse"),
         "date": datetime.date.today().isoformat(),
     }
-
-
-def peer(name: str) -> Any:
-    """A module, or None and a line that says so."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        print(f"{name.partition('.')[0]} is not installed: left out")
-        return None
 
 
 def rounds_asked(about: str | None, default: int = 20) -> int:
