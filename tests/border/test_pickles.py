@@ -27,9 +27,9 @@ from rolling_ellipse._motion.samples import ContactSamples
 
 
 def printed() -> rl.report.PrintedMotion:
-    axes: dict[str, Any] = {"a": 2.0, "b": 1.0}
+    q, q_dot = rl.kinematics(0.3, 2.0, a=2.0, b=1.0)
     how: dict[str, Any] = {"equations": "printed", "consistent": "project"}
-    found = rl.report.simulate(*rl.kinematics(0.3, 2.0, **axes), TIMES / 4, **axes, **how)
+    found = rl.report.simulate(q, q_dot, TIMES / 4, a=2.0, b=1.0, **how)
     assert isinstance(found, rl.report.PrintedMotion)
     return found
 

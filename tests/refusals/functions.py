@@ -30,7 +30,12 @@ HIT: dict[str, Any] = {
 BEFORE: Any = np.array([[0.0], [0.0], [-1.0], [0.0]])
 AFTER: Any = np.zeros((3, 1))
 UPWARDS: Any = -BEFORE
-MASKED: list[Any] = [[0.0, 0.0], np.ma.array([-1.0, -1.0], mask=[0, 1]), [-1.0, -1.0], [0.0, 0.0]]
+MASKED: list[Any] = [
+    [0.0, 0.0],
+    np.ma.array([-1.0, -1.0], mask=[False, True]),
+    [-1.0, -1.0],
+    [0.0, 0.0],
+]
 TWO_IMPACTS: Any = np.zeros((3, 2))
 DEEP: list[Any] = []
 DEEP.append(DEEP)
@@ -77,7 +82,7 @@ REFUSALS: list[Row] = [
     *wrong(rl.kinematics, {"theta": 0.3, "omega": 1.0, **AXES},
            theta=NOT_FINITE, omega=NOT_FINITE, a=NOT_POSITIVE, b=NOT_POSITIVE),
     *wrong(rl.constraints, {"q": Q, "q_dot": Q_DOT, **AXES},
-           q=[[1.0], *WITH_WRONG, np.ma.array(Q, mask=[0, 0, 1, 0, 0]), *map(np.zeros, (0, 4, 6))],
+           q=[[1.0], *WITH_WRONG, np.ma.masked_equal(Q, Q[2]), *map(np.zeros, (0, 4, 6))],
            q_dot=[*WITH_WRONG, *(np.zeros((3, length)) for length in (0, 4, 6, 10))],
            a=NOT_POSITIVE, b=NOT_POSITIVE),
     # questions to scenes

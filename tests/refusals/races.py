@@ -47,6 +47,10 @@ def raced(change: Callable[[Any], Any]) -> Callable[[Path], Any]:
     return call
 
 
+def of_run(**facts: Any) -> Callable[[Path], Any]:
+    return raced(lambda known: known["runs"][0].update(facts))
+
+
 REFUSALS: list[Row] = [
     # asked
     *(("methods", race(methods=methods))
@@ -65,10 +69,11 @@ REFUSALS: list[Row] = [
     ("tags", result(lambda found: found.plot(tags="x"))),
     (KeyError, result(lambda found: found.runs[0].errors["x"])),
     # files
-    *(("path", raced(lambda known, facts=facts: known.update(facts)))
-      for facts in ({"schema": 99}, {"runs": []}, {"machine": 1})),
+    ("path", raced(lambda known: known.update(schema=99))),
+    ("path", raced(lambda known: known.update(runs=[]))),
+    ("path", raced(lambda known: known.update(machine=1))),
     ("path", raced(lambda known: known["scene"].update(a=2))),
     ("path", raced(lambda known: known["references"][0].update(floor=-1.0))),
-    *(("path", raced(lambda known, facts=facts: known["runs"][0].update(facts)))
-      for facts in ({"t_end": 9.0}, {"tags": 1}, {"time": "x"}, {"steps": -1}, {"status": 1})),
+    *(("path", of_run(**{name: value})) for name, value in {
+        "t_end": 9.0, "tags": 1, "time": "x", "steps": -1, "status": 1}.items()),
 ]  # fmt: skip

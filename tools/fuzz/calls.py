@@ -37,6 +37,10 @@ PLAIN = tuple(name for name in FUNCTIONS if name not in (*OWN, *SLOW))
 Ask = Callable[[Draw, Body], object]
 
 
+def _beside(name: str) -> Callable[[Draw, Body], float]:
+    return lambda draw, of: of.values[name] * draw.pick(1.0, 1.0, draw.between(0.999, 1.001))
+
+
 def _time(draw: Draw, of: Body) -> float:
     size = draw.pick(draw.between(0, 20), draw.power(-3, 3), draw.power(-250, 250))
     return draw.pick(1, -1) * of.clock * size
@@ -44,8 +48,7 @@ def _time(draw: Draw, of: Body) -> float:
 
 #: Numbers by the name of the argument; functions of arrays get columns of them.
 NUMBERS: dict[str, Callable[[Draw, Body], float]] = {
-    **{name: lambda d, of, name=name: of.values[name] * d.pick(1.0, 1.0, d.between(0.999, 1.001))
-       for name in ("a", "b", "mass")},
+    **{name: _beside(name) for name in ("a", "b", "mass")},
     "t": _time,
     "theta": scenes.angle,
     "omega": scenes.speed,

@@ -44,7 +44,7 @@ class Body:
 
     @property
     def length(self) -> float:
-        return max(self.values["a"], self.values["b"])
+        return float(max(self.values["a"], self.values["b"]))
 
     @property
     def clock(self) -> float:
