@@ -123,7 +123,7 @@ def test_a_changed_value_is_another() -> None:
 
 @pytest.mark.parametrize("scene", [*SCENES.values(), WEIRD])
 def test_the_repr_of_a_scene_makes_it(scene: rl.Scene) -> None:
-    assert eval(repr(scene), vars(rl)) == scene
+    assert eval(repr(scene), {"Scene": rl.Scene, "Impulse": rl.Impulse}) == scene
 
 
 def test_a_scene_shows_what_was_said_of_it_and_what_follows() -> None:
