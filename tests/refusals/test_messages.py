@@ -53,7 +53,6 @@ UNREACHABLE: dict[str, str] = {
     # of one way in a race: the reason of its run, which has no answer
     "flow must be given a scene that rolls": "a reason",
     "raise Stopped(": "a reason",
-    "of {name} must return a function": "a reason",
     "it returned theta, omega, x": "a reason",
 }
 
