@@ -16,9 +16,9 @@ Tell = Callable[[int, int | None], Any]
 
 @contextmanager
 def told(progress: bool | Tell, unit: str, name: str = "") -> Iterator[Tell]:
-    """Yield a function of how much is done, and of all where that is known.
+    """Yield a function that is called with the amounts done and in all (None: unknown).
 
-    It is `progress` itself, or if that is True shows a bar with `name` before it.
+    It is `progress` itself; True makes a bar with `name` before it, False does nothing.
     """
     if callable(progress):
         yield progress

@@ -34,7 +34,7 @@ class Sample:
     energy : float
         Kinetic and potential energy [J].
     mode : Mode
-        What the body does.
+        Rolling, sliding, in flight or at rest.
     """
 
     t: float

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
-    """Return the errors of the positions and those of the velocities, each (n,), by name.
+    """Return the errors of positions and of velocities, each (n,), by name.
 
-    Lengths are over the longer semi-axis, rates over max|omega| as well. A motion without rotation
-    is measured by its free-fall speed, sqrt(gravity length).
+    Lengths are over the longer semi-axis, rates also over max|omega|, or over sqrt(gravity/length)
+    for a motion without rotation.
     """
     scene, found = motion.scene, motion.constraint_residuals()
     length = max(scene.a, scene.b)
@@ -48,6 +48,6 @@ def energy_error(motion: Trajectory) -> FloatArray:
 
 
 def worst(errors: Errors) -> FloatArray:
-    """Return the largest of several errors at each time, (n,), of those that are errors there."""
+    """Return the largest of several errors at each time, (n,), ignoring NaN."""
     largest: FloatArray = np.fmax.reduce(list(errors.values()))
     return largest

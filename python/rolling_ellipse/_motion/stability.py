@@ -1,4 +1,4 @@
-"""What a computed motion has lost of what it should keep, and what would keep it."""
+"""Losses of energy and constraints by a computed motion, and advice against them."""
 
 from __future__ import annotations
 
@@ -12,21 +12,20 @@ if TYPE_CHECKING:
     from .._ask.settings import Settings
     from .trajectory import Trajectory
 
-_LOST_ENERGY = 1e-2  # beside the energy itself
-_MISSED = 1e-3  # of the constraints, in long semi-axes and rad: a pixel of a picture of the body
-_MOVED = 0.1  # the same by one step, as far as its projection then moves the body
-_OF_RTOL = 10.0  # times rtol are no surprise
+_LOST_ENERGY = 1e-2  # largest change of the energy over itself
+_MISSED = 1e-3  # largest error of the constraints [long semi-axes, rad]: a pixel of a picture
+_MOVED = 0.1  # largest error of the constraints by one step, before its projection
+_OF_RTOL = 10.0  # largest change of the energy over rtol
 
 
 def advice(motion: Trajectory) -> str | None:
-    """Return a sentence on what to use instead, where a motion has lost what it should keep.
+    """Return advice for a motion that has lost energy or its constraints, or None.
 
-    That is looked at along the motion, at steps and between them. The energy, which rolling
-    conserves, is measured by the largest kinetic plus |potential| energy, the latter with x = 0 at
-    the start. A projection keeps constraints and energy whatever the steps are; what it hides is
-    told by how far it moves a state: the constraints missed by a step are a part of its local
-    error, and of the size of the whole. Where that is a tenth of the body, the projected state is
-    another motion's.
+    The losses are measured at steps and between them. The energy, which rolling conserves, is
+    measured by the largest kinetic plus |potential| energy, the latter with x = 0 at the start. A
+    projection keeps constraints and energy for any steps, but hides the local error. It is seen by
+    how far a state is moved: the constraints missed by a step are a part of its local error, of
+    the same size. If that is a tenth of the body, the projected state belongs to another motion.
     """
     losses = motion._solution.losses()
     if losses is None:
@@ -73,7 +72,7 @@ def _better(motion: Trajectory) -> str:
 
 
 def _too_stiff(settings: Settings, step: float, growth: float) -> str:
-    """The step is too large for the feedback: say for which it is not."""
+    """Return advice for a step too large for Baumgarte's feedback, with a step that is stable."""
     stable, unstable = 0.0, step
     for _ in range(60):
         middle = (stable + unstable) / 2

@@ -1,4 +1,4 @@
-"""How a simulation ended, and what is raised when it did not end well."""
+"""Endings of simulations, and the exceptions for early ones."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class Status(enum.Enum):
 
 
 def status_of(ending: _core.Ending) -> Status:
-    """Return how a motion ended: what goes on in no way or in two is jammed, either way."""
+    """Return the status of an ending; a jam has no further motion, or two."""
     return Status.JAMMED if ending is _core.Ending.UNDETERMINED else Status[ending.name]
 
 
-COMPLETED = Status.COMPLETED  # asked for by its class, it takes five times as long
-STATUSES = {ending.value: status_of(ending) for ending in _core.Ending}  # of codes
+COMPLETED = Status.COMPLETED  # cached: access by the class is five times slower
+STATUSES = {ending.value: status_of(ending) for ending in _core.Ending}  # by codes of endings
 
 
 class IntegrationError(RuntimeError):
@@ -51,9 +51,9 @@ class IntegrationError(RuntimeError):
         self.trajectory = trajectory
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Be made again of the trajectory: exceptions are made of their message by default."""
+        """Pickle the trajectory: by default an exception is made of its message alone."""
         return type(self), (self.trajectory,), self.__dict__
 
 
 class WorkerError(RuntimeError):
-    """An executor lost a task: nothing is known of the scenes that it held. Its cause says why."""
+    """An executor lost a task, and its scenes have no result; `__cause__` is the reason."""
