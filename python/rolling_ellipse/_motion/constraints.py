@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from .. import _core
 from .._ask.check import COORDINATES as COORDINATES
@@ -34,37 +33,6 @@ class ConstraintResiduals:
     velocity: FloatArray
     gap: FloatArray
     slip: FloatArray
-
-
-def position_errors(
-    found: ConstraintResiduals, mode: npt.NDArray[np.int8], length: float
-) -> dict[str, FloatArray]:
-    """Return |f2|, |f3| and the gap over a length [m], and |f4| [rad], by name.
-
-    `mode` holds codes of `Mode`. In flight f2 and the gap have no meaning: they are NaN.
-    """
-    f2, f3, f4 = np.abs(found.position).T
-    held = np.where(mode == _core.Mode.FLIGHT, np.nan, 1 / length)
-    return {"f2": f2 * held, "f3": f3 / length, "f4": f4, "gap": np.abs(found.gap) * held}
-
-
-def velocity_errors(
-    found: ConstraintResiduals, mode: npt.NDArray[np.int8], length: float, rate: float
-) -> dict[str, FloatArray]:
-    """Return |f1|, the slip and the rates of f2, f3, f4, over a length [m] and a rate [1/s].
-
-    In flight f1, f2 and the slip have no meaning, while sliding f1 and the slip: they are NaN.
-    """
-    f1, f2, f3, f4 = np.abs(found.velocity).T / rate
-    held = np.where(mode == _core.Mode.FLIGHT, np.nan, 1 / length)
-    stuck = np.where(mode == _core.Mode.SLIDING, np.nan, held)
-    return {
-        "f1": f1 * stuck,
-        "df2/dt": f2 * held,
-        "df3/dt": f3 / length,
-        "df4/dt": f4,
-        "slip": np.abs(found.slip) / rate * stuck,
-    }
 
 
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:

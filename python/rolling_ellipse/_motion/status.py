@@ -34,13 +34,9 @@ class Status(enum.Enum):
     STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
 
 
-def status_of(ending: _core.Ending) -> Status:
-    """Return the status of an ending; a jam has no further motion, or two."""
-    return Status.JAMMED if ending is _core.Ending.UNDETERMINED else Status[ending.name]
-
-
 COMPLETED = Status.COMPLETED  # cached: access by the class is five times slower
-STATUSES = {ending.value: status_of(ending) for ending in _core.Ending}  # by codes of endings
+_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two motions go on
+STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}  # by codes of endings
 
 
 class IntegrationError(RuntimeError):

@@ -129,21 +129,11 @@ def classify(
 
     Parameters
     ----------
-    a, b : float or array_like
-        Semi-axes [m].
-    omega, theta : float or array_like
-        Angular velocity [rad/s] and angle [rad] at the start; less than 1e-100 rad/s in size
-        counts as rest.
+    a, b, omega, theta, gravity, gyration2, workers
+        As of `flow`: semi-axes [m], angular velocity [rad/s] and angle [rad] at the start, gravity
+        [m/s^2], k^2 [m^2] and workers.
     friction : float or array_like
         Coefficient of friction; inf allowed.
-    gravity : float or array_like
-        Acceleration of gravity [m/s^2].
-    gyration2 : float or array_like, optional
-        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
-        (a^2 + b^2)/4.
-    workers : int or executor
-        Number of threads, up to 1024, -1 for all cores; or an executor, as of `simulate_many`. The
-        answers are the same for all.
 
     Returns
     -------
@@ -157,15 +147,9 @@ def classify(
         shape, ``a[3]``) or shapes do not broadcast.
     """
     found = evaluate(
-        shared(workers, _core.classify_array),
-        a=a,
-        b=b,
-        omega=omega,
-        theta=theta,
-        friction=friction,
-        gravity=gravity,
-        gyration2=gyration2,
-    )
+        shared(workers, _core.classify_array), a=a, b=b, omega=omega, theta=theta,
+        friction=friction, gravity=gravity, gyration2=gyration2,
+    )  # fmt: skip
     return Outcome(int(found)) if isinstance(found, float) else found
 
 
@@ -181,12 +165,8 @@ def thresholds(
 
     Parameters
     ----------
-    a, b : float
-        Semi-axes [m].
-    gravity : float
-        Acceleration of gravity [m/s^2].
-    gyration2 : float, optional
-        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc.
+    a, b, gravity, gyration2 : float
+        As of `flow`: semi-axes [m], gravity [m/s^2] and k^2 [m^2].
     friction : float
         Coefficient of friction for `slip_speed` and `lift_off_speed`; if infinite, the slip speed
         is the contact loss speed.

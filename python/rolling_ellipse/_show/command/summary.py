@@ -83,7 +83,7 @@ def _finite(value: float | None) -> float | None:
 
 def lines(found: dict[str, Any], trajectory: Trajectory) -> list[str]:
     """Return the result of `summary` as lines of text."""
-    scene = dict(trajectory.scene._rows())
+    scene = {name: value for name, value in trajectory.scene._rows()}
     start, blow = scene.pop("start"), scene.pop("impulse", "none")
     rows = [
         ("scene", ", ".join(f"{name} = {value}" for name, value in scene.items())),

@@ -152,7 +152,8 @@ class WorkPrecision:
         """Return a pandas DataFrame (``rolling_ellipse[data]``) with a row for each run."""
         pandas = required("pandas", "to_dataframe")
         rows = [asdict(run) | dict(run.errors) | {"tags": " ".join(run.tags)} for run in self.runs]
-        return pandas.DataFrame(rows).drop(columns="errors")  # type: ignore[no-any-return]
+        frame: DataFrame = pandas.DataFrame(rows).drop(columns="errors")
+        return frame
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to a file of JSON, which appears whole or not at all."""
