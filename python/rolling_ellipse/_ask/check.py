@@ -330,7 +330,7 @@ def _with_indices(message: str, shape: tuple[int, ...]) -> str:
 
 def uniform_disc(a: Any, b: Any) -> FloatArray:
     """Return k^2 = I/m of uniform discs."""
-    with np.errstate(over="ignore"):  # the core refuses by name what is too large
+    with np.errstate(over="ignore"):  # the core refuses infinite values by name
         squares: FloatArray = (array("a", a) ** 2 + array("b", b) ** 2) / 4
     return squares
 

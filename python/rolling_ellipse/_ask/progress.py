@@ -11,11 +11,11 @@ from typing import Any
 
 from .check import shown
 
-Tell = Callable[[int, int | None], Any]
+Report = Callable[[int, int | None], Any]
 
 
 @contextmanager
-def told(progress: bool | Tell, unit: str, name: str = "") -> Iterator[Tell]:
+def reporting(progress: bool | Report, unit: str, name: str = "") -> Iterator[Report]:
     """Yield a function that is called with the amounts done and in all (None: unknown).
 
     It is `progress` itself; True makes a bar with `name` before it, False does nothing.

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Status(enum.Enum):
-    """How a simulation ended; the value is the sentence."""
+    """Ending of a simulation; the value is a sentence for people."""
 
     COMPLETED = "the motion was followed to the end"
     JAMMED = (
@@ -40,7 +40,7 @@ STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}  # 
 
 
 class IntegrationError(RuntimeError):
-    """An integration stopped before its last time; `trajectory` holds what there is."""
+    """An integration stopped before its last time; `trajectory` is the motion up to then."""
 
     def __init__(self, trajectory: Trajectory) -> None:
         super().__init__(trajectory.message)

@@ -10,7 +10,7 @@ from .._motion.trajectory import Trajectory
 
 _PACKAGE = __name__.partition(".")[0]
 
-#: By class and module; a function has the name of the method.
+#: Names of methods by class and module; the functions have the same names.
 METHODS: dict[type, dict[str, tuple[str, ...]]] = {
     Trajectory: {
         "_motion.instant": ("at",),

@@ -21,7 +21,7 @@ class Certificate(Listed):
     Attributes
     ----------
     validity : Validity
-        VALID, INVALID, EDGE (rounding cannot tell) or NO_PROOF (a start that does not roll).
+        VALID, INVALID, EDGE (undecided within rounding) or NO_PROOF (a start that does not roll).
     smallest_normal_force : float or None
         Least normal force [N] over the whole motion, both directions of time. On a slope it is -inf
         except for a circle, a body at rest and one that rocks: other bodies turn faster without

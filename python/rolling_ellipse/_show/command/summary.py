@@ -129,4 +129,4 @@ def _repeat(found: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
         return name, "none: it rests"
     if trajectory.scene.slope != 0:
         return name, "none: it runs downhill for ever"
-    return name, "none: it comes to the tip in infinite time"
+    return name, "none: it reaches the tip in infinite time"

@@ -39,9 +39,9 @@ _SAME = "a folder of the same request"
 _REQUEST, _END = "request.npz", "end.json"
 _CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
 _AGAIN = "simulate_many with the same arguments"
-_OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")  # or of nobody
+_OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")  # and hidden files
 
-_Names = dict[int, list[str]]  # of the chunks that are there, by their places, in order
+_Names = dict[int, list[str]]  # names of the files of chunks, by index, in order
 
 _Made = TypeVar("_Made")
 

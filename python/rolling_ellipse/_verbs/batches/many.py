@@ -1,4 +1,4 @@
-"""Many scenes in, a motion for each out."""
+"""Simulation of many scenes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from ... import _core
 from ..._ask.check import flag
-from ..._ask.progress import told
+from ..._ask.progress import reporting
 from ..._ask.scene import Scene
 from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
 from ..._motion.status import WorkerError
@@ -95,16 +95,16 @@ def simulate_many(
     request = Request(how, times, flag("raise_on_failure", raise_on_failure))
     threads_of(workers)
     wanted = asked(scenes)
-    with told(progress, "scenes") as tell:
+    with reporting(progress, "scenes") as report:
         if out is not None:
-            return _to_folder(Folder(out, request), request, wanted, workers, tell)
+            return _to_folder(Folder(out, request), request, wanted, workers, report)
         found: list[Answer] = []
         for chunk, tables in _solved(request, wanted.chunks(times.size), workers):
             if isinstance(tables, Lost):
                 found += [_worker_error(chunk, tables)] * len(chunk.table)
             else:
                 found += answers(request, chunk.scenes, tables)
-            tell(len(found), wanted.total)
+            report(len(found), wanted.total)
         return found
 
 
@@ -139,7 +139,7 @@ def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator
 
 
 def _to_folder(
-    folder: Folder, request: Request, wanted: SceneList | SceneGrid, workers: Any, tell: Any
+    folder: Folder, request: Request, wanted: SceneList | SceneGrid, workers: Any, report: Any
 ) -> str:
     done, count, lost = 0, 0, []
 
@@ -160,7 +160,7 @@ def _to_folder(
             continue
         folder.store(chunk, tables)
         done += len(chunk.table)
-        tell(done, wanted.total)
+        report(done, wanted.total)
     if lost:
         raise WorkerError(f"{len(lost)} chunks are missing: the same call goes on") from lost[0]
     folder.end(done, count)

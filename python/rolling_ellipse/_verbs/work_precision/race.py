@@ -17,7 +17,7 @@ import numpy as np
 
 from ... import _core
 from ..._ask.check import array, positive, shown, whole_within
-from ..._ask.progress import told
+from ..._ask.progress import reporting
 from ..._ask.scene import Scene, require_scene
 from .contenders import (
     STEPS,
@@ -132,8 +132,8 @@ def work_precision(
             coarse_first = sorted(set(rungs), reverse=True)
             ladders.append([_Attempt(contender, judge, setting) for setting in coarse_first])
     attempts = [attempt for ladder in ladders for attempt in ladder]
-    with told(progress, "runs", "race") as tell:
-        spent = _judge_all(ladders, _JUDGING * seconds, lambda done: tell(done, len(attempts)))
+    with reporting(progress, "runs", "race") as report:
+        spent = _judge_all(ladders, _JUDGING * seconds, lambda done: report(done, len(attempts)))
     # one call that took longer than all of that time takes none of the rest
     _time_in_turns(attempts, rounds, seconds - min(spent, _JUDGING * seconds))
     return WorkPrecision(
@@ -239,7 +239,7 @@ class _Attempt:
 
 
 def _judge_all(
-    ladders: Sequence[Sequence[_Attempt]], seconds: float, tell: Callable[[int], Any]
+    ladders: Sequence[Sequence[_Attempt]], seconds: float, report: Callable[[int], Any]
 ) -> float:
     """Judge the attempts that `seconds` allow, and return the time spent on them [s].
 
@@ -263,7 +263,7 @@ def _judge_all(
             else:
                 attempt.judge_once()
                 spent, done = spent + attempt.spent, done + 1
-            tell(done)
+            report(done)
     return spent
 
 
