@@ -32,7 +32,7 @@ _LONGEST = 300  # characters of a value in a message
 _MOST_AXES = 32  # of NumPy's broadcasting
 _PIECE = 2**17  # numbers of a list converted at a time: 10 ms at most, between which Ctrl-C acts
 _SLICED = (list, tuple, range)
-_BYTES = (str, bytes, bytearray, memoryview)  # sequences, but not of numbers
+_TEXT = (str, bytes, bytearray, memoryview)  # sequences, but not of numbers
 _PLAIN = frozenset({float, int, bool, np.float64})  # types of nearly all entries of lists
 _UNITS = ("unit", "units", "dimensions")
 
@@ -54,10 +54,8 @@ def number(name: str, value: Any) -> float:
     if type(value) is float:  # most are, and a scene has many
         return value
     if type(value) in _PLAIN:
-        try:
+        with suppress(OverflowError):  # refused below
             return float(value)
-        except OverflowError:
-            pass  # refused below
     found = _doubles(name, value)
     if found is None or found.ndim:
         raise TypeError(f"{name} must be a number, got {shown(value)}")
@@ -90,10 +88,8 @@ def positive(name: str, value: Any) -> float:
 def whole_within(name: str, value: Any, most: int) -> int:
     """Return ``value`` as a whole number from 1 to ``most``."""
     found = whole(name, value)
-    if found < 1:
-        raise ValueError(f"{name} must be at least 1, got {shown(value)}")
-    if found > most:
-        raise ValueError(f"{name} must be at most {most}, got {shown(value)}")
+    if not 1 <= found <= most:
+        raise ValueError(f"{name} must be from 1 to {most}, got {shown(value)}")
     return found
 
 
@@ -188,7 +184,7 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
     """Raise TypeError for a value with masks or units, or a sequence that holds one."""
     if isinstance(value, np.generic):
         return
-    if isinstance(value, (Sequence, chain)) and not isinstance(value, _BYTES):
+    if isinstance(value, (Sequence, chain)) and not isinstance(value, _TEXT):
         entries = iter(value)
         while piece := list(islice(entries, _PIECE)):
             if _PLAIN.issuperset(map(type, piece)):
