@@ -93,66 +93,34 @@ def of_coordinates(t: FloatArray, q: FloatArray, q_dot: FloatArray) -> dict[str,
     return {"t": t, **held, "coordinates": (q, q_dot)}
 
 
-class _Rolling:
-    """Samples of theta, omega and x, from which the rest follows."""
-
-    @staticmethod
-    def details(of: Trajectory) -> dict[str, FloatArray]:
-        return _core.rolling_detail(of.scene.core, of.theta, of.omega, of.x)
-
-    @staticmethod
-    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
-        return _core.rolling_contact(of.scene.core, of.theta, of.omega)
-
-
-class _Coordinates:
-    """Samples of q and q_dot."""
-
-    @staticmethod
-    def details(of: Trajectory) -> dict[str, FloatArray]:
-        assert of.coordinates is not None
-        q, q_dot = of.coordinates
-        q_ddot, multipliers = _core.multiplier_detail(of.scene.core, of.settings.core, q, q_dot)
-        friction, normal = np.ascontiguousarray(multipliers.T[:2])
-        return {
-            "q": q, "q_dot": q_dot, "q_ddot": q_ddot, "multipliers": multipliers,
-            "normal_force": normal, "friction_force": friction,
-        }  # fmt: skip
-
-    @staticmethod
-    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
-        known = of._details
-        (_, z, *_), (x_dot, z_dot, *_) = known["q"].T, known["q_dot"].T
-        return known | {"z": z.copy(), "x_dot": x_dot.copy(), "z_dot": z_dot.copy()}
-
-
-class _Contact:
-    """Samples of theta, omega, the motion of the centre and the contact force."""
-
-    @staticmethod
-    def details(of: Trajectory) -> dict[str, FloatArray]:
-        assert of.contact is not None
-        held = of.contact._asdict()
+def details(of: Trajectory) -> dict[str, FloatArray]:
+    """Return q, q_dot, q_ddot, multipliers, normal and friction force at the samples."""
+    body = of.scene.core
+    if of.contact is not None:
+        held = of.contact._asdict() | {"theta": of.theta, "omega": of.omega, "x": of.x}
         del held["mode"]
-        held |= {"theta": of.theta, "omega": of.omega, "x": of.x}
-        found = _core.contact_detail(of.scene.core, held)
-        return found | {name: held[name] for name in ("normal_force", "friction_force")}
+        forces = {name: held[name] for name in ("normal_force", "friction_force")}
+        return _core.contact_detail(body, held) | forces
+    if of.coordinates is None:
+        return _core.rolling_detail(body, of.theta, of.omega, of.x)
+    q, q_dot = of.coordinates
+    q_ddot, multipliers = _core.multiplier_detail(body, of.settings.core, q, q_dot)
+    friction, normal = np.ascontiguousarray(multipliers.T[:2])
+    return {
+        "q": q, "q_dot": q_dot, "q_ddot": q_ddot, "multipliers": multipliers,
+        "normal_force": normal, "friction_force": friction,
+    }  # fmt: skip
 
-    @staticmethod
-    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
-        assert of.contact is not None
+
+def touch(of: Trajectory) -> Mapping[str, FloatArray]:
+    """Return z, x_dot, z_dot, normal and friction force at the samples, cheaper than `details`."""
+    if of.contact is not None:
         return of.contact._asdict()
-
-
-def kind_of(trajectory: Trajectory) -> type[_Rolling | _Coordinates | _Contact]:
-    """Return the functions that compute quantities a trajectory's samples do not hold.
-
-    `details` returns q, q_dot, q_ddot, multipliers, normal and friction force; `touch` returns z,
-    x_dot, z_dot and the forces alone, which is cheaper.
-    """
-    if trajectory.contact is not None:
-        return _Contact
-    return _Rolling if trajectory.coordinates is None else _Coordinates
+    if of.coordinates is None:
+        return _core.rolling_contact(of.scene.core, of.theta, of.omega)
+    known = of._details
+    z, x_dot, z_dot = known["q"][:, 1], known["q_dot"][:, 0], known["q_dot"][:, 1]
+    return known | {"z": z.copy(), "x_dot": x_dot.copy(), "z_dot": z_dot.copy()}
 
 
 def _untouchable(values: _Values) -> _Values:

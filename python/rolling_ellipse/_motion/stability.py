@@ -30,8 +30,9 @@ def advice(motion: Trajectory) -> str | None:
     losses = motion._solution.losses()
     if losses is None:
         return None
-    settings = motion.settings
+    settings, by = motion.settings, f"by t = {motion.t_end:g} s"
     step = settings.step
+    finer = "smaller steps" if step else "smaller rtol and atol"
     if settings.stabilization == "baumgarte" and step is not None:
         if settings.method == "auto":
             settings = replace(settings, method=motion.method)
@@ -41,34 +42,23 @@ def advice(motion: Trajectory) -> str | None:
         return (
             f"a step has missed the constraints by {losses.projected:.2g} of the long semi-axis "
             f"before stabilization {settings.stabilization!r}, which moves the body elsewhere: "
-            f"take {_finer(settings)}"
+            f"take {finer}"
         )
     if losses.constraints > _MISSED:
         return (
             f"the constraints are missed by {losses.constraints:.2g} of the long semi-axis "
-            f"{_when(motion)} with stabilization {settings.stabilization!r}: use 'projection', "
+            f"{by} with stabilization {settings.stabilization!r}: use 'projection', "
             "which keeps them, or the model 'rolling', which has none to miss"
         )
     if losses.energy > max(_LOST_ENERGY, 0.0 if step else _OF_RTOL * settings.rtol):
+        better = "method 'exact', which takes none"
+        if motion.model == "multipliers":
+            better = "stabilization 'projection+energy'"
         return (
-            f"the energy has changed by {losses.energy:.2g} of itself {_when(motion)} with "
-            f"method {settings.method!r}: take {_finer(settings)}, {_better(motion)}"
+            f"the energy has changed by {losses.energy:.2g} of itself {by} with "
+            f"method {settings.method!r}: take {finer}, or {better}"
         )
     return None
-
-
-def _finer(settings: Settings) -> str:
-    return "smaller steps" if settings.step else "smaller rtol and atol"
-
-
-def _when(motion: Trajectory) -> str:
-    return f"by t = {motion.t_end:g} s"
-
-
-def _better(motion: Trajectory) -> str:
-    if motion.model == "multipliers":
-        return "or stabilization 'projection+energy'"
-    return "or method 'exact', which takes none"
 
 
 def _too_stiff(settings: Settings, step: float, growth: float) -> str:

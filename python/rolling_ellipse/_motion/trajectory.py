@@ -23,9 +23,10 @@ from .samples import (
     ContactSamples,
     contact_samples,
     coordinate_pair,
+    details,
     frozen,
-    kind_of,
     sampled,
+    touch,
     vector,
 )
 from .status import COMPLETED, STATUSES, Status
@@ -227,7 +228,7 @@ class Trajectory(FieldsOnly):
     @cached_property
     def _details(self) -> dict[str, FloatArray]:
         """Coordinates, rates, accelerations, contact forces and multipliers at the samples."""
-        found = kind_of(self).details(self)
+        found = details(self)
         for values in found.values():
             frozen(values)
         return found
@@ -249,7 +250,7 @@ class Trajectory(FieldsOnly):
     @cached_property
     def _touch(self) -> Mapping[str, FloatArray]:
         """z, x_dot, z_dot, normal and friction force: cheaper than `_details`."""
-        return kind_of(self).touch(self)
+        return touch(self)
 
     z, x_dot, z_dot = _touching("z"), _touching("x_dot"), _touching("z_dot")
     normal_force, friction_force = _touching("normal_force"), _touching("friction_force")
