@@ -12,7 +12,7 @@ import os
 import re
 import reprlib
 from array import array as vector
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from itertools import chain, islice
 from operator import index
@@ -30,7 +30,7 @@ _KNOWN = "within the range of doubles"
 _PLACE = r"\[(\d+)\]"
 _LONGEST = 300  # characters of a value in a message
 _MOST_AXES = 32  # of NumPy's broadcasting
-_PIECE = 2**17  # numbers of a list converted at a time: 10 ms at most, between which Ctrl-C acts
+_PIECE = 2**17  # numbers converted at a time: 10 ms at most, between which Ctrl-C acts
 _SLICED = (list, tuple, range)
 _TEXT = (str, bytes, bytearray, memoryview)  # sequences, but not of numbers
 _PLAIN = frozenset({float, int, bool, np.float64})  # types of nearly all entries of lists
@@ -147,7 +147,7 @@ def _converted(name: str, value: Any) -> FloatArray | None:
         found: npt.NDArray[Any] = value if type(value) is np.ndarray else np.asarray(value)
         dtype = found.dtype
         if dtype.kind in "biuf" and dtype.itemsize <= _DOUBLE.itemsize:
-            return found if dtype is _DOUBLE else found.astype(_DOUBLE, order="C")
+            return found if dtype is _DOUBLE else copied(found)
         if dtype.kind != "f" and (dtype.kind != "O" or hasattr(type(value), "__array__")):
             return None
         # Decimals, Fractions, ints of more than 64 bits and long doubles: by their own conversion
@@ -178,6 +178,21 @@ def _size(value: Any) -> int:
     if isinstance(value, _SLICED):
         return len(value) * _size(value[0]) if value else 0
     return value.size if type(value) is np.ndarray else 1
+
+
+def pieces(values: npt.NDArray[Any]) -> Iterator[tuple[int, npt.NDArray[Any]]]:
+    """Yield begin and numbers of one piece of an array after the other, in C order."""
+    flat: Any = values.reshape(-1) if values.flags.c_contiguous else values.flat
+    for begin in range(0, values.size, _PIECE):
+        yield begin, flat[begin : begin + _PIECE]
+
+
+def copied(values: npt.NDArray[Any]) -> FloatArray:
+    """Return a float64 copy of an array, in C order."""
+    found = np.empty(values.size)
+    for begin, piece in pieces(values):
+        found[begin : begin + piece.size] = piece
+    return found.reshape(values.shape)
 
 
 def _require_plain(name: str, value: Any, axes: int = 0) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from .categories import ValidityWarning
-from .check import FloatArray, array, common_shape
+from .check import FloatArray, array, common_shape, copied, pieces
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,8 +79,9 @@ class Impulse:
             Arrays that broadcast make many blows.
         """
         force, distance = array("F", F), array("d", d)
+        push = copied(force)
         try:
-            found = cls(0.0, -force, dx=distance)
+            found = cls(0.0, np.negative(push, out=push), dx=distance)
         except ValueError:
             _let_the_core_refuse("jz", force, "F")
             _let_the_core_refuse("dx", distance, "d")
@@ -117,16 +118,22 @@ def numbers(name: str, value: Any) -> Any:
     found = array(name, value)
     if found.ndim == 0:
         return float(found)
-    kept = np.array(found, order="C")
+    kept = copied(found)
     kept.flags.writeable = False
     return kept
+
+
+def _largest(values: FloatArray) -> int:
+    """Return the index of the largest size; NaN is larger than any number."""
+    return int(np.abs(values).argmax())
 
 
 def _let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
     """Raise the core's error for the worst number (NaN, or else the largest), as `argument`."""
     if not values.size:
         return
-    index = np.unravel_index(int(np.abs(values).argmax()), values.shape)
+    worst = [begin + _largest(piece) for begin, piece in pieces(values)]  # of each piece
+    index = np.unravel_index(worst[_largest(values.flat[worst])], values.shape)
     try:
         _core.Impulse(**({"jx": 0.0, "jz": 0.0, "dx": 0.0, "dz": 0.0} | {name: values[index]}))
     except ValueError as error:
