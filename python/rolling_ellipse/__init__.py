@@ -10,11 +10,11 @@ import os as _os
 from importlib import import_module as _import_module
 from typing import Any as _Any
 
-from ._show import methods as _methods  # noqa: F401  # binds them
+from ._show import methods as _methods  # noqa: F401  # binds the methods of a motion
 
 
 def _listed() -> dict[str, str]:
-    """Return the public names that the stub beside this file lists, and where each is."""
+    """Return the public names in the stub beside this file, each with its module."""
     with open(_os.path.splitext(__file__)[0] + ".pyi", encoding="utf-8") as stub:
         lines = _ast.parse(stub.read()).body
     imports = [line for line in lines if isinstance(line, _ast.ImportFrom)]
@@ -26,7 +26,7 @@ __all__ = sorted([*_PLACES, "__version__"])
 
 
 def __getattr__(name: str) -> _Any:
-    """Load what not every motion needs when it is first asked for, above all matplotlib."""
+    """Import a public name when it is first asked for; matplotlib, above all, loads slowly."""
     if name == "__version__":
         from importlib.metadata import version
 

@@ -1,4 +1,4 @@
-# The public names, each with the module that has it: `__init__.py` finds them here.
+# The public names, each with its module; `__init__.py` reads them from here.
 
 from . import geometry as geometry
 from . import impacts as impacts

@@ -1,4 +1,4 @@
-"""Simulate one scene and say what happens: python -m rolling_ellipse --help."""
+"""The command line: python -m rolling_ellipse --help."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ from ._show.command.options import (
 )
 from ._show.command.summary import lines, summary
 
-_FPS = 25.0  # which every kind of film can hold
+_FPS = 25.0  # frames per second, possible in every kind of film
 _FOLLOWED = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
-_INTERRUPTED, _BROKEN_PIPE = 130, 141  # as shells say it of programs ended by SIGINT and SIGPIPE
+_INTERRUPTED, _BROKEN_PIPE = 130, 141  # exit codes in shells after SIGINT and SIGPIPE
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -40,25 +40,25 @@ def main(arguments: list[str] | None = None) -> int:
     Returns
     -------
     int
-        0 on success; 1 if the motion could not be followed to its end, the summary is of what
-        there is; 2 (and one line) on bad input, or where a file cannot be written.
+        0 on success; 1 if the motion could not be followed to its end (the summary is of the part
+        before); 2 (and one line) on bad input, or if a file cannot be written.
     """
     typed = joined(sys.argv[1:] if arguments is None else arguments)
     exploring = typed[:1] == ["explore"]
     options = (explore_parser() if exploring else motion_parser()).parse_args(typed[exploring:])
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the summary says it
-            code, said = (0, explore(options)) if exploring else _motion(options)
+            warnings.simplefilter("ignore")  # the summary has their messages
+            code, message = (0, explore(options)) if exploring else _motion(options)
     except (ValueError, OSError, ImportError, RuntimeError) as error:
         _complain(error)
         return 2
-    print(said)
+    print(message)
     return code
 
 
 def _motion(options: argparse.Namespace) -> tuple[int, str]:
-    """Simulate, write the files, and return the exit code and what there is to say."""
+    """Simulate, write the files, and return the exit code and the summary."""
     _check_options(options)
     trajectory = simulate(
         chosen_scene(options),
@@ -75,8 +75,8 @@ def _motion(options: argparse.Namespace) -> tuple[int, str]:
         animate(trajectory, options.save)
         files.append(options.save)
     found = summary(trajectory, files)
-    said = json.dumps(found, indent=2) if options.json else "\n".join(lines(found, trajectory))
-    return 0 if trajectory.status in _FOLLOWED else 1, said
+    text = json.dumps(found, indent=2) if options.json else "\n".join(lines(found, trajectory))
+    return 0 if trajectory.status in _FOLLOWED else 1, text
 
 
 def _check_options(options: argparse.Namespace) -> None:
@@ -86,11 +86,11 @@ def _check_options(options: argparse.Namespace) -> None:
         if (path := getattr(options, name)) is not None:
             require_file(f"--{name}", path)
     if options.save is not None:
-        movie_writer(options.save, _FPS, "--save")  # a wrong one is refused before any work
+        movie_writer(options.save, _FPS, "--save")  # refuses a wrong name before any work
 
 
 def _write_figure(trajectory: Trajectory, path: str) -> str:
-    """Write the overview, and return the name of its file."""
+    """Write the overview, and return its path."""
     if not Path(path).suffix:
         path += "." + rcParams["savefig.format"]  # as matplotlib does
     with replacing(path) as new:
@@ -99,13 +99,13 @@ def _write_figure(trajectory: Trajectory, path: str) -> str:
 
 
 def _complain(error: Exception) -> None:
-    if sys.stderr is not None:  # print would take stdout
+    if sys.stderr is not None:  # else print would write to stdout
         print(f"{PROGRAM}: {' '.join(str(error).split())}", file=sys.stderr)
 
 
 def run() -> int:
-    """Run the command line for a shell, where readers leave, disks are full and Ctrl-C is typed."""
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # errors are told in one line
+    """Run the command line for a shell, with exit codes for Ctrl-C, closed pipes and full disks."""
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # warnings would add lines
     try:
         try:
             return main()
@@ -122,7 +122,7 @@ def run() -> int:
             _complain(error)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.stdout, sys.stderr):
-        if stream is not None:  # Python flushes once more at its end, and would complain
+        if stream is not None:  # Python flushes it once more at its end, and would fail
             os.dup2(nowhere, stream.fileno())
     return code
 

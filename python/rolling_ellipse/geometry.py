@@ -1,9 +1,9 @@
 """Geometry of an ellipse on a straight ground, as functions of its angle.
 
-``theta`` is the clockwise rotation [rad]; at 0 the axis ``a`` is parallel to the ground. Any angle,
-any order of the semi-axes ``a`` and ``b`` [m]; scalars give floats, arrays broadcast. All raise
-ValueError for angles that are not finite, and for semi-axes that are no positive lengths or whose
-ratio is outside [1e-3, 1e3].
+``theta`` is the clockwise rotation [rad]; at 0 the axis ``a`` is parallel to the ground. Angles may
+have any size, the semi-axes ``a`` and ``b`` [m] any order. Scalars give floats, arrays broadcast.
+All functions raise ValueError for angles that are not finite, and for semi-axes that are not
+positive or whose ratio is outside [1e-3, 1e3].
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def _evaluate(function: Callable[..., FloatArray], theta: Any, a: Any, b: Any) -
 
 
 def support(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return h, the height of the centre over the ground it touches [m] (support function)."""
+    """Return the support function h, the height of the touching body's centre [m]."""
     return _evaluate(_core.support, theta, a, b)
 
 
@@ -44,7 +44,7 @@ def support_slope(theta: Any, *, a: Any, b: Any) -> Any:
 
 
 def support_curvature(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return h'' [m]."""
+    """Return h'', the second derivative of the support function [m]."""
     return _evaluate(_core.support_curvature, theta, a, b)
 
 

@@ -1,4 +1,4 @@
-"""Named scenes: a = 2 m, b = 1 m, 1 kg, infinite friction and level ground unless said otherwise.
+"""Named scenes: a = 2 m, b = 1 m, 1 kg, infinite friction, level ground unless stated otherwise.
 
 ==============  ====================================================================================
 ``report``      10 kg, pressed by 48 N s at 1.5 m from the centre as in the report's Figure 9: it
@@ -22,38 +22,16 @@ from . import _core
 from ._ask.scene import Impulse, Scene
 
 _lying = Scene(2.0, 1.0, theta=0.5)
-
-#: The report's ellipse, pressed as in its Figure 9: it rolls over.
 report = Scene(2.0, 1.0, mass=10.0, impulse=Impulse.press(48.0, 1.5))
-
-#: Released from 0.5 rad: it rocks.
 rocking = Scene(2.0, 1.0, theta=0.5)
-
-#: Fast enough to roll over and over.
 rolling = Scene(2.0, 1.0, omega=3.2)
-
-#: A millionth faster than what carries it just over its tip.
 separatrix = Scene(2.0, 1.0, omega=_core.roll_over_speed(_lying.core) * (1 + 1e-6))
-
-#: A circle: uniform rolling.
 circle = Scene(1.0, 1.0, omega=2.0)
-
-#: A hundred times longer than high.
 thin = Scene(2.0, 0.02, theta=0.3)
-
-#: Downhill, with friction.
 slope = Scene(2.0, 1.0, slope=0.1, omega=3.0, friction=0.8)
-
-#: Pushed along without rotation: it slides first.
 slip = Scene(2.0, 1.0, x_dot=3.0, omega=0.0, friction=0.2)
-
-#: Too fast to stay on the ground.
 jump = Scene(2.0, 1.0, omega=5.2, friction=1.0)
-
-#: Dropped from 1 m above touching.
 drop = Scene(2.0, 1.0, theta=0.5, z=_lying.initial_state.z + 1.0, friction=1.0)
-
-#: The same, elastic and without friction.
 bounce = Scene(2.0, 1.0, theta=0.5, z=drop.z, friction=0.0, restitution=1.0)
 
 __all__ = [

@@ -274,7 +274,7 @@ def test_two_folders_in_one_are_refused(changes: Any, out: Path, tmp_path: Path)
     simulate_many(**(asked | changes), out=tmp_path / "other")
     theirs = {path.name for path in chunks(tmp_path / "other")} - {p.name for p in chunks(out)}
     merged(out, tmp_path / "other")
-    with pytest.raises(ValueError, match=r"^path must have just the files that its end\.json"):
+    with pytest.raises(ValueError, match=r"^path must have just the files of its end\.json"):
         load_many(out)
     for call in (asked, asked | changes):
         with pytest.raises(ValueError, match=r"^out must be a folder of the same"):
@@ -296,7 +296,7 @@ def test_parts_of_one_folder_make_it_whole(out: Path, tmp_path: Path) -> None:
     require_equal(load_many(out), simulate_many(GRID, TIMES))
     simulate_many(GRID | {"omega": GRID["omega"][:49]}, TIMES, out=tmp_path / "first")
     merged(out, tmp_path / "first")  # whose end is another one
-    with pytest.raises(ValueError, match=r"^path must have just the files that its end\.json"):
+    with pytest.raises(ValueError, match=r"^path must have just the files of its end\.json"):
         load_many(out)
     simulate_many(GRID, TIMES, out=out)
     require_equal(load_many(out), simulate_many(GRID, TIMES))
@@ -308,7 +308,7 @@ def test_a_chunk_under_the_name_of_another_request(out: Path, tmp_path: Path) ->
     simulate_many(GRID, [1.0, 5.0], out=tmp_path / "other")
     for mine, other in zip(chunks(out), chunks(tmp_path / "other"), strict=True):
         shutil.copy(other, mine)
-    with pytest.raises(ValueError, match="request and scenes must be those of the name"):
+    with pytest.raises(ValueError, match="request and scenes must match the digests"):
         list(load_many(out))
     simulate_many(GRID, [2.0, 6.0], out=out)
     require_equal(load_many(out), simulate_many(GRID, [2.0, 6.0]))

@@ -17,7 +17,7 @@ import pytest
 import rolling_ellipse as rl
 from rolling_ellipse import Impulse, Scene, _core
 from rolling_ellipse._ask.settings import DEFAULTS, Settings
-from rolling_ellipse._motion.events import as_numbers, from_numbers
+from rolling_ellipse._motion.export.files import event_row, event_values
 from rolling_ellipse._motion.export.strict import scene_of
 from rolling_ellipse._show.command.options import (
     NOT_TYPED,
@@ -171,7 +171,7 @@ def test_an_event_keeps_its_numbers() -> None:
         state = getattr(event, f"state_{when}")
         for name in (*UNITS["State"], "mode"):
             assert named[f"{name}_{when}"] == getattr(state, name)
-    assert from_numbers(as_numbers(event)) == row
+    assert event_row(event_values(event)) == row
 
 
 def test_statistics_and_columns_have_their_names() -> None:

@@ -187,8 +187,8 @@ def test_the_names_that_a_trajectory_keeps_are_seen() -> None:
 
 
 READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
-    "energy": ("kind_of", lambda motion: motion.energy),
-    "q": ("kind_of", lambda motion: motion.q),
+    "energy": ("touch", lambda motion: motion.energy),
+    "q": ("details", lambda motion: motion.q),
     "sol": ("solve", lambda motion: motion.sol([1.0])),
 }
 

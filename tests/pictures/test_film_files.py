@@ -48,7 +48,7 @@ def test_places_in_rows() -> None:
 
 def test_a_given_figure_stays_as_it_is() -> None:
     figure = Figure()
-    with pytest.raises(ValueError, match="count must be at least 1"):
+    with pytest.raises(ValueError, match="count must be from 1 to"):
         rl.plot(MOTION, figure=figure, count=0)
     assert figure.axes == []
 

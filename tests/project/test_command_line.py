@@ -192,7 +192,7 @@ def test_how_long_until_it_repeats(command: Any) -> None:
         ("--theta .5 --omega 0", "full swing", f"{rl.period(rl.scenes.rocking):.12g} s"),
         ("--a 1 --omega 2", "full turn", f"{math.pi:.12g} s"),
         ("--omega 0", "swing or turn", "none: it rests"),
-        (f"--omega {speed!r}", "swing or turn", "none: it comes to the tip in infinite time"),
+        (f"--omega {speed!r}", "swing or turn", "none: it reaches the tip in infinite time"),
         ("--omega 5.2", "swing or turn", slides),
         ("--omega 3 --slope .1", "swing or turn", slides),
     ):

@@ -43,7 +43,6 @@ UNREACHABLE: dict[str, str] = {
     # the reason of a run in a race that has no answer
     "flow must be given a scene that rolls": "a reason",
     "raise Stopped(": "a reason",
-    "of {name} must return a function": "a reason",
     "it returned theta, omega, x": "a reason",
 }
 

@@ -18,7 +18,7 @@ from rolling_ellipse import CompletenessWarning, Mode, Scene, Status, Trajectory
 def all_times(motion: Trajectory, name: str, value: float, direction: int = 0) -> Floats:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CompletenessWarning)
-        return motion.when(**{name: value}, direction=direction)  # type: ignore[call-overload]
+        return motion.when(**{name: value}, direction=direction)  # type: ignore[arg-type]
 
 
 def every_time(
@@ -26,7 +26,7 @@ def every_time(
 ) -> list[Floats]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CompletenessWarning)
-        return motion.when(**{name: values}, direction=direction)
+        return motion.when(**{name: values}, direction=direction)  # type: ignore[arg-type]
 
 
 def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Floats:
@@ -163,9 +163,9 @@ def test_events_count() -> None:
 def test_what_is_kept_counts_where_it_begins() -> None:
     still = simulate(Scene(2.0, 1.0, x=3.0), 5.0)
     for given in ({"theta": 0.0}, {"omega": 0.0}, {"x": 3.0}, {"z": 1.0}, {"contact_x": 3.0}):
-        assert still.when(**given).tolist() == [0.0]  # type: ignore[call-overload]
+        assert still.when(**given).tolist() == [0.0]  # type: ignore[arg-type]
         for direction in (1, -1):
-            assert still.when(**given, direction=direction).size == 0  # type: ignore[call-overload]
+            assert still.when(**given, direction=direction).size == 0  # type: ignore[arg-type]
     dropped = simulate(Scene(1.0, 1.0, z=2.0), 3.0)
     (rest,) = (event.t for event in dropped.events if event.state_after.mode is Mode.REST)
     assert dropped.at(2.0).mode is Mode.REST
@@ -227,7 +227,7 @@ def test_far_down_a_slope() -> None:
     assert abs(motion.at(t).theta - angle) <= 8 * EPS * angle
     for name in ("z", "omega"):
         with pytest.raises(ValueError, match=f"^{name} must not be looked at over more than 1000"):
-            motion.when(**{name: 1.5})  # type: ignore[call-overload]
+            motion.when(**{name: 1.5})  # type: ignore[arg-type]
 
 
 def test_steps_that_are_too_long_are_not_looked_at_for_ever() -> None:
@@ -277,7 +277,7 @@ def test_it_warns_only_where_nothing_is_proved() -> None:
         for scene in (rl.scenes.report, rl.scenes.rocking, rl.scenes.slope, rl.scenes.slip):
             motion = simulate(scene, 3.0)
             for given in ({"theta": 0.3}, {"x": 0.3}, {"omega": 0.3}, {"z": 1.1}):
-                motion.when(**given)  # type: ignore[call-overload]
+                motion.when(**given)  # type: ignore[arg-type]
             motion.when(contact_x=0.5)
         for scene in (rl.scenes.bounce, rl.scenes.jump):
             simulate(scene, 3.0).when(contact_x=[0.5, 0.7])

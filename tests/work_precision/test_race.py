@@ -265,8 +265,7 @@ class Clock:
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     made = Clock()
-    for module in ("race", "timing", "truth"):
-        monkeypatch.setattr(f"rolling_ellipse._verbs.work_precision.{module}.time", made)
+    monkeypatch.setattr("rolling_ellipse._verbs.work_precision.race.time", made)
     return made
 
 
@@ -371,13 +370,29 @@ def test_everybody_runs_at_the_coarsest_setting(clock: Clock) -> None:
     assert found.machine["rounds"] == "1"
 
 
-def test_the_dearest_take_part_in_fewer_rounds() -> None:
-    """10 s for 10 rounds: what costs 1 ms has all of them, what costs 2 s a few."""
-    from rolling_ellipse._verbs.work_precision.timing import _shares
+def test_the_dearest_take_part_in_fewer_rounds(clock: Clock) -> None:
+    """Of 10 rounds the cheap ones have all; the dear ones have fewer, and share the time."""
+    calls = dict.fromkeys(("cheap", "dear", "dearest"), 0)
 
-    assert _shares([1e-3, 2.0, 0.5], 10, 10.0) == [10, 2, 9]
-    assert _shares([1e-3, 2.0], 10, 100.0) == [10, 10]
-    assert _shares([5.0, 5.0], 10, 0.0) == [1, 1]
+    class Counted(Timed):
+        def prepare(self, scene: Scene, t_end: float, setting: float) -> Callable[[], Any]:
+            run = super().prepare(scene, t_end, setting)
+
+            def counted() -> Any:
+                calls[self.name] += 1
+                return run()
+
+            return counted
+
+    costs = {"cheap": 1e-2, "dear": 0.5, "dearest": 2.0}
+    peers = [Counted(name, clock, call=call) for name, call in costs.items()]
+    begin = clock.now
+    found = raced(*peers, methods=[], tolerances=[1e-3], max_seconds=12.0, rounds=10)
+    told(calls)
+    cheap, dear, dearest = (count - 2 for count in calls.values())  # two were judged
+    assert cheap == 10 > dear > dearest > 1
+    assert 11.0 < clock.now - begin <= 12.0 + 1e-3
+    assert found.machine["rounds"] == "10"
 
 
 # ------------------------------------------------------------------------------ what is judged

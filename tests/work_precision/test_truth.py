@@ -29,7 +29,7 @@ def test_attainable_is_what_the_inputs_carry() -> None:
         scene, t = scene_of(row)
         if certify(scene).validity is not Validity.VALID:
             continue
-        judge = Judge(scene, t, 8, None, math.inf)
+        judge = Judge(scene, t, 8, None)
         theta, omega, x = (float(row[f"unit_{name}"]) for name in ("theta", "omega", "x"))
         _, fastest, length = judge._sizes
         known = max(theta, omega / fastest, x / length)
@@ -56,7 +56,7 @@ def test_flow_is_within_the_floor_of_40_digits() -> None:
                 column[-1] = float(value)
             return columns
 
-        own = Judge(scene, t, 4, None, math.inf).reference
+        own = Judge(scene, t, 4, None).reference
         found = work_precision(
             scene, t, methods=["flow"], samples=4, rounds=1, reference=reference
         ).runs[0]
@@ -66,7 +66,7 @@ def test_flow_is_within_the_floor_of_40_digits() -> None:
 
 def test_a_body_at_rest_may_be_raced_for_longer_than_it_could_swing() -> None:
     """A little beside its equilibrium it would swing, and swings are known for 1e15 times only."""
-    found = Judge(Scene(2.0, 1.0, friction=1.0), 1e206, 4, None, math.inf).reference
+    found = Judge(Scene(2.0, 1.0, friction=1.0), 1e206, 4, None).reference
     assert found.name == "exact rolling" and math.isfinite(found.attainable)
 
 
@@ -77,7 +77,7 @@ def test_near_the_separatrix_less_is_attainable() -> None:
     found = []
     for k in (3, 6, 9, 12):
         scene = Scene(2.0, 1.0, omega=speed * (1 + 10.0**-k))
-        found.append(Judge(scene, 0.45 * period(scene), 4, None, math.inf).reference.attainable)
+        found.append(Judge(scene, 0.45 * period(scene), 4, None).reference.attainable)
     told(found)
     growth = np.diff(np.log10(found)) / 3
     assert np.all(np.abs(growth - 0.9) < 0.01)
@@ -87,7 +87,7 @@ def test_in_the_middle_less_may_be_attainable_than_at_the_end() -> None:
     """Beside derivatives in 40 digits at the same times, by a quadrature of another kind."""
     scene = Scene(2.0, 1.0, omega=math.sqrt(2 * 9.81 / 2.25) * (1 + 1e-9))
     t_end = 0.72 * period(scene)
-    judge = Judge(scene, t_end, 12, None, math.inf)
+    judge = Judge(scene, t_end, 12, None)
     numbers = (scene.a, scene.b, scene.gyration2, scene.gravity, scene.theta, scene.omega)
     with mp.workdps(40):
 

@@ -1,1 +1,1 @@
-"""What is asked: arguments, the scene with its blow, and how it is to be computed."""
+"""Arguments: numbers, the scene with its blow, and the settings of a computation."""

@@ -1,13 +1,13 @@
-"""The categories of the warnings that the package issues."""
+"""Categories of the package's warnings."""
 
 
 class ValidityWarning(UserWarning):
-    """Part of the motion is not what a body on the ground would do."""
+    """Part of the motion is impossible for a body on the ground."""
 
 
 class StabilityWarning(UserWarning):
-    """What was asked for is known to lose what the motion keeps: constraints, energy or both."""
+    """The computed motion has lost energy, or misses its constraints."""
 
 
 class CompletenessWarning(UserWarning):
-    """What was asked for was found by looking closely, and not proved to be all there is."""
+    """The results of a search are not proved to be complete."""

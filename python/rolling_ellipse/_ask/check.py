@@ -1,8 +1,8 @@
-"""Conversion of arguments: numbers stay numbers, everything else is refused by name.
+"""Conversion of arguments to doubles; anything else is refused with the name of the argument.
 
-A number is real and within the doubles, of whatever kind: Python's, NumPy's (an array without axes
-as well), a Decimal or a Fraction. Text, complex numbers, times, masked entries and quantities with
-units are none, nor is an array of one number.
+Numbers are real and within the range of doubles: those of Python and NumPy (also arrays without
+axes), Decimals and Fractions. Text, complex numbers, times, masked entries and quantities with
+units are refused. An array of one number is not a number.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 import os
 import re
-import sys
+import reprlib
 from array import array as vector
-from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from itertools import chain, islice
 from operator import index
@@ -29,14 +29,16 @@ _MOST_WORKERS = 1024
 _KNOWN = "within the range of doubles"
 _PLACE = r"\[(\d+)\]"
 _LONGEST = 300  # characters of a value in a message
-_MOST_AXES = 32  # NumPy's broadcasting knows no more
-_PIECE = 2**17  # numbers converted at a time: 10 ms at most, between which Ctrl-C is answered
+_MOST_AXES = 32  # of NumPy's broadcasting
+_PIECE = 2**17  # numbers converted at a time: 10 ms at most, between which Ctrl-C acts
 _SLICED = (list, tuple, range)
+_TEXT = (str, bytes, bytearray, memoryview)  # sequences, but not of numbers
 _PLAIN = frozenset({float, int, bool, np.float64})  # types of nearly all entries of lists
 _UNITS = ("unit", "units", "dimensions")
-_BRACKETS: dict[type[Any], tuple[str, str]] = {
-    list: ("[", "]"), tuple: ("(", ")"), dict: ("{", "}"), set: ("{", "}"),
-}  # fmt: skip
+
+_short = reprlib.Repr()
+_short.maxstring = _short.maxother = _short.maxlong = 3 * _LONGEST
+_short.maxlist = _short.maxtuple = _short.maxdict = _short.maxset = _short.maxdeque = 60
 
 
 def number(name: str, value: Any) -> float:
@@ -45,17 +47,15 @@ def number(name: str, value: Any) -> float:
     Raises
     ------
     TypeError
-        If it is no number, or has units.
+        If it is not a number, is masked or has units.
     ValueError
-        If it is beyond the doubles, or masked.
+        If it is beyond the range of doubles.
     """
     if type(value) is float:  # most are, and a scene has many
         return value
     if type(value) in _PLAIN:
-        try:
+        with suppress(OverflowError):  # refused below
             return float(value)
-        except OverflowError:
-            pass  # refused below
     found = _doubles(name, value)
     if found is None or found.ndim:
         raise TypeError(f"{name} must be a number, got {shown(value)}")
@@ -88,15 +88,13 @@ def positive(name: str, value: Any) -> float:
 def whole_within(name: str, value: Any, most: int) -> int:
     """Return ``value`` as a whole number from 1 to ``most``."""
     found = whole(name, value)
-    if found < 1:
-        raise ValueError(f"{name} must be at least 1, got {shown(value)}")
-    if found > most:
-        raise ValueError(f"{name} must be at most {most}, got {shown(value)}")
+    if not 1 <= found <= most:
+        raise ValueError(f"{name} must be from 1 to {most}, got {shown(value)}")
     return found
 
 
 def worker_count(workers: int) -> int:
-    """Return the number of threads that ``workers`` stands for."""
+    """Return the number of threads for an argument ``workers``."""
     count = whole("workers", workers)
     if count == -1:
         return min(os.cpu_count() or 1, _MOST_WORKERS)
@@ -125,74 +123,65 @@ def array(name: str, value: Any) -> FloatArray:
 
 
 def _doubles(name: str, value: Any) -> FloatArray | None:
-    """``value`` as a float64 array, or None if it is nothing of the kind."""
+    """Return ``value`` as a float64 array, or None if it does not consist of numbers."""
     if type(value) is float:
         return np.array(value)
-    if type(value) is np.ndarray:
-        if value.dtype is _DOUBLE and value.ndim <= _MOST_AXES:
-            return value
+    if type(value) is np.ndarray and value.dtype is _DOUBLE:
+        found = value
     else:
         _require_plain(name, value)
-        if _is_sequence(value):
-            _require_plain_entries(name, value, value)
-    return _converted(name, value)
+        converted = _converted(name, value)
+        if converted is None:
+            return None
+        found = converted
+    if found.ndim > _MOST_AXES:
+        raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {found.ndim}")
+    return found
 
 
 def _converted(name: str, value: Any) -> FloatArray | None:
-    """`_doubles` of what is plain, of a long list piece by piece."""
+    """Return `_doubles` of a plain value; a long list is converted piece by piece."""
     if isinstance(value, _SLICED) and (size := _size(value)) > _PIECE:
         return _in_pieces(name, value, size)
     try:
         found: npt.NDArray[Any] = value if type(value) is np.ndarray else np.asarray(value)
-        dtype, entries = found.dtype, None
-        if (dtype.kind == "O" and not hasattr(type(value), "__array__")) or (
-            dtype.kind == "f" and dtype.itemsize > _DOUBLE.itemsize
-        ):
-            # Decimals, Fractions, ints of more than 64 bits: floats by their own rules
-            entries = vector("d", found.ravel().tolist())
+        dtype = found.dtype
+        if dtype.kind in "biuf" and dtype.itemsize <= _DOUBLE.itemsize:
+            return found if dtype is _DOUBLE else copied(found)
+        if dtype.kind != "f" and (dtype.kind != "O" or hasattr(type(value), "__array__")):
+            return None
+        # Decimals, Fractions, ints of more than 64 bits and long doubles: by their own conversion
+        doubles = np.array(vector("d", found.ravel().tolist())).reshape(found.shape)
     except OverflowError:
         raise ValueError(f"{name} must be {_KNOWN}, got {shown(value)}") from None
     except (TypeError, ValueError):  # ragged sequences, a signalling NaN
         return None
-    if entries is None and dtype.kind not in "biuf":
-        return None
-    if found.ndim > _MOST_AXES:
-        raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {found.ndim}")
-    if dtype is _DOUBLE:
-        return found
-    if entries is None:
-        return copied(found)
-    doubles = np.array(entries).reshape(found.shape)
     require(name, _KNOWN, found, ~np.isinf(doubles) | (found == doubles))
     return doubles
 
 
 def _in_pieces(name: str, entries: Any, size: int) -> FloatArray | None:
     step = len(entries) * _PIECE // size
-    parts = (
-        [_converted(name, entries[k : k + step]) for k in range(0, len(entries), step)]
-        if step > 1
-        else [_converted(name, entry) for entry in entries]
-    )
+    if step > 1:
+        parts = [_converted(name, entries[k : k + step]) for k in range(0, len(entries), step)]
+    else:
+        parts = [_converted(name, entry) for entry in entries]
     known = [part for part in parts if part is not None]
-    shapes = {part.shape[1:] if step > 1 else part.shape for part in known}
-    if len(known) < len(parts) or len(shapes) > 1:  # ragged
-        return None
-    found = np.empty((len(entries), *shapes.pop()))
-    for k, part in enumerate(known):
-        found[k * max(step, 1) : (k + 1) * max(step, 1)] = part
-    return found
+    if len(known) == len(parts):
+        with suppress(ValueError):  # ragged
+            return np.concatenate(known) if step > 1 else np.stack(known)
+    return None
 
 
 def _size(value: Any) -> int:
-    """How many numbers there are if each entry of a list is like its first."""
+    """Return the number of numbers in a list whose entries are all like the first."""
     if isinstance(value, _SLICED):
         return len(value) * _size(value[0]) if value else 0
     return value.size if type(value) is np.ndarray else 1
 
 
 def pieces(values: npt.NDArray[Any]) -> Iterator[tuple[int, npt.NDArray[Any]]]:
-    """Yield the place and the numbers of one piece of an array after the other, in C order."""
+    """Yield begin and numbers of one piece of an array after the other, in C order."""
     flat: Any = values.reshape(-1) if values.flags.c_contiguous else values.flat
     for begin in range(0, values.size, _PIECE):
         yield begin, flat[begin : begin + _PIECE]
@@ -206,23 +195,39 @@ def copied(values: npt.NDArray[Any]) -> FloatArray:
     return found.reshape(values.shape)
 
 
-def _require_plain(name: str, value: Any) -> None:
-    """Raise an error if a value is masked, or has units, which its numbers do not tell."""
-    if getattr(type(value), "__module__", "") == "builtins" or isinstance(value, np.generic):
+def _require_plain(name: str, value: Any, axes: int = 0) -> None:
+    """Raise TypeError for a value with masks or units, or a sequence that holds one."""
+    if isinstance(value, np.generic):
         return
-    masked = sys.modules.get("numpy.ma")  # which is slow to load: without it, nothing is masked
-    if masked and isinstance(value, masked.MaskedArray) and masked.is_masked(value):
-        raise ValueError(f"{name} must have no masked entries, got {shown(value)}")
+    if isinstance(value, (Sequence, chain)) and not isinstance(value, _TEXT):
+        entries = iter(value)
+        while piece := list(islice(entries, _PIECE)):
+            if _PLAIN.issuperset(map(type, piece)):
+                continue
+            nested = [entry for entry in piece if type(entry) in _SLICED]
+            if nested:  # all at once: there may be a million of pairs
+                if axes == _MOST_AXES:
+                    found = shown(nested[0])
+                    raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {found}")
+                _require_plain(name, chain.from_iterable(nested), axes + 1)
+            if len(nested) < len(piece):
+                for entry in piece:
+                    if type(entry) not in _SLICED:
+                        _require_plain(name, entry, axes + 1)
+        return
+    is_masked = isinstance(value, np.ndarray) and np.any(getattr(value, "mask", False))
     held = None if isinstance(value, np.ndarray) else getattr(value, "data", None)  # of xarray
-    if _has_units(value) or _has_units(held):
-        raise TypeError(f"{name} must be plain numbers in SI units, got {shown(value)}")
+    if is_masked or _has_units(value) or _has_units(held):
+        raise TypeError(
+            f"{name} must be plain numbers in SI units, none masked, got {shown(value)}"
+        )
 
 
 def _has_units(value: Any) -> bool:
     """Whether an object carries units, as those of pint, astropy, unyt and brian2 do.
 
-    It is its class that says so, or an attribute of its own: those of pandas and xarray have the
-    names of labels and notes. A plain tuple names the axes of a variable of netCDF4.
+    The attribute belongs to its class or to its own `__dict__`: attributes of pandas and xarray
+    objects may be labels of the user. A tuple holds the names of the axes of a netCDF4 variable.
     """
     own = getattr(value, "__dict__", ())
     return any(
@@ -232,64 +237,17 @@ def _has_units(value: Any) -> bool:
     )
 
 
-def _is_sequence(value: Any) -> bool:
-    """Whether NumPy takes it as a sequence of entries."""
-    if hasattr(type(value), "__array__"):
-        return False
-    return isinstance(value, (list, tuple)) or (
-        isinstance(value, Sequence) and not isinstance(value, (str, bytes, bytearray, memoryview))
-    )
-
-
-def _require_plain_entries(name: str, value: Any, entries: Iterable[Any], axes: int = 1) -> None:
-    """`_require_plain` of all that lists in lists hold; `entries` are those at one depth."""
-    if axes > _MOST_AXES:
-        raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {shown(value)}")
-    each = iter(entries)
-    while piece := list(islice(each, _PIECE)):
-        if _PLAIN.issuperset(map(type, piece)):
-            continue
-        nested = [entry for entry in piece if _is_sequence(entry)]
-        if len(nested) < len(piece):
-            for entry in piece:
-                _require_plain(name, entry)
-        if nested:
-            _require_plain_entries(name, value, chain.from_iterable(nested), axes + 1)
-
-
 def shown(value: Any) -> str:
-    """Return ``repr(value)``, cut to what a message has room for."""
+    """Return ``repr(value)``, cut to the room in a message."""
     try:
-        text = "".join(islice(_parts(value), _LONGEST + 1))
-    except Exception:  # an int of more digits than Python writes, an object that is broken
+        text = _short.repr(value)
+    except Exception:  # an int of more digits than Python writes
         return f"an object of type {type(value).__name__}"
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
 
 
-def _parts(value: Any) -> Iterator[str]:
-    """The text of a value part by part: of a large one, a message needs the first parts only."""
-    kind: type[Any] = type(value)
-    if kind in _BRACKETS and value:
-        opening, closing = _BRACKETS[kind]
-        yield opening
-        for place, entry in enumerate(value):
-            if place:
-                yield ", "
-            yield from _parts(entry)
-            if kind is dict:
-                yield ": "
-                yield from _parts(value[entry])
-        yield f",{closing}" if kind is tuple and len(value) == 1 else closing
-    elif kind in (str, bytes, bytearray):
-        yield repr(value[: _LONGEST + 1])
-    elif not hasattr(kind, "__array__") and isinstance(value, Sized) and len(value) > _PIECE:
-        yield f"an object of type {kind.__name__}"
-    else:
-        yield repr(value)
-
-
 def require(name: str, requirement: str, values: Any, holds: Any) -> None:
-    """Raise ValueError with the first of the values that does not hold."""
+    """Raise ValueError with the first of the values for which `holds` is False."""
     if not holds.all():
         raise ValueError(f"{name} must be {requirement}, got {values[~holds][0]!s}")
 
@@ -327,7 +285,7 @@ def require_together(**arguments: Any) -> None:
 
 
 def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
-    """Return the common shape and, as 1-D arrays, what the core wants: all elements, or one.
+    """Return the common shape, and 1-D arrays of all elements or of one, as the core takes them.
 
     Raises
     ------
@@ -350,20 +308,18 @@ def shaped(found: Any, shape: tuple[int, ...]) -> Any:
 
 
 def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> Any:
-    """Return what a function of the core makes of bodies, `shaped`; the arguments broadcast.
+    """Return the result of a function of the core for bodies, `shaped`; the arguments broadcast.
 
     The function takes the number of elements, the arguments as `broadcast` returns them, and the
-    settings. Where ``gyration2`` is None, it is that of uniform discs of semi-axes ``a`` and ``b``.
-    What it refuses of an array is named with its place: ``a[3] must be ...``.
+    settings. A ``gyration2`` of None is that of uniform discs of semi-axes ``a`` and ``b``. An
+    error names an element of an array by its indices: ``a[3] must be ...``.
     """
-    if arguments["gyration2"] is not None:
-        shape, columns = broadcast(**arguments)
-    else:
-        place = list(arguments).index("gyration2")
-        del arguments["gyration2"]
-        shape, columns = broadcast(**arguments)
-        known = dict(zip(arguments, columns, strict=True))
-        columns.insert(place, uniform_disc(known["a"], known["b"]))
+    given = {k: value for k, value in arguments.items() if k != "gyration2" or value is not None}
+    shape, columns = broadcast(**given)
+    known = dict(zip(given, columns, strict=True))
+    if "gyration2" not in known:
+        known["gyration2"] = uniform_disc(known["a"], known["b"])
+    columns = [known[name] for name in arguments]
     try:
         found = function(math.prod(shape), columns, *settings)
     except ValueError as error:
@@ -372,7 +328,7 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
 
 
 def _with_indices(message: str, shape: tuple[int, ...]) -> str:
-    """A message of the core, which counts elements: ``a[7] must be`` with indices of the shape."""
+    """Return a message of the core, ``a[7] must be``, with the indices of element 7 instead."""
     if len(shape) < 2:
         return message
     name, rest = message.split(" ", 1)
@@ -385,17 +341,17 @@ def _with_indices(message: str, shape: tuple[int, ...]) -> str:
 
 def uniform_disc(a: Any, b: Any) -> FloatArray:
     """Return k^2 = I/m of uniform discs."""
-    with np.errstate(over="ignore"):  # the core refuses by name what is too large
+    with np.errstate(over="ignore"):  # the core refuses infinite values by name
         squares: FloatArray = (array("a", a) ** 2 + array("b", b) ** 2) / 4
     return squares
 
 
 def require_near(name: str, size: float, farthest: float) -> None:
-    """Raise ValueError if a double does not know a thousandth of a body so far away."""
+    """Raise ValueError if a double cannot resolve a thousandth of a body so far away."""
     if not size > 1e3 * np.spacing(farthest):
         raise ValueError(
-            f"{name} must stay where a double still knows a thousandth of its body of "
-            f"{size:.6g} m, got a centre {farthest:.6g} m away"
+            f"{name} must stay where a double resolves a thousandth of its body of {size:.6g} m, "
+            f"got a centre {farthest:.6g} m away"
         )
 
 

@@ -15,26 +15,26 @@ from .check import FloatArray, array, common_shape, copied, pieces
 
 @dataclass(frozen=True, eq=False)
 class Impulse:
-    """An impulse applied to a point of the body, or many of them.
+    """An impulse applied to a point of the body, or many impulses.
 
-    Of arrays that broadcast it stands for as many blows as they have elements together: those are
-    for `outcome`; a Scene takes one. The arrays are kept as read-only copies. Two are equal if
-    their numbers are, and, of arrays, their shapes.
+    Arrays that broadcast make one impulse for each element of their common shape; `outcome` takes
+    many, a Scene one. Arrays are kept as read-only copies. Two are equal if their numbers and the
+    shapes of their arrays are.
 
     Parameters
     ----------
     jx, jz : float or array_like
         Components along the ground and away from it [N s].
     dx, dz : float or array_like
-        Where it acts, seen from the centre in ground axes [m].
+        Point of attack relative to the centre, in ground axes [m].
 
     Raises
     ------
     ValueError
-        If a number is not finite or beyond 1e50 (of an array: with its index), or shapes do not
+        If a number is not finite or beyond 1e50 (its index in an array is named), or shapes do not
         broadcast.
     TypeError
-        If something is neither a number nor an array of them.
+        If an argument is neither a number nor an array of numbers.
     """
 
     jx: Any = 0.0
@@ -64,15 +64,14 @@ class Impulse:
 
     @property
     def core(self) -> _core.Impulse:
-        """The same for the core, of one blow."""
+        """One blow as the core's object."""
         return _core.Impulse(self.jx, self.jz, self.dx, self.dz)
 
     @classmethod
     def press(cls, F: Any, d: Any) -> Impulse:
         """Return the downward blow of the report's Figure 9: F [N s] at distance d [m] from G.
 
-        A negative F is no press but a pull, which takes more than a touch: a ValidityWarning says
-        so.
+        A negative F is a pull, which no touch can give; it is returned with a ValidityWarning.
 
         Parameters
         ----------
@@ -94,7 +93,7 @@ class Impulse:
         return found
 
     def _values(self) -> tuple[Any, ...]:
-        """What two impulses are compared by: floats, and the shape and bits of arrays."""
+        """Return the values that decide equality: floats, and the shape and bits of arrays."""
         return tuple(
             # + 0.0: the two zeros are equal, their bits are not
             (value.shape, (value + 0.0).tobytes()) if isinstance(value, np.ndarray) else value
@@ -108,7 +107,7 @@ class Impulse:
         return hash(self._values())
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Make the arrays read-only again: those of pickles and deep copies are not."""
+        """Make the arrays read-only again: pickles and deep copies do not keep that."""
         self.__dict__.update(state)
         for values in self._arrays.values():
             values.flags.writeable = False
@@ -124,30 +123,20 @@ def numbers(name: str, value: Any) -> Any:
     return kept
 
 
-def _worst(values: FloatArray) -> tuple[int, ...]:
-    """Return the index of the number that is refused if any is: NaN, or else the largest."""
-    place, size = 0, -1.0
-    for begin, piece in pieces(values):
-        sizes = np.abs(piece)
-        worst = int(sizes.argmax())
-        if not sizes[worst] <= size:
-            place, size = begin + worst, float(sizes[worst])
-        if np.isnan(size):
-            break
-    return tuple(int(i) for i in np.unravel_index(place, values.shape))
+def _largest(values: FloatArray) -> int:
+    """Return the index of the largest size; NaN is larger than any number."""
+    return int(np.abs(values).argmax())
 
 
 def _let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
-    """Raise what the core says of the worst number, by the name of the argument that it came as."""
+    """Raise the core's error for the worst number (NaN, or else the largest), as `argument`."""
     if not values.size:
         return
-    index = _worst(values)
+    worst = [begin + _largest(piece) for begin, piece in pieces(values)]  # of each piece
+    index = np.unravel_index(worst[_largest(values.flat[worst])], values.shape)
     try:
         _core.Impulse(**({"jx": 0.0, "jz": 0.0, "dx": 0.0, "dz": 0.0} | {name: values[index]}))
     except ValueError as error:
-        said = str(error).replace(name, argument, 1)
-        raise ValueError(f"{said}{_at(index)}") from None
-
-
-def _at(index: tuple[int, ...]) -> str:
-    return f" at index {index[0] if len(index) == 1 else index}" if index else ""
+        place = ", ".join(map(str, index))
+        at = f" at index {place if len(index) == 1 else f'({place})'}" if index else ""
+        raise ValueError(f"{str(error).replace(name, argument, 1)}{at}") from None

@@ -1,4 +1,4 @@
-"""How values show themselves: as tables of text, and of HTML that any theme may colour."""
+"""Printing of values: tables of text, and of HTML without colours of its own."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _dotted(value: enum.Enum) -> str:
 
 
 def _formatted(value: enum.Enum, spec: str) -> str:
-    """A code where a format of numbers is given, ``f"{mode:d}"``; else the name."""
+    """Return the code for a format of numbers, ``f"{mode:d}"``, and the name for any other."""
     return format(value.value, spec) if spec[-1:] in tuple("bdoxX") else format(str(value), spec)
 
 
@@ -30,7 +30,7 @@ for _kind in (EventKind, Mode, Outcome, Validity):
 
 
 def brief(value: Any) -> str:
-    """Return a value in some six digits; enums by their names, arrays by their sizes."""
+    """Return a value as text: floats in six digits, enums by name, arrays by size."""
     if isinstance(value, enum.Enum):
         return value.name
     if isinstance(value, float):
@@ -47,7 +47,7 @@ def _range(ends: Any) -> str:
 
 
 def with_unit(value: Any, unit: str) -> str:
-    """Return `brief` of a value and its unit; what does not exist has none."""
+    """Return `brief` of a value and its unit; None and empty tuples have no unit."""
     missing = value is None or (isinstance(value, tuple) and not value)
     return brief(value) if missing else f"{brief(value)} {unit}".rstrip()
 

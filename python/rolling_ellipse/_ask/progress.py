@@ -11,14 +11,14 @@ from typing import Any
 
 from .check import shown
 
-Tell = Callable[[int, int | None], Any]
+Report = Callable[[int, int | None], Any]
 
 
 @contextmanager
-def told(progress: bool | Tell, unit: str, name: str = "") -> Iterator[Tell]:
-    """Yield a function of how much is done, and of all where that is known.
+def reporting(progress: bool | Report, unit: str, name: str = "") -> Iterator[Report]:
+    """Yield a function that is called with the amounts done and in all (None: unknown).
 
-    It is `progress` itself, or if that is True shows a bar with `name` before it.
+    It is `progress` itself; True makes a bar with `name` before it, False does nothing.
     """
     if callable(progress):
         yield progress

@@ -1,4 +1,4 @@
-"""What a blow does and what the body then does, in words."""
+"""The reason of an initial state in words: effect of the blow, and motion after it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _DOES = {
 
 
 def blow(impulse: Impulse) -> str:
-    """Say how large it is, and where it acts."""
+    """Return components and point of attack of an impulse as text."""
     return (
         f"({impulse.jx:g}, {impulse.jz:g}) N s at ({impulse.dx:g}, {impulse.dz:g}) m from the "
         "centre"
@@ -34,7 +34,7 @@ def blow(impulse: Impulse) -> str:
 
 
 def what_the_blow_did(scene: Scene, start: dict[str, Any]) -> str:
-    """Say how the contact took it."""
+    """Return the effect of the blow on the contact, as a part of a sentence."""
     if start["slip_removal"]:
         return str(start["slip_removal"])
     if scene.impulse is None:
@@ -56,7 +56,7 @@ def what_the_blow_did(scene: Scene, start: dict[str, Any]) -> str:
 
 
 def what_follows(scene: Scene, start: dict[str, Any]) -> str:
-    """Say what the body does, and why where its velocities alone look like something else."""
+    """Return the motion that follows, and why if its velocities alone suggest another one."""
     mode, paradox = start["mode"], start["paradox"]
     if start["why_it_rolls"]:
         return f"the body rolls; {start['why_it_rolls']}"

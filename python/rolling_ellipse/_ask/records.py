@@ -1,4 +1,4 @@
-"""Dataclass helpers: pickles of fields only, and what is computed when first asked for."""
+"""Dataclass helpers: pickles of fields only, and values that are computed when first asked for."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ _Value = TypeVar("_Value")
 class cached_property(Generic[_Value]):
     """A property that is computed when first asked for, and then kept in the object's `__dict__`.
 
-    That of functools has one lock for all objects up to Python 3.11: threads would wait for each
-    other, and a process forked meanwhile for ever. Here two threads may compute the same; both get
-    what the first one has kept.
+    The one of functools has a single lock for all objects up to Python 3.11: threads wait for each
+    other, and a process forked meanwhile waits for ever. Here two threads may compute the same
+    value; both get the one that was kept first.
     """
 
     def __init__(self, compute: Callable[[Any], _Value]) -> None:
@@ -36,33 +36,33 @@ class cached_property(Generic[_Value]):
 
 
 class FieldsOnly:
-    """A dataclass whose pickles and deep copies hold its fields, not what it keeps beside them.
+    """A dataclass whose pickles and deep copies hold its fields only, not its cached values.
 
-    That is computed again when asked for: objects of the core cannot be pickled, and arrays that
-    follow from the fields would only make a pickle larger.
+    Cached values are computed again when asked for: objects of the core cannot be pickled, and
+    arrays that follow from the fields would only make a pickle larger.
     """
 
     def __getstate__(self) -> dict[str, Any]:
         return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
 
     def __copy__(self) -> Self:
-        """Share everything, as none of it ever changes."""
+        """Share all values: they never change."""
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         return other
 
 
 def trusted(kind: type[_Owner], values: dict[str, Any]) -> _Owner:
-    """Make a dataclass of what the core says, without checks, and three times as fast."""
+    """Make a dataclass of values of the core, without checks, and three times as fast."""
     made = object.__new__(kind)
     object.__setattr__(made, "__dict__", values)
     return made
 
 
 def find_late(of: type[_Owner], **finds: Callable[[_Owner], Any]) -> None:
-    """Make fields of objects that are made without them such as are found when first asked for.
+    """Let fields that `trusted` has left out be computed when first asked for.
 
-    A dataclass would take them for defaults, were they there when it is made.
+    They are set after the class is made: a dataclass would take them for defaults.
     """
     for name, find in finds.items():
         found: cached_property[Any] = cached_property(find)

@@ -1,4 +1,4 @@
-"""What is physically there: the body, the ground, the start and the blow."""
+"""The scene: body, ground, start and blow."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ class InitialState(Listed):
     theta, omega, x, z, x_dot, z_dot : float
         Angle [rad], angular velocity [rad/s], centre [m] and its velocity [m/s].
     mode : Mode
-        What the body does from now on, as the contact with its friction allows it: ROLLING,
-        SLIDING, FLIGHT or REST.
+        Motion from now on, as the contact with its friction allows it: ROLLING, SLIDING, FLIGHT or
+        REST.
     reaction_x, reaction_z : float
         Impulse of the ground on the body at t = 0 [N s]: against a blow, or (with infinite
         friction) against a slip.
     free_omega : float
         Angular velocity without the ground's reaction, the report's eq 48 [rad/s].
     energy_lost : float
-        Energy that goes with a slip which infinite friction takes off, or in an impact [J]. 0 for
-        a blow: its work depends on how it and the ground act in time.
+        Energy lost in an impact, or with a slip that infinite friction removes [J]. 0 for a blow:
+        its work depends on the course of the forces in time.
     reason : str
-        One sentence on what the blow did, what the body then does, and why.
+        One sentence on the effect of the blow, the motion after it, and why.
     """
 
     _units: ClassVar[dict[str, str]] = _core.FIELDS["InitialState"]
@@ -69,9 +69,9 @@ class Scene(FieldsOnly, Listed):
     """An ellipse, its ground, its state at t = 0 and, if any, the impulse it then receives.
 
     SI units, radians; theta is clockwise positive, so that rolling forwards increases x. At
-    theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all that they were made
-    of is, number by number; `repr` is the call that makes an equal one. Each speed, height and blow
-    may bring 1e12 m g max(a, b) of energy; what a motion has gained down a slope may be more.
+    theta = 0 the axis ``a`` is parallel to the ground. Scenes are equal if all their arguments are;
+    `repr` is a call that makes an equal one. Each speed, height and blow may bring up to
+    1e12 m g max(a, b) of energy; a motion down a slope may gain more.
 
     Parameters
     ----------
@@ -86,11 +86,11 @@ class Scene(FieldsOnly, Listed):
         Angle of the ground [rad], downwards in x; |slope| <= 1.5.
     friction : float
         Coefficient of friction, up to 1e6 or infinite. Infinite friction holds a rolling contact
-        as long as it is pressed (N > 0); from then on the body slides with N = 0, the limit of
-        large coefficients. For a slip that is given it is not: where a large coefficient presses
-        the body into the ground until it jams, the slip is taken off by an impulse of the ground
-        at t = 0, which costs energy (`initial_state` tells how much). A slip the other way goes on
-        with N = 0. Without friction a contact that moves is SLIDING, that of a circle, too.
+        as long as N > 0; afterwards the body slides with N = 0, the limit of large coefficients.
+        For an initial slip it is not that limit: where a large coefficient would press the body
+        into the ground until it jams, an impulse of the ground removes the slip at t = 0, which
+        costs energy (`initial_state.energy_lost`). A slip the other way goes on with N = 0. Without
+        friction a moving contact is SLIDING, also that of a circle.
     restitution : float
         Energetic (Stronge's) coefficient of restitution, between 0 and 1.
     theta, omega : float
@@ -103,8 +103,7 @@ class Scene(FieldsOnly, Listed):
         Velocity of the centre [m/s]. On the ground the default is that of rolling, and values
         within 8 ulp of it count as rolling; in the air the default is 0.
     impulse : Impulse, optional
-        Blow received at t = 0, along a line that meets the body: what passes beside it cannot be
-        given by touching it.
+        Blow received at t = 0; its line of action must meet the body.
 
     Raises
     ------
@@ -112,7 +111,7 @@ class Scene(FieldsOnly, Listed):
         If a number is out of its range, the body starts below the ground or moves into it, or the
         blow misses it.
     TypeError
-        If something is no number at all.
+        If an argument is not a number.
     """
 
     _units: ClassVar[dict[str, str]] = SCENE_UNITS
@@ -134,7 +133,7 @@ class Scene(FieldsOnly, Listed):
     z_dot: float | None = None
     impulse: Impulse | None = None
 
-    def __init__(  # that of a frozen dataclass takes as long as all of this together
+    def __init__(  # twice as fast as the one of a frozen dataclass, with all checks
         self,
         a: float,
         b: float,
@@ -175,7 +174,7 @@ class Scene(FieldsOnly, Listed):
 
     @cached_property
     def core(self) -> _core.Scene:
-        """The same for the core, which pickles do not hold."""
+        """The scene as the core's object, which pickles do not hold."""
         numbers = self.__getstate__()
         return _for_core(numbers, numbers.pop("impulse"), reached=True)
 
@@ -187,7 +186,7 @@ class Scene(FieldsOnly, Listed):
         TypeError
             If a scene has no such argument.
         ValueError
-            As of the constructor: what is kept must go with what is changed.
+            As of the constructor: kept and changed arguments must fit together.
         """
         names = [field.name for field in fields(self)]
         for name in changes:
@@ -209,7 +208,7 @@ class Scene(FieldsOnly, Listed):
         return InitialState(**known, reason=f"{did}; {then}")
 
     def _changed(self) -> dict[str, Any]:
-        """What is not as it is by default; the semi-axes have no default."""
+        """Return the fields that differ from their defaults; the semi-axes have none."""
         found = ((field, getattr(self, field.name)) for field in fields(self))
         return {field.name: value for field, value in found if value != field.default}
 
@@ -218,11 +217,11 @@ class Scene(FieldsOnly, Listed):
         return f"Scene({', '.join(given)})"
 
     def _rows(self) -> list[Row]:
-        """What is not as it is by default, and what follows of it."""
-        told = self._changed()
-        impulse = told.pop("impulse", None)
+        """Return the fields that differ from their defaults, and the start that follows."""
+        changed = self._changed()
+        impulse = changed.pop("impulse", None)
         rows: list[Row] = [
-            (name, with_unit(value, SCENE_UNITS[name])) for name, value in told.items()
+            (name, with_unit(value, SCENE_UNITS[name])) for name, value in changed.items()
         ]
         start, after = self.initial_state, ""
         if impulse is not None:
@@ -239,9 +238,9 @@ def _for_core(numbers: dict[str, Any], impulse: Impulse | None, reached: bool) -
 
 
 def reached_scene(arguments: Mapping[str, Any]) -> Scene:
-    """Return the scene of all its arguments, in the state that some motion reached.
+    """Return the scene of all its arguments, in a state that some motion has reached.
 
-    Down a slope that may have more energy than a scene that is typed.
+    Down a slope its energy may be larger than that of a scene made by its constructor.
     """
     scene = object.__new__(Scene)
     scene._hold({field.name: arguments[field.name] for field in fields(Scene)}, reached=True)

@@ -1,4 +1,4 @@
-"""How a motion is computed: model, method and what the method needs to know."""
+"""Settings of a computation: model, method and their options."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ STABILIZATIONS: tuple[Stabilization, ...] = get_args(Stabilization)
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(FieldsOnly):
-    """The arguments of `simulate` that say how, as they came; ranges are checked by the core."""
+    """Arguments of `simulate` beside scene and times; the core checks their ranges."""
 
     model: Model = "auto"
     method: Method = "auto"
@@ -47,7 +47,7 @@ class Settings(FieldsOnly):
 
 
 def settings(*given: Any) -> Settings:
-    """Return Settings of values in the order of their fields; nothing is checked twice."""
+    """Return Settings of values in the order of their fields; equal ones are checked once."""
     if all(map(is_, given, _GIVEN_BY_DEFAULT)):
         return DEFAULTS
     plain = all(type(value) in _PLAIN or value is DEFAULTS.baumgarte for value in given)
@@ -90,4 +90,4 @@ _CHECKS = {field.name: _CHECK_OF[str(field.type)] for field in fields(Settings)}
 DEFAULTS = Settings()
 _NAMES = tuple(field.name for field in fields(Settings))
 _GIVEN_BY_DEFAULT = tuple(getattr(DEFAULTS, name) for name in _NAMES)
-_PLAIN = (float, int, str, type(None))  # whose values never change
+_PLAIN = (float, int, str, type(None))  # immutable types

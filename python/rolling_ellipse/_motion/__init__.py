@@ -1,1 +1,1 @@
-"""What comes back: a motion, its events and states, and the files and tables it becomes."""
+"""Motions: samples, events and states, files and tables."""

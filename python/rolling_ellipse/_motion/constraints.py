@@ -1,4 +1,4 @@
-"""The report's coordinates q = (x, z, theta, psi, r) and what the constraints say of a state."""
+"""The report's coordinates q = (x, z, theta, psi, r), and the constraints of a state."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from .. import _core
 from .._ask.check import COORDINATES as COORDINATES
@@ -16,7 +15,7 @@ from .._ask.check import FloatArray, broadcast, coordinates, number, require, re
 
 @dataclass(frozen=True)
 class ConstraintResiduals:
-    """By how much states miss the constraints; leading axes as those of the states.
+    """Residuals of the constraints; the leading axes are those of the states.
 
     Attributes
     ----------
@@ -36,40 +35,8 @@ class ConstraintResiduals:
     slip: FloatArray
 
 
-def position_errors(
-    found: ConstraintResiduals, mode: npt.NDArray[np.int8], length: float
-) -> dict[str, FloatArray]:
-    """Return |f2|, |f3| and the gap over a length [m], and |f4| [rad], by name.
-
-    `mode` holds codes of `Mode`. In flight there is no ground to miss: f2 and the gap are NaN.
-    """
-    f2, f3, f4 = np.abs(found.position).T
-    held = np.where(mode == _core.Mode.FLIGHT, np.nan, 1 / length)
-    return {"f2": f2 * held, "f3": f3 / length, "f4": f4, "gap": np.abs(found.gap) * held}
-
-
-def velocity_errors(
-    found: ConstraintResiduals, mode: npt.NDArray[np.int8], length: float, rate: float
-) -> dict[str, FloatArray]:
-    """Return |f1|, the slip and the rates of f2, f3, f4, over a length [m] and a rate [1/s].
-
-    In flight the ground asks nothing of f1, f2 and the slip, nor of f1 and the slip while the body
-    slides: NaN.
-    """
-    f1, f2, f3, f4 = np.abs(found.velocity).T / rate
-    held = np.where(mode == _core.Mode.FLIGHT, np.nan, 1 / length)
-    stuck = np.where(mode == _core.Mode.SLIDING, np.nan, held)
-    return {
-        "f1": f1 * stuck,
-        "df2/dt": f2 * held,
-        "df3/dt": f3 / length,
-        "df4/dt": f4,
-        "slip": np.abs(found.slip) / rate * stuck,
-    }
-
-
 def constraints(q: Any, q_dot: Any, *, a: float, b: float) -> ConstraintResiduals:
-    """Evaluate the four constraints, and gap and slip by a road of their own, for any state.
+    """Evaluate the four constraints of any state, and independently of them its gap and slip.
 
     f1 = x_dot - r cos(psi - theta) theta_dot, f2 = z - r cos(psi - theta),
     f3 = r - a b/sqrt(b^2 sin^2 psi + a^2 cos^2 psi),

@@ -1,23 +1,21 @@
-"""What joins the segments of a contact motion: slip, stick, lift-off, impact and the rest."""
+"""Events between the segments of a contact motion: slip, stick, lift-off, impact, rest, jam."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 from .. import _core
 from .._ask.printing import Row, brief, html_table, text_table
 from .._ask.records import FieldsOnly, find_late, trusted
-from .._ask.scene import STATE_UNITS, InitialState, Scene
+from .._ask.scene import InitialState, Scene
 from .._core import EventKind, Mode
 
 if TYPE_CHECKING:
     from .export import event_table
 
-_numbers = attrgetter(*STATE_UNITS)
 _KINDS: dict[float, EventKind] = {kind.value: kind for kind in EventKind}
 _MODES: dict[float, Mode] = {mode.value: mode for mode in Mode}
 _SENTENCES = {
@@ -31,7 +29,7 @@ _SENTENCES = {
 }
 _PULLED = "the ground would have to pull: the body slides, not pressed (infinite friction)"
 _HEAD = ("t [s]", "kind", "theta [rad]", "x [m]", "what changes")
-_FIRST, _LAST = 12, 4  # of many events, those shown
+_FIRST, _LAST = 12, 4  # events shown at the two ends of a long table
 
 
 @dataclass(frozen=True, repr=False)
@@ -41,12 +39,12 @@ class Event(FieldsOnly):
     Attributes
     ----------
     t : float
-        When [s].
+        Time [s].
     kind : EventKind
         SLIP, STICK, REVERSE, LIFT_OFF, IMPACT, REST or JAM.
     state_before, state_after : InitialState
-        The body just before and just after; the reaction impulse of an impact and the energy that
-        it takes are in the latter.
+        State just before and just after; the latter has the reaction impulse of an impact and the
+        energy lost in it.
     """
 
     t: float
@@ -55,7 +53,7 @@ class Event(FieldsOnly):
     state_after: InitialState
 
     def _row(self) -> Row:
-        """The cells under `_HEAD`."""
+        """Return the cells of a row under `_HEAD`."""
         after = self.state_after
         numbers = (f"{self.t:.9g}", self.kind.name, brief(after.theta), brief(after.x))
         return (*numbers, self._change())
@@ -77,9 +75,9 @@ class Event(FieldsOnly):
 
 
 class Events(tuple[Event, ...]):
-    """A tuple of events in the order of time that prints as a table; slices are the same.
+    """A tuple of events in the order of time that prints as a table, as its slices do.
 
-    Of many events it shows the first and the last ones.
+    The table of many events has the first and the last ones.
     """
 
     __slots__ = ()
@@ -94,7 +92,7 @@ class Events(tuple[Event, ...]):
 
     def _shown(self) -> list[Row]:
         hidden = len(self) - _FIRST - _LAST
-        if hidden <= 1:  # the row that says so takes as much room
+        if hidden <= 1:  # the row "and … more" takes as much room
             return [each._row() for each in self]
         first, last = self[:_FIRST], self[-_LAST:]
         gap = ("…", f"and {hidden} more", "", "", "")
@@ -114,7 +112,7 @@ class Events(tuple[Event, ...]):
 
 
 def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:
-    """Make the events of what the core, or a file, says; their states when they are asked for."""
+    """Return the events of rows of numbers; their states are made when first asked for."""
     return Events(
         [
             trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_found": row, "_scene": scene})
@@ -138,23 +136,3 @@ def _state(event: Any, after: bool, reason: str) -> InitialState:
 
 
 find_late(Event, state_before=_before, state_after=_after)
-
-
-def as_numbers(found: Event) -> list[Any]:
-    """Return an event as JSON knows it; `from_numbers` makes it again."""
-    before, after = (
-        [*_numbers(state), int(state.mode)] for state in (found.state_before, found.state_after)
-    )
-    return [found.t, found.kind.name, before, after]
-
-
-def from_numbers(numbers: list[Any]) -> list[Any]:
-    """Return what `as_numbers` returned as a row that `events` takes."""
-    t, kind, before, after = numbers
-    row = [t, EventKind[kind].value]
-    for state in (before, after):
-        if len(state) != len(STATE_UNITS) + 1:
-            size = len(STATE_UNITS) + 1
-            raise ValueError(f"events must hold states of {size} numbers, got {state!r}")
-        row += [*state[:-1], Mode(state[-1])]
-    return row

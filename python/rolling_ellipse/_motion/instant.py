@@ -14,28 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Sample:
-    """A motion at one time; the fields are those of a Trajectory.
-
-    Attributes
-    ----------
-    t : float
-        Time [s].
-    x, z, theta, psi, r : float
-        Centre [m]; angle, clockwise positive [rad]; angle and distance from the centre to the
-        contact [rad, m].
-    omega, x_dot, z_dot : float
-        Angular velocity [rad/s], velocity of the centre [m/s].
-    contact_x : float
-        Where the body touches the ground [m].
-    turns : float
-        Turns made since the start of the scene.
-    normal_force, friction_force : float
-        Contact force on the body away from and along the ground [N].
-    energy : float
-        Kinetic and potential energy [J].
-    mode : Mode
-        What the body does.
-    """
+    """A motion at one time: numbers of the same names and units as the arrays of a Trajectory."""
 
     t: float
     x: float

@@ -1,10 +1,10 @@
-"""When a motion passes a value: what is asked of the core, and what it could not prove."""
+"""Times at which a motion passes a value, with a warning where they may be incomplete."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,36 +13,7 @@ from .._ask.check import FloatArray, array, finite, shown, whole
 from .._core import Quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from .trajectory import Trajectory
-
-
-@overload
-def when(
-    motion: Trajectory,
-    *,
-    theta: float | None = None,
-    x: float | None = None,
-    z: float | None = None,
-    omega: float | None = None,
-    contact_x: float | None = None,
-    function: Callable[[Trajectory], Any] | None = None,
-    direction: int = 0,
-) -> FloatArray: ...
-
-
-@overload
-def when(
-    motion: Trajectory,
-    *,
-    theta: Sequence[float] | FloatArray | None = None,
-    x: Sequence[float] | FloatArray | None = None,
-    z: Sequence[float] | FloatArray | None = None,
-    omega: Sequence[float] | FloatArray | None = None,
-    contact_x: Sequence[float] | FloatArray | None = None,
-    direction: int = 0,
-) -> list[FloatArray]: ...
 
 
 def when(
@@ -55,40 +26,39 @@ def when(
     contact_x: Any = None,
     function: Callable[[Trajectory], Any] | None = None,
     direction: int = 0,
-) -> FloatArray | list[FloatArray]:
+) -> Any:
     """Return all times in [0, t_end] at which the motion passes a value.
 
-    They are those of the motion, to the last bits, and not of its samples. None is missed where
-    the turning points of the quantity are known: as those of polynomials of degree 8 that meet it
-    to 1000 ulp, found by their Bernstein coefficients. Where none does, there is a
-    `CompletenessWarning`, and for each `function`, of which nothing is known between the places
-    that polynomials are compared at.
+    They belong to the motion, to the last bits, not to its samples. No time is missed where the
+    turning points of the quantity are known: those of polynomials of degree 8 that agree with it to
+    1000 ulp, found by Bernstein coefficients. A `CompletenessWarning` is issued where no polynomial
+    agrees, and for every `function`, whose values are known at single times only.
 
     A jump of omega across the value counts, at the event. A value that is only touched, as at a
-    turning point, or that the motion starts or ends with, counts once; one that is kept for a
-    while counts where that begins. Touching is resolved to 8 ulp of the quantity.
+    turning point, counts once, also at the start or end; a value that is kept for a while counts
+    where that begins. Touching is resolved to 8 ulp of the quantity.
 
     Parameters
     ----------
     theta, x, z, omega, contact_x : float or array_like, shape (n,), optional
-        The value, or n of them, of this quantity [rad, m, rad/s]; exactly one is given, or
-        `function`.
+        One value, or n values, of this quantity [rad, m, rad/s]; exactly one quantity is given,
+        or `function`.
     function : callable, optional
-        Takes a Trajectory and returns one number a sample; its zeros are looked for.
+        Takes a Trajectory and returns one number for each sample; its zeros are searched.
     direction : {0, 1, -1}
-        1: where it rises through the value; -1: where it falls; 0: either, and touches.
+        1: only where it rises through the value; -1: only where it falls; 0: both, and touches.
 
     Returns
     -------
     ndarray, shape (m,), or list of them
-        Times, ascending [s]; empty if it never does. A list for n values: one array for each,
-        in their order.
+        Times, ascending [s]; empty if the value is never passed. A list of such arrays for n
+        values, in their order.
 
     Raises
     ------
     ValueError
-        If there would be more than a million times, if none or several quantities are given,
-        or one is not finite.
+        If there are more than a million times, if none or several quantities are given, or a
+        value is not finite.
     """
     given = {
         "theta": theta, "x": x, "z": z, "omega": omega, "contact_x": contact_x,
@@ -125,7 +95,7 @@ def when(
 def _measure(
     motion: Trajectory, function: Callable[[Trajectory], Any]
 ) -> Callable[[FloatArray], FloatArray]:
-    """Return the function of a Trajectory as one of times."""
+    """Return the function of a Trajectory as a function of times."""
 
     def measure(times: FloatArray) -> FloatArray:
         found = array("function's result", function(motion.sol(times)))

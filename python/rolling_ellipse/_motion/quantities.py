@@ -1,4 +1,4 @@
-"""The arrays of a trajectory: their units, and what they are."""
+"""Units and meanings of the arrays of a trajectory."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Quantity(NamedTuple):
-    """An array of a trajectory: the attribute's name, its unit, and what it is."""
+    """An array of a trajectory: name of the attribute, unit and meaning."""
 
     name: str
     unit: str
@@ -14,7 +14,7 @@ class Quantity(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """For a docstring."""
+        """Meaning, unit and shape as a docstring."""
         return f"{self.meaning[0].upper()}{self.meaning[1:]} [{self.unit}], shape (n,)."
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .constraints import position_errors, velocity_errors
+from .._core import Mode
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,16 +19,28 @@ if TYPE_CHECKING:
 
 
 def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
-    """Return the errors of the positions and those of the velocities, each (n,), by name.
+    """Return the errors of positions and of velocities, each (n,), by name.
 
-    Lengths are over the longer semi-axis, rates over max|omega| as well. A motion without rotation
-    is measured by its free-fall speed, sqrt(gravity length).
+    Lengths are over the longer semi-axis, rates also over max|omega|, or over sqrt(gravity/length)
+    for a motion without rotation. The ground does not constrain f1, f2, gap and slip in flight, nor
+    f1 and slip while sliding: they are NaN then.
     """
     scene, found = motion.scene, motion.constraint_residuals()
     length = max(scene.a, scene.b)
     rate = float(np.max(np.abs(motion.omega))) or math.sqrt(scene.gravity / length)
-    positions = position_errors(found, motion.mode, length)
-    return positions, velocity_errors(found, motion.mode, length, rate)
+    held = np.where(motion.mode == Mode.FLIGHT, np.nan, 1 / length)
+    stuck = np.where(motion.mode == Mode.SLIDING, np.nan, held)
+    f2, f3, f4 = np.abs(found.position).T
+    positions = {"f2": f2 * held, "f3": f3 / length, "f4": f4, "gap": np.abs(found.gap) * held}
+    f1, f2_dot, f3_dot, f4_dot = np.abs(found.velocity).T / rate
+    velocities = {
+        "f1": f1 * stuck,
+        "df2/dt": f2_dot * held,
+        "df3/dt": f3_dot / length,
+        "df4/dt": f4_dot,
+        "slip": np.abs(found.slip) / rate * stuck,
+    }
+    return positions, velocities
 
 
 def energy_error(motion: Trajectory) -> FloatArray:
@@ -48,6 +60,6 @@ def energy_error(motion: Trajectory) -> FloatArray:
 
 
 def worst(errors: Errors) -> FloatArray:
-    """Return the largest of several errors at each time, (n,), of those that are errors there."""
+    """Return the largest of several errors at each time, (n,), ignoring NaN."""
     largest: FloatArray = np.fmax.reduce(list(errors.values()))
     return largest

@@ -1,4 +1,4 @@
-"""The arrays of a Trajectory: of one length, of one type, and never to be written to."""
+"""The arrays of a Trajectory: of one length and type, and read-only."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
 class ContactSamples(NamedTuple):
-    """What a contact motion knows beside theta, omega and x."""
+    """Samples of a contact motion besides theta, omega and x."""
 
     z: FloatArray
     x_dot: FloatArray
@@ -29,7 +29,7 @@ class ContactSamples(NamedTuple):
     mode: npt.NDArray[np.int8]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Come back read-only, which arrays in a plain tuple would not."""
+        """Make unpickled arrays read-only."""
         return _frozen_contact, tuple(self)
 
 
@@ -42,18 +42,18 @@ def _frozen_contact(*arrays: Any) -> ContactSamples:
 
 
 def frozen(values: _Values) -> _Values:
-    """Make an array read-only that nobody else has."""
+    """Make a new array read-only, and return it."""
     values.setflags(write=False)
     return values
 
 
 def even_times(begin: float, end: float, count: int) -> FloatArray:
-    """Return even times, none after the end: a subnormal step of `np.linspace` is rounded up."""
+    """Return even times up to `end`, although `np.linspace` rounds subnormal steps up."""
     return np.minimum(np.linspace(begin, end, count), end)
 
 
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
-    """Return the arrays that a Trajectory holds; their bits do not depend on the order of times."""
+    """Return the arrays of a Trajectory; their bits do not depend on the order of times."""
     if _core.are_sample_times(times):
         return _ascending(solution, times)
     order = np.argsort(times, kind="stable")
@@ -80,85 +80,53 @@ def _ascending(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
 
 
 def of_contact(columns: dict[str, Any]) -> dict[str, Any]:
-    """Return what a Trajectory holds of the samples of a contact motion by their names."""
+    """Return the arrays of a Trajectory from the samples of a contact motion by their names."""
     t, theta, omega, x = _known_of_all(columns)
     contact = ContactSamples._make(_beside(columns))
     return {"t": t, "theta": theta, "omega": omega, "x": x, "contact": contact}
 
 
 def of_coordinates(t: FloatArray, q: FloatArray, q_dot: FloatArray) -> dict[str, Any]:
-    """Return what a Trajectory holds of samples in coordinates."""
+    """Return the arrays of a Trajectory from samples in coordinates."""
     theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
     held = {"theta": frozen(theta), "omega": frozen(omega), "x": frozen(x)}
     return {"t": t, **held, "coordinates": (q, q_dot)}
 
 
-class _Rolling:
-    """Samples of which all follows from theta and omega, but for x."""
-
-    @staticmethod
-    def details(of: Trajectory) -> dict[str, FloatArray]:
-        return _core.rolling_detail(of.scene.core, of.theta, of.omega, of.x)
-
-    @staticmethod
-    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
-        return _core.rolling_contact(of.scene.core, of.theta, of.omega)
-
-
-class _Coordinates:
-    """Samples that hold q and q_dot themselves."""
-
-    @staticmethod
-    def details(of: Trajectory) -> dict[str, FloatArray]:
-        assert of.coordinates is not None
-        q, q_dot = of.coordinates
-        q_ddot, multipliers = _core.multiplier_detail(of.scene.core, of.settings.core, q, q_dot)
-        friction, normal = np.ascontiguousarray(multipliers.T[:2])
-        return {
-            "q": q, "q_dot": q_dot, "q_ddot": q_ddot, "multipliers": multipliers,
-            "normal_force": normal, "friction_force": friction,
-        }  # fmt: skip
-
-    @staticmethod
-    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
-        known = of._details
-        (_, z, *_), (x_dot, z_dot, *_) = known["q"].T, known["q_dot"].T
-        return known | {"z": z.copy(), "x_dot": x_dot.copy(), "z_dot": z_dot.copy()}
-
-
-class _Contact:
-    """Samples that hold the motion of the centre and the contact force beside theta and omega."""
-
-    @staticmethod
-    def details(of: Trajectory) -> dict[str, FloatArray]:
-        assert of.contact is not None
-        held = of.contact._asdict()
+def details(of: Trajectory) -> dict[str, FloatArray]:
+    """Return q, q_dot, q_ddot, multipliers, normal and friction force at the samples."""
+    body = of.scene.core
+    if of.contact is not None:
+        held = of.contact._asdict() | {"theta": of.theta, "omega": of.omega, "x": of.x}
         del held["mode"]
-        held |= {"theta": of.theta, "omega": of.omega, "x": of.x}
-        found = _core.contact_detail(of.scene.core, held)
-        return found | {name: held[name] for name in ("normal_force", "friction_force")}
+        forces = {name: held[name] for name in ("normal_force", "friction_force")}
+        return _core.contact_detail(body, held) | forces
+    if of.coordinates is None:
+        return _core.rolling_detail(body, of.theta, of.omega, of.x)
+    q, q_dot = of.coordinates
+    q_ddot, multipliers = _core.multiplier_detail(body, of.settings.core, q, q_dot)
+    friction, normal = np.ascontiguousarray(multipliers.T[:2])
+    return {
+        "q": q, "q_dot": q_dot, "q_ddot": q_ddot, "multipliers": multipliers,
+        "normal_force": normal, "friction_force": friction,
+    }  # fmt: skip
 
-    @staticmethod
-    def touch(of: Trajectory) -> Mapping[str, FloatArray]:
-        assert of.contact is not None
+
+def touch(of: Trajectory) -> Mapping[str, FloatArray]:
+    """Return z, x_dot, z_dot, normal and friction force at the samples, cheaper than `details`."""
+    if of.contact is not None:
         return of.contact._asdict()
-
-
-def kind_of(trajectory: Trajectory) -> type[_Rolling | _Coordinates | _Contact]:
-    """Return how a trajectory's samples tell what they do not hold.
-
-    `details` gives q, q_dot, q_ddot, multipliers, normal and friction force; `touch` gives z,
-    x_dot, z_dot and the forces alone, where that is cheaper.
-    """
-    if trajectory.contact is not None:
-        return _Contact
-    return _Rolling if trajectory.coordinates is None else _Coordinates
+    if of.coordinates is None:
+        return _core.rolling_contact(of.scene.core, of.theta, of.omega)
+    known = of._details
+    z, x_dot, z_dot = known["q"][:, 1], known["q_dot"][:, 0], known["q_dot"][:, 1]
+    return known | {"z": z.copy(), "x_dot": x_dot.copy(), "z_dot": z_dot.copy()}
 
 
 def _untouchable(values: _Values) -> _Values:
-    """Return an array that stays as it is: a copy if anybody may write to this one."""
+    """Return a read-only array: a copy if the array or one that it is a view of is writeable."""
     if values.base is None and not values.flags.writeable:
-        return values  # as the core's samples are
+        return values  # like the core's samples
     layer: Any = values
     while isinstance(layer, np.ndarray) and not layer.flags.writeable:
         layer = layer.base
@@ -168,12 +136,12 @@ def _untouchable(values: _Values) -> _Values:
 
 
 def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
-    """Return one number a sample; without a size, any number of samples.
+    """Return a 1-D array of numbers, of a given size if any.
 
     Raises
     ------
     TypeError
-        If it holds something else than numbers.
+        If it does not hold numbers.
     ValueError
         If it has another shape.
     """
@@ -188,7 +156,7 @@ def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
 def coordinate_pair(
     name: str, values: Any, shape: tuple[int, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return q and q_dot, both of a shape; `vector` says what is raised."""
+    """Return q and q_dot, both of a shape; errors are those of `vector`."""
     required = f"{name} must be q and q_dot, arrays of shape {shape}"
     try:
         q, q_dot = values
@@ -201,7 +169,7 @@ def coordinate_pair(
 
 
 def contact_samples(values: Any, size: int) -> ContactSamples:
-    """Return the samples of a contact motion; `vector` says what is raised."""
+    """Return the samples of a contact motion; errors are those of `vector`."""
     if not isinstance(values, ContactSamples):
         raise TypeError(f"contact must be ContactSamples or None, got {shown(values)}")
     *columns, mode = ContactSamples._fields

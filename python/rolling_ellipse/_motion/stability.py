@@ -1,4 +1,4 @@
-"""What a computed motion has lost of what it should keep, and what would keep it."""
+"""Losses of energy and constraints by a computed motion, and advice against them."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ if TYPE_CHECKING:
     from .._ask.settings import Settings
     from .trajectory import Trajectory
 
-_LOST_ENERGY = 1e-2  # beside the energy itself
-_MISSED = 1e-3  # of the constraints, in long semi-axes and rad: a pixel of a picture of the body
-_MOVED = 0.1  # the same by one step, as far as its projection then moves the body
-_OF_RTOL = 10.0  # times rtol are no surprise
+_LOST_ENERGY = 1e-2  # largest change of the energy over itself
+_MISSED = 1e-3  # largest error of the constraints [long semi-axes, rad]: a pixel of a picture
+_MOVED = 0.1  # largest error of the constraints by one step, before its projection
+_OF_RTOL = 10.0  # largest change of the energy over rtol
 
 
 def advice(motion: Trajectory) -> str | None:
-    """Return a sentence on what to use instead, where a motion has lost what it should keep.
+    """Return advice for a motion that has lost energy or its constraints, or None.
 
-    That is looked at along the motion, at steps and between them. The energy, which rolling
-    conserves, is measured by the largest kinetic plus |potential| energy, the latter with x = 0 at
-    the start. A projection keeps constraints and energy whatever the steps are; what it hides is
-    told by how far it moves a state: the constraints missed by a step are a part of its local
-    error, and of the size of the whole. Where that is a tenth of the body, the projected state is
-    another motion's.
+    The losses are measured at steps and between them. The energy, which rolling conserves, is
+    measured by the largest kinetic plus |potential| energy, the latter with x = 0 at the start. A
+    projection keeps constraints and energy for any steps, but hides the local error. It is seen by
+    how far a state is moved: the constraints missed by a step are a part of its local error, of
+    the same size. If that is a tenth of the body, the projected state belongs to another motion.
     """
     losses = motion._solution.losses()
     if losses is None:
         return None
-    settings = motion.settings
+    settings, by = motion.settings, f"by t = {motion.t_end:g} s"
     step = settings.step
+    finer = "smaller steps" if step else "smaller rtol and atol"
     if settings.stabilization == "baumgarte" and step is not None:
         if settings.method == "auto":
             settings = replace(settings, method=motion.method)
@@ -42,38 +42,27 @@ def advice(motion: Trajectory) -> str | None:
         return (
             f"a step has missed the constraints by {losses.projected:.2g} of the long semi-axis "
             f"before stabilization {settings.stabilization!r}, which moves the body elsewhere: "
-            f"take {_finer(settings)}"
+            f"take {finer}"
         )
     if losses.constraints > _MISSED:
         return (
             f"the constraints are missed by {losses.constraints:.2g} of the long semi-axis "
-            f"{_when(motion)} with stabilization {settings.stabilization!r}: use 'projection', "
+            f"{by} with stabilization {settings.stabilization!r}: use 'projection', "
             "which keeps them, or the model 'rolling', which has none to miss"
         )
     if losses.energy > max(_LOST_ENERGY, 0.0 if step else _OF_RTOL * settings.rtol):
+        better = "method 'exact', which takes none"
+        if motion.model == "multipliers":
+            better = "stabilization 'projection+energy'"
         return (
-            f"the energy has changed by {losses.energy:.2g} of itself {_when(motion)} with "
-            f"method {settings.method!r}: take {_finer(settings)}, {_better(motion)}"
+            f"the energy has changed by {losses.energy:.2g} of itself {by} with "
+            f"method {settings.method!r}: take {finer}, or {better}"
         )
     return None
 
 
-def _finer(settings: Settings) -> str:
-    return "smaller steps" if settings.step else "smaller rtol and atol"
-
-
-def _when(motion: Trajectory) -> str:
-    return f"by t = {motion.t_end:g} s"
-
-
-def _better(motion: Trajectory) -> str:
-    if motion.model == "multipliers":
-        return "or stabilization 'projection+energy'"
-    return "or method 'exact', which takes none"
-
-
 def _too_stiff(settings: Settings, step: float, growth: float) -> str:
-    """The step is too large for the feedback: say for which it is not."""
+    """Return advice for a step too large for Baumgarte's feedback, with a step that is stable."""
     stable, unstable = 0.0, step
     for _ in range(60):
         middle = (stable + unstable) / 2

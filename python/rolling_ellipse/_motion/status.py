@@ -1,4 +1,4 @@
-"""How a simulation ended, and what is raised when it did not end well."""
+"""Endings of simulations, and the exceptions for early ones."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Status(enum.Enum):
-    """How a simulation ended; the value is the sentence."""
+    """Ending of a simulation; the value is a sentence for people."""
 
     COMPLETED = "the motion was followed to the end"
     JAMMED = (
@@ -34,26 +34,22 @@ class Status(enum.Enum):
     STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
 
 
-def status_of(ending: _core.Ending) -> Status:
-    """Return how a motion ended: what goes on in no way or in two is jammed, either way."""
-    return Status.JAMMED if ending is _core.Ending.UNDETERMINED else Status[ending.name]
-
-
-COMPLETED = Status.COMPLETED  # asked for by its class, it takes five times as long
-STATUSES = {ending.value: status_of(ending) for ending in _core.Ending}  # of codes
+COMPLETED = Status.COMPLETED  # cached: access by the class is five times slower
+_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two motions go on
+STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}  # by codes of endings
 
 
 class IntegrationError(RuntimeError):
-    """An integration stopped before its last time; `trajectory` holds what there is."""
+    """An integration stopped before its last time; `trajectory` is the motion up to then."""
 
     def __init__(self, trajectory: Trajectory) -> None:
         super().__init__(trajectory.message)
         self.trajectory = trajectory
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Be made again of the trajectory: exceptions are made of their message by default."""
+        """Pickle the trajectory: by default an exception is made of its message alone."""
         return type(self), (self.trajectory,), self.__dict__
 
 
 class WorkerError(RuntimeError):
-    """An executor lost a task: nothing is known of the scenes that it held. Its cause says why."""
+    """An executor lost a task, and its scenes have no result; `__cause__` is the reason."""

@@ -23,9 +23,10 @@ from .samples import (
     ContactSamples,
     contact_samples,
     coordinate_pair,
+    details,
     frozen,
-    kind_of,
     sampled,
+    touch,
     vector,
 )
 from .status import COMPLETED, STATUSES, Status
@@ -51,9 +52,6 @@ if TYPE_CHECKING:
 
 _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
-_MODELS = tuple(model for model in MODELS if model != "auto")  # which a motion has
-_METHODS = tuple(method for method in METHODS if method != "auto")
-
 
 def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Values]:
     """A read-only array, computed when first asked for."""
@@ -65,7 +63,7 @@ def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Valu
 
 
 def _column(name: str, column: int) -> cached_property[FloatArray]:
-    """An array of its own for one column of q, q_dot or q_ddot."""
+    """A contiguous copy of one column of q, q_dot or q_ddot."""
     return _derived(lambda self: np.ascontiguousarray(self._details[name][:, column]))
 
 
@@ -77,9 +75,8 @@ def _touching(name: str) -> cached_property[FloatArray]:
 class Trajectory(FieldsOnly):
     """A motion sampled at n times. Arrays are float64 and read-only, time is the first axis.
 
-    Two are equal if the same was asked for (scene, settings, start, times) and the same came of it,
-    the samples and events bit by bit: so are those that were saved and loaded, pickled or simulated
-    again. How long it took and what is computed when asked for does not matter.
+    Two are equal if their scenes, settings, starts and times are, and their samples and events bit
+    by bit: also after saving and loading, pickling, or simulating again. `stats` does not count.
 
     Attributes
     ----------
@@ -108,15 +105,15 @@ class Trajectory(FieldsOnly):
     mode : ndarray of int8, shape (n,)
         Codes of `Mode`.
     scene, model, method, status, message, reason : Scene, str, str, Status, str, str
-        What was asked for, how it ended, and the sentence that says why the model is valid.
+        Scene, model and method used, how the motion ended, and why the model is valid.
     valid_until : float
-        Time from which on the model is not true [s]; infinite if it always is.
+        Time until which the model is true [s]; infinite if it always is.
     t_end : float
         Last time that was reached [s]; `sol` goes up to it.
     span : float
         Last time that was asked for [s].
     settings : Settings
-        The arguments of `simulate` that it was computed with.
+        Arguments of `simulate`: model, method and their options.
     events : tuple of Event
         Changes of mode and impacts of the model "contact", in the order of time; it prints as a
         table and has `to_dataframe`.
@@ -127,13 +124,13 @@ class Trajectory(FieldsOnly):
     Other Parameters
     ----------------
     coordinates, start : tuple of ndarray, or None
-        What a motion of "multipliers" is made of beside: q and q_dot at the samples, (n, 5) each,
-        which `q` and `q_dot` give of every motion; and those that it started from, (5,) each,
-        where they are not the scene's (see `computed`).
+        Stored data of a motion of "multipliers": q and q_dot at the samples, (n, 5) each, and at
+        the start, (5,) each, if the start is not the scene's (see `computed`).
     contact : ContactSamples or None
-        The same of "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the samples.
+        Stored data of "contact": z, x_dot, z_dot, normal_force, friction_force, mode at the
+        samples.
     kept_events : tuple of Event, or None
-        Those that a file brought along, which `events` gives; without them it solves again.
+        Events from a file, for `events`; without them the motion is solved again for its events.
     """
 
     t: FloatArray
@@ -173,8 +170,8 @@ class Trajectory(FieldsOnly):
             checked[name] = number(name, getattr(self, name))
         for name in ("message", "reason"):
             checked[name] = _sentence(name, getattr(self, name))
-        checked["model"] = choice("model", self.model, _MODELS)
-        checked["method"] = choice("method", self.method, _METHODS)
+        checked["model"] = choice("model", self.model, MODELS[1:])  # a motion is not "auto"
+        checked["method"] = choice("method", self.method, METHODS[1:])
         require_scene(self.scene)
         for name, kind in (("settings", Settings), ("status", Status)):
             if not isinstance(value := getattr(self, name), kind):
@@ -184,7 +181,7 @@ class Trajectory(FieldsOnly):
         self.__dict__.update(checked)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Make the arrays read-only again: those of pickles and deep copies are not."""
+        """Make the arrays read-only again: pickles and deep copies do not keep that."""
         self.__dict__.update(state)
         pairs = *(self.coordinates or ()), *(self.start or ())
         for values in (self.t, self.theta, self.omega, self.x, *pairs):
@@ -198,10 +195,9 @@ class Trajectory(FieldsOnly):
         times: FloatArray,
         start: tuple[FloatArray, FloatArray] | None = None,
     ) -> Trajectory:
-        """Solve a scene up to the last of the times, and sample it at all that are reached.
+        """Solve a scene up to the last of the times, and sample it at all times that are reached.
 
-        With a start (q, q_dot) in coordinates that is the start, and the scene only the body and
-        its ground.
+        A start (q, q_dot) in coordinates replaces that of the scene.
         """
         span = float(times[-1])
         solution = solve(scene, settings, span, start)
@@ -220,7 +216,7 @@ class Trajectory(FieldsOnly):
     def _sampled(
         cls, solution: _core.Solution, times: FloatArray, known: dict[str, Any]
     ) -> Trajectory:
-        """Make one of the core's own arrays, which need no check, and keep the solution."""
+        """Return the trajectory of a solution (arrays need no check), and keep the solution."""
         return trusted(cls, known | sampled(solution, times) | {"_solution": solution})
 
     @cached_property
@@ -231,8 +227,8 @@ class Trajectory(FieldsOnly):
 
     @cached_property
     def _details(self) -> dict[str, FloatArray]:
-        """The coordinates with their rates and accelerations, the forces and the multipliers."""
-        found = kind_of(self).details(self)
+        """Coordinates, rates, accelerations, contact forces and multipliers at the samples."""
+        found = details(self)
         for values in found.values():
             frozen(values)
         return found
@@ -253,8 +249,8 @@ class Trajectory(FieldsOnly):
 
     @cached_property
     def _touch(self) -> Mapping[str, FloatArray]:
-        """z, x_dot, z_dot, normal and friction force, without all that `_details` computes."""
-        return kind_of(self).touch(self)
+        """z, x_dot, z_dot, normal and friction force: cheaper than `_details`."""
+        return touch(self)
 
     z, x_dot, z_dot = _touching("z"), _touching("x_dot"), _touching("z_dot")
     normal_force, friction_force = _touching("normal_force"), _touching("friction_force")
@@ -310,11 +306,11 @@ class Trajectory(FieldsOnly):
 
     @property
     def success(self) -> bool:
-        """Whether the motion was followed to the end, or to where none goes on."""
+        """Whether the motion was followed to the end, or to a jam, after which none exists."""
         return self.status in (Status.COMPLETED, Status.JAMMED)
 
     def constraint_residuals(self) -> ConstraintResiduals:
-        """Return by how much each sample misses the constraints (see `constraints`)."""
+        """Return the residuals of the constraints at the samples (see `constraints`)."""
         return constraints(self.q, self.q_dot, a=self.scene.a, b=self.scene.b)
 
     # -- the same motion at other times ----------------------------------------------------------
@@ -348,7 +344,7 @@ class Trajectory(FieldsOnly):
             {**self.scene.__getstate__(), **state, **_placement(at), "impulse": None}
         )
 
-    # -- methods of other modules, which `_show.methods` binds -------------------------------------
+    # -- methods of other modules, bound by `_show.methods` ----------------------------------------
 
     if TYPE_CHECKING:
         at, when = instant.at, passages.when
@@ -380,14 +376,14 @@ class Trajectory(FieldsOnly):
         return hash(self._facts())
 
     def _facts(self) -> tuple[Any, ...]:
-        """What was asked for and how it ended, without arrays."""
+        """Return what decides equality, without arrays and events."""
         return (
             self.scene, self.settings, self.span, self.model, self.method, self.status,
             self.message, self.reason, self.valid_until, self.t_end, self.t.shape,
         )  # fmt: skip
 
     def _bytes(self) -> list[bytes | None]:
-        """The samples and the start, bit by bit."""
+        """Return the bytes of the samples and the start."""
         groups = ((self.t, self.theta, self.omega, self.x), self.coordinates, self.start)
         arrays = [group or (None,) for group in (*groups, self.contact)]
         return [None if each is None else each.tobytes() for group in arrays for each in group]
@@ -425,7 +421,7 @@ def _require_counts(stats: Any) -> None:
 
 
 def _reason(self: Trajectory) -> str:
-    """Why the model is valid, in one sentence."""
+    """The reason why the model is valid, in one sentence."""
     return self._solution.reason(self.scene.core)
 
 

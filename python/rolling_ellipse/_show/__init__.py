@@ -1,1 +1,1 @@
-"""What a motion looks like in a notebook and in a shell, and the methods bound from above."""
+"""Motions in a notebook and in a shell, and methods of a motion from later rooms."""

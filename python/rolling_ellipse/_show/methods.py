@@ -1,4 +1,4 @@
-"""The methods of a motion whose modules know the motion, come after it or are slow to load."""
+"""Methods of a motion whose modules import it or are slow to load, bound when first asked for."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .._motion.trajectory import Trajectory
 
 _PACKAGE = __name__.partition(".")[0]
 
-#: By class and module; a function has the name of the method.
+#: Names of methods by class and module; the functions have the same names.
 METHODS: dict[type, dict[str, tuple[str, ...]]] = {
     Trajectory: {
         "_motion.instant": ("at",),
@@ -30,7 +30,7 @@ _OF_THE_CLASS = ("load",)
 
 
 class _Later:
-    """A method that is imported when it is first asked for, and then stands in its own place."""
+    """A method that is imported when first asked for, and then replaces this object."""
 
     def __init__(self, owner: type, module: str, name: str) -> None:
         self._owner, self._module, self._name = owner, f"{_PACKAGE}.{module}", name

@@ -1,4 +1,4 @@
-"""What a notebook shows of a motion: its numbers, and a small picture of it."""
+"""A motion in a notebook: a table of its numbers, and a small picture."""
 
 from __future__ import annotations
 
@@ -29,6 +29,6 @@ def _rows(trajectory: Trajectory) -> list[Row]:
         )
     if trajectory.events:
         last = trajectory.events[-1]
-        told = f"{len(trajectory.events)}, the last {last.kind.name} at t = {brief(last.t)} s"
-        rows.append(("events", told))
+        count = f"{len(trajectory.events)}, the last {last.kind.name} at t = {brief(last.t)} s"
+        rows.append(("events", count))
     return rows

@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 _Places = npt.NDArray[np.complex128]
 
 _BODIES, _POINTS = 9, 81
-_WIDTH, _HEIGHT = 480.0, 180.0  # the most that the picture takes [px]
-_MARGIN = 1.1  # around centres, in long semi-axes
-_REACH = 12.0  # shown is what happens within so many of them,
-_TURNING = 4 * math.pi  # and in two turns, to or fro
+_WIDTH, _HEIGHT = 480.0, 180.0  # largest size of the picture [px]
+_MARGIN = 1.1  # around the centres [long semi-axes]
+_REACH = 12.0  # the picture ends where the body is so far from its start [long semi-axes],
+_TURNING = 4 * math.pi  # or has turned so much, in any direction [rad]
 
 
 def strobe_svg(trajectory: Trajectory) -> str:
-    """Return the picture, down being down; nothing of a motion without samples.
+    """Return the picture, with gravity downwards; "" for a motion without samples.
 
-    Places are complex numbers, x - iz seen from the foot of the first centre: i is down as on a
-    screen, and clockwise is the positive turn. Their unit is the long semi-axis, so that no scene
+    Points are complex numbers, x - iz relative to the foot of the first centre: i points down as on
+    a screen, and clockwise rotation is positive. Their unit is the long semi-axis, so that no scene
     is too large or too far away.
     """
     if trajectory.t.size == 0:
@@ -50,7 +50,7 @@ def strobe_svg(trajectory: Trajectory) -> str:
         seen = np.append(seen, ground)
     corner = complex(seen.real.min(), seen.imag.min())
     size = complex(seen.real.max(), seen.imag.max()) - corner
-    if size.real == 0 or size.imag == 0:  # too far away for its places to differ
+    if size.real == 0 or size.imag == 0:  # so far away that its points do not differ
         return ""
     scale = min(_WIDTH / size.real, _HEIGHT / size.imag)
     rx, ry = _short(scale * scene.a / unit), _short(scale * scene.b / unit)

@@ -1,1 +1,1 @@
-"""What can be done with a scene: simulate it, many of them, prove, classify, race."""
+"""Functions of scenes: simulation of one or many, proofs, classification, races."""

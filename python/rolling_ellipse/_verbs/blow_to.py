@@ -15,8 +15,8 @@ from ..geometry import support
 from .certify import certify
 from .outcome import outcome
 
-_SPEEDS = 2048  # looked at on the way up from the speed that just reaches the tip
-_FASTEST = 1e3  # of them, beside that
+_SPEEDS = 2048  # number of speeds that are tried, upwards from the one that just reaches the tip
+_FASTEST = 1e3  # largest of them over that one
 
 
 def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Impulse:
@@ -29,11 +29,10 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     distance : float
         Horizontal distance of the press from the centre [m], as of `Impulse.press`.
     omega : float, optional
-        Angular velocity just after the blow [rad/s], met within rounding. Default: the least
-        press after which the body rolls over, on level ground: the least double for which
-        `outcome` proves it. Where a harder press needs less friction, as that of a nearly round
-        body may, it is searched for at 2048 speeds, up to 1000 times that which just reaches the
-        tip, and refined by bisection.
+        Angular velocity just after the blow [rad/s], met within rounding. Default: the least press
+        after which the body rolls over on level ground, the least double for which `outcome` proves
+        it. It is searched at 2048 speeds, up to 1000 times the one that just reaches the tip, since
+        a harder press may need less friction (of a nearly round body), and refined by bisection.
 
     Returns
     -------
@@ -43,9 +42,9 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     Raises
     ------
     ValueError
-        If no press there does it, with the reason: it is beside the body, has no lever, would have
-        to pull, slips for want of friction, the ground cannot keep the body so fast, the body is in
-        the air, rolls over anyhow, or, without omega, is on a slope or a circle.
+        If no press at that distance can do it. The message has the reason: it misses the body, has
+        no lever, would have to pull, or slips; the ground cannot hold the body so fast; the body is
+        in the air, rolls over without a blow, or, without omega, is on a slope or is a circle.
     """
     bare = require_scene(scene).replace(impulse=None)
     distance = number("distance", distance)
@@ -66,12 +65,12 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     if start.mode not in (Mode.ROLLING, Mode.REST):
         raise ValueError(
             f"omega must be one that the ground can keep, got {wanted!r}: {start.reason}"
-            f"{_asked_for(after)}"
+            f"{_needed_friction(after)}"
         )
     return blow
 
 
-def _asked_for(scene: Scene) -> str:
+def _needed_friction(scene: Scene) -> str:
     needed = _core.sticking_friction(scene.core)
     if not scene.friction < needed:
         return ""
@@ -79,11 +78,11 @@ def _asked_for(scene: Scene) -> str:
 
 
 def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
-    """The press that gives an angular velocity to a contact that sticks."""
+    """Return the press that gives an angular velocity if the contact sticks."""
     F = _core.press_to(scene.core, distance, omega)
     _require_lever(F, distance)
     if F == 0:
-        raise ValueError(f"omega must differ from what the body has anyhow, got {omega!r}")
+        raise ValueError(f"omega must differ from that of the body before, got {omega!r}")
     if F < 0:
         raise ValueError(
             f"distance must be on the other side of the contact, got {distance!r}: for omega = "
@@ -95,13 +94,13 @@ def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
 def _require_lever(F: float, distance: float) -> None:
     if math.isinf(F):
         raise ValueError(
-            "distance must not be right over the contact, where a press has no lever, or next to "
-            f"none, got {distance!r}"
+            "distance must not be right over the contact, where a press has no lever, got "
+            f"{distance!r}"
         )
 
 
 def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
-    """Search upwards from the speed that just reaches the tip, and refine to the last bit."""
+    """Search upwards from the speed that just reaches the tip, and bisect to the last bit."""
     if scene.slope != 0:
         raise ValueError(f"omega must be given on a slope, got None with slope {scene.slope!r}")
     if outcome(scene) is Outcome.ROLLS_OVER:
@@ -132,10 +131,10 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
 
 
 def _never_over(scene: Scene, distance: float, least: float) -> ValueError:
-    """Say what becomes of a press that is just strong enough."""
+    """Return an error with the reason why a press that is just strong enough fails."""
     after = scene.replace(impulse=_press_to(scene, distance, least * (1 + 1e-6)))
     start = after.initial_state
-    why = f"{start.reason}{_asked_for(after)}"
+    why = f"{start.reason}{_needed_friction(after)}"
     if start.mode is Mode.ROLLING:
         why = certify(after).reason
     return ValueError(

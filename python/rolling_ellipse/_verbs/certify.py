@@ -1,4 +1,4 @@
-"""The certificate: proof that rolling is valid for a whole motion, or where it ends."""
+"""Certificates: proofs that rolling is valid for a whole motion, or of where it ends."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ class Certificate(Listed):
     Attributes
     ----------
     validity : Validity
-        VALID, INVALID, EDGE (rounding cannot tell) or NO_PROOF (a start that does not roll).
+        VALID, INVALID, EDGE (undecided within rounding) or NO_PROOF (a start that does not roll).
     smallest_normal_force : float or None
-        Least normal force [N] over the whole motion, both directions of time. On a slope -inf for
-        all but a circle, a body at rest and one that rocks: downhill they turn faster and faster,
-        and came from there.
+        Least normal force [N] over the whole motion, both directions of time. On a slope it is -inf
+        except for a circle, a body at rest and one that rocks: other bodies turn faster without
+        bound downhill.
     smallest_normal_force_angle : float or None
-        Where: theta in [0, pi/2]; by symmetry at every +-theta + k pi that the motion reaches. On a
-        slope the angle itself, unwrapped; None for an infinite force.
+        Its angle theta in [0, pi/2]; by symmetry it occurs at every +-theta + k pi that the motion
+        reaches. On a slope the angle itself, unwrapped; None for an infinite force.
     largest_friction_needed : float or None
         Largest |F/N| over the whole motion (infinite where N <= 0); on a slope infinite where the
         least normal force is -inf.
     largest_friction_needed_angle : float or None
-        Where, as above.
+        Its angle, as above.
     ends_at : float or None
-        The angle theta (unwrapped) at which rolling ends, forwards in time; None when VALID. That
-        of the start where the body moves without friction, a circle, too: its contact slides.
+        The angle theta (unwrapped) at which rolling ends, forwards in time; None when VALID. The
+        angle of the start for a moving body without friction, whose contact slides at once.
     reason : str
         One sentence with the numbers.
     """
@@ -68,10 +68,10 @@ def certify(scene: Scene) -> Certificate:
     critical points, not at samples.
 
     On a slope the forces are linear in the energy of the motion at every angle, so that the law of
-    the contact holds for an interval of energies there. The motion is followed by power series at
-    rounding level, N and F with it, and their first root decides, by Bernstein coefficients again;
-    of many half turns those are looked at that decide for all between them. A margin that comes
-    down to rounding and not below is EDGE. What holds for 1e15 half turns is VALID.
+    the contact holds for an interval of energies there. The motion and its N and F are followed by
+    power series at rounding level, and their first root decides, by Bernstein coefficients again.
+    Of many half turns only those are examined that decide for all between them. A margin within
+    rounding of 0 is EDGE. Rolling that holds for 1e15 half turns is VALID.
 
     Parameters
     ----------

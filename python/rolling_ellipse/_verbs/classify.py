@@ -1,4 +1,4 @@
-"""What becomes of a rolling body, for one or a million, and the thresholds between outcomes."""
+"""Outcome of rolling, for one body or a million, and the thresholds between outcomes."""
 
 from __future__ import annotations
 
@@ -19,32 +19,30 @@ from .workers import shared
 
 @dataclass(frozen=True, repr=False)
 class Thresholds(FieldsOnly, Listed):
-    """Where the motion on level ground changes its kind.
-
-    `lift_off_speed` and `jam_speeds` take some milliseconds, of what `thresholds` returns when they
-    are first asked for.
+    """Speeds, angles and coefficients at which the motion on level ground changes its kind.
 
     Speeds are |omega| when passing the flat position [rad/s]; angles are theta in [0, pi/2] [rad],
-    None where the speed or the coefficient beside it is infinite (it never happens).
+    None if the speed or coefficient before it is infinite (it never happens). `lift_off_speed` and
+    `jam_speeds` are computed when first asked for, in some milliseconds.
 
     Attributes
     ----------
     roll_over_speed : float
         Above it the body turns over; below it rocks.
     contact_loss_speed, contact_loss_angle : float
-        From it on rolling would need the ground to pull (N = 0), first at this angle.
+        From this speed on rolling would need the ground to pull (N < 0), first at this angle.
     slip_speed, slip_angle : float
-        From it on rolling needs more than the given friction, first at this angle.
+        From this speed on rolling needs more than the given friction, first at this angle.
     lift_off_speed : float
-        The least speed at which a body of the given friction really leaves the ground: it slips
-        first, and then its pressure on the ground ends before it passes the tip. From it on the
-        body always leaves, but for `jam_speeds`.
+        The least speed at which a body of the given friction leaves the ground: it slips first,
+        and then N reaches 0 before it passes the tip. At all larger speeds it leaves, too, except
+        in `jam_speeds`.
     jam_speeds : tuple of (float, float)
-        Ranges of speed, ascending, in which the slide jams before it would leave the ground or
-        pass the tip; inf ends one that goes on for ever. Empty up to `painleve_friction` and for
-        infinite friction; above, they are found by a scan in steps of 2 % up to 50 times the slip
-        speed (narrower ranges may be missed). Their ends are refined by bisection; slides that run
-        into the point at which pressure and response vanish together know them to some 1e-5.
+        Ranges of speed, ascending, in which the slide jams before it leaves the ground or passes
+        the tip; inf ends an unbounded range. Empty up to `painleve_friction` and for infinite
+        friction; above, they are found by a scan in steps of 2 % up to 50 times the slip speed
+        (narrower ranges may be missed). Their ends are refined by bisection; they are known to
+        some 1e-5 where slides run into the point at which pressure and response vanish together.
     friction_to_roll_over : float
         Largest |F/N| of rolling at the roll-over speed (infinite where N vanishes before).
     painleve_friction, painleve_angle : float
@@ -106,7 +104,7 @@ def classify(
     gyration2: Any = None,
     workers: Any = 1,
 ) -> Outcome | npt.NDArray[np.int8]:
-    """Tell what a rolling body comes to first, from t = 0 on, without integrating.
+    """Return the first outcome of rolling from t = 0 on, without integrating.
 
     The body starts rolling without slip (or at rest) on level ground. It rolls until the first of
 
@@ -114,38 +112,28 @@ def classify(
     ``RESTS``           nothing: it is in equilibrium and stays
     ``ROCKS``           it turns back
     ``ROLLS_OVER``      it passes the tip; a circle, which has none, rolls on for ever
-    ``SLIPS``           it would need more friction than there is (at once, where it moves and
-                        there is none); infinite friction: the ground would have to pull (N < 0),
+    ``SLIPS``           it would need more friction than given (a moving body without friction
+                        slips at once); infinite friction: the ground would have to pull (N < 0),
                         and the body slides, not pressed
     ``LOSES_CONTACT``   the start itself is too fast for the ground, and the body leaves it at once;
                         a body that rolls slips first
     ``JAMS``            a slip begins inside the Painleve region. It never does: what ends rolling
                         can always go on as sliding. The code is kept for completeness.
-    ``EDGE``            rounding cannot tell, as on the separatrix
+    ``EDGE``            undecided within rounding, as on the separatrix
     ==================  ==========================================================================
 
     So a body that starts beyond the angles at which it would slip rolls over first and slips later;
-    `certify` speaks of the whole motion. The answers are the proved signs of the polynomials of N
-    and of friction N - |F| on the heights met on the way (Bernstein coefficients with
+    `certify` covers the whole motion. The answers are the proved signs of the polynomials of N and
+    of friction N - |F| on the heights that the motion meets (Bernstein coefficients with
     subdivision, every coefficient with its margin for rounding).
 
     Parameters
     ----------
-    a, b : float or array_like
-        Semi-axes [m].
-    omega, theta : float or array_like
-        Angular velocity [rad/s] and angle [rad] at the start; less than 1e-100 rad/s in size
-        counts as rest.
+    a, b, omega, theta, gravity, gyration2, workers
+        As of `flow`: semi-axes [m], angular velocity [rad/s] and angle [rad] at the start, gravity
+        [m/s^2], k^2 [m^2] and workers.
     friction : float or array_like
         Coefficient of friction; inf allowed.
-    gravity : float or array_like
-        Acceleration of gravity [m/s^2].
-    gyration2 : float or array_like, optional
-        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
-        (a^2 + b^2)/4.
-    workers : int or executor
-        Number of threads, up to 1024, -1 for all cores, or an executor, as of `simulate_many`; the
-        same answers for any.
 
     Returns
     -------
@@ -159,15 +147,9 @@ def classify(
         shape, ``a[3]``) or shapes do not broadcast.
     """
     found = evaluate(
-        shared(workers, _core.classify_array),
-        a=a,
-        b=b,
-        omega=omega,
-        theta=theta,
-        friction=friction,
-        gravity=gravity,
-        gyration2=gyration2,
-    )
+        shared(workers, _core.classify_array), a=a, b=b, omega=omega, theta=theta,
+        friction=friction, gravity=gravity, gyration2=gyration2,
+    )  # fmt: skip
     return Outcome(int(found)) if isinstance(found, float) else found
 
 
@@ -183,15 +165,11 @@ def thresholds(
 
     Parameters
     ----------
-    a, b : float
-        Semi-axes [m].
-    gravity : float
-        Acceleration of gravity [m/s^2].
-    gyration2 : float, optional
-        k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc.
+    a, b, gravity, gyration2 : float
+        As of `flow`: semi-axes [m], gravity [m/s^2] and k^2 [m^2].
     friction : float
-        Coefficient that `slip_speed` and `lift_off_speed` are for; if infinite, the slip speed is
-        the contact loss speed.
+        Coefficient of friction for `slip_speed` and `lift_off_speed`; if infinite, the slip speed
+        is the contact loss speed.
 
     Returns
     -------

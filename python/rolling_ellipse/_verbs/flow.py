@@ -1,4 +1,4 @@
-"""Exact rolling as plain functions of time."""
+"""Exact rolling as a function of time, and its period."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ def flow(
     gyration2: Any = None,
     workers: Any = 1,
 ) -> tuple[Any, Any, Any]:
-    """Return the rolling state at any time, exactly; it does not check whether rolling is valid.
+    """Return the state of rolling at any time, exactly, without a check that rolling is valid.
 
-    All arguments broadcast by NumPy's rules. The cost of one time does not depend on how far it is
-    from the start: the period, by the trapezoidal rule in a coordinate in which nothing peaks, is
-    subtracted as a double-double, and the energy integral is inverted from the start on by
-    Gauss-Legendre quadrature and Newton's method. Nothing is stepped.
+    All arguments broadcast by NumPy's rules. The cost of one time does not depend on its distance
+    from the start. The period, by the trapezoidal rule in a coordinate in which the integrand has
+    no peaks, is subtracted as a double-double; the energy integral is inverted by Gauss-Legendre
+    quadrature and Newton's method. There are no steps.
 
     Parameters
     ----------
@@ -49,21 +49,20 @@ def flow(
         k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc,
         (a^2 + b^2)/4.
     workers : int or executor
-        Number of threads, up to 1024, -1 for all cores: where fewer can be started, fewer do the
-        work. Or an executor, as of `simulate_many`, for many millions of elements. The same bits
-        for any of them.
+        Number of threads, up to 1024 (fewer are used if no more can be started), -1 for all cores;
+        or an executor, as of `simulate_many`, for many millions of elements. The bits are the same
+        for all.
 
     Returns
     -------
     theta, omega, x : float or ndarray
         Angle [rad], angular velocity [rad/s], path of the centre since the start [m]; floats if all
         arguments are scalars, else of the broadcast shape. A body in equilibrium (omega = 0 and
-        |h'| within 8 ulp of h) stays. The last bits may depend on how many times there are: many
-        of one motion are read off Taylor series about points of it. Their x then has the rounding
-        of a length like the body's, 2e-16 max(a, b), also where the body has come back to its
-        start and x is much smaller than that. Many motions at one time each are computed side by
-        side in the vectors of the processor (SSE2, AVX2 or AVX-512), with the bits that each has
-        alone.
+        |h'| within 8 ulp of h) stays. The last bits may depend on the number of times: many times
+        of one motion are evaluated by Taylor series about points of it. Their x then has a rounding
+        error of 2e-16 max(a, b), also where the body has returned to its start and x is small. Many
+        motions at one time each are computed side by side in the vectors of the processor (SSE2,
+        AVX2 or AVX-512), with the bits that each has alone.
 
     Raises
     ------
@@ -82,7 +81,7 @@ def flow(
     threads = threads_of(workers)
     one = (a, b, theta, omega, gravity)
     if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):
-        with suppress(TypeError):  # an int beyond the doubles: refused by name below
+        with suppress(TypeError):  # an int beyond the range of doubles: refused by name below
             if type(t) in _SCALARS:
                 return _core.flow_scalar(t, *one, gyration2)
             times = array("t", t)
@@ -101,14 +100,14 @@ def flow(
 
 
 def _times(n: int, columns: list[FloatArray], threads: int) -> Any:
-    """Many times of one motion, as a part of more: of as few as pay for no table, all are here."""
+    """Evaluate many times of one motion, as a task of an executor."""
     times, *one = columns
     a, b, theta, omega, gravity, gyration2 = (float(value[0]) for value in one)
     return _core.flow_times(times, a, b, theta, omega, gravity, gyration2, threads)
 
 
 def arguments_of(scene: Scene) -> dict[str, Any]:
-    """Return the arguments of `flow` for a scene, as it is after its impulse."""
+    """Return the arguments of `flow` for the state of a scene after its impulse."""
     start = scene.initial_state
     return {
         "a": scene.a, "b": scene.b, "theta": start.theta, "omega": start.omega,
@@ -119,9 +118,9 @@ def arguments_of(scene: Scene) -> dict[str, Any]:
 def period(scene: Scene) -> float:
     """Return the time of a full swing, or of one full turn, of the rolling motion [s].
 
-    Infinite for a body at rest. By the trapezoidal rule for the energy integral, as in `flow`, with
-    an error of a few units in the last place; on a slope, where only a swing repeats itself, from
-    its turning points, by power series in time.
+    It is infinite for a body at rest. On level ground it is the energy integral by the trapezoidal
+    rule, as in `flow`, with an error of a few units in the last place. On a slope, where only a
+    swing repeats itself, it follows from power series in time and the turning points.
 
     Parameters
     ----------

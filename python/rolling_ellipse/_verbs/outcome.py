@@ -1,4 +1,4 @@
-"""What a body comes to after a blow, and the friction that its rolling asks for."""
+"""Outcome of a blow, and the friction that rolling requires."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .._core import Outcome
 
 
 def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArray[np.int8]:
-    """Tell what a body comes to first, from the blow on.
+    """Return the first outcome of the motion after a blow.
 
     ==================  ==========================================================================
     ``SLIPS``           the contact slides just after the blow (without friction whenever the body
@@ -28,12 +28,12 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     ``RESTS``           it is in equilibrium and stays
     ``ROCKS``           it rolls until it turns back
     ``ROLLS_OVER``      it rolls until it passes the tip; a circle, which has none, rolls on
-    ``EDGE``            rounding cannot tell
+    ``EDGE``            undecided within rounding
     ==================  ==========================================================================
 
-    Nothing is stepped: the blow is the collision law of `Scene.initial_state`, and what rolls after
-    it is for the proofs of `classify`. On a slope the rolling motion is followed by the power
-    series of `certify` to the first of these events: ``ROCKS`` is the first instant without
+    There are no steps: the blow is the collision law of `Scene.initial_state`, and rolling after
+    it is decided by the proofs of `classify`. On a slope the rolling motion is followed by the
+    power series of `certify` to the first of these events: ``ROCKS`` is the first instant without
     rotation, ``ROLLS_OVER`` the first passage of a position with the long axis at right angles to
     the ground (of a circle: half a turn), ``SLIPS`` or ``LOSES_CONTACT`` the end of rolling, which
     is a flight where the body turns too fast for its weight by then (c < 0 < N).
@@ -52,7 +52,7 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     Raises
     ------
     ValueError
-        If a blow misses the body, or is stronger than one of a Scene may be.
+        If a blow misses the body, or is stronger than that of a Scene may be.
     """
     scene = require_scene(scene)
     if impulse is None:
@@ -76,20 +76,19 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
 def required_friction(scene: Scene) -> float:
     """Return the least coefficient of friction with which the ground holds the rolling for ever.
 
-    It is the larger one of two. The blow needs what makes its slip stop before its compression
-    ends and not begin again, which is |Λx|/Λz of the sticking contact, or |Gnt|/Gtt where that is
-    more (the collision law of `Scene.initial_state`). The rolling that follows, which depends on
-    no friction, needs the largest |F|/N: on level ground that of `certify`, over the whole
-    motion; on a slope that of a circle, of a body in equilibrium, or of one that rocks between two
-    turning points (the maximum along the angle, by a scan and golden section). The scene's own
-    friction does not matter.
+    It is the larger of two coefficients. The blow requires |Λx|/Λz of the sticking contact, or
+    |Gnt|/Gtt if that is more: then its slip stops before the compression ends, and does not begin
+    again (the collision law of `Scene.initial_state`). The rolling that follows requires the
+    largest |F|/N: on level ground that of `certify`, over the whole motion; on a slope that of a
+    circle, of a body in equilibrium, or of one that rocks between two turning points (the maximum
+    along the angle, by a scan and golden section). The scene's own friction has no effect.
 
     Returns
     -------
     float
-        Infinite where no finite coefficient does: the blow lifts the body, or it is in the air; it
-        slides by its velocities; N vanishes; or it is no circle and runs down a slope for ever. An
-        infinite friction may hold some of these: see `certify`. 0 where any friction will do: with
-        none at all a contact that moves slides.
+        Infinite if no finite coefficient is enough: the blow lifts the body, or it is in the air;
+        it slides by its velocities; N vanishes; or it is not a circle and runs down a slope for
+        ever. Infinite friction may hold some of these: see `certify`. 0 if any positive coefficient
+        is enough: without friction a moving contact slides.
     """
     return _core.required_friction(require_scene(scene).core)

@@ -1,4 +1,4 @@
-"""The one entry point: a scene and times in, a Trajectory out."""
+"""Simulation of one scene."""
 
 from __future__ import annotations
 
@@ -46,23 +46,23 @@ def simulate(
     t : float or array_like, shape (n,)
         End time (then 1001 even samples), or strictly increasing sample times >= 0 [s]. A tuple
         (0, end), the span of other programs, is refused: it would be two samples, as the list
-        [0, end] is. Rolling for more than 1e15 half turns or swings is refused: a double does not
-        know its phase.
+        [0, end] is. Rolling for more than 1e15 half turns or swings is refused: a double cannot
+        resolve its phase.
     model : {"auto", "rolling", "multipliers", "contact"}
         "rolling" is rolling without slip; the certificate (see `certify`) says until when it is
         true. "contact" is the whole motion: it rolls, slides, flies, hits the ground and comes to
-        rest, on segments joined by ``events``, none of which is stepped: slides are power series in
-        time [9]_ that end at proved first roots. "auto" is "rolling" where the certificate proves
-        it, and "contact" elsewhere; with a method given it is "rolling". "multipliers" is the same
-        motion in the report's five coordinates with four constraints and their Lagrange
-        multipliers, for study: "dop853" (also its "auto"), "dopri5", "rk4", or "radau" with the
-        stabilization "ggl".
+        rest, on segments joined by ``events``. No segment is integrated by steps: slides are power
+        series in time [9]_ that end at proved first roots. "auto" is "rolling" where the
+        certificate proves it, and "contact" elsewhere; with a method given it is "rolling".
+        "multipliers" is rolling in the report's five coordinates with four constraints and their
+        Lagrange multipliers, for study: "dop853" (also its "auto"), "dopri5", "rk4", or "radau"
+        with the stabilization "ggl".
     method : {"auto", "exact", "dop853", "dopri5", "rk4", "gauss", "radau"}
-        "exact" inverts the energy integral at each time; nothing is stepped, and neither
-        tolerances nor the span matter. On a slope power series in time at rounding level follow
-        one swing, or the first half turns; what repeats itself is not followed again, and many
-        half turns downhill or uphill are one sum, a difference of Hurwitz zeta functions [8]_. The
-        others integrate the equation of motion: "dop853" and "dopri5" are explicit Runge-Kutta
+        "exact" inverts the energy integral at each time, without steps; neither tolerances nor the
+        span matter. On a slope power series in time at rounding level follow one swing, or the
+        first half turns; a swing repeats itself, and many half turns downhill or uphill are one
+        sum, a difference of Hurwitz zeta functions [8]_. The other methods integrate the equation
+        of motion: "dop853" and "dopri5" are explicit Runge-Kutta
         pairs of order 8 and 5 with error control [1]_; "rk4" is the classical method; "gauss" is
         Gauss-Legendre collocation of order ``2 * stages``, symmetric and symplectic, whose energy
         error does not grow, with rounding errors that only walk at random [2]_ [3]_; "radau" is
@@ -89,43 +89,41 @@ def simulate(
     max_events : int
         Most events of "contact" before it ends with the status MAX_EVENTS.
     rest_speed : float, optional
-        Rebound speed [m/s] under which "contact" sums the infinitely many bounces that are left,
-        with a relative error of the order of the square of its ratio to sqrt(g min(a, b)), which
-        is a millionth by default and a hundredth at most. Bounces that would take longer than that
-        allows are not summed: where next to nothing presses the body to its ground, or restitution
-        is near 1.
+        Rebound speed [m/s] below which "contact" sums the infinitely many bounces that are left.
+        The relative error is of the order of the square of its ratio to sqrt(g min(a, b)), which
+        is a millionth by default and a hundredth at most. Bounces that last too long for that are
+        not summed: where the body is hardly pressed to its ground, or restitution is near 1.
     raise_on_failure : bool
-        Whether an integration that stops before the last time raises; otherwise it returns what
-        there is up to then.
+        Whether an integration that stops before the last time raises; otherwise the motion up to
+        then is returned.
 
     Returns
     -------
     Trajectory
         ``status`` COMPLETED; or VALIDITY_LOST, where the span of "rolling" or "multipliers" goes
         beyond ``valid_until``: the arrays are complete and obey the rolling equation, and a
-        ValidityWarning is issued; or JAMMED, where a slide comes to a place from which no motion
-        of a rigid body goes on, or starts at one from which two do (Painleve): the arrays end
-        there. Infinite friction is not the limit of large coefficients here: a slip that would jam
-        it takes off by an impulse at t = 0 (see `Scene`). A start without slip that may roll and
-        may fly (on a slope, turning too fast for its weight, wedged by friction) goes on rolling.
-        ``reason`` tells both. At an event samples show what holds after it. Samples between steps
-        have the accuracy of the method. A StabilityWarning is issued where an integrated motion
-        has lost what it should keep, as looked at along all of it, at steps and between some of
-        them: a hundredth of its energy (or ten times rtol, if that is more), measured by the
-        largest kinetic plus |potential| energy, with x from the start; a thousandth of the long
-        semi-axis in its constraints; a tenth of it in those of any single step before its
-        projection, which then moves the body elsewhere; and where Baumgarte's gains are more than
-        the method bears at the step given.
+        ValidityWarning is issued; or JAMMED, where a slide reaches a state in which no motion of a
+        rigid body goes on, or starts in one from which two go on (Painleve): the arrays end there.
+        Infinite friction is not the limit of large coefficients here: a slip that would jam is
+        removed by an impulse at t = 0 (see `Scene`). A start without slip that may roll or fly (on
+        a slope, turning too fast for its weight, wedged by friction) goes on rolling. ``reason``
+        says both. A sample at an event has the state after it. Samples between steps have the
+        accuracy of the method. A StabilityWarning is issued for an integrated motion that has lost,
+        at steps or between them: a hundredth of its energy (or ten times rtol, if that is more),
+        measured by the largest kinetic plus |potential| energy, with x from the start; a thousandth
+        of the long semi-axis in its constraints; or a tenth of it in the constraints of a single
+        step, whose projection then moves the body elsewhere. It is also issued for gains of
+        Baumgarte that are unstable at the given step.
 
     Raises
     ------
     ValueError
         If times are negative, not increasing or not finite, a name is unknown, an argument is out
-        of range or of no use to the method, or the models "rolling" or "multipliers" are asked
-        for a scene that does not start rolling.
+        of range or has no effect on the method, or the scene of a model "rolling" or "multipliers"
+        does not start rolling.
     IntegrationError
         If the integration stops before the last time (MAX_EVENTS, MAX_STEPS, STEP_TOO_SMALL or
-        STEP_TOO_LARGE); its ``trajectory`` holds what there is.
+        STEP_TOO_LARGE); its ``trajectory`` is the motion up to then.
 
     References
     ----------
@@ -149,8 +147,8 @@ def simulate(
     )  # fmt: skip
     trajectory = Trajectory.computed(scene, how, sample_times(t))
     report_status(trajectory, raise_on_failure=raise_on_failure, stacklevel=3)
-    if told := advice(trajectory):
-        warnings.warn(told, StabilityWarning, stacklevel=2)
+    if sentence := advice(trajectory):
+        warnings.warn(sentence, StabilityWarning, stacklevel=2)
     return trajectory
 
 
@@ -165,7 +163,7 @@ def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel:
 
 
 def sample_times(t: Any) -> FloatArray:
-    """Return the times to sample at: those given, or 1001 even ones up to an end time."""
+    """Return the sample times of an argument: 1001 even ones for an end time."""
     times = array("t", t)
     if isinstance(t, tuple) and times.shape == (2,) and times[0] == 0:
         end = shown(t[1])

@@ -1,8 +1,8 @@
-"""Who does the work: threads of the core, or an executor, which may be of other machines.
+"""Workers: threads of the core, or an executor, possibly of other machines.
 
 An executor has `submit`, as those of concurrent.futures, dask's Client and mpi4py.futures have, or
-is a pool that has `map`. What it is given is a function of this package and bytes: every way to
-another process knows those.
+is a pool that has `map`. A task is a function of this package with bytes as its argument, which
+every transport to other processes can send.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from .._ask.check import FloatArray, shown, worker_count
 
 Columns = list[FloatArray]
 
-_IN_FLIGHT = 128  # tasks at most: they wait beside their results
-_HELD = 96 * 2**20  # bytes at most of results that wait for their turn, unless one has more
-_ELEMENTS = 2**16  # of a task; a multiple of the core's own parts, so that lanes stay the same
+_IN_FLIGHT = 128  # most tasks submitted at a time
+_HELD = 96 * 2**20  # most bytes of results that wait for earlier ones, unless one result has more
+_ELEMENTS = 2**16  # elements of a task; a multiple of the core's own parts, so that lanes agree
 
 
 @dataclass(frozen=True)
 class Lost:
-    """What stands in the place of a task's result; `refused`: it was not even taken."""
+    """A task that failed; `refused` if the executor did not accept it."""
 
     error: Exception
     refused: bool = False
@@ -40,7 +40,7 @@ def threads_of(workers: Any) -> int | None:
     TypeError
         If it is neither.
     ValueError
-        If it is no possible number.
+        If the number is out of range.
     """
     if type(workers) is int:  # nearly always
         return worker_count(workers)
@@ -61,11 +61,11 @@ def in_order(
     tasks: Iterable[bytes],
     size: Callable[[], int] = lambda: 0,
 ) -> Iterator[tuple[int, Any]]:
-    """Yield place and result of each task, in order; `Lost` where a worker died or none was left.
+    """Yield index and result of each task, in order; `Lost` if its worker died or was missing.
 
-    Tasks are taken as results are asked for, so many that the results that wait have no more than
-    `_HELD` bytes, if none has more than `size` says after its task was taken. An interrupt cancels
-    what has not begun; what is done by then is yielded before it goes on.
+    Tasks are taken as results are asked for, as many as have results of `_HELD` bytes in all if
+    each has `size()` bytes. An interrupt cancels tasks that have not begun; finished results are
+    yielded before it is raised again.
     """
     places = enumerate(tasks)
     if not _can(executor, "submit"):
@@ -94,10 +94,10 @@ def in_order(
 
 
 def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns], Any]:
-    """Return a function of elements and columns that workers compute.
+    """Return a function of (number of elements, columns) that is computed by workers.
 
-    The function itself also takes a number of threads. Its bits are the same for any workers; what
-    a task raises is raised.
+    `function` also takes a number of threads. The bits are the same for any workers; an exception
+    of a task is raised.
     """
     threads = threads_of(workers)
     if threads is not None:
@@ -125,14 +125,14 @@ def _can(executor: Any, what: str) -> bool:
 
 
 def _is_pool(workers: Any) -> bool:
-    """Series and sequences of some libraries have a map, but nothing to end."""
+    """Whether it can map and be closed; sequences of some libraries have `map` alone."""
     return _can(workers, "map") and (_can(workers, "close") or _can(workers, "shutdown"))
 
 
 def _next(
     places: Iterator[tuple[int, bytes]], waiting: int, size: Callable[[], int]
 ) -> tuple[int, bytes] | None:
-    """The next task, unless as many wait as may."""
+    """Return the next task, or None if too many wait."""
     most = min(_IN_FLIGHT, _HELD // max(1, size()))
     return None if waiting and waiting >= most else next(places, None)
 
@@ -143,7 +143,7 @@ def _mapped(
     places: Iterator[tuple[int, bytes]],
     size: Callable[[], int],
 ) -> Iterator[tuple[int, Any]]:
-    """By pools that cannot be given one task: a part is lost together."""
+    """Use a pool that takes no single tasks: the tasks of one `map` are lost together."""
     while True:
         part: list[tuple[int, bytes]] = []
         while taken := _next(places, len(part), size):
@@ -184,7 +184,7 @@ def _cancel(futures: Iterable[Any]) -> None:
 
 
 def _ranges(n: int) -> Iterator[tuple[int, int]]:
-    """The last one may be longer: no task is too small for what pays with many elements."""
+    """Yield the ranges of tasks; the last one is longer, so that no task is small."""
     begin = 0
     while n - begin >= 2 * _ELEMENTS:
         yield begin, begin + _ELEMENTS
@@ -200,5 +200,5 @@ def _evaluate(task: bytes) -> Any:
     function, n, columns = pickle.loads(task)
     try:
         return function(n, columns, 1)
-    except ValueError as error:  # a wrong argument is no failure of the executor, which logs those
+    except ValueError as error:  # a wrong argument; executors would log it as a failure
         return Lost(error)

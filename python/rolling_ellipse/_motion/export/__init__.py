@@ -1,4 +1,4 @@
-"""What leaves the package for others to read: files and tables."""
+"""Export of motions: files and tables."""
 
 from __future__ import annotations
 

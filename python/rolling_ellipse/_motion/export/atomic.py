@@ -15,18 +15,18 @@ from pathlib import Path
 if sys.platform != "win32":
     import fcntl
 
-UNFINISHED = ".rolling_ellipse_"  # begins the names of files that are not whole
+UNFINISHED = ".rolling_ellipse_"  # prefix of the names of unfinished files
 
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Yield the absolute path of an empty file beside `path` that takes its place on success.
+    """Yield the path of a new empty file in the same folder, which replaces `path` on success.
 
-    Until then the old file stays as it is, and nothing but a whole file ever has its name, even
-    if the process is killed. Any exception removes the new file. Its name has the suffix of
-    `path`, by which writers choose a format, and is otherwise plain, so that other programs can
-    be given it. A link stays a link; a file that was there keeps its permissions. Devices and
-    pipes cannot be replaced: there `path` itself is yielded, to be written as it comes.
+    Until then the old file stays, and `path` never names an unfinished file, even if the process is
+    killed. Any exception removes the new file. Its name has the suffix of `path`, by which writers
+    choose a format, and is otherwise plain, so that other programs accept it. A link stays a link,
+    and an old file keeps its permissions. Devices and pipes cannot be replaced: for them `path`
+    itself is yielded.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         target, old = _target(name)
         new = _beside(target) if old is None or stat.S_ISREG(old.st_mode) else None
-    except OSError as error:  # it names a folder, or the new file, which nobody asked for
+    except OSError as error:  # it may name a folder, or the new file
         raise OSError(error.errno, error.strerror, name) from None
     if new is None:
         yield Path(name)
@@ -57,7 +57,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def remove_unfinished(folder: Path) -> None:
-    """Remove the new files of killed processes from a folder; those still written to are locked."""
+    """Remove the unfinished files of killed processes; files that are being written are locked."""
     for path in folder.glob(f"{UNFINISHED}*"):
         with suppress(OSError), _locked(path) as is_free:
             if is_free:
@@ -66,9 +66,9 @@ def remove_unfinished(folder: Path) -> None:
 
 @contextmanager
 def _locked(path: Path) -> Iterator[bool]:
-    """Hold the lock of a file, which ends with the process; yield whether it was to be had.
+    """Hold the lock of a file, which ends with the process; yield whether it was free.
 
-    Windows needs none: what is open there cannot be removed.
+    Windows needs no lock: open files cannot be removed there.
     """
     if sys.platform == "win32":
         yield True
@@ -86,9 +86,9 @@ def _locked(path: Path) -> Iterator[bool]:
 
 
 def _target(name: str) -> tuple[Path, os.stat_result | None]:
-    """Return the file behind all links, and what is known of it, None if it is not there yet.
+    """Return the file behind all links, and its status (None if it does not exist).
 
-    Refuses what `open` would refuse to write to; only asking it to write would empty the file.
+    A file that cannot be opened for writing is refused; it is not emptied.
     """
     folder, last = os.path.split(name)
     if last in ("", os.curdir, os.pardir):
@@ -104,7 +104,7 @@ def _target(name: str) -> tuple[Path, os.stat_result | None]:
 
 
 def _beside(target: Path) -> Path:
-    """Create an empty file in the same folder, as only within a file system can it be moved."""
+    """Create an empty file in the same folder: files move only within a file system."""
     plain = re.fullmatch(r"\.[A-Za-z0-9_]{1,16}", target.suffix)
     new = target.with_name(f"{UNFINISHED}{secrets.token_hex(8)}{plain[0] if plain else ''}")
     os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
@@ -112,7 +112,7 @@ def _beside(target: Path) -> Path:
 
 
 def _store(new: Path) -> None:
-    """Wait until the bytes are on the disk: a name moved before them could be of an empty file."""
+    """Wait until the bytes are on the disk: else the name might be moved before them."""
     descriptor = os.open(new, os.O_RDWR)
     try:
         os.fsync(descriptor)

@@ -1,4 +1,4 @@
-"""Trajectories as .npz files: arrays and, as JSON, everything else."""
+"""Trajectories as .npz files: arrays, and everything else as JSON."""
 
 from __future__ import annotations
 
@@ -8,21 +8,23 @@ import os
 import sys
 from collections.abc import Collection, Iterable
 from dataclasses import asdict
+from operator import attrgetter
 from typing import Any, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from ... import _core
 from ..._ask.check import choice, file_name
+from ..._ask.scene import STATE_UNITS
 from ..._ask.settings import Settings
-from ..._core import EventKind
-from ..events import as_numbers, events, from_numbers
+from ..._core import EventKind, Mode
+from ..events import Event, events
 from ..samples import ContactSamples
 from ..status import Status
 from ..trajectory import Trajectory, solve
 from .atomic import replacing
 from .npz import arrays as npz_arrays
+from .npz import require_array
 from .strict import ARCHIVE, field_names, parsed, require_names, restored, scene_of
 
 _Made = TypeVar("_Made", bound=Trajectory)
@@ -30,18 +32,19 @@ _Made = TypeVar("_Made", bound=Trajectory)
 _SCHEMA = 4
 _VECTORS = ("t", "theta", "omega", "x")
 _PAIRS = ("coordinates", "start")
+_state = attrgetter(*STATE_UNITS)
 _FACTS = ("model", "method", "message", "reason", "valid_until", "t_end", "span", "stats")
 
 
 def save(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
     """Write the trajectory to an .npz file (no pickle); `load` reads it back, bit for bit.
 
-    The file is there when it is whole: whatever goes wrong, an old one of that name stays.
+    The file appears whole or not at all: if anything goes wrong, an old file stays.
 
     Raises
     ------
     ValueError
-        If something was put into it that `simulate` never does, and `load` would refuse.
+        If the trajectory was changed in a way that `load` would refuse.
     OSError
         If the file cannot be written.
     """
@@ -58,10 +61,10 @@ def load(kind: type[_Made], path: str | os.PathLike[str]) -> _Made:
     Raises
     ------
     ValueError
-        If the file is damaged, holds something else, or has another schema version; it names
-        the file and what is wrong.
+        If the file is damaged, foreign or of another schema version; the message names the file
+        and the trouble.
     OSError
-        If there is no such file, or it cannot be read.
+        If the file is missing or cannot be read.
     """
     return restored(path, lambda content: _of_bytes(kind, content), ARCHIVE)
 
@@ -74,13 +77,13 @@ def _of_bytes(kind: type[_Made], content: bytes) -> _Made:
 
 
 def _about(trajectory: Trajectory) -> dict[str, Any]:
-    """Return all but the arrays as JSON knows it."""
+    """Return everything except the arrays as values of JSON."""
     return {
         "schema": _SCHEMA,
         "scene": asdict(trajectory.scene),
         "settings": asdict(trajectory.settings),
         "status": trajectory.status.name,
-        "events": [as_numbers(found) for found in trajectory.events],
+        "events": [event_values(found) for found in trajectory.events],
         **{name: getattr(trajectory, name) for name in _FACTS},
     }
 
@@ -94,9 +97,9 @@ def _arrays(trajectory: Trajectory) -> dict[str, Any]:
 
 
 def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
-    """Return the trajectory of a text and arrays, if they are just what is written of it.
+    """Return the trajectory of a text and arrays, if `save` would write the same for it.
 
-    So nothing is converted, filled in or left out, whatever the classes would be content with.
+    So nothing is converted, filled in or left out, even where the classes would accept that.
     """
     about = parsed("about", text)
     require_names("about", about, ("schema", "scene", "settings", "status", "events", *_FACTS))
@@ -104,7 +107,7 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
         raise ValueError(f"schema must be {_SCHEMA}, got {about['schema']!r}")
     require_names(f"model {about['model']!r}", arrays, _array_names(about["model"], arrays))
     for name, values in arrays.items():
-        _require_values(name, values)
+        require_array(name, values, np.int8 if name == "mode" else np.float64, values.shape)
     scene, settings = scene_of(about["scene"]), about["settings"]
     require_names("settings", settings, field_names(Settings))
     contact = [arrays[name] for name in ContactSamples._fields if name in arrays]
@@ -117,7 +120,7 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
         scene=scene,
         settings=Settings(**settings),
         status=Status[choice("status", about["status"], tuple(Status.__members__))],
-        kept_events=events(scene, map(_event, about["events"])),
+        kept_events=events(scene, map(event_row, about["events"])),
     )
     _require_consistent(trajectory)
     again = _about(trajectory)
@@ -137,26 +140,28 @@ def _array_names(model: Any, there: Collection[str]) -> set[str]:
     return names
 
 
-def _require_values(name: str, values: npt.NDArray[Any]) -> None:
-    dtype = np.dtype(np.int8 if name == "mode" else np.float64)
-    if values.dtype != dtype:
-        raise ValueError(f"{name} must be of type {dtype}, got {values.dtype}")
-    if not np.all(np.isfinite(values)):
-        raise ValueError(f"{name} must be finite, got {float(values[~np.isfinite(values)][0])!r}")
+def event_values(found: Event) -> list[Any]:
+    """Return an event as values of JSON."""
+    before, after = (
+        [*_state(state), int(state.mode)] for state in (found.state_before, found.state_after)
+    )
+    return [found.t, found.kind.name, before, after]
 
 
-def _event(numbers: Any) -> list[Any]:
-    """Return the row of an event."""
-    t, kind, before, after = numbers
-    choice("kind", kind, tuple(EventKind.__members__))
-    for value in (t, *before[:-1], *after[:-1]):
+def event_row(values: Any) -> list[float]:
+    """Return the row that `events` takes for an event of `event_values`."""
+    t, kind, (*before, mode_before), (*after, mode_after) = values
+    for value in (t, *before, *after):
         if not (isinstance(value, float) and math.isfinite(value)):
             raise ValueError(f"events must hold finite numbers, got {value!r}")
-    return from_numbers(numbers)
+    if not len(before) == len(after) == len(STATE_UNITS):
+        raise ValueError(f"events must hold states of {len(STATE_UNITS)} numbers, got {values!r}")
+    kind = choice("kind", kind, tuple(EventKind.__members__))
+    return [t, EventKind[kind].value, *before, Mode(mode_before), *after, Mode(mode_after)]
 
 
 def _require_consistent(trajectory: Trajectory) -> None:
-    """Raise ValueError unless the parts fit one another, and `sol` has all that it needs."""
+    """Raise ValueError if parts contradict one another, or `sol` could not solve the scene."""
     asked, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
     _require_asked("model", trajectory.model, asked.model)
     _require_asked("method", trajectory.method, asked.method)
@@ -169,7 +174,7 @@ def _require_consistent(trajectory: Trajectory) -> None:
     if times != sorted(times):
         raise ValueError(f"times of events must not fall, got {times}")
     _core.validate_settings(asked.core, span)
-    solve(trajectory.scene, asked, 0.0, trajectory.start)  # the core checks what was asked for
+    solve(trajectory.scene, asked, 0.0, trajectory.start)  # refused by the core if impossible
 
 
 def _require_asked(name: str, value: str, asked: str) -> None:

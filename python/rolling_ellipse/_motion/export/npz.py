@@ -1,4 +1,4 @@
-"""Arrays out of .npz files that anybody may have damaged or made."""
+"""Arrays of .npz files that may be damaged or foreign."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-_VERSION = 1, 0  # of the format that NumPy writes unless a header is very long
-_HEADER = 256  # bytes that it may have: those of numbers and text have 118
+_VERSION = 1, 0  # of the format; NumPy writes another one only for very long headers
+_HEADER = 256  # largest header [bytes]: numbers and text have 118
 
 
 def arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[Any]]:
-    """Return the arrays in the bytes of a file as `numpy.savez` writes it, read-only.
+    """Return the read-only arrays in the bytes of a file written by `numpy.savez`.
 
-    Nothing is unpacked and nothing unpickled, and no array is larger than the file. Whatever is
-    not as it must be raises some exception.
+    Nothing is decompressed or unpickled, and no array is larger than the file. Any other content
+    raises an exception of some kind.
     """
     found: dict[str, npt.NDArray[Any]] = {}
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
@@ -34,7 +34,7 @@ def arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[Any]
 
 
 def _array(name: str, content: bytes) -> npt.NDArray[Any]:
-    """Return the array of a .npy file, whose size is compared before anything is made of it."""
+    """Return the array of a .npy file; its size is checked first."""
     file = io.BytesIO(content)
     if (version := np.lib.format.read_magic(file)) != _VERSION:
         raise ValueError(f"{name} must be of version {_VERSION}, got {version}")
@@ -46,3 +46,17 @@ def _array(name: str, content: bytes) -> npt.NDArray[Any]:
         raise ValueError(f"{name} must have {size} bytes, got {len(content) - start}")
     values: npt.NDArray[Any] = np.ndarray(shape, dtype, buffer=content, offset=start)
     return values if dtype.isnative else values.astype(dtype.newbyteorder("="))
+
+
+def require_array(
+    name: str, values: npt.NDArray[Any], dtype: npt.DTypeLike, shape: tuple[int, ...],
+    *, finite: bool = True,
+) -> None:  # fmt: skip
+    """Raise ValueError for another type or shape, or (if `finite`) for an infinite entry or NaN."""
+    if values.dtype != dtype or values.shape != shape:
+        raise ValueError(
+            f"{name} must be of type {np.dtype(dtype)} and shape {shape}, got {values.dtype} and "
+            f"{values.shape}"
+        )
+    if finite and not np.isfinite(values).all():
+        raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)][0]!s}")

@@ -1,4 +1,4 @@
-"""What a file holds: all that there must be, each name once, and nothing else."""
+"""Strict reading of files: every required name once, and nothing else."""
 
 from __future__ import annotations
 
@@ -24,16 +24,15 @@ def restored(
     writer: str = "save",
     cure: str = "",
 ) -> _Made:
-    """Return what a function makes of the bytes of a file that its writer is to have written.
+    """Return the result of `restore` for the bytes of a file that `writer` has written.
 
-    Only a file with the right first bytes, and of an archive the end, is read: others may have any
-    size.
+    Only a file with the right first bytes (and the end of an archive) is read: another file may
+    have any size.
 
     Raises
     ------
     ValueError
-        If the function raises anything; the file is named, what is wrong, and what to do, if
-        anything.
+        If `restore` raises anything; the message names the file, the trouble and the cure, if any.
     OSError
         If the file cannot be read.
     """
@@ -52,7 +51,7 @@ def restored(
         return restore(content)
     except MemoryError:
         raise
-    except Exception as error:  # damaged bytes raise about every kind there is, on their way here
+    except Exception as error:  # damaged bytes raise exceptions of nearly every kind
         wrong = str(error) or type(error).__name__
         raise ValueError(
             f"path must name a file written by {writer}, got {name!r}: {wrong}{cure}"
@@ -60,12 +59,12 @@ def restored(
 
 
 def parsed(name: str, text: str) -> Any:
-    """Return what a text of JSON holds; infinite numbers are allowed, NaN is none.
+    """Return the content of a text of JSON, in which numbers may be infinite, but not NaN.
 
     Raises
     ------
     ValueError
-        If it is no JSON, or a name comes twice.
+        If it is not JSON, or a name comes twice.
     """
 
     def constant(literal: str) -> float:

@@ -79,7 +79,7 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
 
 
 def required(package: str, method: str) -> Any:
-    """Return a package of the extra "data", or raise ImportError that says so."""
+    """Import a package of the extra "data", or raise an ImportError that names the extra."""
     try:
         return importlib.import_module(package)
     except ImportError as error:
@@ -97,9 +97,9 @@ def _attributes(quantity: Quantity) -> dict[str, Any]:
 
 
 def _facts(trajectory: Trajectory) -> dict[str, float | str]:
-    """Scene and solution as numbers and strings, which every file format can hold.
+    """Return scene and solution as numbers and strings, which every file format can hold.
 
-    A field of the scene that is None has no entry: Scene has the same default.
+    A field of the scene that is None, its default, has no entry.
     """
     scene = trajectory.scene
     facts: dict[str, float | str] = {

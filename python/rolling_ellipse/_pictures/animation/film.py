@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from ..._ask.check import choice, file_name, flag, shown, whole
-from ..._ask.progress import told
+from ..._ask.progress import reporting
 from ..._motion.export.atomic import replacing
 from ..alone import Alone
 from ..palette import palette_of
@@ -195,7 +195,7 @@ class RollingAnimation(FuncAnimation):
             self._save_page(path, options)
             return
         options = {"dpi": self.figure.dpi, **options}
-        with told(progress, "frames", path) as tell:
+        with reporting(progress, "frames", path) as tell:
             if progress:
                 options["progress_callback"] = lambda i, n: tell(i + 1, n)
             if writer is not None:

@@ -1,1 +1,1 @@
-"""The parts of the command line: what can be typed, what is said of a motion, the page."""
+"""Parts of the command line: options, summary of a motion, page of `explore`."""

@@ -1,4 +1,4 @@
-"""The page that plays with a scene, written and opened."""
+"""The command `explore`: a page to play with a scene."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .options import chosen_scene, require_file
 
 
 def explore(options: Namespace) -> str:
-    """Write the page, open it unless told not to, and return what there is to say.
+    """Write the page, open it unless `--no-open` is given, and return a message.
 
     Raises
     ------
@@ -26,10 +26,10 @@ def explore(options: Namespace) -> str:
     path = _new_file() if options.save is None else options.save
     require_file("--save", path)
     write_explorer(scene, path)
-    said = f"written           {path}"
+    message = f"written           {path}"
     if not options.no_open and not webbrowser.open(Path(path).resolve().as_uri()):
-        said += "\nno browser was found: open the file in one"
-    return said
+        message += "\nno browser was found: open the file in one"
+    return message
 
 
 def _new_file() -> str:

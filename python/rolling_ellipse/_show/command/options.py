@@ -1,4 +1,4 @@
-"""What can be typed, and the scene that it stands for."""
+"""Options of the command line, and the scene that they describe."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SCENE_OPTIONS = {
     "restitution": "coefficient of restitution",
     "slope": "angle of the ground [rad]",
 }
-# The fields of a Scene that have no option of their own, and why.
+# Fields of a Scene without an option of their own, and the reasons.
 NOT_TYPED = {
     "gravity": "other units of time show the same",
     "inertia": "the bodies of the command line are uniform discs",
@@ -39,13 +39,13 @@ PROGRAM = "python -m rolling_ellipse"
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """Says what is wrong in one line; --help has the rest."""
+    """A parser that reports an error in one line."""
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {' '.join(message.split())}\n")
 
     def print_help(self, file: Any = None) -> None:
-        """Without argparse's silence where nothing can be written."""
+        """Print by `print`, which raises if nothing can be written; argparse is silent then."""
         print(self.format_help(), end="", file=file)
 
 
@@ -61,7 +61,7 @@ def _scene_parser(prog: str, description: str, epilog: str | None = None) -> One
 
 
 def motion_parser() -> OneLineParser:
-    """Return what simulates a scene and says what happens."""
+    """Return the parser of the command that simulates a scene."""
     found = _scene_parser(
         PROGRAM,
         "Simulate an ellipse on the ground, and say what happens.",
@@ -78,7 +78,7 @@ def motion_parser() -> OneLineParser:
 
 
 def explore_parser() -> OneLineParser:
-    """Return what writes the page of a scene."""
+    """Return the parser of `explore`."""
     found = _scene_parser(f"{PROGRAM} explore", "Play with a scene in a browser.")
     found.add_argument("--save", metavar="FILE", help="write the page there (default: a new file)")
     found.add_argument("--no-open", action="store_true", help="write it and open no browser")
@@ -86,9 +86,10 @@ def explore_parser() -> OneLineParser:
 
 
 def joined(arguments: list[str]) -> list[str]:
-    """Keep negative numbers with their options: argparse takes -1e-3 for another option.
+    """Join negative numbers to their options, since argparse takes -1e-3 for another option.
 
-    An option takes its number by "="; the two of --press begin with a blank, as no option does.
+    The number of an option is joined by "="; the two of --press get a leading blank, so that they
+    do not look like options.
     """
     found: list[str] = []
     for argument in arguments:
@@ -113,15 +114,15 @@ def _is_number(text: str) -> bool:
 
 
 def require_file(option: str, path: str) -> None:
-    """Raise ValueError unless a file of that name may be written."""
+    """Raise ValueError unless the path is a possible file in an existing folder."""
     if Path(path).is_dir() or not Path(path).parent.is_dir():
         raise ValueError(f"{option} must name a file in an existing folder, got {path!r}")
 
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
-    """Return the report's scene with what the options change.
+    """Return the report's scene with the arguments of the options.
 
-    Its blow stays, unless the start is given by --omega, or there is another by --press.
+    Its blow stays, unless --omega gives the start, or --press another blow.
 
     Raises
     ------

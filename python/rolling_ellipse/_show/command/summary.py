@@ -1,4 +1,4 @@
-"""What a reader wants to know of a motion first, as numbers and in lines."""
+"""Summary of a motion, as numbers and in lines."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _REPEATS = {"rocks": "full swing", "rolls_over": "full turn"}
 
 
 def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
-    """Return the facts of a motion and the files written; None for what does not exist."""
+    """Return the facts of a motion and the files written; None for missing values."""
     scene = trajectory.scene
     certificate, start = certify(scene), scene.initial_state
-    # what the certificate says is said of rolling
+    # the certificate is about rolling
     rolls = trajectory.model != "contact" or certificate.validity is Validity.VALID
     found: dict[str, Any] = {
         "scene": _scene_facts(scene),
@@ -58,7 +58,7 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
 
 
 def _scene_facts(scene: Scene) -> dict[str, Any]:
-    """What is not as it is by default: infinite friction, above all, is not."""
+    """Return the fields that differ from their defaults; JSON has no infinite friction."""
     facts = {name: value for name, value in asdict(scene).items() if name in scene._changed()}
     return facts | {"impulse": facts.get("impulse")}
 
@@ -82,11 +82,11 @@ def _finite(value: float | None) -> float | None:
 
 
 def lines(found: dict[str, Any], trajectory: Trajectory) -> list[str]:
-    """Return what `summary` found, to be read."""
-    told = {name: value for name, value in trajectory.scene._rows()}
-    start, blow = told.pop("start"), told.pop("impulse", "none")
+    """Return the result of `summary` as lines of text."""
+    scene = {name: value for name, value in trajectory.scene._rows()}
+    start, blow = scene.pop("start"), scene.pop("impulse", "none")
     rows = [
-        ("scene", ", ".join(f"{name} = {value}" for name, value in told.items())),
+        ("scene", ", ".join(f"{name} = {value}" for name, value in scene.items())),
         ("blow", blow),
         ("start", start),
         ("reason", found["reason"]),
@@ -119,7 +119,7 @@ def _motion_rows(found: dict[str, Any], trajectory: Trajectory) -> list[tuple[st
 
 
 def _repeat(found: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
-    """The time after which a motion repeats, or why there is none."""
+    """Return the row of the time after which a motion repeats, or of why it never does."""
     if found["period"] is not None:
         return _REPEATS.get(found["outcome"], "swing or turn"), f"{found['period']:.12g} s"
     name = "swing or turn"
@@ -129,4 +129,4 @@ def _repeat(found: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
         return name, "none: it rests"
     if trajectory.scene.slope != 0:
         return name, "none: it runs downhill for ever"
-    return name, "none: it comes to the tip in infinite time"
+    return name, "none: it reaches the tip in infinite time"

@@ -1,5 +1,6 @@
-"""What became of many scenes: as tables of the core, of other processes and of files, and as what
-`simulate_many` returns."""
+"""Results of many scenes: tables of the core, of other processes and of files, and answers.
+
+An answer is a trajectory, or the exception of its scene."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ from ..._motion.trajectory import Trajectory
 Tables = dict[str, npt.NDArray[Any]]
 Answer: TypeAlias = Trajectory | Exception
 
-REFUSED = -1  # in the place of an ending
+REFUSED = -1  # the ending of a scene that was refused
 MODELS, METHODS = _core.MODELS, _core.METHODS  # by their codes
 _COLUMNS, _STATS = _core.COLUMNS, _core.STATS
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}  # in the tables
@@ -33,14 +34,14 @@ _AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked of every scene."""
+    """Settings and sample times for every scene, and whether early ends become exceptions."""
 
     settings: Settings
     times: FloatArray
     raise_on_failure: bool
 
     def task(self, table: FloatArray) -> bytes:
-        """Return what another process computes by `solve_task`."""
+        """Return a task for `solve_task` in another process."""
         return pickle.dumps((table, self.settings, self.times))
 
 
@@ -61,28 +62,21 @@ def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
 def answers(
     request: Request, scenes: Sequence[Scene], tables: Tables, *, keep_events: bool = False
 ) -> list[Answer]:
-    """Return a trajectory for each scene, or the exception that stands in its place.
+    """Return a trajectory or an exception for each scene.
 
-    Events are made again when asked for, as those of a pickled trajectory are, unless those of the
-    tables are to be kept.
+    With `keep_events` a trajectory keeps the events of the tables. Otherwise it solves its scene
+    again when events are first asked for, as after pickling.
     """
     cut = _Cut(tables, frozen(np.array(request.times)))
     found: list[Answer] = []
-    code, times = (
-        dict(zip(_COLUMNS[name], tables[name].T.tolist(), strict=True))
-        for name in ("codes", "numbers")
-    )
-    of_each = (code[n] for n in ("ending", "model", "method", "samples", "events", "letters"))
+    known = columns("codes", tables) | columns("numbers", tables)
+    code = {name: values.tolist() for name, values in known.items()}
+    names = ("ending", "model", "method", "samples", "events", "letters", "t_end", "valid_until")
+    of_each = zip(*(code[name] for name in names), strict=True)
     counts = zip(*(code[name] for name in _STATS), strict=True)
     span = float(request.times[-1])
-    for scene, ending, model, method, samples, events, letters, count, t_end, valid_until in zip(
-        scenes,
-        *of_each,
-        counts,
-        times["t_end"],
-        times["valid_until"],
-        strict=True,
-    ):
+    for scene, each, count in zip(scenes, of_each, counts, strict=True):
+        ending, model, method, samples, events, letters, t_end, valid_until = each
         message = cut.text(letters)
         if ending == REFUSED:
             found.append(ValueError(message))
@@ -111,7 +105,7 @@ def answers(
 
 
 class _Cut:
-    """Takes from the tables what belongs to one scene after the other."""
+    """The tables cut into the parts of one scene after the other."""
 
     def __init__(self, tables: Tables, times: FloatArray) -> None:
         self.times = times
@@ -131,7 +125,7 @@ class _Cut:
         return made_events(scene, self._tables["events"][self._next("events", size)].tolist())
 
     def samples(self, model: str, size: int) -> dict[str, Any]:
-        """The arrays that a Trajectory holds."""
+        """Return the arrays of a Trajectory."""
         here, tables = self._next(model, size), self._tables
         t = self.times if size == self.times.size else frozen(self.times[:size].copy())
         if model == "multipliers":

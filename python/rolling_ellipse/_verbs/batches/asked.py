@@ -1,8 +1,8 @@
-"""The scenes that were asked for, in chunks: from an iterable, or from arrays that broadcast.
+"""The scenes of `simulate_many` in chunks: from an iterable, or from arrays that broadcast.
 
-The sizes of chunks depend on what was computed before and on nothing else, least of all on who
-computes: the first ones are small, so that a few slow scenes occupy many workers, and a folder
-that was begun by some workers can be finished by others.
+The size of a chunk depends only on the number of scenes before it. The first chunks are small, so
+that a few slow scenes occupy many workers. Since sizes do not depend on the workers, a folder that
+was begun by some can be finished by others.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from ..._ask.check import FloatArray, array, common_shape, shown
 from ..._ask.scene import OPTIONAL, Impulse, Scene
 from .tables import BLOW, NAMES, WIDTH, scenes_of, table_of
 
-_FIRST, _MOST = 16, 2048  # scenes of a chunk
-_SHARE = 32  # the next chunk is this part of all before it
-_SAMPLES = 2**18  # of a chunk
+_FIRST, _MOST = 16, 2048  # scenes of the first and of the largest chunk
+_SHARE = 32  # all scenes before a chunk over those by which it is larger than the first
+_SAMPLES = 2**18  # most samples of a chunk
 _DEFAULTS: dict[str, Any] = {field.name: field.default for field in fields(Scene)}
 
 
 @dataclass(frozen=True)
 class Chunk:
-    """Scenes that are computed together; `begin` is the place of the first among all."""
+    """Scenes that are computed together; `begin` is the index of the first among all."""
 
     index: int
     begin: int
@@ -41,7 +41,7 @@ class Chunk:
 
 
 def sizes(samples: int) -> Iterator[tuple[int, int]]:
-    """Yield begin and size of one chunk after the other, for so many samples a scene."""
+    """Yield begin and size of one chunk after the other, for a number of samples per scene."""
     most = max(1, min(_MOST, _SAMPLES // samples))
     begin = 0
     while True:
@@ -50,7 +50,7 @@ def sizes(samples: int) -> Iterator[tuple[int, int]]:
         begin += size
 
 
-class Listed:
+class SceneList:
     """Scenes of an iterable, taken as they are needed."""
 
     def __init__(self, scenes: Iterable[Any]) -> None:
@@ -68,15 +68,15 @@ class Listed:
             yield Chunk(index, begin, table_of(taken), taken)
 
 
-class Grid:
-    """Scenes whose arguments are numbers and arrays that broadcast, in C order.
+class SceneGrid:
+    """Scenes of numbers and arrays that broadcast, in C order.
 
     Raises
     ------
     TypeError
-        If an argument is none of Scene's, or no number.
+        If an argument is not one of Scene's, or not numeric.
     ValueError
-        If shapes do not broadcast, or a scene is refused: by the argument and its index.
+        If shapes do not broadcast, or a scene is refused; the argument and its index are named.
     """
 
     def __init__(self, arguments: Mapping[Any, Any]) -> None:
@@ -132,7 +132,7 @@ class Grid:
         return table
 
     def _own(self, values: FloatArray, index: tuple[Any, ...]) -> tuple[Any, ...]:
-        """The index of an array of its own of what has an index of all."""
+        """Return the index into one array for an index into the common shape."""
         last = index[len(index) - values.ndim :]
         return tuple(i * (size > 1) for i, size in zip(last, values.shape, strict=True))
 
@@ -165,12 +165,12 @@ def _indexed(index: tuple[Any, ...]) -> str:
     return f"[{', '.join(str(int(i)) for i in index)}]" if index else ""
 
 
-def asked(scenes: Any) -> Listed | Grid:
-    """Return what `simulate_many` was asked for; what is neither scenes nor arrays is refused."""
+def asked(scenes: Any) -> SceneList | SceneGrid:
+    """Return the scenes of an argument, or raise TypeError."""
     if isinstance(scenes, Mapping):
-        return Grid(scenes)
-    with suppress(TypeError):  # an array without axes has what an iterable has, and is none
-        return Listed(scenes)
+        return SceneGrid(scenes)
+    with suppress(TypeError):  # an array without axes has `__iter__`, but cannot be iterated
+        return SceneList(scenes)
     raise TypeError(
         "scenes must be Scenes, as an iterable, or a mapping of the arguments of Scene to numbers "
         f"and arrays, got {shown(scenes)}"

@@ -1,8 +1,8 @@
-"""A folder of motions: what was asked of all, and a file for each chunk of scenes.
+"""A folder of motions: the request of all, and a file for each chunk of scenes.
 
-``request.npz`` holds the settings, the times and the version; ``00000007-1f…-a3….npz`` the seventh
-chunk, named by the hashes of that request and of its scenes; ``end.json``, which is written last,
-how many scenes there are and the hash of the names of all chunks. A file is there when it is whole.
+``request.npz`` holds the settings, the times and the version. ``00000007-1f…-a3….npz`` is the
+chunk of index 7, named by the hashes of the request and of its scenes. ``end.json``, written last,
+has the number of scenes and the hash of the names of all chunks. Files appear whole or not at all.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from ..._ask.check import FloatArray, file_name, flag, shown
 from ..._ask.settings import Settings
 from ..._motion.export.atomic import remove_unfinished, replacing
 from ..._motion.export.npz import arrays as npz_arrays
+from ..._motion.export.npz import require_array
 from ..._motion.export.strict import ARCHIVE, OBJECT, field_names, parsed, require_names, restored
 from .answers import Answer, Request, Tables, answers
 from .asked import Chunk, sizes
@@ -38,20 +39,20 @@ _SAME = "a folder of the same request"
 _REQUEST, _END = "request.npz", "end.json"
 _CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
 _AGAIN = "simulate_many with the same arguments"
-_OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")  # or of nobody
+_OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")  # and hidden files
 
-_Names = dict[int, list[str]]  # of the chunks that are there, by their places, in order
+_Names = dict[int, list[str]]  # names of the files of chunks, by index, in order
 
 _Made = TypeVar("_Made")
 
 
 class Folder:
-    """The files of one request, made or gone on with.
+    """The files of one request: a new folder, or one that an earlier call has left.
 
     Raises
     ------
     ValueError
-        If the folder holds something else; it says what.
+        If the folder holds something else, which is named.
     OSError
         If it cannot be made or written.
     """
@@ -75,11 +76,11 @@ class Folder:
                 np.savez(file, about=np.array(json.dumps(about)), t=request.times)
         remove_unfinished(self.path)
         self._scenes: float = math.inf
-        with suppress(FileNotFoundError, ValueError):  # what is damaged is written again
+        with suppress(FileNotFoundError, ValueError):  # a damaged one is written again
             self._scenes = _scenes_in(self.path, self._request, self._names, self._samples)
 
     def has(self, chunk: Chunk) -> bool:
-        """Whether a chunk is there and whole; one of other scenes is refused."""
+        """Whether the file of a chunk is there and whole; a file of other scenes is refused."""
         name = _name(chunk.index, self._request, chunk.table)
         there = self._names.get(chunk.index, [])
         if others := [each for each in there if each != name]:
@@ -106,7 +107,7 @@ class Folder:
         self._names[chunk.index] = [name]
 
     def end(self, scenes: int, chunks: int) -> None:
-        """Say that it is complete."""
+        """Write the file that makes the folder complete."""
         if max(self._names, default=-1) >= chunks:
             self._refuse_scenes(f"which has more than {scenes}")
         digest = _digest_of_all(self._request, scenes, self._names)
@@ -114,7 +115,7 @@ class Folder:
             new.write_text(json.dumps({"scenes": scenes, "digest": digest}))
 
     def _require_new(self) -> None:
-        """Refuse files of others; chunks that have lost their request are told by their names."""
+        """Refuse foreign files; chunks without their request are known by their names."""
         for name in sorted(os.listdir(self.path)):
             if not _OURS.fullmatch(name):
                 self._refuse(
@@ -137,32 +138,32 @@ class Folder:
 
 
 def load_many(path: str | os.PathLike[str]) -> Iterator[Answer]:
-    """Return what `simulate_many` wrote to a folder: one motion after the other, in order.
+    """Return the motions that `simulate_many` wrote to a folder, one after the other, in order.
 
-    In the place of a scene without a motion is its exception, as in the list that `simulate_many`
-    returns. Nothing but a file of at most 2048 scenes is in memory at a time.
+    A scene without a motion yields its exception, as in the list of `simulate_many`. Only a file of
+    at most 2048 scenes is in memory at a time.
 
     Parameters
     ----------
     path : str or path-like
-        The folder.
+        Folder of `simulate_many`.
 
     Returns
     -------
     iterator of Trajectory or exception
-        Bit for bit those that were computed; ``events`` are those of the machine that did.
+        The same bits as computed; ``events`` are those of the machine that computed them.
 
     Raises
     ------
     ValueError
-        If it is no such folder, of another schema version, not complete, or if its files are not
-        those of one call; while it is read: if a file is damaged, by its name.
+        If it is another folder, of another schema version, or incomplete, or if its files do not
+        belong together; during iteration: if a file, which is named, is damaged.
     OSError
-        If something cannot be read.
+        If it cannot be read.
     """
     folder = Path(file_name("path", path))
     if not (folder / _REQUEST).exists():
-        os.listdir(folder)  # says if there is none
+        os.listdir(folder)  # raises if there is no folder
         raise ValueError(f"path must be a folder written by simulate_many, got {str(folder)!r}")
     about, times = _request_in(folder)
     if about["schema"] != _SCHEMA:
@@ -192,12 +193,12 @@ def _all(folder: Path, request: Request, names: list[str], scenes: int) -> Itera
 
 
 def _scenes_in(folder: Path, request: str, names: _Names, samples: int) -> int:
-    """Return how many scenes a complete folder has.
+    """Return the number of scenes of a complete folder.
 
     Raises
     ------
     ValueError
-        If its end is damaged, or tells of other chunks than there are.
+        If ``end.json`` is damaged, or its chunks are not those of the folder.
     """
     cure = f": {_AGAIN} writes it anew"
     end = restored(folder / _END, _of_end, OBJECT, "simulate_many", cure)
@@ -211,8 +212,8 @@ def _scenes_in(folder: Path, request: str, names: _Names, samples: int) -> int:
             )
     if end["digest"] != _digest_of_all(request, scenes, names):
         raise ValueError(
-            f"path must have just the files that its {_END} tells of, got others in "
-            f"{str(folder)!r}: {_AGAIN} names one of other scenes, or completes the folder"
+            f"path must have just the files of its {_END}, got others in {str(folder)!r}: {_AGAIN} "
+            "names one of other scenes, or completes the folder"
         )
     return scenes
 
@@ -223,12 +224,12 @@ def _digest_of_all(request: str, scenes: int, names: _Names) -> str:
 
 
 def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
-    """The tables of a chunk of n scenes, and these themselves, as its name says they are."""
+    """Return the tables of a chunk of n scenes, "scenes" among them, if they match its name."""
     tables = npz_arrays(content, {"request", "scenes", *NAMES})
-    scenes = tables.get("scenes", np.empty((0, 0)))
+    scenes = tables["scenes"]
     require_tables(scenes, tables, n, samples)
     if name != _name(int(name[:8]), str(tables.pop("request", "")), scenes):
-        raise ValueError("request and scenes must be those of the name of the file")
+        raise ValueError("request and scenes must match the digests in the name of the file")
     if (refused := _core.first_refused(scenes, reached=True)) is not None:
         raise ValueError(f"scenes must be valid, got row {refused[0]}: {refused[1]}")
     return tables
@@ -251,12 +252,8 @@ def _of_request(content: bytes) -> tuple[dict[str, Any], FloatArray]:
     require_names("about", about, ("schema", "version", "settings", "raise_on_failure"))
     require_names("settings", about["settings"], field_names(Settings))
     t = arrays["t"]
-    if (
-        t.dtype != np.float64
-        or t.ndim != 1
-        or not t.size
-        or not np.all(np.diff(t, prepend=0.0) >= 0)
-    ):
+    require_array("t", t, np.float64, (t.size,))
+    if not t.size or np.any(np.diff(t, prepend=0.0) < 0):
         raise ValueError("t must hold times that do not fall")
     Settings(**about["settings"])
     flag("raise_on_failure", about["raise_on_failure"])
@@ -281,7 +278,7 @@ def _chunk(path: Path, restore: Callable[[bytes], _Made]) -> _Made:
 
 
 def _replacing(path: Path) -> AbstractContextManager[Path]:
-    """`replacing` within the folder: a link would lead out of it."""
+    """Return `replacing` of a path, without following a link out of the folder."""
     if path.is_symlink():
         path.unlink()
     return replacing(path)
@@ -299,7 +296,7 @@ def _name(index: int, request: str, scenes: FloatArray) -> str:
 
 
 def _digest_of(about: dict[str, Any], times: FloatArray) -> str:
-    """The hash of all that changes what is computed of a scene."""
+    """Return the hash of everything that the bits of a motion depend on besides its scene."""
     said = {name: about[name] for name in ("schema", "version", "settings")}
     return _digest(json.dumps(said, sort_keys=True).encode() + times.tobytes())
 

@@ -1,4 +1,4 @@
-"""Many scenes in, a motion for each out."""
+"""Simulation of many scenes."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 
 from ... import _core
 from ..._ask.check import flag
-from ..._ask.progress import told
+from ..._ask.progress import reporting
 from ..._ask.scene import Scene
 from ..._ask.settings import DEFAULTS, Method, Model, Stabilization, settings
 from ..._motion.status import WorkerError
 from ..simulate import sample_times
 from ..workers import Lost, in_order, threads_of
 from .answers import SAMPLE_BYTES, Answer, Request, answers, solve, solve_task
-from .asked import Chunk, Grid, Listed, asked, sizes
+from .asked import Chunk, SceneGrid, SceneList, asked, sizes
 from .folders import Folder
 
 
@@ -39,10 +39,10 @@ def simulate_many(
     rest_speed: float | None = DEFAULTS.rest_speed,
     raise_on_failure: bool = True,
 ) -> Any:
-    """Simulate many scenes, each as `simulate` does, bit for bit, whoever computes them.
+    """Simulate many scenes, each with the bits of `simulate`, by any workers.
 
-    Nothing is raised or warned of for a single scene: its exception stands in its place, and the
-    status of a trajectory says what `simulate` would warn of (VALIDITY_LOST).
+    A scene that cannot be simulated yields its exception in the list; the others go on. Nothing is
+    warned of: the status of a trajectory (VALIDITY_LOST) says it.
 
     Parameters
     ----------
@@ -51,43 +51,40 @@ def simulate_many(
         numbers or arrays that broadcast; ``impulse`` may be an Impulse of arrays. The motions are
         then in C order of the common shape.
     t : float or array_like, shape (n,)
-        End time or sample times of all of them, as of `simulate` [s].
+        End time or sample times of all scenes, as of `simulate` [s].
     workers : int or executor
-        Number of threads, up to 1024, -1 for all cores; or what has `submit` or is a pool with
+        Number of threads, up to 1024, -1 for all cores; or an object with `submit`, or a pool with
         `map`: an executor of concurrent.futures or mpi4py.futures, dask.distributed's Client. A
-        task holds up to 2048 scenes, or fewer of many samples. Executors of processes also share
-        what Python does, which threads do not.
+        task holds up to 2048 scenes, or fewer if they have many samples. Executors of processes
+        also share the work of Python, threads only that of the core.
     progress : bool or callable
-        True: a bar, with tqdm where it is installed. A function is called with the number of
-        scenes done and of all (None for an iterable without a length) after each chunk.
+        True: a bar, by tqdm if it is installed. A function is called with the numbers of scenes
+        done and of all scenes (None for an iterable without a length) after each chunk.
     out : str or path-like, optional
-        Folder that takes the motions, as plain .npz files of a chunk each; nothing is kept in
-        memory. It is made if it is not there. One that an interrupted call has left is gone on
-        with, by any workers: the chunks in it are not computed again, but for damaged ones.
-        `load_many` reads it.
+        Folder for the motions, a plain .npz file for each chunk; nothing is kept in memory. It is
+        made if it is missing. A call with the folder of an interrupted one, by any workers,
+        computes only missing and damaged chunks. `load_many` reads it.
     model, method, rtol, atol, step, stages, stabilization, baumgarte : as of `simulate`
     max_steps, max_events, rest_speed, raise_on_failure : as of `simulate`
 
     Returns
     -------
     list of Trajectory or exception, or str
-        One for each scene, in order; with ``out`` the path of the folder. The exception of a scene
-        that `simulate` would refuse is a ValueError; of an integration that stops early an
-        IntegrationError, which has the trajectory (none with ``raise_on_failure=False``); of a
-        scene whose worker died, or found none to take it, a WorkerError whose cause is what the
-        executor says.
+        One for each scene, in order; with ``out`` the path of the folder. A scene that `simulate`
+        would refuse has a ValueError; an integration that stops early has an IntegrationError,
+        which has the trajectory (with ``raise_on_failure=False`` the trajectory itself); a scene
+        whose worker died or was missing has a WorkerError, whose cause is the executor's exception.
 
     Raises
     ------
     ValueError, TypeError
-        If an argument is wrong: a number of a mapping by its name and index, and before anything
-        is computed; what is no Scene in an iterable by its place. If ``out`` holds something else
-        than motions of the same scenes, times, settings and version.
+        If an argument is wrong. A number of a mapping is refused by its name and index before
+        anything is computed; an object that is not a Scene in an iterable, by its index. If ``out``
+        holds something other than motions of the same scenes, times, settings and version.
     WorkerError
-        With ``out``: if workers were lost. All that others have finished is there; the same call
-        goes on.
+        With ``out``: if workers were lost. Finished chunks are kept; the same call goes on.
     OSError
-        If ``out`` cannot be written; what was finished is there.
+        If ``out`` cannot be written; finished chunks are kept.
     """
     how = settings(
         model, method, rtol, atol, step, stages, stabilization, baumgarte, max_steps, max_events,
@@ -98,16 +95,16 @@ def simulate_many(
     request = Request(how, times, flag("raise_on_failure", raise_on_failure))
     threads_of(workers)
     wanted = asked(scenes)
-    with told(progress, "scenes") as tell:
+    with reporting(progress, "scenes") as report:
         if out is not None:
-            return _to_folder(Folder(out, request), request, wanted, workers, tell)
+            return _to_folder(Folder(out, request), request, wanted, workers, report)
         found: list[Answer] = []
         for chunk, tables in _solved(request, wanted.chunks(times.size), workers):
             if isinstance(tables, Lost):
                 found += [_worker_error(chunk, tables)] * len(chunk.table)
             else:
                 found += answers(request, chunk.scenes, tables)
-            tell(len(found), wanted.total)
+            report(len(found), wanted.total)
         return found
 
 
@@ -121,7 +118,7 @@ def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator
     held: dict[int, Chunk] = {}
     samples = request.times.size
     _, scenes = next(sizes(samples))
-    # bytes of a scene: of its samples, and of events as many as were seen
+    # bytes of a scene: its samples, and as many events as scenes before it had
     each = samples * SAMPLE_BYTES[request.settings.model]
 
     def tasks() -> Iterator[bytes]:
@@ -142,7 +139,7 @@ def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator
 
 
 def _to_folder(
-    folder: Folder, request: Request, wanted: Listed | Grid, workers: Any, tell: Any
+    folder: Folder, request: Request, wanted: SceneList | SceneGrid, workers: Any, report: Any
 ) -> str:
     done, count, lost = 0, 0, []
 
@@ -163,7 +160,7 @@ def _to_folder(
             continue
         folder.store(chunk, tables)
         done += len(chunk.table)
-        tell(done, wanted.total)
+        report(done, wanted.total)
     if lost:
         raise WorkerError(f"{len(lost)} chunks are missing: the same call goes on") from lost[0]
     folder.end(done, count)

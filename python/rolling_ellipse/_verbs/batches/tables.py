@@ -1,7 +1,7 @@
-"""Scenes as the rows of a table, which is how they go to workers and into files.
+"""Scenes as the rows of a table, for workers and files.
 
-A row holds the numbers of a Scene as the core has them in a row, then those of its impulse; NaN,
-which no scene has, is what was not given.
+A row holds the numbers of a Scene in the order of the core, then those of its impulse. NaN stands
+for numbers that were not given.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _blow = attrgetter(*BLOW)
 
 
 def table_of(scenes: Sequence[Scene]) -> FloatArray:
-    """Return the table of some scenes, a row each."""
+    """Return the table of scenes, with a row for each."""
     table = np.full((len(scenes), WIDTH), math.nan)
     if scenes:
         table[:, : len(NAMES)] = np.array([_numbers(scene) for scene in scenes], dtype=np.float64)
@@ -38,7 +38,7 @@ def table_of(scenes: Sequence[Scene]) -> FloatArray:
 
 
 def scenes_of(table: FloatArray) -> list[Scene]:
-    """Return the scenes of a table that the core has found valid."""
+    """Return the scenes of a table that the core has validated."""
     return [_scene(row) for row in table.tolist()]
 
 

@@ -1,7 +1,6 @@
-"""Speed against accuracy: many ways to compute one motion, timed side by side and judged."""
+"""Speed against accuracy: many methods for one motion, judged and timed side by side."""
 
-from .race import work_precision
-from .results import WorkPrecision
-from .run import Errors, Run
-
-__all__ = ["Errors", "Run", "WorkPrecision", "work_precision"]
+from .race import work_precision as work_precision
+from .results import WorkPrecision as WorkPrecision
+from .run import Errors as Errors
+from .run import Run as Run

@@ -1,4 +1,4 @@
-"""Who takes part: the package's own methods, `flow`, and peers, all asked in the same way."""
+"""Contenders of a race: the package's own methods, `flow`, and peers, behind one interface."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ _OF_MULTIPLIERS = (
     "multipliers/dop853/projection", "multipliers/rk4/none", "multipliers/rk4/baumgarte",
     "multipliers/rk4/projection", "multipliers/rk4/projection+energy", "multipliers/radau/ggl",
 )  # fmt: skip
+_ARGUMENTS = sorted(DEFAULTS.__getstate__().keys() - {"rtol", "atol", "step"})
 
 
 class Stopped(Exception):
@@ -36,11 +37,11 @@ class Stopped(Exception):
 
 @dataclass(frozen=True)
 class Contender:
-    """A way to compute a motion, over a ladder of settings (None: it has none).
+    """A method or peer with its ladder of settings (None: it has no setting).
 
-    `prepare(scene, t_end, setting)` returns a function of nothing that returns theta, omega, x at
-    the end. It may have `sample`, a function of times that returns a Trajectory or theta, omega, x;
-    `counts`, those of its last call; and `advice`, what should be known of its answer.
+    `prepare(scene, t_end, setting)` returns a function without arguments that returns theta, omega,
+    x at the end. The function may have `sample`, a function of times that returns a Trajectory or
+    theta, omega, x; `counts` of its last call; and `advice` about its answer.
     """
 
     name: str
@@ -72,7 +73,7 @@ class _Simulation:
     advice = ""
 
     def __init__(self, scene: Scene, t_end: float, arguments: dict[str, Any]) -> None:
-        self.scene = replace(scene)  # a new one, whose own set-up is paid for again
+        self.scene = replace(scene)  # a new scene, so that its own set-up is timed again
         self.settings = tuple((DEFAULTS.__getstate__() | arguments).values())
         self.times = np.array([t_end])
 
@@ -81,12 +82,11 @@ class _Simulation:
         return float(motion.theta[0]), float(motion.omega[0]), float(motion.x[0])
 
     def sample(self, times: FloatArray) -> Trajectory:
-        """Do all that `simulate` does but warn."""
+        """Do all that `simulate` does except warn."""
         motion = Trajectory.computed(self.scene, settings(*self.settings), sample_times(times))
         if motion.status is not Status.COMPLETED:
             raise Stopped(motion.status.name, motion.message)
-        told = advice(motion)
-        self.advice, self.last = self.advice or told or "", motion
+        self.advice, self.last = self.advice or advice(motion) or "", motion
         return motion
 
     @property
@@ -95,7 +95,7 @@ class _Simulation:
 
 
 def own_contenders(methods: Any, scene: Scene, rolls: bool) -> list[Contender]:
-    """Return those that are named, or those that suit a scene."""
+    """Return the contenders that `methods` names, or by default those that suit the scene."""
     if methods is None:
         methods = _suitable(scene, rolls)
     if isinstance(methods, str):
@@ -110,59 +110,60 @@ def _suitable(scene: Scene, rolls: bool) -> tuple[str, ...]:
         return ("contact",)
     if scene.slope:
         return ("contact", "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
-    if not rolls:  # exact rolling shows what a poorer model says of such a scene
+    if not rolls:  # "exact" shows that a model without slip has no answer
         return ("contact", "exact")
     return ("flow", "exact", *_OF_ROLLING, *_OF_MULTIPLIERS)
 
 
 def _own(spec: Any) -> Contender:
-    """Return the contender of "flow", a method, "model/method/stabilization", or arguments."""
+    """Return the contender of "flow", a method, "model/method/stabilization", or a mapping."""
     if spec == "flow":
         return Contender("flow", "rolling", "exact", "", None, ("own", "exact"), _Flow)
     if isinstance(spec, str):
-        return _simulation(spec, _parts(spec))
+        return _simulation(spec, _named(spec))
     if not isinstance(spec, Mapping) or not all(isinstance(key, str) for key in spec):
         raise TypeError(
             f"methods must be names, or mappings of arguments of simulate, got {shown(spec)} "
             "among them"
         )
     arguments = dict(spec)
-    name = arguments.pop("name", "/".join(str(value) for value in arguments.values()))
+    name = arguments.pop("name", "/".join(map(str, arguments.values())))
     if not isinstance(name, str):
         raise TypeError(f"name of a method must be a string, got {shown(name)}")
     return _simulation(name, arguments)
 
 
-def _parts(spec: str) -> dict[str, Any]:
-    """Return the arguments that a name stands for."""
-    model, *rest = spec.split("/")
-    if model in METHODS and model != "auto" and not rest:
-        return {"model": "rolling", "method": model}
-    if model in MODELS and model != "auto" and len(rest) <= 2:
-        names = dict(zip(("method", "stabilization"), rest, strict=False))
-        known = {"method": METHODS, "stabilization": STABILIZATIONS}
-        if all(value in known[name] for name, value in names.items()):
-            return {"model": model, **names}
+def _named(name: str) -> dict[str, Any]:
+    """Return the arguments of `simulate` that a name stands for."""
+    if name in METHODS[1:]:
+        return {"model": "rolling", "method": name}
+    parts = name.split("/")
+    if len(parts) <= 3 and all(
+        map(tuple.__contains__, (MODELS[1:], METHODS, STABILIZATIONS), parts)
+    ):
+        return dict(zip(("model", "method", "stabilization"), parts, strict=False))
     listed = ", ".join(repr(name) for name in ("flow", *METHODS[1:], *MODELS[1:]))
     raise ValueError(
-        f"methods must be among {listed}, or 'model/method/stabilization', got {shown(spec)}"
+        f"methods must be among {listed}, or 'model/method/stabilization', got {shown(name)}"
     )
 
 
 def _simulation(name: str, arguments: dict[str, Any]) -> Contender:
-    taken = {"model", "method", "stages", "stabilization", "baumgarte", "max_steps", "max_events"}
     for argument in arguments:
-        choice("arguments of methods", argument, (*sorted(taken), "rest_speed"))
+        choice("arguments of methods", argument, tuple(_ARGUMENTS))
     model = choice("model", arguments.get("model", "rolling"), MODELS)
     method = choice("method", arguments.get("method", "auto"), METHODS)
-    how = {"model": model, **arguments}
     ladder: str | None = TOLERANCES if method in _PAIRS else STEPS
     if method == "exact" or model == "contact":
         ladder = None
 
     def prepare(scene: Scene, t_end: float, setting: float) -> _Simulation:
-        at = {"rtol": setting, "atol": setting / _RELATIVE} if ladder == TOLERANCES else {}
-        return _Simulation(scene, t_end, how | at | ({"step": setting} if ladder == STEPS else {}))
+        how = {"model": model, **arguments}
+        if ladder == TOLERANCES:
+            how |= {"rtol": setting, "atol": setting / _RELATIVE}
+        if ladder == STEPS:
+            how |= {"step": setting}
+        return _Simulation(scene, t_end, how)
 
     default = DEFAULTS.stabilization if model == "multipliers" else ""
     stabilization = str(arguments.get("stabilization", default))
@@ -170,24 +171,17 @@ def _simulation(name: str, arguments: dict[str, Any]) -> Contender:
 
 
 def of_peer(peer: Any) -> Contender:
-    """Return the contender that is a peer; TypeError if it has no name or cannot prepare."""
+    """Return the contender of a peer, or raise TypeError if it has no name or no `prepare`."""
     name = getattr(peer, "name", None)
     if not isinstance(name, str) or not callable(getattr(peer, "prepare", None)):
         raise TypeError(f"peers must have a name and a function prepare, got {shown(peer)}")
     ladder = choice(f"ladder of {name}", getattr(peer, "ladder", TOLERANCES), (TOLERANCES, STEPS))
     tags = dict.fromkeys(["peer", *(str(tag) for tag in getattr(peer, "tags", ()))])
-
-    def prepare(scene: Scene, t_end: float, setting: float) -> Any:
-        run = peer.prepare(scene, t_end, setting)
-        if not callable(run):
-            raise TypeError(f"prepare of {name} must return a function, got {shown(run)}")
-        return run
-
-    return Contender(name, "rolling", name, "", ladder, tuple(tags), prepare)
+    return Contender(name, "rolling", name, "", ladder, tuple(tags), peer.prepare)
 
 
 def default_steps(scene: Scene, t_end: float) -> list[float]:
-    """Return 4 to 2048 steps a half turn or half swing, none longer than the whole."""
+    """Return steps from a quarter to a 2048th of a half turn or half swing, up to `t_end` [s]."""
     try:
         half = period(scene) / 2
     except ValueError:  # a slope, or no rolling

@@ -1,6 +1,6 @@
-"""Races as files of JSON, which hold all there is and nothing else.
+"""Races as files of JSON.
 
-What is no number is null, what is infinite the text "inf": both are beyond JSON.
+JSON has no NaN and no infinite numbers: they are null and the text "inf".
 """
 
 from __future__ import annotations
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from .results import WorkPrecision
 
 _SCHEMA = 2
-_PARTS = ("scene", "machine", "references", "runs")
-_KINDS = {"float": "a number of at least 0", "int": "a count", "str": "a text"}
 
 
 def write(found: WorkPrecision, path: str | os.PathLike[str]) -> None:
@@ -36,9 +34,8 @@ def read(kind: type[WorkPrecision], path: str | os.PathLike[str]) -> WorkPrecisi
     return restored(path, lambda content: _restored(kind, content.decode("utf-8")), OBJECT)
 
 
-def _about(found: WorkPrecision) -> Any:
-    parts = _plain(asdict(found))
-    return {"schema": _SCHEMA, **{name: parts[name] for name in _PARTS}}
+def _about(found: WorkPrecision) -> dict[str, Any]:
+    return {"schema": _SCHEMA, **_plain(asdict(found))}
 
 
 def _plain(value: Any) -> Any:
@@ -52,44 +49,42 @@ def _plain(value: Any) -> Any:
 
 
 def _restored(kind: type[WorkPrecision], text: str) -> WorkPrecision:
-    """Return the race of a text, if it is just what is written of it."""
+    """Return the race of a text, if `write` would write the same text for it."""
     about = parsed("the file", text)
-    require_names("the file", about, ("schema", *_PARTS))
+    require_names("the file", about, ("schema", *field_names(kind)))
     if about["schema"] != _SCHEMA:
         raise ValueError(f"schema must be {_SCHEMA}, got {about['schema']!r}")
-    for name in ("references", "runs"):
-        if not isinstance(about[name], list) or not about[name]:
-            raise ValueError(f"{name} must be a list that is not empty, got {about[name]!r}")
     found = kind(
         scene_of({name: _unbounded(value) for name, value in about["scene"].items()}),
-        tuple(_made(Run, "a run", each) for each in about["runs"]),
-        tuple(_made(Reference, "a reference", each) for each in about["references"]),
-        {name: _value("str", name, value) for name, value in about["machine"].items()},
+        tuple(_made(Run, each) for each in about["runs"]),
+        tuple(_made(Reference, each) for each in about["references"]),
+        {name: _value("str", value) for name, value in about["machine"].items()},
     )
-    if {each.t_end for each in found.references} != {run.t_end for run in found.runs}:
-        raise ValueError("runs must end where the references do")
+    ends = {each.t_end for each in found.references}
+    if not ends or ends != {run.t_end for run in found.runs}:
+        raise ValueError("runs must be there, and end where the references do")
     if json.dumps(_about(found), sort_keys=True) != json.dumps(about, sort_keys=True):
         raise ValueError("it must hold what save writes, in its types")
     return found
 
 
-def _made(kind: Any, what: str, found: Any) -> Any:
-    """Return a dataclass whose fields are numbers, texts, tuples of these, or errors."""
-    require_names(what, found, field_names(kind))
-    return kind(**{f.name: _value(str(f.type), f.name, found[f.name]) for f in fields(kind)})
+def _made(kind: Any, found: Any) -> Any:
+    """Return a dataclass whose fields are numbers, texts, tuples of texts, or errors."""
+    require_names(f"a {kind.__name__}", found, field_names(kind))
+    return kind(**{each.name: _value(str(each.type), found[each.name]) for each in fields(kind)})
 
 
-def _value(kind: str, name: str, value: Any) -> Any:
+def _value(kind: str, value: Any) -> Any:
     if kind == "Errors":
-        return _made(Errors, name, value)
-    if kind not in _KINDS:  # texts
-        return tuple(_value("str", name, each) for each in value)
+        return _made(Errors, value)
+    if kind.startswith("tuple"):
+        return tuple(_value("str", each) for each in value)
     if kind == "float":
         value = math.nan if value is None else _unbounded(value)
     if type(value).__name__ != kind or (kind != "str" and value < 0):
-        raise ValueError(f"{name} must be {_KINDS[kind]}, got {value!r}")
+        raise ValueError(f"values must be of type {kind} and not negative, got {value!r}")
     return value
 
 
 def _unbounded(value: Any) -> Any:
-    return float(value) if value in ("inf", "-inf") else value
+    return math.inf if value == "inf" else value

@@ -1,11 +1,13 @@
-"""The race: every contender at every setting, judged once, timed side by side in rounds."""
+"""The race: every contender at every setting, judged once, then timed in turns."""
 
 from __future__ import annotations
 
+import gc
 import math
 import platform
+import statistics
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import date
 from importlib.metadata import version
 from itertools import pairwise
@@ -15,29 +17,39 @@ import numpy as np
 
 from ... import _core
 from ..._ask.check import array, positive, shown, whole_within
+from ..._ask.progress import reporting
 from ..._ask.scene import Scene, require_scene
-from .contenders import STEPS, TOLERANCES, default_steps, of_peer, own_contenders
+from .contenders import (
+    STEPS,
+    TOLERANCES,
+    Contender,
+    Stopped,
+    default_steps,
+    of_peer,
+    own_contenders,
+)
 from .results import WorkPrecision
-from .timing import Lap, judge_all, progress, time_all
+from .run import COMPLETED, NOT_RUN, Run
 from .truth import Judge, Truth, rolls_for_certain
 
 _MOST = 1_000_000  # rounds, samples
-_KNOWING = 0.2  # times max_seconds: the longest search for what is attainable
 _JUDGING = 0.6  # share of max_seconds in which every run is made once
+_SHORTEST = 1e-3  # of a timing [s]: shorter calls are repeated
+_POWER_OF_TOLERANCES = 0.25  # number of steps ~ rtol^-power, for pairs of order 3 and more
 
 
 def work_precision(
     scene: Scene, t_end: float | Sequence[float], *, methods: Sequence[Any] | None = None,
     tolerances: Sequence[float] | None = None, steps: Sequence[float] | None = None,
     samples: int = 64, rounds: int = 20, max_seconds: float = 60.0, peers: Sequence[Any] = (),
-    reference: Truth | None = None,
+    reference: Truth | None = None, progress: bool | Callable[[int, int | None], Any] = False,
 ) -> WorkPrecision:  # fmt: skip
-    """Compute one motion in many ways, and hold the errors reached against the times taken.
+    """Compute one motion by many methods, and compare the errors reached and the times taken.
 
-    Every way is tried at every setting of its ladder. Each run is judged once, against the exact
-    motion; then all are timed in rounds, one after the other, so that they share what else the
-    machine does, and the least time of each counts. What cannot be run, stops on its way or is not
-    run for want of time stays among the runs, with its reason.
+    Every method runs at every setting of its ladder. Each run is judged once, against the exact
+    motion. Then all are timed in rounds, in turns, so that other load of the machine disturbs all
+    alike; the least time of each counts. A run that is refused, stops early or is not made for want
+    of time stays among the runs, with its reason.
 
     Parameters
     ----------
@@ -45,34 +57,36 @@ def work_precision(
     t_end : float or sequence of float
         End of the motion [s]; several ends give runs for each.
     methods : sequence, optional
-        Of the package: "flow" (the function, exact); names of methods of the model "rolling"
-        ("exact", "dop853", …); "contact"; "multipliers/dop853/projection" and the like; or
-        mappings of arguments of `simulate` (and "name"), as {"method": "gauss", "stages": 2}.
-        Without it, all that suit the scene; an empty sequence leaves the peers alone.
+        Methods of the package: "flow" (the function, exact); names of methods of the model
+        "rolling" ("exact", "dop853", …); "contact"; "multipliers/dop853/projection" and the like;
+        or mappings of arguments of `simulate` (and "name"), as {"method": "gauss", "stages": 2}.
+        Default: all that suit the scene. An empty sequence leaves the peers alone.
     tolerances : sequence of float, optional
         rtol of methods that control their error, atol is a hundredth; default 1e-2 … 1e-14.
     steps : sequence of float, optional
-        Of methods that do not [s]; default a quarter to a 2048th of a half turn or half swing.
+        Steps of the other methods [s]; default: a quarter to a 2048th of a half turn or swing.
     samples : int
-        Number of times at which the errors "l2" and "linf" are taken: no parts of any period. The
-        larger of "linf" and the error at the end is what counts.
+        Number of irregular times at which the errors "l2" and "linf" are taken. The larger of
+        "linf" and the error at the end is what counts.
     rounds : int
-        How often each run is timed, unless it is so slow that `max_seconds` allow fewer.
+        Number of timings of each run; a slow run has fewer, as `max_seconds` allows.
     max_seconds : float
-        Time for all runs [s], in equal shares; what one does not need is left to the others. Each
-        way runs at its coarsest setting, and finer ones as far as its share goes. A call that is
-        on its way is not cut, and takes nothing from the others' shares. Not counted are the
-        reference, and what `prepare` and first calls take longer: compiling, loading.
+        Time for all runs [s], in equal shares; unused time is left to the others. Each method runs
+        at its coarsest setting, and at finer ones as long as its share lasts. A call that has
+        begun is not cut, and takes nothing from the others' shares. Not counted are the reference,
+        and the set-up: `prepare`, and what a first call takes longer (compiling, loading).
     peers : sequence
         Other programs: objects with a ``name`` and ``prepare(scene, t_end, setting)``, which
-        returns a function of nothing that returns theta, omega, x at the end. They may have
-        ``ladder`` ("tolerances", the default, or "steps") and ``tags``; the function may have
-        ``sample(t)``, which returns the arrays at sorted times, without which its end alone is
-        judged, and ``counts``, a mapping with "steps", "rejected", "evaluations". A ValueError
-        refuses, any other exception is a failure.
+        returns a function without arguments that returns theta, omega, x at the end. They may have
+        ``ladder`` ("tolerances", the default, or "steps") and ``tags``. The function may have
+        ``sample(t)``, which returns the arrays at sorted times (without it only the end is
+        judged), and ``counts``, a mapping with "steps", "rejected", "evaluations". A ValueError is
+        a refusal, any other exception a failure.
     reference : callable, optional
-        theta, omega, x at increasing times, in any arithmetic, from elsewhere: without it, exact
-        rolling, or the contact motion, by whose own error nothing else can be judged.
+        Function of increasing times that returns theta, omega, x, in any arithmetic. Default:
+        exact rolling, or the contact motion; errors below its own error cannot be resolved.
+    progress : bool or callable
+        As of `simulate_many`; counts runs.
 
     Raises
     ------
@@ -105,27 +119,26 @@ def work_precision(
     contenders += [of_peer(peer) for peer in rivals]
     names = [contender.name for contender in contenders]
     if not names:
-        raise ValueError("methods and peers must name at least one way to compute, got none")
+        raise ValueError("methods and peers must name at least one contender, got none")
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"methods and peers must have names of their own, got {name!r} twice")
-    known_by = time.perf_counter() + _KNOWING * seconds
-    judges = [Judge(scene, end, samples, reference, known_by) for end in ends]
+    judges = [Judge(scene, end, samples, reference) for end in ends]
     ladders = []
     for judge in judges:
         settings = {TOLERANCES: rtols, STEPS: lengths or default_steps(scene, judge.t_end)}
         for contender in contenders:
             rungs = settings[contender.ladder] if contender.ladder else [math.nan]
             coarse_first = sorted(set(rungs), reverse=True)
-            ladders.append([Lap(contender, judge, setting) for setting in coarse_first])
-    laps = [lap for ladder in ladders for lap in ladder]
-    with progress(len(laps) + rounds) as told:
-        spent = judge_all(ladders, _JUDGING * seconds, told)
-        left = seconds - min(spent, _JUDGING * seconds)  # one that took long takes none of it
-        made = time_all(laps, rounds, left, told)
+            ladders.append([_Attempt(contender, judge, setting) for setting in coarse_first])
+    attempts = [attempt for ladder in ladders for attempt in ladder]
+    with reporting(progress, "runs", "race") as report:
+        spent = _judge_all(ladders, _JUDGING * seconds, lambda done: report(done, len(attempts)))
+    # one call that took longer than all of that time takes none of the rest
+    _time_in_turns(attempts, rounds, seconds - min(spent, _JUDGING * seconds))
     return WorkPrecision(
         scene=scene,
-        runs=tuple(lap.run() for lap in laps),
+        runs=tuple(attempt.run() for attempt in attempts),
         references=tuple(judge.reference for judge in judges),
         machine={
             "processor": platform.machine(),
@@ -135,7 +148,7 @@ def work_precision(
             "numpy": np.__version__,
             "rolling_ellipse": version("rolling-ellipse"),
             "date": date.today().isoformat(),
-            "rounds": str(made),
+            "rounds": str(max(len(attempt.times) for attempt in attempts)),
         },
     )
 
@@ -145,3 +158,132 @@ def _numbers(name: str, values: Any, what: str) -> list[float]:
     if found.ndim != 1 or found.size == 0:
         raise ValueError(f"{name} must be {what}, got {shown(values)}")
     return [positive(name, value) for value in found.tolist()]
+
+
+class _Attempt:
+    """A contender at one setting: judged once, and timed if it has an answer."""
+
+    def __init__(self, contender: Contender, judge: Judge, setting: float) -> None:
+        self.contender, self.judge, self.setting = contender, judge, setting
+        self.call: Any = None  # once it has an answer
+        self.status, self.reason = COMPLETED, ""
+        self.facts: dict[str, Any] = {}  # fields of its Run
+        self.setup = self.spent = 0.0  # of being judged: set-up, and all else [s]
+        self.times: list[float] = []  # [s]
+
+    def judge_once(self) -> None:
+        """Set it up, run it and judge it; a failure is kept as its status."""
+        begin = time.perf_counter()
+        try:
+            self._run()
+        except Stopped as stopped:
+            self.status, self.reason = stopped.args
+        except ValueError as refusal:
+            self.status, self.reason = "REFUSED", str(refusal)
+        except Exception as failure:  # a peer may raise anything
+            self.status, self.reason = "FAILED", f"{type(failure).__name__}: {failure}"
+        self.spent = time.perf_counter() - begin - self.setup
+
+    def _run(self) -> None:
+        begin = time.perf_counter()
+        call = self.contender.prepare(self.judge.scene, self.judge.t_end, self.setting)
+        self.setup = time.perf_counter() - begin
+        self.once, end = self._twice(call)
+        counts = dict(getattr(call, "counts", None) or {})
+        self.facts = {
+            name: int(counts.get(name, 0)) for name in ("steps", "rejected", "evaluations")
+        }
+        self.facts["setup"] = self.setup
+        theta, omega, x = (float(value) for value in end)
+        if not all(math.isfinite(value) for value in (theta, omega, x)):
+            raise ArithmeticError(f"it returned theta, omega, x = {(theta, omega, x)}")
+        motion = None
+        if hasattr(call, "sample"):
+            self.facts["samples_time"], motion = self._twice(lambda: call.sample(self.judge.times))
+        self.facts["errors"] = self.judge.errors(motion, (theta, omega, x))
+        self.call, self.reason = call, getattr(call, "advice", "")
+        self.repeats = 1 + int(_SHORTEST / self.once)  # calls in one timing
+
+    def _twice(self, call: Callable[[], Any]) -> tuple[float, Any]:
+        """Return the time of a second call and its answer; a longer first call is set-up."""
+        begin = time.perf_counter()
+        call()
+        middle = time.perf_counter()
+        found = call()
+        second = time.perf_counter() - middle
+        self.setup += max(0.0, middle - begin - second)
+        return second, found
+
+    def expected(self, setting: float) -> float:
+        """Return how long being judged at a finer setting may take, without set-up [s]."""
+        power = 1.0 if self.contender.ladder == STEPS else _POWER_OF_TOLERANCES
+        return self.spent * math.pow(self.setting / setting, power)
+
+    def time_once(self) -> None:
+        begin = time.perf_counter()
+        for _ in range(self.repeats):
+            self.call()
+        self.times.append((time.perf_counter() - begin) / self.repeats)
+
+    def run(self) -> Run:
+        if self.times:
+            least = min(self.times)
+            self.facts["time"] = least
+            if len(self.times) > 1:
+                self.facts["spread"] = statistics.median(self.times) / least - 1
+        who = self.contender
+        return Run(
+            who.name, who.model, who.method, who.stabilization, self.setting, status=self.status,
+            reason=self.reason, tags=who.tags, t_end=self.judge.t_end, **self.facts,
+        )  # fmt: skip
+
+
+def _judge_all(
+    ladders: Sequence[Sequence[_Attempt]], seconds: float, report: Callable[[int], Any]
+) -> float:
+    """Judge the attempts that `seconds` allow, and return the time spent on them [s].
+
+    The coarsest settings of all ladders come first, then the second ones, and so on. Only a
+    coarsest attempt is always made. Any other is made if its ladder keeps within an equal share
+    of `seconds`, or if it fits into the time that is left; if not, the ladder ends there.
+    """
+    share, spent, done = seconds / len(ladders), 0.0, 0
+    for rung in range(max(map(len, ladders))):
+        for ladder in ladders:
+            if rung >= len(ladder) or ladder[rung].status == NOT_RUN:
+                continue
+            attempt, before = ladder[rung], ladder[:rung]
+            expected = before[-1].expected(attempt.setting) if before else 0.0
+            used = sum(each.spent for each in before)
+            if before and used + expected > share and expected >= seconds - spent:
+                why = f"max_seconds: a run that may take {expected:.2g} s is more than its share"
+                for each in ladder[rung:]:
+                    each.status, each.reason = NOT_RUN, why
+                done += len(ladder) - rung
+            else:
+                attempt.judge_once()
+                spent, done = spent + attempt.spent, done + 1
+            report(done)
+    return spent
+
+
+def _time_in_turns(attempts: Sequence[_Attempt], rounds: int, seconds: float) -> None:
+    """Time all attempts that have an answer once, and in later rounds as `seconds` allow.
+
+    A later timing is made if it costs at most an equal share of the time that is left for all
+    timings still to come, the cheapest ones first.
+    """
+    able = [attempt for attempt in attempts if attempt.call is not None]
+    able.sort(key=lambda attempt: attempt.repeats * attempt.once)
+    deadline = time.perf_counter() + seconds
+    was_enabled = gc.isenabled()
+    gc.disable()  # as timeit does
+    try:
+        for i in range(rounds):
+            for k, attempt in enumerate(able):
+                share = (deadline - time.perf_counter()) / ((rounds - i) * (len(able) - k))
+                if i == 0 or attempt.repeats * attempt.once <= share:
+                    attempt.time_once()
+    finally:
+        if was_enabled:
+            gc.enable()

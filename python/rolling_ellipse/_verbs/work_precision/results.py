@@ -1,4 +1,4 @@
-"""What a race gave: runs, what they were judged by, and what can be asked of them."""
+"""The results of a race: runs, references, and comparisons of the runs."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ DECADES = tuple(10.0**-k for k in range(2, 15))
 
 @dataclass(frozen=True, repr=False)
 class WorkPrecision:
-    """Runs of many ways to compute one motion; made by `work_precision`.
+    """Runs of many methods and peers for one motion; made by `work_precision`.
 
-    In its methods `x` is the name of an error, `y` of what it costs: "largest", "final", "l2",
-    "linf", "energy", "gap", "slip"; "time", "samples_time", "setup", "spread", "steps", "rejected",
-    "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by default the last; any
-    other is refused by ValueError.
+    In its methods `x` is the name of an error: "largest", "final", "l2", "linf", "energy", "gap" or
+    "slip"; `y` that of a cost: "time", "samples_time", "setup", "spread", "steps", "rejected",
+    "evaluations", "setting" or "t_end". `t_end` is one of the ends [s], by default the last; a
+    ValueError refuses any other.
 
     Attributes
     ----------
     scene : Scene
     runs : tuple of Run
-        All of them, those without an answer as well.
+        All runs, also those without an answer.
     references : tuple of Reference
-        What the runs were judged by, one for each end.
+        The true motion's source and error, one for each end.
     machine : dict of str
         Processor, compiler and flags, versions, date, rounds made.
     """
@@ -53,12 +53,12 @@ class WorkPrecision:
 
     @property
     def reference(self) -> Reference:
-        """That of the last end."""
+        """The reference of the last end."""
         return self.references[-1]
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of all ways, in the order of the runs."""
+        """Names of all methods and peers, in the order of the runs."""
         return tuple(dict.fromkeys(run.name for run in self.runs))
 
     def of(self, t_end: float | None = None) -> tuple[Run, ...]:
@@ -69,9 +69,9 @@ class WorkPrecision:
     def best(
         self, at: float = 1e-8, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> Run | None:
-        """Return the run that takes least among those with an error of at most `at`, or None.
+        """Return the run of least `y` among those with an error of at most `at`, or None.
 
-        An error of the state below the reference's own counts as that.
+        An error of the state below the reference's own error counts as the latter.
         """
         able = self._able(at, x, y, t_end)
         return min(able, key=lambda run: run.value(y), default=None)
@@ -79,7 +79,7 @@ class WorkPrecision:
     def least(
         self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> dict[str, float]:
-        """Return for each way that reaches an error of at most `at` the least it takes, by name."""
+        """Return by name the least `y` of each method that reaches an error of at most `at`."""
         found: dict[str, float] = {}
         for run in self._able(at, x, y, t_end):
             found[run.name] = min(found.get(run.name, math.inf), run.value(y))
@@ -88,8 +88,10 @@ class WorkPrecision:
     def not_run(
         self, at: float, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> tuple[str, ...]:
-        """Return the names of the ways that have not reached an error of at most `at`, but were not
-        run at all their settings for want of time."""
+        """Return the names of methods that might still reach an error of at most `at`.
+
+        They have not reached it, and were not run at all settings for want of time.
+        """
         reached = self.least(at, x=x, y=y, t_end=t_end)
         late = dict.fromkeys(run.name for run in self.of(t_end) if run.status == NOT_RUN)
         return tuple(name for name in late if name not in reached)
@@ -98,10 +100,10 @@ class WorkPrecision:
         self, margin: float = 1.2, *, x: str = "largest", y: str = "time",
         t_end: float | None = None,
     ) -> dict[str, tuple[float, ...]]:  # fmt: skip
-        """Return by name the decades of the error, 1e-2 … 1e-14, at which a way is unbeaten.
+        """Return by name the decades of the error, 1e-2 … 1e-14, at which a method is unbeaten.
 
-        No other is faster by more than `margin`, at least 1. Decades at which another way has
-        settings that were not run (`not_run`) are left out.
+        No other is faster by more than a factor of `margin`, at least 1. Decades that a method
+        might still reach (`not_run`) are left out.
         """
         if not number("margin", margin) >= 1:
             raise ValueError(f"margin must be at least 1, got {margin!r}")
@@ -116,9 +118,9 @@ class WorkPrecision:
         return found
 
     def verdict(self, *, t_end: float | None = None) -> str:
-        """Say in words who is fastest at which error, by which factor, and who reached nothing.
+        """Summarise which method is fastest at each error level, by which factor, and which fail.
 
-        Judged is the largest error of the state, at the samples and at the end. A way is called
+        The error is the largest of the state, at the samples and at the end. A method is called
         unbeaten only where all others have reached the error, too, or have run all their settings.
         """
         return verdict(self, self.judged_by(t_end), DECADES)
@@ -129,37 +131,37 @@ class WorkPrecision:
     ) -> WorkPrecisionChart:  # fmt: skip
         """Draw one quantity of the runs over another, both on logarithmic axes; return the artists.
 
-        Every run is drawn, joined along its ladder; those without an answer are on the rim, with
-        their reasons below. The name of a line that ends for want of time has an arrow. Over
-        "t_end" runs to all ends are drawn, joined at equal settings.
+        The runs of a ladder are joined. Runs without an answer are on the rim, with their reasons
+        below. The name of a line that ends for want of time has an arrow. Over "t_end" the runs to
+        all ends are drawn, joined at equal settings.
 
         Parameters
         ----------
         x, y : str
-            What is drawn.
+            Names of the quantities.
         tags : sequence of str, optional
-            Draw runs with one of these tags (or names) only.
+            Draw only runs with one of these tags (or names).
         ax : matplotlib Axes, optional
-            Where to draw; without it, in a new pyplot figure with a stamp of the machine.
+            Axes to draw into; default: those of a new pyplot figure, with a stamp of the machine.
         """
         from ..._pictures.work_precision import draw
 
         return draw(self, x, y, tags, ax, t_end)
 
     def to_dataframe(self) -> DataFrame:
-        """Return a pandas DataFrame, of ``rolling_ellipse[data]``, with a row for each run."""
+        """Return a pandas DataFrame (``rolling_ellipse[data]``) with a row for each run."""
         pandas = required("pandas", "to_dataframe")
         rows = [asdict(run) | dict(run.errors) | {"tags": " ".join(run.tags)} for run in self.runs]
         frame: DataFrame = pandas.DataFrame(rows).drop(columns="errors")
         return frame
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write everything to a file of JSON; it is there when it is whole."""
+        """Write everything to a file of JSON, which appears whole or not at all."""
         files.write(self, path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> WorkPrecision:
-        """Read what `save` has written; ValueError if the file is damaged or holds another."""
+        """Read a file written by `save`; ValueError if it is damaged or another file."""
         return files.read(cls, path)
 
     def __repr__(self) -> str:
@@ -192,7 +194,7 @@ class WorkPrecision:
         return [run for run in runs if max(run.value(x), floor) <= at]
 
     def judged_by(self, t_end: float | None) -> Reference:
-        """Return what the runs to one end [s] were judged by."""
+        """Return the reference of the runs to one end [s]."""
         ends = [reference.t_end for reference in self.references]
         if t_end is not None and t_end not in ends:
             listed = ", ".join(map(repr, ends))

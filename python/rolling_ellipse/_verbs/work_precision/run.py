@@ -1,4 +1,4 @@
-"""Runs of a race, their errors, and what they are judged by."""
+"""Runs of a race, their errors, and the reference that judges them."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..._ask.check import shown
+from ..._ask.check import choice
 
 COMPLETED, NOT_RUN = "COMPLETED", "NOT_RUN"
 ERRORS = ("largest", "final", "l2", "linf", "energy", "gap", "slip")
 OF_STATES = ERRORS[:4]
-FIGURES = (
+_FIGURES = (
     "setting", "time", "samples_time", "setup", "spread", "steps", "rejected", "evaluations",
     "t_end",
 )  # fmt: skip
@@ -20,12 +20,12 @@ FIGURES = (
 
 @dataclass(frozen=True)
 class Errors(Mapping[str, float]):
-    """By how much a run is off; attributes and items alike, NaN where it has no such answer.
+    """Errors of a run, as attributes and items; NaN where a run has no such answer.
 
-    An error of the state is the largest of |theta| [rad], |omega| over the largest |omega| of the
-    motion, and |x| over the longer semi-axis. `largest` is that at the samples and the end, or at
-    the end alone of a run that gives no samples. Gap and slip are of a body that touches and does
-    not slide, over the longer semi-axis, and over that and the largest |omega|.
+    The error of a state is the largest of those of theta [rad], of omega over the largest |omega|
+    of the motion, and of x over the longer semi-axis. `largest` is the largest at the samples and
+    the end, or at the end alone for a run without samples. Gap and slip are those of a body that
+    touches and does not slide, over the longer semi-axis, and over that and the largest |omega|.
     """
 
     final: float = math.nan  # of the state at the end
@@ -54,25 +54,25 @@ class Errors(Mapping[str, float]):
 
 @dataclass(frozen=True)
 class Run:
-    """One way to compute a motion at one setting: what it cost, and how far it was off."""
+    """One contender at one setting: what it cost, and its errors."""
 
     name: str
     model: str  # model, method and stabilization of `simulate`; of a peer "rolling", its name, ""
     method: str
     stabilization: str
-    setting: float  # relative tolerance, or step [s]; NaN of what has none
-    errors: Errors
-    time: float  # least of a call that returns the state at the end [s]
-    setup: float  # what a new scene costs before, the first call's longer time included [s]
-    spread: float  # median of the times over the least, less 1; NaN of a single timing
-    steps: int  # of that call, as the next two; 0 where unknown
-    rejected: int
-    evaluations: int  # of the right-hand side
-    status: str  # "COMPLETED", a name of `Status`, "REFUSED", "FAILED"; "NOT_RUN" for want of time
-    reason: str  # why it has no answer, or what should be known of the one that it has
-    tags: tuple[str, ...]  # "own" or "peer", and what else it is
-    samples_time: float  # of a call that returns the states at all sample times [s]
-    t_end: float  # [s]
+    setting: float  # relative tolerance, or step [s]; NaN of a contender without settings
+    errors: Errors = Errors()
+    time: float = math.nan  # least of a call that returns the state at the end [s]
+    setup: float = math.nan  # cost of a new scene, with the first call's longer time [s]
+    spread: float = math.nan  # median of the times over the least, less 1; NaN of a single timing
+    steps: int = 0  # of that call, as the next two; 0 where unknown
+    rejected: int = 0
+    evaluations: int = 0  # of the right-hand side
+    status: str = COMPLETED  # or a name of `Status`, "REFUSED", "FAILED", "NOT_RUN" (no time left)
+    reason: str = ""  # why it has no answer, or a warning about its answer
+    tags: tuple[str, ...] = ()  # "own" or "peer", and others
+    samples_time: float = math.nan  # of a call that returns the states at all sample times [s]
+    t_end: float = math.nan  # [s]
 
     @property
     def completed(self) -> bool:
@@ -86,16 +86,17 @@ class Run:
 
 @dataclass(frozen=True)
 class Reference:
-    """What the runs up to one end are judged by.
+    """The reference for the runs up to one end.
 
-    `attainable` is what a relative change of 2.2e-16 of every number of the scene, one after the
-    other, does to the state at the end, and two units in its last place: nobody who computes with
-    doubles can promise less. It is NaN where there was no time to find out.
+    `attainable` is the change of the state at the end by a relative change of 2.2e-16 of every
+    number of the scene, one after the other, and by two units in its last place: no computation
+    with doubles can promise less. It is NaN if the motion of a given reference goes on longer than
+    the package's.
     """
 
-    name: str  # where the truth comes from
+    name: str  # source of the true motion
     t_end: float  # [s]
-    floor: float  # its own error, as a `final` error: smaller ones cannot be told apart
+    floor: float  # its own error, as a `final` error: smaller ones cannot be resolved
     attainable: float
     growth: float = 1.0  # factor of both at the worst of the sample times over the end; at least 1
 
@@ -107,6 +108,4 @@ class Reference:
 
 def require_quantity(name: str, value: Any) -> str:
     """Return the name of a quantity of runs, or raise ValueError."""
-    if isinstance(value, str) and value in (*ERRORS, *FIGURES):
-        return value
-    raise ValueError(f"{name} must be one of {', '.join((*ERRORS, *FIGURES))}, got {shown(value)}")
+    return choice(name, value, (*ERRORS, *_FIGURES))

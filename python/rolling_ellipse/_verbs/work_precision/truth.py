@@ -1,9 +1,8 @@
-"""How a motion really goes, how well that can be known, and by how much others are off."""
+"""The true motion of a race, its own error, the attainable error, and the errors of runs."""
 
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import fields, replace
@@ -25,39 +24,39 @@ from .run import Errors, Reference
 
 Columns = tuple[Any, Any, Any]  # theta, omega, x, (n,) each
 Truth = Callable[[FloatArray], Columns]
-Numbers = dict[str, float]
 
+_INEXACT = [each.name for each in fields(Scene) if each.name not in ("mass", "x", "impulse")]
 _ROUNDING = 2.2e-16
-_CHANGE = 2.0**-42  # a thousand roundings: those of the motions do not matter, nor do its squares
-_ASKED = 500  # times at which what is attainable is asked for
-_GOLDEN = (math.sqrt(5) - 1) / 2
-_STILL = 1e-100  # of the rate of falling: slower turning is none
+_CHANGE = 2.0**-42  # a thousand roundings: neither rounding nor the square of the change matters
+_MOST = 500  # times at which the attainable error is computed
+_GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples modulo 1 are no simple parts of any period
 
 
 class Judge:
-    """Knows the motion at 0, at sample times, which are no parts of any period, and at the end."""
+    """The true motion at 0, at irregular sample times, and at the end."""
 
-    def __init__(
-        self, scene: Scene, t_end: float, samples: int, given: Truth | None, deadline: float
-    ) -> None:
+    def __init__(self, scene: Scene, t_end: float, samples: int, given: Truth | None) -> None:
         inner = np.sort(np.modf(np.arange(1, samples + 1) * _GOLDEN)[0]) * t_end
         self.times = np.concatenate([[0.0], inner, [t_end]])
         self.scene, self.t_end = scene, t_end
-        name, units, numbers, motion = _own(scene)
+        # units: own error over the attainable one, as the test suite bounds it by tables of 30 and
+        # more digits
+        name, units, motion = "contact motion at rounding level", 8, _contact
+        if rolls_for_certain(scene):
+            name, units, motion = "exact rolling", 4, _rolling
         if given is not None:
             self._truth = _columns(given, self.times)
         else:
             try:
-                self._truth = motion(numbers, self.times)
+                self._truth = motion(scene, self.times)
             except ValueError as error:
                 raise ValueError(
                     f"t_end must be a time that the motion reaches, got {t_end!r}: {error}"
                 ) from error
         length = max(scene.a, scene.b)
         fastest = max(abs(float(omega)) for omega in self._truth[1])
-        falls = math.sqrt(scene.gravity / length)
-        self._sizes = (1.0, fastest if fastest > _STILL * falls else falls, length)
-        known = self._attainable(numbers, motion, deadline)
+        self._sizes = (1.0, fastest or math.sqrt(scene.gravity / length), length)
+        known = self._attainable(motion)
         attainable = float(known[-1])
         growth, floor = 1.0, 0.0
         if math.isfinite(attainable):
@@ -68,12 +67,12 @@ class Judge:
         self.reference = Reference(name, t_end, floor, attainable, growth)
 
     def errors(self, found: Any, end: tuple[float, float, float]) -> Errors:
-        """Return the errors of a motion at all times (None: not known), and of its end."""
+        """Return the errors of a motion at `times` (None: samples are not known) and at its end."""
         final = float(np.max(self._apart(end, [column[-1] for column in self._truth])))
         if found is None:
             return Errors(final=final)
         motion = found
-        if not isinstance(found, Trajectory):  # which knows what follows from states of rolling
+        if not isinstance(found, Trajectory):  # energy and constraints follow from rolling states
             motion = Trajectory(
                 self.times, *found, scene=self.scene, model="rolling", method="exact",
                 status=Status.COMPLETED, message="", reason="", valid_until=math.inf,
@@ -92,9 +91,9 @@ class Judge:
         )
 
     def _apart(self, found: Any, exact: Any) -> FloatArray:
-        """Return the differences of theta, omega and x, (3, n), each beside its size.
+        """Return the differences of theta, omega and x over their sizes, (3, n).
 
-        Subtracted first: the truth may have more digits than doubles.
+        They are subtracted first: the truth may have more digits than doubles.
         """
         return np.array(
             [
@@ -103,28 +102,36 @@ class Judge:
             ]
         )
 
-    def _attainable(self, numbers: Numbers, motion: _Motion, deadline: float) -> FloatArray:
-        """Return what is attainable at up to so many of the times, the end last, (n,).
+    def _attainable(self, motion: Callable[[Scene, FloatArray], Columns]) -> FloatArray:
+        """Return the attainable error at up to `_MOST` of the times, the end last, (n,).
 
-        By central differences, or one side where the other is no motion.
+        Derivatives by the numbers of the scene are central differences, or one-sided where one
+        of the changed scenes has no motion. NaN if the given reference outlasts the motion.
         """
-        places = np.unique(np.linspace(1, self.times.size - 1, _ASKED).round().astype(int))
+        places = np.unique(np.linspace(1, self.times.size - 1, _MOST).round().astype(int))
         times = self.times[places]
         states = [np.array(column[places], dtype=np.float64) for column in self._truth]
         known = 2 * np.spacing(np.abs(states)) / np.array(self._sizes)[:, None]
+        scene = replace(self.scene, inertia=self.scene.mass * self.scene.gyration2)
+        if motion is _rolling:  # after its blow
+            scene = replace(scene, omega=scene.initial_state.omega, impulse=None)
         try:
-            middle = motion(numbers, times)
-        except ValueError:  # what is given may go on longer
+            middle = motion(scene, times)
+        except ValueError:
             return np.full(times.size, math.nan)
-        for name, value in numbers.items():
-            if time.perf_counter() > deadline:
-                return np.full(times.size, math.nan)
-            share = _CHANGE * max(1.0, abs(value)) if name == "theta" else _CHANGE
-            change = share if name == "theta" else share * value
+        for name in _INEXACT:
+            value = getattr(scene, name)
+            share = _CHANGE
+            if name == "theta":
+                share = change = _CHANGE * max(1.0, abs(value))
+            elif value and math.isfinite(value):
+                change = share * value
+            else:
+                continue
             sides = []
             for changed in (value + change, value - change):
-                with suppress(ValueError):  # as friction or the ground forbid it
-                    sides.append(motion(numbers | {name: changed}, times))
+                with suppress(ValueError):  # friction or the ground forbid the changed start
+                    sides.append(motion(replace(scene, **{name: changed}), times))
             if sides:
                 apart = self._apart(sides[0], [*sides, middle][1])
                 known += _ROUNDING / (len(sides) * share) * apart
@@ -132,41 +139,21 @@ class Judge:
         return largest
 
 
-_Motion = Callable[[Numbers, FloatArray], Columns]
+def _rolling(scene: Scene, times: FloatArray) -> Columns:
+    start, arguments = scene.initial_state.x, arguments_of(scene)
+    theta, omega, x = np.array([flow(t, **arguments) for t in times.tolist()]).T
+    return theta, omega, start + x
 
 
-def _own(scene: Scene) -> tuple[str, float, Numbers, _Motion]:
-    """Return the package's own best motion as a function of numbers that doubles hold inexactly.
-
-    With its name, its error in units of what is attainable, as the test suite holds it to tables of
-    30 and more digits, and the numbers of the scene.
-    """
-    if rolls_for_certain(scene):
-        start = scene.initial_state.x
-
-        def rolling(numbers: Numbers, times: FloatArray) -> Columns:
-            states = [flow(t, **numbers) for t in times.tolist()]
-            theta, omega, x = np.array(states).T
-            return theta, omega, start + x
-
-        return "exact rolling", 4, arguments_of(scene), rolling
-    whole = replace(scene, inertia=scene.mass * scene.gyration2)
-    sure = {"theta", "mass", "x", "impulse"}
-    values = {f.name: getattr(whole, f.name) for f in fields(Scene) if f.name not in sure}
-    numbers = {name: value for name, value in values.items() if value and math.isfinite(value)}
-
-    def contact(numbers: Numbers, times: FloatArray) -> Columns:
-        changed = replace(whole, **numbers)  # type: ignore[arg-type]
-        found = simulate(changed, times, model="contact", raise_on_failure=False)
-        if found.t.size < times.size:
-            raise ValueError(f"it ends at {found.t_end!r} s, as {found.message}")
-        return found.theta, found.omega, found.x
-
-    return "contact motion at rounding level", 8, {"theta": scene.theta, **numbers}, contact
+def _contact(scene: Scene, times: FloatArray) -> Columns:
+    found = simulate(scene, times, model="contact", raise_on_failure=False)
+    if found.t.size < times.size:
+        raise ValueError(f"it ends at {found.t_end!r} s, as {found.message}")
+    return found.theta, found.omega, found.x
 
 
 def rolls_for_certain(scene: Scene) -> bool:
-    """Whether level ground holds the body for certain."""
+    """Whether the body is proved to roll for ever on level ground."""
     return scene.slope == 0 and certify(scene).validity is Validity.VALID
 
 

@@ -1,4 +1,4 @@
-"""What the runs of a race say, in words."""
+"""The verdict of a race in sentences."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .run import NOT_RUN, Reference, Run
 if TYPE_CHECKING:
     from .results import WorkPrecision
 
-_MARGIN = 1.2  # of times that are called equal
+_MARGIN = 1.2  # between times that count as equal
 Decades = Sequence[float]
 Table = dict[float, dict[str, float]]  # the least time by decade and name
 
@@ -21,18 +21,19 @@ def verdict(found: WorkPrecision, reference: Reference, decades: Decades) -> str
     """Return who is fastest at each decade, who reached nothing, and who was not run."""
     end, runs = reference.t_end, found.of(reference.t_end)
     table = {decade: found.least(decade, t_end=end) for decade in decades}
-    opened = {decade: found.not_run(decade, t_end=end) != () for decade in decades}
+    is_open = {decade: found.not_run(decade, t_end=end) != () for decade in decades}
     floor, attainable = reference.limits("largest")
-    limits = f"its own error {floor:.1e}; " if floor else ""
-    unknown = "no time was left to find what is attainable"
-    limits += unknown if math.isnan(attainable) else f"attainable {attainable:.1e}"
+    limits = [f"its own error {floor:.1e}"] if floor else []
+    if not math.isnan(attainable):
+        limits.append(f"attainable {attainable:.1e}")
+    known = f" ({'; '.join(limits)})" if limits else ""
     alone = end_alone(runs)
     but = f" (of {', '.join(alone)} at the end alone)" if alone else ""
     lines = [
-        f"To t = {end:.6g} s, judged by {reference.name} ({limits}), at the sample times and the "
+        f"To t = {end:.6g} s, judged by {reference.name}{known}, at the sample times and the "
         f"end{but}:"
     ]
-    lines += _leaders(runs, table, opened)
+    lines += _leaders(runs, table, is_open)
     if none := [decade for decade, least in table.items() if not least]:
         why = ", which the reference could not tell" if none[0] < floor else ""
         lines.append(f"nobody has reached an error {_span(none)}{why}")
@@ -40,47 +41,45 @@ def verdict(found: WorkPrecision, reference: Reference, decades: Decades) -> str
 
 
 def end_alone(runs: Sequence[Run]) -> list[str]:
-    """Return the names of those whose samples are not known, so that their end alone is judged."""
+    """Return the names of contenders without samples, which are judged at the end alone."""
     alone = (run.name for run in runs if run.completed and math.isnan(run.errors.linf))
     return list(dict.fromkeys(alone))
 
 
-def _leaders(runs: Sequence[Run], table: Table, opened: dict[float, bool]) -> Iterator[str]:
-    """Yield the fastest at each stretch of decades, and below it who follows by which factors."""
+def _leaders(runs: Sequence[Run], table: Table, is_open: dict[float, bool]) -> Iterator[str]:
+    """Yield the fastest over each range of decades, and below it the next by which factors."""
     methods = {run.name: (run.model, run.method) for run in runs}
-    setups: dict[str, float] = {}  # the longest: what compiles does so once
-    for run in runs:
-        if run.completed:
-            setups[run.name] = max(setups.get(run.name, 0.0), run.setup)
 
     def first(least: dict[str, float]) -> str:
-        return min(least, key=lambda name: least[name])
+        return min(least, key=least.__getitem__)
 
     def second(decade: float) -> str:
-        """The first of those with another method than the first; "" without any."""
+        """The fastest by another method than the first contender's; "" if there is none."""
         least = table[decade]
-        way = methods[first(least)]
-        others = {name: time for name, time in least.items() if methods[name] != way}
+        method = methods[first(least)]
+        others = {name: time for name, time in least.items() if methods[name] != method}
         return first(others) if others else ""
 
     reached = [decade for decade, least in table.items() if least]
-    for decades in _stretches(reached, lambda decade: (first(table[decade]), opened[decade])):
-        name, more = first(table[decades[0]]), opened[decades[0]]
+    for decades in _ranges(reached, lambda decade: (first(table[decade]), is_open[decade])):
+        name, more = first(table[decades[0]]), is_open[decades[0]]
         rank = "the fastest that was run" if more else "unbeaten"
-        cost = f"{_time(table[decades[-1]][name])}, set-up {_time(setups[name])}"
+        # the longest set-up: some contenders compile once, at their first setting
+        setup = max(run.setup for run in runs if run.name == name and run.completed)
+        cost = f"{_time(table[decades[-1]][name])}, set-up {_time(setup)}"
         yield f"{name} is {rank} {_span(decades)} ({cost});"
-        for same in _stretches(decades, second):
+        for same in _ranges(decades, second):
             if rival := second(same[0]):
                 factors = [table[decade][rival] / table[decade][name] for decade in same]
-                told = (f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, same, strict=True))
+                listed = (f"{f:.3g} × at {d:.0e}" for f, d in zip(factors, same, strict=True))
                 equal = " (as good as equal)" if max(factors) <= _MARGIN else ""
-                yield f"    {rival} takes {', '.join(told)}{equal}"
+                yield f"    {rival} takes {', '.join(listed)}{equal}"
             else:
                 yield f"    no other {'was seen' if more else 'gets'} there {_span(same)}"
 
 
 def _without_answer(runs: Sequence[Run]) -> list[str]:
-    """Those without an answer, with the first reason, or a poor one; and what was not run."""
+    """Return a line for each contender without an answer, with a poor one, or cut short."""
     lines, late = [], []
     for name in dict.fromkeys(run.name for run in runs):
         found = [run for run in runs if run.name == name]
@@ -99,7 +98,7 @@ def _without_answer(runs: Sequence[Run]) -> list[str]:
     return lines + late
 
 
-def _stretches(decades: Decades, key: Callable[[float], Any]) -> Iterator[list[float]]:
+def _ranges(decades: Decades, key: Callable[[float], Any]) -> Iterator[list[float]]:
     return (list(same) for _, same in groupby(decades, key))
 
 
@@ -110,7 +109,6 @@ def _span(decades: Decades) -> str:
 
 
 def _time(seconds: float) -> str:
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
-        if seconds >= size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds / 1e-9:.3g} ns"
+    sizes = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
+    unit = next((unit for unit, size in sizes.items() if seconds >= size), "ns")
+    return f"{seconds / sizes[unit]:.3g} {unit}"
