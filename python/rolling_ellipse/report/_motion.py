@@ -11,9 +11,10 @@ import numpy as np
 
 from .._ask.check import FloatArray
 from .._ask.scene import Scene
+from .._ask.settings import Settings
 from .._motion.constraints import COORDINATES, ConstraintResiduals, constraints
 from ._rows import rows, rows_and_rate
-from ._runge_kutta import Steps, integrate
+from ._runge_kutta import integrate
 from ._start import Start
 
 
@@ -122,7 +123,7 @@ def accelerations(
 
 
 def follow(
-    start: Start, t: FloatArray, body: Scene, printed: tuple[str, ...], steps: Steps
+    start: Start, t: FloatArray, body: Scene, printed: tuple[str, ...], how: Settings
 ) -> PrintedMotion:
     """Integrate from a start at time 0 and sample at increasing times."""
 
@@ -132,7 +133,8 @@ def follow(
 
     # where there is no finite solution it stops, and says so
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        samples, message = integrate(slope, np.concatenate([start.q, start.q_dot]), t, steps)
+        begun = np.concatenate([start.q, start.q_dot])
+        samples, message = integrate(slope, begun, t, how)
         samples = samples.reshape(-1, 2 * COORDINATES)
         q, q_dot = samples[:, :COORDINATES], samples[:, COORDINATES:]
         q_ddot, multipliers = accelerations(q, q_dot, body, printed)
@@ -140,7 +142,6 @@ def follow(
     if lost.any():
         end = int(np.argmax(lost))
         message = f"the equations have no finite solution at {t[end]:.6g} s"
-        samples, q, q_dot = samples[:end], q[:end], q_dot[:end]
-        q_ddot, multipliers = q_ddot[:end], multipliers[:end]
-    reached = t[: len(samples)].copy()  # the caller's own times may change
+        q, q_dot, q_ddot, multipliers = q[:end], q_dot[:end], q_ddot[:end], multipliers[:end]
+    reached = t[: len(q)].copy()  # the caller's own times may change
     return PrintedMotion(reached, q, q_dot, q_ddot, multipliers, body, printed, start, message)

@@ -6,7 +6,8 @@ import warnings
 from dataclasses import replace
 from typing import Any, Literal, get_args
 
-from .._ask.check import FloatArray, choice, finite, optional_number, positive, shown, whole_within
+from .. import _core
+from .._ask.check import FloatArray, choice, finite, shown
 from .._ask.scene import Scene
 from .._ask.settings import DEFAULTS, Method, Settings, Stabilization
 from .._motion.constraints import COORDINATES
@@ -14,7 +15,6 @@ from .._motion.trajectory import Trajectory
 from .._verbs.simulate import report_status, sample_times
 from ._motion import PrintedMotion, follow
 from ._rows import CODE, misprints
-from ._runge_kutta import Steps, smallest_step
 from ._start import InconsistentStartWarning, Start, project, violations
 
 Equations = Literal["corrected", "printed"]
@@ -102,14 +102,11 @@ def simulate(
         return _corrected(start, times, body, settings)
     _require_none("stabilization", stabilization, equations)
     _require_none("baumgarte", baumgarte, equations)
-    steps = _steps("dopri5" if method is None else method, rtol, atol, step, max_steps)
-    if steps.step is not None and steps.step < (least := smallest_step(float(times[-1]))):
-        raise ValueError(
-            f"step must be at least {least:.3g} s, or times up to {float(times[-1])!r} s would not "
-            f"change by it, got {steps.step!r}"
-        )
+    method = choice("method", "dopri5" if method is None else method, ("dopri5", "rk4"))
+    settings = _settings_of(method, None, None, rtol, atol, step, max_steps)
+    _core.validate_settings(settings.core, float(times[-1]))
     names = misprints(CODE if printed is None else printed)
-    return follow(_checked_start(*state, body, names, consistent), times, body, names, steps)
+    return follow(_checked_start(*state, body, names, consistent), times, body, names, settings)
 
 
 def _settings_of(
@@ -180,14 +177,3 @@ def _vector(name: str, value: Any) -> FloatArray:
             f"{name} must have 5 entries (x, z, theta, psi, r), got shape {found.shape}"
         )
     return found
-
-
-def _steps(method: str, rtol: float, atol: float, step: float | None, max_steps: int) -> Steps:
-    choice("method", method, ("dopri5", "rk4"))
-    size = optional_number("step", step)
-    if size is None and method == "rk4":
-        raise ValueError("step must be a positive time for the method 'rk4', got None")
-    if size is not None:
-        positive("step", size)
-    most = whole_within("max_steps", max_steps, 2**31 - 1)
-    return Steps(method, positive("rtol", rtol), positive("atol", atol), size, most)
