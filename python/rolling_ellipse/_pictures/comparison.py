@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import is_color_like, to_hex
 from matplotlib.lines import Line2D
@@ -21,12 +22,7 @@ from .._motion.trajectory import Trajectory
 from . import sampling
 from .axes import listed
 from .legends import quantity_handles, some_of
-from .palette import palette_of
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-
-    from .palette import Palette
+from .palette import Palette, palette_of
 
 MOST_FACTS = 3  # in one label; more would be longer than a small picture is wide
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5)), (0, (9, 3)))

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from .._ask.check import FloatArray
 from .._motion.relative_errors import constraint_errors, worst
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, some_of
 from .modes import mode_handles
 from .panels import draw_dots, dress_errors, finish
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._motion.relative_errors import Errors
-    from .._motion.trajectory import Trajectory
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,7 +76,7 @@ def plot_constraints(
     return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
 
 
-def _errors_of(motion: Trajectory, panels: int, style: Style) -> list[Errors]:
+def _errors_of(motion: Trajectory, panels: int, style: Style) -> list[Mapping[str, FloatArray]]:
     """For each panel the errors to draw by name: all of one motion, the worst of one of several."""
     positions, velocities = constraint_errors(motion)
     if style.label and panels == 2:

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from .._ask.check import choice
 from .._motion.relative_errors import energy_error
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
 from .modes import mode_handles
 from .panels import DASHES, draw_dots, draw_energies, dress_errors, finish
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._motion.trajectory import Trajectory
 
 KINDS = ("energies", "error")
 

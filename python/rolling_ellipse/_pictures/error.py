@@ -2,32 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
-from .._ask.check import choice, shown
+from .._ask.check import FloatArray, choice, shown
 from .._ask.settings import DEFAULTS
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import axes_of, picture
-from .comparison import Comparison
+from .comparison import Comparison, Style
 from .legends import some_of
 from .palette import palette_of
 from .panels import dress_errors, finish
 from .sampling import are_ranges, ranges
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .comparison import Style
 
 QUANTITIES = {  # with their symbols
     "theta": "θ", "omega": "ω", "x": "x", "z": "z", "x_dot": "x_dot", "z_dot": "z_dot",

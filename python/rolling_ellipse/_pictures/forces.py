@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
 
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import panels_of, picture
 from .comparison import Comparison, Style
@@ -16,16 +22,6 @@ from .modes import mode_handles
 from .palette import palette_of
 from .panels import DASHES, RANGE, draw_forces, dress_forces, finish
 from .sampling import are_ranges, curve
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.collections import PolyCollection
-    from matplotlib.lines import Line2D
-
-    from .._motion.trajectory import Trajectory
 
 _LIMIT = ":"
 _STEEP = 3.0  # |F|/N beyond which the scale does not follow: it is infinite where N vanishes

@@ -7,25 +7,21 @@ eye sees.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Ellipse, Polygon
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D
 
-from .._ask.check import require_near
+from .._ask.check import FloatArray, require_near
+from .._ask.scene import InitialState, Scene
 from .._core import Mode
+from .._motion.trajectory import Trajectory
 from ..geometry import support_slope
 from .palette import PLUM, palette_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from .._ask.check import FloatArray
-    from .._ask.scene import InitialState, Scene
-    from .._motion.trajectory import Trajectory
 
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
 SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be a thin stripe

@@ -6,25 +6,20 @@ not valid, its curves have grey ground.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from .._ask.check import FloatArray
 from .._core import EventKind, Mode
+from .._motion.events import Event
+from .._motion.trajectory import Trajectory
 from .labels import label_times
-from .palette import palette_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .._motion.events import Event
-    from .._motion.trajectory import Trajectory
-    from .palette import Palette
+from .palette import Palette, palette_of
 
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
 _SHADES: dict[Mode, tuple[float, float, str]] = {  # of face and edge, and the hatch

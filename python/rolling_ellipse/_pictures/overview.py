@@ -5,10 +5,18 @@ Nothing is computed here that the trajectory does not know.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from .._ask.check import FloatArray
 from .._motion.relative_errors import constraint_errors, energy_error, worst
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import figure_of, picture
 from .comparison import Comparison
@@ -26,18 +34,6 @@ from .panels import (
 )
 from .sampling import for_dots
 from .strobe import Strobe, check_strobe, plot_strobe
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.collections import PolyCollection
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
 
 
 @dataclass(frozen=True, repr=False)

@@ -7,18 +7,22 @@ with colours of its own, as "dark_background" or "grayscale", gives them instead
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib import rcParams, rcParamsDefault
-from matplotlib.colors import LinearSegmentedColormap, is_color_like, to_hex, to_rgb, to_rgba
+from matplotlib.axes import Axes
+from matplotlib.colors import (
+    Colormap,
+    LinearSegmentedColormap,
+    is_color_like,
+    to_hex,
+    to_rgb,
+    to_rgba,
+)
+from matplotlib.figure import FigureBase
 
 from .._ask.records import cached_property
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap
-    from matplotlib.figure import FigureBase
 
 INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
 SKY, PLUM = "#8fc3e0", "#7a2e4d"

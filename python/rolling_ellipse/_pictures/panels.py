@@ -7,28 +7,23 @@ colours tell the quantities apart.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
 from matplotlib.ticker import SymmetricalLogLocator
 
-from .comparison import PLAIN
+from .._ask.check import FloatArray
+from .._motion.trajectory import Trajectory
+from .comparison import PLAIN, Comparison, Style
 from .legends import name_curves, title_beside_legend
 from .modes import mark_events, name_events, shade_invalid, shade_modes
 from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns, ranges
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.collections import PolyCollection
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
-    from .comparison import Comparison, Style
 
 DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
 RANGE = 0.6  # how opaque a range is: there may be one over another

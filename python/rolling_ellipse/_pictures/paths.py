@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
 
 from .._core import EventKind
+from .._motion.trajectory import Trajectory
 from . import ground as drawing
 from .artists import Artists
 from .axes import axes_of, picture
@@ -16,19 +20,10 @@ from .comparison import Comparison, Style
 from .ground import HALF_TURNS, SHOWN_TURNS
 from .legends import name_curves, title_beside_legend
 from .modes import EVENT_NAMES, draw_invalid_ground, events_shown
-from .palette import palette_of
+from .palette import Palette, palette_of
 from .panels import sparse_markers
 from .sampling import between, span_of, turned_until
 from .strobe import dress_ground_axes, figure_size
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.patches import Polygon
-
-    from .._motion.trajectory import Trajectory
-    from .palette import Palette
 
 _CENTRE, _TIP = "-", "--"
 _EVENTS = {

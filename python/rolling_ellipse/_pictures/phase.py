@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from .. import _core
-from .._ask.check import flag
+from .._ask.check import FloatArray, flag
+from .._ask.scene import Scene
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import axes_of, picture
 from .comparison import Comparison
@@ -20,16 +25,6 @@ from .palette import palette_of
 from .panels import dress_grid
 from .sampling import FEW, between, half_turns, is_at_hand, span_of
 from .separatrix import QUARTER, flat_angle, flat_angles, separatrix
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .._ask.scene import Scene
-    from .._motion.trajectory import Trajectory
 
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
 _COARSE = 1e-3  # rad

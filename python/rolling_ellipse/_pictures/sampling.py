@@ -11,17 +11,15 @@ import math
 import warnings
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from .._ask.check import FloatArray
 from .._motion.samples import ContactSamples, even_times
+from .._motion.trajectory import Trajectory
 from .._verbs.flow import period
 from .separatrix import flat_angle
-
-if TYPE_CHECKING:
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
 
 FEW = 120.0  # half turns or swings that are drawn one by one over time
 PARTS = 800  # of a longer time

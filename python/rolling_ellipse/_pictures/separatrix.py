@@ -6,15 +6,12 @@ In the plane of theta and omega it encloses eyes, one for each half turn, around
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .. import _core
-
-if TYPE_CHECKING:
-    from .._ask.check import FloatArray
-    from .._ask.scene import Scene
+from .._ask.check import FloatArray
+from .._ask.scene import Scene
 
 QUARTER = math.pi / 2
 _POINTS = 801, 100_000  # in one half turn and in all

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
+from matplotlib.patches import Ellipse, Polygon
 from matplotlib.ticker import MaxNLocator
 
 from .._ask.check import number, whole_within
+from .._ask.scene import Scene
 from .._motion.samples import even_times
+from .._motion.trajectory import Trajectory
 from . import ground as drawing
 from .artists import Artists
 from .axes import axes_of, picture
@@ -19,15 +24,6 @@ from .ground import HALF_TURNS, SHOWN_TURNS, SKID
 from .legends import name_curves, title_beside_legend
 from .palette import palette_of
 from .sampling import at_times, between, span_of, turned_until
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Ellipse, Polygon
-
-    from .._ask.scene import Scene
-    from .._motion.trajectory import Trajectory
-
 
 _PILE = 0.4  # how opaque all bodies in one place are together, about
 _MOST = 10_000  # positions; each takes some milliseconds

@@ -3,31 +3,27 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
 
 from .._ask.check import shown
-from .._verbs.work_precision.run import ERRORS, NOT_RUN, OF_STATES, require_quantity
+from .._verbs.work_precision.run import ERRORS, NOT_RUN, OF_STATES, Run, require_quantity
 from .._verbs.work_precision.verdict import end_alone
 from .artists import Artists
 from .axes import axes_of, picture
 from .labels import label_ends
-from .palette import palette_of
+from .palette import Palette, palette_of
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-    from matplotlib.text import Text
-
+if TYPE_CHECKING:  # which imports this file
     from .._verbs.work_precision.results import WorkPrecision
-    from .._verbs.work_precision.run import Run
-    from .palette import Palette
 
 _NAMES = {
     "largest": "largest error of the state", "final": "error of the state at the end",

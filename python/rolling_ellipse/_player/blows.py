@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .. import _core
+from .._ask.check import FloatArray
 from .._ask.scene import Impulse, Scene
 from .._ask.settings import DEFAULTS
 from .._core import Outcome
@@ -21,9 +22,6 @@ from .._verbs.outcome import outcome
 from ..geometry import support
 from .film import body, events
 from .tracks import columns, sample_times
-
-if TYPE_CHECKING:
-    from .._ask.check import FloatArray
 
 NAMES = {
     Outcome.RESTS: "rests",

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from .._ask.scene import Scene
+from .._motion.trajectory import Trajectory
 from .._pictures.animation import RollingAnimation
 from .._pictures.animation.camera import cameras
 from .._pictures.ground import SHOWN_TURNS, touching_x
@@ -13,10 +15,6 @@ from .._pictures.sampling import turned_until
 from .page import document, fragment
 from .poster import positions, poster
 from .tracks import track
-
-if TYPE_CHECKING:
-    from .._ask.scene import Scene
-    from .._motion.trajectory import Trajectory
 
 _PIXEL = 2.5e-5  # of the width of the view: a twentieth of a pixel where it is 2000 pixels wide
 _HEAD, _FOOT = 0.035, 0.035  # room for a line of text above, and for the ruler, over the width

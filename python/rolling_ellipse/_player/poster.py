@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
+from .._ask.check import FloatArray
 from .._motion.samples import even_times
+from .._motion.trajectory import Trajectory
 from .look import DARK, LIGHT
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
 
 _WIDTH = 640.0
 _BODIES = 9

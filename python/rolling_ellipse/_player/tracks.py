@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import base64
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from .._ask.check import FloatArray
 from .._motion.samples import even_times
-
-if TYPE_CHECKING:
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
+from .._motion.trajectory import Trajectory
 
 MOST_SAMPLES = 20_000  # of one motion; 1 MB
 _RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}

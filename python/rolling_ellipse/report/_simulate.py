@@ -102,7 +102,8 @@ def simulate(
         return _corrected(start, times, body, settings)
     _require_none("stabilization", stabilization, equations)
     _require_none("baumgarte", baumgarte, equations)
-    method = choice("method", "dopri5" if method is None else method, ("dopri5", "rk4"))
+    method = "dopri5" if method is None else method
+    choice("method", method, ("dopri5", "rk4"))
     settings = _settings_of(method, None, None, rtol, atol, step, max_steps)
     _core.validate_settings(settings.core, float(times[-1]))
     names = misprints(CODE if printed is None else printed)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -11,16 +12,12 @@ from matplotlib.backends.registry import backend_registry
 from matplotlib.figure import Figure, SubFigure
 
 from ..._ask.check import flag, number, shown
+from ..._motion.trajectory import Trajectory
 from ..axes import picture, pyplot_figure, require_axes
 from ..comparison import Comparison
 from .film import RollingAnimation
 from .movies import movie_writer
 from .pace import pace, within
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..._motion.trajectory import Trajectory
 
 __all__ = ["RollingAnimation", "animate"]
 

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._ask.check import FloatArray
+from ..._motion.trajectory import Trajectory
 from ..ground import SHOWN_TURNS, tilted, view_of
-
-if TYPE_CHECKING:
-    from ..._ask.check import FloatArray
-    from ..._motion.trajectory import Trajectory
 
 BEHIND, AHEAD = 5.0, 4.0  # sizes of the body on either side of a motion that is followed
 

@@ -12,23 +12,20 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from matplotlib import rc_context, rcParams
 from matplotlib.animation import AbstractMovieWriter, FuncAnimation, writers
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from ..._ask.check import choice, file_name, flag, shown, whole
 from ..._ask.progress import told
 from ..._motion.export.atomic import replacing
+from ..._motion.trajectory import Trajectory
 from ..alone import Alone
 from ..palette import palette_of
 from .camera import cameras
 from .movies import explained, ffmpeg, movie_writer
+from .pace import Pace
 from .strip import Strip
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-
-    from ..._motion.trajectory import Trajectory
-    from .pace import Pace
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]

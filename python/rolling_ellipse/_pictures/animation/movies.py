@@ -7,22 +7,19 @@ import importlib
 import importlib.util
 import math
 import os
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from subprocess import CalledProcessError
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.figure import Figure
 from PIL import Image
 
 from ..._ask.check import file_name
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from matplotlib.figure import Figure
 
 SUFFIXES = (".gif", ".mp4", ".html")
 

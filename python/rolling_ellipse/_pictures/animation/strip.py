@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
 
+from ..._ask.check import FloatArray
 from ..._core import Mode
+from ..._motion.trajectory import Trajectory
 from ...geometry import support
 from .. import ground as drawing
 from ..ground import SKID
-from ..palette import palette_of
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from ..._ask.check import FloatArray
-    from ..._motion.trajectory import Trajectory
-    from ..palette import Palette
+from ..palette import Palette, palette_of
 
 
 class Strip:

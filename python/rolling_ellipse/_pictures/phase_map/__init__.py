@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.text import Text
 from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 
-from ..._ask.check import shown, whole
+from ..._ask.check import FloatArray, shown, whole
 from ..._core import Outcome
 from ..._verbs.classify import classify
 from ..artists import Artists
@@ -19,16 +23,7 @@ from ..axes import axes_of, picture, require_axes
 from ..legends import name_curves
 from ..palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
 from .marks import draw_marks, marks_of
-from .plane import plane_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.collections import QuadMesh
-    from matplotlib.lines import Line2D
-    from matplotlib.text import Text
-
-    from ..._ask.check import FloatArray
-    from .plane import Plane
+from .plane import Plane, plane_of
 
 COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.RESTS: "#ffffff",

@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
 
-from ..._verbs.classify import thresholds
+from ..._ask.check import FloatArray
+from ..._verbs.classify import Thresholds, thresholds
 from ..labels import Label, label_lines, visible_part
 from ..palette import INK, PLUM
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-    from matplotlib.text import Text
-
-    from ..._ask.check import FloatArray
-    from ..._verbs.classify import Thresholds
-    from .plane import Plane
+from .plane import Plane
 
 TIP_ASPECT = math.sqrt(3)
 """Up to this a/b of a uniform disc the N of rolling vanishes at the tip first.
