@@ -17,7 +17,6 @@ from .artists import Artists
 from .axes import panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, some_of
-from .modes import mode_handles
 from .panels import draw_dots, dress_errors, finish
 
 
@@ -71,13 +70,12 @@ def plot_constraints(
         dress_errors(panel, drawn, name)
     if shown.alone:
         name_curves(panels[-1], some_of(lines[-1]))
-    handles = [*some_of(lines[0]), *mode_handles(shown.motions, shown.palette)]
-    marks = finish(panels, shown, handles)
+    marks = finish(panels, shown, some_of(lines[0]))
     return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
 
 
 def _errors_of(motion: Trajectory, panels: int, style: Style) -> list[Mapping[str, FloatArray]]:
-    """For each panel the errors to draw by name: all of one motion, the worst of one of several."""
+    """Return the errors of each panel by name; of one of several motions only the worst."""
     positions, velocities = constraint_errors(motion)
     if style.label and panels == 2:
         return [{style.label: worst(positions)}, {style.label: worst(velocities)}]

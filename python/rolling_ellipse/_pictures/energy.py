@@ -17,7 +17,6 @@ from .artists import Artists
 from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
-from .modes import mode_handles
 from .panels import DASHES, draw_dots, draw_energies, dress_errors, finish
 
 KINDS = ("energies", "error")
@@ -27,7 +26,7 @@ KINDS = ("energies", "error")
 class Energy(Artists):
     """Artists of `plot_energy`; item i of each tuple belongs to motion i.
 
-    Either `error` is empty, or `total`, `kinetic` and `potential` are.
+    Of kind "energies" `error` is empty; of kind "error" `total`, `kinetic` and `potential` are.
     """
 
     ax: Axes
@@ -79,13 +78,13 @@ def plot_energy(
             errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, style))
     for lines in (*energies, errors):
         shown.restyle(*lines)
-    handles: list[Artist] = [*some_of(errors)]
+    handles: list[Any] = some_of(errors)
     if wanted == "energies":
-        quantities = list(zip(("total", "kinetic", "potential"), DASHES, strict=True))
-        handles = shown.handles(ax, quantities)
-    else:  # what friction and impacts take is no error
+        names = ("total", "kinetic", "potential")
+        handles = shown.handles(ax, list(zip(names, DASHES, strict=True)))
+    else:  # a loss by friction and impacts is no error
         word = "change" if any(motion.events for motion in shown.motions) else "error"
         dress_errors(ax, errors, f"relative energy {word}")
-    marks = finish([ax], shown, [*handles, *mode_handles(shown.motions, shown.palette)])
+    marks = finish([ax], shown, handles)
     total, kinetic, potential = zip(*energies, strict=True) if energies else ((), (), ())
     return Energy(ax, total, kinetic, potential, tuple(errors), marks)

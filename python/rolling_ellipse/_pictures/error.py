@@ -113,7 +113,7 @@ def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajector
 
 
 def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:
-    """|error| at the times of a motion; NaN where the right one has ended."""
+    """Return |error| at the times of a motion; NaN after the end of the right one."""
     known = motion.t <= right.t_end
     error = np.full(motion.t.shape, np.nan)
     there = getattr(right.sol(motion.t[known]), quantity)

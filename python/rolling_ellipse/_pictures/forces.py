@@ -18,13 +18,12 @@ from .artists import Artists
 from .axes import panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, quantity_handles
-from .modes import mode_handles
 from .palette import palette_of
 from .panels import DASHES, RANGE, draw_forces, dress_forces, finish
 from .sampling import are_ranges, curve
 
 _LIMIT = ":"
-_STEEP = 3.0  # |F|/N beyond which the scale does not follow: it is infinite where N vanishes
+_STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite where N vanishes
 
 
 @dataclass(frozen=True, repr=False)
@@ -88,7 +87,7 @@ def plot_forces(
     normal, friction, limits = zip(*drawn, strict=True)
     shown.restyle(*normal, *friction, *needed)
     handles = shown.handles(panels[0], [("normal", DASHES[0]), ("friction", DASHES[1])])
-    marks = finish(panels, shown, [*handles, *mode_handles(shown.motions, shown.palette)])
+    marks = finish(panels, shown, handles)
     return Forces(tuple(panels), normal, friction, limits, tuple(needed), tuple(available), marks)
 
 

@@ -1,7 +1,4 @@
-"""Still pictures of a trajectory: the body at even times, and one figure that shows everything.
-
-Nothing is computed here that the trajectory does not know.
-"""
+"""One figure of a motion: the body at even times over curves of all its quantities."""
 
 from __future__ import annotations
 
@@ -38,7 +35,7 @@ from .strobe import Strobe, check_strobe, plot_strobe
 
 @dataclass(frozen=True, repr=False)
 class Overview(Artists):
-    """Artists of `plot`: curves over time, and `marks` of what happens when."""
+    """Artists of `plot`: curves over time, and `marks` of modes, events and lost validity."""
 
     figure: Figure
     strobe: Strobe
@@ -123,7 +120,7 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
     errors = {
         "positions": worst(positions),
         "velocities": worst(velocities),
-        # what friction and impacts take is no error
+        # a loss by friction and impacts is no error
         "energy change" if trajectory.events else "energy": energy_error(trajectory),
     }
     position, velocity, energy = (
@@ -136,7 +133,7 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
 
 
 def _dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
-    """Give two columns of three panels one time axis, and legends where there are several lines."""
+    """Give two columns of three panels one time axis, and legends to panels of several lines."""
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=False)
