@@ -1,4 +1,4 @@
-"""What plot functions return: artists by name."""
+"""The base of what plot functions return: artists by name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Artists:
 
 
 def _counted(name: str, artists: Any) -> str:
-    """The name of what is there; nothing of what is not."""
+    """Return the name with the number of artists; empty if there are none."""
     if artists is None:
         return ""
     several = isinstance(artists, (tuple, list, dict))

@@ -27,9 +27,9 @@ from .sampling import FEW, between, half_turns, is_at_hand, span_of
 from .separatrix import QUARTER, flat_angle, flat_angles, separatrix
 
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
-_COARSE = 1e-3  # rad
+_COARSE = 1e-3  # largest ulp of theta [rad]
 _MOST = 1000.0  # half turns or swings in one picture
-_SMALL = 0.1  # of the separatrix's speed: a slower motion would be a dot in a whole eye
+_SMALL = 0.1  # of the roll-over speed: a slower motion would be a dot in a whole eye
 
 
 @dataclass(frozen=True, repr=False)
@@ -37,8 +37,8 @@ class Phase(Artists):
     """Artists of `plot_phase`; item i of `motions` and `starts` belongs to motion i.
 
     `separatrices` has a line for each different body on level ground that is no circle, and
-    `equilibria` the centres and the saddles of the first of them. Where theta is folded, a line has
-    its samples and at each fold two points with a break (NaN) between.
+    `equilibria` the centres and the saddles of the first of these. Where theta is folded, a line
+    has its samples and, at each fold, two points with a break (NaN) between.
     """
 
     ax: Axes
@@ -111,7 +111,7 @@ def plot_phase(
 
 
 def _part(motion: Trajectory) -> tuple[Trajectory, str]:
-    """What is drawn of a motion, finely sampled, and what is to be said of that."""
+    """Return the part of a motion that is drawn, finely sampled, and a note on a part."""
     if not is_at_hand(motion):
         return motion, ""
     begin, end = span_of(motion)
@@ -131,7 +131,7 @@ def _part(motion: Trajectory) -> tuple[Trajectory, str]:
 def _path(
     theta: FloatArray, omega: FloatArray, flat: float, fold: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """The line to draw; folded, theta is within (-pi/2, pi/2] of flat, with breaks between."""
+    """Return theta and omega of a line; folded, theta is within (-pi/2, pi/2] of flat."""
     if not fold:
         return theta, omega
     cell = np.ceil((theta - flat) / math.pi - 0.5)
@@ -165,7 +165,7 @@ def _require_parts_of_a_turn(motions: Sequence[Trajectory]) -> None:
 
 
 def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
-    """The different bodies that have a separatrix, and the colour of each."""
+    """Return the different bodies that have a separatrix, with their colours."""
     bodies: dict[tuple[float, ...], tuple[Scene, str]] = {}
     for motion, style in zip(shown.motions, shown.styles, strict=True):
         scene = motion.scene
@@ -177,7 +177,7 @@ def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
 
 
 def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: bool) -> None:
-    """Show whole eyes of the separatrix; a small motion fills the view and leaves them outside."""
+    """Show whole eyes of the separatrix; a small motion fills the view instead."""
     fastest = max(float(np.max(np.abs(motion.omega))) for motion in motions)
     flat = flat_angle(body)
     if fold:
@@ -237,7 +237,7 @@ def _dress_phase(ax: Axes) -> None:
 
 
 class _QuarterTurns(MaxNLocator):
-    """Ticks at quarter turns, or at 2, 4, ... of them, as many as there is room for."""
+    """Ticks at every 1, 2, 4, ... quarter turns, as many as there is room for."""
 
     def tick_values(self, vmin: float, vmax: float) -> list[float]:
         room = self.axis.get_tick_space()  # type: ignore[union-attr]
@@ -249,7 +249,7 @@ class _QuarterTurns(MaxNLocator):
 
 
 def _quarters(angle: float, _position: float | None = None) -> str:
-    """A multiple of a quarter turn as one writes it: 0, π/2, π, −3π/2."""
+    """Return the text of a multiple of a quarter turn: 0, π/2, π, −3π/2."""
     quarters = round(angle / QUARTER)
     if quarters == 0:
         return "0"
