@@ -21,8 +21,8 @@ from .pace import pace, within
 
 __all__ = ["RollingAnimation", "animate"]
 
-WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # more does not fit into memory, less is no picture
-WINDOWS = ("gtk3", "gtk4", "macosx", "qt", "qt5", "qt6", "tk", "wx")  # where plt.show() opens them
+WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # larger pictures do not fit into memory
+WINDOWS = ("gtk3", "gtk4", "macosx", "qt", "qt5", "qt6", "tk", "wx")  # frameworks with windows
 
 
 @picture
@@ -119,7 +119,7 @@ def animate(
     if not 0 <= last <= latest:
         raise ValueError(f"t_end must be within [0, {latest:g}] s, got {t_end!r}")
     shown_at = pace(path, last, fps=fps, speed=speed, max_frames=max_frames)
-    page = path is not None and movie_writer(path, shown_at.fps) is None  # or it is refused
+    page = path is not None and movie_writer(path, shown_at.fps) is None  # refuses a bad path
     animation = RollingAnimation(
         motions,
         shown_at,
@@ -146,7 +146,7 @@ def _check_ax(ax: Any, figure: Figure | SubFigure | None, motions: int) -> None:
 
 
 def _has_windows() -> bool:
-    """Whether pyplot's figures are windows, and no pictures that a notebook shows beside ours."""
+    """Whether pyplot's figures are windows; else a notebook would show them beside the player."""
     backend = matplotlib.get_backend()
     _, framework = backend_registry.resolve_backend(backend)  # type: ignore[no-untyped-call]
     return framework in WINDOWS

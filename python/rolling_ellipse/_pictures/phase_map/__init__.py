@@ -1,4 +1,4 @@
-"""The phase map: what rolling comes to first, over two of shape, energy and friction."""
+"""The phase map: the first outcome of rolling, over two of shape, energy and friction."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _AXIS_NAMES = {
     "speed": "ω lying flat [rad/s]",
     "friction": "μ",
 }
-_FEW_FOLD = 5.0  # a logarithmic axis over less than this has even ticks
+_FEW_FOLD = 5.0  # a logarithmic axis with a smaller ratio of its ends has even ticks
 _FINEST = 10_000  # cells along an axis
 
 
@@ -158,7 +158,7 @@ def _count(resolution: Any) -> int:
 
 
 def _middles(axis: str, edges: FloatArray) -> FloatArray:
-    """Return the middles of cells as one sees them: those of the logarithms for the aspect."""
+    """Return the middles of cells in the picture: geometric means for the aspect."""
     if axis == "aspect":
         return np.sqrt(edges[:-1] * edges[1:])
     return (edges[:-1] + edges[1:]) / 2
@@ -180,5 +180,5 @@ def _dress_map(ax: Axes, plane: Plane) -> None:
             axis.set_major_formatter("{x:g}")
             axis.set_minor_locator(NullLocator())
         label = _AXIS_NAMES[name]
-        axis.set_label_text(f"{label}   (at {plane.told()})" if side == "x" else label)
+        axis.set_label_text(f"{label}   (at {plane.caption()})" if side == "x" else label)
     ax.spines[["top", "right"]].set_visible(False)

@@ -29,17 +29,17 @@ LAST_ASPECT = 9.75321681656
 
 There the speed that N > 0 allows is the one that rolling over takes, both of `thresholds`.
 """
-_POINTS = 49  # of a curve: each is one call of `thresholds`, some milliseconds
+_POINTS = 49  # of a curve; each takes a call of `thresholds`, some milliseconds
 _LIFT_OFF = {"color": PLUM, "ls": (0, (6, 1.5, 1.5, 1.5)), "lw": 1.2}
 _LOOK: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A line in the plane: its points, its look, and what is written where along it.
+    """A line in the plane: its points, its properties, and its name with the wanted place.
 
-    `place` is the share of the visible line at the middle of the name, `above` on which side of
-    the line, as one reads, the name is.
+    `place` is the share of the visible line at the middle of the name, `above` the side of the
+    line for a reader.
     """
 
     key: str
@@ -52,7 +52,7 @@ class Mark:
 
 
 def marks_of(plane: Plane) -> Iterator[Mark]:
-    """The marks that belong to a plane, wherever they are."""
+    """Yield the marks of a plane, in view or not."""
     if plane.level in plane.axes:
         yield from _level_marks(plane)
     if "friction" in plane.axes:
@@ -68,7 +68,7 @@ def marks_of(plane: Plane) -> Iterator[Mark]:
 
 
 def _level_marks(plane: Plane) -> Iterator[Mark]:
-    """Roll-over, loss of contact and lift-off over the axis that is not the energy or the speed."""
+    """Yield roll-over, loss of contact and lift-off over the axis of aspect or friction."""
     along = next(axis for axis in plane.axes if axis != plane.level)
     places = plane.spaced(along, _POINTS)
     if along == "aspect":
