@@ -93,9 +93,8 @@ def draw(
         if not points:
             continue
         style = styles[members[0].name]
-        lines[key] = ax.plot([p[0] for p in points], [p[1] for p in points], ms=4, mew=0, **style)[
-            0
-        ]
+        places, values, _ = zip(*points, strict=True)
+        lines[key] = ax.plot(places, values, ms=4, mew=0, **style)[0]
         at, time, best = min(points, key=lambda point: point[0])
         if y == "time" and best.setup > 0.1 * time:
             hollow = style | {"ls": "", "mfc": palette_of(ax).background}

@@ -1,7 +1,7 @@
 """The report's equations exactly as printed, and beside each the right one under a name.
 
-Arrays are q = (x, z, theta, psi, r) along the last axis, its rates and accelerations likewise; a
-printed equation is named after its number. A printed residual less the right one is the misprint.
+Arrays have q = (x, z, theta, psi, r), its rates or its accelerations along the last axis. A printed
+equation has its number as name. A printed residual less the right one is the misprint.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ CASES = ("as_it_is", "1", "2")
 
 
 def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
-    """theta, psi, r, sin and cos of psi - theta; the others must have as many states, or one."""
+    """Return theta, psi, r, sin and cos of psi - theta; `others` must broadcast with q."""
     found = coordinates("q", q)
     require_together(q=found, **others)
     theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
@@ -121,7 +121,7 @@ def eqs_33_to_37(
 def equations_of_motion(
     q: Any, q_ddot: Any, multipliers: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return what eqs 33, 34, 35, 37, 36 must be, with the corrected rows, (..., 5)."""
+    """Return the right residuals of eqs 33, 34, 35, 37, 36, with corrected rows, (..., 5)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
     ddot = coordinates("q_ddot", q_ddot)
@@ -163,7 +163,7 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 
 
 def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
-    """Return what eq 38 must be, in its scaling, (..., 4)."""
+    """Return the right rates of eq 38, in its scaling, (..., 4)."""
     body = Scene(a, b)
     require_together(q=q, q_dot=q_dot)
     matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
@@ -190,14 +190,14 @@ def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -
 def _blow(impulse: Any, d: Any) -> tuple[float, float]:
     blow = number("impulse", impulse), number("d", d)
     for name, value in zip(("impulse", "d"), blow, strict=True):
-        if not abs(value) <= 1e50:  # as of an Impulse
+        if not abs(value) <= 1e50:  # the limit of an Impulse
             wanted = "at most 1e50 in size" if math.isfinite(value) else "finite"
             raise ValueError(f"{name} must be {wanted}, got {value}")
     return blow
 
 
 def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return what appendix B's r_x has for r [m]; right: `geometry.contact_distance`."""
+    """Return r of r_x in appendix B [m]; right: `geometry.contact_distance`."""
     body = Scene(a, b)
     t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p, where eq 6 has psi
     across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)

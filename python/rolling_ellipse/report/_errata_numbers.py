@@ -31,12 +31,12 @@ class Comparison(NamedTuple):
 
     @property
     def gap(self) -> float:
-        """What the misprint adds."""
+        """The effect of the misprint: printed less right."""
         return self.printed - self.right
 
 
 class _Exact(NamedTuple):
-    """The exact motion where it passes an angle; `body` are the keywords of the equations."""
+    """The exact motion at an angle; `body` has the keywords of the equations."""
 
     q: FloatArray
     q_dot: FloatArray
@@ -50,7 +50,7 @@ class _Exact(NamedTuple):
 
 
 def _at(theta: float, b: float = _B) -> _Exact:
-    """The rolling motion through (_THETA, _OMEGA) at another angle: its energy is the same."""
+    """Return the rolling motion through (_THETA, _OMEGA) at another angle of the same energy."""
     k2 = (_A * _A + b * b) / 4
 
     def inertia(angle: float) -> float:  # D = k^2 + r^2
@@ -82,7 +82,7 @@ def cases() -> Comparison:
 
 
 def row(index: int, printed: tuple[str, ...]) -> Comparison:
-    """A row, as printed and right, times the rates of the exact motion."""
+    """Compare a row, as printed and right, times the rates of the exact motion."""
     at = _at(GENERIC)
     both = (constraint_matrix(at.q, printed=p, **at.shape) for p in (printed, ("tan",)))
     return Comparison(*(float(matrix[index] @ at.q_dot) for matrix in both))

@@ -29,7 +29,7 @@ class PrintedMotion:
     q, q_dot, q_ddot : ndarray, shape (n, 5)
         x, z, theta, psi, r [m, rad], their rates and accelerations.
     multipliers : ndarray, shape (n, 4)
-        Of the rows in use, in the report's scaling.
+        Multipliers of the rows in use, in the report's scaling.
     gap : ndarray, shape (n,)
         Height of the lowest point of the body over the ground [m].
     energy : ndarray, shape (n,)
@@ -39,9 +39,9 @@ class PrintedMotion:
     printed : tuple of str
         The rows that are as printed.
     start : Start
-        The state that it began with, and how that came about.
+        The initial state, and its difference from the given one.
     message : str
-        Why it stopped before the last time that was asked for; empty if it did not.
+        The reason why it stopped before the last time; empty if it did not.
     """
 
     t: FloatArray
@@ -67,15 +67,15 @@ class PrintedMotion:
         return found
 
     def constraint_residuals(self) -> ConstraintResiduals:
-        """Return by how much each sample misses the right constraints (see `constraints`)."""
+        """Return the residuals of the right constraints at each sample (see `constraints`)."""
         return constraints(self.q, self.q_dot, a=self.body.a, b=self.body.b)
 
     def back_substitution(self) -> FloatArray:
-        """Return what the solution leaves of the equations that it solved, (n, 9).
+        """Return the residuals of the equations that were solved, (n, 9).
 
-        The five equations of motion [N, N m] and the four constraints on the rates: the report's
-        own test (Figure 11). Small values say that the equations were solved, not that they are
-        right.
+        They are the five equations of motion [N, N m] and the four constraints on the rates: the
+        report's own test (Figure 11). Small values show that the equations were solved, not that
+        they are right.
         """
         body, matrix = self.body, rows(self.q, self.body.a, self.body.b, self.printed)
         pull = np.einsum("nij,ni->nj", matrix, self.multipliers)
@@ -115,7 +115,7 @@ def accelerations(
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
-        if q.ndim > 1:  # one of them is singular: the others have a solution
+        if q.ndim > 1:  # one sample is singular: the others have a solution
             found = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
             return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
         solution = np.full_like(right, np.nan)
@@ -131,7 +131,7 @@ def follow(
         q, q_dot = y[:COORDINATES], y[COORDINATES:]
         return np.concatenate([q_dot, accelerations(q, q_dot, body, printed)[0]])
 
-    # where there is no finite solution it stops, and says so
+    # without a finite solution it stops with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         begun = np.concatenate([start.q, start.q_dot])
         samples, message = integrate(slope, begun, t, how)

@@ -1,4 +1,4 @@
-"""The report's constraint matrix, each row as printed or as it must be."""
+"""The report's constraint matrix, each row as printed or corrected."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy.typing as npt
 from .._ask.check import COORDINATES, FloatArray, coordinates, finite, require_together, shown
 from .._ask.scene import Scene
 
-#: What can be as printed: the rows of f1, f2 and f3 (eq 32), the sign of a44 (appendix C), and
-#: tan(theta) in row 4, which otherwise is multiplied by cos^2(theta) and stays finite.
+#: Parts that can be as printed: rows of f1, f2 and f3 (eq 32), the sign of a44 (appendix C), and
+#: tan(theta) in row 4. A corrected row 4 is multiplied by cos^2(theta) and stays finite.
 MISPRINTS = ("f1", "df2", "df3", "a44", "tan")
 EQ_32 = ("f1", "df2", "df3", "tan")
 MATRIX = ("f1", "df2", "tan")
@@ -58,9 +58,9 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
 def rows_and_rate(
     q: FloatArray, q_dot: FloatArray, a: float, b: float, printed: tuple[str, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the matrix and its time derivative along q_dot, by the chain rule.
+    """Return the matrix and its time derivative along q_dot.
 
-    The rate is the imaginary part that a complex step along q_dot leaves: exact to rounding
+    The derivative is the imaginary part after a complex step along q_dot, exact to rounding
     (W. Squire, G. Trapp, SIAM Rev. 40 (1998) 110).
     """
     stepped = rows(q + 1j * _TINY * q_dot, a, b, printed)
@@ -100,9 +100,8 @@ def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> Flo
     a, b : float
         Semi-axes [m].
     printed : sequence of {"f1", "df2", "df3", "a44", "tan"}
-        What to take as printed; () gives the matrix as it must be, with row 4 times
-        cos^2(theta). Three printings have names: `EQ_32`, `MATRIX` (below it) and `CODE`
-        (appendix C).
+        Rows as printed; () gives the corrected matrix, with row 4 times cos^2(theta). Three
+        printings have names: `EQ_32`, `MATRIX` (below it) and `CODE` (appendix C).
 
     Returns
     -------
@@ -143,6 +142,6 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
     speed = finite("omega", omega)[..., None]
     require_together(q=q, omega=speed)
     allowed = direction(coordinates("q", q), body.a, body.b, misprints(printed))
-    with np.errstate(over="ignore"):  # infinite, where it is beyond the doubles
+    with np.errstate(over="ignore"):  # infinite beyond the largest double
         rates: FloatArray = allowed * speed
     return rates
