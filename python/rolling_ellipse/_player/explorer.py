@@ -1,4 +1,4 @@
-"""A blow that the reader moves: what it makes of a scene, at once and without a kernel."""
+"""A blow that the reader moves, and the motion after it: at once and without a kernel."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from . import blows
 from .page import document, fragment
 from .poster import positions, poster
 
-LONGEST = 40.0  # of what is shown, in units of sqrt(longer semi-axis / gravity)
+LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
 
 
 def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
@@ -133,11 +133,11 @@ class Explorer(FieldsOnly):
         blow = Impulse.press(float(self.strengths[at[1]]), float(self.distances[at[0]]))
         motion = blows.struck(self.scene, blow, self.t_end)
         still = poster([positions(motion, self.t_end)], [strip["window"]], [""], shape)
-        told = f"An ellipse struck by {blow.jz:.3g} N s at {blow.dx:.3g} m, at even times"
-        return fragment(data, still, told, explorer=True)
+        text = f"An ellipse struck by {blow.jz:.3g} N s at {blow.dx:.3g} m, at even times"
+        return fragment(data, still, text, explorer=True)
 
     def _first_blow(self) -> tuple[int, int]:
-        """Place and strength of the blow shown first: the scene's own, or one that does much."""
+        """Return place and strength of the first blow: the scene's own, or a strong one."""
         own: Any = self.scene.impulse
         d, F = (own.dx, -own.jz) if own is not None else (0.75 * self.distances[-1], 0.0)
         if F <= 0:
