@@ -17,7 +17,7 @@ from .artists import Artists
 from .axes import panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, some_of
-from .panels import draw_dots, dress_errors, finish
+from .panels import draw_error, dress_errors, finish
 
 
 @dataclass(frozen=True, repr=False)
@@ -63,7 +63,7 @@ def plot_constraints(
         of_panels = _errors_of(motion, len(panels), style)
         for panel, drawn, errors in zip(panels, lines, of_panels, strict=True):
             for rank, (name, values) in enumerate(errors.items()):
-                drawn.append(draw_dots(panel, motion, values, name, rank, style))
+                drawn.append(draw_error(panel, motion, values, name, rank, style))
                 shown.restyle(drawn[-1])
     names = ("positions", "velocities") if len(panels) == 2 else ("constraint error",)
     for panel, drawn, name in zip(panels, lines, names, strict=True):

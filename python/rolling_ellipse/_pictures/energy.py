@@ -17,7 +17,7 @@ from .artists import Artists
 from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
-from .panels import DASHES, draw_dots, draw_energies, dress_errors, finish
+from .panels import DASHES, draw_energies, draw_error, dress_errors, finish
 
 KINDS = ("energies", "error")
 
@@ -75,7 +75,7 @@ def plot_energy(
             energies.append(draw_energies(ax, motion, style))
         else:
             label = style.label or "energy error"
-            errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, style))
+            errors.append(draw_error(ax, motion, energy_error(motion), label, 0, style))
     for lines in (*energies, errors):
         shown.restyle(*lines)
     handles: list[Any] = some_of(errors)

@@ -21,8 +21,8 @@ from .legends import name_curves
 from .modes import mode_handles
 from .panels import (
     draw_curve,
-    draw_dots,
     draw_energies,
+    draw_error,
     draw_forces,
     dress_errors,
     dress_forces,
@@ -124,7 +124,7 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
         "energy change" if trajectory.events else "energy": energy_error(trajectory),
     }
     position, velocity, energy = (
-        draw_dots(ax, trajectory, values, name, rank)
+        draw_error(ax, trajectory, values, name, rank)
         for rank, (name, values) in enumerate(errors.items())
     )
     word = "error, change" if trajectory.events else "relative error"

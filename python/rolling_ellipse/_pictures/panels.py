@@ -50,20 +50,27 @@ def sparse_markers(style: Style) -> dict[str, Any]:
     return {"marker": style.marker, "ms": 6, "mew": 0.8, "markevery": 0.1} if style.marker else {}
 
 
-def draw_dots(
-    ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style = PLAIN
+def draw_error(
+    ax: Axes,
+    motion: Trajectory,
+    values: FloatArray,
+    label: str,
+    rank: int,
+    style: Style = PLAIN,
+    **line: Any,
 ) -> Line2D:
-    """Draw an error as dots, because rounding jumps; a log scale leaves out exact zeros."""
+    """Draw an error as dots, because rounding jumps, or with properties of a `line`.
+
+    A log scale leaves out exact zeros; the label of an error that is always 0 says so.
+    """
     palette = palette_of(ax)
     colour = style.colour or (*palette.curves[:3], palette.plum, palette.grey)[rank]
     label = label if np.nan_to_num(values).any() else f"{label} = 0"
     t = motion.t
     if are_ranges(motion):
         t, _, values = ranges(t, values)
-    return ax.plot(
-        t, values, ls="none", marker=style.marker or _DOTS[rank], ms=3, mew=0.7, color=colour,
-        label=label,
-    )[0]  # fmt: skip
+    dots = {"ls": "none", "marker": style.marker or _DOTS[rank], "ms": 3, "mew": 0.7}
+    return ax.plot(t, values, color=colour, label=label, **(line or dots))[0]
 
 
 def draw_forces(

@@ -131,7 +131,10 @@ def _part(motion: Trajectory) -> tuple[Trajectory, str]:
 def _path(
     theta: FloatArray, omega: FloatArray, flat: float, fold: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Return theta and omega of a line; folded, theta is within (-pi/2, pi/2] of flat."""
+    """Return theta and omega of a line; folded, theta is within (-pi/2, pi/2] of flat.
+
+    A folded line leaves the view at one edge and comes back at the other with the same omega.
+    """
     if not fold:
         return theta, omega
     cell = np.ceil((theta - flat) / math.pi - 0.5)
@@ -140,18 +143,11 @@ def _path(
     up = np.sign(cell[after] - cell[before])
     leaving, returning = flat + up * QUARTER, flat - up * QUARTER
     steepness = (omega[after] - omega[before]) / (theta[after] - theta[before])
-    speeds = [
-        omega[i] + steepness * (edge + math.pi * cell[i] - theta[i])
-        for i, edge in ((before, leaving), (after, returning))
-    ]
-    gap = np.full(before.size, np.nan)
-    places = np.repeat(after, 3)
+    speed = omega[before] + steepness * (leaving + math.pi * cell[before] - theta[before])
+    gap, places = np.full(before.size, np.nan), np.repeat(after, 3)
     folds = np.column_stack([leaving, gap, returning]).ravel()
-    speeds_there = np.column_stack([speeds[0], gap, speeds[1]]).ravel()
-    return (
-        np.insert(theta - math.pi * cell, places, folds),
-        np.insert(omega, places, speeds_there),
-    )
+    speeds = np.column_stack([speed, gap, speed]).ravel()
+    return np.insert(theta - math.pi * cell, places, folds), np.insert(omega, places, speeds)
 
 
 def _require_parts_of_a_turn(motions: Sequence[Trajectory]) -> None:

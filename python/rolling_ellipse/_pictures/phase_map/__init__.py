@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +14,7 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 
-from ..._ask.check import FloatArray, shown, whole
+from ..._ask.check import FloatArray, whole_within
 from ..._core import Outcome
 from ..._verbs.classify import classify
 from ..artists import Artists
@@ -124,13 +123,13 @@ def plot_phase_map(
         If an argument is none of the names or out of its range, x and y do not go together, or a
         quantity is given that is along an axis or follows from another.
     TypeError
-        If something is no number.
+        If something is no number, or `resolution` no whole one.
     """
     if ax is not None:
         require_axes(ax)  # before the work
     fixed = {"aspect": aspect, "energy": energy, "speed": speed, "friction": friction}
     plane = plane_of((x, y), (x_range, y_range), fixed, b, gravity)
-    count = _count(resolution)
+    count = whole_within("resolution", resolution, _FINEST)
     edges = [plane.spaced(axis, count + 1) for axis in plane.axes]
     middles = [_middles(axis, places) for axis, places in zip(plane.axes, edges, strict=True)]
     codes = classify(**plane.scenes(middles[0], middles[1][:, np.newaxis]), workers=workers)
@@ -148,13 +147,6 @@ def plot_phase_map(
     found = [Outcome(int(code)) for code in np.unique(np.asarray(codes))]
     name_curves(ax, [_handle(outcome) for outcome in found])
     return PhaseMap(ax, cells, *draw_marks(ax, marks_of(plane)))
-
-
-def _count(resolution: Any) -> int:
-    with suppress(TypeError):
-        if 1 <= (count := whole("resolution", resolution)) <= _FINEST:
-            return count
-    raise ValueError(f"resolution must be an int from 1 to {_FINEST}, got {shown(resolution)}")
 
 
 def _middles(axis: str, edges: FloatArray) -> FloatArray:
