@@ -14,7 +14,7 @@ import numpy as np
 from .._ask.check import FloatArray, choice, coordinates, finite, number, require_together
 from .._ask.scene import Impulse, Scene
 from ..geometry import support_slope
-from ._rows import rows
+from ._rows import masses, polar, rows
 
 CASES = ("as_it_is", "1", "2")
 
@@ -25,11 +25,6 @@ def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
     require_together(q=found, **others)
     theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
     return theta, psi, r, np.sin(psi - theta), np.cos(psi - theta)
-
-
-def polar(psi: FloatArray, body: Scene) -> FloatArray:
-    found: FloatArray = (body.b * np.sin(psi)) ** 2 + (body.a * np.cos(psi)) ** 2
-    return found
 
 
 # ---------------------------------------------------------------------------- sections 2.1 and 2.2
@@ -52,7 +47,7 @@ def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return x_C - x_G by eqs 5 to 7 and the two cases [m]; right: `geometry.support_slope`."""
     psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
     body = Scene(a, b)
-    r = body.a * body.b / np.sqrt(polar(psi, body))
+    r = body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
     found: FloatArray = case_sign(angle) * r * np.sin(psi - angle)
     return found
 
@@ -82,7 +77,7 @@ def f3(q: Any, *, a: float, b: float) -> FloatArray:
     """Return f3 of eq 10 [m]; it is right."""
     _, psi, r, _, _ = state(q)
     body = Scene(a, b)
-    found: FloatArray = r - body.a * body.b / np.sqrt(polar(psi, body))
+    found: FloatArray = r - body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
     return found
 
 
@@ -112,7 +107,7 @@ def eqs_33_to_37(
             body.mass * ddot[..., 1] - two + body.mass * body.gravity,
             inertia * ddot[..., 2] + lever - four * body.a**2 * (1 + tangent**2),
             lever + three * squeeze + four * (body.a**4 * tangent**2 / body.b**2 + body.b**2),
-            one * sine - two * cosine + 2 * three * polar(psi, body) ** 1.5,
+            one * sine - two * cosine + 2 * three * polar(psi, body.a, body.b) ** 1.5,
         ),
         axis=-1,
     )
@@ -129,10 +124,9 @@ def equations_of_motion(
         "...ij,...i->...j", rows(coordinates("q", q), body.a, body.b, ("tan",)),
         np.stack(_multipliers(multipliers), axis=-1),
     )  # fmt: skip
-    mass_of = np.array([1, 1, body.gyration2, 0, 0]) * body.mass
     weight = np.array([0, body.mass * body.gravity, 0, 0, 0])
     forces = np.array([-1, -1, -1, 1, 1])  # eqs 36 and 37 have them on the other side
-    found: FloatArray = mass_of * ddot + weight + forces * pull
+    found: FloatArray = masses(body) * ddot + weight + forces * pull
     return found
 
 
@@ -154,7 +148,7 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
         np.broadcast_arrays(
             x - stretch * cosine - (turn - spin) * r * sine,
             z - stretch * sine - turn * r * sine + spin * r * cosine,
-            2 * stretch * polar(psi, body) ** 1.5 - turn * squeeze,
+            2 * stretch * polar(psi, body.a, body.b) ** 1.5 - turn * squeeze,
             turn * (body.a**4 * tangent**2 / body.b**2 + body.b**2)
             - spin * body.a**2 * (tangent**2 + 1),
         ),

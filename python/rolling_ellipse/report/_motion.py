@@ -13,7 +13,7 @@ from .._ask.check import FloatArray
 from .._ask.scene import Scene
 from .._ask.settings import Settings
 from .._motion.constraints import COORDINATES, ConstraintResiduals, constraints
-from ._rows import rows, rows_and_rate
+from ._rows import masses, rows, rows_and_rate
 from ._runge_kutta import integrate
 from ._start import Start
 
@@ -79,7 +79,7 @@ class PrintedMotion:
         """
         body, matrix = self.body, rows(self.q, self.body.a, self.body.b, self.printed)
         pull = np.einsum("nij,ni->nj", matrix, self.multipliers)
-        motion = _masses(body) * self.q_ddot - _weight(body) - pull
+        motion = masses(body) * self.q_ddot - _weight(body) - pull
         return np.concatenate([motion, np.einsum("nij,nj->ni", matrix, self.q_dot)], axis=1)
 
     def __repr__(self) -> str:
@@ -92,10 +92,6 @@ class PrintedMotion:
         )
 
 
-def _masses(body: Scene) -> FloatArray:
-    return np.array([1, 1, body.gyration2, 0, 0]) * body.mass
-
-
 def _weight(body: Scene) -> FloatArray:
     return np.array([0, -body.mass * body.gravity, 0, 0, 0])
 
@@ -106,7 +102,7 @@ def accelerations(
     """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN where the system is singular."""
     matrix, rate = rows_and_rate(q, q_dot, body.a, body.b, printed)
     system = np.zeros((*q.shape[:-1], 9, 9))
-    system[..., :5, :5] = np.diag(_masses(body))
+    system[..., :5, :5] = np.diag(masses(body))
     system[..., :5, 5:] = -np.swapaxes(matrix, -1, -2)
     system[..., 5:, :5] = matrix
     right = np.zeros((*q.shape[:-1], 9))

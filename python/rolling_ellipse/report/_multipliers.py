@@ -8,8 +8,8 @@ import numpy as np
 
 from .._ask.check import FloatArray, coordinates, flag, require_together
 from .._ask.scene import Scene
-from ._equations import polar, state
-from ._rows import rows
+from ._equations import state
+from ._rows import polar, rows
 
 
 def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
@@ -123,7 +123,7 @@ def eq_41(
     _, psi, _, _, _ = state(q)
     arguments: dict[str, float] = dict(a=a, b=b, mass=mass, gravity=gravity)
     if complete:
-        spread = 2 * polar(psi, body) ** 1.5 * complete_f(q, q_ddot, **arguments)
+        spread = 2 * polar(psi, body.a, body.b) ** 1.5 * complete_f(q, q_ddot, **arguments)
     else:
         spread = eq_42(q, q_ddot, **arguments)
     found: FloatArray = _head(q, q_ddot, body) - _squeezed(spread, psi, body)

@@ -20,6 +20,18 @@ CODE = ("f1", "df2", "a44", "tan")
 _TINY = 1e-30  # a complex step this small has neither truncation nor rounding error
 
 
+def masses(body: Scene) -> FloatArray:
+    """Return the masses of x, z [kg] and theta [kg m^2]; those of psi and r are 0."""
+    found: FloatArray = np.array([1, 1, body.gyration2, 0, 0]) * body.mass
+    return found
+
+
+def polar(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
+    """Return (a b/r)^2 of the ellipse at the polar angle psi, real or complex [m^2]."""
+    found: npt.NDArray[Any] = (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
+    return found
+
+
 def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> npt.NDArray[Any]:
     """Return the matrix, (..., 4, 5), for real or complex q."""
     theta, psi, r = q[..., 2], q[..., 3], q[..., 4]
@@ -39,14 +51,13 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
     psi_[..., 1] = sign * r * sine
     r_[..., 1] = -cosine
 
-    polar = (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
     squeeze = a * b * (a - b) * (a + b)
     if "df3" in printed:
         psi_[..., 2] = -squeeze * np.sin(psi) ** 2
-        r_[..., 2] = 2 * polar
+        r_[..., 2] = 2 * polar(psi, a, b)
     else:
         psi_[..., 2] = -squeeze * np.sin(2 * psi)
-        r_[..., 2] = 2 * polar**1.5
+        r_[..., 2] = 2 * polar(psi, a, b) ** 1.5
 
     scale = 1 if "tan" in printed else np.cos(theta) ** 2
     tangent2 = np.tan(theta) ** 2 if "tan" in printed else np.sin(theta) ** 2

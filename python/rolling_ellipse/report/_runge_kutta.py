@@ -17,7 +17,6 @@ from .._ask.settings import Settings
 
 _TABLEAUS = _core.tableaus()
 _SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0
-_FIRST = 1e-6  # of the time: the first step, which grows tenfold at once where that is too short
 _TINY = 1e-300  # keeps a component of 0 from an allowed error of 0
 
 
@@ -40,7 +39,8 @@ def integrate(
     stages, order = tableau["stages"], tableau["order"]
     samples, now, end = [y for _ in t[t == 0]], 0.0, float(t[-1])
     slopes = np.zeros((stages + 1, y.size))
-    slopes[0], h = slope(y), how.step or _FIRST * end
+    slopes[0] = slope(y)
+    h = how.step or _first_step(y, slopes[0], how, end)
     for _ in range(how.max_steps):
         if len(samples) == t.size:
             break
@@ -52,9 +52,9 @@ def integrate(
             slopes[i] = slope(after)
         growth = 1.0
         if how.step is None:
-            allowed = how.atol + how.rtol * np.maximum(np.abs(y), np.abs(after)) + _TINY
+            allowed = _allowed(np.maximum(np.abs(y), np.abs(after)), how)
             error = h * (tableau["error"][0, : stages + 1] @ slopes) / allowed
-            growth = _SAFETY * np.mean(error**2) ** (-0.5 / order)
+            growth = _SAFETY * np.sqrt(np.mean(error**2)) ** (-1 / order)
             growth = float(np.fmin(np.fmax(growth, _MOST_SHRINKING), _MOST_GROWTH))
             if growth < _SAFETY:
                 h *= growth
@@ -73,3 +73,15 @@ def integrate(
         now, y, slopes[0] = last, after, slopes[-1]
         h = how.step or h * growth
     return np.array(samples), "" if len(samples) == t.size else f"max_steps reached at {now:.6g} s"
+
+
+def _allowed(size: FloatArray, how: Settings) -> FloatArray:
+    """Return the allowed errors of components of a size."""
+    return how.atol + how.rtol * size + _TINY
+
+
+def _first_step(y: FloatArray, first: FloatArray, how: Settings, end: float) -> float:
+    """Return a hundredth of the time in which y changes by its size (HNW II.4)."""
+    allowed = _allowed(np.abs(y), how)
+    size, speed = float(np.linalg.norm(y / allowed)), float(np.linalg.norm(first / allowed))
+    return min(0.01 * size / speed, end) if size > 0 and speed > 0 else 1e-6 * end

@@ -10,7 +10,7 @@ from .._ask.check import FloatArray
 from .._ask.scene import Scene
 from .._motion.constraints import constraints, kinematics
 from ..geometry import support, support_curvature, support_slope
-from ._rows import direction, rows
+from ._rows import direction, masses, rows
 
 _EPS = float(np.finfo(float).eps)
 _ULPS = 16.0  # allowed error of each coordinate: that of `kinematics`
@@ -107,8 +107,8 @@ def project(
     there, _ = kinematics(theta, 0.0, a=body.a, b=body.b)
     there[0] = q[0]
     allowed = direction(there, body.a, body.b, printed)
-    masses = np.array([1, 1, body.gyration2, 0, 0])
-    omega = (masses * allowed) @ q_dot / ((masses * allowed) @ allowed)
+    momentum = masses(body) * allowed
+    omega = momentum @ q_dot / (momentum @ allowed)
     return there, omega * allowed
 
 

@@ -24,11 +24,6 @@ class Cameras:
     windows: tuple[tuple[float, float, float, float], ...]  # views relative to the followed place
     follows: str  # "nothing", the "middle" of all motions, or "own": each strip its own motion
 
-    @property
-    def together(self) -> bool:
-        """Whether all strips show the same stretch of ground."""
-        return self.follows != "own"
-
 
 def cameras(
     motions: Sequence[Trajectory], shape: float | None, head: float, foot: float

@@ -118,7 +118,7 @@ class RollingAnimation(FuncAnimation):
             place.set_layout_engine("none")  # the cameras have placed the strips
         self.figure: Figure = place.figure if isinstance(place, Axes) else place  # type: ignore[assignment]
         self.strips = tuple(
-            Strip(ax, motion, self.t, views, label, not self.cameras.together)
+            Strip(ax, motion, self.t, views, label, self.cameras.follows == "own")
             for ax, motion, views, label in zip(
                 self._axes(place), self.motions, self.cameras.views, self.labels, strict=True
             )
