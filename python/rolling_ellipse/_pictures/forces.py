@@ -93,9 +93,9 @@ def plot_forces(
 
 def _draw_needed(ax: Axes, motion: Trajectory, style: Style) -> Line2D:
     colour, label = style.colour or palette_of(ax).ink, style.label or "needed"
-    look: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
+    options: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
     t, needed = curve(motion.t, motion.friction_needed)
-    return ax.plot(t, needed, color=colour, ls=style.dash, label=label, **look)[0]
+    return ax.plot(t, needed, color=colour, ls=style.dash, label=label, **options)[0]
 
 
 def _draw_available(ax: Axes, motion: Trajectory, style: Style) -> Line2D | None:

@@ -66,15 +66,15 @@ def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> l
     shades: list[Artist] = []
     for mode, spans in mode_spans(motion).items():
         if spans:
-            look = _look(mode, palette_of(ax)) | edge
+            shading = _shading(mode, palette_of(ax)) | edge
             upright = ax.get_xaxis_transform()
             shades.append(
-                ax.broken_barh(spans, (bottom, height), transform=upright, zorder=0, **look)
+                ax.broken_barh(spans, (bottom, height), transform=upright, zorder=0, **shading)
             )
     return shades
 
 
-def _look(mode: Mode, palette: Palette) -> dict[str, Any]:
+def _shading(mode: Mode, palette: Palette) -> dict[str, Any]:
     face, edge, hatch = _SHADES[mode]
     return {"facecolor": palette.shade(face), "edgecolor": palette.shade(edge), "hatch": hatch}
 
@@ -83,7 +83,7 @@ def mode_handles(motions: Sequence[Trajectory], palette: Palette) -> list[Patch]
     """Return entries of a legend for the modes that are shaded."""
     found = [mode_spans(motion) for motion in motions]
     return [
-        Patch(label=mode.name.lower(), lw=0, **_look(mode, palette))
+        Patch(label=mode.name.lower(), lw=0, **_shading(mode, palette))
         for mode in _SHADES
         if any(spans[mode] for spans in found)
     ]

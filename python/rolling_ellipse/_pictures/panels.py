@@ -38,11 +38,11 @@ def draw_curve(
     """Draw the quantity of a rank (0, 1, 2) of a motion over its times."""
     t, values = curve(motion.t, values)
     name = ", ".join(filter(None, (style.label, label)))
-    colour, look = style.colour or palette_of(ax).curves[rank], sparse_markers(style)
+    colour, options = style.colour or palette_of(ax).curves[rank], sparse_markers(style)
     dash = DASHES[rank]
     if are_ranges(motion):
-        dash, look = "-", look | {"alpha": RANGE}
-    return ax.plot(t, values, color=colour, ls=dash, label=name, **look)[0]
+        dash, options = "-", options | {"alpha": RANGE}
+    return ax.plot(t, values, color=colour, ls=dash, label=name, **options)[0]
 
 
 def sparse_markers(style: Style) -> dict[str, Any]:

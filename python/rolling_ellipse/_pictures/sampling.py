@@ -120,7 +120,7 @@ def ranges(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray, F
 
 
 def are_ranges(motion: Trajectory) -> bool:
-    """Whether the curves of a motion are drawn as ranges."""
+    """True if the curves of a motion are drawn as ranges."""
     return motion.t.size > _MOST_POINTS
 
 
@@ -185,7 +185,7 @@ def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
 
 
 def is_at_hand(motion: Trajectory) -> bool:
-    """Whether the motion of a trajectory can be sampled at any time; warns if not.
+    """True if the motion of a trajectory can be sampled at any time; warns if not.
 
     A trajectory that `simulate` computed can, also one from a file. A trajectory with samples of
     other origin has no motion between them.

@@ -23,7 +23,7 @@ LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravit
 def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
     """Let the reader strike the body: where and how hard, by dragging a hand over it.
 
-    The page shows the motion with its forces, what it comes to first and why, its events, and a
+    The page shows the motion with its forces, its first outcome with the reason, its events, and a
     map of the outcomes of all blows. It carries a table of them, 25 places by 16 strengths, so that
     it works without a kernel and without a network; the nearest one is shown. A button copies the
     lines of Python that simulate it.
@@ -67,7 +67,7 @@ def write_explorer(scene: Scene, path: str | PathLike[str]) -> None:
 
 @dataclass(frozen=True)
 class Explorer(FieldsOnly):
-    """What `explore` returns; a notebook shows it by itself.
+    """The result of `explore`; a notebook shows it by itself.
 
     Attributes
     ----------
@@ -82,12 +82,12 @@ class Explorer(FieldsOnly):
 
     @cached_property
     def distances(self) -> FloatArray:
-        """Where the blows of the table act, seen from the centre along the ground, (25,) [m]."""
+        """Places of the blows in the table, from the centre along the ground, (25,) [m]."""
         return blows.ranges(self.scene)[0]
 
     @cached_property
     def strengths(self) -> FloatArray:
-        """How hard they are, downwards, (16,) [N s]."""
+        """Strengths of the blows in the table, downwards, (16,) [N s]."""
         return blows.ranges(self.scene)[1]
 
     def to_html(self, path: str | PathLike[str]) -> None:

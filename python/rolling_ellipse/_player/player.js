@@ -26,7 +26,7 @@ const STYLE = `
     background: var(--plum) }
   .time { font-variant-numeric: tabular-nums; min-width: 6.5em; text-align: right }`;
 
-/** Whether the page, or else the reader's system, wants dark paper. */
+/** True if the page, or else the reader's system, asks for dark colours. */
 export function isDark(host) {
   const dark = ".dark, .vscode-dark, [data-theme=dark], [data-jp-theme-light=false]";
   const light = ".light, .vscode-light, [data-theme=light], [data-jp-theme-light=true]";

@@ -47,7 +47,7 @@ export class Track {
     };
   }
 
-  /** Where the body has been: [t, x, z, tip x, tip z, mode, theta] at times near each other. */
+  /** Points of the path: [t, x, z, tip x, tip z, mode, theta] at times near each other. */
   trace() {
     const points = [];
     if (this.stepped) return points;

@@ -70,7 +70,7 @@ class FittedImpacts(Listed):
         )
 
     def __eq__(self, other: object) -> bool:
-        """Whether law, coefficients and the bits of the errors are equal."""
+        """True if law, coefficients and the bits of the errors are equal."""
         if not isinstance(other, FittedImpacts):
             return NotImplemented
         return self._key() == other._key()

@@ -146,7 +146,7 @@ def _check_ax(ax: Any, figure: Figure | SubFigure | None, motions: int) -> None:
 
 
 def _has_windows() -> bool:
-    """Whether pyplot's figures are windows; else a notebook would show them beside the player."""
+    """True if pyplot's figures are windows; else a notebook would show them beside the player."""
     backend = matplotlib.get_backend()
     _, framework = backend_registry.resolve_backend(backend)  # type: ignore[no-untyped-call]
     return framework in WINDOWS

@@ -77,8 +77,8 @@ class Strip:
         )
         self.body.set_transform(on_slope)
         ax.add_patch(self.body)
-        for name, look in _looks(palette).items():
-            setattr(self, name, ax.plot([], [], transform=on_slope, **look)[0])
+        for name, properties in _properties(palette).items():
+            setattr(self, name, ax.plot([], [], transform=on_slope, **properties)[0])
         self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=palette.ink)
 
     def draw(self, i: int) -> list[Artist]:
@@ -143,7 +143,7 @@ class Strip:
         return "   ".join(parts)
 
 
-def _looks(palette: Palette) -> dict[str, dict[str, Any]]:
+def _properties(palette: Palette) -> dict[str, dict[str, Any]]:
     """Return the properties of the moving artists by name."""
     ink, paper = palette.ink, palette.background
     return {

@@ -75,7 +75,7 @@ def plot_phase_map(
     workers: Any = -1,
     ax: Axes | None = None,
 ) -> PhaseMap:
-    """Colour what `classify` says of uniform discs passing the flat position, over two quantities.
+    """Colour the outcome of `classify` for uniform discs at the flat position, over two quantities.
 
     ============  ========================================================  ====================
     quantity      meaning                                                   shown by default
@@ -87,10 +87,10 @@ def plot_phase_map(
     ``friction``  coefficient of friction                                   0 to 2
     ============  ========================================================  ====================
 
-    Lines are what `thresholds` says, as far as they are in view: "just rolls over" (dashed), the
-    end of N > 0 in rolling (solid), where the body really leaves the ground (dashes and dots,
-    plum), and Painlevé's friction (dashes and dots). Dotted are the a/b up to which N is lost at
-    the tip first, and the a/b beyond which no friction lets a disc roll over.
+    Lines in view show `thresholds`: "just rolls over" (dashed), the end of N > 0 in rolling
+    (solid), the lift-off of the body (dashes and dots, plum), and Painlevé's friction (dashes and
+    dots). Dotted lines are the a/b up to which N is lost at the tip first, and the a/b beyond which
+    no friction lets a disc roll over.
 
     Parameters
     ----------

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,22 +32,22 @@ There the speed that N > 0 allows is the one that rolling over takes, both of `t
 """
 _POINTS = 49  # of a curve; each takes a call of `thresholds`, some milliseconds
 _LIFT_OFF = {"color": PLUM, "ls": (0, (6, 1.5, 1.5, 1.5)), "lw": 1.2}
-_LOOK: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
+_LINE: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A line in the plane: its points, its properties, and its name with the wanted place.
+    """A line in the plane: its points, properties of Line2D, and its name with the wanted place.
 
     `place` is the share of the visible line at the middle of the name, `above` the side of the
     line for a reader.
     """
 
-    key: str
     x: FloatArray
     y: FloatArray
+    key: str
     names: tuple[str, ...]  # from long to short
-    look: dict[str, Any] = field(default_factory=dict)
+    line: dict[str, Any] = field(default_factory=dict)
     place: float = 0.5
     above: bool = True
 
@@ -82,14 +83,11 @@ def _level_marks(plane: Plane) -> Iterator[Mark]:
         contact, flight = (contact / rolling_over) ** 2, (flight / rolling_over) ** 2
         rolling_over = np.ones_like(rolling_over)
 
-    def mark(key: str, level: FloatArray, names: tuple[str, ...], **how: Any) -> Mark:
-        x, y = (places, level) if plane.axes[0] == along else (level, places)
-        return Mark(key, x, y, names, **how)
-
-    yield mark("separatrix", rolling_over, ("just rolls over",), look={"ls": "--"}, place=0.12)
-    yield mark("contact loss", contact, ("N = 0",), place=0.2)
+    mark = partial(_curve, plane, along, places)
+    yield mark(rolling_over, "separatrix", ("just rolls over",), line={"ls": "--"}, place=0.12)
+    yield mark(contact, "contact loss", ("N = 0",), place=0.2)
     yield mark(
-        "lift-off", flight, ("leaves the ground", "lift-off"), look=_LIFT_OFF, place=0.75,
+        flight, "lift-off", ("leaves the ground", "lift-off"), line=_LIFT_OFF, place=0.75,
         above=bool(np.nanmedian(flight - contact) > 0),
     )  # fmt: skip
 
@@ -101,8 +99,9 @@ def _painleve(plane: Plane) -> Mark:
         return _straight(plane, "Painlevé", "friction", friction, names)
     aspects = plane.spaced("aspect", _POINTS)
     frictions = np.array([_thresholds(plane, aspect=float(a)).painleve_friction for a in aspects])
-    x, y = (aspects, frictions) if plane.axes[0] == "aspect" else (frictions, aspects)
-    return Mark("Painlevé", x, y, names, look={"ls": "-."}, place=0.6)
+    return _curve(
+        plane, "aspect", aspects, frictions, "Painlevé", names, line={"ls": "-."}, place=0.6
+    )
 
 
 def _thresholds(plane: Plane, **along: float) -> Thresholds:
@@ -113,12 +112,18 @@ def _thresholds(plane: Plane, **along: float) -> Thresholds:
 
 
 def _straight(plane: Plane, key: str, axis: str, at: float, names: tuple[str, ...]) -> Mark:
-    (x, y) = (np.array(limits) for limits in plane.ranges)
-    if plane.axes[0] == axis:
-        x = np.full(2, at)
-    else:
-        y = np.full(2, at)
-    return Mark(key, x, y, names, {"ls": ":" if axis == "aspect" else "-."}, 0.7)
+    """Return the line across the plane at a value of one of its axes."""
+    along = next(each for each in plane.axes if each != axis)
+    ends, line = np.array(plane.range_of(along)), {"ls": ":" if axis == "aspect" else "-."}
+    return _curve(plane, along, ends, np.full(2, at), key, names, line=line, place=0.7)
+
+
+def _curve(
+    plane: Plane, along: str, places: FloatArray, values: FloatArray, *args: Any, **how: Any
+) -> Mark:
+    """Return the mark of values of one axis over places along the other."""
+    x, y = (places, values) if plane.axes[0] == along else (values, places)
+    return Mark(x, y, *args, **how)
 
 
 def draw_marks(ax: Axes, marks: Iterable[Mark]) -> tuple[dict[str, Line2D], dict[str, Text]]:
@@ -126,7 +131,7 @@ def draw_marks(ax: Axes, marks: Iterable[Mark]) -> tuple[dict[str, Line2D], dict
     seen = [(mark, visible_part(ax, mark.x, mark.y)) for mark in marks]
     seen = [(mark, part) for mark, part in seen if len(part) > 1]
     lines = {
-        mark.key: ax.plot(mark.x, mark.y, scalex=False, scaley=False, **(_LOOK | mark.look))[0]
+        mark.key: ax.plot(mark.x, mark.y, scalex=False, scaley=False, **(_LINE | mark.line))[0]
         for mark, _ in seen
     }
     labels = {mark.key: Label(part, mark.names, mark.place, mark.above) for mark, part in seen}
