@@ -13,7 +13,7 @@ import pytest
 import rolling_ellipse as rl
 from PIL import Image
 from rolling_ellipse._player import film_page
-from rolling_ellipse._player.look import DARK, LIGHT
+from rolling_ellipse._player.colours import DARK, LIGHT
 from rolling_ellipse._player.page import document
 
 Page = Any

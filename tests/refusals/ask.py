@@ -93,5 +93,5 @@ REFUSALS: list[Row] = [
     *wrong(report.simulate, PRINTED, t=[(0.0, 6.0)]),
     *(("step", lambda _, method=method, t=t, step=step: report.simulate(
         **PRINTED, method=method, t=t, step=step))
-      for method in ("dopri5", "rk4") for step, t in ((1e-300, 1.0), (2e-15, 1.0), (1e-10, 1e6))),
+      for method in ("dopri5", "rk4") for step, t in ((1e-300, 1.0), (1e-15, 1.0), (1e-10, 1e6))),
 ]  # fmt: skip

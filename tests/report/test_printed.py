@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from oracles.margins import told
 from oracles.report import BODY, Q_DOT, SHAPE, Array, Q, off_by, start
 from rolling_ellipse import report
-from rolling_ellipse.report._runge_kutta import Steps, integrate
+from rolling_ellipse._ask.settings import Settings
+from rolling_ellipse.report._runge_kutta import integrate
 
 # ----------------------------------------------------------------------------------- the simulation
 
@@ -106,12 +107,12 @@ def test_large_steps_lift_it_off() -> None:
 
 
 @pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("dopri5", 5)])
-def test_order(method: str, order: int) -> None:
+def test_order(method: Any, order: int) -> None:
     """On y' = y cos t, y = exp(sin t), whose higher terms are as large as the first."""
     sizes = np.array([0.1, 0.05, 0.025])
     errors = []
     for size in sizes:
-        steps = Steps(method, 1e-3, 1e-3, float(size), 10_000)
+        steps = Settings(method=method, step=float(size), max_steps=10_000)
         y, message = integrate(
             lambda y: np.array([y[0] * math.cos(y[1]), 1.0]), np.array([1.0, 0.0]),
             np.array([2.0]), steps,

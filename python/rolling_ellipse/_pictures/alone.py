@@ -1,4 +1,4 @@
-"""A lock around what a process has one of."""
+"""A lock for what exists once in a process."""
 
 import os
 from threading import RLock

@@ -1,4 +1,4 @@
-"""What plot functions return: artists by name."""
+"""The base of what plot functions return: artists by name."""
 
 from __future__ import annotations
 
@@ -10,13 +10,10 @@ class Artists:
     """A dataclass of artists that prints their names, and how many there are of each."""
 
     def __repr__(self) -> str:
-        names = (_counted(field.name, getattr(self, field.name)) for field in fields(self))  # type: ignore[arg-type]
-        return f"<{type(self).__name__}: {', '.join(name for name in names if name)}>"
-
-
-def _counted(name: str, artists: Any) -> str:
-    """The name of what is there; nothing of what is not."""
-    if artists is None:
-        return ""
-    several = isinstance(artists, (tuple, list, dict))
-    return f"{len(artists)} {name}" if several else name
+        names = []
+        for field in fields(self):  # type: ignore[arg-type]
+            artists: Any = getattr(self, field.name)
+            if artists is not None:
+                several = isinstance(artists, (tuple, list, dict))
+                names.append(f"{len(artists)} {field.name}" if several else field.name)
+        return f"<{type(self).__name__}: {', '.join(names)}>"

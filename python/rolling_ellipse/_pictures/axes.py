@@ -1,4 +1,4 @@
-"""Where pictures are drawn: in what is given, or in a new pyplot figure; and how they say so."""
+"""The Axes and figures of pictures, given or new, and the docstring parts that pictures share."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .alone import Alone
 
 _Given = ParamSpec("_Given")
 _Drawn = TypeVar("_Drawn")
-_opened: ContextVar[list[Figure]] = ContextVar("_opened")  # by the plot function that is at work
+_opened: ContextVar[list[Figure]] = ContextVar("_opened")  # by the plot function at work
 _with_figures = Alone()  # pyplot numbers its figures: two threads could get the same number
 
 _SHARED = {
@@ -45,7 +45,7 @@ ValueError
 TypeError
     If something is no trajectory, or an argument of another wrong kind.""",
 }
-"""Parts of docstrings, which stand there as `{name}`."""
+"""Parts of docstrings, each in the place of its `{name}`."""
 
 
 def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
@@ -97,7 +97,7 @@ def panels_of(ax: Axes | Sequence[Axes] | None) -> list[Axes]:
 
 
 def listed(ax: Any) -> list[Any]:
-    """Return the entries of a list or an array, also of those in rows, or the only one given."""
+    """Return the entries of a list or an array, flat; a single object is the only entry."""
     if isinstance(ax, np.ndarray):
         return list(ax.ravel())
     if isinstance(ax, (list, tuple)):
@@ -109,7 +109,7 @@ def figure_of(figure: Any, size: tuple[float, float]) -> Figure:
     """Return the figure given, or a new pyplot figure of a size [inch]."""
     if figure is None:
         return _new_figure(size)
-    if not isinstance(figure, FigureBase):  # a SubFigure will do
+    if not isinstance(figure, FigureBase):  # of Figure and SubFigure
         raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
     whole = figure.get_figure(root=True)
     if whole is not None and whole.get_layout_engine() is None:
@@ -126,6 +126,6 @@ def pyplot_figure(**options: Any) -> Figure:
 
 
 def _new_figure(size: tuple[float, float]) -> Figure:
-    """Open a pyplot figure of a size [inch], or of the one that the style asks for."""
-    asked = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
-    return pyplot_figure(figsize=None if asked else size, layout="constrained")
+    """Open a pyplot figure of the size that the style asks for, else of a size [inch]."""
+    styled = rcParams["figure.figsize"] != rcParamsDefault["figure.figsize"]
+    return pyplot_figure(figsize=None if styled else size, layout="constrained")

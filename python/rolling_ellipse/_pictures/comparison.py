@@ -1,16 +1,17 @@
-"""The motions of one picture, and how they are told apart.
+"""The motions of one picture and their styles.
 
-Several motions differ in colour (hue and lightness), and in dashes where one quantity is drawn or
-in markers where dashes tell the quantities apart: the pictures read in grey.
+Several motions differ in colour (hue and lightness), and also in dashes. Where dashes belong to
+the quantities, motions differ in markers instead. So pictures can be read in grey.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import is_color_like, to_hex
 from matplotlib.lines import Line2D
@@ -21,21 +22,16 @@ from .._motion.trajectory import Trajectory
 from . import sampling
 from .axes import listed
 from .legends import quantity_handles, some_of
-from .palette import palette_of
+from .palette import Palette, palette_of
 
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-
-    from .palette import Palette
-
-MOST_FACTS = 3  # in one label; more would be longer than a small picture is wide
+MOST_FACTS = 3  # in one label: more would be wider than a small picture
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (7, 2, 1.5, 2)), (0, (1.5, 1.5)), (0, (9, 3)))
 _MARKERS = (".", "x", "+", "1", "2")
 
 
 @dataclass(frozen=True)
 class Style:
-    """How one motion of several looks; without a colour, its quantities have theirs."""
+    """The style of one motion of several; without a colour its quantities have their own."""
 
     label: str = ""
     colour: Any = None
@@ -47,11 +43,11 @@ PLAIN = Style()
 
 
 class Comparison:
-    """One motion or several of one picture, in the order given, each with samples.
+    """The motions of one picture in the order given, each with samples.
 
-    Iteration gives each motion with its style. A motion that is alone, and has no colour given, is
-    `PLAIN`: then colours are free to tell its quantities apart. `options` are properties of Line2D
-    that the curves of all motions are to have.
+    Iteration gives each motion with its style. A single motion without a given colour has the style
+    `PLAIN`, so that its quantities can differ in colour. `options` are properties of Line2D for the
+    curves of all motions.
     """
 
     def __init__(
@@ -76,29 +72,29 @@ class Comparison:
         return zip(self.motions, [PLAIN] if self._plain else self.styles, strict=True)
 
     def over_time(self) -> Comparison:
-        """Sample the motions as finely as curves over time are drawn, and return itself."""
+        """Sample the motions at the times of curves, and return itself."""
         self.motions = tuple(map(sampling.over_time, self.motions))
         return self
 
     def for_dots(self) -> Comparison:
-        """Take the motions at what dots are drawn at, and return itself."""
+        """Sample the motions at the times of dots, and return itself."""
         self.motions = tuple(map(sampling.for_dots, self.motions))
         return self
 
     def restyle(self, *artists: Artist | None) -> None:
-        """Give artists the properties that all curves are to have."""
+        """Give artists the properties of all curves."""
         for artist in artists:
             if artist is not None and self.options:
                 artist.set(**self.options)
 
     def handles(self, ax: Axes, quantities: Sequence[tuple[str, str]]) -> list[Any]:
-        """Entries of a legend: the curves of one motion, else motions and (name, dash) of each."""
+        """Return entries of a legend: the curves of one motion, else motions and quantities."""
         if self.alone:
             return list(ax.get_legend_handles_labels()[0])
         return [*self.motion_handles(solid=True), *quantity_handles(quantities, self.palette)]
 
     def motion_handles(self, *, solid: bool) -> list[Line2D]:
-        """Entries of a legend for the motions: their dashes, or `solid` lines with markers."""
+        """Return entries of a legend for the motions: dashes, or `solid` lines with markers."""
         found = [
             Line2D(
                 [], [], color=style.colour, label=style.label, ms=3, mew=0.8,
@@ -111,7 +107,7 @@ class Comparison:
 
 
 def require_motion(trajectory: object) -> None:
-    """Raise TypeError for what is no Trajectory, ValueError for one without samples."""
+    """Raise TypeError unless it is a Trajectory, ValueError if it has no samples."""
     if not isinstance(trajectory, Trajectory):
         raise TypeError(f"trajectory must be a Trajectory, got {shown(trajectory)}")
     if trajectory.t.size == 0:
@@ -135,7 +131,7 @@ def _motions(trajectories: Trajectory | Sequence[Trajectory]) -> tuple[Trajector
 
 
 def _colors(colors: Any, count: int) -> tuple[Any, ...] | None:
-    """Return the colours given for so many motions, if they are."""
+    """Return the colours given for so many motions; None if none are given."""
     if colors is None:
         return None
     wanted = f"colors must be a sequence of {count} matplotlib colours, one for each trajectory"
@@ -153,7 +149,7 @@ def _styles(
 ) -> tuple[Style, ...]:
     count = len(labels)
     colours = colors or palette.curves[:count]
-    if count > len(colours):  # from light to dark
+    if count > len(colours):  # more motions than colours: from light to dark
         colours = tuple(to_hex(palette.times(share)) for share in np.linspace(0, 1, count))
     markers = _MARKERS if count > 1 else ("",)
     return tuple(
@@ -165,10 +161,10 @@ def _styles(
 def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) -> list[str]:
     """Return one name for each trajectory: the given ones, or what differs among them.
 
-    Without `labels`, a name holds the method, the model and the fields of the scene, as far as
-    they differ: "rk4", or "omega = 3.2 rad/s, friction = 0.8". More than three of them end in an
-    ellipsis. Where that does not tell all apart, the names are "1", "2", "3"; a single
-    trajectory needs no name and has an empty one.
+    Without `labels` a name consists of the method, the model and the fields of the scene that
+    differ: "rk4", or "omega = 3.2 rad/s, friction = 0.8". More than three facts are cut with an
+    ellipsis. If two such names are equal, the names are "1", "2", "3". The name of a single
+    trajectory is empty.
     """
     count = len(trajectories)
     if labels is not None:
@@ -195,7 +191,7 @@ def labels_of(trajectories: Sequence[Trajectory], labels: Sequence[str] | None) 
 
 
 def _texts(name: str, values: list[Any]) -> list[str]:
-    """Texts of one field of several scenes, with the digits that tell its values apart."""
+    """Return the texts of one field of several scenes, with enough digits to differ."""
     texts: list[str] = []
     for digits in (6, 12, 17):
         texts = [_text(name, value, digits) for value in values]

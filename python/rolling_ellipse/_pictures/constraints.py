@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from .._ask.check import FloatArray
 from .._motion.relative_errors import constraint_errors, worst
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, some_of
-from .modes import mode_handles
-from .panels import draw_dots, dress_errors, finish
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._motion.relative_errors import Errors
-    from .._motion.trajectory import Trajectory
+from .panels import draw_error, dress_errors, finish
 
 
 @dataclass(frozen=True, repr=False)
@@ -67,20 +63,19 @@ def plot_constraints(
         of_panels = _errors_of(motion, len(panels), style)
         for panel, drawn, errors in zip(panels, lines, of_panels, strict=True):
             for rank, (name, values) in enumerate(errors.items()):
-                drawn.append(draw_dots(panel, motion, values, name, rank, style))
+                drawn.append(draw_error(panel, motion, values, name, rank, style))
                 shown.restyle(drawn[-1])
     names = ("positions", "velocities") if len(panels) == 2 else ("constraint error",)
     for panel, drawn, name in zip(panels, lines, names, strict=True):
         dress_errors(panel, drawn, name)
     if shown.alone:
         name_curves(panels[-1], some_of(lines[-1]))
-    handles = [*some_of(lines[0]), *mode_handles(shown.motions, shown.palette)]
-    marks = finish(panels, shown, handles)
+    marks = finish(panels, shown, some_of(lines[0]))
     return Constraints(tuple(panels), tuple(map(tuple, lines)), marks)
 
 
-def _errors_of(motion: Trajectory, panels: int, style: Style) -> list[Errors]:
-    """For each panel the errors to draw by name: all of one motion, the worst of one of several."""
+def _errors_of(motion: Trajectory, panels: int, style: Style) -> list[Mapping[str, FloatArray]]:
+    """Return the errors of each panel by name; of one of several motions only the worst."""
     positions, velocities = constraint_errors(motion)
     if style.label and panels == 2:
         return [{style.label: worst(positions)}, {style.label: worst(velocities)}]

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from .._ask.check import choice
 from .._motion.relative_errors import energy_error
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
-from .modes import mode_handles
-from .panels import DASHES, draw_dots, draw_energies, dress_errors, finish
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._motion.trajectory import Trajectory
+from .panels import DASHES, draw_energies, draw_error, dress_errors, finish
 
 KINDS = ("energies", "error")
 
@@ -30,7 +26,7 @@ KINDS = ("energies", "error")
 class Energy(Artists):
     """Artists of `plot_energy`; item i of each tuple belongs to motion i.
 
-    Either `error` is empty, or `total`, `kinetic` and `potential` are.
+    Of kind "energies" `error` is empty; of kind "error" `total`, `kinetic` and `potential` are.
     """
 
     ax: Axes
@@ -79,16 +75,16 @@ def plot_energy(
             energies.append(draw_energies(ax, motion, style))
         else:
             label = style.label or "energy error"
-            errors.append(draw_dots(ax, motion, energy_error(motion), label, 0, style))
+            errors.append(draw_error(ax, motion, energy_error(motion), label, 0, style))
     for lines in (*energies, errors):
         shown.restyle(*lines)
-    handles: list[Artist] = [*some_of(errors)]
+    handles: list[Any] = some_of(errors)
     if wanted == "energies":
-        quantities = list(zip(("total", "kinetic", "potential"), DASHES, strict=True))
-        handles = shown.handles(ax, quantities)
-    else:  # what friction and impacts take is no error
+        names = ("total", "kinetic", "potential")
+        handles = shown.handles(ax, list(zip(names, DASHES, strict=True)))
+    else:  # a loss by friction and impacts is no error
         word = "change" if any(motion.events for motion in shown.motions) else "error"
         dress_errors(ax, errors, f"relative energy {word}")
-    marks = finish([ax], shown, [*handles, *mode_handles(shown.motions, shown.palette)])
+    marks = finish([ax], shown, handles)
     total, kinetic, potential = zip(*energies, strict=True) if energies else ((), (), ())
     return Energy(ax, total, kinetic, potential, tuple(errors), marks)

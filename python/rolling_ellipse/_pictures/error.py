@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
-from .._ask.check import choice, shown
+from .._ask.check import FloatArray, choice, shown
 from .._ask.settings import DEFAULTS
 from .._motion.quantities import QUANTITIES as UNITS_AND_MEANINGS
 from .._motion.trajectory import Trajectory
@@ -15,19 +19,7 @@ from .artists import Artists
 from .axes import axes_of, picture
 from .comparison import Comparison
 from .legends import some_of
-from .palette import palette_of
-from .panels import dress_errors, finish
-from .sampling import are_ranges, ranges
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .comparison import Style
+from .panels import draw_error, dress_errors, finish
 
 QUANTITIES = {  # with their symbols
     "theta": "θ", "omega": "ω", "x": "x", "z": "z", "x_dot": "x_dot", "z_dot": "z_dot",
@@ -82,10 +74,10 @@ def plot_error(
     references = tuple(_reference_of(motion, reference) for motion in compared.motions)
     compared.over_time()
     ax = axes_of(ax, (7, 3.4))
-    errors = [
-        _draw_error(ax, motion, style, _error(motion, right, quantity))
-        for (motion, style), right in zip(compared, references, strict=True)
-    ]
+    errors = []
+    for (motion, style), right in zip(compared, references, strict=True):
+        error, label = _error(motion, right, quantity), style.label or "error"
+        errors.append(draw_error(ax, motion, error, label, 0, style, ls=style.dash))
     compared.restyle(*errors)
     dress_errors(ax, errors, f"error of {QUANTITIES[quantity]}{_UNITS[quantity]}")
     marks = finish([ax], compared, [] if compared.alone else some_of(errors))
@@ -119,18 +111,9 @@ def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajector
 
 
 def _error(motion: Trajectory, right: Trajectory, quantity: str) -> FloatArray:
-    """|error| at the times of a motion; NaN where the right one has ended."""
+    """Return |error| at the times of a motion; NaN after the end of the right one."""
     known = motion.t <= right.t_end
     error = np.full(motion.t.shape, np.nan)
     there = getattr(right.sol(motion.t[known]), quantity)
     error[known] = np.abs(getattr(motion, quantity)[known] - there)
     return error
-
-
-def _draw_error(ax: Axes, motion: Trajectory, style: Style, error: FloatArray) -> Line2D:
-    colour, label = style.colour or palette_of(ax).ink, style.label or "error"
-    label = label if np.nan_to_num(error).any() else f"{label} = 0"
-    t = motion.t
-    if are_ranges(motion):
-        t, _, error = ranges(t, error)
-    return ax.plot(t, error, color=colour, ls=style.dash, label=label)[0]

@@ -3,32 +3,27 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
 
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import panels_of, picture
 from .comparison import Comparison, Style
 from .legends import name_curves, quantity_handles
-from .modes import mode_handles
 from .palette import palette_of
 from .panels import DASHES, RANGE, draw_forces, dress_forces, finish
 from .sampling import are_ranges, curve
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.collections import PolyCollection
-    from matplotlib.lines import Line2D
-
-    from .._motion.trajectory import Trajectory
-
 _LIMIT = ":"
-_STEEP = 3.0  # |F|/N beyond which the scale does not follow: it is infinite where N vanishes
+_STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite where N vanishes
 
 
 @dataclass(frozen=True, repr=False)
@@ -92,15 +87,15 @@ def plot_forces(
     normal, friction, limits = zip(*drawn, strict=True)
     shown.restyle(*normal, *friction, *needed)
     handles = shown.handles(panels[0], [("normal", DASHES[0]), ("friction", DASHES[1])])
-    marks = finish(panels, shown, [*handles, *mode_handles(shown.motions, shown.palette)])
+    marks = finish(panels, shown, handles)
     return Forces(tuple(panels), normal, friction, limits, tuple(needed), tuple(available), marks)
 
 
 def _draw_needed(ax: Axes, motion: Trajectory, style: Style) -> Line2D:
     colour, label = style.colour or palette_of(ax).ink, style.label or "needed"
-    look: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
+    options: dict[str, Any] = {"alpha": RANGE} if are_ranges(motion) else {}
     t, needed = curve(motion.t, motion.friction_needed)
-    return ax.plot(t, needed, color=colour, ls=style.dash, label=label, **look)[0]
+    return ax.plot(t, needed, color=colour, ls=style.dash, label=label, **options)[0]
 
 
 def _draw_available(ax: Axes, motion: Trajectory, style: Style) -> Line2D | None:

@@ -7,28 +7,24 @@ eye sees.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Ellipse, Polygon
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D
 
-from .._ask.check import require_near
+from .._ask.check import FloatArray, require_near
+from .._ask.scene import InitialState, Scene
 from .._core import Mode
+from .._motion.trajectory import Trajectory
 from ..geometry import support_slope
 from .palette import PLUM, palette_of
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from .._ask.check import FloatArray
-    from .._ask.scene import InitialState, Scene
-    from .._motion.trajectory import Trajectory
-
 SKID: dict[str, Any] = {"color": PLUM, "lw": 6, "solid_capstyle": "butt", "alpha": 0.6}
-SHOWN_TURNS = 3.0  # a picture that stands still shows this much; more would be a thin stripe
+SHOWN_TURNS = 3.0  # most turns in a still picture: more would be a thin stripe
 HALF_TURNS = 2 * SHOWN_TURNS
 
 
@@ -57,7 +53,7 @@ def contact_points(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
 
 
 def touching_x(scene: Scene, state: InitialState) -> float:
-    """Return where the body of an event touches the ground, or is above it [m]."""
+    """Return the place on the ground that an event's body touches, or is above [m]."""
     return state.x + float(support_slope(state.theta, a=scene.a, b=scene.b))
 
 
@@ -68,15 +64,15 @@ def skids(trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
 
 
 def view_of(scene: Scene, x: FloatArray, z: FloatArray) -> tuple[float, float, float, float]:
-    """Return left, right, bottom, top [m] of what the eye sees of a body with centres at x, z [m].
+    """Return left, right, bottom, top [m] of a view of a body with centres at x, z [m].
 
-    There is a little air around them. Refused if they are so far away that a double does not know
-    a thousandth of the body there.
+    It has a little air around the body. It is refused if a double at that distance cannot resolve a
+    thousandth of the body.
     """
     size = max(scene.a, scene.b)
     farthest = max(float(np.max(np.abs(x))), float(np.max(np.abs(z))))
     require_near("trajectory", size, farthest)
-    top_z = z + np.minimum(z, size)  # on the ground G is midway up
+    top_z = z + np.minimum(z, size)  # on the ground the top is twice as high as the centre
     corners = [
         tilted(scene).transform(np.column_stack([x + dx, height]))
         for dx in (-size, size)
@@ -98,15 +94,15 @@ def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Pol
         facecolor=palette.earth, edgecolor=palette.grey, lw=1, zorder=1,
         transform=tilted(scene) + ax.transData,
     )  # fmt: skip
-    ax.add_artist(earth)  # add_patch would make room for all of it
+    ax.add_artist(earth)  # add_patch would widen the view to the whole of it
     return earth
 
 
 class Ruler:
-    """Rules the ground: a tick every step, longer every fifth, with its distance.
+    """Ticks of the ground, every fifth longer and with its distance.
 
-    It makes the rolling visible. Only the part within `span` [m] of a place on the ground is
-    drawn, so that it costs the same however far the body rolls.
+    They make the rolling visible. Only those within `span` [m] of a place are drawn, so that the
+    cost does not grow with the distance.
     """
 
     def __init__(self, ax: Axes, scene: Scene, span: float) -> None:
@@ -126,7 +122,7 @@ class Ruler:
         ]  # fmt: skip
 
     def move(self, x: float) -> None:
-        """Rule the ground around x [m]."""
+        """Put the ticks around x [m]."""
         middle = 5 * round(x / (5 * self.step))
         marks = middle + np.arange(-5 * self._fifths, 5 * self._fifths + 1)
         lengths = self._depth * np.where(marks % 5 == 0, 2, 1)

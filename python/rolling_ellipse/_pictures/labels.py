@@ -1,43 +1,41 @@
-"""Places of labels, none over another: beside the axes, upright at a time, along lines."""
+"""Labels that do not overlap: beside the axes, upright at a time, along lines."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.font_manager import FontProperties
+from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
+from matplotlib.text import Annotation, Text
 
+from .._ask.check import FloatArray
 from .palette import INK, palette_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-    from matplotlib.text import Annotation, Text
-
-    from .._ask.check import FloatArray
 
 _SMALL = "x-small"
 _PITCH = 1.25  # of lines of text, in font sizes
 _WIDTH = 0.56  # of a letter, in font sizes
-_MARGIN_SIZES = 4.5, 7.0  # of the letters beside the axes [points]
-_TALLEST = 0.35  # of upright labels, over the height of the axes
+_MARGIN_SIZES = 4.5, 7.0  # least and largest font size beside the axes [points]
+_TALLEST = 0.35  # height of upright labels over that of the axes: higher ones are not written
 _RISE = 0.65  # from a line to the middle of the letters on it, in font sizes
-_CLEAR = 0.9  # from there to the next line or name: then it is a good place
-_TIGHT = 0.5  # and with less it is none
-_FINE = 16  # pieces of a segment, to find where it enters the view
+_CLEAR = 0.9  # distance of a good place from other lines and names, in font sizes
+_TIGHT = 0.5  # a place with less distance is not used
+_FINE = 16  # parts of a segment, to find where a line enters the view
 _SHIFTS = (0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.4, -0.4, 0.5, -0.5, 0.6, -0.6)
 
 
 def apart(wanted: FloatArray, gap: float, low: float, high: float) -> FloatArray:
-    """Return places next to those wanted, which rise, at least a gap apart, from low to high.
+    """Return places from low to high, at least a gap apart, next to rising wanted ones.
 
-    The least squares of the moves: what is too near becomes a block around its mean.
+    The sum of the squared moves is least: places too near each other become a block around their
+    mean.
     """
     steps = gap * np.arange(wanted.size)
-    blocks: list[tuple[float, int]] = []  # mean of the starts that members want, and their count
+    blocks: list[tuple[float, int]] = []  # mean of the wanted starts of the members, their number
     for start, count in zip((wanted - steps).tolist(), [1] * wanted.size, strict=True):
         while blocks and blocks[-1][0] > start:
             before, members = blocks.pop()
@@ -58,10 +56,10 @@ def size_in_points(ax: Axes) -> FloatArray:
 def label_ends(
     ax: Axes, lines: Mapping[Any, tuple[Line2D, str]], own_figure: bool
 ) -> dict[Any, Annotation]:
-    """Write the name of each line beside the axes, as near as there is room to its right end.
+    """Write the name of each line beside the axes, as near to its right end as there is room.
 
-    Of more lines than there is room for, evenly spread ones are named. In a figure of its own the
-    room is known once the names have their margin: they are written twice.
+    If there is no room for all lines, evenly spread ones are named. In an own figure the layout
+    makes a margin for the names, which changes the room: there they are written twice.
     """
     if not lines:
         return {}
@@ -103,7 +101,7 @@ def _right_end(ax: Axes, line: Line2D) -> FloatArray:
 
 
 def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation]:
-    """Write names upright at times, above the curves; nothing where they crowd."""
+    """Write names upright at times, above the curves; none if they crowd."""
     if not names:
         return []
     points = FontProperties(size=_SMALL).get_size_in_points()
@@ -130,7 +128,7 @@ def label_times(ax: Axes, names: Sequence[tuple[float, str]]) -> list[Annotation
 
 
 def visible_part(ax: Axes, x: FloatArray, y: FloatArray) -> FloatArray:
-    """The longest piece of a line in view, as points (n, 2) in shares of the axes; n may be 0."""
+    """Return the longest part of a line in view: points (n, 2) in shares of the axes."""
     with np.errstate(invalid="ignore"):
         corners = (ax.transData - ax.transAxes).transform(np.column_stack([x, y]))
     steps = np.linspace(0, len(corners) - 1, _FINE * (len(corners) - 1) + 1)
@@ -144,10 +142,10 @@ def visible_part(ax: Axes, x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 class Label(NamedTuple):
-    """Names along a line, from long to short, and where the middle of one is to be.
+    """Names along a line, from long to short, and the wanted place of the middle of one.
 
-    `line` is in shares of the axes, `place` a share of its length; `above` is the side of the line,
-    as one reads.
+    `line` is in shares of the axes, `place` a share of its length. `above` is the wanted side of
+    the line for a reader.
     """
 
     line: FloatArray
@@ -157,7 +155,7 @@ class Label(NamedTuple):
 
 
 def label_lines(ax: Axes, labels: Mapping[str, Label]) -> dict[str, Text]:
-    """Write along each line its first name that finds a place, clear of other lines and names."""
+    """Write along each line the first of its names that has a place clear of lines and names."""
     font, page = FontProperties(size=_SMALL).get_size_in_points(), size_in_points(ax)
     lines = {key: _dotted(label.line * page, font / 4) for key, label in labels.items()}
     taken, found = np.empty((0, 2)), {}
@@ -175,8 +173,8 @@ def label_lines(ax: Axes, labels: Mapping[str, Label]) -> dict[str, Text]:
 class _Spot(NamedTuple):
     """A place of a name on the page [points].
 
-    The middle of its foot, its direction and side, dots along the middle of its letters, and its
-    distance from other lines and names [font sizes].
+    It has the middle of the foot, direction and side of the name, dots along the middle of its
+    letters, and the distance from other lines and names [font sizes].
     """
 
     foot: FloatArray
@@ -197,7 +195,7 @@ def _spots(
         first, foot, last = _at(np.array([-width / 2, 0, width / 2]) + middle, along, line)
         lead = last - first
         if lead[0] < -1e-6 or (lead[0] < 1e-6 and lead[1] < 0):
-            lead = -lead  # as one reads
+            lead = -lead  # from left to right, or upwards
         lead = lead / np.hypot(*lead)
         for above in (label.above, not label.above):
             up = np.array([-lead[1], lead[0]]) * (1 if above else -1)
@@ -208,7 +206,7 @@ def _spots(
 
 
 def _best(spots: Iterator[_Spot]) -> _Spot | None:
-    """Return the first good place, or else the best one that will do."""
+    """Return the first good place, else the best one that is not tight, if any."""
     best = None
     for spot in spots:
         if best is None or spot.clear > best.clear + 1e-6:
@@ -231,7 +229,7 @@ def _written(ax: Axes, name: str, spot: _Spot, page: FloatArray) -> Text:
 
 
 def _along(line: FloatArray) -> FloatArray:
-    """Length of a line up to each of its points."""
+    """Return the length of a line up to each of its points."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
 
 

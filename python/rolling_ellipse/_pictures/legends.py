@@ -3,30 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from .palette import Palette
+from .palette import Palette
 
 _Entry = TypeVar("_Entry")
 
-_NAMED = 8  # more names than this would fill the picture
+_NAMED = 8  # most names of motions: more would fill the picture
 
 
 def some_of(entries: Sequence[_Entry]) -> list[_Entry]:
-    """Return what a legend has room for: all, or evenly spread ones with the first and the last."""
+    """Return the entries that a legend has room for: all, or evenly spread ones with both ends."""
     places = np.linspace(0, len(entries) - 1, min(len(entries), _NAMED)).round()
     return [entries[int(i)] for i in places]
 
 
 def quantity_handles(quantities: Sequence[tuple[str, str]], palette: Palette) -> list[Line2D]:
-    """Entries of a legend for (name, dash) of what is drawn of every motion."""
+    """Return entries of a legend for quantities (name, dash) of every motion."""
     return [Line2D([], [], color=palette.grey, ls=dash, label=name) for name, dash in quantities]
 
 
@@ -48,12 +46,12 @@ def title_beside_legend(ax: Axes, text: str) -> None:
         return
     taken = legend.get_window_extent()
     if title.get_window_extent().width + taken.width > ax.get_window_extent().width:
-        above = taken.height * 72 / ax.figure.dpi + 4  # and the descent of its letters
+        above = taken.height * 72 / ax.figure.dpi + 4  # [points]; 4 for the descent of letters
         ax.set_title(text, loc="left", fontsize="medium", pad=above)
 
 
 def _columns(ax: Axes, entries: Sequence[Any]) -> int:
-    """Return in how many columns the entries are as wide as the axes at most."""
+    """Return the largest number of columns that are together no wider than the axes."""
     points = FontProperties(size="small").get_size_in_points()
     room = ax.get_window_extent().width * 72 / ax.figure.dpi
     widths = [points * (3.6 + 0.56 * len(str(entry.get_label()))) for entry in entries]

@@ -1,30 +1,25 @@
-"""What a body does, under its curves: modes as greys, events as dotted lines with names.
+"""Marks under curves over time: modes as greys, events as dotted lines with names.
 
-Greys differ in hatches too, so that they are told apart in print. Where the model of a motion is
-not valid, its curves have grey ground.
+Greys differ in hatches too, so that they differ in print. Where the model of a motion is not valid,
+its curves have grey ground.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from .._ask.check import FloatArray
 from .._core import EventKind, Mode
+from .._motion.events import Event
+from .._motion.trajectory import Trajectory
 from .labels import label_times
-from .palette import palette_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .._motion.events import Event
-    from .._motion.trajectory import Trajectory
-    from .palette import Palette
+from .palette import Palette, palette_of
 
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
 _SHADES: dict[Mode, tuple[float, float, str]] = {  # of face and edge, and the hatch
@@ -36,14 +31,14 @@ _ROW = 0.05  # height of one of several motions, over that of the axes
 
 
 def events_shown(motion: Trajectory) -> list[Event]:
-    """The events among the samples."""
+    """Return the events between the first and the last sample."""
     return [event for event in motion.events if motion.t[0] <= event.t <= motion.t[-1]]
 
 
 def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
-    """Start and length [s] of all there is of each mode but rolling, among the samples.
+    """Return start and length [s] of every span of each mode but rolling, within the samples.
 
-    Without a contact there is nothing to tell apart: other models know one mode.
+    Only contact motions have spans: other models have one mode.
     """
     spans: dict[Mode, list[tuple[float, float]]] = {mode: [] for mode in _SHADES}
     if motion.model != "contact":
@@ -60,44 +55,42 @@ def mode_spans(motion: Trajectory) -> dict[Mode, list[tuple[float, float]]]:
     return spans
 
 
-def shade_modes(
-    ax: Axes, motion: Trajectory, row: int | None = None, colour: str = ""
-) -> list[Artist]:
-    """Shade the time that a motion slides, flies or rests: all of the ground, or a row at the top.
+def shade_modes(ax: Axes, motion: Trajectory, row: int, colour: str | None) -> list[Artist]:
+    """Shade the time that a motion slides, flies or rests.
 
-    Rows are for several motions, and edged in their colours.
+    A motion without a `colour` is alone and has the whole ground. One of several has a row at the
+    top, edged in its colour.
     """
-    bottom, height = (0.0, 1.0) if row is None else (1 - (row + 1) * _ROW, 0.8 * _ROW)
+    bottom, height = (1 - (row + 1) * _ROW, 0.8 * _ROW) if colour else (0.0, 1.0)
+    edge = {"edgecolor": colour, "lw": 0.8} if colour else {"lw": 0}
     shades: list[Artist] = []
     for mode, spans in mode_spans(motion).items():
         if spans:
-            look = _look(mode, palette_of(ax)) | ({} if row is None else {"edgecolor": colour})
+            shading = _shading(mode, palette_of(ax)) | edge
+            upright = ax.get_xaxis_transform()
             shades.append(
-                ax.broken_barh(
-                    spans, (bottom, height), transform=ax.get_xaxis_transform(),
-                    lw=0 if row is None else 0.8, zorder=0, **look,
-                )
-            )  # fmt: skip
+                ax.broken_barh(spans, (bottom, height), transform=upright, zorder=0, **shading)
+            )
     return shades
 
 
-def _look(mode: Mode, palette: Palette) -> dict[str, Any]:
+def _shading(mode: Mode, palette: Palette) -> dict[str, Any]:
     face, edge, hatch = _SHADES[mode]
     return {"facecolor": palette.shade(face), "edgecolor": palette.shade(edge), "hatch": hatch}
 
 
 def mode_handles(motions: Sequence[Trajectory], palette: Palette) -> list[Patch]:
-    """Entries of a legend for the modes that are shaded."""
+    """Return entries of a legend for the modes that are shaded."""
     found = [mode_spans(motion) for motion in motions]
     return [
-        Patch(label=mode.name.lower(), lw=0, **_look(mode, palette))
+        Patch(label=mode.name.lower(), lw=0, **_shading(mode, palette))
         for mode in _SHADES
         if any(spans[mode] for spans in found)
     ]
 
 
 def mark_events(ax: Axes, motion: Trajectory, colour: str) -> list[Artist]:
-    """Dotted lines where modes change or the body hits the ground."""
+    """Draw dotted lines at the events."""
     moments, upright = [event.t for event in events_shown(motion)], ax.get_xaxis_transform()
     if not moments:
         return []
@@ -105,18 +98,16 @@ def mark_events(ax: Axes, motion: Trajectory, colour: str) -> list[Artist]:
 
 
 def name_events(ax: Axes, motion: Trajectory) -> list[Artist]:
-    """Write what the events are along their lines, above the curves; nothing where they crowd."""
+    """Write the names of events along their lines, above the curves; none where they crowd."""
     events = events_shown(motion) if motion.model == "contact" else []
     return [*label_times(ax, [(event.t, EVENT_NAMES[event.kind]) for event in events])]
 
 
-def shade_invalid(
-    ax: Axes, motion: Trajectory, colour: str | None = None, share: float = 1.0
-) -> list[Artist]:
-    """Shade the time from which on the model is not valid.
+def shade_invalid(ax: Axes, motion: Trajectory, colour: str | None, share: float) -> list[Artist]:
+    """Shade the time after the model has ceased to be valid.
 
-    Several grounds add up: the darker, the more of the motions it is. Each motion then has its
-    `share`, and a line of its colour where the model ends.
+    The grounds of several motions add up, each with a `share` of the darkness, and each has a line
+    of its colour where its model ends.
     """
     start, end = max(motion.valid_until, float(motion.t[0])), float(motion.t[-1])
     if not start < end:
@@ -127,7 +118,7 @@ def shade_invalid(
 
 
 def draw_invalid_ground(ax: Axes, x: FloatArray, y: FloatArray, **options: Any) -> Line2D:
-    """Draw grey ground along a curve, where a model is not valid; NaN where it is."""
+    """Draw grey ground along a curve; y is NaN where the model is valid."""
     (ground,) = ax.plot(
         x, y, color=palette_of(ax).shade(0.13), lw=8, solid_capstyle="round", zorder=1.7,
         label="_invalid", **options,

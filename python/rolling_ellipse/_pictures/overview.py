@@ -1,14 +1,19 @@
-"""Still pictures of a trajectory: the body at even times, and one figure that shows everything.
-
-Nothing is computed here that the trajectory does not know.
-"""
+"""One figure of a motion: the body at even times over curves of all its quantities."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from .._ask.check import FloatArray
 from .._motion.relative_errors import constraint_errors, energy_error, worst
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import figure_of, picture
 from .comparison import Comparison
@@ -16,8 +21,8 @@ from .legends import name_curves
 from .modes import mode_handles
 from .panels import (
     draw_curve,
-    draw_dots,
     draw_energies,
+    draw_error,
     draw_forces,
     dress_errors,
     dress_forces,
@@ -27,22 +32,10 @@ from .panels import (
 from .sampling import for_dots
 from .strobe import Strobe, check_strobe, plot_strobe
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.collections import PolyCollection
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
-
 
 @dataclass(frozen=True, repr=False)
 class Overview(Artists):
-    """Artists of `plot`: curves over time, and `marks` of what happens when."""
+    """Artists of `plot`: curves over time, and `marks` of modes, events and lost validity."""
 
     figure: Figure
     strobe: Strobe
@@ -127,11 +120,11 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
     errors = {
         "positions": worst(positions),
         "velocities": worst(velocities),
-        # what friction and impacts take is no error
+        # a loss by friction and impacts is no error
         "energy change" if trajectory.events else "energy": energy_error(trajectory),
     }
     position, velocity, energy = (
-        draw_dots(ax, trajectory, values, name, rank)
+        draw_error(ax, trajectory, values, name, rank)
         for rank, (name, values) in enumerate(errors.items())
     )
     word = "error, change" if trajectory.events else "relative error"
@@ -140,7 +133,7 @@ def _draw_errors(ax: Axes, trajectory: Trajectory) -> tuple[Line2D, Line2D, Line
 
 
 def _dress_panels(panels: Sequence[Axes], shown: Comparison) -> tuple[Artist, ...]:
-    """Give two columns of three panels one time axis, and legends where there are several lines."""
+    """Give two columns of three panels one time axis, and legends to panels of several lines."""
     marks: list[Artist] = []
     for panel in panels:
         marks += dress_over_time(panel, shown, named=False)

@@ -1,34 +1,38 @@
-"""The colours of all pictures: they follow the style in force.
+"""The colours of all pictures, which follow the style in force.
 
-They differ in lightness as well as in hue: they read in grey and for colour-blind eyes. A style
-with colours of its own, as "dark_background" or "grayscale", gives them instead.
+They differ in lightness as well as in hue, so that they differ in grey and for colour-blind eyes.
+A style with its own colours, as "dark_background" or "grayscale", replaces them.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib import rcParams, rcParamsDefault
-from matplotlib.colors import LinearSegmentedColormap, is_color_like, to_hex, to_rgb, to_rgba
+from matplotlib.axes import Axes
+from matplotlib.colors import (
+    Colormap,
+    LinearSegmentedColormap,
+    is_color_like,
+    to_hex,
+    to_rgb,
+    to_rgba,
+)
+from matplotlib.figure import FigureBase
 
 from .._ask.records import cached_property
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap
-    from matplotlib.figure import FigureBase
 
 INK, BLUE, ORANGE, GREY, EARTH = "#14213d", "#2a6f97", "#e07a00", "#7d8996", "#e9e4da"
 SKY, PLUM = "#8fc3e0", "#7a2e4d"
 _DARK = "#e8ecf4", "#6fb3d9", "#ffa033", "#8d99a6", "#36332e", "#3f6f8c", "#d58aa8"
-_APART = 0.25  # of two colours, the largest difference of a component
+_APART = 0.25  # least difference of a component between two colours that look different
 
 
 @dataclass(frozen=True)
 class Palette:
-    """Colours before one background: ink for what comes first, then those of further things."""
+    """Colours before one background; ink is the colour of the first curve."""
 
     background: str
     ink: str
@@ -46,12 +50,12 @@ class Palette:
 
     @property
     def text(self) -> str:
-        """Black or white, whatever the background is farther from."""
+        """Black or white: the one that differs more from the background."""
         return "black" if _lightness(self.background) > 0.5 else "white"
 
     @cached_property
     def times(self) -> Colormap:
-        """Early to late."""
+        """Colours from early to late."""
         pale = "#bcd9ea" if self.blue == BLUE else self.shade(0.3)
         return LinearSegmentedColormap.from_list("times", [pale, self.blue, self.ink])
 
@@ -62,7 +66,7 @@ class Palette:
 
 
 def palette_of(where: Axes | FigureBase | None = None) -> Palette:
-    """Return the colours of the style in force before the background of what is drawn in."""
+    """Return the colours of the style in force before the background of Axes or a figure."""
     background = _background(where)
     if rcParams["axes.prop_cycle"] != rcParamsDefault["axes.prop_cycle"]:
         return _styled(background)
@@ -72,11 +76,11 @@ def palette_of(where: Axes | FigureBase | None = None) -> Palette:
 
 
 def _styled(background: str) -> Palette:
-    """Take the colours of a style that has its own, as far as they are seen and told apart."""
+    """Return the colours of a style with its own; similar ones are left out."""
     plain = Palette(background, "", "", "", "", "", "", "")
     found: list[str] = [plain.text]
-    for look in rcParams["axes.prop_cycle"]:
-        if is_color_like(colour := look.get("color")) and all(
+    for properties in rcParams["axes.prop_cycle"]:
+        if is_color_like(colour := properties.get("color")) and all(
             _difference(colour, other) > _APART for other in (*found[:1], background)
         ):
             found.append(to_hex(colour))
@@ -89,7 +93,7 @@ def _styled(background: str) -> Palette:
 
 def _background(where: Any) -> str:
     colours = [rcParams["axes.facecolor"], rcParams["figure.facecolor"], "white"]
-    while where is not None:  # axes, their figure, the figure of that
+    while where is not None:  # Axes, their SubFigure or Figure, the Figure of a SubFigure
         colours.insert(len(colours) - 3, where.get_facecolor())
         parent = getattr(where, "figure", None)
         where = None if parent is where else parent
@@ -97,7 +101,7 @@ def _background(where: Any) -> str:
 
 
 def _lightness(colour: str) -> float:
-    """How light a colour is: the luma of ITU-R BT.601."""
+    """Return the lightness of a colour: the luma of ITU-R BT.601."""
     red, green, blue = to_rgb(colour)
     return 0.299 * red + 0.587 * green + 0.114 * blue
 

@@ -1,80 +1,82 @@
-"""Curves over time: forces, energies, errors, each drawn into Axes that are given.
+"""Curves over time: forces, energies, errors, each drawn into given Axes.
 
-A `style` says which of several motions a curve belongs to; if it is plain, the motion is alone, and
-colours tell the quantities apart.
+The `style` of a curve belongs to its motion. A motion with the plain style is alone; its quantities
+differ in colour.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
 from matplotlib.ticker import SymmetricalLogLocator
 
-from .comparison import PLAIN
+from .._ask.check import FloatArray
+from .._motion.trajectory import Trajectory
+from .comparison import PLAIN, Comparison, Style
 from .legends import name_curves, title_beside_legend
-from .modes import mark_events, name_events, shade_invalid, shade_modes
+from .modes import mark_events, mode_handles, name_events, shade_invalid, shade_modes
 from .palette import palette_of
 from .sampling import are_ranges, curve, half_turns, ranges
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.collections import PolyCollection
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
-    from .comparison import Comparison, Style
 
 DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
 RANGE = 0.6  # how opaque a range is: there may be one over another
 _DOTS = (".", "x", "+", "1", "2")
-_ROUNDING = 1e-13  # errors below it are shown as what they are: small
-_SPIKE = 20.0  # times the weight: what is higher leaves nothing to see of ordinary forces
+_ROUNDING = 1e-13  # the scale of errors reaches ten times this at least: rounding looks small
+_SPIKE = 20.0  # times the weight: a higher force would flatten ordinary ones on a linear scale
 
 
 def draw_curve(
     ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style = PLAIN
 ) -> Line2D:
-    """Draw the quantity of the given rank (0, 1, 2) of a motion over its times."""
+    """Draw the quantity of a rank (0, 1, 2) of a motion over its times."""
     t, values = curve(motion.t, values)
     name = ", ".join(filter(None, (style.label, label)))
-    colour, look = style.colour or palette_of(ax).curves[rank], sparse_markers(style)
+    colour, options = style.colour or palette_of(ax).curves[rank], sparse_markers(style)
     dash = DASHES[rank]
     if are_ranges(motion):
-        dash, look = "-", look | {"alpha": RANGE}
-    return ax.plot(t, values, color=colour, ls=dash, label=name, **look)[0]
+        dash, options = "-", options | {"alpha": RANGE}
+    return ax.plot(t, values, color=colour, ls=dash, label=name, **options)[0]
 
 
 def sparse_markers(style: Style) -> dict[str, Any]:
-    """Options of a line: a few markers, evenly along it, that tell whose it is."""
+    """Return the options of a line for a few markers of its motion, evenly along it."""
     return {"marker": style.marker, "ms": 6, "mew": 0.8, "markevery": 0.1} if style.marker else {}
 
 
-def draw_dots(
-    ax: Axes, motion: Trajectory, values: FloatArray, label: str, rank: int, style: Style = PLAIN
+def draw_error(
+    ax: Axes,
+    motion: Trajectory,
+    values: FloatArray,
+    label: str,
+    rank: int,
+    style: Style = PLAIN,
+    **line: Any,
 ) -> Line2D:
-    """Draw an error as dots, because rounding jumps; exact zeros have no place on a log scale."""
+    """Draw an error as dots, because rounding jumps, or with properties of a `line`.
+
+    A log scale leaves out exact zeros; the label of an error that is always 0 says so.
+    """
     palette = palette_of(ax)
     colour = style.colour or (*palette.curves[:3], palette.plum, palette.grey)[rank]
     label = label if np.nan_to_num(values).any() else f"{label} = 0"
     t = motion.t
     if are_ranges(motion):
         t, _, values = ranges(t, values)
-    return ax.plot(
-        t, values, ls="none", marker=style.marker or _DOTS[rank], ms=3, mew=0.7, color=colour,
-        label=label,
-    )[0]  # fmt: skip
+    dots = {"ls": "none", "marker": style.marker or _DOTS[rank], "ms": 3, "mew": 0.7}
+    return ax.plot(t, values, color=colour, label=label, **(line or dots))[0]
 
 
 def draw_forces(
     ax: Axes, motion: Trajectory, style: Style = PLAIN
 ) -> tuple[Line2D, Line2D, PolyCollection | None]:
-    """Draw N and F over the band +-friction N that F must stay in (none if it has no limit)."""
+    """Draw N and F over the band +-friction N of F; infinite friction has no band."""
     limit = None
     if math.isfinite(motion.scene.friction):
         t, bound = motion.t, motion.scene.friction * motion.normal_force
@@ -95,7 +97,7 @@ def dress_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
     ax.set_ylabel("force [N]")
     weight = max(m.scene.mass * m.scene.gravity * math.cos(m.scene.slope) for m in motions)
     largest = max(float(np.max(np.abs(m.normal_force))) for m in motions)
-    if largest == 0:  # nothing touches the ground: no force, and no scale of its own
+    if largest == 0:  # flight all the time: the forces give no scale
         ax.set_ylim(-weight, weight)
     if largest > _SPIKE * weight:
         decade = 10.0 ** round(math.log10(weight))  # so that no tick falls into the linear part
@@ -108,7 +110,7 @@ def dress_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
 
 
 def _fit_forces(ax: Axes, motions: Sequence[Trajectory]) -> None:
-    """Make room for the forces alone: below them, a limit of friction may go on and on."""
+    """Make room for the forces alone, not for a limit of friction far below them."""
     forces = [values for m in motions for values in (m.normal_force, m.friction_force)]
     scale = ax.yaxis.get_transform()
     low, high = scale.transform([min(map(np.min, forces)), max(map(np.max, forces))])
@@ -137,38 +139,33 @@ def dress_errors(ax: Axes, lines: Sequence[Line2D], label: str) -> None:
 
 
 def dress_grid(ax: Axes) -> None:
-    """A discreet grid, and no frame on the right and at the top."""
+    """Draw a pale grid, and no frame on the right and at the top."""
     ax.grid(color=palette_of(ax).shade(0.08), lw=0.8)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
 
 
 def dress_over_time(ax: Axes, shown: Comparison, *, named: bool = True) -> tuple[Artist, ...]:
-    """Label the time axis; shade modes, mark events and where a model is not valid.
+    """Label the time axis; mark modes, events and where a model is not valid.
 
-    Events of a single motion have names where there is room, unless they are not to be `named`.
+    If `named`, events of a single motion have their names where there is room.
     """
     ax.set_xlabel("t [s]")
     ax.margins(x=0.01)
     dress_grid(ax)
-    palette = palette_of(ax)
     marks: list[Artist] = []
     for row, (motion, style) in enumerate(shown):
-        if shown.alone:
-            marks += shade_modes(ax, motion)
-            marks += mark_events(ax, motion, palette.grey)
-            marks += shade_invalid(ax, motion)
-        else:
-            marks += shade_modes(ax, motion, row, style.colour)
-            marks += mark_events(ax, motion, style.colour)
-            marks += shade_invalid(ax, motion, style.colour, 1 / len(shown.motions))
+        colour = None if shown.alone else style.colour
+        marks += shade_modes(ax, motion, row, colour)
+        marks += mark_events(ax, motion, colour or palette_of(ax).grey)
+        marks += shade_invalid(ax, motion, colour, 1 / len(shown.motions))
     if shown.alone and named:
         marks += name_events(ax, shown.motions[0])
     return tuple(marks)
 
 
 def note_of(shown: Comparison) -> str:
-    """Return what a title has to say of curves that do not show every half turn."""
+    """Return the remark of a title on curves that show ranges; empty if none does."""
     long = [motion for motion in shown.motions if are_ranges(motion)]
     if not long:
         return ""
@@ -176,9 +173,9 @@ def note_of(shown: Comparison) -> str:
 
 
 def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) -> tuple[Artist, ...]:
-    """Dress one panel or two, and give the first its legend and its title.
+    """Dress one panel or two; the first gets the title and a legend of `handles` and modes.
 
-    Of two the upper one leaves a shared time axis to the lower.
+    The upper one of two has no label of a shared time axis.
     """
     marks: list[Artist] = []
     for panel in panels:
@@ -186,6 +183,6 @@ def finish(panels: Sequence[Axes], shown: Comparison, handles: Sequence[Any]) ->
     if len(panels) == 2 and panels[0].get_shared_x_axes().joined(*panels):
         panels[0].set_xlabel("")
         panels[0].figure.align_ylabels(panels)
-    name_curves(panels[0], handles)
+    name_curves(panels[0], [*handles, *mode_handles(shown.motions, shown.palette)])
     title_beside_legend(panels[0], note_of(shown))
     return tuple(marks)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
 
 from .._core import EventKind
+from .._motion.trajectory import Trajectory
 from . import ground as drawing
 from .artists import Artists
 from .axes import axes_of, picture
@@ -16,19 +20,10 @@ from .comparison import Comparison, Style
 from .ground import HALF_TURNS, SHOWN_TURNS
 from .legends import name_curves, title_beside_legend
 from .modes import EVENT_NAMES, draw_invalid_ground, events_shown
-from .palette import palette_of
+from .palette import Palette, palette_of
 from .panels import sparse_markers
 from .sampling import between, span_of, turned_until
 from .strobe import dress_ground_axes, figure_size
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.patches import Polygon
-
-    from .._motion.trajectory import Trajectory
-    from .palette import Palette
 
 _CENTRE, _TIP = "-", "--"
 _EVENTS = {
@@ -46,8 +41,8 @@ _EVENTS = {
 class Paths(Artists):
     """Artists of `plot_paths`; item i of each tuple but `marks` belongs to motion i.
 
-    All data are in ground axes: x along the ground, z normal to it [m]. A line of `events` has
-    all places of one kind of event.
+    All data are in ground axes: x along the ground, z normal to it [m]. Each line of `events` has
+    the places of one kind of event.
     """
 
     ax: Axes
@@ -106,14 +101,14 @@ def plot_paths(
     centres, tips, contacts = zip(*drawn, strict=True)
     shown.restyle(*centres, *tips, *contacts)
     marks = tuple(_draw_invalid(ax, m) for m in motions if m.valid_until < m.t[-1])
-    dress_ground_axes(ax, motions[0].scene, view)  # last: what is drawn may widen the view
+    dress_ground_axes(ax, motions[0].scene, view)  # last, because artists may widen the view
     name_curves(ax, [*handles, *_event_handles(motions, shown.palette)])
     title_beside_legend(ax, f"the first {end:.3g} s of {last:.4g} s" if end < last else "")
     return Paths(ax, centres, tips, contacts, tuple(events), ground, marks)
 
 
 def _view(motions: Sequence[Trajectory], end: float) -> tuple[float, float, float, float]:
-    """What all motions need until `end` [s]: left, right, bottom, top [m]."""
+    """Return the view of all motions until `end` [s]: left, right, bottom, top [m]."""
     views = [
         drawing.view_of(motion.scene, motion.x[motion.t <= end], motion.z[motion.t <= end])
         for motion in motions
@@ -139,7 +134,7 @@ def _draw_paths(
         *drawing.tip(motion), color=colours[1], ls=_TIP, lw=1.2, label=f"{name}end of axis a",
         transform=on_slope, zorder=4,
     )  # fmt: skip
-    (contact,) = ax.plot(  # each narrower than those below it, so that all are seen
+    (contact,) = ax.plot(  # narrower than the contacts below it, so that all are seen
         *drawing.contact_points(motion), color=colours[2], lw=2.4 + 4 * share,
         solid_capstyle="butt", label=f"{name}contact", transform=on_slope, zorder=3 - share,
     )  # fmt: skip
@@ -183,6 +178,6 @@ def _draw_invalid(ax: Axes, motion: Trajectory) -> Line2D:
 
 
 def _until(motion: Trajectory, end: float) -> Trajectory:
-    """The motion up to a time, or its first sample if it begins later."""
+    """Return the motion up to a time [s], or its first sample if it begins later."""
     begin, last = span_of(motion)
     return between(motion, begin, max(begin, min(end, last)), HALF_TURNS)

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from .. import _core
-from .._ask.check import flag
+from .._ask.check import FloatArray, flag
+from .._ask.scene import Scene
+from .._motion.trajectory import Trajectory
 from .artists import Artists
 from .axes import axes_of, picture
 from .comparison import Comparison
@@ -21,20 +26,10 @@ from .panels import dress_grid
 from .sampling import FEW, between, half_turns, is_at_hand, span_of
 from .separatrix import QUARTER, flat_angle, flat_angles, separatrix
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from .._ask.check import FloatArray
-    from .._ask.scene import Scene
-    from .._motion.trajectory import Trajectory
-
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
-_COARSE = 1e-3  # rad
+_COARSE = 1e-3  # largest ulp of theta [rad]
 _MOST = 1000.0  # half turns or swings in one picture
-_SMALL = 0.1  # of the separatrix's speed: a slower motion would be a dot in a whole eye
+_SMALL = 0.1  # of the roll-over speed: a slower motion would be a dot in a whole eye
 
 
 @dataclass(frozen=True, repr=False)
@@ -42,8 +37,8 @@ class Phase(Artists):
     """Artists of `plot_phase`; item i of `motions` and `starts` belongs to motion i.
 
     `separatrices` has a line for each different body on level ground that is no circle, and
-    `equilibria` the centres and the saddles of the first of them. Where theta is folded, a line has
-    its samples and at each fold two points with a break (NaN) between.
+    `equilibria` the centres and the saddles of the first of these. Where theta is folded, a line
+    has its samples and, at each fold, two points with a break (NaN) between.
     """
 
     ax: Axes
@@ -116,7 +111,7 @@ def plot_phase(
 
 
 def _part(motion: Trajectory) -> tuple[Trajectory, str]:
-    """What is drawn of a motion, finely sampled, and what is to be said of that."""
+    """Return the part of a motion that is drawn, finely sampled, and a note on a part."""
     if not is_at_hand(motion):
         return motion, ""
     begin, end = span_of(motion)
@@ -136,7 +131,10 @@ def _part(motion: Trajectory) -> tuple[Trajectory, str]:
 def _path(
     theta: FloatArray, omega: FloatArray, flat: float, fold: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """The line to draw; folded, theta is within (-pi/2, pi/2] of flat, with breaks between."""
+    """Return theta and omega of a line; folded, theta is within (-pi/2, pi/2] of flat.
+
+    A folded line leaves the view at one edge and comes back at the other with the same omega.
+    """
     if not fold:
         return theta, omega
     cell = np.ceil((theta - flat) / math.pi - 0.5)
@@ -145,18 +143,11 @@ def _path(
     up = np.sign(cell[after] - cell[before])
     leaving, returning = flat + up * QUARTER, flat - up * QUARTER
     steepness = (omega[after] - omega[before]) / (theta[after] - theta[before])
-    speeds = [
-        omega[i] + steepness * (edge + math.pi * cell[i] - theta[i])
-        for i, edge in ((before, leaving), (after, returning))
-    ]
-    gap = np.full(before.size, np.nan)
-    places = np.repeat(after, 3)
+    speed = omega[before] + steepness * (leaving + math.pi * cell[before] - theta[before])
+    gap, places = np.full(before.size, np.nan), np.repeat(after, 3)
     folds = np.column_stack([leaving, gap, returning]).ravel()
-    speeds_there = np.column_stack([speeds[0], gap, speeds[1]]).ravel()
-    return (
-        np.insert(theta - math.pi * cell, places, folds),
-        np.insert(omega, places, speeds_there),
-    )
+    speeds = np.column_stack([speed, gap, speed]).ravel()
+    return np.insert(theta - math.pi * cell, places, folds), np.insert(omega, places, speeds)
 
 
 def _require_parts_of_a_turn(motions: Sequence[Trajectory]) -> None:
@@ -170,7 +161,7 @@ def _require_parts_of_a_turn(motions: Sequence[Trajectory]) -> None:
 
 
 def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
-    """The different bodies that have a separatrix, and the colour of each."""
+    """Return the different bodies that have a separatrix, with their colours."""
     bodies: dict[tuple[float, ...], tuple[Scene, str]] = {}
     for motion, style in zip(shown.motions, shown.styles, strict=True):
         scene = motion.scene
@@ -182,7 +173,7 @@ def _bodies(shown: Comparison) -> list[tuple[Scene, str]]:
 
 
 def _choose_view(ax: Axes, motions: Sequence[Trajectory], body: Scene, fold: bool) -> None:
-    """Show whole eyes of the separatrix; a small motion fills the view and leaves them outside."""
+    """Show whole eyes of the separatrix; a small motion fills the view instead."""
     fastest = max(float(np.max(np.abs(motion.omega))) for motion in motions)
     flat = flat_angle(body)
     if fold:
@@ -242,7 +233,7 @@ def _dress_phase(ax: Axes) -> None:
 
 
 class _QuarterTurns(MaxNLocator):
-    """Ticks at quarter turns, or at 2, 4, ... of them, as many as there is room for."""
+    """Ticks at every 1, 2, 4, ... quarter turns, as many as there is room for."""
 
     def tick_values(self, vmin: float, vmax: float) -> list[float]:
         room = self.axis.get_tick_space()  # type: ignore[union-attr]
@@ -254,7 +245,7 @@ class _QuarterTurns(MaxNLocator):
 
 
 def _quarters(angle: float, _position: float | None = None) -> str:
-    """A multiple of a quarter turn as one writes it: 0, π/2, π, −3π/2."""
+    """Return the text of a multiple of a quarter turn: 0, π/2, π, −3π/2."""
     quarters = round(angle / QUARTER)
     if quarters == 0:
         return "0"

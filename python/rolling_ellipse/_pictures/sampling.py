@@ -1,8 +1,7 @@
 """A motion sampled as finely as a picture draws it, whatever samples its trajectory holds.
 
-Where there are few half turns, every one is drawn, with more points where curves bend. Where there
-are too many to be told apart, a picture over time shows ranges: from the least to the largest value
-in each of many parts of the time.
+Few half turns are all drawn, with more points where curves bend. Of too many to be told apart a
+picture over time shows ranges: the least and the largest value in each of many parts of the time.
 """
 
 from __future__ import annotations
@@ -11,39 +10,40 @@ import math
 import warnings
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
+from .._ask.check import FloatArray
 from .._motion.samples import ContactSamples, even_times
+from .._motion.trajectory import Trajectory
 from .._verbs.flow import period
 from .separatrix import flat_angle
 
-if TYPE_CHECKING:
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
-
-FEW = 120.0  # half turns or swings that are drawn one by one over time
-PARTS = 800  # of a longer time
-_IN_A_PART = 96
-_POINTS = 400, 32  # to begin with: in all, and in a half turn
-_MOST_POINTS = 30_000
-_FEWEST_DOTS = 100
-_ROUNDS = 16  # of halving an interval
-_BEND = 1e-3  # of the range of a quantity: more is seen
-_COUNTS = 1024, 4096, 16_384, 65_536
-_STEADY = 1.05  # two counts of half turns that differ by less are right
-_EVENTS = 4000  # the first and last of more are drawn as jumps
+FEW = 120.0  # most half turns or swings that are drawn one by one over time
+PARTS = 800  # parts of the time of a motion with more
+_IN_A_PART = 96  # samples of a part
+_POINTS = 400, 32  # first points of a curve: in all, and in a half turn
+_MOST_POINTS = 30_000  # of a curve
+_FEWEST_DOTS = 100  # fewer samples are replaced by the points of a curve
+_ROUNDS = 16  # an interval is halved so many times at most
+_BEND = 1e-3  # a curve that misses its chord by more of its range is seen to bend
+_COUNTS = 1024, 4096, 16_384, 65_536  # times at which half turns are counted
+_STEADY = 1.05  # two counts of half turns whose ratio is smaller are right
+_EVENTS = 4000  # the first and last half of so many events are drawn as jumps
 _COLUMNS = "t", "theta", "omega", "x"
-_LOOKED_AT = 64  # of the samples, which tell whether they are those of the motion
-_SEEN = 1e-6  # of the size of a quantity: less is not seen in any picture
+_COMPARED = 64  # samples that are compared with the motion
+_SEEN = 1e-6  # a smaller relative difference is seen in no picture
 _GOLDEN = (math.sqrt(5) - 1) / 2
+
+_Places = npt.NDArray[np.intp]
 
 
 def over_time(motion: Trajectory) -> Trajectory:
     """Return a motion at the times at which its curves are drawn, from its first to its last.
 
-    Those of more than `FEW` half turns have more samples than are drawn as points: see `curve`.
+    A motion of more than `FEW` half turns has more samples than its curve has points: see `curve`.
     """
     if not is_at_hand(motion):
         return motion
@@ -52,7 +52,7 @@ def over_time(motion: Trajectory) -> Trajectory:
     if count <= FEW:
         return _refined(motion, begin, end, count)
     part = (end - begin) / PARTS
-    window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a half turn, as others near it
+    window = part * min(1.0, max(1.1 * PARTS / count, 1e-6))  # a half turn, for all of its part
     inside = (np.arange(_IN_A_PART) + 0.5) / _IN_A_PART * window
     starts = begin + part * np.arange(PARTS) + 0.5 * (part - window)
     times = np.add.outer(starts, inside).ravel()
@@ -61,10 +61,7 @@ def over_time(motion: Trajectory) -> Trajectory:
 
 
 def for_dots(motion: Trajectory) -> Trajectory:
-    """Return a motion at its own samples, of which dots say no more than they know.
-
-    Of few samples, or of mixed ones, it is at the times of curves.
-    """
+    """Return a motion at its own samples; few or unordered ones become the times of curves."""
     own = motion.t.size >= _FEWEST_DOTS and bool(np.all(np.diff(motion.t) > 0))
     return motion if own else over_time(motion)
 
@@ -75,37 +72,37 @@ def between(motion: Trajectory, begin: float, end: float, count: float) -> Traje
 
 
 def _refined(motion: Trajectory, begin: float, end: float, count: float) -> Trajectory:
+    """Return a motion at even times and at those where a quantity bends more than `_BEND`."""
     points = min(max(_POINTS[0], math.ceil(_POINTS[1] * count)), _MOST_POINTS)
     times = np.union1d(even_times(begin, end, points), _jumps(motion, begin, end))
     values = _bending(motion, times)
     scale = np.ptp(values, axis=1, keepdims=True)
-    scale[~(scale > 0) | ~np.isfinite(scale)] = np.inf  # what is constant does not bend
-    left, right = times[:-1], times[1:]
-    at_left, at_right = values[:, :-1], values[:, 1:]
-    found = [times]
+    scale[~(scale > 0) | ~np.isfinite(scale)] = np.inf  # a constant does not bend
+    places = np.arange(times.size - 1)
     for _ in range(_ROUNDS):
+        left, right = times[places], times[places + 1]
         middle = 0.5 * (left + right)
         inner = (left < middle) & (middle < right)
-        left, right, middle = left[inner], right[inner], middle[inner]
-        at_left, at_right = at_left[:, inner], at_right[:, inner]
-        if middle.size == 0 or sum(map(len, found)) + middle.size > _MOST_POINTS:
+        places, middle = places[inner], middle[inner]
+        if middle.size == 0 or times.size + middle.size > _MOST_POINTS:
             break
         here = _bending(motion, middle)
-        bends = np.any(np.abs(here - 0.5 * (at_left + at_right)) > _BEND * scale, axis=0)
-        found.append(middle[bends])
-        left, right = (
-            np.concatenate([left[bends], middle[bends]]),
-            np.concatenate([middle[bends], right[bends]]),
-        )
-        at_left, at_right = (
-            np.concatenate([at_left[:, bends], here[:, bends]], axis=1),
-            np.concatenate([here[:, bends], at_right[:, bends]], axis=1),
-        )
-    return motion.sol(np.sort(np.concatenate(found)))
+        line = 0.5 * (values[:, places] + values[:, places + 1])
+        bends = np.any(np.abs(here - line) > _BEND * scale, axis=0)
+        values = np.insert(values, places[bends] + 1, here[:, bends], axis=1)
+        times, places = halve(times, places[bends])
+    return motion.sol(times)
+
+
+def halve(times: FloatArray, places: _Places) -> tuple[FloatArray, _Places]:
+    """Return rising times with the middles of some intervals, and the places of their halves."""
+    middles = 0.5 * (times[places] + times[places + 1])
+    first = places + np.arange(places.size)
+    return np.insert(times, places + 1, middles), np.stack([first, first + 1], axis=1).ravel()
 
 
 def curve(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the points of a line: all, or in each part of too many its least and its largest."""
+    """Return the points of a line; of too many, the least and the largest value in each part."""
     if t.size <= _MOST_POINTS:
         return t, values
     middles, low, high = ranges(t, values)
@@ -115,7 +112,7 @@ def curve(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def ranges(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the middle of each part, and the least and largest value in it."""
+    """Return the middle time of each part, and the least and largest value in it."""
     starts = np.linspace(0, t.size, min(PARTS, t.size) + 1).astype(int)[:-1]
     ends = np.append(starts[1:], t.size) - 1
     middles: FloatArray = 0.5 * (t[starts] + t[ends])
@@ -123,7 +120,7 @@ def ranges(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray, F
 
 
 def are_ranges(motion: Trajectory) -> bool:
-    """Whether the curves of a motion are drawn as ranges."""
+    """True if the curves of a motion are drawn as ranges."""
     return motion.t.size > _MOST_POINTS
 
 
@@ -133,10 +130,10 @@ def span_of(motion: Trajectory) -> tuple[float, float]:
 
 
 def half_turns(motion: Trajectory) -> float:
-    """Return about how many half turns and swings there are between the first and last sample.
+    """Return the number, about, of half turns and swings between the first and last sample.
 
-    The period tells, where there is one. Elsewhere half turns and turnings back are counted, at
-    more and more times, which keep no beat that a swing could have.
+    It follows from the period, if there is one. Else half turns and turning points are counted at
+    more and more times, whose spacing is irregular, unlike any period.
     """
     begin, end = span_of(motion)
     swing = None
@@ -159,10 +156,10 @@ def half_turns(motion: Trajectory) -> float:
 
 
 def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
-    """Return the time [s] of so many turns or of a path as long, or of the last sample.
+    """Return the time [s] at which a motion has made so many turns, or a path as long.
 
-    Where it goes to and fro, that of the second turning back, at which a rate ("omega", "x_dot")
-    changes its sign, if it comes before.
+    It is at most the time of the last sample, and of the second turning point, where a rate
+    ("omega", "x_dot") changes its sign.
     """
     begin, end = span_of(motion)
     if not is_at_hand(motion):
@@ -171,11 +168,11 @@ def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
         found = min(end, _used_up(motion.sol(even_times(begin, end, 2001)), turns, rate))
         if not begin < found < begin + (end - begin) / 8:
             return found
-        end = begin + 2 * (found - begin)  # look closer: nothing is between samples by then
+        end = begin + 2 * (found - begin)  # once more with a finer grid
 
 
 def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
-    """Return a motion at times [s], or at those of its samples that are nearest to them."""
+    """Return a motion at times [s], or its samples nearest to them if nothing else is known."""
     if is_at_hand(motion):
         return motion.sol(times)
     nearest = np.argmin(np.abs(np.subtract.outer(times, motion.t)), axis=1)
@@ -188,12 +185,12 @@ def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:
 
 
 def is_at_hand(motion: Trajectory) -> bool:
-    """Whether the motion of a trajectory can be had at any time; warns where not.
+    """True if the motion of a trajectory can be sampled at any time; warns if not.
 
-    It can where `simulate` computed it or a file holds what `simulate` did; one whose samples are
-    somebody's own has nothing between them.
+    A trajectory that `simulate` computed can, also one from a file. A trajectory with samples of
+    other origin has no motion between them.
     """
-    some = np.unique(np.linspace(0, motion.t.size - 1, _LOOKED_AT).round().astype(int))
+    some = np.unique(np.linspace(0, motion.t.size - 1, _COMPARED).round().astype(int))
     t, own = motion.t[some], np.array([motion.theta, motion.omega, motion.x])[:, some]
     same = False
     if np.all((t >= 0) & (t <= motion.t_end)):
@@ -211,14 +208,14 @@ def is_at_hand(motion: Trajectory) -> bool:
 
 
 def _bending(motion: Trajectory, times: FloatArray) -> FloatArray:
-    """What must look smooth, (6, n)."""
+    """Return the quantities whose curves must look smooth, (6, n)."""
     seen = motion.sol(times)
     rows = seen.theta, seen.omega, seen.x_dot, seen.z_dot, seen.normal_force, seen.friction_force
     return np.nan_to_num(np.array(rows), posinf=np.nan, neginf=np.nan)
 
 
 def _jumps(motion: Trajectory, begin: float, end: float) -> FloatArray:
-    """The times of events within, and those just before them."""
+    """Return the times of events from `begin` to `end` [s], and the doubles just before them."""
     moments = np.array([event.t for event in motion.events if begin < event.t <= end])
     if moments.size > _EVENTS:
         moments = np.concatenate([moments[: _EVENTS // 2], moments[-_EVENTS // 2 :]])
@@ -226,7 +223,10 @@ def _jumps(motion: Trajectory, begin: float, end: float) -> FloatArray:
 
 
 def _used_up(seen: Trajectory, turns: float, rate: str) -> float:
-    """The time at which so many turns are made, or the second turning back; infinite if none."""
+    """Return the time of so many turns, or of the second turning point if it is earlier.
+
+    It is infinite if neither is among the samples.
+    """
     t, x, scene = seen.t, seen.x, seen.scene
     turned = np.abs(seen.theta - seen.theta[0]) / (2 * np.pi)
     moved = np.abs(x - x[0]) / (2 * np.pi * max(scene.a, scene.b))

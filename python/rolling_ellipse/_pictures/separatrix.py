@@ -1,20 +1,17 @@
 """The separatrix of rolling on level ground: the curve between rocking and rolling over.
 
-In the plane of theta and omega it encloses eyes, one for each half turn, around the flat positions.
+In the plane of theta and omega it encloses one eye for each half turn, around the flat position.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .. import _core
-
-if TYPE_CHECKING:
-    from .._ask.check import FloatArray
-    from .._ask.scene import Scene
+from .._ask.check import FloatArray
+from .._ask.scene import Scene
 
 QUARTER = math.pi / 2
 _POINTS = 801, 100_000  # in one half turn and in all
@@ -34,13 +31,13 @@ def flat_angles(left: float, right: float, scene: Scene) -> FloatArray:
 
 
 def separatrix(scene: Scene, flats: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return theta and speed of the curve.
+    """Return theta and speed of the curve, for the half turns around the flat positions.
 
-    They are graded around each flat position, where a thin body's curve is a spike.
+    Points are dense near the flat position, where the curve of a thin body is a spike.
     """
     count = int(np.clip(_POINTS[1] // flats.size, 3, _POINTS[0]))
     width = min(scene.a, scene.b) / max(scene.a, scene.b)
-    reach = math.asinh(100 / width)  # to 0.01 rad from the tip, where it is straight
+    reach = math.asinh(100 / width)  # to 0.01 rad from the tip; the curve is straight there
     within = np.arctan(width * np.sinh(np.linspace(-reach, reach, count)))
     within[[0, -1]] = -QUARTER, QUARTER
     speed = _core.speed_to_the_tip(scene.core, flat_angle(scene) + within)

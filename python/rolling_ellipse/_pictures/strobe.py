@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
+from matplotlib.patches import Ellipse, Polygon
 from matplotlib.ticker import MaxNLocator
 
 from .._ask.check import number, whole_within
+from .._ask.scene import Scene
 from .._motion.samples import even_times
+from .._motion.trajectory import Trajectory
 from . import ground as drawing
 from .artists import Artists
 from .axes import axes_of, picture
@@ -20,16 +25,7 @@ from .legends import name_curves, title_beside_legend
 from .palette import palette_of
 from .sampling import at_times, between, span_of, turned_until
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Ellipse, Polygon
-
-    from .._ask.scene import Scene
-    from .._motion.trajectory import Trajectory
-
-
-_PILE = 0.4  # how opaque all bodies in one place are together, about
+_PILE = 0.4  # opacity, about, of all bodies in one place together
 _MOST = 10_000  # positions; each takes some milliseconds
 
 
@@ -151,14 +147,14 @@ def _draw_bodies(ax: Axes, at: Trajectory) -> tuple[tuple[Ellipse, ...], tuple[L
 
 
 def _fill(at: Trajectory) -> float:
-    """How opaque each body is: a tenth, or so little that the pile of those in one place is not."""
+    """Return the opacity of each body: a tenth, or less where many lie in one place."""
     size = 2 * max(at.scene.a, at.scene.b)
     piled = at.t.size * size / (size + float(np.ptp(at.x)))
     return min(0.1, _PILE / piled)
 
 
 def _draw_paths(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
-    """Draw the paths of the centre and the contact, and where the bodies touch and slide."""
+    """Draw the paths of the centre and the contact, and marks where the bodies touch and slide."""
     on_slope = drawing.tilted(at.scene) + ax.transData
     palette = palette_of(ax)
     marker: dict[str, Any] = {"ls": "none", "mec": palette.ink, "transform": on_slope}
@@ -184,9 +180,9 @@ def _draw_paths(ax: Axes, at: Trajectory, path: Trajectory) -> list[Line2D]:
 
 
 def dress_ground_axes(ax: Axes, scene: Scene, view: tuple[float, float, float, float]) -> None:
-    """Show a view of the ground with equal scales, and label what its axes are."""
+    """Show a view of the ground with equal scales and labelled axes."""
     left, right, bottom, top = view
-    ax.update_datalim([(left, bottom), (right, top)])  # which the aspect then never cuts
+    ax.update_datalim([(left, bottom), (right, top)])  # the equal aspect never cuts these
     ax.set_xlim(left, right, auto=True)  # auto, because the aspect may widen either
     ax.set_ylim(bottom, top, auto=True)
     ax.set_aspect("equal", adjustable="datalim")  # so that the ground fills the whole width

@@ -1,33 +1,29 @@
-"""The work-precision diagram: what each way to compute a motion costs, and buys."""
+"""The work-precision diagram: cost and error of each way to compute a motion."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
 
 from .._ask.check import shown
-from .._verbs.work_precision.run import ERRORS, NOT_RUN, OF_STATES, require_quantity
+from .._verbs.work_precision.run import ERRORS, NOT_RUN, OF_STATES, Run, require_quantity
 from .._verbs.work_precision.verdict import end_alone
 from .artists import Artists
 from .axes import axes_of, picture
 from .labels import label_ends
-from .palette import palette_of
+from .palette import Palette, palette_of
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-    from matplotlib.text import Text
-
+if TYPE_CHECKING:  # which imports this file
     from .._verbs.work_precision.results import WorkPrecision
-    from .._verbs.work_precision.run import Run
-    from .palette import Palette
 
 _NAMES = {
     "largest": "largest error of the state", "final": "error of the state at the end",
@@ -41,8 +37,8 @@ _NAMES = {
 _LIMITS = "dashed line: attainable; grey: less than the reference's own error"
 _MARKERS = "osD^vPX<>ph*8"
 _DASHES = ("-", "--", "-.", ":")
-_LEAST, _MOST = 1e-17, 10.0  # errors between which are drawn as they are
-_REASONS, _LINE = 12, 110  # lines of those that have no answer, characters of a line
+_LEAST, _MOST = 1e-17, 10.0  # errors beyond these are drawn at them
+_REASONS, _LINE = 12, 110  # most lines on runs without an answer, characters of a line
 _STAMP = ("processor", "compiler", "flags", "python", "numpy", "rolling_ellipse", "date", "rounds")
 
 
@@ -50,10 +46,11 @@ _STAMP = ("processor", "compiler", "flags", "python", "numpy", "rolling_ellipse"
 class WorkPrecisionChart(Artists):
     """Artists of `WorkPrecision.plot`.
 
-    By name of the way, or (name, setting) over "t_end": `lines` through the runs, `setups` (hollow,
-    at time + set-up of the most accurate run), `names` in the margin, and `failures` on the rim;
-    `reasons` is the text below: why the latter failed, and who was not run at all settings. `floor`
-    and `attainable` are there over errors of the state, `stamp` in a figure of its own.
+    Mappings have the name of the way as key, or (name, setting) over "t_end": `lines` through the
+    runs, `setups` (hollow, at time + set-up of the most accurate run), `names` in the margin, and
+    `failures` on the rim. `reasons` is the text below: the reasons of the failures, and the ways
+    that were not run at all settings. `floor` and `attainable` exist over errors of the state,
+    `stamp` in an own figure.
     """
 
     ax: Axes
@@ -82,7 +79,7 @@ def draw(
     ax.set(xscale="log", yscale="log", xlabel=_NAMES.get(x, x), ylabel=_NAMES.get(y, y))
     ax.spines[["top", "right"]].set_visible(False)
     ax.grid(True, color=palette_of(ax).grey, alpha=0.25, lw=0.5)
-    looks = _looks(found, palette_of(ax))
+    styles = _styles(found, palette_of(ax))
     groups: dict[Any, list[Run]] = {}
     for run in runs:
         setting = None if math.isnan(run.setting) else run.setting  # NaN is no key
@@ -95,11 +92,12 @@ def draw(
         points = [point for point in points if point[0] > 0 and point[1] > 0]
         if not points:
             continue
-        look = looks[members[0].name]
-        lines[key] = ax.plot([p[0] for p in points], [p[1] for p in points], ms=4, mew=0, **look)[0]
+        style = styles[members[0].name]
+        places, values, _ = zip(*points, strict=True)
+        lines[key] = ax.plot(places, values, ms=4, mew=0, **style)[0]
         at, time, best = min(points, key=lambda point: point[0])
         if y == "time" and best.setup > 0.1 * time:
-            hollow = look | {"ls": "", "mfc": palette_of(ax).background}
+            hollow = style | {"ls": "", "mfc": palette_of(ax).background}
             setups[key] = ax.plot([at], [time + best.setup], ms=4.5, mew=0.8, **hollow)[0]
     floor = attainable = None
     if x in OF_STATES:
@@ -111,7 +109,7 @@ def draw(
             floor = ax.axvspan(*across, color=palette_of(ax).grey, alpha=0.18, lw=0, zorder=0)
     if x in ERRORS:
         ax.invert_xaxis()
-    failures, why = _rim(ax, groups, looks, x)
+    failures, why = _rim(ax, groups, styles, x)
     late = [key for key, members in groups.items() if NOT_RUN in {run.status for run in members}]
     if late:
         why.append("→ finer settings were not run, for want of time")
@@ -122,11 +120,11 @@ def draw(
     }
     names = label_ends(ax, {key: (line, titles[key]) for key, line in lines.items()}, own_figure)
     facts = ", ".join(f"{name} {found.machine.get(name, '?')}" for name in _STAMP)
-    told = wrap(facts, _LINE, break_on_hyphens=False)
+    stamped = wrap(facts, _LINE, break_on_hyphens=False)
     if attainable or floor:
         why.append(_LIMITS)
     reasons = _below(ax, why, 0)
-    stamp = _below(ax, told, len(why)) if own_figure else None
+    stamp = _below(ax, stamped, len(why)) if own_figure else None
     return WorkPrecisionChart(ax, lines, setups, failures, names, reasons, floor, attainable, stamp)
 
 
@@ -141,9 +139,9 @@ def _tagged(runs: Sequence[Run], tags: Sequence[str] | None) -> list[Run]:
     return chosen
 
 
-def _looks(found: WorkPrecision, palette: Palette) -> dict[str, dict[str, Any]]:
-    """Return a colour for each kind of way, and within a kind a marker for each way."""
-    looks: dict[str, dict[str, Any]] = {}
+def _styles(found: WorkPrecision, palette: Palette) -> dict[str, dict[str, Any]]:
+    """Return line properties by name: a colour for each kind of way, a marker within a kind."""
+    styles: dict[str, dict[str, Any]] = {}
     for run in found.runs:
         kind = (palette.blue, 1.2)
         if "peer" in run.tags:
@@ -152,15 +150,15 @@ def _looks(found: WorkPrecision, palette: Palette) -> dict[str, dict[str, Any]]:
             kind = (palette.ink, 1.8)
         elif run.model == "multipliers":
             kind = (palette.plum, 1.0)
-        if run.name not in looks:
-            count = sum(look["color"] == kind[0] for look in looks.values())
+        if run.name not in styles:
+            count = sum(style["color"] == kind[0] for style in styles.values())
             mark, dash = _MARKERS[count % len(_MARKERS)], _DASHES[count % len(_DASHES)]
-            looks[run.name] = {"color": kind[0], "lw": kind[1], "marker": mark, "ls": dash}
-    return looks
+            styles[run.name] = {"color": kind[0], "lw": kind[1], "marker": mark, "ls": dash}
+    return styles
 
 
 def _place(found: WorkPrecision, run: Run, quantity: str) -> float:
-    """Return where a run is drawn along an axis; NaN or 0 where it is not."""
+    """Return the place of a run along an axis; NaN or 0 if it is not drawn."""
     value = run.value(quantity)
     if quantity not in ERRORS or math.isnan(value):
         return value
@@ -169,9 +167,9 @@ def _place(found: WorkPrecision, run: Run, quantity: str) -> float:
 
 
 def _rim(
-    ax: Axes, groups: dict[Any, list[Run]], looks: dict[str, dict[str, Any]], x: str
+    ax: Axes, groups: dict[Any, list[Run]], styles: dict[str, dict[str, Any]], x: str
 ) -> tuple[dict[Any, Line2D], list[str]]:
-    """Mark the runs without an answer on the rim; return the marks, and why they have none."""
+    """Mark the runs without an answer on the rim; return the marks and lines with the reasons."""
     failed = {
         key: gaps
         for key, runs in groups.items()
@@ -180,10 +178,10 @@ def _rim(
     marks, lines = {}, []
     for i, (key, runs) in enumerate(failed.items()):
         at, height, across = [0.0], 0.03 + 0.95 * i / len(failed), ax.transAxes
-        if x in ("setting", "t_end"):  # known without an answer
+        if x in ("setting", "t_end"):  # x is known without an answer
             at, height, across = [run.value(x) for run in runs], 1.0, ax.get_xaxis_transform()
         marks[key] = ax.plot(
-            at, np.full(len(at), height), "x", color=looks[runs[0].name]["color"], ms=5,
+            at, np.full(len(at), height), "x", color=styles[runs[0].name]["color"], ms=5,
             transform=across, clip_on=False, zorder=5, scalex=False, scaley=False,
         )[0]  # fmt: skip
         count = f", {len(runs)} runs" if len(runs) > 1 else ""
@@ -202,7 +200,7 @@ def _title(key: Any) -> str:
 
 
 def _below(ax: Axes, lines: list[str], after: int) -> Text | None:
-    """Write lines under the axes, after so many others."""
+    """Write lines under the axes, below `after` others."""
     if not lines:
         return None
     return ax.annotate(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .. import _core
+from .._ask.check import FloatArray
 from .._ask.scene import Impulse, Scene
 from .._ask.settings import DEFAULTS
 from .._core import Outcome
@@ -22,9 +23,6 @@ from ..geometry import support
 from .film import body, events
 from .tracks import columns, sample_times
 
-if TYPE_CHECKING:
-    from .._ask.check import FloatArray
-
 NAMES = {
     Outcome.RESTS: "rests",
     Outcome.ROCKS: "rocks",
@@ -35,18 +33,18 @@ NAMES = {
     Outcome.EDGE: "is too near a threshold to tell",
 }
 PLACES, STRENGTHS = 25, 16
-WIDE = 14.0  # the view, in longer semi-axes
-_PIXEL = 2.5e-4  # of the width of the view
-_SAMPLES = 100  # of a motion; up to ten times as many where its places need them
-_STEPS, _EVENTS = 20_000, 200  # a motion that takes more ends there, and says so
+WIDE = 14.0  # width of the view [longer semi-axes]
+_PIXEL = 2.5e-4  # tolerance over the width of the view
+_SAMPLES = 100  # of a motion; up to ten times as many if its places need them
+_STEPS, _EVENTS = 20_000, 200  # most steps and events of a motion
 
 
 def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
     """Return the places d [m] and strengths F [N s] of the blows.
 
-    Places are all over the body as it lies. The strongest blow, at the rim, gives some three times
-    the speed that carries the body over its tip. A press of the scene's own takes the place of the
-    nearest of them.
+    Places cover the width of the body as it lies. The strongest blow, at the rim, gives some three
+    times the speed that carries the body over its tip. The scene's own press replaces the nearest
+    place and strength.
     """
     reach = float(support(scene.theta + math.pi / 2, a=scene.a, b=scene.b))
     longer, shorter = max(scene.a, scene.b), min(scene.a, scene.b)
@@ -65,7 +63,7 @@ def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:
 
 
 def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str, Any]:
-    """Return all blows as JSON knows them, those of one place after the other."""
+    """Return all blows in types of JSON, place by place."""
     wide = WIDE * max(scene.a, scene.b)
     touching = _core.initial_state(scene.core)["touching"]
     names = NAMES if touching else NAMES | {Outcome.LOSES_CONTACT: "is in the air"}
@@ -87,13 +85,13 @@ def table(scene: Scene, t_end: float, d: FloatArray, F: FloatArray) -> dict[str,
 
 
 def struck(scene: Scene, blow: Impulse, t_end: float) -> Trajectory:
-    """Return the motion that a blow makes of a scene; its sentences say what is to be warned of."""
+    """Return the motion of a scene after a blow; its message replaces warnings."""
     how = replace(DEFAULTS, max_steps=_STEPS, max_events=_EVENTS)
     return Trajectory.computed(scene.replace(impulse=blow), how, np.array([0.0, t_end]))
 
 
 def _sampled(motion: Trajectory, tolerance: float) -> Trajectory:
-    """The motion where it is drawn from; even times where it trembles too fast for that."""
+    """Return the motion at the times for the player; at even times if these are too many."""
     end = motion.t_end
     times = sample_times(motion, end, tolerance, most=10 * _SAMPLES, for_forces=_SAMPLES)
     return motion.sol(even_times(0.0, end, _SAMPLES) if times is None else times)
@@ -105,7 +103,7 @@ def _reason(motion: Trajectory) -> str:
 
 
 def code(scene: Scene, t_end: float) -> str:
-    """Return the lines that simulate it, with {F} and {d} for the blow."""
+    """Return the lines of Python of the simulation, with {F} and {d} for the blow."""
     given = [repr(scene.a), repr(scene.b)]
     given += [
         f"{name}={value!r}"
@@ -121,7 +119,7 @@ def code(scene: Scene, t_end: float) -> str:
 
 
 def view(scene: Scene) -> dict[str, Any]:
-    """Return the body where the blow finds it, and the window that it is seen through."""
+    """Return the strip of the body before the blow, and its window."""
     longer, start = max(scene.a, scene.b), scene.initial_state
     high = max(2.3 * longer, start.z + 2.4 * longer)
     wide = max(WIDE * longer, (high + longer) / 0.45)

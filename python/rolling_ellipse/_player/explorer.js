@@ -54,10 +54,10 @@ export class Explorer extends Player {
       style="background:${table.colours[code]}"></span>${table.names[code]}</span>`).join("");
     this.grab(this.canvas, (event) => this.holds(event), (event) => this.dragged(event));
     this.grab(this.map, () => true, (event) => this.pointed(event));
-    this.tell();
+    this.describe();
   }
 
-  /** What a pointer does on a canvas from where it is taken until it is let go. */
+  /** Call `moved` for a pointer on a canvas from a press that `holds` accepts to its release. */
   grab(canvas, holds, moved) {
     let held = false;
     canvas.addEventListener("pointerdown", (event) => {
@@ -86,14 +86,14 @@ export class Explorer extends Player {
 
   holds({ offsetX, offsetY }) {
     const { top: [u, v], point: [x, y] } = this.hand(this.views[0]);
-    const along = ((offsetX - u) * (x - u) + (offsetY - v) * (y - v)) / ((x - u) ** 2 + (y - v) ** 2);
-    const part = Math.min(1, Math.max(0, along));
-    return Math.hypot(offsetX - u - part * (x - u), offsetY - v - part * (y - v)) < 26;
+    const [c, s, p, q] = [x - u, y - v, offsetX - u, offsetY - v];
+    const part = Math.min(1, Math.max(0, (p * c + q * s) / (c * c + s * s)));
+    return Math.hypot(p - part * c, q - part * s) < 26;
   }
 
   dragged({ offsetX, offsetY }) {
     const { x, z } = this.strip.motion.at(0), { clientWidth } = this.box;
-    const [px, pz] = this.look_at([{ x }], clientWidth)[0].ground(offsetX, offsetY);
+    const [px, pz] = this.viewsOf([{ x }], clientWidth)[0].ground(offsetX, offsetY);
     this.strike(nearest(this.film.table.d, px - x),
       nearest(this.film.table.F, this.strength(pz - z)));
   }
@@ -119,19 +119,19 @@ export class Explorer extends Player {
     this.strip.events = table.events[n];
   }
 
-  /** Show what a blow does, from its beginning. */
+  /** Show the motion after a blow, from its beginning. */
   strike(i, j) {
     this.pause();
     this.t = 0;
     if (i !== this.i || j !== this.j) {
       this.choose(i, j);
       this.marks();
-      this.tell();
+      this.describe();
     }
     this.draw();
   }
 
-  tell() {
+  describe() {
     const { table } = this.film, { n } = this, { d, F } = this.blow();
     [this.where.value, this.hard.value] = [this.i, this.j];
     this.where.nextElementSibling.value = `d = ${round(d)} m`;
@@ -166,21 +166,21 @@ export class Explorer extends Player {
     }
   }
 
-  /** Over the body: where the motion goes, and the hand. */
+  /** Draw over the body: the path of the motion, and the hand. */
   over(ink) {
-    const { strip, look, views: [view] } = this, end = strip.motion.end;
+    const { strip, colours, views: [view] } = this, end = strip.motion.end;
     ink.globalAlpha = 0.4;
-    line(ink, look.orange, 1.2, strip.points.map(([, x, z]) => view.at(x, z)));
+    line(ink, colours.orange, 1.2, strip.points.map(([, x, z]) => view.at(x, z)));
     for (let k = 1; k <= STROBES; k++) {
       outline(ink, strip, strip.motion.at((k / STROBES) * end), view);
       ink.globalAlpha = 0.2 + (0.3 * k) / STROBES;
-      stroke(ink, look.blue, 1);
+      stroke(ink, colours.blue, 1);
     }
     ink.globalAlpha = this.t > 0 ? 0.45 : 1;
     const { top, point, F } = this.hand(view);
-    arrow(ink, look.plum, top, point, 4);
-    disc(ink, look.plum, look.paper, top, 9);
-    text(ink, look.plum, `${round(F)} N s`, top[0] + 15, top[1] + 4, "left");
+    arrow(ink, colours.plum, top, point, 4);
+    disc(ink, colours.plum, colours.paper, top, 9);
+    text(ink, colours.plum, `${round(F)} N s`, top[0] + 15, top[1] + 4, "left");
     ink.globalAlpha = 1;
   }
 
@@ -205,11 +205,11 @@ export class Explorer extends Player {
       ink.fillStyle = table.colours[code];
       ink.fillRect(...corner(Math.floor(n / F.length), n % F.length), wide + 0.7, tall + 0.7);
     });
-    for (const [style, width] of [[this.look.paper, 5], [this.look.ink, 2]]) {
+    for (const [style, width] of [[this.colours.paper, 5], [this.colours.ink, 2]]) {
       Object.assign(ink, { strokeStyle: style, lineWidth: width });
       ink.strokeRect(...corner(this.i, this.j), wide, tall);
     }
-    const { grey } = this.look;
+    const { grey } = this.colours;
     [0, (d.length - 1) / 2, d.length - 1].forEach((i) =>
       text(ink, grey, round(d[i]), left + (i + 0.5) * wide, top + up + 14, "center", 11));
     [0, F.length - 1].forEach((j) =>
@@ -223,7 +223,7 @@ export class Explorer extends Player {
   }
 
   paintPlot(ink) {
-    const { strip, look } = this, { t, normal_force: N, friction_force: F } = strip.motion;
+    const { strip, colours } = this, { t, normal_force: N, friction_force: F } = strip.motion;
     const [left, top] = [34, 12], across = this.plot.clientWidth - left - 14;
     const up = this.plot.clientHeight - top - 30, { weight } = strip, { end } = this.film;
     const all = [...N, ...F].map((force) => force / weight);
@@ -231,19 +231,20 @@ export class Explorer extends Player {
     const x = (time) => left + (time / end) * across;
     const y = (part) => top + up * ((high - Math.min(high, Math.max(low, part))) / (high - low));
     for (let part = Math.ceil(low); part <= high; part++) {
-      line(ink, look.faint, 1, [[left, y(part)], [left + across, y(part)]]);
-      text(ink, look.grey, round(part), left - 6, y(part) + 4, "right", 11);
+      line(ink, colours.faint, 1, [[left, y(part)], [left + across, y(part)]]);
+      text(ink, colours.grey, round(part), left - 6, y(part) + 4, "right", 11);
     }
-    text(ink, look.grey, "0", left, top + up + 14, "center", 11);
-    text(ink, look.grey, `${round(end)} s`, left + across, top + up + 14, "right", 11);
+    text(ink, colours.grey, "0", left, top + up + 14, "center", 11);
+    text(ink, colours.grey, `${round(end)} s`, left + across, top + up + 14, "right", 11);
     ink.lineJoin = "round";
-    for (const [forces, colour, name, place] of [[N, look.blue, "N", 0], [F, look.orange, "F", 18]]) {
+    const curves = [[N, colours.blue, "N", 0], [F, colours.orange, "F", 18]];
+    for (const [forces, colour, name, place] of curves) {
       line(ink, colour, 1.8, Array.from(t, (time, k) => [x(time), y(forces[k] / weight)]));
       text(ink, colour, name, left + across - 20 + place, top + 8);
     }
     const upright = (colour, time) => line(ink, colour, 1, [[x(time), top], [x(time), top + up]]);
-    for (const [time, kind] of strip.events) if (kind === "impact") upright(look.plum, time);
-    upright(look.ink, this.t);
+    for (const [time, kind] of strip.events) if (kind === "impact") upright(colours.plum, time);
+    upright(colours.ink, this.t);
   }
 }
 

@@ -1,4 +1,4 @@
-"""A blow that the reader moves: what it makes of a scene, at once and without a kernel."""
+"""A blow that the reader moves, and the motion after it: at once and without a kernel."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from . import blows
 from .page import document, fragment
 from .poster import positions, poster
 
-LONGEST = 40.0  # of what is shown, in units of sqrt(longer semi-axis / gravity)
+LONGEST = 40.0  # longest time shown, in units of sqrt(longer semi-axis / gravity)
 
 
 def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
     """Let the reader strike the body: where and how hard, by dragging a hand over it.
 
-    The page shows the motion with its forces, what it comes to first and why, its events, and a
+    The page shows the motion with its forces, its first outcome with the reason, its events, and a
     map of the outcomes of all blows. It carries a table of them, 25 places by 16 strengths, so that
     it works without a kernel and without a network; the nearest one is shown. A button copies the
     lines of Python that simulate it.
@@ -67,7 +67,7 @@ def write_explorer(scene: Scene, path: str | PathLike[str]) -> None:
 
 @dataclass(frozen=True)
 class Explorer(FieldsOnly):
-    """What `explore` returns; a notebook shows it by itself.
+    """The result of `explore`; a notebook shows it by itself.
 
     Attributes
     ----------
@@ -82,12 +82,12 @@ class Explorer(FieldsOnly):
 
     @cached_property
     def distances(self) -> FloatArray:
-        """Where the blows of the table act, seen from the centre along the ground, (25,) [m]."""
+        """Places of the blows in the table, from the centre along the ground, (25,) [m]."""
         return blows.ranges(self.scene)[0]
 
     @cached_property
     def strengths(self) -> FloatArray:
-        """How hard they are, downwards, (16,) [N s]."""
+        """Strengths of the blows in the table, downwards, (16,) [N s]."""
         return blows.ranges(self.scene)[1]
 
     def to_html(self, path: str | PathLike[str]) -> None:
@@ -133,11 +133,11 @@ class Explorer(FieldsOnly):
         blow = Impulse.press(float(self.strengths[at[1]]), float(self.distances[at[0]]))
         motion = blows.struck(self.scene, blow, self.t_end)
         still = poster([positions(motion, self.t_end)], [strip["window"]], [""], shape)
-        told = f"An ellipse struck by {blow.jz:.3g} N s at {blow.dx:.3g} m, at even times"
-        return fragment(data, still, told, explorer=True)
+        text = f"An ellipse struck by {blow.jz:.3g} N s at {blow.dx:.3g} m, at even times"
+        return fragment(data, still, text, explorer=True)
 
     def _first_blow(self) -> tuple[int, int]:
-        """Place and strength of the blow shown first: the scene's own, or one that does much."""
+        """Return place and strength of the first blow: the scene's own, or a strong one."""
         own: Any = self.scene.impulse
         d, F = (own.dx, -own.jz) if own is not None else (0.75 * self.distances[-1], 0.0)
         if F <= 0:

@@ -1,11 +1,13 @@
-"""What the player shows of an animation."""
+"""The player of an animation: its data, its page and its poster."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from .._ask.scene import Scene
+from .._motion.trajectory import Trajectory
 from .._pictures.animation import RollingAnimation
 from .._pictures.animation.camera import cameras
 from .._pictures.ground import SHOWN_TURNS, touching_x
@@ -14,17 +16,13 @@ from .page import document, fragment
 from .poster import positions, poster
 from .tracks import track
 
-if TYPE_CHECKING:
-    from .._ask.scene import Scene
-    from .._motion.trajectory import Trajectory
-
-_PIXEL = 2.5e-5  # of the width of the view: a twentieth of a pixel where it is 2000 pixels wide
-_HEAD, _FOOT = 0.035, 0.035  # room for a line of text above, and for the ruler, over the width
-_TALLEST = 0.42  # height of a film over its width; half as much for each of several motions
+_PIXEL = 2.5e-5  # tolerance over the width of the view: 1/20 pixel of a film 2000 pixels wide
+_HEAD, _FOOT = 0.035, 0.035  # free heights for a line of text and for the ruler, over the width
+_TALLEST = 0.42  # largest height of a film over its width; half of it for each of several motions
 
 
 def film_page(animation: RollingAnimation) -> str:
-    """Return a page with the player of an animation, which works without a network."""
+    """Return a page with the player of an animation; it works without a network."""
     return document("An ellipse in motion", film_html(animation))
 
 
@@ -35,7 +33,7 @@ def film_html(animation: RollingAnimation) -> str:
     ends = [min(last, float(motion.t[-1])) for motion in motions]
     seen = cameras(motions, None, _HEAD, _FOOT)
     if seen.shape > (most := max(_TALLEST, _TALLEST * len(motions) / 2)):
-        seen = cameras(motions, most, _HEAD, _FOOT)  # a cell is wide
+        seen = cameras(motions, most, _HEAD, _FOOT)  # a cell of a notebook is wide
     wide = seen.windows[0][1] - seen.windows[0][0]
     strips = [
         {
@@ -60,9 +58,9 @@ def film_html(animation: RollingAnimation) -> str:
         "follows": seen.follows,
         "strips": strips,
     }
-    told = f"{len(motions)} ellipses" if len(motions) > 1 else "An ellipse"
-    told += f" on the ground in motion for {last:g} s, at even times"
-    return fragment(data, still(motions, animation.labels, seen.shape), told)
+    text = f"{len(motions)} ellipses" if len(motions) > 1 else "An ellipse"
+    text += f" on the ground in motion for {last:g} s, at even times"
+    return fragment(data, still(motions, animation.labels, seen.shape), text)
 
 
 def still(motions: list[Trajectory], labels: tuple[str, ...], shape: float) -> str:
@@ -75,7 +73,7 @@ def still(motions: list[Trajectory], labels: tuple[str, ...], shape: float) -> s
 
 
 def body(scene: Scene) -> dict[str, Any]:
-    """Return the body, its ground and the blow it was given."""
+    """Return the body, its ground and its blow, in types of JSON."""
     blow = scene.impulse
     return {
         "a": scene.a,

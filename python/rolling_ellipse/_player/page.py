@@ -1,4 +1,4 @@
-"""HTML that carries the player with it: a fragment for notebooks, a page for files."""
+"""HTML that contains the player: a fragment for notebooks, a page for files."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from .look import DARK, LIGHT
+from .colours import DARK, LIGHT
 
 
 @cache
@@ -19,14 +19,14 @@ def _script(name: str) -> str:
     return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
-def fragment(data: dict[str, Any], poster: str, told: str, *, explorer: bool = False) -> str:
-    """Return a `div` with a still picture, an SVG, that its script puts the player in place of.
+def fragment(data: dict[str, Any], poster: str, text: str, *, explorer: bool = False) -> str:
+    """Return a `div` with a poster, an SVG, whose script replaces it by the player.
 
-    Where scripts are not run the picture and its text stay. The same fragment may stand on one
-    page any number of times.
+    If scripts are not run, the poster and its text stay. A page may have the same fragment several
+    times.
     """
-    known = json.dumps(data | {"look": {"light": LIGHT, "dark": DARK}}, separators=(",", ":"))
-    packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half as long
+    known = json.dumps(data | {"colours": {"light": LIGHT, "dark": DARK}}, separators=(",", ":"))
+    packed = base64.b64encode(gzip.compress(known.encode(), mtime=0)).decode()  # half the length
     name = hashlib.sha256((known + poster).encode()).hexdigest()[:12]
     scripts = ("track.js", "strip.js", "player.js", "explorer.js")[: 3 + explorer]
     module = "\n".join(_script(each) for each in scripts)
@@ -34,7 +34,7 @@ def fragment(data: dict[str, Any], poster: str, told: str, *, explorer: bool = F
     starts = "Explorer" if explorer else "Player"
     return (
         f'<div class="rolling-ellipse" data-film="{name}">'
-        f'<img alt="{html.escape(told)}" style="max-width:100%" '
+        f'<img alt="{html.escape(text)}" style="max-width:100%" '
         f'src="data:image/svg+xml;base64,{picture}">\n'
         f'<script type="module">\n{module}\n'
         f'const free = `.rolling-ellipse[data-film="{name}"]:not([data-ready])`;\n'
@@ -44,7 +44,7 @@ def fragment(data: dict[str, Any], poster: str, told: str, *, explorer: bool = F
 
 
 def document(title: str, content: str) -> str:
-    """Return a page that needs nothing but itself."""
+    """Return a page that needs no other file and no network."""
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'

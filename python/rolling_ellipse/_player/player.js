@@ -26,7 +26,7 @@ const STYLE = `
     background: var(--plum) }
   .time { font-variant-numeric: tabular-nums; min-width: 6.5em; text-align: right }`;
 
-/** Where the page, or else the reader's system, wants dark paper. */
+/** True if the page, or else the reader's system, asks for dark colours. */
 export function isDark(host) {
   const dark = ".dark, .vscode-dark, [data-theme=dark], [data-jp-theme-light=false]";
   const light = ".light, .vscode-light, [data-theme=light], [data-jp-theme-light=true]";
@@ -35,7 +35,7 @@ export function isDark(host) {
   return night ? true : day ? false : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-/** The ink of a canvas as wide as it is shown, and so high, with the dots of the screen. */
+/** The cleared context of a canvas of a height [CSS px], with the resolution of the screen. */
 export function sized(canvas, height) {
   const dots = window.devicePixelRatio || 1, { clientWidth: width } = canvas;
   const across = Math.round(width * dots), down = Math.round(height * dots);
@@ -112,7 +112,7 @@ export class Player {
       height="18" aria-hidden="true"><path d="${ICONS[name]}"/></svg></button>`;
   }
 
-  /** A mark at the slider for every event, up to what can be told apart. */
+  /** Put a mark at the slider for every event; only one for events in the same place. */
   marks() {
     const seek = this.slider.parentNode;
     seek.querySelectorAll(".mark").forEach((mark) => mark.remove());
@@ -183,7 +183,7 @@ export class Player {
     this.toggle.title = label;
   }
 
-  /** One loop of frames at a time, while it is played and seen; a second's rest at the end. */
+  /** Run one loop of frames while the film plays in sight; it rests for a second at the end. */
   run() {
     if (this.running || !this.playing || this.seen === false) return;
     this.running = true;
@@ -201,7 +201,7 @@ export class Player {
     requestAnimationFrame(frame);
   }
 
-  /** What is shown now, for those who read it: the states, and their centres in pixels. */
+  /** The states now, with the centres in pixels: for scripts of the page. */
   state() {
     const bodies = this.film.strips.map((strip, i) => {
       const at = strip.motion.at(this.t);
@@ -211,7 +211,7 @@ export class Player {
     return { t: this.t, playing: this.playing, bodies };
   }
 
-  /** Pictures are drawn at most once a frame. */
+  /** Ask for a picture; there is at most one in a frame of the screen. */
   draw() {
     this.slider.value = this.film.end > 0 ? this.t / this.film.end : 0;
     this.clock.textContent = `${this.t.toFixed(this.film.decimals)} s`;
@@ -225,12 +225,12 @@ export class Player {
     if (!width) return;
     canvas.style.height = `${height}px`;
     const ink = sized(canvas, height);
-    this.look = film.look[isDark(this.host) ? "dark" : "light"];
-    for (const name in this.look) box.style.setProperty(`--${name}`, this.look[name]);
-    ink.fillStyle = this.look.paper;
+    this.colours = film.colours[isDark(this.host) ? "dark" : "light"];
+    for (const name in this.colours) box.style.setProperty(`--${name}`, this.colours[name]);
+    ink.fillStyle = this.colours.paper;
     ink.fillRect(0, 0, width, height);
     const states = film.strips.map((strip) => strip.motion.at(this.t));
-    this.views = this.look_at(states, width);
+    this.views = this.viewsOf(states, width);
     let floor = 0;
     film.strips.forEach((strip, i) => {
       const tall = strip.share * height;
@@ -238,7 +238,7 @@ export class Player {
       ink.beginPath();
       ink.rect(0, floor, width, tall);
       ink.clip();
-      paintStrip(ink, this.look, strip, states[i], this.views[i], {
+      paintStrip(ink, this.colours, strip, states[i], this.views[i], {
         floor, width, tall, forces: this.forces, lasting: this.t / film.speed,
         caption: this.caption(strip, states[i]), clock: i ? "" : this.clockText(),
       });
@@ -251,8 +251,8 @@ export class Player {
       .join("; ") || "An ellipse on the ground");
   }
 
-  /** The views of all strips, of cameras that follow nothing, the middle or each its own body. */
-  look_at(states, width) {
+  /** The views of all strips; their cameras follow nothing, the middle, or each its own body. */
+  viewsOf(states, width) {
     const { strips, follows, shape } = this.film;
     const feet = strips.map(({ slope }, i) =>
       [states[i].x * Math.cos(slope), states[i].x * Math.sin(slope)]);
@@ -273,7 +273,7 @@ export class Player {
     });
   }
 
-  /** What has to be said of one motion now. */
+  /** The label of a motion and remarks on its state now. */
   caption(strip, at) {
     const parts = strip.label ? [strip.label] : [];
     if (this.film.follows === "own") {

@@ -1,19 +1,15 @@
-"""A still picture of a motion as SVG, for where scripts are not run."""
+"""A still picture of motions as SVG, for pages whose scripts are not run."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
+from .._ask.check import FloatArray
 from .._motion.samples import even_times
-from .look import DARK, LIGHT
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
+from .._motion.trajectory import Trajectory
+from .colours import DARK, LIGHT
 
 _WIDTH = 640.0
 _BODIES = 9
@@ -27,8 +23,8 @@ def poster(
 ) -> str:
     """Return the bodies at even times, one strip over the other.
 
-    The motions are sampled at the times to show; each window is left, right, bottom, top [m] of
-    what the eye sees, and the picture `shape` times as high as wide.
+    The samples of the motions are the shown times. Each window is left, right, bottom, top [m] of a
+    strip with gravity down. The picture is `shape` times as high as wide.
     """
     scale = _WIDTH / (windows[0][1] - windows[0][0])
     drawn, floor = [], 0.0
@@ -53,7 +49,7 @@ def positions(motion: Trajectory, end: float) -> Trajectory:
 
 
 def _strip(motion: Trajectory, window: tuple[float, float, float, float], scale: float) -> str:
-    """One motion in ground axes, which the group turns to what the eye sees."""
+    """Return one motion in ground axes, in a group that turns gravity down."""
     scene, (left, right, _, top) = motion.scene, window
     slope = math.degrees(scene.slope)
     reach = 2 * (right - left) + abs(left) + abs(right)
@@ -79,20 +75,20 @@ def _line(x: FloatArray, z: FloatArray) -> str:
     return "M" + "L".join(f"{a:.5g} {b:.5g}" for a, b in zip(x, z, strict=True))
 
 
-def _style(look: dict[str, str]) -> str:
+def _style(colours: dict[str, str]) -> str:
     thin = "vector-effect: non-scaling-stroke"
     return (
-        f".paper {{ fill: {look['paper']} }} "
-        f".earth {{ fill: {look['earth']}; stroke: {look['grey']}; {thin} }} "
-        f".body {{ fill: {look['body']}; fill-opacity: .5; stroke: {look['ink']}; "
+        f".paper {{ fill: {colours['paper']} }} "
+        f".earth {{ fill: {colours['earth']}; stroke: {colours['grey']}; {thin} }} "
+        f".body {{ fill: {colours['body']}; fill-opacity: .5; stroke: {colours['ink']}; "
         f"stroke-width: 1.5; {thin} }} "
-        f".hand {{ stroke: {look['blue']}; stroke-width: 1.5; {thin} }} "
-        f".path {{ fill: none; stroke: {look['orange']}; stroke-width: 2; {thin} }} "
-        f"text {{ font: 13px sans-serif; fill: {look['ink']} }}"
+        f".hand {{ stroke: {colours['blue']}; stroke-width: 1.5; {thin} }} "
+        f".path {{ fill: none; stroke: {colours['orange']}; stroke-width: 2; {thin} }} "
+        f"text {{ font: 13px sans-serif; fill: {colours['ink']} }}"
     )
 
 
 def _escaped(text: str) -> str:
-    """As XML knows it: without control characters and half surrogates, which end it."""
+    """Return the text for XML, without the control characters and surrogates that XML refuses."""
     known = "".join(letter if letter.isprintable() else " " for letter in text)
     return escape(known)

@@ -1,9 +1,8 @@
-// One strip of the picture: a body on its ruled ground, drawn where a state has it. It needs
-// track.js.
+// One strip of the picture: a body on its ruled ground in a given state. It needs track.js.
 
 export const [SLIDING, FLIGHT] = [1, 2]; // codes of Mode
-const SHOWN = 6000; // points of a trace; those before are out of sight
-const FADES = 1.2; // seconds of film that a blow or an event is seen for
+const SHOWN = 6000; // last points of a trace that are drawn: earlier ones are out of sight
+const FADES = 1.2; // a blow or an event is seen for so long [seconds of film]
 
 /** One strip of the picture: turns places on its ground to pixels. */
 export class View {
@@ -21,20 +20,20 @@ export class View {
   }
 }
 
-/** Everything of one motion at one time. */
-export function paintStrip(ink, look, strip, at, view, shown) {
+/** Draw one motion at one time. */
+export function paintStrip(ink, colours, strip, at, view, shown) {
   ink.lineJoin = "round";
-  paintGround(ink, look, strip, view, shown);
-  paintSkids(ink, look, strip, at, view);
-  paintTrace(ink, look.blue, 1, strip.points, 3, at, view, 0.55);
-  paintBody(ink, look, strip, at, view);
-  paintTrace(ink, look.orange, 1.8, strip.points, 1, at, view, 1);
-  paintContact(ink, look, strip, at, view);
-  if (shown.forces) paintForces(ink, look, strip, at, view);
-  if (strip.blow) paintBlow(ink, look, strip, view, shown.lasting);
-  paintEvents(ink, look, strip, at, view, shown);
-  text(ink, look.ink, shown.caption, 12, shown.floor + 20, "left");
-  text(ink, look.ink, shown.clock, shown.width - 12, shown.floor + 20, "right");
+  paintGround(ink, colours, strip, view, shown);
+  paintSkids(ink, colours, strip, at, view);
+  paintTrace(ink, colours.blue, 1, strip.points, 3, at, view, 0.55);
+  paintBody(ink, colours, strip, at, view);
+  paintTrace(ink, colours.orange, 1.8, strip.points, 1, at, view, 1);
+  paintContact(ink, colours, strip, at, view);
+  if (shown.forces) paintForces(ink, colours, strip, at, view);
+  if (strip.blow) paintBlow(ink, colours, strip, view, shown.lasting);
+  paintEvents(ink, colours, strip, at, view, shown);
+  text(ink, colours.ink, shown.caption, 12, shown.floor + 20, "left");
+  text(ink, colours.ink, shown.clock, shown.width - 12, shown.floor + 20, "right");
 }
 
 export function text(ink, colour, words, x, y, align = "center", size = 13) {
@@ -49,7 +48,7 @@ export function path(ink, points) {
   for (const point of points) ink.lineTo(...point);
 }
 
-/** The path that was begun, as a line. */
+/** Draw the current path as a line. */
 export function stroke(ink, strokeStyle, lineWidth) {
   Object.assign(ink, { strokeStyle, lineWidth });
   ink.stroke();
@@ -65,12 +64,12 @@ export function fill(ink, colour) {
   ink.fill();
 }
 
-/** A number of a few digits, as one writes it. */
+/** The text of a number with a few digits. */
 export function round(value, digits = 3) {
   return `${+value.toPrecision(digits)}`.replace("-", "−");
 }
 
-/** An arrow from one pixel to another, with a head that a short one has, too. */
+/** Draw an arrow from one pixel to another; the head of a short one is smaller. */
 export function arrow(ink, colour, [x, y], [u, v], width = 2.5) {
   const length = Math.hypot(u - x, v - y);
   if (length < 1) return;
@@ -89,7 +88,7 @@ export function disc(ink, colour, edge, [x, y], radius) {
   if (edge) stroke(ink, edge, 1.5);
 }
 
-/** The edge of a body, as a path. */
+/** Make the edge of a body the current path. */
 export function outline(ink, strip, at, view) {
   const [u, v] = view.at(at.x, at.z);
   ink.beginPath();
@@ -97,14 +96,14 @@ export function outline(ink, strip, at, view) {
     2 * Math.PI);
 }
 
-/** The earth, its ticks, longer and with their distance at every fifth. */
-function paintGround(ink, look, strip, view, { floor, width, tall }) {
+/** Draw the earth and its ticks, every fifth longer and with its distance. */
+function paintGround(ink, colours, strip, view, { floor, width, tall }) {
   const far = (2 * (width + tall)) / view.scale;
   const [x] = view.ground(width / 2, floor + tall);
   path(ink, [view.at(x - far, 0), view.at(x + far, 0), view.at(x + far, -far),
     view.at(x - far, -far)]);
-  fill(ink, look.earth);
-  line(ink, look.grey, 1, [view.at(x - far, 0), view.at(x + far, 0)]);
+  fill(ink, colours.earth);
+  line(ink, colours.grey, 1, [view.at(x - far, 0), view.at(x + far, 0)]);
   const span = width / view.scale / Math.cos(strip.slope), least = span / Math.min(24, width / 25);
   const power = 10 ** Math.floor(Math.log10(least));
   const step = power * [1, 2, 5, 10].find((n) => n * power >= least * (1 - 1e-12));
@@ -120,12 +119,12 @@ function paintGround(ink, look, strip, view, { floor, width, tall }) {
     ink.save();
     ink.translate(...view.at(i * step, -unit * 3));
     ink.rotate(strip.slope);
-    text(ink, look.grey, `${round(i * step, 10)} m`, 0, 0, "center", 11);
+    text(ink, colours.grey, `${round(i * step, 10)} m`, 0, 0, "center", 11);
     ink.restore();
   }
 }
 
-/** The points of a trace up to now, as far as they may be in sight. */
+/** The last SHOWN points of a trace up to a time. */
 function past(points, t) {
   let low = 0, end = points.length;
   while (end - low > 1) {
@@ -136,8 +135,8 @@ function past(points, t) {
   return points.slice(Math.max(0, end - SHOWN), end);
 }
 
-/** Where the contact has slid. */
-function paintSkids(ink, look, { a, b, points }, at, view) {
+/** Draw where the contact has slid. */
+function paintSkids(ink, colours, { a, b, points }, at, view) {
   ink.beginPath();
   let slid = false;
   for (const [, x, , , , mode, theta] of past(points, at.t)) {
@@ -148,11 +147,11 @@ function paintSkids(ink, look, { a, b, points }, at, view) {
   }
   if (slid) ink.lineTo(...view.at(at.x + support(at.theta, a, b)[1], 0));
   Object.assign(ink, { lineCap: "butt", globalAlpha: 0.5 });
-  stroke(ink, look.plum, 6);
+  stroke(ink, colours.plum, 6);
   ink.globalAlpha = 1;
 }
 
-/** The part of a trace up to now; it ends where the body is. */
+/** Draw a trace up to now; it ends at the body. */
 function paintTrace(ink, colour, width, points, column, at, view, alpha) {
   if (!points.length) return;
   const seen = past(points, at.t).map((point) => view.at(point[column], point[column + 1]));
@@ -161,80 +160,80 @@ function paintTrace(ink, colour, width, points, column, at, view, alpha) {
   ink.globalAlpha = 1;
 }
 
-function paintBody(ink, look, strip, at, view) {
+function paintBody(ink, colours, strip, at, view) {
   const { a, b } = strip, sine = Math.sin(at.theta), cosine = Math.cos(at.theta);
   if (at.mode === FLIGHT) {
     const half = support(at.theta + Math.PI / 2, a, b)[0];
     ink.lineCap = "round";
-    line(ink, look.grey, 5, [view.at(at.x - half, 0), view.at(at.x + half, 0)]);
+    line(ink, colours.grey, 5, [view.at(at.x - half, 0), view.at(at.x + half, 0)]);
   }
   outline(ink, strip, at, view);
-  fill(ink, look.body);
-  stroke(ink, look.ink, 1.8);
+  fill(ink, colours.body);
+  stroke(ink, colours.ink, 1.8);
   const axis = (x, z) => [-1, 1].map((n) => view.at(at.x + n * x, at.z + n * z));
-  line(ink, look.ink, 1.2, axis(a * cosine, -a * sine));
+  line(ink, colours.ink, 1.2, axis(a * cosine, -a * sine));
   ink.setLineDash([5, 4]);
-  line(ink, look.ink, 1.2, axis(b * sine, b * cosine));
+  line(ink, colours.ink, 1.2, axis(b * sine, b * cosine));
   ink.setLineDash([]);
-  disc(ink, look.blue, null, view.at(...at.tip), 4);
+  disc(ink, colours.blue, null, view.at(...at.tip), 4);
 }
 
-/** Where body and ground touch; a triangle points to where the contact slips. */
-function paintContact(ink, look, { a, b }, at, view) {
+/** Mark where body and ground touch; a triangle points in the direction of slip. */
+function paintContact(ink, colours, { a, b }, at, view) {
   if (at.mode === FLIGHT) return;
   const [height, lead] = support(at.theta, a, b), way = Math.sign(at.xDot - height * at.omega);
   const place = at.x + lead, pixel = 1 / view.scale;
   if (at.mode !== SLIDING) {
-    disc(ink, look.paper, look.ink, view.at(place, 0), 4);
+    disc(ink, colours.paper, colours.ink, view.at(place, 0), 4);
     return;
   }
   path(ink, [[9, 0], [-5.5, 6], [-5.5, -6]].map(([along, up]) =>
     view.at(place + way * along * pixel, up * pixel)));
   ink.closePath();
-  fill(ink, look.plum);
-  stroke(ink, look.paper, 0.8);
+  fill(ink, colours.plum);
+  stroke(ink, colours.paper, 0.8);
 }
 
-/** The force of the ground; the body's weight is as long as its longer semi-axis. */
-function paintForces(ink, look, { a, b, weight }, at, view) {
+/** Draw the force of the ground; the body's weight is as long as its longer semi-axis. */
+function paintForces(ink, colours, { a, b, weight }, at, view) {
   if (at.mode === FLIGHT) return;
   const place = at.x + support(at.theta, a, b)[1];
   const length = (force) => Math.max(-3, Math.min(3, force / weight)) * Math.max(a, b);
   const foot = view.at(place, 0), up = view.at(place, length(at.N));
   const along = view.at(place + length(at.F), 0);
-  arrow(ink, look.plum, foot, up, 3);
-  arrow(ink, look.plum, foot, along, 3);
-  text(ink, look.plum, "N", up[0] + 13, up[1] + 8);
-  if (Math.abs(at.F) > 0.02 * weight) text(ink, look.plum, "F", along[0], along[1] - 8);
+  arrow(ink, colours.plum, foot, up, 3);
+  arrow(ink, colours.plum, foot, along, 3);
+  text(ink, colours.plum, "N", up[0] + 13, up[1] + 8);
+  if (Math.abs(at.F) > 0.02 * weight) text(ink, colours.plum, "F", along[0], along[1] - 8);
 }
 
-/** The blow at t = 0, where the hand hits the body as it lay then. */
-function paintBlow(ink, look, strip, view, lasting) {
+/** Draw the blow at its place on the body at t = 0. */
+function paintBlow(ink, colours, strip, view, lasting) {
   const [jx, jz, dx, dz] = strip.blow, size = Math.hypot(jx, jz);
   if (lasting > FADES || !size) return;
   const { x, z } = strip.motion.at(0), long = 0.9 * Math.max(strip.a, strip.b);
   const end = [x + dx, z + dz], start = [end[0] - (long * jx) / size, end[1] - (long * jz) / size];
   const [u, v] = view.at(...start);
   ink.globalAlpha = 1 - lasting / FADES;
-  arrow(ink, look.plum, [u, v], view.at(...end), 3.5);
-  text(ink, look.plum, `${round(size)} N s`, u + 10, v + 12, "left");
+  arrow(ink, colours.plum, [u, v], view.at(...end), 3.5);
+  text(ink, colours.plum, `${round(size)} N s`, u + 10, v + 12, "left");
   ink.globalAlpha = 1;
 }
 
-/** A tick on the ground for every event that has been, and its name while it is new. */
-function paintEvents(ink, look, strip, at, view, { width, lasting }) {
+/** Draw a tick on the ground for every past event, and the name of a recent one. */
+function paintEvents(ink, colours, strip, at, view, { width, lasting }) {
   let named = null;
   for (const [t, kind, x] of strip.events) {
     if (t > at.t) break;
     const [u, v] = view.at(x, 0);
     if (u < -5 || u > width + 5) continue;
     path(ink, [[u, v], [u - 3.5, v + 8], [u + 3.5, v + 8]]);
-    fill(ink, look.plum);
+    fill(ink, colours.plum);
     const age = lasting * (1 - t / Math.max(at.t, 1e-300));
     if (age < FADES) named = { kind, place: [u, v + 38], alpha: 1 - age / FADES };
   }
   if (!named) return;
   ink.globalAlpha = named.alpha;
-  text(ink, look.plum, named.kind, ...named.place, "center", 11);
+  text(ink, colours.plum, named.kind, ...named.place, "center", 11);
   ink.globalAlpha = 1;
 }

@@ -5,7 +5,7 @@ const KINDS = { u2: Uint16Array, f4: Float32Array, f8: Float64Array };
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
-/** What a page carries as gzipped JSON. */
+/** The data of a page from gzipped JSON in base64. */
 export async function unzipped(text) {
   const unzip = new DecompressionStream("gzip");
   return new Response(new Blob([bytesOf(text)]).stream().pipeThrough(unzip)).json();
@@ -47,7 +47,7 @@ export class Track {
     };
   }
 
-  /** Where the body has been: [t, x, z, tip x, tip z, mode, theta] at times near each other. */
+  /** Points of the path: [t, x, z, tip x, tip z, mode, theta] at times near each other. */
   trace() {
     const points = [];
     if (this.stepped) return points;

@@ -1,34 +1,33 @@
-"""A motion as the player knows it: samples with their rates, close enough for cubics between."""
+"""A motion for the player: samples with their rates, so dense that cubics between them will do."""
 
 from __future__ import annotations
 
 import base64
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from .._ask.check import FloatArray
 from .._motion.samples import even_times
+from .._motion.trajectory import Trajectory
+from .._pictures.sampling import halve
 
-if TYPE_CHECKING:
-    from .._ask.check import FloatArray
-    from .._motion.trajectory import Trajectory
-
-MOST_SAMPLES = 20_000  # of one motion; 1 MB
+MOST_SAMPLES = 20_000  # of one motion, 1 MB
 _RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}
 _FORCES = ("normal_force", "friction_force")
-# Where a cubic is compared with the motion, in parts of its interval: irregular, so that a motion
-# whose period divides the intervals does not look like a straight line.
+# Places in an interval at which a cubic is compared with the motion. They are irregular, so that a
+# motion whose period divides the intervals does not look like a straight line.
 _WITHIN = np.array([0.2113, 0.5, 0.7887])
-_FORCE = 0.04  # what lines may miss of the forces and the weight together: a line's width in a plot
+_FORCE = 0.04  # error of lines, over force + weight, that is a line's width in a plot
 _FIRST = 17  # intervals to begin with
 
 
 def track(motion: Trajectory, end: float, tolerance: float, frames: FloatArray) -> dict[str, Any]:
-    """Return the motion up to its time `end` [s], as JSON knows it.
+    """Return the motion up to its time `end` [s], in types of JSON.
 
     Cubics through the samples and their rates miss centre and tip by at most `tolerance` [m].
-    Where this would take more than `MOST_SAMPLES`, the motion is there at the times of the
-    `frames` alone, and `stepped`: nothing is put between them. More frames are refused.
+    A motion that needs more than `MOST_SAMPLES` has samples at the times of the `frames` alone and
+    is `stepped`: it stands still between them. More frames are refused.
     """
     times = sample_times(motion, end, tolerance)
     stepped = times is None
@@ -43,7 +42,7 @@ def track(motion: Trajectory, end: float, tolerance: float, frames: FloatArray) 
 
 
 def columns(motions: list[Trajectory], tolerance: float) -> dict[str, Any]:
-    """Return the samples of motions of one body, one after the other, packed."""
+    """Return the samples of motions of one body in packed columns, one motion after the other."""
     scene = motions[0].scene
     size = max(scene.a, scene.b)
     joined = {
@@ -69,34 +68,28 @@ def sample_times(
     most: int = MOST_SAMPLES,
     for_forces: int = MOST_SAMPLES,
 ) -> FloatArray | None:
-    """Return times for cubics that miss by no more than `tolerance` [m], None if over `most`.
+    """Return times between which cubics miss by at most `tolerance` [m]; None if over `most`.
 
-    Lines between the forces are near them, too, unless that takes more than `for_forces` samples.
-    At an event the time just before it is there as well.
+    Lines between the forces are near them, too, as long as there are at most `for_forces` times.
+    Events are among the times, and the doubles just before them.
     """
     jumps = [event.t for event in motion.events if 0 < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
     times = np.unique(np.concatenate([even_times(0.0, end, _FIRST + 1), jumps, just_before]))
-    open_ones = np.diff(times) > 1e-12 * end  # intervals that have to be looked at
-    while np.any(open_ones):
-        if times.size > most:
-            return None
-        left, right = times[:-1][open_ones], times[1:][open_ones]
+    places = np.flatnonzero(np.diff(times) > 1e-12 * end)  # of intervals that may miss
+    while places.size and times.size <= most:
+        left, right = times[places], times[places + 1]
         force = _FORCE if times.size <= for_forces else np.inf
         bad = _misses(motion, left, right, tolerance, force) > 1
         bad &= right - left > 1e-9 * end
-        middles = (left[bad] + right[bad]) / 2
-        times = np.sort(np.concatenate([times, middles]))
-        place = np.searchsorted(times, middles)
-        open_ones = np.zeros(times.size - 1, bool)
-        open_ones[place] = open_ones[place - 1] = True
+        times, places = halve(times, places[bad])
     return times if times.size <= most else None
 
 
 def _misses(
     motion: Trajectory, left: FloatArray, right: FloatArray, tolerance: float, force: float
 ) -> FloatArray:
-    """By how much cubics over intervals of time miss, and lines the forces, 1 if just allowed."""
+    """Return the errors of cubics, and of lines between forces, over those that are allowed."""
     size = max(motion.scene.a, motion.scene.b)
     first, last = motion.sol(left), motion.sol(right)
     span = (right - left)[:, None]
@@ -120,9 +113,9 @@ def _misses(
 
 
 def packed(values: FloatArray, error: float) -> dict[str, Any]:
-    """Return a column in as few bytes as keep it to an error: low + step · n, n in base64.
+    """Return a column to within an error, in few bytes: low + step · n, with n in base64.
 
-    n are unsigned integers of two bytes where that is enough, else floats of four or eight.
+    n are unsigned integers of two bytes if these are fine enough, else floats of four or eight.
     """
     low, high = float(np.min(values)), float(np.max(values))
     step = (high - low) / 65535

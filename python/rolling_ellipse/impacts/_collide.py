@@ -1,4 +1,4 @@
-"""The velocities just after a collision, by three laws of restitution; how far apart two are."""
+"""The velocities just after a collision by three laws of restitution; a norm of velocities."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ def collide(
 ) -> tuple[Any, Any, Any]:
     """Return the velocities just after the collision of a body that touches the ground.
 
-    Coulomb friction acts all along the collision: the slip may stop, stick or reverse in it. The
-    laws differ in where restitution ends. Simulations use "stronge"; the others are there to
-    compare it with. All arguments broadcast by NumPy's rules.
+    Coulomb friction acts during the whole collision: the slip may stop, stick or reverse. The laws
+    differ in the end of restitution. Simulations use "stronge"; the other laws are for comparison.
+    All arguments broadcast by NumPy's rules.
 
     Parameters
     ----------
     theta, x_dot, z_dot, omega : float or array_like
-        Angle [rad] and velocities [m/s, m/s, rad/s] just before. A contact that does not move into
-        the ground is left as it is.
+        Angle [rad] and velocities [m/s, m/s, rad/s] just before. If the contact does not move into
+        the ground, they do not change.
     a, b : float or array_like
         Semi-axes [m].
     friction, restitution : float or array_like
@@ -44,9 +44,9 @@ def collide(
     gyration2 : float or array_like, optional
         k^2 = I/m [m^2], from 1e-6 to 1e6 times max(a, b)^2; default: a uniform disc, (a^2 + b^2)/4.
     law : {"stronge", "poisson", "newton"}
-        What the coefficient e of restitution means. "stronge": the normal force gives back e^2 of
-        the work that it took. "poisson": e times the impulse that it needed to stop the approach.
-        "newton": the contact leaves e times as fast as it came, which can create energy.
+        Meaning of the coefficient e of restitution. "stronge": the normal force gives back e^2 of
+        the work of compression. "poisson": e times the impulse of compression. "newton": the
+        contact leaves e times as fast as it came, which can create energy.
 
     Returns
     -------
@@ -78,8 +78,8 @@ def _after(count: int, columns: list[FloatArray], law: str) -> tuple[FloatArray,
 def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     """Return sqrt(2 T/m) = sqrt(x_dot^2 + z_dot^2 + k^2 omega^2) [m/s], T the kinetic energy.
 
-    Of a difference of velocities it is how far apart two motions are, translation and rotation
-    weighed as the body weighs them.
+    For a difference of velocities it is a distance of two motions, with translation and rotation
+    weighted as in the kinetic energy.
 
     Parameters
     ----------
@@ -102,5 +102,5 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     for name, values in zip(arguments, (x_dot, z_dot, omega), strict=False):
         require(name, "finite", values, np.isfinite(values))
     require("gyration2", "a positive finite area [m^2]", k2, (k2 > 0) & np.isfinite(k2))
-    with np.errstate(over="ignore"):  # infinite, where it is beyond the doubles
+    with np.errstate(over="ignore"):  # infinite beyond the largest double
         return shaped(np.hypot(np.hypot(x_dot, z_dot), np.sqrt(k2) * omega), shape)

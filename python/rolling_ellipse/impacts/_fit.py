@@ -21,7 +21,8 @@ _MEASURES: dict[Measure, Callable[[FloatArray], float]] = {
     "rms": lambda errors: float(np.sqrt(np.mean(errors**2))),
 }
 _INTERVALS = 40  # of the first grid, over the whole range of either coefficient
-_REACH, _FINER, _REFINEMENTS = 2, 4, 4  # old steps to either side, in steps 1/4 as long, 4 times
+# A finer grid reaches 2 old steps to either side in steps 1/4 as long; there are 4 of them.
+_REACH, _FINER, _REFINEMENTS = 2, 4, 4
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -35,7 +36,7 @@ class FittedImpacts(Listed):
     restitution, friction : float
         The coefficients that fit best; friction may be infinite.
     errors : ndarray, shape (n,)
-        Of each impact, the kinetic speed of predicted minus measured velocities after it [m/s].
+        Kinetic speed of predicted minus measured velocities after each impact [m/s].
     median_error, rms_error : float
         Median and root mean square of `errors` [m/s].
     """
@@ -69,7 +70,7 @@ class FittedImpacts(Listed):
         )
 
     def __eq__(self, other: object) -> bool:
-        """Whether everything is the same, the errors bit by bit."""
+        """True if law, coefficients and the bits of the errors are equal."""
         if not isinstance(other, FittedImpacts):
             return NotImplemented
         return self._key() == other._key()
@@ -94,10 +95,10 @@ def fit(
     """Find the one pair of coefficients that predicts a series of measured impacts best.
 
     The error of an impact is the kinetic speed of predicted minus measured velocities after it.
-    Its median, or root mean square, is looked up on a grid over restitution (0 to 1) and the angle
-    of friction (0 to a right angle, which is infinite friction), then on finer ones about the best
-    point, down to 1e-4: the same answer every time. What the impacts leave open (if all of them
-    stick, friction is only bounded from below) stays arbitrary.
+    Its median, or root mean square, is evaluated on a grid over restitution (0 to 1) and the angle
+    of friction (0 to a right angle, which is infinite friction), then on finer grids about the best
+    point, down to 1e-4: the same answer every time. A coefficient that the impacts do not determine
+    is arbitrary: if all of them stick, they only bound friction from below.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
-"""The report taken apart: its equations as printed, their errata as numbers, and its simulation.
+"""The report's equations as printed, its errata as numbers, and its simulation.
 
 Arrays hold the report's coordinates q = (x, z, theta, psi, r) along the last axis [m, rad], in the
 order of its section 2; its constraint matrix has (x, r, psi, theta, z) and its state space
-(x, z, r, theta, psi), which are reordered here. Printed equations carry their numbers; the right
-ones beside them, and the rest of the package, have names. SI units, theta clockwise positive.
+(x, z, r, theta, psi); both are reordered here. Functions of printed equations have their numbers as
+names, functions of right ones have words. SI units, theta clockwise positive.
 
 Common arguments: ``q``, ``q_dot``, ``q_ddot`` array_like of shape (..., 5), whose leading axes
 broadcast; semi-axes ``a``, ``b`` [m], ``mass`` [kg], ``gravity`` [m/s^2]. Everything raises

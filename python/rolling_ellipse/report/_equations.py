@@ -1,7 +1,7 @@
 """The report's equations exactly as printed, and beside each the right one under a name.
 
-Arrays are q = (x, z, theta, psi, r) along the last axis, its rates and accelerations likewise; a
-printed equation is named after its number. A printed residual less the right one is the misprint.
+Arrays have q = (x, z, theta, psi, r), its rates or its accelerations along the last axis. A printed
+equation has its number as name. A printed residual less the right one is the misprint.
 """
 
 from __future__ import annotations
@@ -14,22 +14,17 @@ import numpy as np
 from .._ask.check import FloatArray, choice, coordinates, finite, number, require_together
 from .._ask.scene import Impulse, Scene
 from ..geometry import support_slope
-from ._rows import rows
+from ._rows import masses, polar, rows
 
 CASES = ("as_it_is", "1", "2")
 
 
 def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
-    """theta, psi, r, sin and cos of psi - theta; the others must have as many states, or one."""
+    """Return theta, psi, r, sin and cos of psi - theta; `others` must broadcast with q."""
     found = coordinates("q", q)
     require_together(q=found, **others)
     theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
     return theta, psi, r, np.sin(psi - theta), np.cos(psi - theta)
-
-
-def polar(psi: FloatArray, body: Scene) -> FloatArray:
-    found: FloatArray = (body.b * np.sin(psi)) ** 2 + (body.a * np.cos(psi)) ** 2
-    return found
 
 
 # ---------------------------------------------------------------------------- sections 2.1 and 2.2
@@ -52,7 +47,7 @@ def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
     """Return x_C - x_G by eqs 5 to 7 and the two cases [m]; right: `geometry.support_slope`."""
     psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
     body = Scene(a, b)
-    r = body.a * body.b / np.sqrt(polar(psi, body))
+    r = body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
     found: FloatArray = case_sign(angle) * r * np.sin(psi - angle)
     return found
 
@@ -82,7 +77,7 @@ def f3(q: Any, *, a: float, b: float) -> FloatArray:
     """Return f3 of eq 10 [m]; it is right."""
     _, psi, r, _, _ = state(q)
     body = Scene(a, b)
-    found: FloatArray = r - body.a * body.b / np.sqrt(polar(psi, body))
+    found: FloatArray = r - body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
     return found
 
 
@@ -112,7 +107,7 @@ def eqs_33_to_37(
             body.mass * ddot[..., 1] - two + body.mass * body.gravity,
             inertia * ddot[..., 2] + lever - four * body.a**2 * (1 + tangent**2),
             lever + three * squeeze + four * (body.a**4 * tangent**2 / body.b**2 + body.b**2),
-            one * sine - two * cosine + 2 * three * polar(psi, body) ** 1.5,
+            one * sine - two * cosine + 2 * three * polar(psi, body.a, body.b) ** 1.5,
         ),
         axis=-1,
     )
@@ -121,7 +116,7 @@ def eqs_33_to_37(
 def equations_of_motion(
     q: Any, q_ddot: Any, multipliers: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return what eqs 33, 34, 35, 37, 36 must be, with the corrected rows, (..., 5)."""
+    """Return the right residuals of eqs 33, 34, 35, 37, 36, with corrected rows, (..., 5)."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
     ddot = coordinates("q_ddot", q_ddot)
@@ -129,10 +124,9 @@ def equations_of_motion(
         "...ij,...i->...j", rows(coordinates("q", q), body.a, body.b, ("tan",)),
         np.stack(_multipliers(multipliers), axis=-1),
     )  # fmt: skip
-    mass_of = np.array([1, 1, body.gyration2, 0, 0]) * body.mass
     weight = np.array([0, body.mass * body.gravity, 0, 0, 0])
     forces = np.array([-1, -1, -1, 1, 1])  # eqs 36 and 37 have them on the other side
-    found: FloatArray = mass_of * ddot + weight + forces * pull
+    found: FloatArray = masses(body) * ddot + weight + forces * pull
     return found
 
 
@@ -154,7 +148,7 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
         np.broadcast_arrays(
             x - stretch * cosine - (turn - spin) * r * sine,
             z - stretch * sine - turn * r * sine + spin * r * cosine,
-            2 * stretch * polar(psi, body) ** 1.5 - turn * squeeze,
+            2 * stretch * polar(psi, body.a, body.b) ** 1.5 - turn * squeeze,
             turn * (body.a**4 * tangent**2 / body.b**2 + body.b**2)
             - spin * body.a**2 * (tangent**2 + 1),
         ),
@@ -163,7 +157,7 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 
 
 def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
-    """Return what eq 38 must be, in its scaling, (..., 4)."""
+    """Return the right rates of eq 38, in its scaling, (..., 4)."""
     body = Scene(a, b)
     require_together(q=q, q_dot=q_dot)
     matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
@@ -190,14 +184,14 @@ def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -
 def _blow(impulse: Any, d: Any) -> tuple[float, float]:
     blow = number("impulse", impulse), number("d", d)
     for name, value in zip(("impulse", "d"), blow, strict=True):
-        if not abs(value) <= 1e50:  # as of an Impulse
+        if not abs(value) <= 1e50:  # the limit of an Impulse
             wanted = "at most 1e50 in size" if math.isfinite(value) else "finite"
             raise ValueError(f"{name} must be {wanted}, got {value}")
     return blow
 
 
 def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return what appendix B's r_x has for r [m]; right: `geometry.contact_distance`."""
+    """Return r of r_x in appendix B [m]; right: `geometry.contact_distance`."""
     body = Scene(a, b)
     t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p, where eq 6 has psi
     across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)

@@ -1,4 +1,4 @@
-"""What is wrong in the report, row by row, each with two numbers on an exact motion."""
+"""The errata of the report, row by row, each with two numbers on an exact motion."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from ._rows import CODE, EQ_32
 
 @dataclass(frozen=True)
 class Erratum:
-    """One thing that is wrong in the report.
+    """One error of the report.
 
     Attributes
     ----------
     where, printed, finding : str
-        The place, what stands there, and what is wrong with it.
+        The place, the printed text, and its error.
     quantity : str
-        What `evaluate` compares, with its unit.
+        The compared quantity, with its unit.
     evaluate : callable
-        Returns a Comparison: the quantity as printed and as it must be, on an exact motion.
+        Returns a Comparison: the quantity as printed and right, on an exact motion.
     """
 
     where: str
@@ -123,7 +123,7 @@ _ERRATA = (
 
 
 def errata() -> tuple[Erratum, ...]:
-    """Return what is wrong in the report, in its order; `evaluate()` of each gives the compare."""
+    """Return the errors of the report in its order; `evaluate()` of each gives its two numbers."""
     return _ERRATA
 
 
@@ -141,5 +141,5 @@ def errata_table() -> str:
 
 
 def _rounded(value: float) -> str:
-    """A right value that is 0 but for rounding is shown as 0."""
+    """Return the text of a right value; one that is 0 but for rounding is 0."""
     return f"{value if abs(value) > 1e-12 else 0.0:.4g}"

@@ -9,6 +9,7 @@ import numpy as np
 
 from .._ask.check import FloatArray
 from .._ask.scene import Scene
+from .._ask.settings import Settings
 from .._motion.constraints import kinematics
 from .._verbs.classify import thresholds
 from .._verbs.simulate import simulate
@@ -16,7 +17,6 @@ from ..geometry import contact_angle, contact_distance, support, support_slope
 from . import _equations, _multipliers
 from ._motion import follow
 from ._rows import CODE, consistent_rates, constraint_matrix
-from ._runge_kutta import Steps
 from ._start import Start
 
 _A, _B, _MASS, _GRAVITY = 2.0, 1.0, 10.0, 9.81
@@ -31,12 +31,12 @@ class Comparison(NamedTuple):
 
     @property
     def gap(self) -> float:
-        """What the misprint adds."""
+        """The effect of the misprint: printed less right."""
         return self.printed - self.right
 
 
 class _Exact(NamedTuple):
-    """The exact motion where it passes an angle; `body` are the keywords of the equations."""
+    """The exact motion at an angle; `body` has the keywords of the equations."""
 
     q: FloatArray
     q_dot: FloatArray
@@ -50,7 +50,7 @@ class _Exact(NamedTuple):
 
 
 def _at(theta: float, b: float = _B) -> _Exact:
-    """The rolling motion through (_THETA, _OMEGA) at another angle: its energy is the same."""
+    """Return the rolling motion through (_THETA, _OMEGA) at another angle of the same energy."""
     k2 = (_A * _A + b * b) / 4
 
     def inertia(angle: float) -> float:  # D = k^2 + r^2
@@ -82,7 +82,7 @@ def cases() -> Comparison:
 
 
 def row(index: int, printed: tuple[str, ...]) -> Comparison:
-    """A row, as printed and right, times the rates of the exact motion."""
+    """Compare a row, as printed and right, times the rates of the exact motion."""
     at = _at(GENERIC)
     both = (constraint_matrix(at.q, printed=p, **at.shape) for p in (printed, ("tan",)))
     return Comparison(*(float(matrix[index] @ at.q_dot) for matrix in both))
@@ -140,8 +140,8 @@ def back_substitution() -> Comparison:
     body, still = Scene(_A, _B, mass=_MASS, gravity=_GRAVITY), np.zeros(5)
     q, _ = kinematics(0.2, 2.0, a=_A, b=_B)
     start = Start(q, consistent_rates(q, 2.0, a=_A, b=_B), still, still, ())
-    steps = Steps("dopri5", 1e-12, 1e-14, None, 10_000)
-    motion = follow(start, np.array([0.25]), body, CODE, steps)
+    how = Settings(method="dopri5", rtol=1e-12, atol=1e-14)
+    motion = follow(start, np.array([0.25]), body, CODE, how)
     return Comparison(
         float(np.max(np.abs(motion.back_substitution()))), float(np.max(np.abs(motion.gap)))
     )

@@ -11,9 +11,10 @@ import numpy as np
 
 from .._ask.check import FloatArray
 from .._ask.scene import Scene
+from .._ask.settings import Settings
 from .._motion.constraints import COORDINATES, ConstraintResiduals, constraints
-from ._rows import rows, rows_and_rate
-from ._runge_kutta import Steps, integrate
+from ._rows import masses, rows, rows_and_rate
+from ._runge_kutta import integrate
 from ._start import Start
 
 
@@ -28,7 +29,7 @@ class PrintedMotion:
     q, q_dot, q_ddot : ndarray, shape (n, 5)
         x, z, theta, psi, r [m, rad], their rates and accelerations.
     multipliers : ndarray, shape (n, 4)
-        Of the rows in use, in the report's scaling.
+        Multipliers of the rows in use, in the report's scaling.
     gap : ndarray, shape (n,)
         Height of the lowest point of the body over the ground [m].
     energy : ndarray, shape (n,)
@@ -38,9 +39,9 @@ class PrintedMotion:
     printed : tuple of str
         The rows that are as printed.
     start : Start
-        The state that it began with, and how that came about.
+        The initial state, and its difference from the given one.
     message : str
-        Why it stopped before the last time that was asked for; empty if it did not.
+        The reason why it stopped before the last time; empty if it did not.
     """
 
     t: FloatArray
@@ -66,19 +67,19 @@ class PrintedMotion:
         return found
 
     def constraint_residuals(self) -> ConstraintResiduals:
-        """Return by how much each sample misses the right constraints (see `constraints`)."""
+        """Return the residuals of the right constraints at each sample (see `constraints`)."""
         return constraints(self.q, self.q_dot, a=self.body.a, b=self.body.b)
 
     def back_substitution(self) -> FloatArray:
-        """Return what the solution leaves of the equations that it solved, (n, 9).
+        """Return the residuals of the equations that were solved, (n, 9).
 
-        The five equations of motion [N, N m] and the four constraints on the rates: the report's
-        own test (Figure 11). Small values say that the equations were solved, not that they are
-        right.
+        They are the five equations of motion [N, N m] and the four constraints on the rates: the
+        report's own test (Figure 11). Small values show that the equations were solved, not that
+        they are right.
         """
         body, matrix = self.body, rows(self.q, self.body.a, self.body.b, self.printed)
         pull = np.einsum("nij,ni->nj", matrix, self.multipliers)
-        motion = _masses(body) * self.q_ddot - _weight(body) - pull
+        motion = masses(body) * self.q_ddot - _weight(body) - pull
         return np.concatenate([motion, np.einsum("nij,nj->ni", matrix, self.q_dot)], axis=1)
 
     def __repr__(self) -> str:
@@ -91,10 +92,6 @@ class PrintedMotion:
         )
 
 
-def _masses(body: Scene) -> FloatArray:
-    return np.array([1, 1, body.gyration2, 0, 0]) * body.mass
-
-
 def _weight(body: Scene) -> FloatArray:
     return np.array([0, -body.mass * body.gravity, 0, 0, 0])
 
@@ -105,7 +102,7 @@ def accelerations(
     """Solve for q_ddot (..., 5) and the multipliers (..., 4); NaN where the system is singular."""
     matrix, rate = rows_and_rate(q, q_dot, body.a, body.b, printed)
     system = np.zeros((*q.shape[:-1], 9, 9))
-    system[..., :5, :5] = np.diag(_masses(body))
+    system[..., :5, :5] = np.diag(masses(body))
     system[..., :5, 5:] = -np.swapaxes(matrix, -1, -2)
     system[..., 5:, :5] = matrix
     right = np.zeros((*q.shape[:-1], 9))
@@ -114,7 +111,7 @@ def accelerations(
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
-        if q.ndim > 1:  # one of them is singular: the others have a solution
+        if q.ndim > 1:  # one sample is singular: the others have a solution
             found = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
             return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
         solution = np.full_like(right, np.nan)
@@ -122,7 +119,7 @@ def accelerations(
 
 
 def follow(
-    start: Start, t: FloatArray, body: Scene, printed: tuple[str, ...], steps: Steps
+    start: Start, t: FloatArray, body: Scene, printed: tuple[str, ...], how: Settings
 ) -> PrintedMotion:
     """Integrate from a start at time 0 and sample at increasing times."""
 
@@ -130,9 +127,10 @@ def follow(
         q, q_dot = y[:COORDINATES], y[COORDINATES:]
         return np.concatenate([q_dot, accelerations(q, q_dot, body, printed)[0]])
 
-    # where there is no finite solution it stops, and says so
+    # without a finite solution it stops with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        samples, message = integrate(slope, np.concatenate([start.q, start.q_dot]), t, steps)
+        begun = np.concatenate([start.q, start.q_dot])
+        samples, message = integrate(slope, begun, t, how)
         samples = samples.reshape(-1, 2 * COORDINATES)
         q, q_dot = samples[:, :COORDINATES], samples[:, COORDINATES:]
         q_ddot, multipliers = accelerations(q, q_dot, body, printed)
@@ -140,7 +138,6 @@ def follow(
     if lost.any():
         end = int(np.argmax(lost))
         message = f"the equations have no finite solution at {t[end]:.6g} s"
-        samples, q, q_dot = samples[:end], q[:end], q_dot[:end]
-        q_ddot, multipliers = q_ddot[:end], multipliers[:end]
-    reached = t[: len(samples)].copy()  # the caller's own times may change
+        q, q_dot, q_ddot, multipliers = q[:end], q_dot[:end], q_ddot[:end], multipliers[:end]
+    reached = t[: len(q)].copy()  # the caller's own times may change
     return PrintedMotion(reached, q, q_dot, q_ddot, multipliers, body, printed, start, message)

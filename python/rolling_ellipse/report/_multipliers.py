@@ -1,4 +1,4 @@
-"""Section 3.3 of the report as printed: multipliers out of accelerations, and the right ones."""
+"""Section 3.3 of the report as printed: multipliers from accelerations, and the right ones."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 from .._ask.check import FloatArray, coordinates, flag, require_together
 from .._ask.scene import Scene
-from ._equations import polar, state
-from ._rows import rows
+from ._equations import state
+from ._rows import polar, rows
 
 
 def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
@@ -49,10 +49,10 @@ def lambda4_numerator(
 def multipliers(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return what eq 39 must be: the multipliers of the corrected rows, (..., 4).
+    """Return the right values of eq 39: the multipliers of the corrected rows, (..., 4).
 
-    lambda3 comes from the equation of r, which has no sin(2 psi) to divide by; lambda4 vanishes
-    on the ground, where r cos(psi - theta) is largest against psi.
+    lambda3 follows from the equation of r without a division by sin(2 psi). lambda4 vanishes on the
+    ground, since r cos(psi - theta) has its largest value over psi there.
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
     require_together(q=q, q_ddot=q_ddot)
@@ -65,7 +65,7 @@ def multipliers(
 
 
 def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
-    """Over what eqs 39 and 41 divide by: by zero it is infinite, of zero too."""
+    """Return values over the divisor of eqs 39 and 41; infinite where that is 0, even of 0."""
     squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found: FloatArray = np.where((squeeze == 0) & (values == 0), np.inf, values / squeeze)
@@ -96,9 +96,9 @@ def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 def complete_f(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return F with every term: what eqs 33, 35, 37 and lambda2 of eq 39 give for it.
+    """Return F with every term, as eqs 33, 35, 37 and lambda2 of eq 39 give it.
 
-    It keeps the signs of those equations, so that the difference from `eq_40` is what was lost.
+    It has the signs of these equations, so that the difference from `eq_40` is the lost terms.
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
@@ -123,7 +123,7 @@ def eq_41(
     _, psi, _, _, _ = state(q)
     arguments: dict[str, float] = dict(a=a, b=b, mass=mass, gravity=gravity)
     if complete:
-        spread = 2 * polar(psi, body) ** 1.5 * complete_f(q, q_ddot, **arguments)
+        spread = 2 * polar(psi, body.a, body.b) ** 1.5 * complete_f(q, q_ddot, **arguments)
     else:
         spread = eq_42(q, q_ddot, **arguments)
     found: FloatArray = _head(q, q_ddot, body) - _squeezed(spread, psi, body)
@@ -131,11 +131,11 @@ def eq_41(
 
 
 def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
-    """Return F1 of eq 42: the head of eq 41 once more, less a factor times the terms of F.
+    """Return F1 of eq 42: the head of eq 41 again, less a factor times the terms of F.
 
-    The printed bracket before b^6 is missing and the one at the end has no partner; it is read as
-    around all terms of F, of which eq 42 keeps every one (`complete_f`). The factor lost its power
-    3/2 and the square of sin psi.
+    The opening bracket before b^6 is missing in print; the brackets are read as around all terms of
+    F, which eq 42 has completely (`complete_f`). The factor has lost its power 3/2 and the square
+    of sin psi.
     """
     body = Scene(a, b, mass=mass, gravity=gravity)
     _, psi, _, _, _ = state(q)

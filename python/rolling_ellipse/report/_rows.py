@@ -1,4 +1,4 @@
-"""The report's constraint matrix, each row as printed or as it must be."""
+"""The report's constraint matrix, each row as printed or corrected."""
 
 from __future__ import annotations
 
@@ -10,14 +10,26 @@ import numpy.typing as npt
 from .._ask.check import COORDINATES, FloatArray, coordinates, finite, require_together, shown
 from .._ask.scene import Scene
 
-#: What can be as printed: the rows of f1, f2 and f3 (eq 32), the sign of a44 (appendix C), and
-#: tan(theta) in row 4, which otherwise is multiplied by cos^2(theta) and stays finite.
+#: Parts that can be as printed: rows of f1, f2 and f3 (eq 32), the sign of a44 (appendix C), and
+#: tan(theta) in row 4. A corrected row 4 is multiplied by cos^2(theta) and stays finite.
 MISPRINTS = ("f1", "df2", "df3", "a44", "tan")
 EQ_32 = ("f1", "df2", "df3", "tan")
 MATRIX = ("f1", "df2", "tan")
 CODE = ("f1", "df2", "a44", "tan")
 
 _TINY = 1e-30  # a complex step this small has neither truncation nor rounding error
+
+
+def masses(body: Scene) -> FloatArray:
+    """Return the masses of x, z [kg] and theta [kg m^2]; those of psi and r are 0."""
+    found: FloatArray = np.array([1, 1, body.gyration2, 0, 0]) * body.mass
+    return found
+
+
+def polar(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
+    """Return (a b/r)^2 of the ellipse at the polar angle psi, real or complex [m^2]."""
+    found: npt.NDArray[Any] = (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
+    return found
 
 
 def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> npt.NDArray[Any]:
@@ -39,14 +51,13 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
     psi_[..., 1] = sign * r * sine
     r_[..., 1] = -cosine
 
-    polar = (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
     squeeze = a * b * (a - b) * (a + b)
     if "df3" in printed:
         psi_[..., 2] = -squeeze * np.sin(psi) ** 2
-        r_[..., 2] = 2 * polar
+        r_[..., 2] = 2 * polar(psi, a, b)
     else:
         psi_[..., 2] = -squeeze * np.sin(2 * psi)
-        r_[..., 2] = 2 * polar**1.5
+        r_[..., 2] = 2 * polar(psi, a, b) ** 1.5
 
     scale = 1 if "tan" in printed else np.cos(theta) ** 2
     tangent2 = np.tan(theta) ** 2 if "tan" in printed else np.sin(theta) ** 2
@@ -58,9 +69,9 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
 def rows_and_rate(
     q: FloatArray, q_dot: FloatArray, a: float, b: float, printed: tuple[str, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the matrix and its time derivative along q_dot, by the chain rule.
+    """Return the matrix and its time derivative along q_dot.
 
-    The rate is the imaginary part that a complex step along q_dot leaves: exact to rounding
+    The derivative is the imaginary part after a complex step along q_dot, exact to rounding
     (W. Squire, G. Trapp, SIAM Rev. 40 (1998) 110).
     """
     stepped = rows(q + 1j * _TINY * q_dot, a, b, printed)
@@ -100,9 +111,8 @@ def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> Flo
     a, b : float
         Semi-axes [m].
     printed : sequence of {"f1", "df2", "df3", "a44", "tan"}
-        What to take as printed; () gives the matrix as it must be, with row 4 times
-        cos^2(theta). Three printings have names: `EQ_32`, `MATRIX` (below it) and `CODE`
-        (appendix C).
+        Rows as printed; () gives the corrected matrix, with row 4 times cos^2(theta). Three
+        printings have names: `EQ_32`, `MATRIX` (below it) and `CODE` (appendix C).
 
     Returns
     -------
@@ -143,6 +153,6 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
     speed = finite("omega", omega)[..., None]
     require_together(q=q, omega=speed)
     allowed = direction(coordinates("q", q), body.a, body.b, misprints(printed))
-    with np.errstate(over="ignore"):  # infinite, where it is beyond the doubles
+    with np.errstate(over="ignore"):  # infinite beyond the largest double
         rates: FloatArray = allowed * speed
     return rates

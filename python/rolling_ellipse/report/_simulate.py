@@ -6,7 +6,8 @@ import warnings
 from dataclasses import replace
 from typing import Any, Literal, get_args
 
-from .._ask.check import FloatArray, choice, finite, optional_number, positive, shown, whole_within
+from .. import _core
+from .._ask.check import FloatArray, choice, finite, shown
 from .._ask.scene import Scene
 from .._ask.settings import DEFAULTS, Method, Settings, Stabilization
 from .._motion.constraints import COORDINATES
@@ -14,7 +15,6 @@ from .._motion.trajectory import Trajectory
 from .._verbs.simulate import report_status, sample_times
 from ._motion import PrintedMotion, follow
 from ._rows import CODE, misprints
-from ._runge_kutta import Steps, smallest_step
 from ._start import InconsistentStartWarning, Start, project, violations
 
 Equations = Literal["corrected", "printed"]
@@ -45,7 +45,7 @@ def simulate(
 
     Three things lift the report's ellipse off the ground: wrong equations (``printed``), a start
     that violates the constraints (``consistent="as_given"``), and the drift of accelerations
-    integrated without looking back (large steps). Each can be had by itself.
+    integrated without stabilisation (large steps). Each has its own argument.
 
     Parameters
     ----------
@@ -61,13 +61,13 @@ def simulate(
         The corrected ones are the model "multipliers"; the printed ones are integrated in index-1
         form, without stabilisation.
     consistent : {"refuse", "project", "as_given"}
-        What to do with a start that violates f2, f3, f4 or the rates: with "printed" equations
+        The treatment of a start that violates f2, f3, f4 or the rates: with "printed" equations
         the rows in use must allow the rates. "project" takes the nearest consistent state in the
         metric of the kinetic energy (theta and z move, x stays, psi and r follow); "as_given"
         runs it after an InconsistentStartWarning.
     printed : sequence of str, optional
-        Of the printed equations only: what is as printed, see `constraint_matrix`; default is
-        the report's code, `CODE`. () has all rows right.
+        For the printed equations only: the rows as printed, see `constraint_matrix`; default is
+        the report's code, `CODE`. With () all rows are right.
     method : str, optional
         "dopri5" (default) or "rk4" for the printed equations; for the corrected ones what
         `rolling_ellipse.simulate` has for its model "multipliers", default "dop853" ("radau" with
@@ -95,50 +95,36 @@ def simulate(
     body = Scene(a, b, mass=mass, gravity=gravity)
     times = sample_times(t)
     state = _vector("q", q), _vector("q_dot", q_dot)
-    if equations == "corrected":
-        _require_none("printed", printed, equations)
-        settings = _settings_of(method, stabilization, baumgarte, rtol, atol, step, max_steps)
-        start = _checked_start(*state, body, (), consistent)
-        return _corrected(start, times, body, settings)
-    _require_none("stabilization", stabilization, equations)
-    _require_none("baumgarte", baumgarte, equations)
-    steps = _steps("dopri5" if method is None else method, rtol, atol, step, max_steps)
-    if steps.step is not None and steps.step < (least := smallest_step(float(times[-1]))):
-        raise ValueError(
-            f"step must be at least {least:.3g} s, or times up to {float(times[-1])!r} s would not "
-            f"change by it, got {steps.step!r}"
-        )
-    names = misprints(CODE if printed is None else printed)
-    return follow(_checked_start(*state, body, names, consistent), times, body, names, steps)
-
-
-def _settings_of(
-    method: Method | None,
-    stabilization: Stabilization | None,
-    baumgarte: tuple[float, float] | None,
-    rtol: float,
-    atol: float,
-    step: float | None,
-    max_steps: int,
-) -> Settings:
-    """Return the settings of the model "multipliers"; None stands for what is usual there."""
+    corrected = equations == "corrected"
+    how: dict[str, Any] = {"stabilization": stabilization, "baumgarte": baumgarte}
+    for name, value in ({"printed": printed} if corrected else how).items():
+        if value is not None:
+            raise ValueError(
+                f"{name} must be None for the {equations} equations, got {shown(value)}"
+            )
+    if method is not None and not corrected:
+        choice("method", method, ("dopri5", "rk4"))
     if method is None:
-        method = "radau" if _is_ggl(stabilization) else "dop853"
-    return replace(
+        method = "dopri5" if not corrected else "radau" if _is_ggl(stabilization) else "dop853"
+    settings = replace(
         DEFAULTS,
         model="multipliers",
         method=method,
-        stabilization=DEFAULTS.stabilization if stabilization is None else stabilization,
-        baumgarte=DEFAULTS.baumgarte if baumgarte is None else baumgarte,
         rtol=rtol,
         atol=atol,
         step=step,
         max_steps=max_steps,
         max_events=1,  # this model has none
+        **{name: value for name, value in how.items() if value is not None},
     )
+    if corrected:
+        return _corrected(_checked_start(*state, body, (), consistent), times, body, settings)
+    _core.validate_settings(settings.core, float(times[-1]))
+    names = misprints(CODE if printed is None else printed)
+    return follow(_checked_start(*state, body, names, consistent), times, body, names, settings)
 
 
-def _is_ggl(stabilization: object) -> bool:  # which may be an array, that == would compare by entry
+def _is_ggl(stabilization: object) -> bool:  # == would compare the entries of an array
     return isinstance(stabilization, str) and stabilization == "ggl"
 
 
@@ -168,11 +154,6 @@ def _checked_start(
     return Start(*begun, begun[0] - q, begun[1] - q_dot, violated)
 
 
-def _require_none(name: str, value: Any, equations: str) -> None:
-    if value is not None:
-        raise ValueError(f"{name} must be None for the {equations} equations, got {shown(value)}")
-
-
 def _vector(name: str, value: Any) -> FloatArray:
     found = finite(name, value)
     if found.shape != (COORDINATES,):
@@ -180,14 +161,3 @@ def _vector(name: str, value: Any) -> FloatArray:
             f"{name} must have 5 entries (x, z, theta, psi, r), got shape {found.shape}"
         )
     return found
-
-
-def _steps(method: str, rtol: float, atol: float, step: float | None, max_steps: int) -> Steps:
-    choice("method", method, ("dopri5", "rk4"))
-    size = optional_number("step", step)
-    if size is None and method == "rk4":
-        raise ValueError("step must be a positive time for the method 'rk4', got None")
-    if size is not None:
-        positive("step", size)
-    most = whole_within("max_steps", max_steps, 2**31 - 1)
-    return Steps(method, positive("rtol", rtol), positive("atol", atol), size, most)

@@ -1,4 +1,4 @@
-"""Is a start consistent with the constraints, and which consistent one is the nearest?"""
+"""The start of a simulation: violated constraints, and the nearest consistent state."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from .._ask.check import FloatArray
 from .._ask.scene import Scene
 from .._motion.constraints import constraints, kinematics
 from ..geometry import support, support_curvature, support_slope
-from ._rows import direction, rows
+from ._rows import direction, masses, rows
 
 _EPS = float(np.finfo(float).eps)
-_ULPS = 16.0  # what `kinematics` may be off by in each coordinate
+_ULPS = 16.0  # allowed error of each coordinate: that of `kinematics`
 _NAMES = (
     ("f2", "m"), ("f3", "m"), ("f4", "rad"),
     ("f1", "m/s"), ("rate of f2", "m/s"), ("rate of f3", "m/s"), ("rate of f4", "rad/s"),
@@ -26,14 +26,14 @@ class InconsistentStartWarning(UserWarning):
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """The state that a simulation began with.
+    """The initial state of a simulation.
 
     Attributes
     ----------
     q, q_dot : ndarray, shape (5,)
         x, z, theta, psi, r [m, rad] and their rates.
     q_change, q_dot_change : ndarray, shape (5,)
-        What was added to the given state to get there; 0 unless it was projected.
+        Difference from the given state; 0 unless it was projected.
     violations : tuple of str
         Constraints that the given state violates, each with its size.
     """
@@ -48,14 +48,14 @@ class Start:
 def violations(
     q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Name the violated constraints: f2, f3, f4, and the rates by the rows that are in use.
+    """Return the violated constraints by name: f2, f3, f4, and the rates by the rows in use.
 
-    Allowed is what 16 ulp of each coordinate do to a residual, and 16 ulp of its terms: what
-    `kinematics` and the evaluation leave of an exact state.
+    A residual may be as large as 16 ulp of each coordinate make it, and 16 ulp of its terms more:
+    the errors of `kinematics` and of the evaluation.
     """
     state = np.concatenate([q, q_dot])
     off = _ULPS * np.spacing(np.abs(state))
-    off[3] += _ULPS / 2 * _EPS * abs(q[3] - q[2])  # of psi, what its lead over theta is off by
+    off[3] += _ULPS / 2 * _EPS * abs(q[3] - q[2])  # the error of psi - theta is one of psi
     moved = state + np.concatenate([np.zeros((1, 10)), np.diag(off), np.diag(-off)])
     residuals = _residuals(moved[:, :5], moved[:, 5:], body, printed)
     sizes = np.abs(residuals[0])
@@ -72,7 +72,7 @@ def violations(
 
 
 def _scaled_rows(q: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
-    """Rows as gradients of f1 ... f4: the report's rows 3 and 4 are multiples of them."""
+    """Return the gradients of f1 ... f4, of which the report's rows 3 and 4 are multiples."""
     matrix = rows(q, body.a, body.b, printed)
     matrix[..., 2, :] /= matrix[..., 2, 4, None].copy()
     matrix[..., 3, :] /= matrix[..., 3, 3, None].copy()
@@ -82,14 +82,14 @@ def _scaled_rows(q: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatA
 def _residuals(
     q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
 ) -> FloatArray:
-    """f2, f3, f4, f1 and the rates of f2, f3, f4, (..., 7)."""
+    """Return f2, f3, f4, f1 and the rates of f2, f3, f4, (..., 7)."""
     position = constraints(q, q_dot, a=body.a, b=body.b).position
     velocity = np.einsum("...ij,...j->...i", _scaled_rows(q, body, printed), q_dot)
     return np.concatenate([position, velocity], axis=-1)
 
 
 def _terms(q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
-    """Return how large the terms of the seven residuals are."""
+    """Return the sizes of the terms of the seven residuals."""
     _, z, theta, psi, r = np.abs(q)
     velocity = np.abs(_scaled_rows(q, body, printed)) @ np.abs(q_dot)
     return np.concatenate([[z + r, 2 * r, theta + psi], velocity])
@@ -100,22 +100,22 @@ def project(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the nearest consistent state in the metric of the kinetic energy.
 
-    psi and r carry no mass and follow; x is free. Least m dz^2 + I dtheta^2 on z = h(theta), then
-    the rates nearest to the given ones along the one direction that the rows allow.
+    psi and r have no mass and follow from theta; x is free. The position makes m dz^2 + I dtheta^2
+    least on z = h(theta). The rates are the nearest ones in the only direction that the rows allow.
     """
     theta = _nearest_angle(float(q[1]), float(q[2]), body)
     there, _ = kinematics(theta, 0.0, a=body.a, b=body.b)
     there[0] = q[0]
     allowed = direction(there, body.a, body.b, printed)
-    masses = np.array([1, 1, body.gyration2, 0, 0])
-    omega = (masses * allowed) @ q_dot / ((masses * allowed) @ allowed)
+    momentum = masses(body) * allowed
+    omega = momentum @ q_dot / (momentum @ allowed)
     return there, omega * allowed
 
 
 def _nearest_angle(z: float, theta: float, body: Scene) -> float:
-    """Return where (z - h)^2 + k^2 (angle - theta)^2 is least: the best of a grid, then Newton.
+    """Return the angle of least (z - h)^2 + k^2 (angle - theta)^2: the best of a grid, then Newton.
 
-    h has the period pi, so the nearest place on it is within a quarter turn.
+    h has the period pi, so this angle is within a quarter turn of theta.
     """
     shape, k2 = {"a": body.a, "b": body.b}, body.gyration2
     grid = theta + np.linspace(-np.pi / 2, np.pi / 2, 2001)

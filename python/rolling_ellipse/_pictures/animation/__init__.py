@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -11,21 +12,17 @@ from matplotlib.backends.registry import backend_registry
 from matplotlib.figure import Figure, SubFigure
 
 from ..._ask.check import flag, number, shown
+from ..._motion.trajectory import Trajectory
 from ..axes import picture, pyplot_figure, require_axes
 from ..comparison import Comparison
 from .film import RollingAnimation
 from .movies import movie_writer
 from .pace import pace, within
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..._motion.trajectory import Trajectory
-
 __all__ = ["RollingAnimation", "animate"]
 
-WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # more does not fit into memory, less is no picture
-WINDOWS = ("gtk3", "gtk4", "macosx", "qt", "qt5", "qt6", "tk", "wx")  # where plt.show() opens them
+WIDTHS, DPI = (16.0, 16_384.0), (10.0, 2_400.0)  # larger pictures do not fit into memory
+WINDOWS = ("gtk3", "gtk4", "macosx", "qt", "qt5", "qt6", "tk", "wx")  # frameworks with windows
 
 
 @picture
@@ -122,7 +119,7 @@ def animate(
     if not 0 <= last <= latest:
         raise ValueError(f"t_end must be within [0, {latest:g}] s, got {t_end!r}")
     shown_at = pace(path, last, fps=fps, speed=speed, max_frames=max_frames)
-    page = path is not None and movie_writer(path, shown_at.fps) is None  # or it is refused
+    page = path is not None and movie_writer(path, shown_at.fps) is None  # refuses a bad path
     animation = RollingAnimation(
         motions,
         shown_at,
@@ -149,7 +146,7 @@ def _check_ax(ax: Any, figure: Figure | SubFigure | None, motions: int) -> None:
 
 
 def _has_windows() -> bool:
-    """Whether pyplot's figures are windows, and no pictures that a notebook shows beside ours."""
+    """True if pyplot's figures are windows; else a notebook would show them beside the player."""
     backend = matplotlib.get_backend()
     _, framework = backend_registry.resolve_backend(backend)  # type: ignore[no-untyped-call]
     return framework in WINDOWS

@@ -1,36 +1,28 @@
-"""Where a camera looks that has to show one motion, or several in strips over one another."""
+"""The cameras of one motion, or of several in strips over one another."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._ask.check import FloatArray
+from ..._motion.trajectory import Trajectory
 from ..ground import SHOWN_TURNS, tilted, view_of
 
-if TYPE_CHECKING:
-    from ..._ask.check import FloatArray
-    from ..._motion.trajectory import Trajectory
-
-BEHIND, AHEAD = 5.0, 4.0  # sizes of the body on either side of a motion that is followed
+BEHIND, AHEAD = 5.0, 4.0  # ground shown on either side of a followed motion [body sizes]
 
 
 @dataclass(frozen=True)
 class Cameras:
-    """Views of the strips, at one scale: left, right, bottom, top [m], as the eye sees them."""
+    """Views of the strips at one scale: left, right, bottom, top [m] in a picture, gravity down."""
 
-    views: tuple[FloatArray, ...]  # for each strip those of each frame, (n, 4)
-    heights: tuple[float, ...]  # part of the picture's height that each strip takes
+    views: tuple[FloatArray, ...]  # of each strip: one view a frame, (n, 4)
+    heights: tuple[float, ...]  # of each strip: its share of the picture's height
     shape: float  # height of the picture over its width
-    windows: tuple[tuple[float, float, float, float], ...]  # relative to what is followed
-    follows: str  # "nothing", the "middle" of all motions, or each strip its "own"
-
-    @property
-    def together(self) -> bool:
-        """Whether all strips show the same stretch of ground."""
-        return self.follows != "own"
+    windows: tuple[tuple[float, float, float, float], ...]  # views relative to the followed place
+    follows: str  # "nothing", the "middle" of all motions, or "own": each strip its own motion
 
 
 def cameras(
@@ -38,12 +30,12 @@ def cameras(
 ) -> Cameras:
     """Return the views of motions sampled at the same frames.
 
-    `shape` is the height of the picture over its width, None to choose it; `head` and `foot` are
-    what each strip leaves free at its top and bottom, over the picture's width.
+    `shape` is the height of the picture over its width, None to choose it. `head` and `foot` are
+    the free heights at the top and bottom of each strip, over the picture's width.
 
-    The camera stands still where all of them fit into about three turns. Else it follows the
-    middle between the foremost and the hindmost; where these part by more than fits, every strip
-    follows its own body.
+    The camera stands still if all motions fit into about three turns. Else it follows the middle
+    between the first and the last body. If these part by more than fits, every strip follows its
+    own body.
     """
     size = max(_size(motion) for motion in motions)
     widest = 2 * np.pi * size * SHOWN_TURNS + 4 * size
@@ -76,13 +68,13 @@ def _framed(
     foot: float,
     follows: str,
 ) -> Cameras:
-    """Views of one scale that fill the picture; what is seen lies relative to the targets."""
+    """Return views of one scale that fill the picture, around the targets of the motions."""
     length, strips = ends[1] - ends[0], len(depths)
     needed, texts = sum(top - bottom for bottom, top in depths), strips * (head + foot)
     flattest, tallest = (0.25, 0.55) if strips == 1 else (0.16 * strips, max(1.0, 0.2 * strips))
     shape = shape or min(max(needed / length + texts, flattest), tallest)
     wide = max(length, needed / max(shape - texts, shape / 4))
-    foot = min(foot, shape / (2 * strips))  # the bodies come first where there is little room
+    foot = min(foot, shape / (2 * strips))  # half of a low strip is left to the body
     air, sky = (wide - length) / 2, wide * (shape / strips - foot) - needed / strips
     depths = [(bottom - foot * wide, top + sky) for bottom, top in depths]
     left, right = ends[0] - air, ends[1] + air
@@ -104,12 +96,12 @@ def _size(motion: Trajectory) -> float:
 
 
 def _feet(motion: Trajectory) -> FloatArray:
-    """The places on the ground below the centre, as the eye sees them, (n, 2) [m]."""
+    """Return the places on the ground below the centre, as the picture has them, (n, 2) [m]."""
     below = np.column_stack([motion.x, np.zeros_like(motion.x)])
     return np.asarray(tilted(motion.scene).transform(below))
 
 
 def _depth(motion: Trajectory) -> tuple[float, float]:
-    """Bottom and top [m], from the ground below the centre, that show the body in every frame."""
+    """Return bottom and top [m] of all frames, from the ground below the centre."""
     size = _size(motion)
     return -0.35 * size, float(np.max(motion.z + np.minimum(motion.z, size))) + 0.3 * size

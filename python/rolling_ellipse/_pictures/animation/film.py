@@ -12,28 +12,25 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from matplotlib import rc_context, rcParams
 from matplotlib.animation import AbstractMovieWriter, FuncAnimation, writers
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from ..._ask.check import choice, file_name, flag, shown, whole
 from ..._ask.progress import reporting
 from ..._motion.export.atomic import replacing
+from ..._motion.trajectory import Trajectory
 from ..alone import Alone
 from ..palette import palette_of
 from .camera import cameras
 from .movies import explained, ffmpeg, movie_writer
+from .pace import Pace
 from .strip import Strip
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-
-    from ..._motion.trajectory import Trajectory
-    from .pace import Pace
 
 CAPTION = 0.3  # height of a line of text with its margins [inch]
 TICKS, FIGURES = 0.03, 0.16  # height of the ruler: part of the width, and of its figures [inch]
 _drawing_late = Alone()
-_with_settings = Alone()  # rcParams while some of matplotlib's own writers work
+_with_settings = Alone()  # rcParams, which matplotlib's own writers change
 
 
 class RollingAnimation(FuncAnimation):
@@ -58,7 +55,7 @@ class RollingAnimation(FuncAnimation):
         is drawn when this, or another of the artists, is first asked for.
     """
 
-    #: The player of it, as a page and as a fragment of HTML; bound by `_player.film`.
+    #: The player as a page and as a fragment of HTML; bound by `_player.film`.
     _page: ClassVar[Callable[[RollingAnimation], str]]
     _html: ClassVar[Callable[[RollingAnimation], str]]
 
@@ -93,10 +90,10 @@ class RollingAnimation(FuncAnimation):
     if not TYPE_CHECKING:  # or every name would be known
 
         def __getattr__(self, name: str) -> Any:
-            """Draw a film that has only been written, when an artist of it is first asked for.
+            """Draw a film that was only written, when one of its artists is first asked for.
 
             A page needs no figure. The reference cycles of a figure take long to collect, and a
-            Ctrl-C that comes meanwhile is lost in the callback of some weak reference.
+            Ctrl-C during that time is lost in the callback of a weak reference.
             """
             with _drawing_late():
                 if (undrawn := self.__dict__.pop("_undrawn", None)) is not None:
@@ -118,10 +115,10 @@ class RollingAnimation(FuncAnimation):
         if place is None:
             height = 2 * math.ceil(width * self.cameras.shape / 2)  # video wants even numbers
             place = new_figure(figsize=(width / dpi, height / dpi), dpi=dpi)
-            place.set_layout_engine("none")  # the strips have their places
+            place.set_layout_engine("none")  # the cameras have placed the strips
         self.figure: Figure = place.figure if isinstance(place, Axes) else place  # type: ignore[assignment]
         self.strips = tuple(
-            Strip(ax, motion, self.t, views, label, not self.cameras.together)
+            Strip(ax, motion, self.t, views, label, self.cameras.follows == "own")
             for ax, motion, views, label in zip(
                 self._axes(place), self.motions, self.cameras.views, self.labels, strict=True
             )
@@ -143,7 +140,7 @@ class RollingAnimation(FuncAnimation):
         self.figure._rolling_animation = self  # type: ignore[attr-defined]
 
     def __del__(self) -> None:
-        """Matplotlib warns of an animation never shown; reading its frames back is use enough."""
+        """Do not warn, as matplotlib does, that the animation was never shown."""
 
     def _axes(self, place: Figure | SubFigure | Axes) -> list[Axes]:
         """Return the Axes of the strips: the one given, or new ones over one another."""
@@ -195,15 +192,15 @@ class RollingAnimation(FuncAnimation):
             self._save_page(path, options)
             return
         options = {"dpi": self.figure.dpi, **options}
-        with reporting(progress, "frames", path) as tell:
+        with reporting(progress, "frames", path) as advance:
             if progress:
-                options["progress_callback"] = lambda i, n: tell(i + 1, n)
+                options["progress_callback"] = lambda i, n: advance(i + 1, n)
             if writer is not None:
                 with _with_settings():
                     super().save(path, writer=_known(writer), **options)
                 return
             chosen = movie_writer(path, self.fps, "filename")
-            self.draw(self.t.size - 1)  # of which a GIF takes its colours
+            self.draw(self.t.size - 1)  # the palette of a GIF is that of the last frame
             with replacing(path) as film, explained(path):
                 super().save(str(film), writer=chosen, **options)
 
@@ -223,9 +220,9 @@ class RollingAnimation(FuncAnimation):
         return f"<RollingAnimation: {self.t.size} frames, {self.t[-1]:g} s>"
 
     def _repr_html_(self) -> str:
-        """The player, or what matplotlib's `rcParams["animation.html"]` asks for.
+        """Return the player, or the form that matplotlib's `rcParams["animation.html"]` names.
 
-        A film that is too long for a player is a sentence that says so.
+        A film that is too long for a player becomes a sentence with the reason.
         """
         wanted = rcParams["animation.html"]
         if wanted == "none":
@@ -253,7 +250,7 @@ def _known(writer: Any) -> AbstractMovieWriter | str:
 
 
 def _decimals(step: float) -> int:
-    """Digits that show every multiple of a step [s] in full, or two of the step's own."""
+    """Return the decimals that show every multiple of a step [s] exactly, or its two digits."""
     own = max(0, 1 - math.floor(math.log10(step)))
     for digits in range(own + 3):
         if math.isclose(step * 10**digits, max(1, round(step * 10**digits)), rel_tol=1e-9):

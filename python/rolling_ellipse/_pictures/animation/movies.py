@@ -1,4 +1,4 @@
-"""Writers of the files an animation can be saved to."""
+"""Writers of the files of animations."""
 
 from __future__ import annotations
 
@@ -7,32 +7,29 @@ import importlib
 import importlib.util
 import math
 import os
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from subprocess import CalledProcessError
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.figure import Figure
 from PIL import Image
 
 from ..._ask.check import file_name
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from matplotlib.figure import Figure
 
 SUFFIXES = (".gif", ".mp4", ".html")
 
 
 class _FilmWriter(AbstractMovieWriter):
-    """A writer that changes no settings of matplotlib's, which all threads share."""
+    """A writer that leaves matplotlib's settings alone, because all threads share them."""
 
     @contextmanager
     def saving(self, fig: Figure, outfile: Any, dpi: float | None, *args: Any) -> Iterator[Any]:
-        """Set it up, and finish whatever happens."""
+        """Set the writer up, and finish also after an exception."""
         self.setup(fig, outfile, dpi)
         try:
             yield self
@@ -45,21 +42,21 @@ class _FilmWriter(AbstractMovieWriter):
 
 
 class GifWriter(_FilmWriter, PillowWriter):
-    """Exact delays, and one palette for all frames: much smaller than matplotlib's GIF.
+    """A writer of GIFs with exact delays and one palette, much smaller than matplotlib's.
 
-    The palette is that of what the figure shows before the first frame is drawn: the last frame
-    has every colour.
+    The palette is that of the figure before the first frame is drawn. It should then show the last
+    frame, which has every colour.
     """
 
     _frames: list[Image.Image]
 
     def setup(self, fig: Figure, outfile: Any, dpi: float | None = None) -> None:
         super().setup(fig, outfile, dpi)
-        # this choice spares the colours of thin lines
+        # maximum coverage keeps the colours of thin lines
         self._palette = self._picture({}).quantize(64, Image.Quantize.MAXCOVERAGE)
 
     def grab_frame(self, **options: Any) -> None:
-        frame = self._picture(options)  # in RGB they would fill the memory
+        frame = self._picture(options)  # kept with a palette: RGB takes three times the memory
         self._frames.append(frame.quantize(palette=self._palette, dither=Image.Dither.NONE))
 
     def _picture(self, options: dict[str, Any]) -> Image.Image:
@@ -68,7 +65,7 @@ class GifWriter(_FilmWriter, PillowWriter):
         return Image.frombytes("RGBA", self.frame_size, pixels.getvalue()).convert("RGB")
 
     def finish(self) -> None:
-        if not self._frames:  # interrupted before the first: matplotlib finishes all the same
+        if not self._frames:  # matplotlib finishes also after an interrupt before the first frame
             return
         first, *rest = self._frames
         delay = gif_delay(self.fps)
@@ -77,7 +74,7 @@ class GifWriter(_FilmWriter, PillowWriter):
 
 
 class Mp4Writer(_FilmWriter, FFMpegWriter):
-    """Matplotlib's, with the ffmpeg that is found."""
+    """Matplotlib's writer, with the program of `ffmpeg`."""
 
     @classmethod
     def bin_path(cls) -> str:
@@ -89,9 +86,9 @@ class Mp4Writer(_FilmWriter, FFMpegWriter):
 
 
 def gif_delay(fps: float) -> int | None:
-    """Hundredths of a second between the frames of a GIF; None if that is no whole number.
+    """Return the delay between frames of a GIF [1/100 s]; None if that is no whole number.
 
-    Viewers slow a delay of 1/100 s down, so 2 is the least; the file has room for two bytes.
+    The least delay is 2, because viewers slow 1 down. The file has two bytes for it.
     """
     delay = round(100 / fps)
     return delay if 2 <= delay < 2**16 and math.isclose(delay * fps, 100, rel_tol=1e-12) else None
@@ -100,9 +97,9 @@ def gif_delay(fps: float) -> int | None:
 def movie_writer(
     path: str | PathLike[str], fps: float, argument: str = "path"
 ) -> AbstractMovieWriter | None:
-    """Return what writes the frames to the file; None for an .html, whose player needs none.
+    """Return the writer of a file by its suffix; None for an .html, whose player needs none.
 
-    It raises what `animate` does, before anything is written.
+    It raises the errors of `animate` about the file before anything is written.
     """
     target = Path(file_name(argument, path))
     suffix = target.suffix.lower()
@@ -119,7 +116,7 @@ def movie_writer(
             )
         return GifWriter(fps=fps)  # type: ignore[arg-type]
     if suffix == ".mp4":
-        ffmpeg()  # or it is refused
+        ffmpeg()  # raises if there is none
         return Mp4Writer(fps=fps)  # type: ignore[arg-type]
     if suffix == ".html":
         return None
@@ -128,11 +125,11 @@ def movie_writer(
 
 @contextmanager
 def explained(path: str) -> Iterator[None]:
-    """Make of ffmpeg's failure a sentence with the name of the file."""
+    """Turn a failure of ffmpeg into an OSError with the name of the file."""
     try:
         yield
     except CalledProcessError as error:
-        stopped = error.__context__  # matplotlib finishes after an exception too, such as Ctrl-C
+        stopped = error.__context__  # an exception, such as Ctrl-C, that stopped matplotlib
         if stopped is not None and not isinstance(stopped, OSError):
             raise stopped from None
         why = (error.stderr or "").strip().splitlines() or [f"exit code {error.returncode}"]
@@ -140,9 +137,9 @@ def explained(path: str) -> Iterator[None]:
 
 
 def ffmpeg() -> str:
-    """Path of an ffmpeg program: imageio_ffmpeg's, else the system's."""
+    """Return the path of an ffmpeg program: that of imageio_ffmpeg, else the system's."""
     if importlib.util.find_spec("imageio_ffmpeg") is not None:
-        with suppress(RuntimeError):  # it has none for this machine
+        with suppress(RuntimeError):  # no program for this machine
             return str(importlib.import_module("imageio_ffmpeg").get_ffmpeg_exe())
     if FFMpegWriter.isAvailable():
         return FFMpegWriter.bin_path()

@@ -1,4 +1,4 @@
-"""How fast a film shows a motion: frames a second, seconds of motion a second, and its frames."""
+"""The pace of a film: frames a second, seconds of motion a second, and the time of each frame."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from ..._ask.check import FloatArray, file_name, positive, whole_within
 
 MOST_FRAMES = 1_000_000
 FPS, SPEEDS = (1e-3, 1e3), (1e-12, 1e12)
-GIF_FPS, VIDEO_FPS = 50.0, 60.0  # a GIF's frames last whole hundredths of a second, two at least
-# Longest films that are made unasked [s]: all frames of a GIF are held in memory at once.
+GIF_FPS, VIDEO_FPS = 50.0, 60.0  # a GIF's frames last 2/100 s at least
+# Longest films [s] of a chosen speed. All frames of a GIF are in memory at once.
 LONGEST_GIF, LONGEST_VIDEO = 30.0, 60.0
 
 
@@ -36,9 +36,9 @@ def pace(
     speed: float | None,
     max_frames: int | None,
 ) -> Pace:
-    """Return the frames that show a motion up to its `last` time [s], as `animate` says.
+    """Return the frames that show a motion up to its `last` time [s], as `animate` documents.
 
-    Without a path the frames are those of a GIF, which every format can hold.
+    Without a path the frames a second are those of a GIF, since every format can have them.
     """
     suffix = "" if path is None else Path(file_name("path", path)).suffix.lower()
     video = suffix in (".mp4", ".html")
@@ -64,7 +64,7 @@ def pace(
 
 
 def _whole_speed(least: float) -> float:
-    """1, or the least of 2, 5, 10, 20, … that is not below `least`."""
+    """Return 1, or the smallest of 2, 5, 10, 20, … that is not below `least`."""
     if least <= 1:
         return 1.0
     power = 10.0 ** math.floor(math.log10(least))

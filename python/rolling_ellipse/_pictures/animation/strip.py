@@ -1,43 +1,39 @@
-"""One motion in Axes of its own: the strip of an animation that shows it."""
+"""The strip of an animation: one motion in its own Axes."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
 
+from ..._ask.check import FloatArray
 from ..._core import Mode
+from ..._motion.trajectory import Trajectory
 from ...geometry import support
 from .. import ground as drawing
 from ..ground import SKID
-from ..palette import palette_of
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from ..._ask.check import FloatArray
-    from ..._motion.trajectory import Trajectory
-    from ..palette import Palette
+from ..palette import Palette, palette_of
 
 
 class Strip:
-    """The body of one motion on its ground, where a frame has it.
+    """The body of one motion on its ground, frame by frame.
 
-    Sample i of the motion is what frame i shows, with the clock at `times[i]` [s] (a motion that
-    ends earlier stays at its last sample) and left, right, bottom and top of `views[i]` [m].
-    `show_place` lets the caption say where the body is.
+    Frame i shows sample i of the motion, with the clock at `times[i]` [s] (a motion that ends
+    earlier stays at its last sample) and left, right, bottom and top of `views[i]` [m]. If
+    `show_place`, the caption has the place of the body.
 
     The data of `body`, `axis_a`, `axis_b`, `tip` (the end of axis a that lies on the right at
     theta = 0), `contact`, `slip`, `shadow`, `centre_trace`, `tip_trace` and `skid_trace` are in
-    ground axes: x along the ground, z normal to it [m]. `contact` is where the body touches; while
-    it slides, `slip` is there too and points to where it slides. In flight neither is seen, but the
-    `shadow` below the body. `ruler` has the ticks of the ground and their figures, `caption` the
-    name of the motion and what has to be said of this frame.
+    ground axes: x along the ground, z normal to it [m]. `contact` marks the place where the body
+    touches. While the body slides, `slip` is there too and points to the direction of sliding. In
+    flight neither is seen, but the `shadow` below the body. `ruler` has the ticks of the ground and
+    their figures, `caption` the name of the motion and remarks on this frame.
     """
 
     shadow: Line2D
@@ -81,8 +77,8 @@ class Strip:
         )
         self.body.set_transform(on_slope)
         ax.add_patch(self.body)
-        for name, look in _looks(palette).items():
-            setattr(self, name, ax.plot([], [], transform=on_slope, **look)[0])
+        for name, properties in _properties(palette).items():
+            setattr(self, name, ax.plot([], [], transform=on_slope, **properties)[0])
         self.caption = ax.text(0.015, 0.95, "", transform=ax.transAxes, va="top", color=palette.ink)
 
     def draw(self, i: int) -> list[Artist]:
@@ -114,12 +110,12 @@ class Strip:
                 self.caption]  # fmt: skip
 
     def _arrow(self, slip: float) -> MarkerStyle:
-        """Return a triangle that points along the ground to where the contact slips."""
+        """Return a triangle that points along the ground in the direction of the slip."""
         along = drawing.tilted(self.motion.scene)
         return MarkerStyle(">" if slip > 0 else "<", transform=along)
 
     def _shadow(self, i: int) -> tuple[list[float], list[float]]:
-        """Return the ends of the shadow below the body in flight, and nothing elsewhere."""
+        """Return the ends of the shadow below the body: x and z; empty if it touches the ground."""
         if self.motion.mode[i] != Mode.FLIGHT:
             return [], []
         scene, x = self.motion.scene, float(self.motion.x[i])
@@ -127,7 +123,7 @@ class Strip:
         return [x - half, x + half], [0.0, 0.0]
 
     def widest_caption(self) -> float:
-        """Width of the longest caption of all frames [pixels]."""
+        """Return the width of the longest caption of all frames [pixels]."""
         captions = (self._caption(i) for i in range(self._times.size))
         self.caption.set_text(max(captions, key=len))
         return float(self.caption.get_window_extent().width)
@@ -147,8 +143,8 @@ class Strip:
         return "   ".join(parts)
 
 
-def _looks(palette: Palette) -> dict[str, dict[str, Any]]:
-    """How what moves looks; what has a greater zorder lies over the rest."""
+def _properties(palette: Palette) -> dict[str, dict[str, Any]]:
+    """Return the properties of the moving artists by name."""
     ink, paper = palette.ink, palette.background
     return {
         "shadow": {"zorder": 2, "color": palette.grey, "lw": 5, "solid_capstyle": "round"},

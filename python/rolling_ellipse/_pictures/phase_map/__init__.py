@@ -1,17 +1,20 @@
-"""The phase map: what rolling comes to first, over two of shape, energy and friction."""
+"""The phase map: the first outcome of rolling, over two of shape, energy and friction."""
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.text import Text
 from matplotlib.ticker import AutoLocator, LogLocator, NullLocator
 
-from ..._ask.check import shown, whole
+from ..._ask.check import FloatArray, whole_within
 from ..._core import Outcome
 from ..._verbs.classify import classify
 from ..artists import Artists
@@ -19,16 +22,7 @@ from ..axes import axes_of, picture, require_axes
 from ..legends import name_curves
 from ..palette import BLUE, GREY, INK, ORANGE, PLUM, SKY
 from .marks import draw_marks, marks_of
-from .plane import plane_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.collections import QuadMesh
-    from matplotlib.lines import Line2D
-    from matplotlib.text import Text
-
-    from ..._ask.check import FloatArray
-    from .plane import Plane
+from .plane import Plane, plane_of
 
 COLOURS = {  # regions differ in lightness by a sixth or more; edges are thin
     Outcome.RESTS: "#ffffff",
@@ -45,7 +39,7 @@ _AXIS_NAMES = {
     "speed": "ω lying flat [rad/s]",
     "friction": "μ",
 }
-_FEW_FOLD = 5.0  # a logarithmic axis over less than this has even ticks
+_FEW_FOLD = 5.0  # a logarithmic axis with a smaller ratio of its ends has even ticks
 _FINEST = 10_000  # cells along an axis
 
 
@@ -81,7 +75,7 @@ def plot_phase_map(
     workers: Any = -1,
     ax: Axes | None = None,
 ) -> PhaseMap:
-    """Colour what `classify` says of uniform discs passing the flat position, over two quantities.
+    """Colour the outcome of `classify` for uniform discs at the flat position, over two quantities.
 
     ============  ========================================================  ====================
     quantity      meaning                                                   shown by default
@@ -93,10 +87,10 @@ def plot_phase_map(
     ``friction``  coefficient of friction                                   0 to 2
     ============  ========================================================  ====================
 
-    Lines are what `thresholds` says, as far as they are in view: "just rolls over" (dashed), the
-    end of N > 0 in rolling (solid), where the body really leaves the ground (dashes and dots,
-    plum), and Painlevé's friction (dashes and dots). Dotted are the a/b up to which N is lost at
-    the tip first, and the a/b beyond which no friction lets a disc roll over.
+    Lines in view show `thresholds`: "just rolls over" (dashed), the end of N > 0 in rolling
+    (solid), the lift-off of the body (dashes and dots, plum), and Painlevé's friction (dashes and
+    dots). Dotted lines are the a/b up to which N is lost at the tip first, and the a/b beyond which
+    no friction lets a disc roll over.
 
     Parameters
     ----------
@@ -129,13 +123,13 @@ def plot_phase_map(
         If an argument is none of the names or out of its range, x and y do not go together, or a
         quantity is given that is along an axis or follows from another.
     TypeError
-        If something is no number.
+        If something is no number, or `resolution` no whole one.
     """
     if ax is not None:
         require_axes(ax)  # before the work
     fixed = {"aspect": aspect, "energy": energy, "speed": speed, "friction": friction}
     plane = plane_of((x, y), (x_range, y_range), fixed, b, gravity)
-    count = _count(resolution)
+    count = whole_within("resolution", resolution, _FINEST)
     edges = [plane.spaced(axis, count + 1) for axis in plane.axes]
     middles = [_middles(axis, places) for axis, places in zip(plane.axes, edges, strict=True)]
     codes = classify(**plane.scenes(middles[0], middles[1][:, np.newaxis]), workers=workers)
@@ -155,15 +149,8 @@ def plot_phase_map(
     return PhaseMap(ax, cells, *draw_marks(ax, marks_of(plane)))
 
 
-def _count(resolution: Any) -> int:
-    with suppress(TypeError):
-        if 1 <= (count := whole("resolution", resolution)) <= _FINEST:
-            return count
-    raise ValueError(f"resolution must be an int from 1 to {_FINEST}, got {shown(resolution)}")
-
-
 def _middles(axis: str, edges: FloatArray) -> FloatArray:
-    """Return the middles of cells as one sees them: those of the logarithms for the aspect."""
+    """Return the middles of cells in the picture: geometric means for the aspect."""
     if axis == "aspect":
         return np.sqrt(edges[:-1] * edges[1:])
     return (edges[:-1] + edges[1:]) / 2
@@ -185,5 +172,5 @@ def _dress_map(ax: Axes, plane: Plane) -> None:
             axis.set_major_formatter("{x:g}")
             axis.set_minor_locator(NullLocator())
         label = _AXIS_NAMES[name]
-        axis.set_label_text(f"{label}   (at {plane.told()})" if side == "x" else label)
+        axis.set_label_text(f"{label}   (at {plane.caption()})" if side == "x" else label)
     ax.spines[["top", "right"]].set_visible(False)

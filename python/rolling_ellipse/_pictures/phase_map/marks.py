@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
 
-from ..._verbs.classify import thresholds
+from ..._ask.check import FloatArray
+from ..._verbs.classify import Thresholds, thresholds
 from ..labels import Label, label_lines, visible_part
 from ..palette import INK, PLUM
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-    from matplotlib.text import Text
-
-    from ..._ask.check import FloatArray
-    from ..._verbs.classify import Thresholds
-    from .plane import Plane
+from .plane import Plane
 
 TIP_ASPECT = math.sqrt(3)
 """Up to this a/b of a uniform disc the N of rolling vanishes at the tip first.
@@ -34,30 +30,30 @@ LAST_ASPECT = 9.75321681656
 
 There the speed that N > 0 allows is the one that rolling over takes, both of `thresholds`.
 """
-_POINTS = 49  # of a curve: each is one call of `thresholds`, some milliseconds
+_POINTS = 49  # of a curve; each takes a call of `thresholds`, some milliseconds
 _LIFT_OFF = {"color": PLUM, "ls": (0, (6, 1.5, 1.5, 1.5)), "lw": 1.2}
-_LOOK: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
+_LINE: dict[str, Any] = {"color": INK, "lw": 0.9, "zorder": 3}
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A line in the plane: its points, its look, and what is written where along it.
+    """A line in the plane: its points, properties of Line2D, and its name with the wanted place.
 
-    `place` is the share of the visible line at the middle of the name, `above` on which side of
-    the line, as one reads, the name is.
+    `place` is the share of the visible line at the middle of the name, `above` the side of the
+    line for a reader.
     """
 
-    key: str
     x: FloatArray
     y: FloatArray
+    key: str
     names: tuple[str, ...]  # from long to short
-    look: dict[str, Any] = field(default_factory=dict)
+    line: dict[str, Any] = field(default_factory=dict)
     place: float = 0.5
     above: bool = True
 
 
 def marks_of(plane: Plane) -> Iterator[Mark]:
-    """The marks that belong to a plane, wherever they are."""
+    """Yield the marks of a plane, in view or not."""
     if plane.level in plane.axes:
         yield from _level_marks(plane)
     if "friction" in plane.axes:
@@ -73,7 +69,7 @@ def marks_of(plane: Plane) -> Iterator[Mark]:
 
 
 def _level_marks(plane: Plane) -> Iterator[Mark]:
-    """Roll-over, loss of contact and lift-off over the axis that is not the energy or the speed."""
+    """Yield roll-over, loss of contact and lift-off over the axis of aspect or friction."""
     along = next(axis for axis in plane.axes if axis != plane.level)
     places = plane.spaced(along, _POINTS)
     if along == "aspect":
@@ -87,14 +83,11 @@ def _level_marks(plane: Plane) -> Iterator[Mark]:
         contact, flight = (contact / rolling_over) ** 2, (flight / rolling_over) ** 2
         rolling_over = np.ones_like(rolling_over)
 
-    def mark(key: str, level: FloatArray, names: tuple[str, ...], **how: Any) -> Mark:
-        x, y = (places, level) if plane.axes[0] == along else (level, places)
-        return Mark(key, x, y, names, **how)
-
-    yield mark("separatrix", rolling_over, ("just rolls over",), look={"ls": "--"}, place=0.12)
-    yield mark("contact loss", contact, ("N = 0",), place=0.2)
+    mark = partial(_curve, plane, along, places)
+    yield mark(rolling_over, "separatrix", ("just rolls over",), line={"ls": "--"}, place=0.12)
+    yield mark(contact, "contact loss", ("N = 0",), place=0.2)
     yield mark(
-        "lift-off", flight, ("leaves the ground", "lift-off"), look=_LIFT_OFF, place=0.75,
+        flight, "lift-off", ("leaves the ground", "lift-off"), line=_LIFT_OFF, place=0.75,
         above=bool(np.nanmedian(flight - contact) > 0),
     )  # fmt: skip
 
@@ -106,8 +99,9 @@ def _painleve(plane: Plane) -> Mark:
         return _straight(plane, "Painlevé", "friction", friction, names)
     aspects = plane.spaced("aspect", _POINTS)
     frictions = np.array([_thresholds(plane, aspect=float(a)).painleve_friction for a in aspects])
-    x, y = (aspects, frictions) if plane.axes[0] == "aspect" else (frictions, aspects)
-    return Mark("Painlevé", x, y, names, look={"ls": "-."}, place=0.6)
+    return _curve(
+        plane, "aspect", aspects, frictions, "Painlevé", names, line={"ls": "-."}, place=0.6
+    )
 
 
 def _thresholds(plane: Plane, **along: float) -> Thresholds:
@@ -118,12 +112,18 @@ def _thresholds(plane: Plane, **along: float) -> Thresholds:
 
 
 def _straight(plane: Plane, key: str, axis: str, at: float, names: tuple[str, ...]) -> Mark:
-    (x, y) = (np.array(limits) for limits in plane.ranges)
-    if plane.axes[0] == axis:
-        x = np.full(2, at)
-    else:
-        y = np.full(2, at)
-    return Mark(key, x, y, names, {"ls": ":" if axis == "aspect" else "-."}, 0.7)
+    """Return the line across the plane at a value of one of its axes."""
+    along = next(each for each in plane.axes if each != axis)
+    ends, line = np.array(plane.range_of(along)), {"ls": ":" if axis == "aspect" else "-."}
+    return _curve(plane, along, ends, np.full(2, at), key, names, line=line, place=0.7)
+
+
+def _curve(
+    plane: Plane, along: str, places: FloatArray, values: FloatArray, *args: Any, **how: Any
+) -> Mark:
+    """Return the mark of values of one axis over places along the other."""
+    x, y = (places, values) if plane.axes[0] == along else (values, places)
+    return Mark(x, y, *args, **how)
 
 
 def draw_marks(ax: Axes, marks: Iterable[Mark]) -> tuple[dict[str, Line2D], dict[str, Text]]:
@@ -131,7 +131,7 @@ def draw_marks(ax: Axes, marks: Iterable[Mark]) -> tuple[dict[str, Line2D], dict
     seen = [(mark, visible_part(ax, mark.x, mark.y)) for mark in marks]
     seen = [(mark, part) for mark, part in seen if len(part) > 1]
     lines = {
-        mark.key: ax.plot(mark.x, mark.y, scalex=False, scaley=False, **(_LOOK | mark.look))[0]
+        mark.key: ax.plot(mark.x, mark.y, scalex=False, scaley=False, **(_LINE | mark.line))[0]
         for mark, _ in seen
     }
     labels = {mark.key: Label(part, mark.names, mark.place, mark.above) for mark, part in seen}

@@ -1,7 +1,7 @@
 """The plane of a phase map: two quantities along its axes, the others fixed; arguments checked.
 
-Every body of it is a uniform disc that passes the flat position with a speed. Points are tuples of
-the two quantities, in the units of the arguments of `plot_phase_map`.
+A point of it is a uniform disc that passes the flat position with a speed. Quantities have the
+units of the arguments of `plot_phase_map`.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from ..._ask.check import FloatArray, choice, number, positive, shown
 from ..._ask.scene import Scene
 
 QUANTITIES = ("aspect", "energy", "speed", "friction")
-_LEVELS = {"energy", "speed"}  # of which one follows from the other
-_WIDEST = 1e3  # axis ratio, as everywhere
-_FIXED = {"aspect": 2.0, "energy": 1.5, "friction": math.inf}  # where nothing is said
+_LEVELS = {"energy", "speed"}  # each follows from the other
+_WIDEST = 1e3  # largest a/b, as everywhere
+_FIXED = {"aspect": 2.0, "energy": 1.5, "friction": math.inf}  # default values
 _SHOWN = {"aspect": (1.0, 20.0), "energy": (0.0, 4.0), "friction": (0.0, 2.0)}
 _FASTEST = 2.0  # of the speeds shown, in units of sqrt(g/b)
 _NAMES = {"aspect": "a/b", "energy": "energy", "speed": "ω", "friction": "μ"}
@@ -28,7 +28,7 @@ _UNITS = {"speed": " rad/s"}
 
 @dataclass(frozen=True)
 class Plane:
-    """The axes x and y with their ranges, and what is fixed: quantities by name, b [m], gravity."""
+    """The axes x and y with their ranges, the fixed quantities by name, b [m] and gravity."""
 
     axes: tuple[str, str]
     ranges: tuple[tuple[float, float], tuple[float, float]]
@@ -38,21 +38,21 @@ class Plane:
 
     @property
     def level(self) -> str:
-        """How the strength of the motion is told: "energy" or "speed"."""
+        """The quantity of the strength of the motion: "energy" or "speed"."""
         return "speed" if "speed" in (*self.axes, *self.fixed) else "energy"
 
     def range_of(self, name: str) -> tuple[float, float]:
         return self.ranges[self.axes.index(name)]
 
     def spaced(self, name: str, count: int) -> FloatArray:
-        """Even places from end to end of an axis, in the logarithm for the aspect."""
+        """Return even places from end to end of an axis, even in the logarithm for the aspect."""
         space: Any = np.geomspace if name == "aspect" else np.linspace
         places: FloatArray = space(*self.range_of(name), count)
         places[[0, -1]] = self.range_of(name)
         return places
 
     def scenes(self, x: FloatArray, y: FloatArray) -> dict[str, Any]:
-        """Arguments of `classify` at points of the plane; x and y broadcast."""
+        """Return the arguments of `classify` at points of the plane; x and y broadcast."""
         values: dict[str, Any] = {**self.fixed, self.axes[0]: x, self.axes[1]: y}
         speed = values.get("speed")
         if speed is None:
@@ -63,11 +63,11 @@ class Plane:
         }  # fmt: skip
 
     def _over(self, aspect: float) -> float:
-        """The roll-over speed of a disc [rad/s]."""
+        """Return the roll-over speed of a disc [rad/s]."""
         return _core.roll_over_speed(Scene(aspect * self.b, self.b, gravity=self.gravity).core)
 
-    def told(self) -> str:
-        """What is fixed, as one says it: "μ = 0.5"; the scale too where it matters."""
+    def caption(self) -> str:
+        """Return the fixed quantities as text: "μ = 0.5"; with b where speeds depend on it."""
         values = [
             f"{_NAMES[name]} = {value:.4g}{_UNITS.get(name, '')}".replace("inf", "∞")
             for name, value in self.fixed.items()
@@ -84,7 +84,7 @@ def plane_of(
     b: float,
     gravity: float,
 ) -> Plane:
-    """Return the plane of these arguments of `plot_phase_map`, or raise what that says."""
+    """Return the plane of these arguments of `plot_phase_map`, or raise its errors."""
     for argument, axis in zip("xy", axes, strict=True):
         choice(argument, axis, QUANTITIES)
     if axes[0] == axes[1] or set(axes) == _LEVELS:
@@ -103,7 +103,7 @@ def plane_of(
 
 
 def _values(axes: tuple[str, str], given: dict[str, float | None]) -> dict[str, float]:
-    """The fixed quantities: those given, for the others what is usual."""
+    """Return the fixed quantities: the given ones, and the defaults of the others."""
     values = {name: number(name, value) for name, value in given.items() if value is not None}
     if values.keys() >= _LEVELS:
         raise ValueError(
