@@ -12,52 +12,38 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// a, b, omega, theta, friction, gravity, gyration2, each with n elements, or one.
-py::array_t<std::int8_t> classify_array(py::ssize_t n, const std::array<Array, 7>& arguments,
-                                        int workers) {
-    py::array_t<std::int8_t> out(n);
-    std::int8_t* const outcomes = out.mutable_data();
-    constexpr std::array<const char*, 7> names{"a",        "b",       "omega",    "theta",
-                                               "friction", "gravity", "gyration2"};
-    const std::array<Argument, 7> of = arguments_of<7>(names, arguments, n);
-    run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
-        const auto& [a, b, omega, theta, friction, gravity, gyration2] = of;
-        for (py::ssize_t i = begin; i < end; ++i) {
-            const Body body{a[i], b[i], gyration2[i], gravity[i]};
-            const double mu = friction[i];
-            const double angle = theta[i];
-            const double speed = omega[i];
-            name_the_place<7>(i, names, of, [&] {
-                validate(body);
-                validate_motion(body, angle, speed);
-                validate_friction(mu);
-            });
-            outcomes[i] = static_cast<std::int8_t>(classify(body, mu, angle, speed));
-        }
-    });
-    return out;
+std::int8_t code(Outcome outcome) { return static_cast<std::int8_t>(outcome); }
+
+// Outcomes of a, b, omega, theta, friction, gravity, gyration2, each with n elements, or one.
+py::object classify_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers) {
+    const Arguments<7> of({"a", "b", "omega", "theta", "friction", "gravity", "gyration2"},
+                          arguments, n);
+    const auto outcome_at = [&](py::ssize_t i) {
+        const auto [a, b, omega, theta, friction, gravity, gyration2] = of[i];
+        const Body body{a, b, gyration2, gravity};
+        validate(body);
+        validate_motion(body, theta, omega);
+        validate_friction(friction);
+        return std::tuple(code(classify(body, friction, theta, omega)));
+    };
+    const auto named = [&](py::ssize_t i) { return of.naming(i, [&] { return outcome_at(i); }); };
+    return computed(n, named, workers)[0];
 }
 
-// What becomes of a scene by each of n blows instead of its own: jx, jz, dx, dz.
-py::array_t<std::int8_t> outcome_array(const Scene& scene, py::ssize_t n,
-                                       const std::array<Array, 4>& impulses) {
-    py::array_t<std::int8_t> out(n);
-    std::int8_t* const outcomes = out.mutable_data();
-    const std::array<Argument, 4> of = arguments_of<4>({"jx", "jz", "dx", "dz"}, impulses, n);
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        const auto& [jx, jz, dx, dz] = of;
+// Outcomes of a scene on level ground by each of n blows instead of its own: jx, jz, dx, dz.
+py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Array, 4>& impulses) {
+    const Arguments<4> of({"jx", "jz", "dx", "dz"}, impulses, n);
+    return computed(n, [&](py::ssize_t i) {
         Scene struck = scene;
-        for (py::ssize_t i = begin; i < end; ++i) {
-            struck.impulse = Impulse{jx[i], jz[i], dx[i], dz[i]};
-            try {
-                validate_blow(struck);
-                outcomes[i] = static_cast<std::int8_t>(outcome(struck, [] {}));
-            } catch (const std::invalid_argument& error) {
-                throw std::invalid_argument(error.what() + (", by blow " + std::to_string(i)));
-            }
+        const auto [jx, jz, dx, dz] = of[i];
+        struck.impulse = Impulse{jx, jz, dx, dz};
+        try {
+            validate_blow(struck);
+            return std::tuple(code(outcome(struck, [] {})));
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(error.what() + (", by blow " + std::to_string(i)));
         }
-    });
-    return out;
+    })[0];
 }
 
 Outcome outcome_interruptible(const Scene& scene) {

@@ -69,27 +69,19 @@ LaneLevel level_called(const std::string& wanted) {
 // t, a, b, theta, omega, gravity, gyration2, each with n elements, or one.
 py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers,
                      const std::string& level) {
-    constexpr std::array<const char*, 7> names{"t",     "a",       "b",        "theta",
-                                               "omega", "gravity", "gyration2"};
+    const Arguments<7> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
     // One alone is quicker alone.
     const LaneLevel lanes = level_called(n == 1 && level == "best" ? "one by one" : level);
     std::vector<Array> out = empty_arrays(3, n);
     const FlowColumns found = columns(out);
-    const std::array<Argument, 7> of = arguments_of<7>(names, arguments, n);
-    const auto start = [&](py::ssize_t i) {
-        const auto& [t, a, b, theta, omega, gravity, gyration2] = of;
-        const Body body{a[i], b[i], gyration2[i], gravity[i]};
-        validate(body);
-        validate_motion(body, theta[i], omega[i]);
-        return rolling_start(body, theta[i], omega[i]);
-    };
     const auto sample_all = [&](LaneLevel by, py::ssize_t begin, py::ssize_t end) {
         std::array<RollingStart, scenes_at_once> starts;
         std::array<double, scenes_at_once> times;
         std::array<FlowSample, scenes_at_once> samples;
         for (py::ssize_t i = begin; i < end; ++i) {
-            starts[i - begin] = start(i);
-            times[i - begin] = of[0][i];
+            const auto [t, a, b, theta, omega, gravity, gyration2] = of[i];
+            starts[i - begin] = validated_start({a, b, gyration2, gravity}, theta, omega);
+            times[i - begin] = t;
         }
         sample(by, starts.data(), times.data(), end - begin, samples.data());
         for (py::ssize_t i = begin; i < end; ++i) store(samples[i - begin], found, i);
@@ -103,8 +95,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
                 // Lanes come to their times last: one by one the first wrong scene is the one
                 // named.
                 for (py::ssize_t i = begin; i < end; ++i) {
-                    name_the_place<7>(i, names, of,
-                                      [&] { sample_all(LaneLevel::one_by_one, i, i + 1); });
+                    of.naming(i, [&] { sample_all(LaneLevel::one_by_one, i, i + 1); });
                 }
             }
         }
