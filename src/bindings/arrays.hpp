@@ -127,7 +127,7 @@ py::tuple computed(py::ssize_t n, const Function& function, int workers = 1) {
     return std::apply(
         [&](const auto&... part) {
             std::tuple results{Results<std::decay_t<decltype(part)>>(n)...};
-            run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
+            run_interruptible(n, workers, [&results, function](py::ssize_t begin, py::ssize_t end) {
                 for (py::ssize_t i = begin; i < end; ++i) {
                     const Row row = function(i);
                     std::apply(

@@ -45,7 +45,7 @@ void define_geometry(py::module_& module, const char* name, Function function) {
         name,
         [function](py::ssize_t n, const std::array<Array, 3>& arguments) -> py::object {
             const Arguments<3> of({"theta", "a", "b"}, arguments, n);
-            return computed(n, [&](py::ssize_t i) {
+            return computed(n, [of, function](py::ssize_t i) {
                 const auto [theta, a, b] = of[i];
                 validate_axes(a, b);
                 return std::tuple(function(Axes{a, b}, theta));
