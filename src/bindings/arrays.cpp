@@ -108,12 +108,6 @@ void run_interruptible(py::ssize_t n, int workers, const Range& body) {
              [&](py::ssize_t i, const auto&) { body(i * chunk, std::min((i + 1) * chunk, n)); });
 }
 
-std::vector<Array> empty_arrays(int count, py::ssize_t n) {
-    std::vector<Array> arrays;
-    for (int i = 0; i < count; ++i) arrays.emplace_back(n);
-    return arrays;
-}
-
 py::array read_only(py::array array) {
     py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
     return array;
@@ -123,8 +117,8 @@ Array matrix(py::ssize_t rows, py::ssize_t columns) {
     return Array(std::vector<py::ssize_t>{rows, columns});
 }
 
-void store(Array& array, py::ssize_t row, const double* values) {
-    std::copy_n(values, array.shape(1), array.mutable_data(row, 0));
+void store(Array& matrix, py::ssize_t row, const double* values) {
+    std::copy_n(values, matrix.shape(1), matrix.mutable_data(row, 0));
 }
 
 void require_length(const std::string& name, const Array& array, py::ssize_t n) {

@@ -37,13 +37,16 @@ inline constexpr py::ssize_t chunk = 1024;
 using Range = std::function<void(py::ssize_t, py::ssize_t)>;
 void run_interruptible(py::ssize_t n, int workers, const Range& body);
 
-std::vector<Array> empty_arrays(int count, py::ssize_t n);
-
 // Makes an array read-only. `flags.writeable` of NumPy would take as long as all else.
 py::array read_only(py::array array);
 
 Array matrix(py::ssize_t rows, py::ssize_t columns);
-void store(Array& array, py::ssize_t row, const double* values);
+void store(Array& matrix, py::ssize_t row, const double* values);
+
+template <class Number>
+py::array_t<Number> array_of(const std::vector<Number>& values) {
+    return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
+}
 
 // Refuse an array of another shape: std::invalid_argument with its name.
 void require_length(const std::string& name, const Array& array, py::ssize_t n);

@@ -55,18 +55,7 @@ inline py::dict numbers_of(const InitialState& start) {
     return numbers;
 }
 
-// The numbers of a struct, so many places apart; returns the place of the next one.
-template <class Struct, std::size_t N>
-double* store(const Struct& of, const Field<Struct> (&table)[N], double* to,
-              py::ssize_t apart = 1) {
-    for (const Field<Struct>& field : table) {
-        *to = of.*field.number;
-        to += apart;
-    }
-    return to;
-}
-
-// The opposite: a struct whose numbers are a row.
+// Reads the numbers of a struct from a row; returns the place behind them.
 template <class Struct, std::size_t N>
 const double* read(Struct& to, const Field<Struct> (&table)[N], const double* from) {
     for (const Field<Struct>& field : table) to.*field.number = *from++;

@@ -42,8 +42,8 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     const FlowSampler sampler(flow, n);
     const double longest = longest_time(flow);
     const double most = std::min(longest, std::numeric_limits<double>::max());
-    std::vector<Array> out = empty_arrays(3, n);
-    const FlowColumns found = columns(out);
+    FlowArrays out(n);
+    const FlowColumns found = out.columns();
     const double* const times = t.data();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         const py::ssize_t wrong = begin + kernel().first_beyond(times + begin, end - begin, most);
@@ -52,7 +52,7 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
         }
         sampler(times + begin, end - begin, found.from(begin));
     });
-    return py::make_tuple(out[0], out[1], out[2]);
+    return out.tuple();
 }
 
 LaneLevel level_called(const std::string& wanted) {
@@ -72,8 +72,8 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
     const Arguments<7> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
     // One alone is quicker alone.
     const LaneLevel lanes = level_called(n == 1 && level == "best" ? "one by one" : level);
-    std::vector<Array> out = empty_arrays(3, n);
-    const FlowColumns found = columns(out);
+    FlowArrays out(n);
+    const FlowColumns found = out.columns();
     const auto sample_all = [&](LaneLevel by, py::ssize_t begin, py::ssize_t end) {
         std::array<RollingStart, scenes_at_once> starts;
         std::array<double, scenes_at_once> times;
@@ -100,7 +100,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
             }
         }
     });
-    return py::make_tuple(out[0], out[1], out[2]);
+    return out.tuple();
 }
 
 std::vector<std::string> flow_levels() {

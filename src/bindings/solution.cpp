@@ -36,9 +36,9 @@ bool are_sample_times(const Array& t) {
     return times[0] >= 0 && times[t.size() - 1] < infinity;
 }
 
-// Shows take(samples, begin, end) the samples of all times, in parts.
+// Calls take(samples, begin, end) with the samples at all times, part by part.
 template <class Sample, class Take>
-void look(const Solution& solution, const Array& t, Take take) {
+void take_samples(const Solution& solution, const Array& t, const Take& take) {
     const py::ssize_t n = t.size();
     require_length("t", t, n);
     const double* const times = t.data();
@@ -55,60 +55,47 @@ void look(const Solution& solution, const Array& t, Take take) {
 py::tuple sample_rolling(const Solution& solution, const Array& t) {
     const py::ssize_t n = t.size();
     require_length("t", t, n);
-    std::vector<Array> out = empty_arrays(3, n);
-    const FlowColumns found = columns(out);
+    FlowArrays out(n);
+    const FlowColumns found = out.columns();
     const double* const times = t.data();
     const Sampler sampler(solution.motion, n);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         validate_times(solution, times, begin, end);
         sampler(times + begin, end - begin, found.from(begin));
     });
-    return py::make_tuple(read_only(out[0]), read_only(out[1]), read_only(out[2]));
+    for (Array* const array : {&out.theta, &out.omega, &out.x}) read_only(*array);
+    return out.tuple();
 }
 
 // q and q_dot, (n, 5), at each time.
 py::tuple sample_coordinates(const Solution& solution, const Array& t) {
     Array q = matrix(t.size(), 5);
     Array q_dot = matrix(t.size(), 5);
-    look<CoordinateState>(solution, t,
-                          [&](const CoordinateState* samples, py::ssize_t begin, py::ssize_t end) {
-                              for (py::ssize_t i = begin; i < end; ++i) {
-                                  store(q, i, samples[i - begin].q.data());
-                                  store(q_dot, i, samples[i - begin].q_dot.data());
-                              }
-                          });
+    const auto take = [&](const CoordinateState* samples, py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            store(q, i, samples[i - begin].q.data());
+            store(q_dot, i, samples[i - begin].q_dot.data());
+        }
+    };
+    take_samples<CoordinateState>(solution, t, take);
     return py::make_tuple(read_only(q), read_only(q_dot));
 }
 
 // State and force at each time, an array by name for each of their numbers.
 py::dict sample_contact(const Solution& solution, const Array& t) {
     py::dict found;
-    std::vector<double*> columns;
+    py::array_t<std::int8_t> mode(t.size());
+    ContactColumns columns{{}, mode.mutable_data()};
     const auto add = [&](const auto& field) {
         Array column(t.size());
-        columns.push_back(column.mutable_data());
+        columns.numbers.push_back(column.mutable_data());
         found[field.name] = read_only(column);
     };
     for_each(add, state_fields, force_fields);
-    py::array_t<std::int8_t> mode(t.size());
-    std::int8_t* const modes = mode.mutable_data();
-    look<ContactSample>(solution, t,
-                        [&](const ContactSample* samples, py::ssize_t begin, py::ssize_t end) {
-                            auto column = columns.begin();
-                            const auto fill = [&](const auto& table, const auto& part) {
-                                for (const auto& field : table) {
-                                    double* const values = *column++;
-                                    for (py::ssize_t i = begin; i < end; ++i) {
-                                        values[i] = samples[i - begin].*part.*field.number;
-                                    }
-                                }
-                            };
-                            fill(state_fields, &ContactSample::state);
-                            fill(force_fields, &ContactSample::force);
-                            for (py::ssize_t i = begin; i < end; ++i) {
-                                modes[i] = static_cast<std::int8_t>(samples[i - begin].state.mode);
-                            }
-                        });
+    take_samples<ContactSample>(
+        solution, t, [&](const ContactSample* samples, py::ssize_t begin, py::ssize_t end) {
+            columns.store(samples, begin, end);
+        });
     found["mode"] = read_only(mode);
     return found;
 }
@@ -123,19 +110,6 @@ Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q
     const CoordinateState start = single_state(q, q_dot);
     const GilRelease release;
     return simulate(scene, start, settings, t_end, SignalWatch());
-}
-
-// A row an event.
-Array events(const Solution& solution) {
-    const std::vector<Event>& found = solution.motion.events;
-    Array table = matrix(found.size(), event_numbers);
-    double* to = table.mutable_data();
-    for (const Event& event : found) to = store_event(event, to);
-    return table;
-}
-
-Array array_of(const std::vector<double>& values) {
-    return Array(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
 // An array of times for each value, and where they are not proved to be all.
@@ -226,7 +200,8 @@ void bind_solution(py::module_& m) {
         .def_property_readonly("model", [](const Solution& s) { return name(s.model); })
         .def_property_readonly("method", [](const Solution& s) { return name(s.method); })
         .def_property_readonly("stats", stats)
-        .def_property_readonly("events", events)
+        .def_property_readonly("events",
+                               [](const Solution& s) { return event_rows(s.motion.events); })
         .def(
             "reason", [](const Solution& s, const Scene& scene) { return reason(scene, s); },
             "scene"_a)
