@@ -1,4 +1,4 @@
-// A motion and what is known of it.
+// A motion, with how it was computed and how it ended.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ struct Solution {
     StepCounts counts = {};
     Ending ending = Ending::completed;
     double followed_until = 0.0;    // last time that the motion describes
-    double valid_until = infinity;  // time at which the model stops being true
+    double valid_until = infinity;  // time at which the model stops being valid
     std::string message = {};
-    std::optional<ContactWatch> watch = {};  // what was seen where nothing could be proved
+    std::optional<ContactWatch> watch = {};  // forces of a motion without a proof
 };
 
 }  // namespace rolling_ellipse

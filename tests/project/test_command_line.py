@@ -411,7 +411,7 @@ def test_a_motion_that_stops_early_has_a_summary_and_exit_code_1(tmp_path: Path)
     options = ["--a", "2", "--b", "1", "--omega", "3", "--friction", ".2", "--restitution", "1"]
     code, out, err = typed(tmp_path, *options, "--time", "100000")
     assert (code, err) == (1, "")
-    assert "MAX_EVENTS: max_events = 10000 events ended at t = " in out
+    assert "MAX_EVENTS: max_events = 10000 was reached at t = " in out
     reached = rl.simulate(
         rl.Scene(2.0, 1.0, mass=10.0, omega=3.0, friction=0.2, restitution=1.0),
         1e5,
