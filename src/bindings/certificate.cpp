@@ -4,7 +4,6 @@
 #include "outcome/blow.hpp"
 #include "outcome/classify.hpp"
 #include "outcome/lift_off.hpp"
-#include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
 #include "scene/impact.hpp"
 #include "simulate.hpp"

@@ -112,7 +112,7 @@ Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q
     return simulate(scene, start, settings, t_end, SignalWatch());
 }
 
-// An array of times for each value, and where they are not proved to be all.
+// An array of times for each value, and phrases that say where some of them may be missing.
 py::tuple lists(const Passages& found) {
     py::list times;
     for (const std::vector<double>& each : found.times) times.append(array_of(each));
@@ -121,11 +121,13 @@ py::tuple lists(const Passages& found) {
 
 py::tuple passages_of(const Solution& solution, Quantity quantity,
                       const std::vector<double>& values, int direction) {
+    const Motion& motion = solution.motion;
+    const Checkpoint checkpoint = SignalWatch();
+    const Observable of = observable(motion, quantity, checkpoint);
     Passages found;
     {
         const GilRelease release;
-        found = passages(solution.motion, solution.followed_until, quantity, values, direction,
-                         SignalWatch());
+        found = passages(motion, solution.followed_until, of, values, direction, checkpoint);
     }
     return lists(found);
 }
@@ -136,7 +138,8 @@ py::tuple zeros_of(const Solution& solution, const py::function& function, int d
         const Array values = function(array_of(times));
         return std::vector<double>(values.data(), values.data() + values.size());
     };
-    return lists(zeros(solution.motion, solution.followed_until, measure, direction, [] {}));
+    const Observable of{std::nullopt, measure, 0.0};
+    return lists(passages(solution.motion, solution.followed_until, of, {0.0}, direction, [] {}));
 }
 
 py::dict stats(const Solution& solution) {

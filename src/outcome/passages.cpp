@@ -162,24 +162,15 @@ class Search {
 
 }  // namespace
 
-Passages passages(const Motion& motion, double last, Quantity quantity,
+Passages passages(const Motion& motion, double last, const Observable& of,
                   const std::vector<double>& values, int direction, const Checkpoint& checkpoint) {
-    if (motion.segments.empty()) return {std::vector<std::vector<double>>(values.size()), {}};
-    const Observable of = observable(motion, quantity, checkpoint);
+    Passages found{std::vector<std::vector<double>>(values.size()), {}};
+    if (motion.segments.empty()) return found;
     const Search search(of, direction, stretches(motion, last, of, checkpoint));
-    Passages found{{}, search.unproved()};
-    for (const double value : values) found.times.push_back(search.times_of(value));
+    const auto times_of = [&](double value) { return search.times_of(value); };
+    std::transform(values.begin(), values.end(), found.times.begin(), times_of);
+    found.unproved = search.unproved();
     return found;
-}
-
-Passages zeros(const Motion& motion, double last, const Measure& function, int direction,
-               const Checkpoint& checkpoint) {
-    if (motion.segments.empty()) return {{{}}, {}};
-    // Called once before the search, so that a function without numbers is refused at once.
-    function({motion.segments.front().begin * motion.units.time});
-    const Observable of{std::nullopt, function, 0.0};
-    const Search search(of, direction, stretches(motion, last, of, checkpoint));
-    return {{search.times_of(0.0)}, search.unproved()};
 }
 
 }  // namespace rolling_ellipse

@@ -15,7 +15,6 @@
 #include "losses.hpp"
 #include "outcome/blow.hpp"
 #include "outcome/passages.hpp"
-#include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
 #include "proof/law.hpp"
 #include "rolling/level/many_bodies.hpp"
