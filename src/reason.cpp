@@ -116,7 +116,7 @@ std::string why_ended(Ending ending, const Settings& settings, double t, double 
                    ": friction would press it into the ground (Painleve), and no motion of a "
                    "rigid body is possible";
         case Ending::undetermined:
-            return "the sliding body has two possible motions" + place +
+            return "two motions of the sliding body are possible" + place +
                    ": it flies off, or its own friction presses it on the ground (Painleve), and "
                    "rigid mechanics does not choose";
         case Ending::validity_lost:

@@ -1,4 +1,4 @@
-// Many scenes at once: a table of scenes in, tables of what became of them out.
+// Many scenes at once: a table of scenes in, tables of their motions out.
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +10,9 @@ namespace rolling_ellipse::bindings {
 namespace {
 
 constexpr std::size_t scene_numbers = std::size(scene_fields) + std::size(impulse_fields);
-constexpr int refused = -1;  // in the place of an Ending
+constexpr int refused = -1;  // a code beside those of Ending
 
-// A row of the table; NaN is what was not given.
+// The scene of a row; NaN stands for an absent number.
 Scene scene_in(const double* row, double most) {
     const auto given = [](double value) {
         return std::isnan(value) ? std::nullopt : std::optional(value);
@@ -27,7 +27,7 @@ Scene scene_in(const double* row, double most) {
     return scene;
 }
 
-// The first scene that is refused, by its place and with the reason; None where none is.
+// Index and message of the first scene that is refused; None if all are accepted.
 py::object first_refused(const Array& scenes, bool reached) {
     const double most = reached ? most_energy_reached : most_energy;
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
@@ -42,10 +42,10 @@ py::object first_refused(const Array& scenes, bool reached) {
     return py::none();
 }
 
-// What became of a scene, without the means to look at other times. Samples are of one kind.
+// The motion of a scene as samples and events. Only one of the sample vectors is filled.
 struct Answer {
     int ending = refused;
-    Solution solution = {};  // its motion keeps the events only
+    Solution solution = {};  // without the segments of its motion
     py::ssize_t segments = 0;
     py::ssize_t samples = 0;
     std::vector<FlowSample> rolling = {};
@@ -91,7 +91,7 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     return found;
 }
 
-// How an answer ended, and the sizes of its parts of the other tables.
+// Ending and counts of an answer, and the sizes of its parts of the other tables.
 std::array<Figure, 10> codes_of(const Answer& answer) {
     const Solution& solution = answer.solution;
     const py::ssize_t events = solution.motion.events.size();
@@ -121,7 +121,7 @@ auto joined(std::vector<Answer>& answers, const Part& part) {
     return all;
 }
 
-// How each ended, one row a scene.
+// Codes and times of all answers, one row a scene.
 py::dict facts(const std::vector<Answer>& answers) {
     const py::ssize_t n = answers.size();
     py::array_t<std::int64_t> codes({n, static_cast<py::ssize_t>(codes_of({}).size())});
@@ -136,7 +136,7 @@ py::dict facts(const std::vector<Answer>& answers) {
     return py::dict("codes"_a = codes, "numbers"_a = numbers);
 }
 
-// The columns of each table; those of samples are its rows.
+// The names of the columns of each table. Samples have a row for each quantity instead.
 py::dict columns() {
     return py::dict(
         "scenes"_a = names_of(scene_fields, impulse_fields), "codes"_a = names_of(codes_of({})),
@@ -144,8 +144,8 @@ py::dict columns() {
         "rolling"_a = names_of(flow_fields), "contact"_a = names_of(state_fields, force_fields));
 }
 
-// The samples of all scenes of a kind one after the other: quantity by quantity, but for
-// coordinates, which are sample by sample.
+// The samples of all scenes one after the other, by their kind. A quantity is a row; coordinates
+// have a row for each sample instead.
 py::dict samples(std::vector<Answer>& answers) {
     const auto rolling = joined(answers, [](Answer& each) -> auto& { return each.rolling; });
     const auto contact = joined(answers, [](Answer& each) -> auto& { return each.contact; });

@@ -50,7 +50,7 @@ Outcome outcome_interruptible(const Scene& scene) {
     return outcome(scene, SignalWatch());
 }
 
-// A Certificate by the names of its fields; the validity by its code, as enums are slow to make.
+// A certificate by the names of its fields; the validity as a code, since enums are slow to make.
 py::dict certificate(const Scene& scene) {
     const CertifiedScene certified = certify(scene);
     const Certificate& c = certified.certificate;
@@ -90,7 +90,7 @@ py::dict thresholds_by_name(double a, double b, double gravity, std::optional<do
     return found;
 }
 
-// The speed, or None, and the ranges of those that jam; the other thresholds of the body are given.
+// The lift-off speed and the ranges of speeds that jam. Two other thresholds of the body are given.
 py::tuple lift_off_interruptible(double a, double b, double gravity,
                                  std::optional<double> gyration2, double friction,
                                  double slip_speed, double painleve_friction) {
@@ -117,7 +117,8 @@ void bind_certificate(py::module_& m) {
         .value("EDGE", Validity::edge)
         .value("NO_PROOF", Validity::no_proof)
         .finalize();
-    py::native_enum<Outcome>(m, "Outcome", "enum.IntEnum", "What a rolling body comes to first.")
+    py::native_enum<Outcome>(m, "Outcome", "enum.IntEnum",
+                             "The first thing that happens to a rolling body.")
         .value("RESTS", Outcome::rests)
         .value("ROCKS", Outcome::rocks)
         .value("ROLLS_OVER", Outcome::rolls_over)

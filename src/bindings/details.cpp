@@ -9,7 +9,8 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// q, q_dot, q_ddot and multipliers of the contact model, from its samples by name.
+// q, q_dot, q_ddot and multipliers of the contact model, from its samples by the names of their
+// columns.
 py::dict contact_arrays(const Scene& scene, const std::map<std::string, Array>& samples) {
     const py::ssize_t n = samples.at("theta").size();
     std::vector<const double*> columns;
@@ -41,7 +42,7 @@ py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const 
     });
 }
 
-// The nearest state that meets the constraints.
+// The nearest state that satisfies the constraints.
 py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
     CoordinateState state = single_state(q, q_dot);
     ConstrainedBody(scene).project(state.q, state.q_dot);

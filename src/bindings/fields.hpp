@@ -1,4 +1,4 @@
-// Tables of fields (scene/field.hpp) as Python sees them: by name, and as columns.
+// Tables of fields (scene/field.hpp) for Python: dictionaries by name, and columns.
 #pragma once
 
 #include <array>
@@ -13,17 +13,19 @@ inline constexpr Field<FlowSample> flow_fields[] = {
     {"omega", &FlowSample::omega, unit::angular_velocity},
     {"x", &FlowSample::x, unit::length}};
 
+// A named count.
 struct Figure {
     const char* name;
     std::int64_t value;
 };
 
-// The solver's figures.
+// The counts of a solver.
 inline std::array<Figure, 4> stats_of(py::ssize_t segments, const StepCounts& counts) {
     return {Figure{"segments", segments}, Figure{"steps", counts.steps},
             Figure{"rejected_steps", counts.rejected}, Figure{"evaluations", counts.evaluations}};
 }
 
+// Calls an action with each field of some tables.
 template <class Action, class... Tables>
 void for_each(const Action& action, const Tables&... tables) {
     const auto all = [&](const auto& table) {

@@ -34,7 +34,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
     });
 }
 
-// The names of a table as Python keeps its own: looked up by their address.
+// The names of a table as interned Python strings, which dictionaries find by their address.
 template <class Table>
 std::vector<py::str> interned(const Table& table) {
     std::vector<py::str> names;
@@ -44,7 +44,7 @@ std::vector<py::str> interned(const Table& table) {
     return names;
 }
 
-// Makes a scene of numbers by the names of its fields; None is what is not given.
+// Makes a scene from numbers by the names of its fields; None stands for an absent one.
 class SceneMaker {
   public:
     Scene operator()(const py::dict& fields, const std::optional<Impulse>& impulse,
@@ -64,7 +64,7 @@ class SceneMaker {
     std::vector<py::str> names_ = interned(scene_fields);
 };
 
-// The state just after the blow, the mode that forces allow, and what there is to say of both.
+// The state just after the blow, the mode that forces allow, and sentences about both.
 py::dict start_of(const Scene& scene) {
     const InitialState start = initial_state(scene);
     const Continuation next = first_continuation(scene, start.state);
@@ -81,13 +81,13 @@ py::dict start_of(const Scene& scene) {
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    py::native_enum<Mode>(m, "Mode", "enum.IntEnum", "What the body does, one code a sample.")
+    py::native_enum<Mode>(m, "Mode", "enum.IntEnum", "Mode of motion; one code per sample.")
         .value("ROLLING", Mode::rolling)
         .value("SLIDING", Mode::sliding)
         .value("FLIGHT", Mode::flight)
         .value("REST", Mode::rest)
         .finalize();
-    py::native_enum<Painleve>(m, "Painleve", "enum.Enum", "Does exactly one motion go on?")
+    py::native_enum<Painleve>(m, "Painleve", "enum.Enum", "Is there exactly one possible motion?")
         .value("DETERMINED", Painleve::determined)
         .value("NO_MOTION", Painleve::no_motion)
         .value("TWO_MOTIONS", Painleve::two_motions)
@@ -102,7 +102,7 @@ void bind_scene(py::module_& m) {
     bind_class<Scene>(m, "Scene")
         .def(py::init(SceneMaker()), "numbers"_a, "impulse"_a, "reached"_a)
         .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
-    py::native_enum<Restitution>(m, "Restitution", "enum.Enum", "What restitution means.")
+    py::native_enum<Restitution>(m, "Restitution", "enum.Enum", "Law of restitution.")
         .value("STRONGE", Restitution::stronge)
         .value("POISSON", Restitution::poisson)
         .value("NEWTON", Restitution::newton)

@@ -11,8 +11,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// A solution says nothing of other times than those that it went through, and nothing at all where
-// it ended before it began.
+// Refuses times at which the solution is not known. A motion without segments has none.
 void validate_times(const Solution& solution, const double* times, py::ssize_t begin,
                     py::ssize_t end) {
     if (begin < end && solution.motion.segments.empty()) {
@@ -25,8 +24,7 @@ void validate_times(const Solution& solution, const double* times, py::ssize_t b
     }
 }
 
-// Whether times are such as a motion is sampled at: at least one, finite, not negative, and each
-// later than the one before.
+// Are these valid sample times: at least one, finite, not negative, and strictly ascending?
 bool are_sample_times(const Array& t) {
     if (t.ndim() != 1 || t.size() == 0) return false;
     const double* const times = t.data();
@@ -150,7 +148,7 @@ py::dict stats(const Solution& solution) {
     return found;
 }
 
-// The state just before an event, or just after it, and the code of its mode.
+// The state just before or just after an event, and the code of its mode.
 py::dict event_state(const Scene& scene, const EventRow& row, bool after) {
     const Event event = event_of(row);
     const State& before = event.before;
@@ -164,7 +162,7 @@ py::dict event_state(const Scene& scene, const EventRow& row, bool after) {
 }  // namespace
 
 void bind_solution(py::module_& m) {
-    py::native_enum<EventKind>(m, "EventKind", "enum.Enum", "What changes at an event.")
+    py::native_enum<EventKind>(m, "EventKind", "enum.Enum", "Kind of an event.")
         .value("SLIP", EventKind::slip)
         .value("STICK", EventKind::stick)
         .value("REVERSE", EventKind::reverse)
@@ -183,7 +181,7 @@ void bind_solution(py::module_& m) {
         .value("STEP_TOO_SMALL", Ending::step_too_small)
         .value("STEP_TOO_LARGE", Ending::step_too_large)
         .finalize();
-    py::native_enum<Quantity>(m, "Quantity", "enum.Enum", "What a motion may pass a value of.")
+    py::native_enum<Quantity>(m, "Quantity", "enum.Enum", "A quantity of a motion.")
         .value("theta", Quantity::theta)
         .value("x", Quantity::x)
         .value("z", Quantity::z)

@@ -1,4 +1,4 @@
-// What the motion of a rolling body comes to first, from signs of polynomials alone.
+// The first thing that happens to a rolling body, from signs of polynomials alone.
 #pragma once
 
 #include <cstdint>
