@@ -135,11 +135,11 @@ def contradictions(scene: Scene) -> list[str]:
         or ("ground" not in words.replace("reaction of the ground", "") and flies),
         "pull": "pull" not in words + why or scene.friction == math.inf or flies,
         "cannot start": ("cannot start" in why) == (at_once and proof.ends_at is not None),
-        "friction 0": scene.friction > 0 or "more than the friction" not in words + why,
+        "friction 0": scene.friction > 0 or "more friction than there is" not in words + why,
         "the impulse is in every reason": not (struck and scene.impulse is None)
         or all(f"{start.reaction_x:.6g}" in each for each in (words, why, auto.reason)),
         "both motions are told": all(
-            ("both" in each and "Painleve" in each) == both for each in (words, why)
+            ("two motions" in each and "Painleve" in each) == both for each in (words, why)
         )
         or jams,
     }
