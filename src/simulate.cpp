@@ -99,48 +99,32 @@ void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoi
     end_validity(solution.watch->holds_until, t_end, solution);
 }
 
-Solution exact_rolling(const Scene& scene, const Beginning& from, double t_end) {
-    Solution solution{};
-    solution.followed_until = t_end;
+Integration<Motion> exact_rolling(const Scene& scene, const Beginning& from, double t_end) {
     if (from.on_slope) {
         SlopeFlow flow = *from.on_slope;
         prepare(flow, t_end);
         validate_time(t_end, longest_time(flow));
-        solution.motion = single(scene, std::make_shared<const SlopeFlow>(std::move(flow)));
-        return solution;
+        return {single(scene, std::make_shared<const SlopeFlow>(std::move(flow))),
+                Ending::completed, t_end};
     }
     const auto flow =
         std::make_shared<const RollingFlow>(rolling_flow(*from.rolling, from.initial.state.x));
     validate_time(t_end, longest_time(*flow));
-    solution.motion = single(scene, flow);
-    return solution;
+    return {single(scene, flow), Ending::completed, t_end};
 }
 
-Solution integrated(Integration<Motion> found, const Settings& settings, double t_end) {
-    Solution solution{std::move(found.motion), settings.model, settings.method};
-    solution.counts = found.counts;
-    solution.ending = found.ending;
-    solution.followed_until = found.followed_until;
-    solution.message = why_ended(found.ending, settings, found.followed_until, t_end);
-    return solution;
-}
-
-// The solution of a motion by one law.
 template <class Law>
-Solution integrated(const Scene& scene, Integration<Law> found, const Settings& settings,
-                    double t_end) {
-    return integrated(
-        {single(scene, std::move(found.motion)), found.ending, found.followed_until, found.counts},
-        settings, t_end);
+Integration<Motion> as_motion(const Scene& scene, Integration<Law> found) {
+    return {single(scene, std::move(found.motion)), found.ending, found.followed_until,
+            found.counts};
 }
 
-Solution solve(const Scene& scene, const Beginning& from, const EndOfRolling& end,
-               const Settings& settings, double t_end, const Checkpoint& checkpoint) {
+Integration<Motion> solve(const Scene& scene, const Beginning& from, const EndOfRolling& end,
+                          const Settings& settings, double t_end, const Checkpoint& checkpoint) {
     const State& start = from.initial.state;
     if (settings.model == Model::contact) {
-        return integrated(integrate_contact(scene, start, from.initial.gap_rate, end, settings,
-                                            t_end, checkpoint),
-                          settings, t_end);
+        return integrate_contact(scene, start, from.initial.gap_rate, end, settings, t_end,
+                                 checkpoint);
     }
     if (!rolls(start)) {
         throw std::invalid_argument("model '" + name(settings.model) +
@@ -148,13 +132,16 @@ Solution solve(const Scene& scene, const Beginning& from, const EndOfRolling& en
     }
     if (settings.method == Method::exact) return exact_rolling(scene, from, t_end);
     if (settings.model == Model::multipliers) {
-        return integrated(scene,
-                          integrate_multipliers(scene, coordinate_start(scene, start), settings,
-                                                t_end, checkpoint),
-                          settings, t_end);
+        return as_motion(scene, integrate_multipliers(scene, coordinate_start(scene, start),
+                                                      settings, t_end, checkpoint));
     }
-    return integrated(scene, integrate_rolling(scene, start, settings, t_end, checkpoint), settings,
-                      t_end);
+    return as_motion(scene, integrate_rolling(scene, start, settings, t_end, checkpoint));
+}
+
+Solution solution(Integration<Motion> found, const Settings& settings, double t_end) {
+    Solution solution{std::move(found), settings.model, settings.method};
+    solution.message = why_ended(solution.ending, settings, solution.followed_until, t_end);
+    return solution;
 }
 
 }  // namespace
@@ -185,20 +172,21 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
     Beginning from = beginning(scene);
     const Proof proof = is_proved_by_arcs(scene, from, asked) ? Proof{} : prove(scene, from);
     const Settings settings = chosen(asked, proof.end.validity);
-    Solution solution = solve(scene, from, proof.end, settings, t_end, checkpoint);
-    if (settings.model != Model::contact) judge_by_proof(from, proof, t_end, solution);
-    return solution;
+    Solution found =
+        solution(solve(scene, from, proof.end, settings, t_end, checkpoint), settings, t_end);
+    if (settings.model != Model::contact) judge_by_proof(from, proof, t_end, found);
+    return found;
 }
 
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& asked,
                   double t_end, const Checkpoint& checkpoint) {
     validate(asked, t_end);
     const Settings settings = chosen(asked, Validity::no_proof);
-    Solution solution = integrated(
-        scene, integrate_multipliers(scene, coordinate_start(start), settings, t_end, checkpoint),
-        settings, t_end);
-    judge_by_watch(scene, t_end, checkpoint, solution);
-    return solution;
+    Solution found = solution(as_motion(scene, integrate_multipliers(scene, coordinate_start(start),
+                                                                     settings, t_end, checkpoint)),
+                              settings, t_end);
+    judge_by_watch(scene, t_end, checkpoint, found);
+    return found;
 }
 
 double period(const Scene& scene) {
