@@ -91,11 +91,12 @@ std::string why_not_rolling(const Scene& scene, const State& start) {
 }
 
 std::string why_ended(Ending ending, const Settings& settings, double t, double t_end) {
+    if (ending == Ending::completed) return {};  // without the cost of the text below
     const std::string place = " at t = " + brief(t) + " s of " + brief(t_end) + " s";
     const bool in_contact = settings.model == Model::contact;  // no steps with an error
     switch (ending) {
         case Ending::completed:
-            return {};
+            break;
         case Ending::max_steps:
             return "max_steps = " + std::to_string(settings.max_steps) + " was reached" + place +
                    ": allow more steps" +

@@ -45,11 +45,6 @@ py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Arr
     })[0];
 }
 
-Outcome outcome_interruptible(const Scene& scene) {
-    const GilRelease release;
-    return outcome(scene, SignalWatch());
-}
-
 // A certificate by the names of its fields; the validity as a code, since enums are slow to make.
 py::dict certificate(const Scene& scene) {
     const CertifiedScene certified = certify(scene);
@@ -129,7 +124,9 @@ void bind_certificate(py::module_& m) {
         .finalize();
     m.def("classify_array", classify_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("outcome_array", outcome_array, "scene"_a, "n"_a, "impulses"_a);
-    m.def("outcome", outcome_interruptible, "scene"_a);
+    m.def(
+        "outcome", [](const Scene& scene) { return outcome(scene, SignalWatch()); },
+        py::call_guard<GilRelease>(), "scene"_a);
     m.def("required_friction", required_friction, "scene"_a);
     m.def("sticking_friction", sticking_friction, "scene"_a);
     m.def("press_to", press_to, "scene"_a, "distance"_a, "omega"_a);

@@ -20,16 +20,17 @@ py::dict contact_arrays(const Scene& scene, const std::map<std::string, Array>& 
         columns.push_back(column.data());
     };
     for_each(add, state_fields, force_fields);
-    return named({"q", "q_dot", "q_ddot", "multipliers"}, computed(n, [&](py::ssize_t i) {
-                     State state{};
-                     ContactForce force{};
-                     auto column = columns.begin();
-                     for (const auto& field : state_fields) state.*field.number = (*column++)[i];
-                     for (const auto& field : force_fields) force.*field.number = (*column++)[i];
-                     const CoordinateState at = coordinate_state(scene.axes(), state);
-                     const MultiplierSolution found = accelerations(scene, at, force);
-                     return std::tuple(at.q, at.q_dot, found.q_ddot, found.multipliers);
-                 }));
+    const auto row = [&](py::ssize_t i) {
+        State state{};
+        ContactForce force{};
+        auto column = columns.begin();
+        for (const auto& field : state_fields) state.*field.number = (*column++)[i];
+        for (const auto& field : force_fields) force.*field.number = (*column++)[i];
+        const CoordinateState at = coordinate_state(scene.axes(), state);
+        const MultiplierSolution found = accelerations(scene, at, force);
+        return std::tuple(at.q, at.q_dot, found.q_ddot, found.multipliers);
+    };
+    return named({"q", "q_dot", "q_ddot", "multipliers"}, computed(n, row));
 }
 
 // q_ddot and multipliers of the multiplier model.
@@ -54,14 +55,15 @@ py::dict rolling_arrays(const Scene& scene, const Array& theta, const Array& ome
                         const Array& x) {
     const py::ssize_t n = theta.size();
     const Arguments<3> of({"theta", "omega", "x"}, {theta, omega, x}, n);
+    const auto row = [&](py::ssize_t i) {
+        const auto [angle, speed, position] = of[i];
+        RollingDetail found = rolling_detail(scene, angle, speed);
+        found.state.q[coordinate::x] = position;
+        return std::tuple(found.state.q, found.state.q_dot, found.q_ddot, found.force.normal,
+                          found.force.friction, found.multipliers);
+    };
     return named({"q", "q_dot", "q_ddot", "normal_force", "friction_force", "multipliers"},
-                 computed(n, [&](py::ssize_t i) {
-                     const auto [angle, speed, position] = of[i];
-                     RollingDetail found = rolling_detail(scene, angle, speed);
-                     found.state.q[coordinate::x] = position;
-                     return std::tuple(found.state.q, found.state.q_dot, found.q_ddot,
-                                       found.force.normal, found.force.friction, found.multipliers);
-                 }));
+                 computed(n, row));
 }
 
 // z, x_dot, z_dot, normal and friction force of rolling.
@@ -69,14 +71,14 @@ py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Ar
     const py::ssize_t n = theta.size();
     const Arguments<2> of({"theta", "omega"}, {theta, omega}, n);
     const RollingDynamics dynamics(scene);
-    return named(
-        {"z", "x_dot", "z_dot", "normal_force", "friction_force"}, computed(n, [&](py::ssize_t i) {
-            const auto [angle, speed] = of[i];
-            const Geometry at = geometry(scene.axes(), angle);
-            const ContactForce force = dynamics.force(at, speed);
-            const State state = in_contact(at, angle, speed, 0.0, 0.0, Mode::rolling);
-            return std::tuple(state.z, state.x_dot, state.z_dot, force.normal, force.friction);
-        }));
+    const auto row = [&](py::ssize_t i) {
+        const auto [angle, speed] = of[i];
+        const Geometry at = geometry(scene.axes(), angle);
+        const ContactForce force = dynamics.force(at, speed);
+        const State state = in_contact(at, angle, speed, 0.0, 0.0, Mode::rolling);
+        return std::tuple(state.z, state.x_dot, state.z_dot, force.normal, force.friction);
+    };
+    return named({"z", "x_dot", "z_dot", "normal_force", "friction_force"}, computed(n, row));
 }
 
 // theta'' of rolling, and its derivatives by theta and omega.

@@ -98,18 +98,6 @@ py::dict sample_contact(const Solution& solution, const Array& t) {
     return found;
 }
 
-Solution simulate_interruptible(const Scene& scene, const Settings& settings, double t_end) {
-    const GilRelease release;
-    return simulate(scene, settings, t_end, SignalWatch());
-}
-
-Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q_dot,
-                              const Settings& settings, double t_end) {
-    const CoordinateState start = single_state(q, q_dot);
-    const GilRelease release;
-    return simulate(scene, start, settings, t_end, SignalWatch());
-}
-
 // An array of times for each value, and phrases that say where some of them may be missing.
 py::tuple lists(const Passages& found) {
     py::list times;
@@ -216,9 +204,19 @@ void bind_solution(py::module_& m) {
     m.attr("STATS") = names_of(stats_of(0, {}));
     m.def("event_state", event_state, "scene"_a, "row"_a, "after"_a);
     m.def("are_sample_times", are_sample_times, "t"_a);
-    m.def("simulate", simulate_interruptible, "scene"_a, "settings"_a, "t_end"_a);
-    m.def("simulate_coordinates", simulate_coordinates, "scene"_a, "q"_a, "q_dot"_a, "settings"_a,
-          "t_end"_a);
+    m.def(
+        "simulate",
+        [](const Scene& scene, const Settings& settings, double t_end) {
+            return simulate(scene, settings, t_end, SignalWatch());
+        },
+        py::call_guard<GilRelease>(), "scene"_a, "settings"_a, "t_end"_a);
+    m.def(
+        "simulate_coordinates",
+        [](const Scene& scene, const Array& q, const Array& q_dot, const Settings& settings,
+           double t_end) {
+            return simulate(scene, single_state(q, q_dot), settings, t_end, SignalWatch());
+        },
+        py::call_guard<GilRelease>(), "scene"_a, "q"_a, "q_dot"_a, "settings"_a, "t_end"_a);
 }
 
 }  // namespace rolling_ellipse::bindings
