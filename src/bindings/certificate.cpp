@@ -17,16 +17,17 @@ std::int8_t code(Outcome outcome) { return static_cast<std::int8_t>(outcome); }
 py::object classify_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers) {
     const Arguments<7> of({"a", "b", "omega", "theta", "friction", "gravity", "gyration2"},
                           arguments, n);
-    const auto outcome_at = [&](py::ssize_t i) {
-        const auto [a, b, omega, theta, friction, gravity, gyration2] = of[i];
-        const Body body{a, b, gyration2, gravity};
-        validate(body);
-        validate_motion(body, theta, omega);
-        validate_friction(friction);
-        return std::tuple(code(classify(body, friction, theta, omega)));
+    const auto outcome_at = [of](py::ssize_t i) {
+        return of.naming(i, [&] {
+            const auto [a, b, omega, theta, friction, gravity, gyration2] = of[i];
+            const Body body{a, b, gyration2, gravity};
+            validate(body);
+            validate_motion(body, theta, omega);
+            validate_friction(friction);
+            return std::tuple(code(classify(body, friction, theta, omega)));
+        });
     };
-    const auto named = [&](py::ssize_t i) { return of.naming(i, [&] { return outcome_at(i); }); };
-    return computed(n, named, workers)[0];
+    return computed(n, outcome_at, workers)[0];
 }
 
 // Outcomes of a scene on level ground by each of n blows instead of its own: jx, jz, dx, dz.
