@@ -1,6 +1,7 @@
 // Many scenes at once: a table of scenes in, tables of their motions out.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
@@ -110,12 +111,12 @@ std::array<Figure, 10> codes_of(const Answer& answer) {
             Figure{"letters", letters}};
 }
 
-// The lists of all answers, one after the other; `part` takes one out of its answer.
+// The lists of all answers, one after the other; `part` is a member of Answer or returns one.
 template <class Part>
 auto joined(std::vector<Answer>& answers, const Part& part) {
-    std::vector<typename std::decay_t<decltype(part(answers[0]))>::value_type> all;
+    std::vector<typename std::decay_t<decltype(std::invoke(part, answers[0]))>::value_type> all;
     for (Answer& each : answers) {
-        const auto list = std::move(part(each));
+        const auto list = std::move(std::invoke(part, each));
         all.insert(all.end(), list.begin(), list.end());
     }
     return all;
@@ -147,10 +148,9 @@ py::dict columns() {
 // The samples of all scenes one after the other, by their kind. A quantity is a row; coordinates
 // have a row for each sample instead.
 py::dict samples(std::vector<Answer>& answers) {
-    const auto rolling = joined(answers, [](Answer& each) -> auto& { return each.rolling; });
-    const auto contact = joined(answers, [](Answer& each) -> auto& { return each.contact; });
-    const auto coordinates =
-        joined(answers, [](Answer& each) -> auto& { return each.coordinates; });
+    const auto rolling = joined(answers, &Answer::rolling);
+    const auto contact = joined(answers, &Answer::contact);
+    const auto coordinates = joined(answers, &Answer::coordinates);
     Array flow = matrix(3, rolling.size());
     const FlowColumns flow_columns{flow.mutable_data(0), flow.mutable_data(1),
                                    flow.mutable_data(2)};

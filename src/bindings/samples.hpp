@@ -10,11 +10,14 @@ namespace rolling_ellipse::bindings {
 // q and q_dot, (n, 5) each; returns n.
 py::ssize_t require_coordinates(const Array& q, const Array& q_dot);
 
-// A row of q and q_dot, (n, 5); and that of arrays which must have one only.
+// The state in a row of q and q_dot, (n, 5).
 CoordinateState state_at(const Array& q, const Array& q_dot, py::ssize_t row);
+
+// The state of q and q_dot, (1, 5); refuses other shapes.
 CoordinateState single_state(const Array& q, const Array& q_dot);
 
-// t, the code of the kind, and the states before and after, each with the code of its mode.
+// An event as a row: t, the code of its kind, and the states before and after, each with the code
+// of its mode.
 inline constexpr std::size_t event_numbers = 2 + 2 * (std::size(state_fields) + 1);
 using EventRow = std::array<double, event_numbers>;
 py::tuple event_columns();

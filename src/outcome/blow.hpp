@@ -16,8 +16,8 @@ Outcome outcome(const Scene& scene, const Checkpoint& checkpoint);
 // infinite if its lever is so small that no impulse of a scene would do.
 double press_to(const Scene& scene, double distance, double omega);
 
-// The angular velocity with which a body that rolls on level ground from the angle of the scene
-// comes to rest on the tip: physics (26).
+// The angular velocity at the angle of the scene with which a body that rolls on level ground just
+// reaches the tip: physics (26).
 double speed_to_the_tip(const Scene& scene);
 
 // The least friction coefficient with which neither the blow nor the rolling after it ever slips,
