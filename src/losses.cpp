@@ -6,9 +6,9 @@
 namespace rolling_ellipse {
 namespace {
 
-// A value that is not a number counts as infinite.
-void note(double value, double& worst) {
-    if (!(value <= worst)) worst = std::isnan(value) ? infinity : value;
+// Raises the maximum to a value; NaN counts as infinite.
+void raise(double& maximum, double value) {
+    if (!(value <= maximum)) maximum = std::isnan(value) ? infinity : value;
 }
 
 Losses losses_in(const std::vector<Invariants>& found) {
@@ -17,8 +17,8 @@ Losses losses_in(const std::vector<Invariants>& found) {
     double size = 0.0;
     for (const auto& [energy, residual] : found) {
         size = std::max(size, energy.kinetic + std::abs(energy.potential));
-        note(std::abs(energy.total() - start), worst.energy);
-        note(residual, worst.constraints);
+        raise(worst.energy, std::abs(energy.total() - start));
+        raise(worst.constraints, residual);
     }
     worst.energy /= size;
     return worst;

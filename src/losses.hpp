@@ -8,14 +8,14 @@
 namespace rolling_ellipse {
 
 struct Losses {
-    // The largest change of the energy, over the largest kinetic and |potential| energy; the height
-    // is 0 on the ground where the motion starts, so that x may be 0 anywhere.
+    // Largest change of the energy over the largest kinetic + |potential| energy. The height is 0
+    // on the ground where the motion starts: so the result does not depend on the origin of x.
     double energy = 0.0;
-    double constraints = 0.0;  // largest of |f2|, |f3| over the long semi-axis, and |f4|
-    double projected = 0.0;    // the same of a step before its projection
+    double constraints = 0.0;  // largest of |f2|/L, |f3|/L and |f4|; L is the long semi-axis
+    double projected = 0.0;    // that maximum within a step, before its projection
 };
 
-// The losses along a motion, as `survey` sees them. Empty where nothing was stepped.
+// The losses along a stepped motion; empty for an exact one.
 std::optional<Losses> losses(const Solution& solution);
 
 }  // namespace rolling_ellipse

@@ -12,10 +12,10 @@
 namespace rolling_ellipse {
 namespace {
 
-// What "auto" stands for: no more model than the scene needs.
+// The settings with "auto" resolved: no more model than the scene needs.
 Settings chosen(Settings settings, Validity validity) {
     if (settings.model == Model::automatic) {
-        const bool fixed = settings.method != Method::automatic;  // asks for rolling, solved so
+        const bool fixed = settings.method != Method::automatic;  // only rolling has methods
         settings.model = fixed || validity == Validity::valid ? Model::rolling : Model::contact;
     }
     if (settings.method == Method::automatic) {
@@ -25,7 +25,7 @@ Settings chosen(Settings settings, Validity validity) {
     return settings;
 }
 
-// What a motion starts from, and its rolling, on level ground or on a slope.
+// Initial state and, if the body rolls, its rolling motion on level ground or on a slope.
 struct Beginning {
     InitialState initial;
     std::optional<RollingStart> rolling;
@@ -44,25 +44,23 @@ Beginning beginning(const Scene& scene) {
     return found;
 }
 
-// For how long rolling is true: on level ground up to an angle, on a slope also a time [s].
+// End of valid rolling: an angle; on a slope also its time [s].
 struct Proof {
-    EndOfRolling end;
+    EndOfRolling end{Validity::no_proof};
     double time = infinity;
 };
 
-Proof proof_on_slope(const LawMeetings& met) {
+Proof prove(const Scene& scene, Beginning& from) {
+    if (from.rolling) return {end_of_rolling(*from.rolling, scene.friction)};
+    if (!from.on_slope) return {};
+    const LawMeetings met = law_meetings(*from.on_slope, scene.friction);
     const auto& end = met.touched ? met.touched : met.broken;
     return {end_of_rolling(met), end ? end->time : infinity};
 }
 
-Proof proof(const Scene& scene, Beginning& from) {
-    if (from.rolling) return {end_of_rolling(*from.rolling, scene.friction)};
-    if (from.on_slope) return proof_on_slope(law_meetings(*from.on_slope, scene.friction));
-    return {{Validity::no_proof}};
-}
-
-// In contact, arcs on slopes are proved one by one, as far as they are asked for.
-bool by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
+// Is the motion computed by the contact model, which proves arcs on slopes one by one, up to the
+// last time only?
+bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
     if (!from.on_slope) return false;
     if (asked.model == Model::contact) return true;
     return asked.model == Model::automatic && asked.method == Method::automatic &&
@@ -77,6 +75,7 @@ void end_validity(double t, double t_end, Solution& solution) {
     }
 }
 
+// Ends the validity of a computed rolling motion where the proof says.
 void judge_by_proof(const Beginning& from, const Proof& proof, double t_end, Solution& solution) {
     if (!proof.end.angle) return;
     if (from.on_slope) return end_validity(proof.time, t_end, solution);
@@ -85,7 +84,7 @@ void judge_by_proof(const Beginning& from, const Proof& proof, double t_end, Sol
     end_validity(ends, t_end, solution);
 }
 
-// Where the constraints may be broken, the motion has to be watched.
+// Ends the validity where a motion that may break the constraints is seen to break the law.
 void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoint,
                     Solution& solution) {
     const std::vector<double> knots = knot_times(solution.motion);
@@ -100,23 +99,18 @@ void judge_by_watch(const Scene& scene, double t_end, const Checkpoint& checkpoi
     end_validity(solution.watch->holds_until, t_end, solution);
 }
 
-Motion exact_motion(const Scene& scene, const Beginning& from, double t_end) {
+Integration<Motion> exact_rolling(const Scene& scene, const Beginning& from, double t_end) {
     if (from.on_slope) {
         SlopeFlow flow = *from.on_slope;
         prepare(flow, t_end);
         validate_time(t_end, longest_time(flow));
-        return single(scene, std::make_shared<const SlopeFlow>(std::move(flow)));
+        return {single(scene, std::make_shared<const SlopeFlow>(std::move(flow))),
+                Ending::completed, t_end};
     }
     const auto flow =
         std::make_shared<const RollingFlow>(rolling_flow(*from.rolling, from.initial.state.x));
     validate_time(t_end, longest_time(*flow));
-    return single(scene, flow);
-}
-
-Solution exact_rolling(const Scene& scene, const Beginning& from, double t_end) {
-    Solution solution{exact_motion(scene, from, t_end)};
-    solution.followed_until = t_end;
-    return solution;
+    return {single(scene, flow), Ending::completed, t_end};
 }
 
 template <class Law>
@@ -125,22 +119,12 @@ Integration<Motion> as_motion(const Scene& scene, Integration<Law> found) {
             found.counts};
 }
 
-Solution integrated(Integration<Motion> found, const Settings& settings, double t_end) {
-    Solution solution{std::move(found.motion), settings.model, settings.method};
-    solution.counts = found.counts;
-    solution.ending = found.ending;
-    solution.followed_until = found.followed_until;
-    solution.message = why_ended(found.ending, settings, found.followed_until, t_end);
-    return solution;
-}
-
-Solution solved(const Scene& scene, const Beginning& from, const EndOfRolling& end,
-                const Settings& settings, double t_end, const Checkpoint& checkpoint) {
+Integration<Motion> solve(const Scene& scene, const Beginning& from, const EndOfRolling& end,
+                          const Settings& settings, double t_end, const Checkpoint& checkpoint) {
     const State& start = from.initial.state;
     if (settings.model == Model::contact) {
-        return integrated(integrate_contact(scene, start, from.initial.gap_rate, end, settings,
-                                            t_end, checkpoint),
-                          settings, t_end);
+        return integrate_contact(scene, start, from.initial.gap_rate, end, settings, t_end,
+                                 checkpoint);
     }
     if (!rolls(start)) {
         throw std::invalid_argument("model '" + name(settings.model) +
@@ -148,21 +132,23 @@ Solution solved(const Scene& scene, const Beginning& from, const EndOfRolling& e
     }
     if (settings.method == Method::exact) return exact_rolling(scene, from, t_end);
     if (settings.model == Model::multipliers) {
-        const CoordinateStart coordinates = coordinate_start(scene, start);
-        return integrated(as_motion(scene, integrate_multipliers(scene, coordinates, settings,
-                                                                 t_end, checkpoint)),
-                          settings, t_end);
+        return as_motion(scene, integrate_multipliers(scene, coordinate_start(scene, start),
+                                                      settings, t_end, checkpoint));
     }
-    return integrated(
-        as_motion(scene, integrate_rolling(scene, start, settings, t_end, checkpoint)), settings,
-        t_end);
+    return as_motion(scene, integrate_rolling(scene, start, settings, t_end, checkpoint));
+}
+
+Solution solution(Integration<Motion> found, const Settings& settings, double t_end) {
+    Solution solution{std::move(found), settings.model, settings.method};
+    solution.message = why_ended(solution.ending, settings, solution.followed_until, t_end);
+    return solution;
 }
 
 }  // namespace
 
 CertifiedScene certify(const Scene& scene) {
     Beginning from = beginning(scene);
-    CertifiedScene result{{{Validity::no_proof}, {}, {}, {}, {}}, {}};
+    CertifiedScene result{{{Validity::no_proof}}, {}};
     if (from.rolling) {
         result.certificate = certify_rolling(*from.rolling, scene.mass, scene.friction);
     } else if (from.on_slope) {
@@ -184,24 +170,23 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
                   const Checkpoint& checkpoint) {
     validate(asked, t_end);
     Beginning from = beginning(scene);
-    const Proof proof = by_arcs(scene, from, asked) ? Proof{{Validity::no_proof}}
-                                                    : rolling_ellipse::proof(scene, from);
+    const Proof proof = is_proved_by_arcs(scene, from, asked) ? Proof{} : prove(scene, from);
     const Settings settings = chosen(asked, proof.end.validity);
-    Solution solution = solved(scene, from, proof.end, settings, t_end, checkpoint);
-    if (settings.model != Model::contact) judge_by_proof(from, proof, t_end, solution);
-    return solution;
+    Solution found =
+        solution(solve(scene, from, proof.end, settings, t_end, checkpoint), settings, t_end);
+    if (settings.model != Model::contact) judge_by_proof(from, proof, t_end, found);
+    return found;
 }
 
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& asked,
                   double t_end, const Checkpoint& checkpoint) {
     validate(asked, t_end);
     const Settings settings = chosen(asked, Validity::no_proof);
-    const CoordinateStart from = coordinate_start(start);
-    Solution solution = integrated(
-        as_motion(scene, integrate_multipliers(scene, from, settings, t_end, checkpoint)), settings,
-        t_end);
-    judge_by_watch(scene, t_end, checkpoint, solution);
-    return solution;
+    Solution found = solution(as_motion(scene, integrate_multipliers(scene, coordinate_start(start),
+                                                                     settings, t_end, checkpoint)),
+                              settings, t_end);
+    judge_by_watch(scene, t_end, checkpoint, found);
+    return found;
 }
 
 double period(const Scene& scene) {

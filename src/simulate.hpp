@@ -1,4 +1,4 @@
-// The table of contents: scene -> initial state -> certificate -> model -> solution.
+// The whole computation: scene -> initial state -> certificate -> model -> solution.
 //
 // Here and everywhere, "physics (4)" is formula (4) of notebooks/02_physics.ipynb.
 #pragma once
@@ -24,8 +24,8 @@ Solution simulate(const Scene& scene, const Settings& settings, double t_end,
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 
-// Why the model of a scene's solution is true, or until when, in one sentence. It is made when
-// asked for: a certificate with all its numbers costs as much as many a motion.
+// Why the model of a scene's solution is valid, or until when, in one sentence. It needs the whole
+// certificate, which costs as much as a motion: so it is not made by `simulate`.
 std::string reason(const Scene& scene, const Solution& solution);
 
 // Time of a full swing or turn of the rolling motion that starts from the scene; throws

@@ -11,7 +11,7 @@ from ._ask import settings as _settings
 from ._ask.check import FloatArray
 
 class Mode(enum.IntEnum):
-    """What the body does, one code a sample."""
+    """Mode of motion; one code per sample."""
 
     ROLLING = 0
     SLIDING = 1
@@ -19,14 +19,14 @@ class Mode(enum.IntEnum):
     REST = 3
 
 class Restitution(enum.Enum):
-    """What restitution means."""
+    """Law of restitution."""
 
     STRONGE = 0
     POISSON = 1
     NEWTON = 2
 
 class Painleve(enum.Enum):
-    """Does exactly one motion go on?"""
+    """Is there exactly one possible motion?"""
 
     DETERMINED = 0
     NO_MOTION = 1
@@ -41,7 +41,7 @@ class Validity(enum.Enum):
     NO_PROOF = 3
 
 class Outcome(enum.IntEnum):
-    """What a rolling body comes to first."""
+    """The first thing that happens to a rolling body."""
 
     RESTS = 0
     ROCKS = 1
@@ -52,7 +52,7 @@ class Outcome(enum.IntEnum):
     EDGE = 6
 
 class EventKind(enum.Enum):
-    """What changes at an event."""
+    """Kind of an event."""
 
     SLIP = 0
     STICK = 1
@@ -73,7 +73,7 @@ class Ending(enum.Enum):
     VALIDITY_LOST = 7
 
 class Quantity(enum.Enum):
-    """What a motion may pass a value of."""
+    """A quantity of a motion."""
 
     theta = 0
     x = 1

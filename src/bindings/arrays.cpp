@@ -1,11 +1,9 @@
 #include "bindings/arrays.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
-#include <stdexcept>
 #include <thread>
 
 namespace rolling_ellipse::bindings {
@@ -27,55 +25,18 @@ std::string shape_of(const Array& array) {
 
 }  // namespace
 
-void run_interruptible(py::ssize_t n, int workers, const Range& body) {
-    if (n <= chunk) return body(0, n);
-    workers = static_cast<int>(std::min<py::ssize_t>(workers, n / chunk + 1));
-    const GilRelease release;
-    std::atomic<py::ssize_t> next{0};
-    // The failure of the earliest chunk is the one told: all chunks before it have been begun, and
-    // what is begun is ended.
-    struct Failure {
-        py::ssize_t begin = 0;
-        std::exception_ptr exception;
-    };
-    std::vector<Failure> failures(workers);
-    const auto work = [&](int worker, bool interruptible) {
-        py::ssize_t begin = 0;
-        try {
-            SignalWatch look_for_signals;
-            while ((begin = next.fetch_add(chunk)) < n) {
-                body(begin, std::min(begin + chunk, n));
-                if (interruptible) look_for_signals();
-            }
-        } catch (...) {
-            failures[worker] = {begin, std::current_exception()};
-            next = n;
-        }
-    };
-    std::vector<std::thread> threads;
-    try {
-        for (int worker = 1; worker < workers; ++worker) threads.emplace_back(work, worker, false);
-    } catch (const std::exception&) {
-        // The system has no room for one more thread: nothing is lost, the others take its chunks.
-    }
-    work(0, true);
-    for (std::thread& thread : threads) thread.join();
-    const Failure* first = nullptr;
-    for (const Failure& failure : failures) {
-        if (!failure.exception) continue;
-        if (first == nullptr || failure.begin < first->begin) first = &failure;
-    }
-    if (first != nullptr) std::rethrow_exception(first->exception);
-}
-
 void run_each(py::ssize_t n, int workers, const Piece& body) {
     workers = static_cast<int>(std::min<py::ssize_t>(workers, n));
     if (workers == 0) return;
     const GilRelease release;
     struct Stopped {};
+    struct Failure {
+        py::ssize_t piece = -1;  // none: an interrupt, between two of them
+        std::exception_ptr exception;
+    };
+    std::vector<Failure> failures(workers);
     std::atomic<py::ssize_t> next{0};
     std::atomic<bool> stopped{false};
-    std::vector<std::exception_ptr> failures(workers);
     std::mutex mutex;
     std::condition_variable ended;
     int running = 0;
@@ -84,21 +45,27 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
             action();
         } catch (const Stopped&) {
         } catch (...) {
-            failures[worker] = std::current_exception();
+            failures[worker].exception = std::current_exception();
             stopped = true;
         }
     };
-    const auto take = [&](const std::function<void()>& checkpoint) {
-        for (py::ssize_t i; (i = next++) < n;) {
+    // A piece that is taken is begun: so all pieces before one that fails have been begun, too.
+    const auto take = [&](int worker, const std::function<void()>& checkpoint) {
+        py::ssize_t& piece = failures[worker].piece;
+        for (;;) {
             checkpoint();
-            body(i, checkpoint);
+            const py::ssize_t taken = next++;
+            if (taken >= n) return;
+            piece = taken;
+            body(taken, checkpoint);
+            piece = -1;
         }
     };
-    const auto look_for_stop = [&] {
+    const auto check_for_stop = [&] {
         if (stopped) throw Stopped{};
     };
     const auto work = [&](int worker) {
-        guarded(worker, [&] { take(look_for_stop); });
+        guarded(worker, [&] { take(worker, check_for_stop); });
         const std::lock_guard<std::mutex> lock(mutex);
         --running;
         ended.notify_one();
@@ -111,31 +78,34 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
             ++running;
         }
     } catch (const std::exception&) {
-        // As above: the others take its pieces.
+        // The system has no room for one more thread: the others take its pieces.
     }
-    SignalWatch look_for_signals;
+    SignalWatch check_for_signals;
     guarded(0, [&] {
-        take([&] {
-            look_for_stop();
-            look_for_signals();
+        take(0, [&] {
+            check_for_stop();
+            check_for_signals();
         });
         std::unique_lock<std::mutex> lock(mutex);  // the last pieces of others may be long
         while (!ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return running == 0; })) {
             lock.unlock();
-            look_for_signals();
+            check_for_signals();
             lock.lock();
         }
     });
     for (std::thread& thread : threads) thread.join();
-    for (const std::exception_ptr& failure : failures) {
-        if (failure) std::rethrow_exception(failure);
+    const Failure* first = nullptr;
+    for (const Failure& failure : failures) {
+        if (!failure.exception) continue;
+        if (first == nullptr || failure.piece < first->piece) first = &failure;
     }
+    if (first != nullptr) std::rethrow_exception(first->exception);
 }
 
-std::vector<Array> empty_arrays(int count, py::ssize_t n) {
-    std::vector<Array> arrays;
-    for (int i = 0; i < count; ++i) arrays.emplace_back(n);
-    return arrays;
+void run_interruptible(py::ssize_t n, int workers, const Range& body) {
+    if (n <= chunk) return body(0, n);
+    run_each((n + chunk - 1) / chunk, workers,
+             [&](py::ssize_t i, const auto&) { body(i * chunk, std::min((i + 1) * chunk, n)); });
 }
 
 py::array read_only(py::array array) {
@@ -147,8 +117,8 @@ Array matrix(py::ssize_t rows, py::ssize_t columns) {
     return Array(std::vector<py::ssize_t>{rows, columns});
 }
 
-void store(Array& array, py::ssize_t row, const double* values) {
-    std::copy_n(values, array.shape(1), array.mutable_data(row, 0));
+void store(Array& matrix, py::ssize_t row, const double* values) {
+    std::copy_n(values, matrix.shape(1), matrix.mutable_data(row, 0));
 }
 
 void require_length(const std::string& name, const Array& array, py::ssize_t n) {
@@ -169,14 +139,14 @@ py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssiz
     return array.shape(0);
 }
 
-Argument argument(const std::string& name, const Array& array, py::ssize_t n) {
-    if (array.size() == 1) return {array.data(), 0};
+Argument argument(const char* name, const Array& array, py::ssize_t n) {
+    if (array.size() == 1) return {name, array.data(), 0};
     require_length(name, array, n);
-    return {array.data(), 1};
+    return {name, array.data(), 1};
 }
 
-std::string at_place(const std::string& message, py::ssize_t place, const char* const* names,
-                     const Argument* arguments, std::size_t count) {
+std::string with_index(const std::string& message, py::ssize_t index, const Argument* arguments,
+                       std::size_t count) {
     // The message begins with the name of one argument, or with those of two, "a/b".
     const std::size_t end = message.find(' ');
     std::string named;
@@ -185,8 +155,8 @@ std::string at_place(const std::string& message, py::ssize_t place, const char* 
         const std::string name = message.substr(begin, stop - begin);
         named += (begin == 0 ? "" : "/") + name;
         for (std::size_t k = 0; k < count; ++k) {
-            if (name == names[k] && arguments[k].stride != 0) {
-                named += "[" + std::to_string(place) + "]";
+            if (name == arguments[k].name && arguments[k].stride != 0) {
+                named += "[" + std::to_string(index) + "]";
             }
         }
         begin = stop + 1;

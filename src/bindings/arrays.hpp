@@ -4,10 +4,13 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "bindings/gil.hpp"
@@ -17,72 +20,137 @@ namespace rolling_ellipse::bindings {
 namespace py = pybind11;
 using namespace pybind11::literals;
 
-// An argument that is not aligned (a field of a record, part of a buffer) is copied on its way in:
-// loads through a `const double*` may count on it.
+// An array of doubles that are contiguous and aligned. An argument that is not (a field of a
+// record, part of a buffer) is copied on its way in.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
-using Range = std::function<void(py::ssize_t, py::ssize_t)>;
 
-// Run body(begin, end) over 0 .. n in chunks, without the GIL; Ctrl-C stops it between chunks.
-// What a chunk computes does not depend on which thread takes it: where fewer threads can be
-// started than asked for, those that there are do all of the work.
-inline constexpr py::ssize_t chunk = 1024;
-void run_interruptible(py::ssize_t n, int workers, const Range& body);
-
-// Run body(i, checkpoint) for each i of 0 .. n, one at a time, without the GIL: for work of which
-// each piece may be long. Ctrl-C stops all threads at their next checkpoint.
+// Runs body(i, checkpoint) for each i of 0 .. n, without the GIL. Ctrl-C stops each thread at its
+// next checkpoint. Where the system cannot start as many threads as asked for, those that there are
+// do all of the work. If several pieces fail, the exception of the earliest one is thrown.
 using Piece = std::function<void(py::ssize_t, const std::function<void()>&)>;
 void run_each(py::ssize_t n, int workers, const Piece& body);
 
-std::vector<Array> empty_arrays(int count, py::ssize_t n);
+// Runs body(begin, end) over 0 .. n in chunks, as `run_each` does its pieces. The results of a
+// chunk do not depend on the thread that takes it.
+inline constexpr py::ssize_t chunk = 1024;
+using Range = std::function<void(py::ssize_t, py::ssize_t)>;
+void run_interruptible(py::ssize_t n, int workers, const Range& body);
 
-// The array, from now on never to be written to by Python: `flags.writeable` takes it as long as
-// all else about an array.
+// Makes an array read-only. `flags.writeable` of NumPy would take as long as all else.
 py::array read_only(py::array array);
 
 Array matrix(py::ssize_t rows, py::ssize_t columns);
-void store(Array& array, py::ssize_t row, const double* values);
+void store(Array& matrix, py::ssize_t row, const double* values);
 
-// Throws std::invalid_argument naming an array that has not the shape that a function reads.
+template <class Number>
+py::array_t<Number> array_of(const std::vector<Number>& values) {
+    return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+// Refuse an array of another shape: std::invalid_argument with its name.
 void require_length(const std::string& name, const Array& array, py::ssize_t n);
 void require_matrix(const std::string& name, const Array& array, py::ssize_t rows,
                     py::ssize_t columns);
 
-// Of any number of rows, which is returned.
+// Refuses an array without so many columns; returns the number of its rows.
 py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns);
 
-// An argument that is an array of n numbers, or one number for all.
+// A named argument: an array of n numbers, or one number for all.
 struct Argument {
+    const char* name;
     const double* data;
     py::ssize_t stride;
 
     double operator[](py::ssize_t i) const { return data[i * stride]; }
 };
 
-Argument argument(const std::string& name, const Array& array, py::ssize_t n);
+Argument argument(const char* name, const Array& array, py::ssize_t n);
 
-// Arguments by their names.
+// The message of a refusal with the index behind each argument that is an array: "a[3]/b must be
+// ...".
+std::string with_index(const std::string& message, py::ssize_t index, const Argument* arguments,
+                       std::size_t count);
+
+// Several such arguments; the element i of each, in their order.
 template <std::size_t Count>
-std::array<Argument, Count> arguments_of(const std::array<const char*, Count>& names,
-                                         const std::array<Array, Count>& arrays, py::ssize_t n) {
-    std::array<Argument, Count> found{};
-    for (std::size_t i = 0; i < Count; ++i) found[i] = argument(names[i], arrays[i], n);
-    return found;
+class Arguments {
+  public:
+    Arguments(const std::array<const char*, Count>& names, const std::array<Array, Count>& arrays,
+              py::ssize_t n) {
+        for (std::size_t k = 0; k < Count; ++k) each_[k] = argument(names[k], arrays[k], n);
+    }
+
+    std::array<double, Count> operator[](py::ssize_t i) const {
+        return std::apply([i](const auto&... each) { return std::array{each[i]...}; }, each_);
+    }
+
+    // Calls an action that reads the elements i; a refusal names their index.
+    template <class Action>
+    auto naming(py::ssize_t i, const Action& action) const {
+        try {
+            return action();
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(with_index(error.what(), i, each_.data(), Count));
+        }
+    }
+
+  private:
+    std::array<Argument, Count> each_{};
+};
+
+// The results of n calls as an array: (n,) for a number, (n, K) for a vector or matrix of K
+// numbers.
+template <class Number>
+struct Results {
+    explicit Results(py::ssize_t n) : array(n), to(array.mutable_data()) {}
+    void set(py::ssize_t i, Number value) { to[i] = value; }
+
+    py::array_t<Number> array;
+    Number* to;
+};
+
+template <int Rows, int Columns>
+struct Results<Eigen::Matrix<double, Rows, Columns>> {
+    static constexpr py::ssize_t size = Rows * Columns;
+    using Value = Eigen::Matrix<double, Rows, Columns>;
+
+    explicit Results(py::ssize_t n) : array(matrix(n, size)), to(array.mutable_data()) {}
+    void set(py::ssize_t i, const Value& value) { std::copy_n(value.data(), size, to + i * size); }
+
+    Array array;
+    double* to;
+};
+
+// Calls function(i), which returns a tuple, for each i of 0 .. n. Returns an array for each part of
+// the tuple, as a Python tuple.
+template <class Function>
+py::tuple computed(py::ssize_t n, const Function& function, int workers = 1) {
+    using Row = decltype(function(0));
+    return std::apply(
+        [&](const auto&... part) {
+            std::tuple results{Results<std::decay_t<decltype(part)>>(n)...};
+            run_interruptible(n, workers, [&results, function](py::ssize_t begin, py::ssize_t end) {
+                for (py::ssize_t i = begin; i < end; ++i) {
+                    const Row row = function(i);
+                    std::apply(
+                        [&](auto&... to) {
+                            std::apply([&](const auto&... value) { (to.set(i, value), ...); }, row);
+                        },
+                        results);
+                }
+            });
+            return std::apply([](auto&... each) { return py::make_tuple(each.array...); }, results);
+        },
+        Row{});
 }
 
-// The same message with the place behind the arguments that are arrays: "a[3]/b must be ...".
-std::string at_place(const std::string& message, py::ssize_t place, const char* const* names,
-                     const Argument* arguments, std::size_t count);
-
-// Runs what reads the element i of such arguments, and names it in what is refused.
-template <std::size_t Count, class Action>
-void name_the_place(py::ssize_t i, const std::array<const char*, Count>& names,
-                    const std::array<Argument, Count>& of, const Action& action) {
-    try {
-        action();
-    } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument(at_place(error.what(), i, names.data(), of.data(), Count));
-    }
+// The arrays of `computed` by names.
+template <std::size_t Count>
+py::dict named(const char* const (&names)[Count], const py::tuple& arrays) {
+    py::dict found;
+    for (std::size_t i = 0; i < Count; ++i) found[names[i]] = arrays[i];
+    return found;
 }
 
 }  // namespace rolling_ellipse::bindings

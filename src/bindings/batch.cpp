@@ -1,6 +1,7 @@
-// Many scenes at once: a table of scenes in, tables of what became of them out.
+// Many scenes at once: a table of scenes in, tables of their motions out.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
@@ -9,13 +10,10 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-using Codes = py::array_t<std::int64_t>;
-using Bytes = py::array_t<std::int8_t>;
-
 constexpr std::size_t scene_numbers = std::size(scene_fields) + std::size(impulse_fields);
-constexpr int refused = -1;  // in the place of an Ending
+constexpr int refused = -1;  // a code beside those of Ending
 
-// A row of the table; NaN is what was not given.
+// The scene of a row; NaN stands for an absent number.
 Scene scene_in(const double* row, double most) {
     const auto given = [](double value) {
         return std::isnan(value) ? std::nullopt : std::optional(value);
@@ -30,7 +28,7 @@ Scene scene_in(const double* row, double most) {
     return scene;
 }
 
-// The first scene that is refused, by its place and with the reason; None where none is.
+// Index and message of the first scene that is refused; None if all are accepted.
 py::object first_refused(const Array& scenes, bool reached) {
     const double most = reached ? most_energy_reached : most_energy;
     const py::ssize_t n = require_matrix("scenes", scenes, scene_numbers);
@@ -45,10 +43,10 @@ py::object first_refused(const Array& scenes, bool reached) {
     return py::none();
 }
 
-// What became of a scene, without the means to look at other times. Samples are of one kind.
+// The motion of a scene as samples and events. Only one of the sample vectors is filled.
 struct Answer {
     int ending = refused;
-    Solution solution = {};  // its motion keeps the events only
+    Solution solution = {};  // without the segments of its motion
     py::ssize_t segments = 0;
     py::ssize_t samples = 0;
     std::vector<FlowSample> rolling = {};
@@ -94,13 +92,7 @@ Answer answer(const double* row, const Settings& settings, const double* times, 
     return found;
 }
 
-py::ssize_t total(const std::vector<Answer>& answers, py::ssize_t (*count)(const Answer&)) {
-    py::ssize_t sum = 0;
-    for (const Answer& each : answers) sum += count(each);
-    return sum;
-}
-
-// How an answer ended, and the sizes of its parts of the other tables.
+// Ending and counts of an answer, and the sizes of its parts of the other tables.
 std::array<Figure, 10> codes_of(const Answer& answer) {
     const Solution& solution = answer.solution;
     const py::ssize_t events = solution.motion.events.size();
@@ -119,26 +111,33 @@ std::array<Figure, 10> codes_of(const Answer& answer) {
             Figure{"letters", letters}};
 }
 
-// How each ended, one row a scene.
+// The lists of all answers, one after the other; `part` is a member of Answer or returns one.
+template <class Part>
+auto joined(std::vector<Answer>& answers, const Part& part) {
+    std::vector<typename std::decay_t<decltype(std::invoke(part, answers[0]))>::value_type> all;
+    for (Answer& each : answers) {
+        const auto list = std::move(std::invoke(part, each));
+        all.insert(all.end(), list.begin(), list.end());
+    }
+    return all;
+}
+
+// Codes and times of all answers, one row a scene.
 py::dict facts(const std::vector<Answer>& answers) {
     const py::ssize_t n = answers.size();
-    Codes codes({n, static_cast<py::ssize_t>(codes_of({}).size())});
+    py::array_t<std::int64_t> codes({n, static_cast<py::ssize_t>(codes_of({}).size())});
     Array numbers = matrix(n, 2);
-    Bytes text(total(
-        answers, [](const Answer& each) -> py::ssize_t { return each.solution.message.size(); }));
     std::int64_t* code = codes.mutable_data();
-    std::int8_t* letters = text.mutable_data();
     for (py::ssize_t i = 0; i < n; ++i) {
         for (const auto& [name, value] : codes_of(answers[i])) *code++ = value;
         const Solution& solution = answers[i].solution;
         const double times[] = {solution.followed_until, solution.valid_until};
         store(numbers, i, times);
-        letters = std::copy(solution.message.begin(), solution.message.end(), letters);
     }
-    return py::dict("codes"_a = codes, "numbers"_a = numbers, "text"_a = text);
+    return py::dict("codes"_a = codes, "numbers"_a = numbers);
 }
 
-// The columns of each table; those of samples are its rows.
+// The names of the columns of each table. Samples have a row for each quantity instead.
 py::dict columns() {
     return py::dict(
         "scenes"_a = names_of(scene_fields, impulse_fields), "codes"_a = names_of(codes_of({})),
@@ -146,51 +145,30 @@ py::dict columns() {
         "rolling"_a = names_of(flow_fields), "contact"_a = names_of(state_fields, force_fields));
 }
 
-Array event_table(const std::vector<Answer>& answers) {
-    Array table = matrix(
-        total(answers,
-              [](const Answer& each) -> py::ssize_t { return each.solution.motion.events.size(); }),
-        event_numbers);
-    double* to = table.mutable_data();
-    for (const Answer& each : answers) {
-        for (const Event& event : each.solution.motion.events) to = store_event(event, to);
+// The samples of all scenes one after the other, by their kind. A quantity is a row; coordinates
+// have a row for each sample instead.
+py::dict samples(std::vector<Answer>& answers) {
+    const auto rolling = joined(answers, &Answer::rolling);
+    const auto contact = joined(answers, &Answer::contact);
+    const auto coordinates = joined(answers, &Answer::coordinates);
+    Array flow = matrix(3, rolling.size());
+    const FlowColumns flow_columns{flow.mutable_data(0), flow.mutable_data(1),
+                                   flow.mutable_data(2)};
+    for (std::size_t i = 0; i < rolling.size(); ++i) store(rolling[i], flow_columns, i);
+    Array touch = matrix(std::size(state_fields) + std::size(force_fields), contact.size());
+    py::array_t<std::int8_t> mode(contact.size());
+    ContactColumns contact_columns{{}, mode.mutable_data()};
+    for (py::ssize_t row = 0; row < touch.shape(0); ++row) {
+        contact_columns.numbers.push_back(touch.mutable_data(row));
     }
-    return table;
-}
-
-// The samples of all scenes of a kind one after the other: quantity by quantity, but for
-// coordinates, which are sample by sample.
-py::dict samples(const std::vector<Answer>& answers) {
-    const auto count = [&](auto of) { return total(answers, of); };
-    const py::ssize_t rolled =
-        count([](const Answer& each) -> py::ssize_t { return each.rolling.size(); });
-    const py::ssize_t touched =
-        count([](const Answer& each) -> py::ssize_t { return each.contact.size(); });
-    const py::ssize_t constrained =
-        count([](const Answer& each) -> py::ssize_t { return each.coordinates.size(); });
-    Array rolling = matrix(std::size(flow_fields), rolled);
-    Array contact = matrix(std::size(state_fields) + std::size(force_fields), touched);
-    Array q = matrix(constrained, 5), q_dot = matrix(constrained, 5);
-    Bytes mode(touched);
-    double* to_rolling = rolling.mutable_data();
-    double* to_contact = contact.mutable_data();
-    std::int8_t* to_mode = mode.mutable_data();
-    py::ssize_t row = 0;
-    for (const Answer& each : answers) {
-        for (const FlowSample& sample : each.rolling) {
-            store(sample, flow_fields, to_rolling++, rolled);
-        }
-        for (const auto& [state, force] : each.contact) {
-            double* const forces = store(state, state_fields, to_contact++, touched);
-            store(force, force_fields, forces, touched);
-            *to_mode++ = static_cast<std::int8_t>(state.mode);
-        }
-        for (const CoordinateState& state : each.coordinates) {
-            store(q, row, state.q.data());
-            store(q_dot, row++, state.q_dot.data());
-        }
+    contact_columns.store(contact.data(), 0, contact.size());
+    Array q = matrix(coordinates.size(), 5);
+    Array q_dot = matrix(coordinates.size(), 5);
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        store(q, i, coordinates[i].q.data());
+        store(q_dot, i, coordinates[i].q_dot.data());
     }
-    return py::dict("rolling"_a = rolling, "contact"_a = contact, "mode"_a = mode, "q"_a = q,
+    return py::dict("rolling"_a = flow, "contact"_a = touch, "mode"_a = mode, "q"_a = q,
                     "q_dot"_a = q_dot);
 }
 
@@ -203,7 +181,11 @@ py::dict simulate_table(const Array& scenes, const Settings& settings, const Arr
         answers[i] = answer(scenes.data(i, 0), settings, times.data(), times.size(), checkpoint);
     });
     py::dict found = facts(answers);
-    found["events"] = event_table(answers);
+    const std::vector<char> text =
+        joined(answers, [](Answer& each) -> auto& { return each.solution.message; });
+    found["text"] = array_of(std::vector<std::int8_t>(text.begin(), text.end()));
+    found["events"] = event_rows(
+        joined(answers, [](Answer& each) -> auto& { return each.solution.motion.events; }));
     found.attr("update")(samples(answers));
     return found;
 }

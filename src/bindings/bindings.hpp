@@ -1,5 +1,5 @@
-// The parts of the Python module. Only this folder knows Python: numbers in, NumPy arrays out, no
-// arithmetic.
+// The parts of the Python module. Only this folder knows Python. It converts numbers to NumPy
+// arrays and back, and computes nothing.
 #pragma once
 
 #include <pybind11/native_enum.h>
@@ -11,9 +11,9 @@
 
 namespace rolling_ellipse::bindings {
 
-// A class of the core. It is neither pickled nor copied, since the Python objects that hold it make
-// it again: left to itself, pybind11 ends the process where the old protocols 0 and 1 ask it for an
-// instance of the base of all its classes.
+// Binds a class of the core. Its objects refuse to be pickled or copied: the Python objects that
+// hold them make them again. Without the refusal, pybind11 would end the process under the pickle
+// protocols 0 and 1.
 template <class T>
 py::class_<T> bind_class(py::module_& m, const char* name) {
     py::class_<T> bound(m, name);
@@ -32,6 +32,5 @@ void bind_solution(py::module_& m);
 void bind_batch(py::module_& m);
 void bind_details(py::module_& m);
 void bind_tableaus(py::module_& m);
-void bind_build(py::module_& m);
 
 }  // namespace rolling_ellipse::bindings

@@ -4,7 +4,6 @@
 #include "outcome/blow.hpp"
 #include "outcome/classify.hpp"
 #include "outcome/lift_off.hpp"
-#include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
 #include "scene/impact.hpp"
 #include "simulate.hpp"
@@ -12,60 +11,42 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// a, b, omega, theta, friction, gravity, gyration2, each with n elements, or one.
-py::array_t<std::int8_t> classify_array(py::ssize_t n, const std::array<Array, 7>& arguments,
-                                        int workers) {
-    py::array_t<std::int8_t> out(n);
-    std::int8_t* const outcomes = out.mutable_data();
-    constexpr std::array<const char*, 7> names{"a",        "b",       "omega",    "theta",
-                                               "friction", "gravity", "gyration2"};
-    const std::array<Argument, 7> of = arguments_of<7>(names, arguments, n);
-    run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
-        const auto& [a, b, omega, theta, friction, gravity, gyration2] = of;
-        for (py::ssize_t i = begin; i < end; ++i) {
-            const Body body{a[i], b[i], gyration2[i], gravity[i]};
-            const double mu = friction[i];
-            const double angle = theta[i];
-            const double speed = omega[i];
-            name_the_place<7>(i, names, of, [&] {
-                validate(body);
-                validate_motion(body, angle, speed);
-                validate_friction(mu);
-            });
-            outcomes[i] = static_cast<std::int8_t>(classify(body, mu, angle, speed));
-        }
-    });
-    return out;
+std::int8_t code(Outcome outcome) { return static_cast<std::int8_t>(outcome); }
+
+// Outcomes of a, b, omega, theta, friction, gravity, gyration2, each with n elements, or one.
+py::object classify_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers) {
+    const Arguments<7> of({"a", "b", "omega", "theta", "friction", "gravity", "gyration2"},
+                          arguments, n);
+    const auto outcome_at = [of](py::ssize_t i) {
+        return of.naming(i, [&] {
+            const auto [a, b, omega, theta, friction, gravity, gyration2] = of[i];
+            const Body body{a, b, gyration2, gravity};
+            validate(body);
+            validate_motion(body, theta, omega);
+            validate_friction(friction);
+            return std::tuple(code(classify(body, friction, theta, omega)));
+        });
+    };
+    return computed(n, outcome_at, workers)[0];
 }
 
-// What becomes of a scene by each of n blows instead of its own: jx, jz, dx, dz.
-py::array_t<std::int8_t> outcome_array(const Scene& scene, py::ssize_t n,
-                                       const std::array<Array, 4>& impulses) {
-    py::array_t<std::int8_t> out(n);
-    std::int8_t* const outcomes = out.mutable_data();
-    const std::array<Argument, 4> of = arguments_of<4>({"jx", "jz", "dx", "dz"}, impulses, n);
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        const auto& [jx, jz, dx, dz] = of;
+// Outcomes of a scene on level ground by each of n blows instead of its own: jx, jz, dx, dz.
+py::object outcome_array(const Scene& scene, py::ssize_t n, const std::array<Array, 4>& impulses) {
+    const Arguments<4> of({"jx", "jz", "dx", "dz"}, impulses, n);
+    return computed(n, [&](py::ssize_t i) {
         Scene struck = scene;
-        for (py::ssize_t i = begin; i < end; ++i) {
-            struck.impulse = Impulse{jx[i], jz[i], dx[i], dz[i]};
-            try {
-                validate_blow(struck);
-                outcomes[i] = static_cast<std::int8_t>(outcome(struck, [] {}));
-            } catch (const std::invalid_argument& error) {
-                throw std::invalid_argument(error.what() + (", by blow " + std::to_string(i)));
-            }
+        const auto [jx, jz, dx, dz] = of[i];
+        struck.impulse = Impulse{jx, jz, dx, dz};
+        try {
+            validate_blow(struck);
+            return std::tuple(code(outcome(struck, [] {})));
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(error.what() + (", by blow " + std::to_string(i)));
         }
-    });
-    return out;
+    })[0];
 }
 
-Outcome outcome_interruptible(const Scene& scene) {
-    const GilRelease release;
-    return outcome(scene, SignalWatch());
-}
-
-// A Certificate by the names of its fields; the validity by its code, as enums are slow to make.
+// A certificate by the names of its fields; the validity as a code, since enums are slow to make.
 py::dict certificate(const Scene& scene) {
     const CertifiedScene certified = certify(scene);
     const Certificate& c = certified.certificate;
@@ -105,7 +86,7 @@ py::dict thresholds_by_name(double a, double b, double gravity, std::optional<do
     return found;
 }
 
-// The speed, or None, and the ranges of those that jam; the other thresholds of the body are given.
+// The lift-off speed and the ranges of speeds that jam. Two other thresholds of the body are given.
 py::tuple lift_off_interruptible(double a, double b, double gravity,
                                  std::optional<double> gyration2, double friction,
                                  double slip_speed, double painleve_friction) {
@@ -132,7 +113,8 @@ void bind_certificate(py::module_& m) {
         .value("EDGE", Validity::edge)
         .value("NO_PROOF", Validity::no_proof)
         .finalize();
-    py::native_enum<Outcome>(m, "Outcome", "enum.IntEnum", "What a rolling body comes to first.")
+    py::native_enum<Outcome>(m, "Outcome", "enum.IntEnum",
+                             "The first thing that happens to a rolling body.")
         .value("RESTS", Outcome::rests)
         .value("ROCKS", Outcome::rocks)
         .value("ROLLS_OVER", Outcome::rolls_over)
@@ -143,7 +125,9 @@ void bind_certificate(py::module_& m) {
         .finalize();
     m.def("classify_array", classify_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("outcome_array", outcome_array, "scene"_a, "n"_a, "impulses"_a);
-    m.def("outcome", outcome_interruptible, "scene"_a);
+    m.def(
+        "outcome", [](const Scene& scene) { return outcome(scene, SignalWatch()); },
+        py::call_guard<GilRelease>(), "scene"_a);
     m.def("required_friction", required_friction, "scene"_a);
     m.def("sticking_friction", sticking_friction, "scene"_a);
     m.def("press_to", press_to, "scene"_a, "distance"_a, "omega"_a);

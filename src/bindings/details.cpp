@@ -9,7 +9,8 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// q, q_dot, q_ddot and multipliers of the contact model, from its samples by name.
+// q, q_dot, q_ddot and multipliers of the contact model, from its samples by the names of their
+// columns.
 py::dict contact_arrays(const Scene& scene, const std::map<std::string, Array>& samples) {
     const py::ssize_t n = samples.at("theta").size();
     std::vector<const double*> columns;
@@ -19,130 +20,78 @@ py::dict contact_arrays(const Scene& scene, const std::map<std::string, Array>& 
         columns.push_back(column.data());
     };
     for_each(add, state_fields, force_fields);
-    Array q = matrix(n, 5);
-    Array q_dot = matrix(n, 5);
-    Array q_ddot = matrix(n, 5);
-    Array multipliers = matrix(n, 4);
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        for (py::ssize_t i = begin; i < end; ++i) {
-            State state{};
-            ContactForce force{};
-            auto column = columns.begin();
-            for (const auto& field : state_fields) state.*field.number = (*column++)[i];
-            for (const auto& field : force_fields) force.*field.number = (*column++)[i];
-            const CoordinateState at = coordinate_state(scene.axes(), state);
-            const MultiplierSolution found = accelerations(scene, at, force);
-            store(q, i, at.q.data());
-            store(q_dot, i, at.q_dot.data());
-            store(q_ddot, i, found.q_ddot.data());
-            store(multipliers, i, found.multipliers.data());
-        }
-    });
-    return py::dict("q"_a = q, "q_dot"_a = q_dot, "q_ddot"_a = q_ddot,
-                    "multipliers"_a = multipliers);
+    const auto row = [&](py::ssize_t i) {
+        State state{};
+        ContactForce force{};
+        auto column = columns.begin();
+        for (const auto& field : state_fields) state.*field.number = (*column++)[i];
+        for (const auto& field : force_fields) force.*field.number = (*column++)[i];
+        const CoordinateState at = coordinate_state(scene.axes(), state);
+        const MultiplierSolution found = accelerations(scene, at, force);
+        return std::tuple(at.q, at.q_dot, found.q_ddot, found.multipliers);
+    };
+    return named({"q", "q_dot", "q_ddot", "multipliers"}, computed(n, row));
 }
 
 // q_ddot and multipliers of the multiplier model.
 py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const Array& q,
                             const Array& q_dot) {
-    const py::ssize_t n = require_coordinates(q, q_dot);
     const ConstrainedBody body(scene);
-    Array q_ddot = matrix(n, 5);
-    Array multipliers = matrix(n, 4);
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        for (py::ssize_t i = begin; i < end; ++i) {
-            const MultiplierSolution solution =
-                accelerations(body, settings, state_at(q, q_dot, i));
-            store(q_ddot, i, solution.q_ddot.data());
-            store(multipliers, i, solution.multipliers.data());
-        }
+    return computed(require_coordinates(q, q_dot), [&](py::ssize_t i) {
+        const MultiplierSolution found = accelerations(body, settings, state_at(q, q_dot, i));
+        return std::tuple(found.q_ddot, found.multipliers);
     });
-    return py::make_tuple(q_ddot, multipliers);
 }
 
-// The nearest state that meets the constraints.
+// The nearest state that satisfies the constraints.
 py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
     CoordinateState state = single_state(q, q_dot);
     ConstrainedBody(scene).project(state.q, state.q_dot);
     return py::make_tuple(Array(5, state.q.data()), Array(5, state.q_dot.data()));
 }
 
-// q (its x replaced by the one given), q_dot, q_ddot, normal and friction force, multipliers.
+// q, with the x that is given, q_dot, q_ddot, normal and friction force, multipliers of rolling.
 py::dict rolling_arrays(const Scene& scene, const Array& theta, const Array& omega,
                         const Array& x) {
     const py::ssize_t n = theta.size();
-    require_length("theta", theta, n);
-    require_length("omega", omega, n);
-    require_length("x", x, n);
-    Array q = matrix(n, 5);
-    Array q_dot = matrix(n, 5);
-    Array q_ddot = matrix(n, 5);
-    Array multipliers = matrix(n, 4);
-    Array normal(n);
-    Array friction(n);
-    double* const normals = normal.mutable_data();
-    double* const frictions = friction.mutable_data();
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        for (py::ssize_t i = begin; i < end; ++i) {
-            RollingDetail detail = rolling_detail(scene, theta.data()[i], omega.data()[i]);
-            detail.state.q[coordinate::x] = x.data()[i];
-            store(q, i, detail.state.q.data());
-            store(q_dot, i, detail.state.q_dot.data());
-            store(q_ddot, i, detail.q_ddot.data());
-            store(multipliers, i, detail.multipliers.data());
-            normals[i] = detail.force.normal;
-            frictions[i] = detail.force.friction;
-        }
-    });
-    return py::dict("q"_a = q, "q_dot"_a = q_dot, "q_ddot"_a = q_ddot, "normal_force"_a = normal,
-                    "friction_force"_a = friction, "multipliers"_a = multipliers);
+    const Arguments<3> of({"theta", "omega", "x"}, {theta, omega, x}, n);
+    const auto row = [&](py::ssize_t i) {
+        const auto [angle, speed, position] = of[i];
+        RollingDetail found = rolling_detail(scene, angle, speed);
+        found.state.q[coordinate::x] = position;
+        return std::tuple(found.state.q, found.state.q_dot, found.q_ddot, found.force.normal,
+                          found.force.friction, found.multipliers);
+    };
+    return named({"q", "q_dot", "q_ddot", "normal_force", "friction_force", "multipliers"},
+                 computed(n, row));
 }
 
 // z, x_dot, z_dot, normal and friction force of rolling.
 py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Array& omega) {
     const py::ssize_t n = theta.size();
-    require_length("theta", theta, n);
-    require_length("omega", omega, n);
+    const Arguments<2> of({"theta", "omega"}, {theta, omega}, n);
     const RollingDynamics dynamics(scene);
-    std::vector<Array> out = empty_arrays(5, n);
-    std::array<double*, 5> columns{};
-    std::transform(out.begin(), out.end(), columns.begin(),
-                   [](Array& array) { return array.mutable_data(); });
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        for (py::ssize_t i = begin; i < end; ++i) {
-            const double speed = omega.data()[i];
-            const double angle = theta.data()[i];
-            const Geometry at = geometry(scene.axes(), angle);
-            const ContactForce force = dynamics.force(at, speed);
-            const State state = in_contact(at, angle, speed, 0.0, 0.0, Mode::rolling);
-            const double row[] = {state.z, state.x_dot, state.z_dot, force.normal, force.friction};
-            for (std::size_t column = 0; column < columns.size(); ++column) {
-                columns[column][i] = row[column];
-            }
-        }
-    });
-    return py::dict("z"_a = out[0], "x_dot"_a = out[1], "z_dot"_a = out[2],
-                    "normal_force"_a = out[3], "friction_force"_a = out[4]);
+    const auto row = [&](py::ssize_t i) {
+        const auto [angle, speed] = of[i];
+        const Geometry at = geometry(scene.axes(), angle);
+        const ContactForce force = dynamics.force(at, speed);
+        const State state = in_contact(at, angle, speed, 0.0, 0.0, Mode::rolling);
+        return std::tuple(state.z, state.x_dot, state.z_dot, force.normal, force.friction);
+    };
+    return named({"z", "x_dot", "z_dot", "normal_force", "friction_force"}, computed(n, row));
 }
 
-// theta'' of rolling at each angle and angular velocity, and its derivatives by both.
+// theta'' of rolling, and its derivatives by theta and omega.
 py::tuple rolling_equation_arrays(const Scene& scene, const Array& theta, const Array& omega) {
-    const RollingEquation equation(scene.body(), scene.slope);
     const py::ssize_t n = theta.size();
-    require_length("theta", theta, n);
-    require_length("omega", omega, n);
-    Array acceleration(n);
-    Array jacobian = matrix(n, 2);
-    double* const accelerations = acceleration.mutable_data();
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        for (py::ssize_t i = begin; i < end; ++i) {
-            const Vector<2> y{theta.data()[i], omega.data()[i]};
-            accelerations[i] = equation(0.0, y)[1];
-            const Vector<2> row = equation.jacobian(0.0, y).row(1);
-            store(jacobian, i, row.data());
-        }
+    const Arguments<2> of({"theta", "omega"}, {theta, omega}, n);
+    const RollingEquation equation(scene.body(), scene.slope);
+    return computed(n, [&](py::ssize_t i) {
+        const auto [angle, speed] = of[i];
+        const Vector<2> y{angle, speed};
+        const Vector<2> derivatives = equation.jacobian(0.0, y).row(1);
+        return std::tuple(equation(0.0, y)[1], derivatives);
     });
-    return py::make_tuple(acceleration, jacobian);
 }
 
 }  // namespace

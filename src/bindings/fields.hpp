@@ -1,4 +1,4 @@
-// Tables of fields (scene/field.hpp) as Python sees them: by name, and as columns.
+// Tables of fields (scene/field.hpp) for Python: dictionaries by name, and columns.
 #pragma once
 
 #include <array>
@@ -13,17 +13,19 @@ inline constexpr Field<FlowSample> flow_fields[] = {
     {"omega", &FlowSample::omega, unit::angular_velocity},
     {"x", &FlowSample::x, unit::length}};
 
+// A named count.
 struct Figure {
     const char* name;
     std::int64_t value;
 };
 
-// The solver's figures.
+// The counts of a solver.
 inline std::array<Figure, 4> stats_of(py::ssize_t segments, const StepCounts& counts) {
     return {Figure{"segments", segments}, Figure{"steps", counts.steps},
             Figure{"rejected_steps", counts.rejected}, Figure{"evaluations", counts.evaluations}};
 }
 
+// Calls an action with each field of some tables.
 template <class Action, class... Tables>
 void for_each(const Action& action, const Tables&... tables) {
     const auto all = [&](const auto& table) {
@@ -55,18 +57,7 @@ inline py::dict numbers_of(const InitialState& start) {
     return numbers;
 }
 
-// The numbers of a struct, so many places apart; returns the place of the next one.
-template <class Struct, std::size_t N>
-double* store(const Struct& of, const Field<Struct> (&table)[N], double* to,
-              py::ssize_t apart = 1) {
-    for (const Field<Struct>& field : table) {
-        *to = of.*field.number;
-        to += apart;
-    }
-    return to;
-}
-
-// The opposite: a struct whose numbers are a row.
+// Reads the numbers of a struct from a row; returns the place behind them.
 template <class Struct, std::size_t N>
 const double* read(Struct& to, const Field<Struct> (&table)[N], const double* from) {
     for (const Field<Struct>& field : table) to.*field.number = *from++;

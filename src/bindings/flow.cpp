@@ -12,7 +12,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-constexpr py::ssize_t scenes_at_once = 512;  // of many: their starts take 64 kB
+constexpr py::ssize_t scenes_at_once = 512;  // their starts take 64 kB
 
 RollingStart validated_start(const Body& body, double theta, double omega) {
     validate(body);
@@ -42,8 +42,8 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     const FlowSampler sampler(flow, n);
     const double longest = longest_time(flow);
     const double most = std::min(longest, std::numeric_limits<double>::max());
-    std::vector<Array> out = empty_arrays(3, n);
-    const FlowColumns found = columns(out);
+    FlowArrays out(n);
+    const FlowColumns found = out.columns();
     const double* const times = t.data();
     run_interruptible(n, workers, [&](py::ssize_t begin, py::ssize_t end) {
         const py::ssize_t wrong = begin + kernel().first_beyond(times + begin, end - begin, most);
@@ -52,7 +52,7 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
         }
         sampler(times + begin, end - begin, found.from(begin));
     });
-    return py::make_tuple(out[0], out[1], out[2]);
+    return out.tuple();
 }
 
 LaneLevel level_called(const std::string& wanted) {
@@ -69,27 +69,19 @@ LaneLevel level_called(const std::string& wanted) {
 // t, a, b, theta, omega, gravity, gyration2, each with n elements, or one.
 py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers,
                      const std::string& level) {
-    constexpr std::array<const char*, 7> names{"t",     "a",       "b",        "theta",
-                                               "omega", "gravity", "gyration2"};
-    // One alone is quicker alone.
+    const Arguments<7> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
+    // Lanes do not pay for one scene.
     const LaneLevel lanes = level_called(n == 1 && level == "best" ? "one by one" : level);
-    std::vector<Array> out = empty_arrays(3, n);
-    const FlowColumns found = columns(out);
-    const std::array<Argument, 7> of = arguments_of<7>(names, arguments, n);
-    const auto start = [&](py::ssize_t i) {
-        const auto& [t, a, b, theta, omega, gravity, gyration2] = of;
-        const Body body{a[i], b[i], gyration2[i], gravity[i]};
-        validate(body);
-        validate_motion(body, theta[i], omega[i]);
-        return rolling_start(body, theta[i], omega[i]);
-    };
+    FlowArrays out(n);
+    const FlowColumns found = out.columns();
     const auto sample_all = [&](LaneLevel by, py::ssize_t begin, py::ssize_t end) {
         std::array<RollingStart, scenes_at_once> starts;
         std::array<double, scenes_at_once> times;
         std::array<FlowSample, scenes_at_once> samples;
         for (py::ssize_t i = begin; i < end; ++i) {
-            starts[i - begin] = start(i);
-            times[i - begin] = of[0][i];
+            const auto [t, a, b, theta, omega, gravity, gyration2] = of[i];
+            starts[i - begin] = validated_start({a, b, gyration2, gravity}, theta, omega);
+            times[i - begin] = t;
         }
         sample(by, starts.data(), times.data(), end - begin, samples.data());
         for (py::ssize_t i = begin; i < end; ++i) store(samples[i - begin], found, i);
@@ -100,16 +92,14 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
             try {
                 sample_all(lanes, begin, end);
             } catch (const std::invalid_argument&) {
-                // Lanes come to their times last: one by one the first wrong scene is the one
-                // named.
+                // Lanes validate times last. One by one, the first wrong scene is named.
                 for (py::ssize_t i = begin; i < end; ++i) {
-                    name_the_place<7>(i, names, of,
-                                      [&] { sample_all(LaneLevel::one_by_one, i, i + 1); });
+                    of.naming(i, [&] { sample_all(LaneLevel::one_by_one, i, i + 1); });
                 }
             }
         }
     });
-    return py::make_tuple(out[0], out[1], out[2]);
+    return out.tuple();
 }
 
 std::vector<std::string> flow_levels() {

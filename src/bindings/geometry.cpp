@@ -9,78 +9,47 @@ namespace {
 // The constraint matrix, row after row, and the drift term.
 py::tuple constraint_system(const Array& q, const Array& q_dot, double a, double b) {
     validate_axes(a, b);
-    const py::ssize_t n = require_coordinates(q, q_dot);
-    Array rows = matrix(n, 20);
-    Array drift = matrix(n, 4);
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        for (py::ssize_t i = begin; i < end; ++i) {
-            const CoordinateState state = state_at(q, q_dot, i);
-            const Eigen::Matrix<double, 5, 4> columns =
-                constraint_matrix({a, b}, state.q).transpose();
-            store(rows, i, columns.data());
-            store(drift, i, constraint_drift({a, b}, state.q, state.q_dot).data());
-        }
+    return computed(require_coordinates(q, q_dot), [&](py::ssize_t i) {
+        const auto [at, rate] = state_at(q, q_dot, i);
+        const Eigen::Matrix<double, 5, 4> columns = constraint_matrix({a, b}, at).transpose();
+        return std::tuple(columns, constraint_drift({a, b}, at, rate));
     });
-    return py::make_tuple(rows, drift);
 }
 
+// Residuals of the constraints on positions and on velocities, gap and slip.
 py::tuple constraint_arrays(const Array& q, const Array& q_dot, double a, double b) {
     validate_axes(a, b);
-    const py::ssize_t n = require_coordinates(q, q_dot);
-    Array position = matrix(n, 3);
-    Array velocity = matrix(n, 4);
-    Array gap(n);
-    Array slip(n);
-    double* const gaps = gap.mutable_data();
-    double* const slips = slip.mutable_data();
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        for (py::ssize_t i = begin; i < end; ++i) {
-            const ConstraintResiduals residuals =
-                constraints({a, b}, Eigen::Map<const Coordinates>(q.data(i, 0)),
-                            Eigen::Map<const Coordinates>(q_dot.data(i, 0)));
-            store(position, i, residuals.position.data());
-            store(velocity, i, residuals.velocity.data());
-            gaps[i] = residuals.gap;
-            slips[i] = residuals.slip;
-        }
+    return computed(require_coordinates(q, q_dot), [&](py::ssize_t i) {
+        const auto [at, rate] = state_at(q, q_dot, i);
+        const ConstraintResiduals found = constraints({a, b}, at, rate);
+        return std::tuple(found.position, found.velocity, found.gap, found.slip);
     });
-    return py::make_tuple(position, velocity, gap, slip);
 }
 
+// q and q_dot of a rolling body.
 py::tuple kinematics_arrays(py::ssize_t n, const Array& theta, const Array& omega, double a,
                             double b) {
     validate_axes(a, b);
-    const Argument thetas = argument("theta", theta, n);
-    const Argument omegas = argument("omega", omega, n);
-    Array q = matrix(n, 5);
-    Array q_dot = matrix(n, 5);
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        for (py::ssize_t i = begin; i < end; ++i) {
-            const CoordinateState state = kinematics({a, b}, thetas[i], omegas[i]);
-            store(q, i, state.q.data());
-            store(q_dot, i, state.q_dot.data());
-        }
+    const Arguments<2> of({"theta", "omega"}, {theta, omega}, n);
+    return computed(n, [&](py::ssize_t i) {
+        const auto [angle, speed] = of[i];
+        const CoordinateState at = kinematics({a, b}, angle, speed);
+        return std::tuple(at.q, at.q_dot);
     });
-    return py::make_tuple(q, q_dot);
 }
 
-// A function of theta, a, b, each with n elements, or one.
+// Binds a function of the ellipse and theta to arrays theta, a, b, each with n elements, or one.
 template <class Function>
 void define_geometry(py::module_& module, const char* name, Function function) {
     module.def(
         name,
-        [function](py::ssize_t n, const std::array<Array, 3>& arguments) {
-            const auto [theta, a, b] = arguments_of<3>({"theta", "a", "b"}, arguments, n);
-            Array out(n);
-            double* const values = out.mutable_data();
-            run_interruptible(n, 1,
-                              [&, theta = theta, a = a, b = b](py::ssize_t begin, py::ssize_t end) {
-                                  for (py::ssize_t i = begin; i < end; ++i) {
-                                      validate_axes(a[i], b[i]);
-                                      values[i] = function(Axes{a[i], b[i]}, theta[i]);
-                                  }
-                              });
-            return out;
+        [function](py::ssize_t n, const std::array<Array, 3>& arguments) -> py::object {
+            const Arguments<3> of({"theta", "a", "b"}, arguments, n);
+            return computed(n, [of, function](py::ssize_t i) {
+                const auto [theta, a, b] = of[i];
+                validate_axes(a, b);
+                return std::tuple(function(Axes{a, b}, theta));
+            })[0];
         },
         "n"_a, "arguments"_a);
 }

@@ -9,10 +9,10 @@ namespace rolling_ellipse::bindings {
 
 namespace py = pybind11;
 
-// Releases the GIL for a scope. In a daemon thread the scope may end while Python does: CPython
-// before 3.14 then ends the thread by pthread_exit, which would unwind our frames and release
-// Python objects in them without the GIL. The thread waits for the end of the process instead, as
-// CPython 3.14 has it.
+// Releases the GIL for a scope. In a daemon thread the scope may end while Python shuts down. Then
+// CPython before 3.14 ends the thread by pthread_exit, which would unwind our frames and release
+// Python objects in them without the GIL. Our thread waits for the end of the process instead, as
+// in CPython 3.14.
 class GilRelease {
   public:
     GilRelease() : state_(PyEval_SaveThread()) {}
@@ -24,9 +24,9 @@ class GilRelease {
     PyThreadState* state_;
 };
 
-// Looks for Ctrl-C whenever 50 ms have passed since it last did, and throws it as the exception
-// that Python knows. It asks by time, because a look takes the GIL, for which a busy Python thread
-// makes it wait 5 ms. Python handles signals in its main thread only, so no other one asks.
+// Checks for Ctrl-C at most every 50 ms, and throws it as Python's exception. More checks would be
+// slow: each takes the GIL, for which a busy Python thread makes it wait 5 ms. Python handles
+// signals in its main thread only: in any other thread nothing is checked.
 class SignalWatch {
   public:
     SignalWatch();
@@ -35,7 +35,7 @@ class SignalWatch {
   private:
     using Clock = std::chrono::steady_clock;
     bool in_main_thread_;
-    Clock::time_point last_look_ = Clock::now();
+    Clock::time_point last_check_ = Clock::now();
 };
 
 // Finds Python's main thread, now and after each fork.

@@ -1,9 +1,9 @@
 #include "bindings/bindings.hpp"
 
-// Not declared is py::mod_gil_not_used(), by which a free-threaded Python would run it without its
-// lock. Nothing speaks against it: the core shares nothing but two constants made on first use
-// (tests/core/threads_test.cpp, under ThreadSanitizer), what is bound never changes once it is
-// made, and every array is filled before anybody else has it. But nobody has run it so.
+// The module does not declare py::mod_gil_not_used(), so a free-threaded Python turns its lock on.
+// It could: the core shares only two constants made on first use (tests/core/threads_test.cpp,
+// under ThreadSanitizer), bound objects never change, and every array is filled before it is
+// returned. But this was never run without the lock.
 PYBIND11_MODULE(_core, m) {
     using namespace rolling_ellipse::bindings;
     m.doc() = "C++ core of rolling_ellipse; see the Python package for the documented interface.";
@@ -17,5 +17,7 @@ PYBIND11_MODULE(_core, m) {
     bind_batch(m);
     bind_details(m);
     bind_tableaus(m);
-    bind_build(m);
+    m.def("build", [] {
+        return py::dict("compiler"_a = ROLLING_ELLIPSE_COMPILER, "flags"_a = ROLLING_ELLIPSE_FLAGS);
+    });
 }

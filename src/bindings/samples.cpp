@@ -30,14 +30,18 @@ py::tuple event_columns() {
     return names;
 }
 
-double* store_event(const Event& event, double* to) {
-    *to++ = event.t;
-    *to++ = static_cast<int>(event.kind);
-    for (const State* state : {&event.before, &event.after}) {
-        to = store(*state, state_fields, to);
-        *to++ = static_cast<int>(state->mode);
+Array event_rows(const std::vector<Event>& events) {
+    Array table = matrix(events.size(), event_numbers);
+    double* to = table.mutable_data();
+    for (const Event& event : events) {
+        *to++ = event.t;
+        *to++ = static_cast<int>(event.kind);
+        for (const State* state : {&event.before, &event.after}) {
+            for (const auto& field : state_fields) *to++ = state->*field.number;
+            *to++ = static_cast<int>(state->mode);
+        }
     }
-    return to;
+    return table;
 }
 
 Event event_of(const EventRow& row) {
@@ -50,8 +54,21 @@ Event event_of(const EventRow& row) {
     return event;
 }
 
-FlowColumns columns(std::vector<Array>& arrays) {
-    return {arrays[0].mutable_data(), arrays[1].mutable_data(), arrays[2].mutable_data()};
+void ContactColumns::store(const ContactSample* samples, py::ssize_t begin, py::ssize_t end) const {
+    auto column = numbers.begin();
+    const auto fill = [&](const auto& table, const auto& part) {
+        for (const auto& field : table) {
+            double* const values = *column++;
+            for (py::ssize_t i = begin; i < end; ++i) {
+                values[i] = samples[i - begin].*part.*field.number;
+            }
+        }
+    };
+    fill(state_fields, &ContactSample::state);
+    fill(force_fields, &ContactSample::force);
+    for (py::ssize_t i = begin; i < end; ++i) {
+        modes[i] = static_cast<std::int8_t>(samples[i - begin].state.mode);
+    }
 }
 
 }  // namespace rolling_ellipse::bindings

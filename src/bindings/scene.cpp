@@ -5,43 +5,36 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution, each with n elements, or one:
-// x_dot, z_dot, omega just after the collision of a touching body.
+// x_dot, z_dot, omega just after the collision of a touching body. The arguments are theta, x_dot,
+// z_dot, omega, a, b, gyration2, friction, restitution, each with n elements, or one.
 py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, Restitution law) {
-    std::vector<Array> out = empty_arrays(3, n);
-    double* const columns[] = {out[0].mutable_data(), out[1].mutable_data(), out[2].mutable_data()};
-    const std::array<Argument, 9> of = arguments_of<9>(
+    const Arguments<9> of(
         {"theta", "x_dot", "z_dot", "omega", "a", "b", "gyration2", "friction", "restitution"},
         arguments, n);
-    run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
-        const auto& [theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution] = of;
+    return computed(n, [&](py::ssize_t i) {
         Scene scene{};
         scene.mass = scene.gravity = 1.0;  // which do not matter
-        for (py::ssize_t i = begin; i < end; ++i) {
-            scene.a = a[i];
-            scene.b = b[i];
-            scene.inertia = gyration2[i];
-            scene.friction = friction[i];
-            scene.restitution = restitution[i];
-            scene.theta = theta[i];
-            scene.omega = omega[i];
-            scene.z = above_ground(scene.axes());  // where it may move down
-            scene.x_dot = x_dot[i];
-            scene.z_dot = z_dot[i];
-            validate(scene.body());                // by its own names: k^2 is no inertia
-            validate(scene, most_energy_reached);  // beside a gravity that does not matter
-            const State before = state_before_impulse(scene);
-            const double approach = gap_rate(before, geometry(scene.axes(), before.theta));
-            const State after = collision(scene, before, approach, law).after;
-            columns[0][i] = after.x_dot;
-            columns[1][i] = after.z_dot;
-            columns[2][i] = after.omega;
-        }
+        const auto [theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution] = of[i];
+        scene.a = a;
+        scene.b = b;
+        scene.inertia = gyration2;
+        scene.friction = friction;
+        scene.restitution = restitution;
+        scene.theta = theta;
+        scene.omega = omega;
+        scene.z = above_ground(scene.axes());  // where it may move down
+        scene.x_dot = x_dot;
+        scene.z_dot = z_dot;
+        validate(scene.body());                // by its own names: k^2 is no inertia
+        validate(scene, most_energy_reached);  // the gravity above does not matter
+        const State before = state_before_impulse(scene);
+        const double approach = gap_rate(before, geometry(scene.axes(), before.theta));
+        const State after = collision(scene, before, approach, law).after;
+        return std::tuple(after.x_dot, after.z_dot, after.omega);
     });
-    return py::make_tuple(out[0], out[1], out[2]);
 }
 
-// The names of a table as Python keeps its own: looked up by their address.
+// The names of a table as interned Python strings, which dictionaries find by their address.
 template <class Table>
 std::vector<py::str> interned(const Table& table) {
     std::vector<py::str> names;
@@ -51,7 +44,7 @@ std::vector<py::str> interned(const Table& table) {
     return names;
 }
 
-// Makes a scene of numbers by the names of its fields; None is what is not given.
+// Makes a scene from numbers by the names of its fields; None stands for an absent one.
 class SceneMaker {
   public:
     Scene operator()(const py::dict& fields, const std::optional<Impulse>& impulse,
@@ -71,7 +64,7 @@ class SceneMaker {
     std::vector<py::str> names_ = interned(scene_fields);
 };
 
-// The state just after the blow, the mode that forces allow, and what there is to say of both.
+// The state just after the blow, the mode that forces allow, and sentences about both.
 py::dict start_of(const Scene& scene) {
     const InitialState start = initial_state(scene);
     const Continuation next = first_continuation(scene, start.state);
@@ -88,13 +81,13 @@ py::dict start_of(const Scene& scene) {
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    py::native_enum<Mode>(m, "Mode", "enum.IntEnum", "What the body does, one code a sample.")
+    py::native_enum<Mode>(m, "Mode", "enum.IntEnum", "Mode of motion; one code per sample.")
         .value("ROLLING", Mode::rolling)
         .value("SLIDING", Mode::sliding)
         .value("FLIGHT", Mode::flight)
         .value("REST", Mode::rest)
         .finalize();
-    py::native_enum<Painleve>(m, "Painleve", "enum.Enum", "Does exactly one motion go on?")
+    py::native_enum<Painleve>(m, "Painleve", "enum.Enum", "Is there exactly one possible motion?")
         .value("DETERMINED", Painleve::determined)
         .value("NO_MOTION", Painleve::no_motion)
         .value("TWO_MOTIONS", Painleve::two_motions)
@@ -109,7 +102,7 @@ void bind_scene(py::module_& m) {
     bind_class<Scene>(m, "Scene")
         .def(py::init(SceneMaker()), "numbers"_a, "impulse"_a, "reached"_a)
         .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
-    py::native_enum<Restitution>(m, "Restitution", "enum.Enum", "What restitution means.")
+    py::native_enum<Restitution>(m, "Restitution", "enum.Enum", "Law of restitution.")
         .value("STRONGE", Restitution::stronge)
         .value("POISSON", Restitution::poisson)
         .value("NEWTON", Restitution::newton)

@@ -8,7 +8,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// A setting; a choice comes by its name.
+// Reads a setting; a choice is given by its name.
 template <class Value>
 void take(py::handle given, Value& value) {
     if constexpr (std::is_enum_v<Value>) {

@@ -11,8 +11,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// A solution says nothing of other times than those that it went through, and nothing at all where
-// it ended before it began.
+// Refuses times at which the solution is not known. A motion without segments has none.
 void validate_times(const Solution& solution, const double* times, py::ssize_t begin,
                     py::ssize_t end) {
     if (begin < end && solution.motion.segments.empty()) {
@@ -25,8 +24,7 @@ void validate_times(const Solution& solution, const double* times, py::ssize_t b
     }
 }
 
-// Whether times are such as a motion is sampled at: at least one, finite, not negative, and each
-// later than the one before.
+// Are these valid sample times: at least one, finite, not negative, and strictly ascending?
 bool are_sample_times(const Array& t) {
     if (t.ndim() != 1 || t.size() == 0) return false;
     const double* const times = t.data();
@@ -36,9 +34,9 @@ bool are_sample_times(const Array& t) {
     return times[0] >= 0 && times[t.size() - 1] < infinity;
 }
 
-// Shows take(samples, begin, end) the samples of all times, in parts.
+// Calls take(samples, begin, end) with the samples at all times, part by part.
 template <class Sample, class Take>
-void look(const Solution& solution, const Array& t, Take take) {
+void take_samples(const Solution& solution, const Array& t, const Take& take) {
     const py::ssize_t n = t.size();
     require_length("t", t, n);
     const double* const times = t.data();
@@ -55,90 +53,52 @@ void look(const Solution& solution, const Array& t, Take take) {
 py::tuple sample_rolling(const Solution& solution, const Array& t) {
     const py::ssize_t n = t.size();
     require_length("t", t, n);
-    std::vector<Array> out = empty_arrays(3, n);
-    const FlowColumns found = columns(out);
+    FlowArrays out(n);
+    const FlowColumns found = out.columns();
     const double* const times = t.data();
     const Sampler sampler(solution.motion, n);
     run_interruptible(n, 1, [&](py::ssize_t begin, py::ssize_t end) {
         validate_times(solution, times, begin, end);
         sampler(times + begin, end - begin, found.from(begin));
     });
-    return py::make_tuple(read_only(out[0]), read_only(out[1]), read_only(out[2]));
+    for (Array* const array : {&out.theta, &out.omega, &out.x}) read_only(*array);
+    return out.tuple();
 }
 
 // q and q_dot, (n, 5), at each time.
 py::tuple sample_coordinates(const Solution& solution, const Array& t) {
     Array q = matrix(t.size(), 5);
     Array q_dot = matrix(t.size(), 5);
-    look<CoordinateState>(solution, t,
-                          [&](const CoordinateState* samples, py::ssize_t begin, py::ssize_t end) {
-                              for (py::ssize_t i = begin; i < end; ++i) {
-                                  store(q, i, samples[i - begin].q.data());
-                                  store(q_dot, i, samples[i - begin].q_dot.data());
-                              }
-                          });
+    const auto take = [&](const CoordinateState* samples, py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) {
+            store(q, i, samples[i - begin].q.data());
+            store(q_dot, i, samples[i - begin].q_dot.data());
+        }
+    };
+    take_samples<CoordinateState>(solution, t, take);
     return py::make_tuple(read_only(q), read_only(q_dot));
 }
 
 // State and force at each time, an array by name for each of their numbers.
 py::dict sample_contact(const Solution& solution, const Array& t) {
     py::dict found;
-    std::vector<double*> columns;
+    py::array_t<std::int8_t> mode(t.size());
+    ContactColumns columns{{}, mode.mutable_data()};
     const auto add = [&](const auto& field) {
         Array column(t.size());
-        columns.push_back(column.mutable_data());
+        columns.numbers.push_back(column.mutable_data());
         found[field.name] = read_only(column);
     };
     for_each(add, state_fields, force_fields);
-    py::array_t<std::int8_t> mode(t.size());
-    std::int8_t* const modes = mode.mutable_data();
-    look<ContactSample>(solution, t,
-                        [&](const ContactSample* samples, py::ssize_t begin, py::ssize_t end) {
-                            auto column = columns.begin();
-                            const auto fill = [&](const auto& table, const auto& part) {
-                                for (const auto& field : table) {
-                                    double* const values = *column++;
-                                    for (py::ssize_t i = begin; i < end; ++i) {
-                                        values[i] = samples[i - begin].*part.*field.number;
-                                    }
-                                }
-                            };
-                            fill(state_fields, &ContactSample::state);
-                            fill(force_fields, &ContactSample::force);
-                            for (py::ssize_t i = begin; i < end; ++i) {
-                                modes[i] = static_cast<std::int8_t>(samples[i - begin].state.mode);
-                            }
-                        });
+    take_samples<ContactSample>(
+        solution, t, [&](const ContactSample* samples, py::ssize_t begin, py::ssize_t end) {
+            columns.store(samples, begin, end);
+        });
     found["mode"] = read_only(mode);
     return found;
 }
 
-Solution simulate_interruptible(const Scene& scene, const Settings& settings, double t_end) {
-    const GilRelease release;
-    return simulate(scene, settings, t_end, SignalWatch());
-}
-
-Solution simulate_coordinates(const Scene& scene, const Array& q, const Array& q_dot,
-                              const Settings& settings, double t_end) {
-    const CoordinateState start = single_state(q, q_dot);
-    const GilRelease release;
-    return simulate(scene, start, settings, t_end, SignalWatch());
-}
-
-// A row an event.
-Array events(const Solution& solution) {
-    const std::vector<Event>& found = solution.motion.events;
-    Array table = matrix(found.size(), event_numbers);
-    double* to = table.mutable_data();
-    for (const Event& event : found) to = store_event(event, to);
-    return table;
-}
-
-Array array_of(const std::vector<double>& values) {
-    return Array(static_cast<py::ssize_t>(values.size()), values.data());
-}
-
-// An array of times for each value, and where they are not proved to be all.
+// An array of times for each value, and phrases that say where some of them may be missing.
 py::tuple lists(const Passages& found) {
     py::list times;
     for (const std::vector<double>& each : found.times) times.append(array_of(each));
@@ -147,11 +107,13 @@ py::tuple lists(const Passages& found) {
 
 py::tuple passages_of(const Solution& solution, Quantity quantity,
                       const std::vector<double>& values, int direction) {
+    const Motion& motion = solution.motion;
+    const Checkpoint checkpoint = SignalWatch();
+    const Observable of = observable(motion, quantity, checkpoint);
     Passages found;
     {
         const GilRelease release;
-        found = passages(solution.motion, solution.followed_until, quantity, values, direction,
-                         SignalWatch());
+        found = passages(motion, solution.followed_until, of, values, direction, checkpoint);
     }
     return lists(found);
 }
@@ -162,7 +124,8 @@ py::tuple zeros_of(const Solution& solution, const py::function& function, int d
         const Array values = function(array_of(times));
         return std::vector<double>(values.data(), values.data() + values.size());
     };
-    return lists(zeros(solution.motion, solution.followed_until, measure, direction, [] {}));
+    const Observable of{std::nullopt, measure, 0.0};
+    return lists(passages(solution.motion, solution.followed_until, of, {0.0}, direction, [] {}));
 }
 
 py::dict stats(const Solution& solution) {
@@ -173,7 +136,7 @@ py::dict stats(const Solution& solution) {
     return found;
 }
 
-// The state just before an event, or just after it, and the code of its mode.
+// The state just before or just after an event, and the code of its mode.
 py::dict event_state(const Scene& scene, const EventRow& row, bool after) {
     const Event event = event_of(row);
     const State& before = event.before;
@@ -187,7 +150,7 @@ py::dict event_state(const Scene& scene, const EventRow& row, bool after) {
 }  // namespace
 
 void bind_solution(py::module_& m) {
-    py::native_enum<EventKind>(m, "EventKind", "enum.Enum", "What changes at an event.")
+    py::native_enum<EventKind>(m, "EventKind", "enum.Enum", "Kind of an event.")
         .value("SLIP", EventKind::slip)
         .value("STICK", EventKind::stick)
         .value("REVERSE", EventKind::reverse)
@@ -206,7 +169,7 @@ void bind_solution(py::module_& m) {
         .value("STEP_TOO_SMALL", Ending::step_too_small)
         .value("STEP_TOO_LARGE", Ending::step_too_large)
         .finalize();
-    py::native_enum<Quantity>(m, "Quantity", "enum.Enum", "What a motion may pass a value of.")
+    py::native_enum<Quantity>(m, "Quantity", "enum.Enum", "A quantity of a motion.")
         .value("theta", Quantity::theta)
         .value("x", Quantity::x)
         .value("z", Quantity::z)
@@ -226,7 +189,8 @@ void bind_solution(py::module_& m) {
         .def_property_readonly("model", [](const Solution& s) { return name(s.model); })
         .def_property_readonly("method", [](const Solution& s) { return name(s.method); })
         .def_property_readonly("stats", stats)
-        .def_property_readonly("events", events)
+        .def_property_readonly("events",
+                               [](const Solution& s) { return event_rows(s.motion.events); })
         .def(
             "reason", [](const Solution& s, const Scene& scene) { return reason(scene, s); },
             "scene"_a)
@@ -240,9 +204,19 @@ void bind_solution(py::module_& m) {
     m.attr("STATS") = names_of(stats_of(0, {}));
     m.def("event_state", event_state, "scene"_a, "row"_a, "after"_a);
     m.def("are_sample_times", are_sample_times, "t"_a);
-    m.def("simulate", simulate_interruptible, "scene"_a, "settings"_a, "t_end"_a);
-    m.def("simulate_coordinates", simulate_coordinates, "scene"_a, "q"_a, "q_dot"_a, "settings"_a,
-          "t_end"_a);
+    m.def(
+        "simulate",
+        [](const Scene& scene, const Settings& settings, double t_end) {
+            return simulate(scene, settings, t_end, SignalWatch());
+        },
+        py::call_guard<GilRelease>(), "scene"_a, "settings"_a, "t_end"_a);
+    m.def(
+        "simulate_coordinates",
+        [](const Scene& scene, const Array& q, const Array& q_dot, const Settings& settings,
+           double t_end) {
+            return simulate(scene, single_state(q, q_dot), settings, t_end, SignalWatch());
+        },
+        py::call_guard<GilRelease>(), "scene"_a, "q"_a, "q_dot"_a, "settings"_a, "t_end"_a);
 }
 
 }  // namespace rolling_ellipse::bindings

@@ -5,7 +5,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-// Numbers of the methods, for those who want to check them.
+// The coefficients of a method as an array.
 template <std::size_t N>
 Array array(const double (&values)[N]) {
     return Array(N, values);

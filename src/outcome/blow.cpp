@@ -5,6 +5,8 @@
 
 #include "contact/continuation.hpp"
 #include "integrator/system.hpp"
+#include "proof/certificate.hpp"
+#include "proof/slope.hpp"
 #include "proof/slope_end.hpp"
 #include "scene/impact.hpp"
 #include "scene/refuse.hpp"
@@ -12,7 +14,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The outcome for a body on a slope whose rolling ends at a time [s]: it slides or flies.
+// The outcome for a body on a slope whose rolling ends at a time [s]: it slips or flies.
 Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
     prepare(flow, time);
     const FlowSample last = sample(flow, time);
@@ -22,21 +24,21 @@ Outcome after_rolling(const Scene& scene, SlopeFlow& flow, double time) {
     return next == Mode::flight ? Outcome::loses_contact : Outcome::slips;
 }
 
-// Of a circle, which has no tip: what becomes of it in half a turn.
-Outcome of_circle(const SlopeFlow& flow) {
+// The outcome for a circle that rolls, within half a turn: it has no tip.
+Outcome outcome_of_circle(const SlopeFlow& flow) {
     const double uphill = flow.start.omega;
     if (uphill >= 0) return Outcome::rolls_over;
     return square(uphill) < 2 * pi * flow.acceleration ? Outcome::rocks : Outcome::rolls_over;
 }
 
-// Of a body that rolls on a slope: the first that happens along its series.
-Outcome followed(const Scene& scene, const State& start, const Checkpoint& checkpoint) {
+// The outcome for a body that rolls on a slope, from its series.
+Outcome outcome_on_slope(const Scene& scene, const State& start, const Checkpoint& checkpoint) {
     constexpr int most_pieces = 100'000;
     SlopeFlow flow = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
     if (flow.kind == MotionKind::uniform) {
         const LawMeetings met = law_meetings(flow, scene.friction);
         if (met.touched) return Outcome::edge;
-        return met.broken ? Outcome::slips : of_circle(flow);
+        return met.broken ? Outcome::slips : outcome_of_circle(flow);
     }
     LawWatch watch(flow, scene.friction);
     SlopePlace place = flow.start;
@@ -76,7 +78,7 @@ Outcome outcome(const Scene& scene, const Checkpoint& checkpoint) {
         case Mode::rolling:
             break;
     }
-    if (scene.slope != 0) return followed(scene, start, checkpoint);
+    if (scene.slope != 0) return outcome_on_slope(scene, start, checkpoint);
     return classify(scene.body(), scene.friction, start.theta, start.omega);
 }
 
@@ -100,6 +102,22 @@ double speed_to_the_tip(const Scene& scene) {
     const Geometry at = geometry(body.axes(), scene.theta);
     const double inertia = inertia_about_contact(body.gyration2, at);
     return std::sqrt(std::max(-at_rest.height.over_tip, 0.0) * 2 * body.gravity / inertia);
+}
+
+double required_friction(const Scene& scene) {
+    const double in_the_blow = sticking_friction(scene);
+    if (in_the_blow == infinity) return infinity;
+    Scene rough = scene;
+    rough.friction = infinity;
+    const State start = initial_state(rough).state;
+    const Body body = scene.body();
+    if (scene.slope != 0) {
+        const std::optional<SlopeExtremes> found = extremes_on_slope(rough, start);
+        return found ? std::max(in_the_blow, found->most_friction) : infinity;
+    }
+    const RollingStart rolling = rolling_start(body, start.theta, start.omega);
+    const Certificate found = certify_rolling(rolling, scene.mass, rough.friction);
+    return std::max(in_the_blow, *found.largest_friction_needed);
 }
 
 }  // namespace rolling_ellipse

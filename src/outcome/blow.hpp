@@ -1,4 +1,4 @@
-// What a blow makes of a body, and the blow that makes something of it.
+// Outcome of a blow, and its inverse: the blow, or the friction, for an outcome.
 #pragma once
 
 #include "outcome/classify.hpp"
@@ -6,19 +6,22 @@
 
 namespace rolling_ellipse {
 
-// The first thing that happens to a body from the blow of its scene on. On level ground it is known
-// without integrating; on a slope the rolling motion is followed until it turns back, passes the
-// tip (a circle: half a turn) or comes to the end of its rolling, and edge is what is left to say
-// where it does none of it for long.
+// The first thing that happens to a body after the blow of its scene. On level ground it is known
+// without integration. On a slope the rolling motion is followed until it turns back, passes the
+// tip (a circle: half a turn) or ends; `edge` if it does none of these for long.
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint);
 
 // The downward impulse at a horizontal distance from the centre after which the body has an angular
-// velocity, if the contact sticks: physics (38, 40). Negative where it would have to be a pull,
-// infinite where it has so little lever that no impulse of a scene would do.
+// velocity, if the contact sticks: physics (38, 40). Negative if it would have to be a pull;
+// infinite if its lever is so small that no impulse of a scene would do.
 double press_to(const Scene& scene, double distance, double omega);
 
-// The angular velocity with which a body that rolls on level ground from the angle of the scene
-// comes to rest on the tip: physics (26).
+// The angular velocity at the angle of the scene with which a body that rolls on level ground just
+// reaches the tip: physics (26).
 double speed_to_the_tip(const Scene& scene);
+
+// The least friction coefficient with which neither the blow nor the rolling after it ever slips,
+// whatever the friction of the scene; infinite where no finite one does.
+double required_friction(const Scene& scene);
 
 }  // namespace rolling_ellipse

@@ -16,15 +16,16 @@ namespace {
 // Nor does a body that rolls on level ground leave it before it slips: the same c is positive where
 // N vanishes, so that with infinite friction, too, it goes on as a slide.
 
-// The acceleration of the gap into the ground of a free body, c = g + h'' omega^2, physics (43);
-// h'' = rho - h.
+// The sign of the acceleration into the ground of a free body, c = g + h'' omega^2, physics (43),
+// with h'' = rho - h.
 Sign pressed_by_gravity(const Body& body, const Geometry& at, double omega) {
     const double omega2 = square(omega);
     return sign(
         {free_acceleration(at, body.gravity, omega), body.gravity + (at.rho + at.h) * omega2});
 }
 
-// Where the body passes the tip or turns back, as far as rounding can tell.
+// The outcome for a body that rolls up to the top: it passes the tip or turns back, if rounding can
+// tell.
 Outcome at_the_top(const RollingStart& from) {
     const FlatView& at = from.view;
     const EnergyHeight& height = from.height;
@@ -34,22 +35,23 @@ Outcome at_the_top(const RollingStart& from) {
     return over == Sign::positive ? Outcome::rolls_over : Outcome::rocks;
 }
 
-// A law of rolling from a place x of its range up to the top.
+// A law of rolling on the part of its range from x to the top.
 template <int N>
 Bernstein<N> from_place(const Polynomial<N>& law, double x) {
     const Bernstein<N> whole = bernstein(law);
     return x > 0 ? divided(whole, x).right : whole;
 }
 
-// P, Q and G of the forces on a part of their range; Q with the coefficients of P's degree.
+// P, Q and G of the forces on a part of their range. Q is raised to the degree of P.
 struct ForcesOnPart {
     Bernstein<5> normal;
     Bernstein<5> friction;
     Bernstein<4> slope_square;
 };
 
-// The sign of mu^2 P^2 - G Q^2 = held P^2 - needed G Q^2 by those of sqrt(held) P +- sqrt(needed G)
-// Q with a bound of G, which are of lower degree: undecided where it takes the polynomial itself.
+// The sign of mu^2 P^2 - G Q^2 = held P^2 - needed G Q^2, from the signs of sqrt(held) P +-
+// sqrt(needed G) Q with a bound of G, which have a lower degree. Undecided where this is too
+// coarse.
 struct GripByBounds {
     double held;
     double needed;
@@ -76,7 +78,7 @@ struct GripByBounds {
     }
 
   private:
-    // At one place, provably.
+    // Is the sign negative at one place, provably?
     bool fails(Tracked normal, Tracked friction, Tracked slope_square) const {
         const double most = std::abs(normal.value) + margin(normal);
         const double least = std::abs(friction.value) - margin(friction);
@@ -85,7 +87,7 @@ struct GripByBounds {
                rounding * held * square(most) < needed * least_slope * square(least);
     }
 
-    // Everywhere, provably.
+    // Is the sign positive on the whole part, provably?
     bool holds(const ForcesOnPart& part) const {
         double most_slope = 0.0;
         for (const Tracked c : part.slope_square.coefficients) {
@@ -105,6 +107,7 @@ struct GripByBounds {
     }
 };
 
+// The sign of mu N - |F| from the place `start` up to the top.
 Sign grip_sign(const ForcePolynomials& forces, const Bernstein<5>& normal, double friction,
                double start) {
     const bool large = friction > 1;
@@ -124,7 +127,8 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     if (from.rests) return Outcome::rests;
     if (at.c2 == 0) return friction > 0 ? Outcome::rolls_over : Outcome::slips;
 
-    // Folded by half turns, which changes signs of sin and cos alone: h, h'' and rho are even.
+    // The angle is folded by half turns, which changes only signs of sin and cos. The functions h,
+    // h'' and rho are even in both.
     const bool a_is_long = body.a >= body.b;
     const Geometry here =
         geometry(body.axes(), a_is_long ? at.sin : at.cos, a_is_long ? at.cos : at.sin);
@@ -133,8 +137,8 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     if (pressed == Sign::undecided) return Outcome::edge;
     if (friction == 0) return Outcome::slips;
 
-    // On its way up it meets the heights above the start only; on its way down, and from the tip
-    // (to rounding), all of them, flat position and all, before it is at the top.
+    // A body that rises passes only the heights above its start. A body that falls, or starts at
+    // the tip (to rounding), passes all heights before it is at the top.
     const EnergyRange range = energy_range(from);
     const ForcePolynomials forces = force_polynomials(range);
     const bool rises = at.sin * from.omega > 0 && at.cos > equal_ulps * epsilon;

@@ -1,4 +1,4 @@
-// What the motion of a rolling body comes to first, from signs of polynomials alone.
+// The first thing that happens to a rolling body, from signs of polynomials alone.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ enum class Outcome : std::int8_t {
     slips,          // its contact slides
     loses_contact,  // it leaves the ground, or is in the air
     jams,           // not out of rolling, see outcome/classify.cpp
-    edge,           // rounding cannot tell
+    edge,           // undecided within rounding
 };
 
 // For a body that rolls (or rests) on level ground with the given angle and angular velocity.

@@ -1,4 +1,4 @@
-// From which speed on a rolling body really leaves the ground: after its rolling has ended.
+// The speed from which on a rolling body leaves the ground, some time after its rolling has ended.
 #pragma once
 
 #include <vector>
@@ -15,13 +15,13 @@ struct SpeedRange {
 };
 
 struct LiftOff {
-    double speed;  // the least with which it leaves the ground; infinite if there is none
+    double speed = infinity;  // the least with which it leaves the ground
     std::vector<SpeedRange> jam_speeds;
 };
 
-// What becomes of the body once it slips, before it passes the tip; below slip_speed it does not
-// slip. Above Painleve's friction it may jam instead of leaving the ground, and leave it again at
-// higher speeds; those ranges are found by a scan, and refined to the last bit.
+// Lift-off of a body between its first slip and the tip; below slip_speed it does not slip. Above
+// Painleve's friction it may jam instead of leaving the ground, and leave it again at higher
+// speeds. A scan finds those ranges, and bisection refines them to the last bit.
 LiftOff lift_off(const Body& body, double friction, double slip_speed, double painleve_friction,
                  const Checkpoint& checkpoint);
 

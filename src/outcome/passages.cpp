@@ -12,46 +12,30 @@ namespace {
 
 int sign_of(double value) { return (value > 0) - (value < 0); }
 
-// One stretch of a motion with the values of what is looked at.
-struct Course {
-    Stretch stretch;
-    std::vector<double> values;
-    double size;  // of the values
-};
-
-// A time with the quantity less its value there: 0 where it is no more than rounding of a touch.
-struct Look {
+// A time with the observable less the value: exactly 0 where rounding cannot tell a touch.
+struct Reading {
     double t;
-    double measure;
+    double excess;
     bool is_last;  // of its stretch
 };
 
 class Search {
   public:
-    Search(const Asked& of, int direction, std::vector<Stretch> stretches)
-        : of_(of), direction_(direction) {
-        for (Stretch& stretch : stretches) {
-            std::vector<double> values = of.measure(stretch.times);
-            double size = 0.0;
-            for (const double value : values) size = std::max(size, std::abs(value));
-            courses_.push_back({std::move(stretch), std::move(values), size});
-        }
-    }
+    Search(const Observable& of, int direction, std::vector<Stretch> stretches)
+        : of_(of), direction_(direction), stretches_(std::move(stretches)) {}
 
-    // The times at which the quantity passes a value.
+    // The times at which the observable passes a value.
     std::vector<double> times_of(double value) const {
-        std::vector<Look> looks;
-        for (const Course& course : courses_) add_looks(course, value, looks);
-        std::vector<double> times = passed(looks, value);
+        std::vector<Reading> readings;
+        for (const Stretch& stretch : stretches_) add_readings(stretch, value, readings);
+        std::vector<double> times = passages_in(readings, value);
         std::sort(times.begin(), times.end());
-        for (const Course& course : courses_) {
-            if (course.stretch.period) repeat(course, value, times);
+        for (const Stretch& stretch : stretches_) {
+            if (stretch.period) repeat(stretch, value, times);
         }
         const auto is_same = [](double before, double t) {
             constexpr double ulps = 4;
-            const double apart = t - before;
-            if (apart > ulps * epsilon * before) return false;  // nearly always
-            return !(apart > ulps * (std::nextafter(before, infinity) - before));
+            return t - before <= ulps * (std::nextafter(before, infinity) - before);
         };
         times.erase(std::unique(times.begin(), times.end(), is_same), times.end());
         return times;
@@ -59,8 +43,8 @@ class Search {
 
     std::vector<std::string> unproved() const {
         std::vector<std::string> found;
-        for (const auto& [stretch, values, size] : courses_) {
-            if (stretch.monotone) continue;
+        for (const Stretch& stretch : stretches_) {
+            if (stretch.proved) continue;
             if (std::find(found.begin(), found.end(), stretch.where) != found.end()) continue;
             found.push_back(stretch.where);
         }
@@ -68,93 +52,90 @@ class Search {
     }
 
   private:
-    void add_looks(const Course& course, double value, std::vector<Look>& looks) const {
+    void add_readings(const Stretch& stretch, double value, std::vector<Reading>& readings) const {
         constexpr double roundings = 8;
-        const auto& [stretch, values, size] = course;
+        const std::vector<double>& values = stretch.values;
+        double size = 0.0;
+        for (const double each : values) size = std::max(size, std::abs(each));
         const double rounding = roundings * epsilon * (size + std::abs(value) + of_.length);
-        std::vector<Look> here;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            here.push_back({stretch.times[i], values[i] - value, false});
-        }
-        const auto is_rounding = [&](const Look& look) {
-            return std::abs(look.measure) <= rounding;
+        const auto is_rounding = [&](double each) { return std::abs(each - value) <= rounding; };
+        const bool is_kept = std::all_of(values.begin(), values.end(), is_rounding);
+        const auto rise = [&](std::size_t i) {
+            return sign_of((values[i + 1] - value) - (values[i] - value));
         };
-        const bool is_kept = std::all_of(here.begin(), here.end(), is_rounding);
-        const std::size_t first = looks.size();
-        for (std::size_t i = 0; i < here.size(); ++i) {
-            const auto rise = [&](std::size_t k) {
-                return sign_of(here[k + 1].measure - here[k].measure);
-            };
-            const bool is_end = i == 0 || i + 1 == here.size();
-            const bool turns = is_end || rise(i - 1) * rise(i) <= 0;
-            looks.push_back(here[i]);
-            if ((is_kept || turns) && is_rounding(here[i])) looks.back().measure = 0.0;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const bool is_last = i + 1 == values.size();
+            const bool turns = i == 0 || is_last || rise(i - 1) * rise(i) <= 0;
+            const bool touches = (is_kept || turns) && is_rounding(values[i]);
+            readings.push_back({stretch.times[i], touches ? 0.0 : values[i] - value, is_last});
         }
-        if (looks.size() > first) looks.back().is_last = true;
     }
 
     bool is_wanted(int sense) const { return direction_ == 0 || direction_ == sense; }
 
-    // Where the looks change their sign, in the sense that is asked for, and where they are 0.
-    std::vector<double> passed(const std::vector<Look>& looks, double value) const {
+    // The times between readings at which the sign changes in the wanted sense, and those of zeros.
+    std::vector<double> passages_in(const std::vector<Reading>& readings, double value) const {
         std::vector<double> found;
         struct Crossing {
             RootBracket bracket;
             int side;
         };
         std::vector<Crossing> crossings;
-        std::size_t next = 0;  // after the last look that was not 0
-        int before = 0;        // its sign; 0 where there was none
-        for (std::size_t i = 0; i < looks.size(); ++i) {
-            const int now = sign_of(looks[i].measure);
+        std::size_t next = 0;  // the reading after the last one that is not 0
+        int before = 0;        // sign of that last one; 0 if there is none
+        for (std::size_t i = 0; i < readings.size(); ++i) {
+            const int now = sign_of(readings[i].excess);
             if (now == 0) continue;
             const bool crosses = before == -now;
-            if (i > next) {  // the first look that is 0
+            if (i > next) {  // readings[next] is the first zero
                 const int sense = before == 0 || crosses ? now : 0;
-                if (is_wanted(sense)) found.push_back(looks[next].t);
+                if (is_wanted(sense)) found.push_back(readings[next].t);
             } else if (crosses && is_wanted(now)) {
-                if (looks[i - 1].is_last) {
-                    found.push_back(looks[i].t);
+                if (readings[i - 1].is_last) {
+                    found.push_back(readings[i].t);
                 } else {
-                    // Turned so that it falls: a place where it is 0 is then the upper end.
-                    const RootBracket bracket(looks[i - 1].t, looks[i].t,
-                                              -now * looks[i - 1].measure, -now * looks[i].measure);
+                    // Multiplied so that it falls: a time with excess 0 becomes the upper end.
+                    const RootBracket bracket(readings[i - 1].t, readings[i].t,
+                                              -now * readings[i - 1].excess,
+                                              -now * readings[i].excess);
                     crossings.push_back({bracket, -now});
                 }
             }
             next = i + 1;
             before = now;
         }
-        if (next < looks.size() && is_wanted(-before)) found.push_back(looks[next].t);
-        for (;;) {  // side by side: each look costs less so
-            std::vector<double> places;
+        if (next < readings.size() && is_wanted(-before)) found.push_back(readings[next].t);
+        for (;;) {  // all brackets side by side, since many samples at once are cheaper
+            std::vector<double> times;
             std::vector<Crossing*> open;
             for (Crossing& crossing : crossings) {
-                const auto place = crossing.bracket.next();
-                if (!place) continue;
-                places.push_back(*place);
+                const auto t = crossing.bracket.next();
+                if (!t) continue;
+                times.push_back(*t);
                 open.push_back(&crossing);
             }
             if (open.empty()) break;
-            const std::vector<double> values = of_.measure(places);
+            const std::vector<double> values = of_.measure(times);
             for (std::size_t k = 0; k < open.size(); ++k) {
-                open[k]->bracket.take(places[k], open[k]->side * (values[k] - value));
+                open[k]->bracket.take(times[k], open[k]->side * (values[k] - value));
             }
         }
         for (const Crossing& crossing : crossings) found.push_back(crossing.bracket.ends().high);
         return found;
     }
 
-    // Adds those between the first and the last periods: from where, in the first one, the quantity
-    // is farthest from the value, they come again.
-    void repeat(const Course& course, double value, std::vector<double>& times) const {
+    // Adds the passages between the first and the last periods: copies of those in one period,
+    // which begins where the observable, in the first period, is farthest from the value.
+    void repeat(const Stretch& stretch, double value, std::vector<double>& times) const {
         constexpr double most = 1'000'000;
-        const auto& at = course.stretch.times;
-        const DoubleDouble period = *course.stretch.period;
+        const auto& at = stretch.times;
+        const DoubleDouble period = *stretch.period;
         std::size_t cut = 0;
         for (std::size_t i = 0; at[i] < at.front() + period.high; ++i) {
-            const auto far = [&](std::size_t k) { return std::abs(course.values[k] - value); };
-            if (far(i) > far(cut)) cut = i;
+            const auto distance = [&](std::size_t k) {
+                return std::abs(stretch.values[k] - value);
+            };
+            if (distance(i) > distance(cut)) cut = i;
         }
         const auto after = [&](double t) {
             return std::upper_bound(times.begin(), times.end(), t);
@@ -174,30 +155,22 @@ class Search {
         times.insert(rest, again.begin(), again.end());
     }
 
-    const Asked& of_;
+    const Observable& of_;
     int direction_;
-    std::vector<Course> courses_;
+    std::vector<Stretch> stretches_;
 };
 
 }  // namespace
 
-Passages passages(const Motion& motion, double last, Quantity quantity,
+Passages passages(const Motion& motion, double last, const Observable& of,
                   const std::vector<double>& values, int direction, const Checkpoint& checkpoint) {
-    if (motion.segments.empty()) return {std::vector<std::vector<double>>(values.size()), {}};
-    const Asked of = asked(motion, quantity, checkpoint);
+    Passages found{std::vector<std::vector<double>>(values.size()), {}};
+    if (motion.segments.empty()) return found;
     const Search search(of, direction, stretches(motion, last, of, checkpoint));
-    Passages found{{}, search.unproved()};
-    for (const double value : values) found.times.push_back(search.times_of(value));
+    const auto times_of = [&](double value) { return search.times_of(value); };
+    std::transform(values.begin(), values.end(), found.times.begin(), times_of);
+    found.unproved = search.unproved();
     return found;
-}
-
-Passages zeros(const Motion& motion, double last, const Measure& function, int direction,
-               const Checkpoint& checkpoint) {
-    if (motion.segments.empty()) return {{{}}, {}};
-    function({motion.segments.front().begin * motion.units.time});  // one that is none says so
-    const Asked of{std::nullopt, function, 0.0};
-    const Search search(of, direction, stretches(motion, last, of, checkpoint));
-    return {{search.times_of(0.0)}, search.unproved()};
 }
 
 }  // namespace rolling_ellipse

@@ -1,4 +1,5 @@
-// The times at which a quantity of a motion passes a value: of the motion itself, not of samples.
+// The times at which an observable of a motion passes a value. They belong to the motion itself,
+// not to samples of it.
 #pragma once
 
 #include <string>
@@ -10,16 +11,12 @@ namespace rolling_ellipse {
 
 struct Passages {
     std::vector<std::vector<double>> times;  // [s], ascending; for each value
-    std::vector<std::string> unproved;       // where, in words, some of them may be missing
+    std::vector<std::string> unproved;       // phrases: where passages may be missing
 };
 
-// All times up to a last one. Direction: +1 where the quantity rises through the value, -1 where it
-// falls, 0 for either and for touches. An event may take omega over the value at once, and counts.
-Passages passages(const Motion& motion, double last, Quantity quantity,
+// All passages up to a last time. Direction: +1 where the observable rises through the value, -1
+// where it falls, 0 for both and for touches. A jump of omega across the value at an event counts.
+Passages passages(const Motion& motion, double last, const Observable& of,
                   const std::vector<double>& values, int direction, const Checkpoint& checkpoint);
-
-// The same for the zeros of a function of which nothing is known.
-Passages zeros(const Motion& motion, double last, const Measure& function, int direction,
-               const Checkpoint& checkpoint);
 
 }  // namespace rolling_ellipse

@@ -11,7 +11,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The quantity at ascending times, by the kind of sample that has it at the least cost.
+// The quantity at ascending times, from the kind of sample that is cheapest to compute.
 void measure(const Motion& motion, const Sampler& sample, Quantity quantity, const double* times,
              std::size_t n, double* values) {
     const auto take = [&](auto kind, const auto& value) {
@@ -47,159 +47,170 @@ void measure(const Motion& motion, const Sampler& sample, Quantity quantity, con
     }
 }
 
-// The stretch of one segment: each law as an overload.
-class Survey {
-  public:
-    Survey(double begin, double unit, const Asked& of, const Asked& theta, double& quarters,
-           Stretch& found)
-        : begin_(begin),
-          unit_(unit),
-          first_(found.times.front()),
-          last_(found.times.back()),
-          of_(of),
-          theta_(theta),
-          quarters_(quarters),
-          found_(found),
-          times_(found.times) {}
+// Facts of a law from which its turning points are searched. Times are since the begin of the
+// segment, in units of the motion.
+struct Course {
+    const char* where;
+    std::vector<DoubleDouble> knots = {};  // the motion is smooth between them
+    bool monotone = false;                 // the observable is monotone between knots, provably
+    std::optional<DoubleDouble> period = {};
+};
 
-    void operator()(const RollingFlow& flow) {
-        const bool turns = flow.kind == MotionKind::rotation;
-        const bool moves = turns || flow.kind == MotionKind::libration;
-        if (of_.quantity && (!moves || (turns && along()))) return;
-        const DoubleDouble half = flow.phase.half_turn;
-        if (moves && !std::isinf(half.high)) return follow_periods(turns ? half : half * 2.0);
-        follow(flow.kind == MotionKind::rest ? resting : rolling);
-    }
-
-    void operator()(const SlopeFlow& flow) {
-        unit_ *= flow.body.time;
-        begin_ /= flow.body.time;
-        if (flow.kind == MotionKind::libration) {
-            return follow_periods((flow.turnings[1] - flow.turnings[0]) * 2.0);
-        }
-        const bool runs = flow.kind == MotionKind::rotation;
-        if (runs) add(flow.turnings);
-        if (flow.acceleration != 0) add({{-flow.start.omega / flow.acceleration, 0.0}});
-        if (of_.quantity && (!runs || along())) return;
-        follow(flow.kind == MotionKind::rest ? resting : rolling);
-    }
-
-    void operator()(const SteppedRolling& motion) { follow(motion.steps); }
-    void operator()(const SteppedMultipliers& motion) {
-        std::visit([this](const auto& steps) { follow(steps); }, motion.steps);
-    }
-
-    void operator()(const Slide& slide) {
-        std::vector<DoubleDouble> begins;
-        for (const SlidePiece& piece : slide.pieces) begins.push_back(piece.centre.time);
-        add(begins);
-        follow("while it slides");
-    }
-
-    void operator()(const Settling&) { follow("while it settles"); }
-    void operator()(const Flight&) { follow("in flight"); }
-    void operator()(const Resting&) { follow(resting); }
-    void operator()(const Jam&) { follow(resting); }
-
-  private:
+// The course of each law, for one observable.
+struct CourseOf {
     static constexpr const char* rolling = "while it rolls";
     static constexpr const char* resting = "while it rests";
 
-    // Whether it grows with the angle of a body that rolls.
-    bool along() const {
-        return of_.quantity && of_.quantity != Quantity::z && of_.quantity != Quantity::omega;
+    std::optional<Quantity> quantity;
+
+    Course operator()(const RollingFlow& flow) const {
+        const bool turns = flow.kind == MotionKind::rotation;
+        const bool moves = turns || flow.kind == MotionKind::libration;
+        Course found{flow.kind == MotionKind::rest ? resting : rolling};
+        found.monotone = quantity && (!moves || (turns && is_along()));
+        const DoubleDouble half = flow.phase.half_turn;
+        if (moves && !std::isinf(half.high)) found.period = turns ? half : half * 2.0;
+        return found;
     }
 
-    // The time after so long since the begin of the segment, in units of the law.
-    double time(const DoubleDouble& since) const { return double(since + begin_) * unit_; }
-
-    // Adds those times after the begin of the segment that lie inside.
-    void add(const std::vector<DoubleDouble>& since) {
-        for (const DoubleDouble& each : since) {
-            const double t = time(each);
-            if (first_ < t && t < last_) times_.push_back(t);
+    Course operator()(const SlopeFlow& flow) const {
+        const double unit = flow.body.time;  // a power of two: products with it are exact
+        Course found{flow.kind == MotionKind::rest ? resting : rolling};
+        if (flow.kind == MotionKind::libration) {
+            found.period = (flow.turnings[1] - flow.turnings[0]) * 2.0 * unit;
+            return found;
         }
-        sort_once(times_);
+        const bool runs = flow.kind == MotionKind::rotation;
+        if (runs) found.knots = flow.turnings;
+        if (flow.acceleration != 0) {
+            found.knots.push_back({-flow.start.omega / flow.acceleration, 0.0});
+        }
+        for (DoubleDouble& knot : found.knots) knot = knot * unit;
+        found.monotone = quantity && (!runs || is_along());
+        return found;
     }
 
-    void count(double quarters) {
-        constexpr double most = 100'000;
-        quarters_ += quarters;
-        if (!(quarters_ > most)) return;
-        refuse_length(of_, "not be looked at over more than 100000 quarter turns",
-                      "a motion of " + text(std::round(quarters_)));
+    Course operator()(const SteppedRolling& motion) const { return of_steps(motion.steps); }
+    Course operator()(const SteppedMultipliers& motion) const {
+        return std::visit([](const auto& steps) { return of_steps(steps); }, motion.steps);
     }
+
+    Course operator()(const Slide& slide) const {
+        Course found{"while it slides"};
+        for (const SlidePiece& piece : slide.pieces) found.knots.push_back(piece.centre.time);
+        return found;
+    }
+
+    Course operator()(const Settling&) const { return {"while it settles"}; }
+    Course operator()(const Flight&) const { return {"in flight"}; }
+    Course operator()(const Resting&) const { return {resting}; }
+    Course operator()(const Jam&) const { return {resting}; }
+
+  private:
+    // Is the quantity monotone in the angle of a body that rolls?
+    bool is_along() const { return quantity != Quantity::z && quantity != Quantity::omega; }
 
     template <class Steps>
-    void follow(const Steps& steps) {
-        std::vector<DoubleDouble> knots;
-        for (const auto& knot : steps.knots) knots.push_back({knot.t, 0.0});
-        add(knots);
-        follow(rolling);
+    static Course of_steps(const Steps& steps) {
+        Course found{rolling};
+        for (const auto& knot : steps.knots) found.knots.push_back({knot.t, 0.0});
+        return found;
+    }
+};
+
+// Finds the turning points of an observable, segment by segment.
+class Survey {
+  public:
+    Survey(const Motion& motion, const Observable& of, const Checkpoint& checkpoint)
+        : unit_(motion.units.time),
+          of_(of),
+          theta_(observable(motion, Quantity::theta, checkpoint)) {}
+
+    // The stretch of a segment, given its begin [units of the motion] and its first and last time
+    // [s].
+    Stretch stretch(const Course& course, double begin, double first, double last) {
+        Stretch found{course.where, {first, last}, {}};
+        for (const DoubleDouble& knot : course.knots) {
+            const double t = double(knot + begin) * unit_;
+            if (first < t && t < last) found.times.push_back(t);
+        }
+        sort_once(found.times);
+        if (!course.monotone) add_turning_points(course, found);
+        found.values = of_.measure(found.times);
+        return found;
     }
 
-    // Adds the turning points of what is smooth between the times, in so many parts from each to
-    // the next at least, and in some a quarter turn; a function may change with the time alone.
-    void follow(const char* where, double least = 1.0) {
+  private:
+    void add_turning_points(const Course& course, Stretch& found) {
+        constexpr double parts_a_period = 8;
+        std::vector<double>& times = found.times;
+        if (!course.period) {
+            found.proved = divide(times, 1.0);
+            return;
+        }
+        const double first = times.front();
+        const double last = times.back();
+        const double period = double(*course.period) * unit_;
+        const double periods = (last - first) / period;
+        if (!of_.quantity || periods < 5) {
+            count(4 * periods);
+            found.proved = divide(times, std::ceil(parts_a_period * periods));
+            return;
+        }
+        found.period = *course.period * unit_;
+        times = {first, first + 2 * period};
+        std::vector<double> ending{last - 2 * period, last};
+        const bool begin_proved = divide(times, 2 * parts_a_period);
+        found.proved = divide(ending, 2 * parts_a_period) && begin_proved;
+        times.insert(times.end(), ending.begin(), ending.end());
+    }
+
+    // Adds the turning points between times from each of which to the next the motion is smooth.
+    // Each interval is divided into at least so many parts, and into four a quarter turn. A
+    // function of the caller gets 16 in all, since it may change while the body rests. Returns
+    // whether the observable is proved to be monotone between the times.
+    bool divide(std::vector<double>& times, double least) {
         constexpr double parts_a_quarter = 4;
-        if (!of_.quantity) least = std::max(least, std::ceil(16.0 / double(times_.size())));
-        found_.where = where;
-        const std::vector<double> ends = times_;
+        if (!of_.quantity) least = std::max(least, std::ceil(16.0 / double(times.size())));
+        const std::vector<double> ends = times;
         const std::vector<double> theta = theta_.measure(ends);
         for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
             const double turned = std::abs(theta[i + 1] - theta[i]) / half_pi;
             count(turned);
             const double parts = least + std::floor(parts_a_quarter * turned);
             for (double k = 1; k < parts; ++k) {
-                times_.push_back(ends[i] + (ends[i + 1] - ends[i]) * k / parts);
+                times.push_back(ends[i] + (ends[i + 1] - ends[i]) * k / parts);
             }
         }
-        sort_once(times_);
-        found_.monotone = add_turns(of_.measure, of_.length, times_) && of_.quantity;
+        sort_once(times);
+        return add_turns(of_.measure, of_.length, times) && of_.quantity;
     }
 
-    // What comes again in each period, in units of the law: the first two and the last two of many.
-    void follow_periods(const DoubleDouble& period) {
-        constexpr double parts_a_period = 8;
-        const double length = double(period) * unit_;
-        const double periods = (last_ - first_) / length;
-        if (!of_.quantity || periods < 5) {
-            count(4 * periods);
-            return follow(rolling, std::ceil(parts_a_period * periods));
-        }
-        found_.period = period * unit_;
-        std::vector<double> last{last_ - 2 * length, last_};
-        times_.back() = first_ + 2 * length;
-        follow(rolling, 2 * parts_a_period);
-        const bool monotone = found_.monotone;
-        times_.swap(last);
-        follow(rolling, 2 * parts_a_period);
-        found_.monotone = found_.monotone && monotone;
-        times_.insert(times_.begin(), last.begin(), last.end());
+    void count(double quarters) {
+        constexpr double most = 100'000;
+        quarters_ += quarters;
+        if (!(quarters_ > most)) return;
+        refuse_length(of_, "be searched over at most 100000 quarter turns",
+                      "a motion of " + text(std::round(quarters_)));
     }
 
-    double begin_;
     double unit_;
-    double first_;
-    double last_;
-    const Asked& of_;
-    const Asked& theta_;
-    double& quarters_;  // turns that were followed so far
-    Stretch& found_;
-    std::vector<double>& times_;
+    const Observable& of_;
+    Observable theta_;
+    double quarters_ = 0.0;  // quarter turns searched so far
 };
 
 }  // namespace
 
-void refuse_length(const Asked& of, const std::string& requirement, const std::string& got) {
+void refuse_length(const Observable& of, const std::string& requirement, const std::string& got) {
     constexpr const char* names[] = {"theta", "x", "z", "omega", "contact_x"};
     const std::string name = of.quantity ? names[static_cast<int>(*of.quantity)] : "function";
     throw std::invalid_argument(name + " must " + requirement + ", got " + got +
                                 ": simulate a shorter motion");
 }
 
-Asked asked(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint) {
-    constexpr std::size_t many = 1000;  // times, which a table of the motion is worth
+Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint) {
+    constexpr std::size_t many = 1000;  // samples, for which a table of the motion pays
     const auto sample = std::make_shared<const Sampler>(motion, many);
     const auto values = [&motion, &checkpoint, sample, quantity](const std::vector<double>& times) {
         constexpr std::size_t together = 1024;
@@ -216,23 +227,22 @@ Asked asked(const Motion& motion, Quantity quantity, const Checkpoint& checkpoin
     return {quantity, values, is_path ? long_axis : 0.0};
 }
 
-std::vector<Stretch> stretches(const Motion& motion, double last, const Asked& of,
+std::vector<Stretch> stretches(const Motion& motion, double last, const Observable& of,
                                const Checkpoint& checkpoint) {
-    const Asked theta = asked(motion, Quantity::theta, checkpoint);
-    const double unit = motion.units.time;
-    double quarters = 0.0;
+    const CourseOf course{of.quantity};
+    Survey survey(motion, of, checkpoint);
     std::vector<Stretch> found;
     for (auto segment = motion.segments.begin(); segment != motion.segments.end(); ++segment) {
-        const double begin = segment->begin * unit;
-        if (begin > last) break;
+        const double first = segment->begin * motion.units.time;
+        if (first > last) break;
         const auto next = segment + 1;
-        const bool ends_here = next == motion.segments.end() || next->begin * unit > last;
-        const double end = ends_here ? last : std::nextafter(next->begin * unit, 0.0);
-        if (end < begin) continue;
-        Stretch here{"while it rolls", {begin, end}};
-        Survey survey(segment->begin, unit, of, theta, quarters, here);
-        std::visit([&](const auto& law) { survey(itself(law)); }, segment->law);
-        found.push_back(std::move(here));
+        const double until =
+            next == motion.segments.end() ? infinity : next->begin * motion.units.time;
+        const double end = until > last ? last : std::nextafter(until, 0.0);
+        if (end < first) continue;
+        const auto of_law = [&](const auto& law) { return course(itself(law)); };
+        found.push_back(
+            survey.stretch(std::visit(of_law, segment->law), segment->begin, first, end));
     }
     return found;
 }

@@ -14,32 +14,34 @@ namespace rolling_ellipse {
 
 enum class Quantity { theta, x, z, omega, contact_x };
 
-// A quantity, in SI units; or a function of which nothing is known.
-struct Asked {
-    std::optional<Quantity> quantity;
+// A quantity as a function of time, in SI units; or the caller's function of time.
+struct Observable {
+    std::optional<Quantity> quantity;  // absent for a function of the caller
     Measure measure;
-    double length;  // the rounding of which it has beside its own: paths are sums [m]
+    double length;  // [m] its rounding counts beside that of the values: paths are sums
 };
 
-// The motion and the checkpoint have to live as long.
-Asked asked(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint);
+// A quantity of a motion. Motion and checkpoint have to live as long.
+Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint);
 
-// What a body does by one law, up to the next event.
+// One segment of a motion with the turning points of an observable.
 struct Stretch {
-    const char* where;          // in words
-    std::vector<double> times;  // [s], ascending, the first and the last one included
-    bool monotone = true;       // what is asked for, between each time and the next, provably
-    // [s], of what repeats itself so often that times are those of two periods and of the last two.
+    const char* where;           // a phrase for people: "while it rolls"
+    std::vector<double> times;   // [s], ascending; begin, turning points, end
+    std::vector<double> values;  // of the observable
+    bool proved = true;          // is the observable monotone from each time to the next?
+    // [s], of a motion that repeats itself often: `times` then cover the first two and the last two
+    // periods.
     std::optional<DoubleDouble> period = {};
 };
 
-// The stretches of a motion up to a time [s]. Throws std::invalid_argument for a motion that is too
-// long.
-std::vector<Stretch> stretches(const Motion& motion, double last, const Asked& of,
+// The stretches of a motion up to a time [s]. Throws std::invalid_argument if the motion has too
+// many turns.
+std::vector<Stretch> stretches(const Motion& motion, double last, const Observable& of,
                                const Checkpoint& checkpoint);
 
-// Throws std::invalid_argument: what is asked for must ..., got ...
-[[noreturn]] void refuse_length(const Asked& of, const std::string& requirement,
+// Throws std::invalid_argument: "<observable> must <requirement>, got <got>".
+[[noreturn]] void refuse_length(const Observable& of, const std::string& requirement,
                                 const std::string& got);
 
 }  // namespace rolling_ellipse

@@ -9,32 +9,32 @@
 namespace rolling_ellipse {
 namespace {
 
-// A place on the ellipse, and what rolling needs there.
-struct Place : ShapePlace {
+// A position of rolling, by its angle and the height of its centre.
+struct Position : ShapePlace {
     double angle;      // phi
     double over_flat;  // h - S
 };
 
-Place place_on(const Shape& shape, double sin2, double cos2) {
+Position position(const Shape& shape, double sin2, double cos2) {
     const ShapePlace at = place_at(shape, sin2, cos2);
     return {at, std::atan2(std::sqrt(sin2), std::sqrt(cos2)),
             shape.c2 * sin2 / (at.h + shape.short_axis)};
 }
 
-// Energy over the flat position, H - S, of a motion that has omega^2 at the place: physics (26).
-double energy_over_flat(const Place& at, double omega2) {
+// Energy over the flat position, H - S, of a motion with omega^2 at a position: physics (26).
+double energy_over_flat(const Position& at, double omega2) {
     return 0.5 * at.inertia() * omega2 + at.over_flat;
 }
 
-// The least value of a quantity from which on something happens, and where it first does.
+// The least value of a quantity (energy or friction) at which a law breaks, and the angle there.
 struct Onset {
     double value = infinity;
     std::optional<double> angle;
-};
 
-void take_if_lower(Onset& onset, double value, double angle) {
-    if (value < onset.value) onset = {value, angle};
-}
+    void lower_to(double lower, double at) {
+        if (lower < value) *this = {lower, at};
+    }
+};
 
 // The energy H - S from which on N of rolling vanishes somewhere, physics (46): at H = h - r/p,
 // with r = normal_at_rest, p = normal_moving; the least such H is a root of h' p^2 - r' p + r p'.
@@ -51,17 +51,17 @@ Onset contact_loss(const Shape& shape) {
         const double over_flat = range.width * x;
         const double under_tip = range.width * (1 - x);
         const double h = shape.short_axis + over_flat;
-        const Place at = place_on(shape, over_flat * (h + shape.short_axis) / shape.c2,
-                                  under_tip * (1 + h) / shape.c2);
+        const Position at = position(shape, over_flat * (h + shape.short_axis) / shape.c2,
+                                     under_tip * (1 + h) / shape.c2);
         if (at.normal_part >= 0) continue;
-        take_if_lower(onset, energy_over_flat(at, -at.kh / at.normal_part), at.angle);
+        onset.lower_to(energy_over_flat(at, -at.kh / at.normal_part), at.angle);
     }
     return onset;
 }
 
-// The least omega^2 at which rolling needs |F| >= mu N at a place, physics (47):
+// The least omega^2 at which rolling needs |F| >= mu N at a position, physics (47):
 //     |h'| |omega^2 (D - h rho) - h| = mu (kh + omega^2 normal_part),  rho h = S^2/h^2.
-double slip_omega2(const Shape& shape, const Place& at, double friction) {
+double slip_omega2(const Shape& shape, const Position& at, double friction) {
     const double dh = std::sqrt(at.dh2);
     if (at.h * dh >= friction * at.kh) return 0.0;
     const double inertial = dh * (at.inertia() - square(shape.short_axis / at.h));
@@ -74,8 +74,8 @@ double slip_omega2(const Shape& shape, const Place& at, double friction) {
     return least;
 }
 
-// The lowest place at which a body at rest needs |F| = mu N: h |h'| = mu (k^2 + h^2), a quadratic
-// equation in y = h^2 - B, physics (48).
+// The lowest position in which a body at rest needs |F| = mu N: h |h'| = mu (k^2 + h^2), a
+// quadratic equation in y = h^2 - B, physics (48).
 Onset slip_at_rest(const Shape& shape, double friction) {
     const double b = shape.short_axis;
     const double mu2 = square(friction);
@@ -84,12 +84,12 @@ Onset slip_at_rest(const Shape& shape, double friction) {
     const double discriminant = square(half) - 4 * (1 + mu2) * mu2 * square(flat_inertia);
     if (half <= 0 || discriminant < 0) return {};
     const double y = 2 * mu2 * square(flat_inertia) / (half + std::sqrt(discriminant));
-    const Place at = place_on(shape, y / shape.c2, (shape.c2 - y) / shape.c2);
+    const Position at = position(shape, y / shape.c2, (shape.c2 - y) / shape.c2);
     return {at.over_flat, at.angle};
 }
 
-// The least energy of slipping over all places: that of a turning point, or the minimum found by
-// a scan that is even in ln tan phi, then golden section around the best.
+// The least energy of slipping over all positions: either at a turning point, or the minimum from a
+// scan, even in ln tan phi, and golden section around the best.
 Onset slip(const Shape& shape, double friction) {
     if (std::isinf(friction)) return contact_loss(shape);
     constexpr int scan = 512;
@@ -97,7 +97,7 @@ Onset slip(const Shape& shape, double friction) {
     constexpr double last = 20.0;    // near the flat, and over 1/friction near the tip
     const auto energy_at = [&](double log_tan) {
         const double tan2 = std::exp(2 * log_tan);
-        const Place at = place_on(shape, tan2 / (1 + tan2), 1 / (1 + tan2));
+        const Position at = position(shape, tan2 / (1 + tan2), 1 / (1 + tan2));
         return Onset{energy_over_flat(at, slip_omega2(shape, at, friction)), at.angle};
     };
     constexpr double step = (last - first) / scan;
@@ -118,8 +118,8 @@ Onset slip(const Shape& shape, double friction) {
     return at_rest.value < moving.value ? at_rest : moving;
 }
 
-// mu = (K + Y/u)/sqrt(Y), Y = (1 - u)(u - B) = (h h')^2: stationary where
-// -K Y' u^2 + Y Y' u - 2 Y^2 = 0: physics (49).
+// The least friction with which sliding may jam, mu = (K + Y/u)/sqrt(Y), Y = (1 - u)(u - B) = (h
+// h')^2: stationary where -K Y' u^2 + Y Y' u - 2 Y^2 = 0: physics (49).
 Onset painleve(const Shape& shape) {
     const double b2 = square(shape.short_axis);
     const double k2 = shape.gyration2;
@@ -132,8 +132,8 @@ Onset painleve(const Shape& shape) {
     for (const double x : roots_on_unit_interval(bernstein(stationary))) {
         const double y_here = w * x * w * (1 - x);
         if (y_here <= 0) continue;
-        take_if_lower(onset, (k2 + y_here / (b2 + w * x)) / std::sqrt(y_here),
-                      std::atan2(std::sqrt(x), std::sqrt(1 - x)));
+        onset.lower_to((k2 + y_here / (b2 + w * x)) / std::sqrt(y_here),
+                       std::atan2(std::sqrt(x), std::sqrt(1 - x)));
     }
     return onset;
 }

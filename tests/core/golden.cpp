@@ -22,7 +22,6 @@
 #include "motions.hpp"
 #include "outcome/blow.hpp"
 #include "outcome/classify.hpp"
-#include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
 #include "rolling/level/many_bodies.hpp"
 #include "simulate.hpp"

@@ -20,7 +20,7 @@ from scipy.integrate import solve_ivp
 from stability_laws import exponent
 
 # most motions here are about the rolling equation, whether a ground could give the forces or not
-pytestmark = pytest.mark.filterwarnings("ignore:rolling is true until")
+pytestmark = pytest.mark.filterwarnings("ignore:rolling is valid until")
 
 METHODS: dict[str, dict[str, Any]] = {
     "rk4": {"method": "rk4"},

@@ -388,7 +388,7 @@ def test_a_motion_that_stops_early_has_a_summary_and_exit_code_1(tmp_path: Path)
     options += ["--time", "100000"]
     code, out, err = typed(tmp_path, *options)
     assert (code, err) == (1, "")
-    assert "MAX_EVENTS: max_events = 10000 events ended at t = " in out
+    assert "MAX_EVENTS: max_events = 10000 was reached at t = " in out
     scene = rl.Scene(2.0, 1.0, mass=10.0, omega=3.0, friction=0.2, restitution=1.0)
     reached = rl.simulate(scene, 1e5, raise_on_failure=False)
     assert f"{reached.x[-1]:.12g} m in {reached.t[-1]:g} s, " in out

@@ -212,7 +212,7 @@ def test_corrected_is_saved_with_its_start(start: tuple[Array, Array], tmp_path:
 def test_corrected_raises_where_it_stops() -> None:
     times = np.linspace(0, 1, 11)
     with pytest.raises(
-        rl.IntegrationError, match=r"^max_steps = 4 steps ended at t = 0\.1"
+        rl.IntegrationError, match=r"^max_steps = 4 was reached at t = 0\.1"
     ) as caught:
         corrected(Q, Q_DOT, times, max_steps=4)
     there = caught.value.trajectory

@@ -133,7 +133,7 @@ def second_derivative(motion: Trajectory, times: Any, name: str, d: float) -> An
 
 
 @pytest.mark.parametrize("scene", SLOPING.values(), ids=SLOPING)
-@pytest.mark.filterwarnings("ignore:rolling is true until")
+@pytest.mark.filterwarnings("ignore:rolling is valid until")
 def test_forces_on_a_slope_are_what_newton_asks_for(scene: Scene) -> None:
     """m x'' = F + m g sin(alpha), m z'' = N - m g cos(alpha), I theta'' = -h F - h' N, with x, z,
     theta differenced along a motion. A difference misses by c d^4, so that over 2 d differs from

@@ -10,7 +10,7 @@ import rolling_ellipse as rl
 from oracles.numbers import DIGITS, EPS
 from rolling_ellipse import Scene
 
-pytestmark = pytest.mark.filterwarnings("ignore:rolling is true until")
+pytestmark = pytest.mark.filterwarnings("ignore:rolling is valid until")
 
 # flat, upright, a circle and the thinnest there are; both ways, several half turns
 SCENES = {

@@ -100,7 +100,7 @@ def test_a_tilted_body_errs_by_the_square_of_the_speed_of_rest(theta: float) -> 
 
 def test_the_product_too_ends_where_its_events_are_used_up() -> None:
     """With less events than bounces are counted it says so, and does not go on wrong."""
-    with pytest.raises(IntegrationError, match="max_events = 10 events ended at t = ") as raised:
+    with pytest.raises(IntegrationError, match="max_events = 10 was reached at t = ") as raised:
         simulate(dropped(), 2.0, max_events=10)
     found = raised.value.trajectory
     assert found.status is Status.MAX_EVENTS and len(found.events) == 10

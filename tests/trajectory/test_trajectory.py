@@ -83,7 +83,7 @@ def test_rolling_that_ends(scene: Scene) -> None:
     """At valid_until the law that ends it holds: |F| = friction N, or N = 0; before it the ground
     can hold the motion. 1e-9 of the weight: time and angle are good to some 1e-15, and the forces
     change by at most some hundred weights a second."""
-    with pytest.warns(ValidityWarning, match="rolling is true until t = "):
+    with pytest.warns(ValidityWarning, match="rolling is valid until t = "):
         trajectory = simulate(scene, 10.0, model="rolling")
     assert trajectory.status is Status.VALIDITY_LOST and not trajectory.success
     assert trajectory.t.size == 1001 and trajectory.t[-1] == 10

@@ -195,7 +195,7 @@ def test_a_model_that_is_too_poor_has_no_answer() -> None:
     """Exact rolling where the body slips: its motion is not a slow one, it is none."""
     scene = SUITABLE["slips"][0]
     exact = only(work_precision(scene, 1.0, **QUICK), "exact")
-    assert exact.status == "VALIDITY_LOST" and "rolling is true until" in exact.reason
+    assert exact.status == "VALIDITY_LOST" and "rolling is valid until" in exact.reason
     assert math.isnan(exact.errors.final) and math.isnan(exact.time)
 
 

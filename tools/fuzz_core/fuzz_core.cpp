@@ -15,7 +15,6 @@
 #include "losses.hpp"
 #include "outcome/blow.hpp"
 #include "outcome/passages.hpp"
-#include "outcome/required_friction.hpp"
 #include "outcome/thresholds.hpp"
 #include "proof/law.hpp"
 #include "rolling/level/many_bodies.hpp"
@@ -251,8 +250,9 @@ void check_solution(const Scene& scene, const Solution& solution, double t_end) 
         const double last = solution.followed_until;
         for (const Quantity quantity :
              {Quantity::theta, Quantity::x, Quantity::z, Quantity::omega, Quantity::contact_x}) {
-            const auto found =
-                passages(solution.motion, last, quantity, {0.0, 1.0}, 0, patience(1000));
+            const Checkpoint checkpoint = patience(1000);
+            const Observable of = observable(solution.motion, quantity, checkpoint);
+            const auto found = passages(solution.motion, last, of, {0.0, 1.0}, 0, checkpoint);
             for (const std::vector<double>& times : found.times) {
                 CHECK(std::is_sorted(times.begin(), times.end()));
                 CHECK(times.empty() || (times.front() >= 0 && times.back() <= last));
