@@ -218,19 +218,6 @@ def test_every_damaged_byte_is_found_or_harmless(name: str, stride: int, small: 
     assert refused > len(whole) / stride / 2
 
 
-def test_a_truncated_chunk_is_computed_anew(out: Path) -> None:
-    simulate_many(GRID, TIMES, out=out)
-    before, (_, cut, *_) = states(out), chunks(out)
-    with open(cut, "r+b") as file:
-        file.truncate(cut.stat().st_size // 2)
-    with pytest.raises(ValueError, match=rf"{cut.name}.*: simulate_many with the same .* anew$"):
-        list(load_many(out))
-    simulate_many(GRID, TIMES, out=out)
-    now = states(out)
-    assert {name for name in now if now[name] != before[name]} == {cut.name}
-    require_equal(load_many(out), simulate_many(GRID, TIMES))
-
-
 @pytest.mark.parametrize("name", ["request.npz", "end.json", "chunk"])
 @pytest.mark.parametrize("content", [b"", b"PK\x05\x06" + bytes(18), b"{}", b"\xff\xfe"])
 def test_other_files_in_their_places(name: str, content: bytes, small: Path) -> None:

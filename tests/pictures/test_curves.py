@@ -18,7 +18,6 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
 from oracles.pictures import figure_of, shows_something
-from rolling_ellipse._ask.scene import SCENE_UNITS
 from rolling_ellipse._pictures import sampling
 from rolling_ellipse._pictures.comparison import Comparison, labels_of
 
@@ -158,15 +157,6 @@ def lightness(colour: str) -> float:
 
 
 @pytest.mark.parametrize("picture", OVER_TIME)
-def test_events_are_dotted_lines(picture: Callable[..., Any], report: rl.Trajectory) -> None:
-    state = report.scene.initial_state
-    events = tuple(rl.Event(t, rl.EventKind.SLIP, state, state) for t in (1.5, 4.0))
-    shown = picture(dataclasses.replace(report, kept_events=events), ax=new_axes())
-    (mark,) = shown.marks
-    assert [segment[0, 0] for segment in mark.get_segments()] == [1.5, 4.0]
-
-
-@pytest.mark.parametrize("picture", OVER_TIME)
 def test_time_that_is_not_valid_has_grey_ground(
     picture: Callable[..., Any], report: rl.Trajectory
 ) -> None:
@@ -281,18 +271,3 @@ def test_what_nothing_tells_apart_is_numbered() -> None:
     assert labels_of([ROLLING] * 3, None) == ["1", "2", "3"]
     two_alike = [ROLLING, ROLLING, dataclasses.replace(ROLLING, method="rk4")]
     assert labels_of(two_alike, None) == ["1", "2", "3"]
-
-
-def test_labels_of_one_motion() -> None:
-    assert labels_of([ROLLING], None) == [""]
-    assert labels_of([ROLLING], ["mine"]) == ["mine"]
-
-
-def test_names_given_are_kept() -> None:
-    assert labels_of([ROLLING, ROLLING], ("same", "same")) == ["same", "same"]
-
-
-def test_every_number_of_a_scene_has_a_unit() -> None:
-    numbers = {field.name for field in dataclasses.fields(rl.Scene)} - {"impulse"}
-    assert set(SCENE_UNITS) == numbers
-    assert math.isinf(varied().friction)  # so that "friction = ∞" above is what it says

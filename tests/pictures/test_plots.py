@@ -458,11 +458,6 @@ def test_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajector
     assert across == pytest.approx(up, rel=1 / window.width)
 
 
-def test_a_slope_is_drawn_as_a_slope() -> None:
-    downhill = drawing.tilted(rl.scenes.slope).transform((1.0, 0.0))
-    assert downhill == pytest.approx([math.cos(0.1), -math.sin(0.1)], rel=1e-15)
-
-
 # -------------------------------------------------------------------------------------- plot
 
 
@@ -498,16 +493,6 @@ def test_curves_of_one_panel_differ_in_more_than_hue(report: rl.Trajectory) -> N
             styles = {(line.get_linestyle(), line.get_marker()) for line in (one, other)}
             values = [rgb_to_hsv(to_rgb(line.get_color()))[2] for line in (one, other)]
             assert len(styles) == 2 or abs(values[0] - values[1]) > 0.3
-
-
-def test_overview_draws_the_limit_of_friction(report: rl.Trajectory) -> None:
-    assert rl.plot(report, figure=Figure()).friction_limit is None
-    rough = dataclasses.replace(report, scene=dataclasses.replace(report.scene, friction=0.9))
-    band = rl.plot(rough, figure=Figure()).friction_limit
-    corners = points_of(band)
-    largest = seen(report, rl.plot(rough, figure=Figure()).normal_force).normal_force.max()
-    assert largest == pytest.approx(report.normal_force.max(), rel=1e-3)
-    assert (corners[:, 1].min(), corners[:, 1].max()) == (-0.9 * largest, 0.9 * largest)
 
 
 def test_overview_marks_where_the_model_is_not_valid(report: rl.Trajectory) -> None:
@@ -562,11 +547,3 @@ def test_a_reference_may_be_given() -> None:
     shown = rl.plot_error(one, "x", other, ax=new_axes())
     t, error = np.asarray(shown.errors[0].get_data())
     assert error == pytest.approx(np.abs(one.sol(t).x - other.sol(t).x), abs=1e-15)
-
-
-def test_pictures_are_methods_too() -> None:
-    motion = rl.simulate(rl.scenes.report, 2.0)
-    for name in ("strobe", "paths", "phase", "forces", "energy", "constraints", "error"):
-        ax = new_axes()
-        getattr(motion, f"plot_{name}")(ax=ax)
-        assert ax.lines

@@ -16,8 +16,7 @@ import make_rolling_reference as reference
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion, arguments, carried, grain
-from oracles.geometry import support
+from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion, arguments, grain
 from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, flow, geometry, period, thresholds
@@ -260,112 +259,7 @@ def test_on_the_separatrix_the_period_is_infinite() -> None:
         assert period(Scene(2.0, 1.0, omega=speed)) == math.inf
 
 
-# -------------------------------------------------------------------------------- symmetries
-
-# the grain of states that fell through the neighbourhood of the tip is no longer linear
-ORDINARY = [name for name in MOTIONS if not name.startswith("just")]
-ordinary = pytest.mark.parametrize("motion", [MOTIONS[name] for name in ORDINARY], ids=ORDINARY)
-
-
-@each_motion
-def test_mirror(motion: Motion) -> None:
-    """Seen from the other side: the same bits, with the other sign."""
-    times = np.array([-1e3, -0.7, 1e-6, 0.2, 3.0, 44.0, 1e7])
-    start: dict[str, Any] = arguments(motion)
-    seen = start | {"theta": -start["theta"], "omega": -start["omega"]}
-    for one, other in zip(flow(times, **start), flow(times, **seen), strict=True):
-        assert np.array_equal(one, -other)
-
-
-@ordinary
-def test_negative_times_are_the_motion_backwards(motion: Motion) -> None:
-    """The film run backwards starts with the opposite speed."""
-    start: dict[str, Any] = arguments(motion)
-    for t in (1e-6, 0.3, 2.0, 33.0):
-        before = np.array(flow(-t, **start))
-        after = np.array(flow(t, **(start | {"omega": -start["omega"]})))
-        off = np.abs(before - after * [1, -1, 1])
-        assert np.all(off <= 2 * LARGEST_ERROR * grain(t, motion))  # both may be off
-
-
-@ordinary
-def test_there_and_back(motion: Motion) -> None:
-    """The state reached is only known to its units; going back carries them along."""
-    a, b, gyration2, gravity, theta, omega = motion
-    for t in (0.3, 2.0, 33.0):
-        there = flow(t, **arguments(motion))
-        reached = (a, b, gyration2, gravity, there[0], there[1])
-        back = np.array(flow(-t, **arguments(reached)))
-        off = np.abs(back - [theta, omega, -there[2]])
-        assert np.all(off <= carried(t, motion, reached, -t))
-
-
-@ordinary
-def test_two_steps_are_one(motion: Motion) -> None:
-    for t1, t2 in ((0.25, 0.5), (1.0, 7.0), (30.0, -2.0), (5.0, 200.0)):
-        first = flow(t1, **arguments(motion))
-        reached = (*motion[:4], first[0], first[1])
-        second = np.add(flow(t2, **arguments(reached)), [0, 0, first[2]])
-        off = np.abs(second - flow(t1 + t2, **arguments(motion)))
-        unit = LARGEST_ERROR * grain(t1 + t2, motion)
-        assert np.all(off <= carried(t1, motion, reached, t2) + unit)
-
-
 # ------------------------------------------------------------------------------------ energy
-
-
-def energy_misses(motion: Motion, times: np.ndarray, omega_factor: float = 1.0) -> float:
-    """Largest error of the energy in ulp, after what 2 ulp of theta excuse; in long double.
-
-    theta is the start plus what it turned: its grain is that of the larger of both.
-    """
-    a, b, gyration2, gravity, *_ = (np.longdouble(value) for value in motion)
-    found = flow(times, **arguments(motion))
-
-    def terms(theta: Any, omega: Any) -> tuple[Any, Any]:
-        h, slope, curvature = support(theta, a, b)
-        energy = (gyration2 + h**2 + slope**2) * omega**2 / 2 + gravity * h
-        by_angle = slope * (h + curvature) * omega**2 + gravity * slope
-        return energy, np.abs(by_angle)
-
-    theta, omega = (np.asarray(values, np.longdouble) for values in found[:2])
-    energy, by_angle = terms(theta, omega * omega_factor)
-    start, _ = terms(np.longdouble(motion[4]), np.longdouble(motion[5]))
-    excused = 2 * np.spacing(np.maximum(np.abs(found[0]), abs(motion[4]))) * by_angle
-    return float(np.max((np.abs(energy - start) - excused) / start) / EPS)
-
-
-@each_motion
-def test_energy_is_constant(motion: Motion) -> None:
-    """16 ulp of E/m over 1e5 samples of a hundred swings; if it swings, also after 1e9 s (if it
-    turns, theta is a large number by then and its grain hides everything)."""
-    swing = float(exact_period(motion, 12))
-    spans = [np.linspace(0, 100 * swing, 100_000)]
-    if reference.RollingEllipse(reference.Scene(*motion), rule(12)).rocks:
-        spans.append(1e9 + np.linspace(0, swing, 1000))
-    for times in spans:
-        misses = energy_misses(motion, times)
-        told(f"{misses:.3g} ulp")
-        assert misses <= 16
-
-
-def test_the_energy_check_sees_omega() -> None:
-    times = np.linspace(0, 10, 1000)
-    assert energy_misses(MOTIONS["rotation"], times, 1 + 1e-3) > 1e9
-    assert energy_misses(MOTIONS["rotation"], times, 1 + 64 * EPS) > 16
-
-
-@each_motion
-def test_x_is_the_path_of_the_centre(motion: Motion) -> None:
-    """Against elliptic integrals of the angle, 8 ulp each, and what 2 ulp of the angle are."""
-    a, b, theta0 = motion[0], motion[1], motion[4]
-    for t in (1e-3, 0.7, 20.0, -300.0):
-        theta, _, x = flow(t, **arguments(motion))
-        # mpmath's E(phi | m) is unwrapped over whole turns
-        paths = [b * mp.ellipe(mp.mpf(end), 1 - (mp.mpf(a) / b) ** 2) for end in (theta, theta0)]
-        height = max(a, b)
-        excused = 2 * height * math.ulp(theta)
-        assert abs(x - (paths[0] - paths[1])) <= excused + 8 * math.ulp(x)
 
 
 # -------------------------------------------------------------------------- shapes and threads
@@ -430,67 +324,6 @@ def test_inputs_are_not_modified() -> None:
     for name, values in given.items():
         assert np.array_equal(values, kept[name])
         assert not any(np.shares_memory(values, answer) for answer in answers)
-
-
-def test_workers_have_no_say_in_the_bits() -> None:
-    """20000 motions are 20 chunks: every worker gets some."""
-    generator = np.random.default_rng(4)
-    n = 20_000
-    start: dict[str, Any] = {
-        "a": generator.uniform(0.5, 2, n),
-        "b": generator.uniform(0.5, 2, n),
-        "theta": generator.uniform(-4, 4, n),
-        "omega": generator.normal(0, 4, n),
-    }
-    times = generator.uniform(-20, 20, n)
-    alone = flow(times, **start)
-    for workers in (2, 3, -1):
-        for one, other in zip(alone, flow(times, **start, workers=workers), strict=True):
-            assert np.array_equal(one, other)
-    one_motion = flow(times, a=2.0, b=1.0, theta=0.1, omega=3.2)
-    shared = flow(times, a=2.0, b=1.0, theta=0.1, omega=3.2, workers=2)
-    assert all(np.array_equal(one, other) for one, other in zip(one_motion, shared, strict=True))
-
-
-# -------------------------------------------------------------------------------- bad input
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        *((name, bad) for name in ("t", *PARAMETERS) for bad in (math.nan, math.inf)),
-        *((name, bad) for name in ("a", "b", "gyration2", "gravity") for bad in (0.0, -1.0)),
-    ],
-)
-def test_wrong_numbers_are_refused_by_name(name: str, value: float) -> None:
-    """From a scalar call, from an array, and from the last of many elements on two threads."""
-    start: dict[str, Any] = {"t": 1.0} | arguments(MOTIONS["rotation"])
-    many = np.full(5000, start[name])
-    many[-1] = value
-    for changed in ({name: value}, {name: [start[name], value]}, {name: many, "workers": 2}):
-        with pytest.raises(ValueError, match=rf"^{name}\b.*{value}"):
-            flow(**(start | changed))
-
-
-@pytest.mark.parametrize("value", ["1", None, 1j, [[1.0], [2.0, 3.0]], {}])
-@pytest.mark.parametrize("name", ["t", "a", "theta", "gravity"])
-def test_what_is_no_number_is_refused_by_name(name: str, value: object) -> None:
-    start: dict[str, Any] = {"t": 1.0} | arguments(MOTIONS["rotation"])
-    with pytest.raises(TypeError, match=rf"^{name} must be"):
-        flow(**(start | {name: value}))
-
-
-def test_shapes_that_do_not_broadcast_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"t \(3,\).*omega \(2,\)"):
-        flow([1.0, 2.0, 3.0], a=2.0, b=1.0, theta=0.0, omega=[1.0, 2.0])
-
-
-@pytest.mark.parametrize(
-    ("workers", "error"), [(0, ValueError), (-2, ValueError), (1.5, TypeError), (True, TypeError)]
-)
-def test_wrong_workers_are_refused_by_name(workers: Any, error: type[Exception]) -> None:
-    with pytest.raises(error, match=r"^workers must be"):
-        flow(1.0, a=2.0, b=1.0, theta=0.0, omega=1.0, workers=workers)
 
 
 # ----------------------------------------------------------------------------------- Ctrl-C

@@ -201,15 +201,6 @@ def turning_brackets(energy: Energy, flat: float) -> list[tuple[float, float]]:
     return [(places[i], places[i + 1]) for i in (below[-1], above[0])]
 
 
-def test_a_circle_is_uniformly_accelerated() -> None:
-    scene = rl.Scene(1.5, 1.5, slope=-0.2, theta=0.3, omega=2.0)
-    gain = -9.81 * math.sin(0.2) * 1.5 / (1.5**2 + 1.125)
-    times = np.array([0.0, 0.5, 3.0, 1e5])
-    found = rolled(scene, times)
-    assert np.allclose(found.omega, 2.0 + gain * times, rtol=4 * EPS, atol=8 * EPS)
-    assert np.allclose(found.theta, 0.3 + 2.0 * times + gain * times**2 / 2, rtol=8 * EPS)
-
-
 @pytest.mark.parametrize("slope", [1e-12, 1e-20, -1e-200])
 def test_a_circle_rests_on_no_slope(slope: float) -> None:
     """Its contact is never right below its centre, however near: it rolls from rest, if friction

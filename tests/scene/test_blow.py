@@ -172,17 +172,6 @@ def test_the_report_scene_rolls_off_with_3_2_not_5_76() -> None:
     assert found.reaction_z == pytest.approx(48.0, rel=4 * EPS)  # m h' d_omega - Jz
 
 
-def test_press_is_a_downward_impulse_at_a_distance() -> None:
-    assert Impulse.press(48.0, 1.5) == Impulse(0.0, -48.0, dx=1.5)
-
-
-def test_without_friction_eq_48_is_exact() -> None:
-    found = Scene(2.0, 1.0, mass=10.0, friction=0.0, impulse=Impulse.press(48.0, 1.5)).initial_state
-    assert found.omega == found.free_omega == pytest.approx(5.76, rel=4 * EPS)
-    assert found.x_dot == 0 and found.reaction_x == 0
-    assert found.mode == Mode.SLIDING
-
-
 @pytest.mark.parametrize("force", [1.0, 48.0, 1e4])
 @pytest.mark.parametrize("distance", [1.5, 0.4, -1.5])
 def test_pressed_flat_it_sticks_only_with_enough_friction(force: float, distance: float) -> None:
@@ -197,21 +186,6 @@ def test_pressed_flat_it_sticks_only_with_enough_friction(force: float, distance
     assert slides.mode == Mode.SLIDING
     assert abs(slides.omega) > abs(rolled) and abs(slides.x_dot) < abs(rolled)
     assert abs(slides.reaction_x) == pytest.approx(0.999 * enough * slides.reaction_z, rel=1e-14)
-
-
-def test_the_slip_may_reverse_instead_of_sticking() -> None:
-    """mu = 0.2 is below |Gnt|/Gtt: the sticking outcome -0.7171 is not what happens."""
-    scene = Scene(2.0, 1.0, mass=1.0, theta=0.5, friction=0.2, impulse=Impulse(-1.0, -4.0, dx=0.6))
-    assert round(scene.initial_state.omega, 4) == -0.8618
-    assert scene.initial_state.mode == Mode.SLIDING
-    h, slope, _ = (float(value) for value in oracles.geometry.height_slopes(0.5, 2.0, 1.0))
-    sticking = (-1.0 * h - 4.0 * (slope - 0.6)) / (1.25 + h * h + slope * slope)
-    assert round(sticking, 4) == -0.7171
-    stuck = Scene(2.0, 1.0, mass=1.0, theta=0.5, impulse=Impulse(-1.0, -4.0, dx=0.6)).initial_state
-    change = stuck.omega
-    assert change == pytest.approx(sticking, rel=1e-14)
-    assert stuck.reaction_x == pytest.approx(h * change + 1.0, rel=1e-14)
-    assert stuck.reaction_z == pytest.approx(slope * change + 4.0, rel=1e-14)
 
 
 @pytest.mark.parametrize("push", [2.0, -2.0])
@@ -283,14 +257,6 @@ def test_no_blow_is_nowhere() -> None:
     for size in (5e-324, 1e50):  # of whatever size, it has a line
         with pytest.raises(ValueError, match=r"at most 2\.0 \[m\] from its centre .*, got 5\.0$"):
             Scene(2.0, 1.0, impulse=Impulse(0.0, size, dx=5.0))
-
-
-def test_pulled_up_it_leaves_the_ground() -> None:
-    found = Scene(2.0, 1.0, mass=2.0, omega=0.5, impulse=Impulse(1.0, 6.0)).initial_state
-    assert found.mode == Mode.FLIGHT
-    assert found.reaction_x == found.reaction_z == 0
-    assert found.z_dot == 3.0 and found.x_dot == pytest.approx(1.0, rel=4 * EPS)
-    assert found.omega == found.free_omega == 0.5
 
 
 def test_in_the_air_nothing_reacts() -> None:
