@@ -146,61 +146,6 @@ def test_a_short_way_keeps_its_digits(way: float, omega: float) -> None:
         assert abs(found.x[0] - path) < 4 * EPS * abs(path)
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        rl.Scene(2.0, 1.0, slope=0.1, theta=0.4, omega=0.0),
-        rl.Scene(0.3, 1.0, slope=-0.3, theta=1.2, omega=0.5),
-        rl.Scene(1.0, 0.01, slope=0.2, theta=0.1, omega=0.1),
-    ],
-    ids=["2:1", "standing", "thin"],
-)
-def test_the_period_of_a_swing(scene: rl.Scene) -> None:
-    """The energy integral between two turning points, and a million swings on.
-
-    The period is rounded, the inputs are changed by a rounding: 8 of them.
-    """
-    with mp.workdps(30):
-        energy = Energy(scene)
-        flat = mp.mpf(0) if scene.a > scene.b else mp.pi / 2
-        low, high = (
-            mp.findroot(energy.at, (mp.mpf(x), mp.mpf(y)), solver="anderson", tol=1e-45)
-            for x, y in turning_brackets(energy, float(flat))
-        )
-        middle, half = (low + high) / 2, (high - low) / 2
-
-        def rate(u: Any) -> Any:
-            angle = middle + half * mp.sin(u)
-            return half * mp.cos(u) * mp.sqrt(energy.inertia(angle) / (2 * energy.at(angle)))
-
-        # D is small over b/a about the flat, where W is least: panels that grow from there
-        at_flat, ratio = (
-            mp.asin((flat - middle) / half),
-            min(scene.a, scene.b) / max(scene.a, scene.b),
-        )
-        widths = [sign * ratio * power for sign in (-1, 1) for power in (0.5, 2, 8, 32)]
-        inside = [at_flat + width for width in widths if abs(at_flat + width) < mp.pi / 2]
-        places = sorted([-mp.pi / 2, *inside, at_flat, mp.pi / 2])
-        exact = 2 * mp.quad(rate, places, method="gauss-legendre", maxdegree=4)
-    found = rl.period(scene)
-    assert abs(float(found - exact)) < 8 * EPS * found
-    times = np.array([0.0, 0.3, 0.7]) * found
-    now, later = rolled(scene, times), rolled(scene, times + 1e6 * found)
-    allowed = 8 * EPS * 1e6 * found * np.abs(now.omega).max() + 8 * EPS
-    assert np.abs(later.theta - now.theta).max() < allowed
-
-
-def turning_brackets(energy: Energy, flat: float) -> list[tuple[float, float]]:
-    """Two intervals in which W vanishes, on either side of the start's well."""
-    places = flat + np.linspace(-math.pi / 2, math.pi / 2, 2001)
-    signs = np.array([float(energy.at(mp.mpf(x))) > 0 for x in places])
-    changes = np.flatnonzero(signs[1:] != signs[:-1])
-    start = float(energy.start)
-    below = [i for i in changes if places[i] <= start + 1e-3 and signs[i + 1]]
-    above = [i for i in changes if places[i + 1] >= start - 1e-3 and signs[i]]
-    return [(places[i], places[i + 1]) for i in (below[-1], above[0])]
-
-
 @pytest.mark.parametrize("slope", [1e-12, 1e-20, -1e-200])
 def test_a_circle_rests_on_no_slope(slope: float) -> None:
     """Its contact is never right below its centre, however near: it rolls from rest, if friction
