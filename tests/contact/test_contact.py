@@ -75,19 +75,6 @@ def test_a_sliding_disc(slope: float, inertia: float | None) -> None:
         assert rolling == pytest.approx(gained, rel=1e-11, abs=1e-12)
 
 
-@pytest.mark.parametrize("mu", [0.1, 0.6])
-def test_a_disc_on_a_slope_rolls_iff_friction_is_enough(mu: float) -> None:
-    """tan(alpha) <= mu (1 + a^2/k^2)."""
-    limit = math.atan(mu * (1 + 1 / 0.5))
-    rolls = simulate(Scene(1.0, 1.0, slope=limit * (1 - 1e-12), friction=mu), 1.0)
-    assert np.all(rolls.mode == Mode.ROLLING) and rolls.events == ()
-    down, load = (GRAVITY * part(limit * (1 + 1e-12)) for part in (math.sin, math.cos))
-    slides = simulate(Scene(1.0, 1.0, slope=limit * (1 + 1e-12), friction=mu), 1.0)
-    assert np.all(slides.mode == Mode.SLIDING)
-    assert np.allclose(slides.x_dot, (down - mu * load) * slides.t, rtol=1e-12)
-    assert np.allclose(slides.omega, mu * load / 0.5 * slides.t, rtol=1e-12)
-
-
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.5, 0.5), (0.7, 1.9)])
 @pytest.mark.parametrize("e", [0.5, 0.9])
 @pytest.mark.parametrize("friction", [0.0, 0.3, math.inf])

@@ -194,37 +194,6 @@ def test_painleve(shape: Shape, kind: str) -> None:
     assert reduced == pytest.approx(angle, rel=1e-6)
 
 
-@pytest.mark.parametrize(("share", "limit"), [(1 / 4, math.sqrt(5) / 2), (1 / 3, 4 / 3)])
-def test_painleve_of_a_needle(share: float, limit: float) -> None:
-    """b -> 0 with k^2 = share a^2 (disc, rod): (k^2 + a^2 c^2)/(a^2 s c) = (share (1 + T^2) + 1)/T
-    is least 2 sqrt(share (share + 1)); what is left is of the order of (b/a)^2."""
-    off = [
-        thresholds(1.0, b, gyration2=share).painleve_friction / limit - 1
-        for b in (1e-1, 1e-2, 1e-3)
-    ]
-    assert abs(off[2]) < 3e-6
-    for coarse, fine in pairwise(off):
-        assert math.log10(abs(coarse / fine)) == pytest.approx(2, abs=0.15)
-
-
-def test_the_angle_of_lost_contact_leaves_the_tip_at_root_three() -> None:
-    for ratio in (1.05, 1.5, 1.732):
-        assert thresholds(ratio, 1.0).contact_loss_angle == pytest.approx(math.pi / 2, abs=1e-7)
-        assert thresholds(1.0, ratio).contact_loss_angle == pytest.approx(0, abs=1e-7)
-    leaves = math.pi / 2 - known(thresholds(math.sqrt(3) * (1 + 1e-4), 1.0).contact_loss_angle)
-    further = math.pi / 2 - known(thresholds(math.sqrt(3) * (1 + 4e-4), 1.0).contact_loss_angle)
-    assert 1e-3 < leaves < 0.1
-    assert further / leaves == pytest.approx(2, abs=0.01)  # like a square root
-
-
-def test_no_roll_over_by_rolling_alone_above_9_7532168() -> None:
-    below, above = thresholds(9.75321675, 1.0), thresholds(9.75321685, 1.0)
-    assert below.contact_loss_speed > below.roll_over_speed
-    assert above.contact_loss_speed < above.roll_over_speed
-    assert math.isfinite(below.friction_to_roll_over)
-    assert math.isinf(above.friction_to_roll_over)
-
-
 def test_a_circle_has_no_threshold() -> None:
     found = thresholds(1.3, 1.3, friction=0.2)
     assert found.roll_over_speed == found.rocking_rate == found.tip_rate == 0

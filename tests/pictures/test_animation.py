@@ -257,12 +257,6 @@ def test_saving_shows_progress_when_asked(
     assert capsys.readouterr().err.endswith("roll.gif 11 of 11 frames\n")
 
 
-def test_matplotlibs_own_writers_stay_open(short: RollingAnimation, tmp_path: Path) -> None:
-    short.save(tmp_path / "roll.webp", writer="pillow")
-    with Image.open(tmp_path / "roll.webp") as picture:
-        assert picture.format == "WEBP"
-
-
 # ---------------------------------------------------------------- notebooks, options, leftovers
 
 

@@ -6,7 +6,6 @@ units in its last place; LARGEST_ERROR of them is what test_flow_reference.py al
 """
 
 import math
-import signal
 import time
 from fractions import Fraction
 from functools import cache
@@ -17,6 +16,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion, arguments, grain
+from oracles.limits import ctrl_c_after
 from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, flow, geometry, period, thresholds
@@ -320,15 +320,9 @@ def test_ctrl_c_stops_a_long_call(workers: int) -> None:
         return time.perf_counter() - begin
 
     full = seconds(part) * n / part
-    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
     begin = time.perf_counter()
-    try:
-        signal.setitimer(signal.ITIMER_REAL, 0.3)
-        with pytest.raises(KeyboardInterrupt):
-            flow(5.0, theta=angles, **start)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, usual)
+    with ctrl_c_after(0.3):
+        flow(5.0, theta=angles, **start)
     taken = time.perf_counter() - begin
     told(f"stopped after {taken:.2f} s of {full:.1f} s")
     assert taken < 0.3 + full / 4
