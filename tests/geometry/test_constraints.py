@@ -1,9 +1,8 @@
-"""The report's constraints: zero where they should be, and the right size where they should not.
+"""The report's constraints at states that obey them or not, and the coordinates of rolling.
 
 q = (x, z, theta, psi, r). Everything is held against f1 ... f4 written down once more in mpmath,
 their rates by numerical differentiation along q_dot, and gap and slip by turning the outline.
-Bounds: what the rounding of each of the ten inputs does to a residual (its gradient, numerical
-too), and a few ulp of the terms it is the difference of.
+Bounds: a few ulp of the terms that a residual is the difference of.
 """
 
 import math

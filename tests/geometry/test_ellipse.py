@@ -140,20 +140,6 @@ def test_centre_path(shape: Shape, angles: list[float]) -> None:
         assert ulps(actual, exact, exact) <= 16
 
 
-# --------------------------------------------------------------------------- known numbers
-
-
-def test_a_circle_is_a_circle() -> None:
-    """No rounding is left to allow for: every formula collapses."""
-    theta = np.array([0.0, 0.1, -7.0, 1e4])
-    assert np.allclose(geometry.support(theta, a=3.0, b=3.0), 3.0, rtol=4 * EPS, atol=0)
-    assert np.all(geometry.support_slope(theta, a=3.0, b=3.0) == 0)
-    assert np.all(geometry.contact_angle(theta, a=3.0, b=3.0) == theta)
-    expected = pytest.approx(3.0 * theta, rel=16 * EPS)
-    assert geometry.arc_length(theta, a=3.0, b=3.0) == expected
-    assert geometry.centre_path(theta, a=3.0, b=3.0) == expected
-
-
 # ------------------------------------------------------------------------- shapes of arrays
 
 

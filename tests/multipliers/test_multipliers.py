@@ -1,4 +1,4 @@
-"""The model "multipliers": its matrix, its accelerations and multipliers, its motions, its files.
+"""The model "multipliers": its matrix, its accelerations and multipliers, its motions.
 
 The constraints are differentiated numerically in mpmath (f1 ... f4 as oracles/constraints.py writes
 them down); the linear system is put to the test by substituting its solution back, with a matrix

@@ -6,7 +6,7 @@ point.
 """
 
 from collections import Counter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import oracles.geometry
@@ -171,15 +171,6 @@ def test_a_wrong_way_is_noticed(walked: list[Walked]) -> None:
     for sample, truth in walked:
         differ += int((sample._replace(omega=-sample.omega).outcomes() != truth).sum())
     assert differ >= 5
-
-
-def test_scalar_and_array_agree(walked: list[Walked]) -> None:
-    sample = walked[0].sample
-    codes = sample.outcomes()
-    for row in range(codes.size):
-        single: dict[str, Any] = {name: float(x[row]) for name, x in sample._asdict().items()}
-        alone = classify(**single)
-        assert alone is Outcome(int(codes[row]))
 
 
 # ------------------------------------------------------------------------------------------ a crowd

@@ -13,11 +13,10 @@ import pytest
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
-from oracles.pictures import figure_of, shows_something
+from oracles.pictures import figure_of, luminance, shows_something
 from rolling_ellipse._pictures import sampling
 from rolling_ellipse._pictures.comparison import Comparison, labels_of
 
@@ -148,9 +147,8 @@ def test_motions_differ_in_lightness_and_dashes(report: rl.Trajectory) -> None:
 
 
 def lightness(colour: str) -> float:
-    """CIE L* of a colour (IEC 61966-2-1 for sRGB)."""
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
-    return float(116 * np.cbrt(np.dot(linear, (0.2126, 0.7152, 0.0722))) - 16)
+    """CIE L* of a colour."""
+    return float(116 * np.cbrt(luminance(colour)) - 16)
 
 
 # ---------------------------------------------------------------------------------------- time axes

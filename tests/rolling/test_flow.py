@@ -1,4 +1,4 @@
-"""`flow` and `period` beyond the table of test_flow_reference.py: limits, symmetries, arrays.
+"""`flow` and `period` beyond the table of test_flow_reference.py: limits, shapes, arrays.
 
 The oracle is the energy integral in 40 digits of reference/make_rolling_reference.py, which shares
 nothing with the package. A unit is what one rounding of every input does to an answer, plus two
@@ -15,7 +15,7 @@ import make_rolling_reference as reference
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion, arguments, grain
+from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion
 from oracles.limits import ctrl_c_after
 from oracles.margins import told
 from oracles.numbers import EPS
@@ -102,21 +102,6 @@ def test_period_of_rest_and_of_a_circle() -> None:
     assert period(Scene(2.0, 1.0)) == math.inf
     assert period(Scene(2.0, 1.0, theta=math.pi / 2)) == math.inf
     assert period(Scene(1.5, 1.5, omega=-3.0)) == 2 * math.pi / 3
-
-
-@pytest.mark.parametrize("motion", [MOTIONS["libration"], MOTIONS["rotation"], MOTIONS["standing"]])
-def test_the_period_is_that_of_the_flow(motion: Motion) -> None:
-    """After a period the state is the same, to the units and what half an ulp of the period is."""
-    a, b, gyration2, gravity, theta, omega = motion
-    scene = Scene(a, b, inertia=gyration2, gravity=gravity, theta=theta, omega=omega)
-    time = period(scene)
-    later = np.array(flow(time, **arguments(motion)))
-    turns = round((later[0] - theta) / (2 * math.pi))
-    path = geometry.centre_path(2 * math.pi * turns, a=a, b=b)
-    before = [theta + 2 * math.pi * turns, omega, path]
-    moved = 1e-6 * np.abs(flow(1e-6, **arguments(motion)) - np.array([theta, omega, 0.0]))
-    rates = moved / 1e-12  # theta_dot, omega_dot, x_dot
-    assert np.all(np.abs(later - before) <= 4 * grain(time, motion) + rates * math.ulp(time))
 
 
 # ------------------------------------------------------------------------- circle and nearly so
@@ -238,7 +223,7 @@ def test_on_the_separatrix_the_period_is_infinite() -> None:
         assert period(Scene(2.0, 1.0, omega=speed)) == math.inf
 
 
-# -------------------------------------------------------------------------- shapes and threads
+# -------------------------------------------------------------------------- shapes of arrays
 
 
 def test_scalars_in_floats_out() -> None:
@@ -260,18 +245,9 @@ def test_broadcasting() -> None:
     assert [values.shape for values in found] == [(3, 3, 4)] * 3
     assert all(values.dtype == np.float64 for values in found)
     for i, j, k in np.ndindex(3, 3, 4):
-        start: dict[str, Any] = {
-            "a": 2.0,
-            "b": float(b[i, 0, 0]),
-            "theta": 0.3,
-            "omega": float(omega[j, 0]),
-        }
-        single = flow(float(t[k]), **start, gravity=gravity[k])
-        gyration2 = float((4.0 + b[i, 0, 0] ** 2) / 4)
-        unit = grain(float(t[k]), (2.0, start["b"], gyration2, gravity[k], 0.3, start["omega"]))
-        # bits may differ with the number of samples, within the stated accuracy
-        off = np.abs([values[i, j, k] for values in found] - np.array(single))
-        assert np.all(off <= LARGEST_ERROR * unit)
+        body: dict[str, float] = {"a": 2.0, "b": float(b[i, 0, 0]), "gravity": gravity[k]}
+        single = flow(float(t[k]), **body, theta=0.3, omega=float(omega[j, 0]))
+        assert tuple(values[i, j, k] for values in found) == single
 
 
 def test_lists_float32_and_empty_arrays() -> None:

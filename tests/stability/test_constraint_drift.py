@@ -1,5 +1,5 @@
-"""Constraints that are only differentiated drift: by what each step truncates like t^2, from a
-start that does not meet them like t. Projection and the index-2 system hold them at any time.
+"""Constraints that are only differentiated drift, by what each step truncates, like t^2.
+Projection and the index-2 system hold them at any time.
 """
 
 from typing import Any

@@ -3,8 +3,7 @@
 A method that drifts changes the energy in proportion to time and the phase by its square. Gauss
 collocation neither drifts nor, with compensated sums and stages solved to the last bit, adds up
 its roundings: they walk at random, the energy as time^0.5, the phase as time^1.5 (E. Hairer,
-R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231). Exact rolling has nothing that
-could grow.
+R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231).
 
 The motion rocks, so that theta stays small and doubles hold the energy to its last digits; of a
 rotation, whose theta grows, they do so only where the ellipse lies flat.

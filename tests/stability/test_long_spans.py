@@ -1,9 +1,7 @@
 """From one half turn to 1e9: what is left of the phase.
 
 An error of the energy that grows like t costs the phase t^2; one that is kept costs it t; drifting
-constraints cost t^3. Whatever the law, a stepped motion takes as many steps as there is motion, and
-where that is more than it may take, the status says where it ended. The exact motion has no span:
-what it loses is what its inputs do not know.
+constraints cost t^3. Whatever the law, a stepped motion takes as many steps as there is motion.
 """
 
 from typing import Any

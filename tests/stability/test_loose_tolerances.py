@@ -1,5 +1,5 @@
 """A tolerance of 1e-2, as the report used: what leaves its constraints, what stays on them, what
-keeps its energy; and that the warning comes where too much is lost, and nowhere else.
+keeps its energy.
 
 A tolerance bounds what a step loses, not what is kept: only what is kept by construction is kept
 whatever the tolerance.

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from oracles.margins import told
 from oracles.numbers import EPS
-from oracles.separatrix import A, B, throw, tip_rate
-from rolling_ellipse import Scene, period
+from oracles.separatrix import A, B, throw
 from stability_laws import DECIDE, STRAY, exponent, kept_by, own_separatrix, rolls_over
 
 DISTANCES = range(2, 15)  # k
@@ -36,23 +35,6 @@ def first_wrong(side: int, **how: Any) -> int | None:
 
 
 # ------------------------------------------------------------------------- the exact motion
-
-
-@pytest.mark.parametrize("side", SIDES)
-def test_the_time_at_the_tip_grows_by_the_logarithm(side: int) -> None:
-    """Slope 1/lambda of the time from flat to flat against ln(1/distance), in 40 digits and by
-    `period`.
-
-    From k = 4 on the next order, distance ln(distance), is 1e-3, with a leverage of 0.03 on the
-    slope; at k = 12 a unit is 5e-4 s, with 0.03 as well: 3e-5 of 0.6, twice.
-    """
-    throws = [throw(k, side) for k in range(4, 13)]
-    x = [-math.log(abs(one.distance)) for one in throws]
-    exact = np.polyfit(x, [one.half for one in throws], 1)[0] * tip_rate()
-    found = [period(Scene(A, B, omega=one.omega)) / 2 for one in throws]
-    slope = np.polyfit(x, found, 1)[0] * tip_rate()
-    told(f"slope times lambda: {exact - 1:+.1e} in 40 digits, {slope - 1:+.1e} by period")
-    assert abs(exact - 1) <= 1e-4 and abs(slope - 1) <= 1e-4
 
 
 @pytest.mark.parametrize("side", SIDES)

@@ -1,7 +1,7 @@
 """The samples of a Trajectory: every array by its definition, and the residuals of a million.
 
-Forces come from Newton's law and from differentiating the energy, multipliers from the five
-Lagrange equations with gradients written down here; the geometry once more in long double.
+Forces come from Newton's law, the geometry once more in long double. Multipliers are those of the
+linear system, which tests/multipliers puts to the test.
 """
 
 import dataclasses
