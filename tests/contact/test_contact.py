@@ -15,15 +15,7 @@ import scipy.optimize
 from oracles.contact import random_scenes, response, way_of_slide
 from oracles.geometry import support
 from oracles.numbers import EPS, known
-from rolling_ellipse import (
-    EventKind,
-    Impulse,
-    Mode,
-    Scene,
-    Status,
-    Trajectory,
-    simulate,
-)
+from rolling_ellipse import EventKind, Impulse, Mode, Scene, Status, Trajectory, simulate
 
 GRAVITY = 9.81
 JAMMING = Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)

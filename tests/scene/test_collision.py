@@ -9,13 +9,7 @@ from typing import Any, NamedTuple
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.contact import (
-    Response,
-    kinetic_energy,
-    random_scenes,
-    reaction_by_pieces,
-    response,
-)
+from oracles.contact import Response, kinetic_energy, random_scenes, reaction_by_pieces, response
 from oracles.geometry import support
 from oracles.margins import told
 from oracles.numbers import EPS

@@ -9,14 +9,7 @@ import pytest
 from oracles.margins import told
 from oracles.stability import grain
 from rolling_ellipse import Scene
-from stability_laws import (
-    ROUND,
-    envelopes,
-    exponent,
-    half_turn,
-    kept_by,
-    run,
-)
+from stability_laws import ROUND, envelopes, exponent, half_turn, kept_by, run
 
 # --------------------------------------------------------------------------- drift
 

@@ -9,13 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from oracles.margins import told
-from stability_laws import (
-    LAWS,
-    SPANS,
-    exponent,
-    kept_by,
-    phase_missed,
-)
+from stability_laws import LAWS, SPANS, exponent, kept_by, phase_missed
 
 FAR = 1e9
 ALL: dict[str, tuple[int, dict[str, Any]]] = LAWS | {

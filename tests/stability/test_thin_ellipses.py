@@ -8,14 +8,7 @@ from typing import Any
 
 import pytest
 from oracles.margins import told
-from stability_laws import (
-    RATIOS,
-    STABILIZATIONS,
-    exponent,
-    kept_by,
-    steps_needed,
-    steps_taken,
-)
+from stability_laws import RATIOS, STABILIZATIONS, exponent, kept_by, steps_needed, steps_taken
 
 CONTROLLED: dict[str, dict[str, Any]] = {
     "dop853": {"method": "dop853"},
