@@ -19,7 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from oracles.pages import carried
-from oracles.pictures import ORDINARY_SCENES, centre_of, frames_of
+from oracles.pictures import ORDINARY_SCENES, centre_of, frames_of, outline
 from PIL import Image
 from rolling_ellipse._pictures.animation import RollingAnimation
 from rolling_ellipse._pictures.animation.strip import Strip
@@ -132,6 +132,26 @@ def test_the_caption_says_when_rolling_is_no_longer_valid() -> None:
 
 def view_of(animation: RollingAnimation) -> tuple[tuple[float, float], tuple[float, float]]:
     return only(animation).ax.get_xlim(), only(animation).ax.get_ylim()
+
+
+@pytest.mark.parametrize(
+    ("t_end", "follows"), [(4.0, False), (12.0, False), (40.0, True)], ids=["1", "3", "9 turns"]
+)
+def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
+    t_end: float, follows: bool
+) -> None:
+    animation = rl.animate(rl.simulate(rl.scenes.report, 40.0), t_end=t_end, fps=5)
+    views = set()
+    for i in frames(animation):
+        animation.draw(i)
+        (left, right), (bottom, top) = view_of(animation)
+        points = outline(only(animation).body)
+        assert left < points[:, 0].min() and points[:, 0].max() < right
+        assert bottom < 0 and points[:, 1].max() < top
+        width, height = animation.figure.get_size_inches()
+        assert (right - left) / width == pytest.approx((top - bottom) / height, rel=0.02)  # 2 px
+        views.add((left, right))
+    assert len(views) == (len(frames(animation)) if follows else 1)
 
 
 def test_the_ground_is_ruled_where_the_body_is() -> None:

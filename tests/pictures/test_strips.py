@@ -7,6 +7,7 @@ import matplotlib
 import numpy as np
 import pytest
 import rolling_ellipse as rl
+from matplotlib.figure import Figure
 from oracles.pictures import centre_of, outline, shows_something
 from rolling_ellipse._pictures.animation import RollingAnimation
 
@@ -148,6 +149,19 @@ def test_texts_are_clear_of_one_another_and_of_the_bodies(
             assert text.y0 > strip.ax.transData.transform(outline(strip.body))[:, 1].max()
             figures = [label for label in strip.ruler.labels if label.get_text()]
             assert min(label.get_window_extent().y0 for label in figures) > box.y0
+
+
+def test_it_draws_into_a_figure_it_is_given() -> None:
+    for size in ((5, 5), (10, 1), (2, 8)):
+        animation = rl.animate(STILL, t_end=1.0, fps=4, figure=Figure(figsize=size))
+        assert tuple(animation.figure.get_size_inches()) == size
+        for strip in animation.strips:
+            (left, right), (bottom, top) = strip.ax.get_xlim(), strip.ax.get_ylim()
+            height = strip.ax.get_position().height * size[1]
+            assert (top - bottom) / height == pytest.approx((right - left) / size[0], rel=1e-12)
+            points = outline(strip.body)
+            assert bottom < 0 and points[:, 1].max() < top
+            assert left < points[:, 0].min() and points[:, 0].max() < right
 
 
 def test_the_user_s_layout_is_left_alone() -> None:
