@@ -22,6 +22,7 @@ from oracles.pages import carried
 from oracles.pictures import ORDINARY_SCENES, centre_of, frames_of, outline
 from PIL import Image
 from rolling_ellipse._pictures.animation import RollingAnimation
+from rolling_ellipse._pictures.animation.pace import pace
 from rolling_ellipse._pictures.animation.strip import Strip
 
 SCENES = {
@@ -348,6 +349,19 @@ def test_frames_a_second_are_what_a_format_can_hold(
     where = None if path is None else tmp_path / path
     animation = rl.animate(report, where, t_end=0.1, width=64, dpi=20)
     assert animation.fps == fps and animation.t.size == 1 + 0.1 * fps
+
+
+@pytest.mark.parametrize(
+    ("span", "suffix", "speed"),
+    [(60.0, "", 1), (60.1, "", 2), (30.1, ".gif", 2), (30.0, ".gif", 1), (1e6, ".mp4", 2e4),
+     (1e9, ".html", 2e7)],
+)  # fmt: skip
+def test_long_motions_are_shown_faster_and_the_clock_says_so(
+    span: float, suffix: str, speed: float
+) -> None:
+    found = pace(f"roll{suffix}" if suffix else None, span, fps=None, speed=None, max_frames=None)
+    assert found.speed == speed
+    assert found.t.size <= 3601 and span - found.t[-1] <= speed / found.fps
 
 
 def test_a_motion_of_eleven_days(tmp_path: Path) -> None:

@@ -495,6 +495,16 @@ def test_curves_of_one_panel_differ_in_more_than_hue(report: rl.Trajectory) -> N
             assert len(styles) == 2 or abs(values[0] - values[1]) > 0.3
 
 
+def test_overview_draws_the_limit_of_friction(report: rl.Trajectory) -> None:
+    assert rl.plot(report, figure=Figure()).friction_limit is None
+    rough = dataclasses.replace(report, scene=dataclasses.replace(report.scene, friction=0.9))
+    band = rl.plot(rough, figure=Figure()).friction_limit
+    corners = points_of(band)
+    largest = seen(report, rl.plot(rough, figure=Figure()).normal_force).normal_force.max()
+    assert largest == pytest.approx(report.normal_force.max(), rel=1e-3)
+    assert (corners[:, 1].min(), corners[:, 1].max()) == (-0.9 * largest, 0.9 * largest)
+
+
 def test_overview_marks_where_the_model_is_not_valid(report: rl.Trajectory) -> None:
     whole = rl.plot(report, figure=Figure())
     assert whole.marks == () and "not valid" not in whole.figure.get_suptitle()
