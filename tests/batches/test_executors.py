@@ -16,6 +16,7 @@ import pytest
 import rolling_ellipse as rl
 from distributed import Client, LocalCluster
 from oracles.batches import ENDLESS, NAMED, TIMES
+from oracles.limits import ctrl_c_after
 from oracles.pickles import require_same
 from rolling_ellipse import Scene, WorkerError, load_many, scenes, simulate_many
 from rolling_ellipse._verbs import workers
@@ -321,14 +322,8 @@ def test_a_process_killed_in_the_middle(tmp_path: Path) -> None:
 def test_an_interrupt_keeps_what_is_done_and_cancels_the_rest(tmp_path: Path) -> None:
     """The fifth task never ends; of those behind it none is left to be begun."""
     executor, out = Waiting(4), tmp_path / "out"
-    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)
-    try:
-        signal.setitimer(signal.ITIMER_REAL, 0.5)
-        with pytest.raises(KeyboardInterrupt):
-            simulate_many(MANY, [1.0], workers=executor, out=out)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, usual)
+    with ctrl_c_after(0.5):
+        simulate_many(MANY, [1.0], workers=executor, out=out)
     assert len(list(out.glob("*-*.npz"))) == 4
     assert all(future.done() for future in executor.futures[:4])
     assert all(future.cancelled() for future in executor.futures[4:])

@@ -3,7 +3,6 @@
 import errno
 import json
 import os
-import resource
 import shutil
 import signal
 import subprocess
@@ -17,6 +16,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.batches import ENDLESS, NAMED, TIMES, singly
+from oracles.limits import ctrl_c_after, files_of_at_most
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, load_many, scenes, simulate_many
 from rolling_ellipse._verbs.batches import folders
@@ -218,19 +218,6 @@ def test_every_damaged_byte_is_found_or_harmless(name: str, stride: int, small: 
     assert refused > len(whole) / stride / 2
 
 
-def test_a_truncated_chunk_is_computed_anew(out: Path) -> None:
-    simulate_many(GRID, TIMES, out=out)
-    before, (_, cut, *_) = states(out), chunks(out)
-    with open(cut, "r+b") as file:
-        file.truncate(cut.stat().st_size // 2)
-    with pytest.raises(ValueError, match=rf"{cut.name}.*: simulate_many with the same .* anew$"):
-        list(load_many(out))
-    simulate_many(GRID, TIMES, out=out)
-    now = states(out)
-    assert {name for name in now if now[name] != before[name]} == {cut.name}
-    require_equal(load_many(out), simulate_many(GRID, TIMES))
-
-
 @pytest.mark.parametrize("name", ["request.npz", "end.json", "chunk"])
 @pytest.mark.parametrize("content", [b"", b"PK\x05\x06" + bytes(18), b"{}", b"\xff\xfe"])
 def test_other_files_in_their_places(name: str, content: bytes, small: Path) -> None:
@@ -358,15 +345,8 @@ def test_what_killed_runs_have_left_is_removed_and_what_is_written_now_is_not(ou
 def test_a_full_disk(out: Path) -> None:
     """Files may be of 15 kB here, and the first chunk, of 1600 samples, takes 40 kB."""
     small = [Scene(2.0, 1.0, theta=0.3, omega=0.1)] * 40
-    usual = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    try:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (15_000, limits[1]))
-        with pytest.raises(OSError) as caught:
-            simulate_many(small, np.linspace(0, 1, 100), out=out)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-        signal.signal(signal.SIGXFSZ, usual)
+    with files_of_at_most(15_000), pytest.raises(OSError) as caught:
+        simulate_many(small, np.linspace(0, 1, 100), out=out)
     assert caught.value.errno == errno.EFBIG
     assert [path.name for path in out.iterdir()] == ["request.npz"]
     simulate_many(small, np.linspace(0, 1, 100), out=out)
@@ -376,19 +356,14 @@ def test_a_full_disk(out: Path) -> None:
 def test_an_interrupt_loses_no_finished_chunk(out: Path) -> None:
     """Sixteen scenes at rest in no time, then one of hours: stopped, and gone on with."""
     quick = [Scene(2.0, 1.0)] * 16
-    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)
 
     def last() -> Iterator[Scene]:
         yield from quick
         signal.setitimer(signal.ITIMER_REAL, 0.2)
         yield scenes.rocking
 
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            simulate_many(last(), 1e5, out=out, workers=2, **ENDLESS)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, usual)
+    with ctrl_c_after(-1.0):
+        simulate_many(last(), 1e5, out=out, workers=2, **ENDLESS)
     assert len(chunks(out)) == 1 and not (out / "end.json").exists()
     before = states(out)
     simulate_many(quick, 1e5, out=out, **ENDLESS)

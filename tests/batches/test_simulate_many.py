@@ -3,7 +3,6 @@
 import inspect
 import itertools
 import math
-import signal
 import weakref
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.batches import ENDLESS, NAMED, TIMES, singly
+from oracles.limits import ctrl_c_after
 from oracles.pickles import require_same
 from rolling_ellipse import Impulse, Scene, scenes, simulate, simulate_many
 from rolling_ellipse._verbs.batches.asked import sizes
@@ -192,12 +192,6 @@ def test_scenes_are_taken_as_they_are_needed(tmp_path: Path) -> None:
 def test_ctrl_c_stops_scenes_of_hours(workers: int) -> None:
     """In the middle of a scene, in whatever thread it is, and no thread is left."""
     before = len(list(Path("/proc/self/task").iterdir()))
-    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
-    try:
-        signal.setitimer(signal.ITIMER_REAL, 0.2)
-        with pytest.raises(KeyboardInterrupt):
-            simulate_many([scenes.rocking] * 2, 1e6, workers=workers, **ENDLESS)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, usual)
+    with ctrl_c_after(0.2):
+        simulate_many([scenes.rocking] * 2, 1e6, workers=workers, **ENDLESS)
     assert len(list(Path("/proc/self/task").iterdir())) == before

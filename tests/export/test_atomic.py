@@ -2,7 +2,6 @@
 
 import os
 import re
-import resource
 import signal
 import stat
 import subprocess
@@ -12,6 +11,7 @@ import threading
 from pathlib import Path
 
 import pytest
+from oracles.limits import files_of_at_most
 from rolling_ellipse._motion.export.atomic import replacing
 
 OLD, NEW = b"what was there", b"what comes"
@@ -98,16 +98,8 @@ def test_a_kill_leaves_the_old_file(old: Path) -> None:
 
 
 def test_a_full_disk_leaves_the_old_file(old: Path) -> None:
-    """A limit on the size of files stands for the disk: both are an OSError while writing."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    try:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
-        with pytest.raises(OSError, match="large"), replacing(old) as new:
-            new.write_bytes(bytes(2000))
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
-        signal.signal(signal.SIGXFSZ, ignored)
+    with files_of_at_most(1000), pytest.raises(OSError, match="large"), replacing(old) as new:
+        new.write_bytes(bytes(2000))
     assert old.read_bytes() == OLD and names(old.parent) == [old.name]
 
 

@@ -4,12 +4,7 @@ import copy
 import dataclasses
 import math
 import os
-import pickle
 import re
-import resource
-import signal
-import subprocess
-import sys
 import tracemalloc
 import zipfile
 from collections.abc import Callable, Iterator
@@ -20,7 +15,6 @@ import numpy as np
 import pytest
 import rolling_ellipse as rl
 from oracles.files import half_a_file, put_together, taken_apart
-from oracles.paths import TESTS
 from oracles.pickles import require_same
 from rolling_ellipse import Trajectory, simulate
 
@@ -376,48 +370,3 @@ def test_an_exception_while_saving_leaves_the_old_file(
         with pytest.raises(KeyboardInterrupt):
             motions["contact"].save(target)
     assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
-
-
-KILLED = """
-import os, pickle, signal, sys
-import numpy as np
-from oracles.files import half_a_file, put_together, taken_apart
-
-def killed(file, **arrays):
-    half_a_file(file)
-    os.kill(os.getpid(), signal.SIGKILL)
-
-np.savez = killed
-pickle.loads(sys.stdin.buffer.read()).save(sys.argv[1])
-"""
-
-
-def test_a_kill_while_saving_leaves_the_old_file(
-    motions: dict[str, Trajectory], tmp_path: Path
-) -> None:
-    path = tmp_path / "motion.npz"
-    motions["rolling"].save(path)
-    places = [os.fspath(TESTS), *filter(None, [os.environ.get("PYTHONPATH")])]
-    done = subprocess.run(
-        [sys.executable, "-c", KILLED, path],
-        input=pickle.dumps(motions["contact"]),
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(places)},
-        timeout=60,
-    )
-    assert done.returncode == -signal.SIGKILL
-    assert rl.load(path).model == "rolling"
-
-
-def test_a_full_disk_leaves_the_old_file(motions: dict[str, Trajectory], tmp_path: Path) -> None:
-    path = tmp_path / "motion.npz"
-    motions["rolling"].save(path)
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    try:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (5000, before[1]))
-        with pytest.raises(OSError):
-            motions["contact"].save(path)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
-        signal.signal(signal.SIGXFSZ, ignored)
-    assert rl.load(path).model == "rolling" and list(tmp_path.iterdir()) == [path]

@@ -1,4 +1,4 @@
-"""The model "multipliers": its matrix, its accelerations and multipliers, its motions, its files.
+"""The model "multipliers": its matrix, its accelerations and multipliers, its motions.
 
 The constraints are differentiated numerically in mpmath (f1 ... f4 as oracles/constraints.py writes
 them down); the linear system is put to the test by substituting its solution back, with a matrix
@@ -7,7 +7,6 @@ written here in long double and its rate by complex steps; motions are held agai
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import mpmath as mp
@@ -380,28 +379,6 @@ def test_arrays_are_what_they_promise(motion: Trajectory) -> None:
     assert max(np.max(miss) for miss in missed.values()) <= 1e-13
     energy = (motion.x_dot**2 + motion.z_dot**2 + GENERIC.gyration2 * motion.omega**2) / 2
     assert np.allclose(motion.energy, energy + GENERIC.gravity * motion.z, rtol=8 * EPS, atol=0)
-
-
-def test_files_keep_every_bit(motion: Trajectory, tmp_path: Path) -> None:
-    """Of the samples, of what follows from them, and of `sol` at other times."""
-    path = tmp_path / "motion.npz"
-    motion.save(path)
-    loaded = rl.load(path)
-    assert loaded.settings == motion.settings and loaded.scene == motion.scene
-    between = np.array([0.0, 0.013, 1.7, 3.999, 4.0])
-    for first, second in ((loaded, motion), (loaded.sol(between), motion.sol(between))):
-        for name in ("t", "q", "q_dot", "multipliers", "x_ddot", "omega_dot", "energy"):
-            assert np.array_equal(getattr(first, name), getattr(second, name)), name
-
-
-def test_samples_do_not_depend_on_each_other(motion: Trajectory) -> None:
-    """`sol` anywhere gives the bits that any other set of times gives, in any order."""
-    times = np.array([3.7, 0.0, 1.111, 4.0, 1.112])
-    together = motion.sol(times)
-    for i, t in enumerate(times):
-        alone = motion.sol(t)
-        assert np.array_equal(alone.q[0], together.q[i])
-        assert np.array_equal(alone.q_dot[0], together.q_dot[i])
 
 
 def test_a_start_in_coordinates() -> None:

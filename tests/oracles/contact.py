@@ -74,31 +74,6 @@ def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[fl
                 return along, across
 
 
-def reaction_in_small_pushes(
-    contacts: Response, friction: Any, e: Any, pushes: int
-) -> tuple[Any, Any]:
-    """Reactions of many impacts by small pushes: each push has the friction that stops the slip,
-    cut off at the cone, and its work is summed."""
-    slip, gap_rate, tangential, normal, coupling = (np.array(part) for part in contacts)
-    determinant = normal * tangential - coupling**2
-    push = 2 * (np.abs(gap_rate) + np.abs(slip)) * (normal + tangential) / determinant / pushes
-    along, across = np.zeros_like(slip), np.zeros_like(slip)
-    compressed, restored = np.zeros_like(slip), np.zeros_like(slip)
-    active = np.full(slip.shape, True)
-    while active.any():
-        step = np.where(active, push, 0.0)
-        pull = np.clip(-(slip + coupling * step) / tangential, -friction * step, friction * step)
-        gap_change = normal * step + coupling * pull
-        work = step * (gap_rate + gap_change / 2)
-        compressed -= np.where(gap_rate < 0, work, 0)
-        restored += np.where(gap_rate < 0, 0, work)
-        along, across = along + pull, across + step
-        slip += coupling * step + tangential * pull
-        gap_rate += gap_change
-        active &= (gap_rate < 0) | (restored < e * e * compressed)
-    return along, across
-
-
 def way_of_slide(scene: Scene, start: InitialState, friction: float, theta: Any, lasts: Any) -> Any:
     """Change of x in a slide up to an angle, with F = friction N (signed): the integral of N/m
     follows from z'' = N/m - g cos(slope) and z = h."""

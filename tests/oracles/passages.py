@@ -52,14 +52,6 @@ def random_motion(rng: np.random.Generator) -> Trajectory:
         return simulate(Scene(a, b, **scene), 6.0, **settings, raise_on_failure=False)
 
 
-def some_value(rng: np.random.Generator, motion: Trajectory, name: str) -> float:
-    """A value that the quantity has, one within its range, or one outside."""
-    values = getattr(motion, name)
-    low, high = float(values.min()), float(values.max())
-    one = float(values[rng.integers(values.size)])
-    return float(rng.choice([one, rng.uniform(low, high), low - 0.1, high + 1e-6]))
-
-
 def times_of_events(motion: Trajectory) -> Floats:
     return np.array([event.t for event in motion.events if event.t <= motion.t_end])
 

@@ -6,6 +6,7 @@ import numpy as np
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.collections import Collection
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.patches import Ellipse
@@ -70,6 +71,12 @@ def points_of(collection: Collection | None) -> NDArray[np.float64]:
 def frames_of(image: Image) -> int:
     """Frames of a GIF; Pillow's annotation lacks them."""
     return int(image.n_frames)  # type: ignore[attr-defined]
+
+
+def luminance(colour: Any) -> float:
+    """Relative to white (IEC 61966-2-1 for sRGB)."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+    return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))
 
 
 def shows_something(figure: Figure) -> bool:

@@ -13,7 +13,7 @@ QUICK = (
     "scene/test_scene.py",
     "rolling/test_flow_reference.py",
     "proof/test_certificate.py::test_a_hairs_breadth_from_the_threshold",
-    "proof/test_certificate.py::test_beside_the_separatrix",
+    "proof/test_certificate.py::test_a_fall_from_beside_the_tip_ends_where_the_law_does",
     "multipliers/test_multipliers.py",
     "contact/test_contact_reference.py",
     "outcome/test_classify.py",

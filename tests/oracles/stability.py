@@ -4,32 +4,10 @@ other measurements of methods."""
 from functools import cache
 from typing import Any
 
-import mpmath as mp
 import numpy as np
 from numpy.typing import NDArray
 from rolling_ellipse import Trajectory, simulate
-from stability_laws import FED_BACK, GRAVITY, GYRATION2, A, B, half_turn, kept_by
-
-from oracles.numbers import DIGITS
-
-
-def half_swing_of(omega: float) -> Any:
-    """Time of half a swing from the flat with a speed [s], by mpmath's quadrature of the energy
-    integral in u: sin theta = sin(largest theta) sin u."""
-    with mp.workdps(DIGITS):
-        a2, b2 = mp.mpf(A) ** 2, mp.mpf(B) ** 2
-        top = B + (GYRATION2 + b2) * mp.mpf(omega) ** 2 / (2 * mp.mpf(GRAVITY))
-        sine = mp.sqrt((top**2 - b2) / (a2 - b2))
-
-        def rate(u: Any) -> Any:
-            sine2 = (sine * mp.sin(u)) ** 2
-            h = mp.sqrt(b2 + (a2 - b2) * sine2)
-            lead2 = (a2 - b2) ** 2 * sine2 * (1 - sine2) / h**2
-            inertia = GYRATION2 + h**2 + lead2
-            return mp.sqrt(inertia * (top + h) / (2 * GRAVITY * (a2 - b2) * (1 - sine2)))
-
-        return 2 * mp.quad(rate, [0, mp.pi / 4, mp.pi / 2])
-
+from stability_laws import FED_BACK, half_turn, kept_by
 
 SPANS = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000])  # half turns
 KEPT: dict[str, dict[str, Any]] = {

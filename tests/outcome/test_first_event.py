@@ -6,7 +6,7 @@ point.
 """
 
 from collections import Counter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import oracles.geometry
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from oracles.numbers import PI, Long
 from oracles.outcome import Codes, Sample, random_sample
 from oracles.rolling import Motion
-from rolling_ellipse import Outcome, Validity, certify, classify
+from rolling_ellipse import Outcome, classify
 
 STEPS, CHUNK = 4000, 100
 CLEAR = 1e-6  # of the forces, of the energy, of gravity: nearer to zero a margin decides nothing
@@ -171,45 +171,6 @@ def test_a_wrong_way_is_noticed(walked: list[Walked]) -> None:
     for sample, truth in walked:
         differ += int((sample._replace(omega=-sample.omega).outcomes() != truth).sum())
     assert differ >= 5
-
-
-def test_seen_from_behind(walked: list[Walked]) -> None:
-    """The mirror image: theta and omega change their signs and nothing happens otherwise."""
-    for sample, _ in walked:
-        mirrored = sample._replace(theta=-sample.theta, omega=-sample.omega)
-        assert np.array_equal(mirrored.outcomes(), sample.outcomes())
-
-
-def test_scalar_and_array_agree(walked: list[Walked]) -> None:
-    sample = walked[0].sample
-    codes = sample.outcomes()
-    for row in range(codes.size):
-        single: dict[str, Any] = {name: float(x[row]) for name, x in sample._asdict().items()}
-        alone = classify(**single)
-        assert alone is Outcome(int(codes[row]))
-
-
-# ------------------------------------------------------------------------------------- certify
-
-
-def test_agreement_with_the_certificate() -> None:
-    """A proof for the whole motion is one for its beginning. From the flat position, or from the
-    tip, the way up to the next tip meets every height: there also what is invalid ends."""
-    ended = 0
-    for seed in (11, 12):
-        for at_axis in (False, True):
-            sample = random_sample(400, seed)
-            if at_axis:
-                sample = sample._replace(theta=np.zeros(400))
-            for row, code in enumerate(sample.outcomes()):
-                found = certify(sample.scene(row)).validity
-                if found is Validity.VALID:
-                    held = (Outcome.ROCKS, Outcome.ROLLS_OVER, Outcome.RESTS)
-                    assert code in held, sample.scene(row)
-                elif found is Validity.INVALID and at_axis:
-                    assert code in (Outcome.SLIPS, Outcome.LOSES_CONTACT), sample.scene(row)
-                    ended += 1
-    assert ended > 200
 
 
 # ------------------------------------------------------------------------------------------ a crowd

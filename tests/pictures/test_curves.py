@@ -13,12 +13,10 @@ import pytest
 import rolling_ellipse as rl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from oracles.curves import TWO_PANELS, data, legend_of, new_axes, rough, two_axes
-from oracles.pictures import figure_of, shows_something
-from rolling_ellipse._ask.scene import SCENE_UNITS
+from oracles.pictures import figure_of, luminance, shows_something
 from rolling_ellipse._pictures import sampling
 from rolling_ellipse._pictures.comparison import Comparison, labels_of
 
@@ -149,21 +147,11 @@ def test_motions_differ_in_lightness_and_dashes(report: rl.Trajectory) -> None:
 
 
 def lightness(colour: str) -> float:
-    """CIE L* of a colour (IEC 61966-2-1 for sRGB)."""
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
-    return float(116 * np.cbrt(np.dot(linear, (0.2126, 0.7152, 0.0722))) - 16)
+    """CIE L* of a colour."""
+    return float(116 * np.cbrt(luminance(colour)) - 16)
 
 
 # ---------------------------------------------------------------------------------------- time axes
-
-
-@pytest.mark.parametrize("picture", OVER_TIME)
-def test_events_are_dotted_lines(picture: Callable[..., Any], report: rl.Trajectory) -> None:
-    state = report.scene.initial_state
-    events = tuple(rl.Event(t, rl.EventKind.SLIP, state, state) for t in (1.5, 4.0))
-    shown = picture(dataclasses.replace(report, kept_events=events), ax=new_axes())
-    (mark,) = shown.marks
-    assert [segment[0, 0] for segment in mark.get_segments()] == [1.5, 4.0]
 
 
 @pytest.mark.parametrize("picture", OVER_TIME)
@@ -281,18 +269,3 @@ def test_what_nothing_tells_apart_is_numbered() -> None:
     assert labels_of([ROLLING] * 3, None) == ["1", "2", "3"]
     two_alike = [ROLLING, ROLLING, dataclasses.replace(ROLLING, method="rk4")]
     assert labels_of(two_alike, None) == ["1", "2", "3"]
-
-
-def test_labels_of_one_motion() -> None:
-    assert labels_of([ROLLING], None) == [""]
-    assert labels_of([ROLLING], ["mine"]) == ["mine"]
-
-
-def test_names_given_are_kept() -> None:
-    assert labels_of([ROLLING, ROLLING], ("same", "same")) == ["same", "same"]
-
-
-def test_every_number_of_a_scene_has_a_unit() -> None:
-    numbers = {field.name for field in dataclasses.fields(rl.Scene)} - {"impulse"}
-    assert set(SCENE_UNITS) == numbers
-    assert math.isinf(varied().friction)  # so that "friction = ∞" above is what it says

@@ -1,7 +1,6 @@
 """Pictures show the motion itself, whatever samples there are, and say what they leave out."""
 
 import dataclasses
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -96,22 +95,6 @@ def test_the_path_and_the_forces_of_1000_turns_are_no_straight_lines() -> None:
     in_each = normal.reshape(-1, 2)
     assert np.all(in_each.max(axis=1) > 0.95 * one.max())
     assert np.all(in_each.min(axis=1) < 1.05 * one.min())
-
-
-@pytest.mark.parametrize(
-    ("motion", "expected"),
-    [
-        (MOTIONS["report"], 2 * 6.0 / rl.period(rl.scenes.report)),
-        (ROLLING, 2.0 * FULL_TURNS),
-        (few(rl.Scene(2.0, 1.0, theta=0.5, friction=0.45), 1e4, model="contact"), 1e4 / 1.2225),
-        (few(rl.Scene(1.0, 1.0, omega=3.0, slope=0.1), 10.0, model="rolling"), None),
-        (rl.simulate(rl.Scene(2.0, 1.0), 10.0), 1.0),
-    ],
-)
-def test_half_turns_and_swings_are_counted(motion: rl.Trajectory, expected: float | None) -> None:
-    if expected is None:
-        expected = float(motion.theta[-1] - motion.theta[0]) / math.pi
-    assert sampling.half_turns(motion) == pytest.approx(expected, rel=0.1)
 
 
 @pytest.mark.parametrize("span", [1.0, 1e2, 1e4, 1e6, 1e9])

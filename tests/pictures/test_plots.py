@@ -458,11 +458,6 @@ def test_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajector
     assert across == pytest.approx(up, rel=1 / window.width)
 
 
-def test_a_slope_is_drawn_as_a_slope() -> None:
-    downhill = drawing.tilted(rl.scenes.slope).transform((1.0, 0.0))
-    assert downhill == pytest.approx([math.cos(0.1), -math.sin(0.1)], rel=1e-15)
-
-
 # -------------------------------------------------------------------------------------- plot
 
 
@@ -562,11 +557,3 @@ def test_a_reference_may_be_given() -> None:
     shown = rl.plot_error(one, "x", other, ax=new_axes())
     t, error = np.asarray(shown.errors[0].get_data())
     assert error == pytest.approx(np.abs(one.sol(t).x - other.sol(t).x), abs=1e-15)
-
-
-def test_pictures_are_methods_too() -> None:
-    motion = rl.simulate(rl.scenes.report, 2.0)
-    for name in ("strobe", "paths", "phase", "forces", "energy", "constraints", "error"):
-        ax = new_axes()
-        getattr(motion, f"plot_{name}")(ax=ax)
-        assert ax.lines

@@ -14,6 +14,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from oracles.curves import new_axes
+from oracles.pictures import luminance
 from rolling_ellipse._pictures.palette import palette_of
 
 STYLES = ["default", "dark_background", "grayscale", "ggplot", "Solarize_Light2", "seaborn-v0_8"]
@@ -28,12 +29,7 @@ def defaults() -> Iterator[None]:
 
 def contrast(one: Any, other: Any) -> float:
     """Ratio of luminances, 1 to 21 (WCAG 2.1, relative luminance)."""
-    levels = []
-    for colour in (one, other):
-        linear = [
-            c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)
-        ]
-        levels.append(float(np.dot(linear, (0.2126, 0.7152, 0.0722))))
+    levels = luminance(one), luminance(other)
     return (max(levels) + 0.05) / (min(levels) + 0.05)
 
 
@@ -96,30 +92,20 @@ def test_films_follow_the_style() -> None:
             film = rl.animate(motion)
         strip = film.strips[0]
         paper = film.figure.get_facecolor()
-        for colour in (
-            strip.body.get_edgecolor(),
-            strip.axis_a.get_color(),
-            film.clock.get_color(),
-        ):
-            assert contrast(colour, paper) > 3, style
+        drawn = strip.body.get_edgecolor(), strip.axis_a.get_color(), film.clock.get_color()
+        assert all(contrast(colour, paper) > 3 for colour in drawn), style
 
 
 # ---------------------------------------------------------------------------- what users may give
 
 
+DRAWN = (
+    "motions", "normal", "friction", "total", "error", "errors", "lines", "centres", "tips",
+)  # fmt: skip
+
+
 def curves_of(shown: Any) -> list[Line2D]:
-    names = [
-        "motions",
-        "normal",
-        "friction",
-        "total",
-        "error",
-        "errors",
-        "lines",
-        "centres",
-        "tips",
-    ]
-    found = [getattr(shown, name, ()) for name in names]
+    found = [getattr(shown, name, ()) for name in DRAWN]
     return [line for lines in found for line in np.ravel(np.array(lines, dtype=object)).tolist()]
 
 

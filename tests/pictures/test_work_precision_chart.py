@@ -167,11 +167,3 @@ def test_a_chart_without_an_answer_still_says_why() -> None:
     assert "too many" in chart.reasons.get_text()
     chart.ax.figure.canvas.draw()
     plt.close(chart.ax.figure)
-
-
-@pytest.mark.parametrize("name", ["error", 3, None])
-def test_quantities_that_are_none_are_refused(name: Any) -> None:
-    with pytest.raises(ValueError, match="x must be one of 'largest', 'final', 'l2', 'linf'"):
-        FOUND.plot(name)
-    with pytest.raises(ValueError, match="y must be one of 'largest', 'final', 'l2', 'linf'"):
-        FOUND.plot("final", name)

@@ -2,7 +2,6 @@
 
 import math
 import warnings
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -190,23 +189,6 @@ def test_corrected_has_defaults_of_its_own() -> None:
     scene = heavy.scene
     assert (scene.x, scene.theta, scene.omega) == (Q[0], Q[2], Q_DOT[2]) and Q[0] != 0
     assert corrected(Q, Q_DOT, 1.0).t.size == 1001
-
-
-@pytest.mark.parametrize("start", [(Q, Q_DOT), (OWN_Q, OWN_RATES)], ids=["consistent", "not"])
-def test_corrected_is_saved_with_its_start(start: tuple[Array, Array], tmp_path: Path) -> None:
-    """A scene cannot hold it: theta and omega say nothing of a z_dot that is too large."""
-    motion = as_given(*start, np.linspace(0, 2, 21), stabilization="none")
-    motion.save(tmp_path / "motion.npz")
-    back = rl.Trajectory.load(tmp_path / "motion.npz")
-    assert back.start is not None and motion.start is not None
-    assert np.array_equal(np.stack(back.start), np.stack(motion.start))
-    assert np.array_equal(np.stack(back.start), np.stack(start))
-    between = np.linspace(0.03, 1.97, 50)
-    for one, other in ((motion, back), (motion.sol(between), back.sol(between))):
-        for name in ("q", "q_dot", "multipliers", "energy"):
-            assert np.array_equal(getattr(one, name), getattr(other, name))
-    assert back.settings == motion.settings and back.reason == motion.reason
-    assert back.valid_until == motion.valid_until
 
 
 def test_corrected_raises_where_it_stops() -> None:

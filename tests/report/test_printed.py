@@ -1,6 +1,5 @@
 """The equations as printed: the motion they give, the starts they take, what they refuse."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -8,10 +7,8 @@ import pytest
 import rolling_ellipse as rl
 from numpy.typing import ArrayLike
 from oracles.margins import told
-from oracles.report import BODY, Q_DOT, SHAPE, Array, Q, off_by, start
+from oracles.report import BODY, Q_DOT, SHAPE, Q, off_by, start
 from rolling_ellipse import report
-from rolling_ellipse._ask.settings import Settings
-from rolling_ellipse.report._runge_kutta import integrate
 
 # ----------------------------------------------------------------------------------- the simulation
 
@@ -31,15 +28,6 @@ def run(q: ArrayLike, q_dot: ArrayLike, t: Any, **options: Any) -> report.Printe
     return motion
 
 
-def test_the_given_times_are_left_alone() -> None:
-    """And what becomes of them later is nothing to the motion."""
-    times = np.linspace(0.0, 0.1, 5)
-    q, q_dot = rl.kinematics(0.3, 2.0, a=2.0, b=1.0)
-    motion = report.simulate(q, q_dot, times, a=2.0, b=1.0, equations="printed", printed=())
-    assert times.flags.writeable and not np.shares_memory(motion.t, times)
-    assert motion.t.tolist() == times.tolist()
-
-
 @pytest.mark.parametrize(("printed", "gap"), GAPS)
 @pytest.mark.parametrize("mass", [1.0, 10.0])
 def test_wrong_equations_lift_it_off(printed: tuple[str, ...], gap: float, mass: float) -> None:
@@ -57,12 +45,6 @@ def test_wrong_equations_lift_it_off(printed: tuple[str, ...], gap: float, mass:
     kinetic = mass * (q_dot[0] ** 2 + q_dot[1] ** 2 + 1.25 * q_dot[2] ** 2) / 2
     assert tight.energy[0] == pytest.approx(kinetic + mass * 9.81 * q[1], rel=1e-8)
     assert np.array_equal(tight.constraint_residuals().gap, tight.gap)
-
-
-def test_only_the_misprints_lift_it_off() -> None:
-    q, q_dot = start(0.2, 2.0)
-    motion = run(q, q_dot, [0.25], printed=(), rtol=1e-11, atol=1e-11)
-    assert abs(motion.gap[0]) < 1e-10
 
 
 def test_right_rows_give_the_exact_motion() -> None:
@@ -104,23 +86,6 @@ def test_large_steps_lift_it_off() -> None:
     ]
     assert errors[0] > 4 * errors[1] > 16 * errors[2] > 0
     assert errors[2] < 1e-4
-
-
-@pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("dopri5", 5)])
-def test_order(method: Any, order: int) -> None:
-    """On y' = y cos t, y = exp(sin t), whose higher terms are as large as the first."""
-    sizes = np.array([0.1, 0.05, 0.025])
-    errors = []
-    for size in sizes:
-        steps = Settings(method=method, step=float(size), max_steps=10_000)
-        y, message = integrate(
-            lambda y: np.array([y[0] * math.cos(y[1]), 1.0]), np.array([1.0, 0.0]),
-            np.array([2.0]), steps,
-        )  # fmt: skip
-        assert message == ""
-        errors.append(abs(y[0, 0] - math.exp(math.sin(2.0))))
-    slope = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
-    assert slope == pytest.approx(order, abs=0.15)
 
 
 def test_samples_do_not_steer() -> None:
@@ -186,34 +151,6 @@ def test_the_reports_own_start_is_refused_by_name() -> None:
         run(q, q_dot, 1.0)
     with pytest.raises(ValueError, match=r"f2 = 0.5 m; f3 = 0.25 m; f4 = -0.3 rad$"):
         run(*off_by(0.5, 0.25, -0.3), 1.0, printed=())
-
-
-def test_projection_takes_the_nearest_state() -> None:
-    """In the kinetic metric: no neighbour on the ground is nearer, no other speed either."""
-    q, q_dot = np.array([0.3, 1.5, 0.4, 5.0, 3.0]), np.array([1.0, 0.5, 2.0, 7.0, -3.0])
-    motion = run(q, q_dot, [0.0], printed=(), consistent="project", mass=3.0)
-    there, rates = motion.q[0], motion.q_dot[0]
-    assert np.array_equal(motion.start.q_change, there - q)
-    assert np.array_equal(motion.start.q_dot_change, rates - q_dot)
-    residuals = rl.constraints(there, rates, **SHAPE)
-    assert np.max(np.abs(residuals.position)) < 1e-15
-    assert np.max(np.abs(residuals.velocity)) < 1e-14
-    assert there[0] == 0.3
-
-    def distance2(theta: Array) -> Array:
-        height = rl.geometry.support(theta, **SHAPE)
-        return (1.5 - height) ** 2 + 1.25 * (theta - 0.4) ** 2
-
-    everywhere = np.linspace(-3, 3, 6001)
-    assert distance2(there[2]) <= np.min(distance2(everywhere))
-    # stationary: to second order in 1e-4, 1e-8 of a curvature of about 1
-    assert distance2(there[2] + 1e-4) == pytest.approx(distance2(there[2] - 1e-4), abs=1e-10)
-    h, slope = rl.geometry.support(there[2], **SHAPE), rl.geometry.support_slope(there[2], **SHAPE)
-    omega = (h * 1.0 + slope * 0.5 + 1.25 * 2.0) / (1.25 + h**2 + slope**2)
-    assert rates[2] == pytest.approx(omega, rel=1e-14)
-    assert rates[:3] == pytest.approx([h * omega, slope * omega, omega], rel=1e-14)
-    again = run(there, rates, [0.0], printed=(), consistent="project")
-    assert np.array_equal(again.q[0], there)  # consistent already: nothing is changed
 
 
 def test_motion_says_what_it_is() -> None:

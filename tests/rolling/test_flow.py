@@ -1,4 +1,4 @@
-"""`flow` and `period` beyond the table of test_flow_reference.py: limits, symmetries, arrays.
+"""`flow` and `period` beyond the table of test_flow_reference.py: limits, shapes, arrays.
 
 The oracle is the energy integral in 40 digits of reference/make_rolling_reference.py, which shares
 nothing with the package. A unit is what one rounding of every input does to an answer, plus two
@@ -6,7 +6,6 @@ units in its last place; LARGEST_ERROR of them is what test_flow_reference.py al
 """
 
 import math
-import signal
 import time
 from fractions import Fraction
 from functools import cache
@@ -16,8 +15,8 @@ import make_rolling_reference as reference
 import mpmath as mp
 import numpy as np
 import pytest
-from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion, arguments, carried, grain
-from oracles.geometry import support
+from oracles.flow import LARGEST_ERROR, PARAMETERS, Motion
+from oracles.limits import ctrl_c_after
 from oracles.margins import told
 from oracles.numbers import EPS
 from rolling_ellipse import Scene, flow, geometry, period, thresholds
@@ -105,21 +104,6 @@ def test_period_of_rest_and_of_a_circle() -> None:
     assert period(Scene(1.5, 1.5, omega=-3.0)) == 2 * math.pi / 3
 
 
-@pytest.mark.parametrize("motion", [MOTIONS["libration"], MOTIONS["rotation"], MOTIONS["standing"]])
-def test_the_period_is_that_of_the_flow(motion: Motion) -> None:
-    """After a period the state is the same, to the units and what half an ulp of the period is."""
-    a, b, gyration2, gravity, theta, omega = motion
-    scene = Scene(a, b, inertia=gyration2, gravity=gravity, theta=theta, omega=omega)
-    time = period(scene)
-    later = np.array(flow(time, **arguments(motion)))
-    turns = round((later[0] - theta) / (2 * math.pi))
-    path = geometry.centre_path(2 * math.pi * turns, a=a, b=b)
-    before = [theta + 2 * math.pi * turns, omega, path]
-    moved = 1e-6 * np.abs(flow(1e-6, **arguments(motion)) - np.array([theta, omega, 0.0]))
-    rates = moved / 1e-12  # theta_dot, omega_dot, x_dot
-    assert np.all(np.abs(later - before) <= 4 * grain(time, motion) + rates * math.ulp(time))
-
-
 # ------------------------------------------------------------------------- circle and nearly so
 
 
@@ -202,27 +186,6 @@ def test_a_nearly_round_body_beside_its_tip_falls_as_well(rounder: float) -> Non
     assert omega == pytest.approx(exact, rel=4 * EPS / beside + 64 * EPS, abs=0)
 
 
-@pytest.mark.parametrize("side", [1e-12, -1e-12])
-@pytest.mark.parametrize("direction", [1, -1])
-def test_within_1e_12_of_the_separatrix(side: float, direction: int) -> None:
-    """As many units as anywhere; the unit grows like exp(tip rate * t) while it hangs there, and
-    again with every passage, so the last time is beyond the first one (period near 50 s)."""
-    motion = (2.0, 1.0, 1.25, 9.81, 0.0, direction * ROLL_OVER * (1 + side))
-    scene = reference.Scene(*motion)
-    exactly, changes = (
-        reference.motion(scene, rule(28)),
-        reference.sensitivities(scene, rule(20)),
-    )
-    for t in (0.5, 3.0, 12.0, 20.0, 30.0):
-        exact = exactly.state(mp.mpf(t))
-        unit = reference.units(changes(mp.mpf(t)), exact)
-        found = flow(t, **arguments(motion))
-        off = [float(abs(f - e)) / u for f, e, u in zip(found, exact, unit, strict=True)]
-        assert max(off) <= LARGEST_ERROR
-    turned = direction * flow(30.0, **arguments(motion))[0]
-    assert turned > math.pi / 2 if side > 0 else turned < math.pi / 2
-
-
 def separatrix_speeds(a: float, b: float, theta: float) -> list[float]:
     """Doubles whose energy is that of the tip for the package: around the roll-over speed, those
     that neither return nor pass in a million seconds (the nearest others take 50 s)."""
@@ -260,115 +223,7 @@ def test_on_the_separatrix_the_period_is_infinite() -> None:
         assert period(Scene(2.0, 1.0, omega=speed)) == math.inf
 
 
-# -------------------------------------------------------------------------------- symmetries
-
-# the grain of states that fell through the neighbourhood of the tip is no longer linear
-ORDINARY = [name for name in MOTIONS if not name.startswith("just")]
-ordinary = pytest.mark.parametrize("motion", [MOTIONS[name] for name in ORDINARY], ids=ORDINARY)
-
-
-@each_motion
-def test_mirror(motion: Motion) -> None:
-    """Seen from the other side: the same bits, with the other sign."""
-    times = np.array([-1e3, -0.7, 1e-6, 0.2, 3.0, 44.0, 1e7])
-    start: dict[str, Any] = arguments(motion)
-    seen = start | {"theta": -start["theta"], "omega": -start["omega"]}
-    for one, other in zip(flow(times, **start), flow(times, **seen), strict=True):
-        assert np.array_equal(one, -other)
-
-
-@ordinary
-def test_negative_times_are_the_motion_backwards(motion: Motion) -> None:
-    """The film run backwards starts with the opposite speed."""
-    start: dict[str, Any] = arguments(motion)
-    for t in (1e-6, 0.3, 2.0, 33.0):
-        before = np.array(flow(-t, **start))
-        after = np.array(flow(t, **(start | {"omega": -start["omega"]})))
-        off = np.abs(before - after * [1, -1, 1])
-        assert np.all(off <= 2 * LARGEST_ERROR * grain(t, motion))  # both may be off
-
-
-@ordinary
-def test_there_and_back(motion: Motion) -> None:
-    """The state reached is only known to its units; going back carries them along."""
-    a, b, gyration2, gravity, theta, omega = motion
-    for t in (0.3, 2.0, 33.0):
-        there = flow(t, **arguments(motion))
-        reached = (a, b, gyration2, gravity, there[0], there[1])
-        back = np.array(flow(-t, **arguments(reached)))
-        off = np.abs(back - [theta, omega, -there[2]])
-        assert np.all(off <= carried(t, motion, reached, -t))
-
-
-@ordinary
-def test_two_steps_are_one(motion: Motion) -> None:
-    for t1, t2 in ((0.25, 0.5), (1.0, 7.0), (30.0, -2.0), (5.0, 200.0)):
-        first = flow(t1, **arguments(motion))
-        reached = (*motion[:4], first[0], first[1])
-        second = np.add(flow(t2, **arguments(reached)), [0, 0, first[2]])
-        off = np.abs(second - flow(t1 + t2, **arguments(motion)))
-        unit = LARGEST_ERROR * grain(t1 + t2, motion)
-        assert np.all(off <= carried(t1, motion, reached, t2) + unit)
-
-
-# ------------------------------------------------------------------------------------ energy
-
-
-def energy_misses(motion: Motion, times: np.ndarray, omega_factor: float = 1.0) -> float:
-    """Largest error of the energy in ulp, after what 2 ulp of theta excuse; in long double.
-
-    theta is the start plus what it turned: its grain is that of the larger of both.
-    """
-    a, b, gyration2, gravity, *_ = (np.longdouble(value) for value in motion)
-    found = flow(times, **arguments(motion))
-
-    def terms(theta: Any, omega: Any) -> tuple[Any, Any]:
-        h, slope, curvature = support(theta, a, b)
-        energy = (gyration2 + h**2 + slope**2) * omega**2 / 2 + gravity * h
-        by_angle = slope * (h + curvature) * omega**2 + gravity * slope
-        return energy, np.abs(by_angle)
-
-    theta, omega = (np.asarray(values, np.longdouble) for values in found[:2])
-    energy, by_angle = terms(theta, omega * omega_factor)
-    start, _ = terms(np.longdouble(motion[4]), np.longdouble(motion[5]))
-    excused = 2 * np.spacing(np.maximum(np.abs(found[0]), abs(motion[4]))) * by_angle
-    return float(np.max((np.abs(energy - start) - excused) / start) / EPS)
-
-
-@each_motion
-def test_energy_is_constant(motion: Motion) -> None:
-    """16 ulp of E/m over 1e5 samples of a hundred swings; if it swings, also after 1e9 s (if it
-    turns, theta is a large number by then and its grain hides everything)."""
-    swing = float(exact_period(motion, 12))
-    spans = [np.linspace(0, 100 * swing, 100_000)]
-    if reference.RollingEllipse(reference.Scene(*motion), rule(12)).rocks:
-        spans.append(1e9 + np.linspace(0, swing, 1000))
-    for times in spans:
-        misses = energy_misses(motion, times)
-        told(f"{misses:.3g} ulp")
-        assert misses <= 16
-
-
-def test_the_energy_check_sees_omega() -> None:
-    times = np.linspace(0, 10, 1000)
-    assert energy_misses(MOTIONS["rotation"], times, 1 + 1e-3) > 1e9
-    assert energy_misses(MOTIONS["rotation"], times, 1 + 64 * EPS) > 16
-
-
-@each_motion
-def test_x_is_the_path_of_the_centre(motion: Motion) -> None:
-    """Against elliptic integrals of the angle, 8 ulp each, and what 2 ulp of the angle are."""
-    a, b, theta0 = motion[0], motion[1], motion[4]
-    for t in (1e-3, 0.7, 20.0, -300.0):
-        theta, _, x = flow(t, **arguments(motion))
-        # mpmath's E(phi | m) is unwrapped over whole turns
-        paths = [b * mp.ellipe(mp.mpf(end), 1 - (mp.mpf(a) / b) ** 2) for end in (theta, theta0)]
-        height = max(a, b)
-        excused = 2 * height * math.ulp(theta)
-        assert abs(x - (paths[0] - paths[1])) <= excused + 8 * math.ulp(x)
-
-
-# -------------------------------------------------------------------------- shapes and threads
+# -------------------------------------------------------------------------- shapes of arrays
 
 
 def test_scalars_in_floats_out() -> None:
@@ -390,18 +245,9 @@ def test_broadcasting() -> None:
     assert [values.shape for values in found] == [(3, 3, 4)] * 3
     assert all(values.dtype == np.float64 for values in found)
     for i, j, k in np.ndindex(3, 3, 4):
-        start: dict[str, Any] = {
-            "a": 2.0,
-            "b": float(b[i, 0, 0]),
-            "theta": 0.3,
-            "omega": float(omega[j, 0]),
-        }
-        single = flow(float(t[k]), **start, gravity=gravity[k])
-        gyration2 = float((4.0 + b[i, 0, 0] ** 2) / 4)
-        unit = grain(float(t[k]), (2.0, start["b"], gyration2, gravity[k], 0.3, start["omega"]))
-        # bits may differ with the number of samples, within the stated accuracy
-        off = np.abs([values[i, j, k] for values in found] - np.array(single))
-        assert np.all(off <= LARGEST_ERROR * unit)
+        body: dict[str, float] = {"a": 2.0, "b": float(b[i, 0, 0]), "gravity": gravity[k]}
+        single = flow(float(t[k]), **body, theta=0.3, omega=float(omega[j, 0]))
+        assert tuple(values[i, j, k] for values in found) == single
 
 
 def test_lists_float32_and_empty_arrays() -> None:
@@ -432,67 +278,6 @@ def test_inputs_are_not_modified() -> None:
         assert not any(np.shares_memory(values, answer) for answer in answers)
 
 
-def test_workers_have_no_say_in_the_bits() -> None:
-    """20000 motions are 20 chunks: every worker gets some."""
-    generator = np.random.default_rng(4)
-    n = 20_000
-    start: dict[str, Any] = {
-        "a": generator.uniform(0.5, 2, n),
-        "b": generator.uniform(0.5, 2, n),
-        "theta": generator.uniform(-4, 4, n),
-        "omega": generator.normal(0, 4, n),
-    }
-    times = generator.uniform(-20, 20, n)
-    alone = flow(times, **start)
-    for workers in (2, 3, -1):
-        for one, other in zip(alone, flow(times, **start, workers=workers), strict=True):
-            assert np.array_equal(one, other)
-    one_motion = flow(times, a=2.0, b=1.0, theta=0.1, omega=3.2)
-    shared = flow(times, a=2.0, b=1.0, theta=0.1, omega=3.2, workers=2)
-    assert all(np.array_equal(one, other) for one, other in zip(one_motion, shared, strict=True))
-
-
-# -------------------------------------------------------------------------------- bad input
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        *((name, bad) for name in ("t", *PARAMETERS) for bad in (math.nan, math.inf)),
-        *((name, bad) for name in ("a", "b", "gyration2", "gravity") for bad in (0.0, -1.0)),
-    ],
-)
-def test_wrong_numbers_are_refused_by_name(name: str, value: float) -> None:
-    """From a scalar call, from an array, and from the last of many elements on two threads."""
-    start: dict[str, Any] = {"t": 1.0} | arguments(MOTIONS["rotation"])
-    many = np.full(5000, start[name])
-    many[-1] = value
-    for changed in ({name: value}, {name: [start[name], value]}, {name: many, "workers": 2}):
-        with pytest.raises(ValueError, match=rf"^{name}\b.*{value}"):
-            flow(**(start | changed))
-
-
-@pytest.mark.parametrize("value", ["1", None, 1j, [[1.0], [2.0, 3.0]], {}])
-@pytest.mark.parametrize("name", ["t", "a", "theta", "gravity"])
-def test_what_is_no_number_is_refused_by_name(name: str, value: object) -> None:
-    start: dict[str, Any] = {"t": 1.0} | arguments(MOTIONS["rotation"])
-    with pytest.raises(TypeError, match=rf"^{name} must be"):
-        flow(**(start | {name: value}))
-
-
-def test_shapes_that_do_not_broadcast_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"t \(3,\).*omega \(2,\)"):
-        flow([1.0, 2.0, 3.0], a=2.0, b=1.0, theta=0.0, omega=[1.0, 2.0])
-
-
-@pytest.mark.parametrize(
-    ("workers", "error"), [(0, ValueError), (-2, ValueError), (1.5, TypeError), (True, TypeError)]
-)
-def test_wrong_workers_are_refused_by_name(workers: Any, error: type[Exception]) -> None:
-    with pytest.raises(error, match=r"^workers must be"):
-        flow(1.0, a=2.0, b=1.0, theta=0.0, omega=1.0, workers=workers)
-
-
 # ----------------------------------------------------------------------------------- Ctrl-C
 
 
@@ -511,15 +296,9 @@ def test_ctrl_c_stops_a_long_call(workers: int) -> None:
         return time.perf_counter() - begin
 
     full = seconds(part) * n / part
-    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
     begin = time.perf_counter()
-    try:
-        signal.setitimer(signal.ITIMER_REAL, 0.3)
-        with pytest.raises(KeyboardInterrupt):
-            flow(5.0, theta=angles, **start)
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, usual)
+    with ctrl_c_after(0.3):
+        flow(5.0, theta=angles, **start)
     taken = time.perf_counter() - begin
     told(f"stopped after {taken:.2f} s of {full:.1f} s")
     assert taken < 0.3 + full / 4

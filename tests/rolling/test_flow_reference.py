@@ -7,7 +7,6 @@ from rest has a tiny omega and x, and their units are tiny too.
 
 import math
 from collections.abc import Callable, Iterator
-from statistics import median
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -87,18 +86,6 @@ def errors(
     return np.array(found)
 
 
-def report(rows: list[Row], found: np.ndarray) -> str:
-    """Worst and median error of theta, omega, x, for every kind and in all."""
-    kinds = {
-        row.kind: [i for i, other in enumerate(rows) if other.kind == row.kind] for row in rows
-    }
-    lines = [f"{'units: worst / median':26} scenes" + "".join(f"{name:>20}" for name in ANSWERS)]
-    for kind, members in {**kinds, "in all": list(range(len(rows)))}.items():
-        cells = (f"{max(e):10.3g} / {median(e):7.3g}" for e in found[members].T.tolist())
-        lines.append(f"{kind:26} {len(members):6}" + "".join(cells))
-    return "\n".join(lines)
-
-
 @pytest.mark.parametrize(
     ("call", "rounding"), [(one_by_one, 0.0), (all_at_once, 0.0), (among_many, 2e-16)]
 )
@@ -107,16 +94,9 @@ def test_flow_is_within_a_few_units(
 ) -> None:
     """Many times of one motion give x with the rounding of a length like the body's."""
     found = errors(rows, call, rounding)
-    told("\n" + report(rows, found))
-    too_large = [i for i, one in enumerate(found) if not all(one <= LARGEST_ERROR)]  # catches nan
-    worst = sorted(too_large, key=lambda i: -np.nan_to_num(found[i], nan=math.inf).max())[:5]
-    assert not too_large, (
-        f"{len(too_large)} of {len(rows)} scenes are off by more than {LARGEST_ERROR} units "
-        "(theta, omega, x); the worst:\n"
-        + "\n".join(f"{found[i]} {rows[i].kind} {rows[i].arguments}" for i in worst)
-        + "\n"
-        + report(rows, found)
-    )
+    worst = max(range(len(rows)), key=lambda i: np.nan_to_num(found[i], nan=math.inf).max())
+    told(f"median {np.median(found, axis=0)}, worst {found[worst]} units, of {rows[worst]}")
+    assert np.all(found <= LARGEST_ERROR), rows[worst]  # catches nan
 
 
 @pytest.mark.parametrize("name", INPUTS)

@@ -94,32 +94,6 @@ def test_rocking_is_right_to_a_few_roundings(row: dict[str, str]) -> None:
         assert abs(table.difference(value, row[name])) < 8 * unit, name
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        rl.Scene(2.0, 1.0, slope=0.2),
-        rl.Scene(0.5, 0.9, slope=-0.5, inertia=3.0),
-        rl.Scene(0.01, 1.0, slope=-1.2),
-        rl.Scene(300.0, 1.0, slope=1e-9),
-    ],
-    ids=["2:1", "standing", "thin, steep", "thin, gentle"],
-)
-def test_small_rocking_has_the_period_of_its_limit(scene: rl.Scene) -> None:
-    """From either side of the equilibrium, with or without speed, at any small amplitude.
-
-    The limit is that of the linear equation, of a dozen roundings; the package has a few in each
-    series: 32 in all. Amplitudes change the period by their square.
-    """
-    lying, rate = equilibria(scene)[0]
-    exact = 2 * math.pi / rate
-    thin = min(scene.a, scene.b) / max(scene.a, scene.b)
-    for way in (1e-12, -1e-11, 1e-10, -1e-9, 3e-9):
-        far = scene.replace(theta=lying + way * thin)
-        fast = scene.replace(theta=lying, omega=way * thin)
-        for start in (far, fast, far.replace(omega=-fast.omega)):
-            assert rl.period(start) == pytest.approx(exact, rel=32 * EPS)
-
-
 @pytest.mark.parametrize("share", [-0.9, -0.3, 0.2, 0.7])
 @pytest.mark.parametrize("distance", [1e-11, 1e-8, 1e-5])
 @pytest.mark.parametrize(

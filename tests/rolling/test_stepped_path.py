@@ -47,18 +47,3 @@ def test_x_is_the_path_of_the_angle(scene: Scene, method: Literal["dop853", "dop
         exact = scene.x + path(scene, theta) - start
         size = abs(scene.x) + height * (0.5 + abs(theta) + abs(scene.theta))
         assert abs(x - exact) <= 4 * EPS * size
-
-
-@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
-@pytest.mark.parametrize("method", ["dop853", "dopri5"])
-def test_a_sample_does_not_depend_on_the_others(
-    scene: Scene, method: Literal["dop853", "dopri5"]
-) -> None:
-    """To the last bit: few samples in any order, and many."""
-    times = np.linspace(0.0, 3.0, 2001)
-    motion = rl.simulate(scene, times, model="rolling", method=method, rtol=1e-6)
-    for few in (times[::7], times[-1:0:-301], times[1000:1001]):
-        seen = motion.sol(few)
-        where = np.searchsorted(times, few)
-        for name in ("theta", "omega", "x"):
-            assert np.array_equal(getattr(seen, name), getattr(motion, name)[where])

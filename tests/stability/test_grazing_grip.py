@@ -12,10 +12,9 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import pytest
-import scipy.integrate
 from oracles.geometry import support
 from oracles.margins import told
-from oracles.numbers import DIGITS, known
+from oracles.numbers import DIGITS
 from rolling_ellipse import EventKind, Outcome, Scene, Validity, certify, classify, period, simulate
 from stability_laws import GRAVITY, GYRATION2, A, B, exponent, rms, shortfall
 from stability_laws import GRAZING as SCENE
@@ -68,62 +67,7 @@ def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
     assert abs(slope + 2) <= 0.05
 
 
-def seen_on_a_grid(samples: int, k: int) -> bool:
-    """A change of sign of friction - need on a trajectory with its samples at these times."""
-    times = np.linspace(0, period(SCENE), samples)
-    found = simulate(SCENE, times, model="rolling", method="exact")
-    return bool(np.any(found.friction_needed > friction(k, -1)))
-
-
-def seen_by_scipy(k: int, rtol: float) -> bool:
-    """An event of solve_ivp: a change of sign between the ends of steps."""
-    limit = friction(k, -1)
-
-    def rates(_: float, y: Any) -> list[float]:
-        at = support(float(y[0]), A, B)
-        inertia = GYRATION2 + at.h**2 + at.slope**2
-        bend = (A * B) ** 2 / at.h**3
-        return [y[1], -at.slope * (GRAVITY + bend * y[1] ** 2) / inertia]
-
-    def margin(_: float, y: Any) -> float:
-        return limit - float(ratio(float(y[0])))
-
-    how: dict[str, Any] = {"method": "DOP853", "rtol": rtol, "atol": rtol, "events": margin}
-    found = scipy.integrate.solve_ivp(rates, (0, period(SCENE)), [0.0, OMEGA], **how)
-    assert found.t.size < 300
-    return len(found.t_events[0]) > 0
-
-
-def test_what_looks_at_samples_misses_it_from_some_k_on() -> None:
-    """Grids of 100 to 1e5 samples and SciPy's event finder, against the loss that is there at every
-    k. A grid of n samples a turn has one within half a step of the place, where the need is less by
-    116/n^2 at most (the rms above says so): what is short by more it sees. It passes the place four
-    times a turn, and may be lucky: nearer by a thousand of the square one time in eight. SciPy's
-    steps, fewer than 300 a turn, see less than such a grid."""
-    blind: dict[str, int] = {}
-    for samples in (100, 1000, 10_000, 100_000):
-        found = next(k for k in DISTANCES if not seen_on_a_grid(samples, k))
-        blind[f"grid of {samples}"] = found
-        surely = math.log10(samples**2 / 116)
-        assert surely < found < surely + 3
-    for rtol in (1e-6, 1e-9, 1e-12):
-        found = next(k for k in DISTANCES if not seen_by_scipy(k, rtol))
-        blind[f"solve_ivp, rtol {rtol:g}"] = found
-        assert found < math.log10(300**2 / 116) + 3
-    told("blind from k on: " + ", ".join(f"{name}: {k}" for name, k in blind.items()))
-    assert max(blind.values()) < DECIDED[-1]
-
-
 # ------------------------------------------------------------------------- by signs
-
-
-def test_the_certificate_knows_what_is_needed() -> None:
-    """The coefficient to 1e-13, N being 0.17 of the weight and its terms ten of it; the place where
-    it is flat, so known to the root of that."""
-    found = certify(SCENE)
-    exact, where = need()
-    assert known(found.largest_friction_needed) == pytest.approx(float(exact), rel=1e-13)
-    assert known(found.largest_friction_needed_angle) == pytest.approx(float(where), abs=1e-6)
 
 
 @pytest.mark.parametrize("side", [1, -1])

@@ -1,5 +1,5 @@
 """A tolerance of 1e-2, as the report used: what leaves its constraints, what stays on them, what
-keeps its energy; and that the warning comes where too much is lost, and nowhere else.
+keeps its energy.
 
 A tolerance bounds what a step loses, not what is kept: only what is kept by construction is kept
 whatever the tolerance.
@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from oracles.margins import told
 from oracles.stability import grain
-from rolling_ellipse import simulate
 from stability_laws import LOOSE, ROCKED, SPUN, Loose, loose
 
 SCENES = {"rotation": SPUN, "rocking": ROCKED}
@@ -65,15 +64,6 @@ def test_energy_is_kept_by_construction_or_not(scene: str, name: str) -> None:
 
 
 @pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("name", ["exact", "contact"])
-def test_the_tolerance_is_nothing_to_the_exact_motion(scene: str, name: str) -> None:
-    """The same bits with any."""
-    exact = run(scene, name).motion
-    fine = simulate(SCENES[scene], exact.t, model=LOOSE[name]["model"], rtol=1e-13, atol=1e-13)
-    assert np.array_equal(exact.theta, fine.theta) and np.array_equal(exact.omega, fine.omega)
-
-
-@pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("name", ["dopri5, projection", "dopri5"])
 def test_constraints_do_not_make_a_motion_right(scene: str, name: str) -> None:
     """On its constraints to the last digit, by projection or as rolling, dopri5 loses more
@@ -81,25 +71,3 @@ def test_constraints_do_not_make_a_motion_right(scene: str, name: str) -> None:
     for. How much hangs on which steps are refused, that is after a minute on the last bits."""
     found = run(scene, name)
     assert found.missed.max() < 1e-13 and found.energy.max() > 2 * RTOL and found.phase > 0.1
-
-
-@each_run
-def test_the_warning_comes_where_too_much_is_lost(scene: str, name: str) -> None:
-    """Its own thresholds, anywhere on the way: a thousandth of the long semi-axis in the
-    constraints; ten times rtol of the energy, a hundredth where steps are given. One warning, on
-    what is asked first, with a way out. It comes where the end is beyond them, which is looked at,
-    and not where no sample is: what it names lies between these two, but for the tenth by which
-    samples 0.03 s apart miss the largest."""
-    found = run(scene, name)
-    allowed = 1e-2 if "step" in LOOSE[name] else 10 * RTOL
-    missed, energy = found.missed, found.energy
-    assert len(found.texts) >= (missed[-1] > 1e-3 or energy[-1] > allowed)
-    assert len(found.texts) <= (1.1 * missed.max() > 1e-3 or 1.1 * energy.max() > allowed)
-    for text in found.texts:
-        named = float(text.split(" by ")[1].split()[0])
-        if "constraints" in text:
-            assert max(1e-3, missed[-1] / 1.1) <= named <= 1.1 * missed.max()
-            assert "use 'projection'" in text
-        else:
-            assert max(allowed, energy[-1] / 1.1) <= named <= 1.1 * energy.max()
-            assert "the energy has changed by" in text and "smaller rtol and atol" in text

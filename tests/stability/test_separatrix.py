@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from oracles.margins import told
 from oracles.numbers import EPS
-from oracles.separatrix import A, B, Throw, throw, tip_rate
-from rolling_ellipse import Outcome, Scene, Validity, certify, classify, flow, period
+from oracles.separatrix import A, B, throw
 from stability_laws import DECIDE, STRAY, exponent, kept_by, own_separatrix, rolls_over
 
 DISTANCES = range(2, 15)  # k
@@ -28,11 +27,6 @@ FAIL: dict[str, dict[str, Any]] = STRAY | {
 }
 
 
-def delay(thrown: Throw) -> float:
-    """What one rounding of every input does to the time at the tip [s]."""
-    return UNIT / (abs(thrown.distance) * tip_rate())
-
-
 def first_wrong(side: int, **how: Any) -> int | None:
     """The k from which on a method is no longer always right."""
     throws = ((k, throw(k, side)) for k in DISTANCES)
@@ -44,55 +38,10 @@ def first_wrong(side: int, **how: Any) -> int | None:
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_the_time_at_the_tip_grows_by_the_logarithm(side: int) -> None:
-    """Slope 1/lambda of the time from flat to flat against ln(1/distance), in 40 digits and by
-    `period`.
-
-    From k = 4 on the next order, distance ln(distance), is 1e-3, with a leverage of 0.03 on the
-    slope; at k = 12 a unit is 5e-4 s, with 0.03 as well: 3e-5 of 0.6, twice.
-    """
-    throws = [throw(k, side) for k in range(4, 13)]
-    x = [-math.log(abs(one.distance)) for one in throws]
-    exact = np.polyfit(x, [one.half for one in throws], 1)[0] * tip_rate()
-    found = [period(Scene(A, B, omega=one.omega)) / 2 for one in throws]
-    slope = np.polyfit(x, found, 1)[0] * tip_rate()
-    told(f"slope times lambda: {exact - 1:+.1e} in 40 digits, {slope - 1:+.1e} by period")
-    assert abs(exact - 1) <= 1e-4 and abs(slope - 1) <= 1e-4
-
-
-@pytest.mark.parametrize("side", SIDES)
-def test_the_exact_motion_is_never_later_than_a_rounding_of_its_inputs(side: int) -> None:
-    """The time from flat to flat, and the angle when it should lie there: at k = 14 a unit is
-    0.05 s, elsewhere less by its power of ten; beside it some ulp of the result."""
-    for k in DISTANCES:
-        thrown = throw(k, side)
-        allowed = delay(thrown) + 8 * EPS * thrown.half
-        late = period(Scene(A, B, omega=thrown.omega)) / 2 - thrown.half
-        theta, omega, _ = flow(thrown.half, a=A, b=B, theta=0.0, omega=thrown.omega)
-        missed = theta - (math.pi if thrown.rolls_over else 0.0)
-        told(f"k = {k}: {thrown.half:.6f} s, late {late:+.1e} s of {allowed:.1e}, {missed:+.1e}")
-        assert abs(late) <= allowed
-        assert abs(missed) <= allowed * abs(omega) + 8 * EPS * math.pi
-
-
-@pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("how", [*DECIDE.values(), {"model": "auto"}], ids=[*DECIDE, "auto"])
 def test_these_decide_right_down_to_1e_minus_14(how: dict[str, Any], side: int) -> None:
     """45 ulp of omega beside the separatrix; with its energy the stepped motion keeps the side."""
     assert first_wrong(side, **how) is None
-
-
-def test_classify_decides_right_down_to_1e_minus_14() -> None:
-    """Without a motion; the certificate has nothing against either. On the separatrix itself, to
-    the last digit of omega, nobody can: EDGE."""
-    for side in SIDES:
-        truth = Outcome.ROLLS_OVER if side > 0 else Outcome.ROCKS
-        for k in DISTANCES:
-            omega = throw(k, side).omega
-            assert classify(a=A, b=B, omega=omega) is truth
-            assert classify(a=A, b=B, omega=-omega) is truth
-            assert certify(Scene(A, B, omega=omega)).validity is Validity.VALID
-    assert classify(a=A, b=B, omega=throw(30, 1).omega) is Outcome.EDGE
 
 
 # ------------------------------------------------------------------------- the stepped ones

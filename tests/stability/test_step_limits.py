@@ -6,12 +6,9 @@ bounded up to the end of the stability interval on the imaginary axis.
 """
 
 import math
-import warnings
-from typing import Any
 
 import numpy as np
 import pytest
-import rolling_ellipse as rl
 from oracles.margins import told
 from rolling_ellipse import Scene, Status, Trajectory, simulate
 from stability_laws import (
@@ -32,8 +29,6 @@ from stability_laws import (
     rocked_to,
     run,
 )
-
-ROCKING = Scene(A, B, theta=0.2, omega=1.0)
 
 # --------------------------------------------------------------------- what a step makes
 
@@ -119,12 +114,6 @@ def test_gauss_loses_nothing_up_to_where_its_stages_are_not_found(stages: int) -
     assert lost.status is Status.STEP_TOO_LARGE
 
 
-def test_exact_rolling_takes_no_steps() -> None:
-    """Whatever the times, the amplitude is kept by 4 ulp of it and what is not linear."""
-    for y in (0.5, 5.0, 100.0):
-        assert np.max(np.abs(amplitude("exact", y, 300) - 1)) <= 2e-12
-
-
 @pytest.mark.parametrize("name", STABILIZATIONS)
 def test_the_energy_alone_bounds_the_steps_of_the_multipliers(name: str) -> None:
     """rk4 of the five coordinates: without feedback its limit is that of rolling, sqrt 8, which 3
@@ -153,40 +142,3 @@ def lost(scene: Scene, found: Trajectory) -> tuple[float, float]:
     start = simulate(scene, 0.0).energy[0] / scene.mass
     change = np.abs(energy - start) / max(start, float(np.max(energy)))
     return float(change[-1]), float(np.max(change))
-
-
-@pytest.mark.parametrize("method", EXPLICIT)
-def test_a_loss_of_energy_is_told(method: Any) -> None:
-    """A rocking motion, 60 s, ever larger steps: a warning that names the loss where it is more
-    than a hundredth at the end, none where it nowhere is; where the motion is given up, the status
-    says so."""
-    said, unsaid = 0, 0
-    for y in np.geomspace(0.1, 2.8, 40):
-        step = float(y) / OMEGA
-        times = np.append(np.arange(0, 60, step / 8), 60)
-        how: dict[str, Any] = {"model": "rolling", "method": method, "raise_on_failure": False}
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            found = simulate(ROCKING, times, step=step, **how)
-        texts = [str(w.message) for w in caught if w.category is rl.StabilityWarning]
-        if found.status is not Status.COMPLETED:
-            assert found.status is Status.STEP_TOO_LARGE
-            continue
-        at_end, loss = lost(ROCKING, found)
-        assert (at_end > 1e-2) <= len(texts) <= (loss > 1e-2), (y, at_end, loss, texts)
-        said, unsaid = said + len(texts), unsaid + 1 - len(texts)
-        if texts:
-            named = float(texts[0].split("the energy has changed by ")[1].split()[0])
-            assert 0.95 * at_end <= named <= 1.05 * loss  # of two digits
-            assert f"method {method!r}" in texts[0] and "smaller steps" in texts[0]
-            assert "'exact'" in texts[0]
-    told(f"{method}: told {said} times, {unsaid} times nothing to tell")
-    assert said >= 3 and unsaid >= 10
-
-
-def test_what_it_suggests_helps() -> None:
-    """Smaller steps, or the exact motion: none of both is warned of."""
-    with pytest.warns(rl.StabilityWarning, match="smaller steps, or method 'exact'"):
-        simulate(ROCKING, 60.0, model="rolling", method="rk4", step=1 / OMEGA)
-    simulate(ROCKING, 60.0, model="rolling", method="rk4", step=0.25 / OMEGA)
-    simulate(ROCKING, 60.0, model="rolling", method="exact")

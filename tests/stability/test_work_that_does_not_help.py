@@ -89,12 +89,6 @@ def test_the_package_gets_no_worse(method: str) -> None:
     assert max(staying) <= 4 * EPS * 0.4
 
 
-@pytest.mark.parametrize("how", [{}, {"model": "contact"}], ids=["rolling", "contact"])
-def test_exact_rolling_has_nothing_to_refine(how: dict[str, Any]) -> None:
-    """An error no more than the others may keep."""
-    assert rms(ends(**how)[0] - known()) <= 4 * EPS * 0.4
-
-
 @pytest.mark.parametrize("name", STABILIZATIONS)
 def test_constraints_cost_digits_but_no_more_with_more_steps(name: str) -> None:
     """dop853 in five coordinates, which are solved for at every stage: 16 ulp of the largest

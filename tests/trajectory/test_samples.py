@@ -1,21 +1,18 @@
 """The samples of a Trajectory: every array by its definition, and the residuals of a million.
 
-Forces come from Newton's law and from differentiating the energy, multipliers from the five
-Lagrange equations with gradients written down here; the geometry once more in long double.
+Forces come from Newton's law, the geometry once more in long double. Multipliers are those of the
+linear system, which tests/multipliers puts to the test.
 """
 
 import dataclasses
 from typing import Any, NamedTuple
 
-import mpmath as mp
 import numpy as np
-import oracles.geometry
-import oracles.rolling
 import pytest
 import rolling_ellipse as rl
 from oracles.geometry import support
 from oracles.margins import told
-from oracles.numbers import DIGITS, EPS, PI
+from oracles.numbers import EPS, PI
 from oracles.trajectory import MATRICES, SCENES, VECTORS
 from rolling_ellipse import Mode, Scene, Trajectory, simulate
 
@@ -175,93 +172,6 @@ def test_newton_and_euler(motion: Trajectory) -> None:
     close(inertia * motion.omega_dot, turning, terms, 32)
     needed = np.abs(motion.friction_force) / motion.normal_force
     close(motion.friction_needed, needed, needed, 2)
-
-
-def test_forces_by_differentiating_the_energy(motion: Trajectory) -> None:
-    """d(omega^2)/dtheta of the energy that the stored state has, everything numerical in mpmath:
-    32 ulp of the terms."""
-    scene = motion.scene
-    with mp.workdps(DIGITS):
-        for i in range(0, 1001, 125):
-            theta, omega = mp.mpf(motion.theta[i]), mp.mpf(motion.omega[i])
-            h, slope, curvature = oracles.geometry.height_slopes(theta, scene.a, scene.b)
-            inertia = scene.gyration2 + h * h + slope * slope
-            energy = inertia * omega**2 / 2 + scene.gravity * h
-            normal, friction = oracles.rolling.forces_by_differentiation(
-                theta, scene.a, scene.b, scene.gyration2, scene.gravity, energy
-            )
-            spin, turn = omega**2, abs(slope) * (scene.gravity + (h + curvature) * omega**2)
-            turn = turn / inertia
-            terms = scene.gravity + abs(slope) * turn + (abs(curvature) + 2 * h) * spin
-            off = abs(motion.normal_force[i] / scene.mass - normal)
-            assert off <= 32 * EPS * terms + 1e-30  # what the differentiation leaves of a zero
-            off = abs(motion.friction_force[i] / scene.mass - friction)
-            assert off <= 32 * EPS * (h * turn + abs(slope) * spin) + 1e-30
-
-
-def gradients(motion: Trajectory) -> Long:
-    """Rows of f1 ... f4 along x, z, theta, psi, r, from the stored coordinates: (4, 5, n)."""
-    a, b = np.longdouble(motion.scene.a), np.longdouble(motion.scene.b)
-    psi, r = motion.psi.astype(np.longdouble), motion.r.astype(np.longdouble)
-    sine, cosine = np.sin(psi - motion.theta), np.cos(psi - motion.theta)
-    root = np.sqrt(b * b * np.sin(psi) ** 2 + a * a * np.cos(psi) ** 2)
-    # f3 = r - a b/root, root^2 has the slope (b^2 - a^2) sin 2 psi
-    polar = a * b * (b - a) * (b + a) * np.sin(2 * psi) / (2 * root**3)
-    none, one = np.zeros_like(psi), np.ones_like(psi)
-    return np.array(
-        [
-            [one, none, -r * cosine, none, none],
-            [none, one, -r * sine, r * sine, -cosine],
-            [none, none, none, polar, one],
-            [none, none, -(1 + outline(motion).lead_rate), one, none],
-        ]
-    )
-
-
-def bend(motion: Trajectory) -> Long:
-    """d^2 R/dpsi^2 of f3's R(psi) [m]."""
-    a, b = np.longdouble(motion.scene.a), np.longdouble(motion.scene.b)
-    psi, gap2 = motion.psi.astype(np.longdouble), (a - b) * (a + b)
-    root = np.sqrt(b * b * np.sin(psi) ** 2 + a * a * np.cos(psi) ** 2)
-    swing = 3 * gap2 * np.sin(2 * psi) ** 2 / (4 * root**5)
-    return a * b * gap2 * (np.cos(2 * psi) / root**3 + swing)
-
-
-def test_lagrange_equations(motion: Trajectory) -> None:
-    """M q_ddot = Q + A^T lambda in all five coordinates, psi and r without mass; and the rates
-    obey A q_dot = 0, which a wrong sign in A would not let them. 64 ulp of the terms: the forces
-    alone have some ten roundings, and psi - theta its own."""
-    mass, weight = motion.scene.mass, motion.scene.mass * motion.scene.gravity
-    inertia, none = mass * motion.scene.gyration2, np.zeros_like(motion.t)
-    rows = gradients(motion)
-    products = rows * motion.multipliers.T[:, None, :]
-    moments = np.array(
-        [mass * motion.x_ddot, mass * motion.z_ddot, inertia * motion.omega_dot, none, none]
-    )
-    drive = np.array([none, none - weight, none, none, none])
-    # what the accelerations are sums of: h omega_dot + h' omega^2 and so on, all below this
-    force = mass * motion.r * (np.abs(motion.omega_dot) + motion.omega**2) + weight
-    lever = motion.r * (1 + np.abs(motion.psi))  # psi - theta is formed from a rounded psi
-    # lambda4 is the difference of two equal moments (0, the ground being level), each of the
-    # rounded psi: the rounding of psi, bent by the outline, and of 1 + lead_rate times as much
-    lead = outline(motion)
-    blur = motion.normal_force * np.abs(bend(motion)) * (np.abs(motion.psi) + 8 * abs(lead.lead))
-    turning = force * lever + (1 + np.abs(lead.lead_rate)) * blur
-    grain = np.array([force, force, turning, force * lever + blur, force])
-    off = np.abs(moments - drive - products.sum(0))
-    assert np.all(off <= 64 * EPS * (np.abs(products).sum(0) + grain))
-    assert np.array_equal(motion.multipliers[:, 0], motion.friction_force)
-    assert np.array_equal(motion.multipliers[:, 1], motion.normal_force)
-    along = rows * motion.q_dot.T[None, :, :]
-    speed = np.abs(along).sum(1) + motion.r * np.abs(motion.psi) * np.abs(motion.psi_dot)
-    assert np.all(np.abs(along.sum(1)) <= 64 * EPS * speed)
-
-
-def test_lagrange_equations_see_a_wrong_multiplier(report: Trajectory) -> None:
-    rows = gradients(report)
-    changed = report.multipliers * [1, 1, 1 + 1e-3, 1]
-    products = rows * changed.T[:, None, :]
-    assert np.max(np.abs(products.sum(0)[4])) > 1e-4 * np.max(np.abs(report.multipliers[:, 2]))
 
 
 def test_energies(motion: Trajectory) -> None:

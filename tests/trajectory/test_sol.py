@@ -13,23 +13,6 @@ from oracles.numbers import EPS
 from oracles.trajectory import SCENES
 from rolling_ellipse import Impulse, Mode, Trajectory, simulate
 
-
-def test_sol_in_any_order(report: Trajectory) -> None:
-    times = [5.0, 0.0, 6.0, 0.3, 0.3]
-    found = report.sol(times)
-    assert found.t.tolist() == times and found.scene is report.scene
-    assert found.theta[3] == found.theta[4]
-    for i, t in enumerate(times):
-        single = report.sol(t)
-        assert single.t.shape == (1,)
-        for name in ("theta", "omega", "x", "normal_force"):
-            assert getattr(single, name)[0] == pytest.approx(getattr(found, name)[i], rel=1e-13)
-    again = report.sol(report.t)
-    assert np.array_equal(again.theta, report.theta) and np.array_equal(again.x, report.x)
-    assert np.array_equal(found.sol(report.t).omega, report.omega)
-    assert not np.shares_memory(again.t, report.t)
-
-
 ROLLED = rl.Scene(2.0, 1.0, theta=0.2, omega=3.2)
 STEPPED: list[dict[str, Any]] = [
     {"model": "rolling", "method": "rk4", "step": 0.02},

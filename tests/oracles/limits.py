@@ -1,0 +1,35 @@
+"""Ctrl-C after some time, and a disk that is full."""
+
+import resource
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+
+@contextmanager
+def ctrl_c_after(seconds: float) -> Iterator[None]:
+    """What is done inside must end by a KeyboardInterrupt; a negative time sets no alarm."""
+    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
+    try:
+        if seconds >= 0:
+            signal.setitimer(signal.ITIMER_REAL, seconds)
+        with pytest.raises(KeyboardInterrupt):
+            yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, usual)
+
+
+@contextmanager
+def files_of_at_most(size: int) -> Iterator[None]:
+    """A limit on the size of files [bytes] stands for a full disk: both are an OSError."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    usual = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, usual)
