@@ -7,7 +7,7 @@
 // alone, which is exact without it as well.
 #pragma once
 
-#include <cmath>
+#include <type_traits>
 
 #include "numerics/double_double.hpp"
 
@@ -33,20 +33,11 @@ using PackBits = unsigned long long __attribute__((vector_size(lanes * sizeof(do
 using PackPair = TwoParts<Pack>;
 
 template <class T>
-struct BitsOf {
-    using Type = PackBits;
-};
-template <>
-struct BitsOf<double> {
-    using Type = unsigned long long;
-};
-template <class T>
-using Bits = typename BitsOf<T>::Type;
-template <class T>
-using Mask = decltype(T{} < T{});
+using Bits = std::conditional_t<std::is_same_v<T, double>, unsigned long long, PackBits>;
 
-template <class T>
-inline T filled(double value) {
+// The same number, a double or lanes already, in all lanes.
+template <class T, class Number>
+inline T filled(Number value) {
     return value - T{};
 }
 
@@ -150,13 +141,10 @@ inline T min(T x, T y) {
     return x < y ? x : y;
 }
 
-// 1.5 2^52, whose last bit is 1: a sum with it is rounded to whole numbers.
-constexpr double rounder = 6755399441055744.0;
-
 // The nearest whole number, for |x| < 2^51, and the next one from x on, downwards and upwards.
 template <class T>
 inline T nearest(T x) {
-    return (x + rounder) - rounder;
+    return (x + to_integer) - to_integer;
 }
 template <class T>
 inline T rounded_down(T x) {
@@ -178,7 +166,15 @@ inline Mask<T> is_odd(T n) {
 // 2^n for a whole number |n| <= 1022.
 template <class T>
 inline T power_of_two(T n) {
-    return number<T>((bits<T>(n + rounder) << 52) + (1023ULL << 52));
+    return number<T>((bits<T>(n + to_integer) << 52) + (1023ULL << 52));
+}
+
+// A polynomial by Horner's scheme; the coefficients are in the order of falling powers.
+template <class T, class... Doubles>
+inline T horner(T x, double highest, Doubles... lower) {
+    T sum = filled<T>(highest);
+    ((sum = sum * x + lower), ...);
+    return sum;
 }
 
 constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // ln 2 to 42 bits: multiples of it are exact
@@ -224,16 +220,8 @@ inline T log(T x) {
     const T n = number<T>(exponent | 0x4330000000000000ULL) - (4503599627370496.0 + 1023);
     const T f = (m - 1) / (m + 1);
     const T s = f * f;
-    T sum = s * (1.0 / 23) + 1.0 / 21;
-    sum = sum * s + 1.0 / 19;
-    sum = sum * s + 1.0 / 17;
-    sum = sum * s + 1.0 / 15;
-    sum = sum * s + 1.0 / 13;
-    sum = sum * s + 1.0 / 11;
-    sum = sum * s + 1.0 / 9;
-    sum = sum * s + 1.0 / 7;
-    sum = sum * s + 1.0 / 5;
-    sum = sum * s + 1.0 / 3;
+    const T sum = horner(s, 1.0 / 23, 1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13, 1.0 / 11,
+                         1.0 / 9, 1.0 / 7, 1.0 / 5, 1.0 / 3);
     return n * ln2_high + (2 * f + (2 * f * s * sum + n * ln2_low));
 }
 
@@ -252,19 +240,12 @@ inline T octant_angle(T sin, T cos) {
     const auto upper = sin > 0.41421356237309503 * cos;
     const T y = (upper ? sin - cos : sin) / (upper ? sin + cos : cos);
     const T z = y * y;
-    T sum = z * 0.016285756855221028 - 0.034570561981427744;
-    sum = sum * z + 0.04551593220626549;
-    sum = sum * z - 0.05230454270650244;
-    sum = sum * z + 0.05878928997834775;
-    sum = sum * z - 0.06666424885738255;
-    sum = sum * z + 0.07692296375032143;
-    sum = sum * z - 0.09090908753500877;
-    sum = sum * z + 0.11111111105155447;
-    sum = sum * z - 0.14285714285659828;
-    sum = sum * z + 0.19999999999999804;
-    sum = sum * z - 0.3333333333333333;
+    const T sum = horner(z, 0.016285756855221028, -0.034570561981427744, 0.04551593220626549,
+                         -0.05230454270650244, 0.05878928997834775, -0.06666424885738255,
+                         0.07692296375032143, -0.09090908753500877, 0.11111111105155447,
+                         -0.14285714285659828, 0.19999999999999804, -0.3333333333333333);
     const T over = y * (z * sum);
-    return upper ? 0.78539816339744830962 + (y + (over + 3.06161699786838301793e-17)) : y + over;
+    return upper ? 0.5 * half_pi_exact.high + (y + (over + 0.5 * half_pi_exact.low)) : y + over;
 }
 
 // The angle of the point (cos, sin), between -pi and pi.
@@ -278,22 +259,7 @@ inline T angle_of(T sin, T cos) {
     return copysign(angle, sin);
 }
 
-// The operations of numerics/double_double.hpp for a Pack.
-
-using rolling_ellipse::quick_two_sum;
 using rolling_ellipse::two_product;
-using rolling_ellipse::two_sum;
-
-inline PackPair quick_two_sum(Pack large, Pack small) {
-    const Pack sum = large + small;
-    return {sum, small - (sum - large)};
-}
-
-inline PackPair two_sum(Pack x, Pack y) {
-    const Pack sum = x + y;
-    const Pack y_part = sum - x;
-    return {sum, (x - (sum - y_part)) + (y - y_part)};
-}
 
 #if !defined(__FMA__)
 // A number as a sum of two of 26 bits.
@@ -316,11 +282,6 @@ inline PackPair two_product(Pack x, Pack y) {
     return {product,
             ((p.high * q.high - product) + p.high * q.low + p.low * q.high) + p.low * q.low};
 #endif
-}
-
-inline PackPair operator+(PackPair x, Pack y) {
-    const PackPair sum = two_sum(x.high, y);
-    return quick_two_sum(sum.high, sum.low + x.low);
 }
 
 }  // namespace

@@ -21,6 +21,10 @@ inline constexpr double largest_number = 1e50;
 // 1.5 2^52, beside which only integers are left: a sum with it is rounded to one.
 inline constexpr double to_integer = 6755399441055744.0;
 
+// A comparison of two numbers: of doubles a bool, of several side by side the truth of each.
+template <class T>
+using Mask = decltype(T{} < T{});
+
 constexpr double square(double x) { return x * x; }
 
 // sqrt(x^2 + y^2) of lengths and the like, whose squares stay within the doubles: within 1.5 ulp.

@@ -32,8 +32,8 @@ void set_theta_functions(PhaseMap<T>& map, T q) {
 }
 
 // sc of x = sinh(y).
-template <class T>
-inline T sine_ratio(const PhaseMap<T>& map, T x) {
+template <class C, class T>
+inline T sine_ratio(const PhaseMap<C>& map, T x) {
     const T c = 1 + 2 * (x * x);
     const T a = map.a[0] + c * (map.a[1] + c * (map.a[2] + c * map.a[3]));
     const T b = map.b[0] + c * (map.b[1] + c * map.b[2]);
@@ -93,11 +93,12 @@ Place<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
 }
 
 // With full relative accuracy of both, for a place that has the nearest quarter.
-template <class T>
-PhasePoint<T> phase_point(const PhaseMap<T>& map, const Place<T>& at) {
+template <class C, class T>
+PhasePoint<T> phase_point(const PhaseMap<C>& map, const Place<T>& at) {
     const auto at_tip = is_odd(at.quarters);
     const T sinh = hyperbolic(min<T>(abs(at.offset), filled<T>(largest_offset))).sinh;
-    const T tan = (at_tip ? map.kappa : map.grade) * sine_ratio(map, copysign(sinh, at.offset));
+    const T scale = at_tip ? filled<T>(map.kappa) : filled<T>(map.grade);
+    const T tan = scale * sine_ratio(map, copysign(sinh, at.offset));
     const T cos = 1 / sqrt(1 + tan * tan);
     const T sin = tan * cos;
     const T half_turns = rounded_down<T>(0.5 * at.quarters);

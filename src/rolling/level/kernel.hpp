@@ -4,8 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
-#include "numerics/lane_levels.hpp"
 #include "rolling/level/phase.hpp"
 #include "rolling/level/start.hpp"
 #include "rolling/level/table.hpp"
@@ -21,12 +21,13 @@ struct BodiesAtTimes {
 };
 
 struct Kernel {
+    const char* name;  // of the vector level
     // The rates of one motion at y = quarters Y + offset, |quarters| <= 1; there is room for a
     // whole number of packs of offsets.
     void (*rates)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
                   const double* offsets, int count, PhaseWays<double>& found);
     // The states of bodies, written to their places; and for every body of the list whether it is
-    // one of those that have to be taken alone.
+    // one of those that have to be taken alone. Null in the kernel that takes bodies one by one.
     void (*sample)(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone);
     void (*states)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
                    PlaceBatch& places);
@@ -38,14 +39,13 @@ struct Kernel {
                  const FlowColumns& out);
 };
 
-Kernel kernel_baseline();
 Kernel kernel_avx2();
 Kernel kernel_avx512();
 
-// For a level that the machine has; the narrowest serves all below.
-Kernel kernel(LaneLevel level);
+// The kernels that this processor can run, the fastest last. The first one takes bodies one by one.
+const std::vector<Kernel>& kernels();
 
-// The best one of the machine.
+// The fastest kernel of this processor.
 const Kernel& kernel();
 
 }  // namespace rolling_ellipse

@@ -11,10 +11,8 @@ namespace {
 
 void rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
            const double* offsets, int count, PhaseWays<double>& found) {
-    const PhaseRate<Pack> of = spread(rate);
-    const PhaseMap<Pack> in = spread(map);
     for (int i = 0; i < count; i += lanes) {
-        const PhaseWay<Pack> at = phase_rate_at(of, in, pack(quarters), load(offsets + i));
+        const PhaseWay<Pack> at = phase_rate_at(rate, map, quarters, load(offsets + i));
         store(at.time, found.time + i);
         store(at.angle, found.angle + i);
         store(at.path, found.path + i);
@@ -43,7 +41,10 @@ void sample(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone) {
     }
 }
 
-constexpr Kernel compiled = {rates,
+constexpr Kernel compiled = {lanes == 8   ? "avx512"
+                             : lanes == 4 ? "avx2"
+                                          : "sse2",
+                             rates,
                              sample,
                              [](const PhaseRate<double>& rate, const PhaseMap<double>& map,
                                 double amplitude, PlaceBatch& places) {

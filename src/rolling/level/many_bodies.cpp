@@ -14,9 +14,9 @@ namespace {
 constexpr std::size_t most_bodies = 512;  // of one kernel call
 
 FlowSample sample_alone(const RollingStart& start, double t) {
-    const RollingMotion motion = rolling_motion(start);
-    validate_time(t, longest_time(motion));
-    return sample(motion, t);
+    const RollingFlow flow = rolling_flow(start);
+    validate_time(t, longest_time(flow));
+    return sample(flow, t);
 }
 
 // Bodies in the order of their steps in a quarter, so that those side by side take as many.
@@ -61,13 +61,12 @@ class Order {
 
 }  // namespace
 
-void sample(LaneLevel level, const RollingStart* starts, const double* times, std::size_t n,
+void sample(const Kernel& kernel, const RollingStart* starts, const double* times, std::size_t n,
             FlowSample* samples) {
-    if (level == LaneLevel::one_by_one) {
+    if (!kernel.sample) {
         for (std::size_t i = 0; i < n; ++i) samples[i] = sample_alone(starts[i], times[i]);
         return;
     }
-    const Kernel kernel = rolling_ellipse::kernel(level);
     for (std::size_t begin = 0; begin < n; begin += most_bodies) {
         const std::size_t end = std::min(begin + most_bodies, n);
         Order order;

@@ -5,14 +5,14 @@
 
 #include <cstddef>
 
-#include "numerics/lane_levels.hpp"
 #include "rolling/level/flow.hpp"
+#include "rolling/level/kernel.hpp"
 
 namespace rolling_ellipse {
 
 // The states of n bodies at times of their own. The bodies are not validated; throws
 // std::invalid_argument for a time that is out of range.
-void sample(LaneLevel level, const RollingStart* starts, const double* times, std::size_t n,
+void sample(const Kernel& kernel, const RollingStart* starts, const double* times, std::size_t n,
             FlowSample* samples);
 
 }  // namespace rolling_ellipse

@@ -13,22 +13,42 @@ namespace {
 // Motions have 10 to 60 pieces a quarter turn; on the separatrix there is no end of them.
 constexpr std::size_t most_pieces = 1000;
 
+// Angle and path since the flat position, each as quarter turns plus an offset from the nearest one
+// (|angle| <= pi/4): differences keep their digits near the flat and near the tip.
+struct QuarterPosition {
+    double quarters;
+    double angle;
+    double path;
+};
+
+QuarterPosition quarter_position(const FlatView& body, double sin, double cos) {
+    const double s = std::abs(sin);
+    if (s <= cos) {
+        const double path = path_from_flat(body.long_axis, body.short_axis, s, cos);
+        return {0.0, std::atan2(sin, cos), std::copysign(path, sin)};
+    }
+    const double path = path_from_tip(body.long_axis, body.short_axis, cos, s);
+    return {std::copysign(1.0, sin), -std::copysign(std::atan2(cos, s), sin),
+            -std::copysign(path, sin)};
+}
+
 class TableMaker {
   public:
     explicit TableMaker(const RollingFlow& flow) : flow_(flow), kernel_(kernel()) {
         const PhaseRate<double>& rate = flow.phase.rate;
         rotates_ = flow.kind == MotionKind::rotation;
-        length_ = flow.start.long_axis;
+        length_ = flow.from.view.long_axis;
         const double area = square(length_);
         const double fastest =
             (rotates_ ? 1.0 : std::sqrt(rate.amplitude2)) / shape_factor<double>(rate, 0.0);
         unit_ = std::min(0.5 / fastest, 0.5 * double(flow.phase.quarter_turn));
         body_ = {square(rate.short_axis / length_), rate.c2 / area,
-                 flow.gravity * square(unit_) / length_, rate.d0 / square(area),
+                 flow.from.body.gravity * square(unit_) / length_, rate.d0 / square(area),
                  rate.d1 / square(area)};
     }
 
-    FlowTable make() {
+    // None where no series holds.
+    std::optional<FlowTable> make() {
         // In the coordinate y, in which all that is singular is half_pi away from the motion: what
         // series of this order reach in nearly all motions.
         for (const double spacing : {0.122, 0.1, 0.07, 0.05}) {
@@ -36,9 +56,9 @@ class TableMaker {
             if (places_.size() > most_pieces) break;
             if (!expand()) continue;
             fill();
-            break;
+            return std::move(table_);
         }
-        return std::move(table_);
+        return std::nullopt;
     }
 
   private:
@@ -153,27 +173,31 @@ class TableMaker {
         const PhaseMap<double>& map = flow_.phase.map;
         const bool has_tip = places_[last] == map.quarter;
         const Place<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last]};
-        path(last) = position_at(flow_, phase_point(map, end)).path;
+        const MotionPoint<double> tip =
+            motion_point(flow_.phase.rate, flow_.amplitude, phase_point(map, end));
+        path(last) = quarter_position(flow_.from.view, tip.sin_phi, tip.cos_phi).path;
         for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
             path(i - 1) = path(i) - step(i);
     }
 
     void add_start() {
+        const FlatView& at_start = flow_.from.view;
+        table_.reader.start_time = time_since_flat(flow_, flow_.start_phase);
         // Its radius is somewhat like that of the piece about the same place.
-        const double since = std::abs(double(flow_.start_time));
+        const double since = std::abs(double(table_.reader.start_time));
         const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
                                         [&](const FlowPiece& p) { return since < p.high; });
         PlaceBatch same;
         double radius = (piece->high - piece->low) / unit_;
         for (int i = 0; i < batch_size; ++i) {
-            same.sin[i] = flow_.start.sin;
-            same.cos[i] = flow_.start.cos;
-            same.omega[i] = flow_.omega;
+            same.sin[i] = at_start.sin;
+            same.cos[i] = at_start.cos;
+            same.omega[i] = flow_.from.omega;
             same.radius[i] = radius;
             radius *= 0.75;
         }
         kernel_.series(body_, unit_, same);
-        fill(table_.start, same, 0);
+        fill(table_.reader.start, same, 0);
         const auto first = std::find(same.holds, same.holds + batch_size, 1.0) - same.holds;
         table_.reader.start_radius = first == batch_size ? 0.0 : unit_ * same.radius[first];
     }
@@ -183,9 +207,11 @@ class TableMaker {
         const std::vector<FlowPiece>& pieces = table_.pieces;
         reader.half = 1;
         while (2 * reader.half <= int(pieces.size()) - 1) reader.half *= 2;
-        // The last piece is taken for all that is beyond.
+        reader.pieces = pieces.data();
+        // The last piece is taken for all later times.
         table_.ends.assign(2 * reader.half - 1, infinity);
         for (std::size_t i = 0; i + 1 < pieces.size(); ++i) table_.ends[i] = pieces[i].high;
+        reader.ends = table_.ends.data();
         reader.last_end = pieces.back().high;
         reader.per_unit = 1 / unit_;
         const DoubleDouble half_turn = flow_.phase.half_turn;
@@ -193,16 +219,16 @@ class TableMaker {
             reader.half_turn = half_turn;
             reader.half_turns_per_time = 1 / half_turn.high;
         }
-        reader.start_time = flow_.start_time;
-        reader.spin = heading(flow_);
+        reader.spin = heading_of<double>(flow_);
         reader.alternates = !rotates_;
         reader.quarters_per_half_turn = rotates_ ? 2 * flow_.direction : 0.0;
-        const QuarterPosition& from = flow_.start_position;
+        const FlatView& view = flow_.from.view;
+        const QuarterPosition from = quarter_position(view, view.sin, view.cos);
         reader.quarters = from.quarters;
-        reader.angle = two_sum(flow_.theta, -from.angle);
+        reader.angle = two_sum(flow_.from.theta, -from.angle);
         reader.path = from.path;
-        reader.quarter_path = flow_.quarter_path;
-        reader.theta = flow_.theta;
+        reader.quarter_path = path_from_flat(view.long_axis, view.short_axis, 1.0, 0.0);
+        reader.theta = flow_.from.theta;
         reader.x = flow_.x;
     }
 
@@ -219,28 +245,18 @@ class TableMaker {
 
 }  // namespace
 
-FlowTable flow_table(const RollingFlow& flow) { return TableMaker(flow).make(); }
-
-FlowReader reader(const FlowTable& table) {
-    FlowReader found = table.reader;
-    found.pieces = table.pieces.data();
-    found.ends = table.ends.data();
-    found.start = &table.start;
-    return found;
-}
+std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker(flow).make(); }
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
     // A table costs as much as ten single times; but where a few places are looked at again and
     // again, now some of them and now others (roots), their bits should not change.
     constexpr std::size_t few = 40;
-    if (expected < few) return;
-    table_ = flow_table(flow);
-    if (table_->pieces.empty()) table_.reset();
+    if (expected >= few) table_ = flow_table(flow);
 }
 
 void FlowSampler::operator()(const double* times, std::size_t n, const FlowColumns& out) const {
-    if (table_ && !kernel().read(reader(*table_), times, n, out)) return;
+    if (table_ && !kernel().read(table_->reader, times, n, out)) return;
     for (std::size_t i = 0; i < n; ++i) {
         if (!table_ || std::isnan(out.theta[i])) store(sample(flow_, times[i]), out, i);
     }

@@ -21,18 +21,20 @@ inline void store(const FlowSample& sample, const FlowColumns& columns, std::siz
     columns.x[i] = sample.x;
 }
 
-// The table of a rotation or a libration, for any time; no pieces where no series holds.
+// The table of a rotation or a libration, for any time. Never copied: the reader, which a kernel
+// takes, points to the pieces and their ends.
 struct FlowTable {
+    FlowTable() = default;
+    FlowTable(FlowTable&&) = default;
+    FlowTable& operator=(FlowTable&&) = default;
+
     std::vector<FlowPiece> pieces;
     std::vector<double> ends;
-    TableSeries start;  // about t = 0; its angle and path are those since then
-    FlowReader reader;  // but for what it points to
+    FlowReader reader;
 };
 
-FlowTable flow_table(const RollingFlow& flow);
-
-// The table as a kernel reads it, as long as it lives.
-FlowReader reader(const FlowTable& table);
+// None where no series holds.
+std::optional<FlowTable> flow_table(const RollingFlow& flow);
 
 // A motion, which has to live as long, to be sampled at so many times in all: few of them are not
 // worth a table, nor are rest and uniform rotation. The bits depend on the time alone, not on those

@@ -63,8 +63,8 @@ inline PhaseRate<T> phase_rate(const PhaseStart<T>& at) {
 }
 
 // scale sqrt(D (H + h)) where phi has this sine.
-template <class T>
-inline T shape_factor(const PhaseRate<T>& rate, T sin_phi) {
+template <class C, class T>
+inline T shape_factor(const PhaseRate<C>& rate, T sin_phi) {
     return sqrt(shape_factor2(rate, sin_phi * sin_phi));
 }
 
@@ -94,8 +94,8 @@ struct MotionPoint {
 
 // Angle and angular velocity at a phase, on the way up: physics (30), the energy integral at the
 // point itself.
-template <class T>
-inline MotionPoint<T> motion_point(const PhaseRate<T>& rate, T amplitude, const PhasePoint<T>& at) {
+template <class C, class T>
+inline MotionPoint<T> motion_point(const PhaseRate<C>& rate, C amplitude, const PhasePoint<T>& at) {
     const T sin_phi = rate.rotates ? at.sin : amplitude * at.sin;
     const T factor = shape_factor(rate, sin_phi);
     const T across = rate.kappa * at.sin;
@@ -136,7 +136,7 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const auto [to, way] = move(phase, motion.start_place, time);
     const T heading = heading_of(motion);
     const MotionPoint<T> now =
-        motion_point<T>(phase.rate, motion.amplitude, phase_point(phase.map, to));
+        motion_point(phase.rate, motion.amplitude, phase_point(phase.map, to));
 
     const T sin_phi = heading * now.sin_phi;
     const T swung = angle_of<T>(sin_phi * from.cos - now.cos_phi * from.sin,

@@ -24,10 +24,6 @@
 
 namespace rolling_ellipse {
 
-// Whether something holds: of a number, or of each of its lanes.
-template <class T>
-using Truth = decltype(T{} < T{});
-
 // The constants of the integrand.
 template <class T>
 struct PhaseRate {
@@ -39,17 +35,17 @@ struct PhaseRate {
     T kappa;
     T d0;
     T d1;
-    Truth<T> rotates;
+    Mask<T> rotates;
 };
 
 // The constants of the coordinate.
 template <class T>
 struct PhaseMap {
-    T quarter;          // Y; infinite on the separatrix
-    T step;             // of the trapezoidal rule that integrates over a quarter
-    T steps;            // in a quarter, or as far as the tail
-    Truth<T> has_tail;  // the quarter is longer than the steps: as doubles go, the tip is reached
-    T grade;            // g
+    T quarter;         // Y; infinite on the separatrix
+    T step;            // of the trapezoidal rule that integrates over a quarter
+    T steps;           // in a quarter, or as far as the tail
+    Mask<T> has_tail;  // the quarter is longer than the steps: as doubles go, the tip is reached
+    T grade;           // g
     T kappa;
     T speed;        // dw/dy
     T sine_scale;   // C
@@ -123,7 +119,7 @@ struct PhaseMotion {
     PhaseTime<T> phase;
     T direction;                // of rotation; +1 for libration
     T amplitude;                // sin phi_max of a libration; 1 for rotation
-    Truth<T> on_way_back;       // at the start of a libration: its phase is beyond +-pi/2
+    Mask<T> on_way_back;        // at the start of a libration: its phase is beyond +-pi/2
     PhasePoint<T> start_phase;  // without that half turn
     Place<T> start_place;
 };

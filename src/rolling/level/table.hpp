@@ -70,7 +70,7 @@ struct FlowReader {
     double theta;
     double x;
     double start_radius;  // of times for which its own series holds
-    const TableSeries* start;
+    TableSeries start;    // about t = 0; angle and path are those since then
 };
 
 struct FlowColumns {

@@ -11,30 +11,29 @@
 namespace rolling_ellipse {
 namespace {
 
-void states(const PhaseRate<double>& one_rate, const PhaseMap<double>& one_map, double amplitude,
+void states(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
             PlaceBatch& at, int lane) {
-    const PhaseRate<Pack> rate = spread(one_rate);
-    const PhaseMap<Pack> map = spread(one_map);
     const Pack y = load(at.y + lane);
     const Pack from = load(at.from + lane);
     const Pack middle = 0.5 * (y + from);
     const Pack half = 0.5 * (y - from);
     // Places are so near to each other that eight nodes are exact to rounding.
-    constexpr int pairs = 4;
+    constexpr GaussRule rule = gauss_rules[6];
+    static_assert(rule.size == 8);
     Pack time{}, path{};
-    for (int i = 0; i < pairs; ++i) {
-        const Pack offset = half * gauss_tables::nodes_8[i];
-        const PhaseWay<Pack> before = phase_rate_at(rate, map, Pack{}, middle - offset);
-        const PhaseWay<Pack> after = phase_rate_at(rate, map, Pack{}, middle + offset);
-        time += gauss_tables::weights_8[i] * (before.time + after.time);
-        path += gauss_tables::weights_8[i] * (before.path + after.path);
+    for (int i = 0; i < rule.size / 2; ++i) {
+        const Pack offset = half * rule.nodes[i];
+        const PhaseWay<Pack> before = phase_rate_at(rate, map, 0.0, middle - offset);
+        const PhaseWay<Pack> after = phase_rate_at(rate, map, 0.0, middle + offset);
+        time += rule.weights[i] * (before.time + after.time);
+        path += rule.weights[i] * (before.path + after.path);
     }
     store(time * half, at.time + lane);
     store(path * half, at.path + lane);
 
     const Mask<Pack> at_tip = y > 0.5 * map.quarter;
     const Place<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
-    const MotionPoint<Pack> now = motion_point(rate, pack(amplitude), phase_point(map, place));
+    const MotionPoint<Pack> now = motion_point(rate, amplitude, phase_point(map, place));
     const Mask<Pack> near_tip = now.sin_phi > now.cos_phi;
     const Pack angle = octant_angle(min(now.sin_phi, now.cos_phi), max(now.sin_phi, now.cos_phi));
     store(now.sin_phi, at.sin + lane);
@@ -219,7 +218,7 @@ bool combine(const FlowReader& motion, const double* times, int n, const Block& 
                  ((quarters * motion.quarter_path - motion.path) + heading * load(block.path + i));
         const Mask<Pack> at_start = abs(t) <= motion.start_radius;
         if (any(at_start)) {
-            const Motions at = together(*motion.start, t * motion.per_unit);
+            const Motions at = together(motion.start, t * motion.per_unit);
             theta = at_start ? motion.theta + at.angle : theta;
             omega = at_start ? at.omega : omega;
             x = at_start ? motion.x + at.path : x;
