@@ -29,9 +29,12 @@ struct Kernel {
     // The states of bodies, written to their places; and for every body of the list whether it is
     // one of those that have to be taken alone. Null in the kernel that takes bodies one by one.
     void (*sample)(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone);
+    // The motion at the coordinate of each place.
     void (*states)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
-                   PlaceBatch& places);
-    void (*series)(const SeriesConstants& body, double unit, PlaceBatch& places);
+                   TablePlace* places, int count);
+    // The series of the pieces about places, in units of time and length; the path starts at 0.
+    void (*series)(const SeriesConstants& body, double time_unit, double length_unit,
+                   TablePlace* places, int count, FlowPiece* pieces);
     // The first time that is not within most in size, NaN neither; n if there is none.
     std::size_t (*first_beyond)(const double* times, std::size_t n, double most);
     // The motion at many times; theta is NaN where no piece reaches. Returns whether one is.

@@ -41,22 +41,8 @@ void sample(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone) {
     }
 }
 
-constexpr Kernel compiled = {lanes == 8   ? "avx512"
-                             : lanes == 4 ? "avx2"
-                                          : "sse2",
-                             rates,
-                             sample,
-                             [](const PhaseRate<double>& rate, const PhaseMap<double>& map,
-                                double amplitude, PlaceBatch& places) {
-                                 for (int i = 0; i < batch_size; i += lanes)
-                                     states(rate, map, amplitude, places, i);
-                             },
-                             [](const SeriesConstants& body, double unit, PlaceBatch& places) {
-                                 for (int i = 0; i < batch_size; i += lanes)
-                                     series(body, unit, places, i);
-                             },
-                             first_beyond,
-                             read};
+constexpr const char* level = lanes == 2 ? "sse2" : lanes == 4 ? "avx2" : "avx512";
+constexpr Kernel compiled = {level, rates, sample, states, series, first_beyond, read};
 
 }  // namespace
 }  // namespace rolling_ellipse

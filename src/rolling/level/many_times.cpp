@@ -1,6 +1,7 @@
 #include "rolling/level/many_times.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -55,7 +56,10 @@ class TableMaker {
             place(spacing);
             if (places_.size() > most_pieces) break;
             if (!expand()) continue;
-            fill();
+            add_times();
+            add_paths();
+            add_start();
+            describe();
             return std::move(table_);
         }
         return std::nullopt;
@@ -72,69 +76,30 @@ class TableMaker {
         const int up = static_cast<int>(std::ceil(middle / spacing));
         const int down = static_cast<int>(std::ceil((end - middle) / (wider * spacing)));
         places_.clear();
-        for (int i = 0; i < up; ++i) places_.push_back(middle * i / up);
-        for (int i = 0; i < down; ++i) places_.push_back(middle + (end - middle) * i / down);
-        places_.push_back(end);
+        const auto add = [&](double y) { places_.emplace_back().y = y; };
+        for (int i = 0; i < up; ++i) add(middle * i / up);
+        for (int i = 0; i < down; ++i) add(middle + (end - middle) * i / down);
+        add(end);
     }
 
     std::size_t count() const { return places_.size(); }
 
-    double& at(PlaceBatch::Eight PlaceBatch::* column, std::size_t i) {
-        return (batches_[i / batch_size].*column)[i % batch_size];
-    }
+    // Half the time to the place before, or to the next one.
+    double half_way_back(std::size_t i) { return 0.5 * places_[i == 0 ? 1 : i].time; }
+    double half_way_on(std::size_t i) { return half_way_back(std::min(i + 1, count() - 1)); }
 
-    // Half the time to the place before, or to the one after.
-    double half_way_back(std::size_t i) { return 0.5 * at(&PlaceBatch::time, i == 0 ? 1 : i); }
-    double half_way_on(std::size_t i) {
-        return half_way_back(i + 1 < count() ? i + 1 : count() - 1);
-    }
-
-    // The states of all places, and their series: do these meet half way?
+    // The motion at all places, and the series about them; false if two series do not meet half
+    // way.
     bool expand() {
-        batches_.resize((count() + batch_size - 1) / batch_size);
-        const std::size_t all = batches_.size() * batch_size;
-        for (std::size_t i = 0; i < all; ++i) {
-            const std::size_t j = std::min(i, count() - 1);
-            at(&PlaceBatch::y, i) = places_[j];
-            at(&PlaceBatch::from, i) = places_[j == 0 ? 0 : j - 1];
-        }
-        for (PlaceBatch& places : batches_) {
-            kernel_.states(flow_.phase.rate, flow_.phase.map, flow_.amplitude, places);
-        }
-        for (std::size_t i = 0; i < all; ++i) {
-            const std::size_t j = std::min(i, count() - 1);
-            at(&PlaceBatch::radius, i) = std::max(half_way_back(j), half_way_on(j)) / unit_;
-        }
-        bool hold = true;
-        for (PlaceBatch& places : batches_) {
-            kernel_.series(body_, unit_, places);
-            for (const double holds : places.holds) hold = hold && holds > 0;
-        }
-        return hold;
-    }
-
-    void fill() {
-        std::vector<FlowPiece>& pieces = table_.pieces;
-        pieces.resize(count());
+        const int n = static_cast<int>(count());
+        kernel_.states(flow_.phase.rate, flow_.phase.map, flow_.amplitude, places_.data(), n);
         for (std::size_t i = 0; i < count(); ++i) {
-            pieces[i].quarters = at(&PlaceBatch::near_tip, i);
-            fill(pieces[i].series, batches_[i / batch_size], i % batch_size);
-            pieces[i].series.rows[0][0] = at(&PlaceBatch::angle, i);
+            places_[i].radius = std::max(half_way_back(i), half_way_on(i)) / unit_;
         }
-        add_times();
-        add_paths();
-        add_start();
-        describe();
-    }
-
-    // All but what the angle is counted from.
-    void fill(TableSeries& found, const PlaceBatch& from, std::size_t lane) const {
-        const double per_unit = 1 / unit_;
-        for (int k = 0; k < table_size; ++k) {
-            found.rows[k][0] = from.series[k][0][lane];
-            found.rows[k][1] = from.series[k][1][lane] * per_unit;
-            found.rows[k][2] = from.series[k][2][lane] * length_;
-        }
+        table_.pieces.resize(count());
+        kernel_.series(body_, unit_, length_, places_.data(), n, table_.pieces.data());
+        return std::all_of(places_.begin(), places_.end(),
+                           [](const TablePlace& place) { return place.holds > 0; });
     }
 
     // From the end that is nearer: the flat position, or the tip or the turning point.
@@ -143,14 +108,15 @@ class TableMaker {
         const DoubleDouble quarter = flow_.phase.quarter_turn;
         DoubleDouble time{};
         for (std::size_t i = 0; i < count(); ++i) {
-            if (i > 0) time = time + at(&PlaceBatch::time, i);
+            if (i > 0) time = time + places_[i].time;
             pieces[i].centre = time;
+            pieces[i].quarters = places_[i].quarters;
         }
         if (std::isfinite(quarter.high)) {
             time = quarter;
             for (std::size_t i = count() - 1; double(time) > 0.5 * double(quarter); --i) {
                 pieces[i].centre = time;
-                time = time + -at(&PlaceBatch::time, i);
+                time = time + -places_[i].time;
             }
         }
         double low = 0.0;
@@ -164,20 +130,19 @@ class TableMaker {
     void add_paths() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const auto path = [&](std::size_t i) -> double& { return pieces[i].series.rows[0][2]; };
-        const auto step = [&](std::size_t i) { return at(&PlaceBatch::path, i); };
         for (std::size_t i = 1; i < count() && pieces[i].quarters == 0; ++i) {
-            path(i) = path(i - 1) + step(i);
+            path(i) = path(i - 1) + places_[i].path;
         }
         const std::size_t last = count() - 1;
         if (pieces[last].quarters == 0) return;
         const PhaseMap<double>& map = flow_.phase.map;
-        const bool has_tip = places_[last] == map.quarter;
-        const Place<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last]};
+        const bool has_tip = places_[last].y == map.quarter;
+        const Place<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last].y};
         const MotionPoint<double> tip =
             motion_point(flow_.phase.rate, flow_.amplitude, phase_point(map, end));
         path(last) = quarter_position(flow_.from.view, tip.sin_phi, tip.cos_phi).path;
         for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
-            path(i - 1) = path(i) - step(i);
+            path(i - 1) = path(i) - places_[i].path;
     }
 
     void add_start() {
@@ -187,19 +152,22 @@ class TableMaker {
         const double since = std::abs(double(table_.reader.start_time));
         const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
                                         [&](const FlowPiece& p) { return since < p.high; });
-        PlaceBatch same;
+        constexpr int tries = 8;
+        std::array<TablePlace, tries> same{};
+        std::array<FlowPiece, tries> pieces;
         double radius = (piece->high - piece->low) / unit_;
-        for (int i = 0; i < batch_size; ++i) {
-            same.sin[i] = at_start.sin;
-            same.cos[i] = at_start.cos;
-            same.omega[i] = flow_.from.omega;
-            same.radius[i] = radius;
+        for (TablePlace& place : same) {
+            place.sin = at_start.sin;
+            place.cos = at_start.cos;
+            place.omega = flow_.from.omega;
+            place.radius = radius;
             radius *= 0.75;
         }
-        kernel_.series(body_, unit_, same);
-        fill(table_.reader.start, same, 0);
-        const auto first = std::find(same.holds, same.holds + batch_size, 1.0) - same.holds;
-        table_.reader.start_radius = first == batch_size ? 0.0 : unit_ * same.radius[first];
+        kernel_.series(body_, unit_, length_, same.data(), tries, pieces.data());
+        const auto first = std::find_if(same.begin(), same.end(),
+                                        [](const TablePlace& place) { return place.holds > 0; });
+        table_.reader.start = pieces[0].series;
+        table_.reader.start_radius = first == same.end() ? 0.0 : unit_ * first->radius;
     }
 
     void describe() {
@@ -239,8 +207,7 @@ class TableMaker {
     double length_;
     double unit_;
     SeriesConstants body_;
-    std::vector<double> places_;
-    std::vector<PlaceBatch> batches_;
+    std::vector<TablePlace> places_;
 };
 
 }  // namespace

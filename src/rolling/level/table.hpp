@@ -8,7 +8,6 @@
 
 namespace rolling_ellipse {
 
-inline constexpr int batch_size = 8;  // places of a table that are made at once
 inline constexpr int table_order = 14;
 inline constexpr int table_size = table_order + 1;
 inline constexpr int series_columns = 4;  // angle, omega, path; a row of a series fills a register
@@ -19,24 +18,16 @@ struct TableSeries {
     alignas(64) double rows[table_size + 1][series_columns];
 };
 
-// Places of a table side by side, and what is made of them.
-struct alignas(64) PlaceBatch {
-    using Eight = double[batch_size];
-    Eight y;     // the coordinate of rolling/level/phase.hpp
-    Eight from;  // that of the place before
-    // The motion there, on the way up, and time and path since the place before.
-    Eight sin;  // of the angle from the flat position
-    Eight cos;
-    Eight near_tip;  // 1 or 0
-    Eight angle;     // from the nearer one of flat position and tip
-    Eight omega;
-    Eight time;
-    Eight path;
-    // Angle, angular velocity and path as power series; whether they are as good as doubles as far
-    // as a radius, in units of their variable.
-    Eight series[table_size][3];
-    Eight radius;
-    Eight holds;  // 1 or 0
+// A place of a table, and the motion there on the way up.
+struct TablePlace {
+    double y;         // the coordinate of rolling/level/phase.hpp
+    double sin, cos;  // of the angle from the flat position
+    double quarters;  // from the flat position to the nearer one of it and the tip: 0 or 1
+    double angle;     // from there
+    double omega;
+    double time, path;  // since the place before
+    double radius;  // of the time interval in which the series is used, in units of its variable
+    double holds;   // 1 if the series has full double precision there, otherwise 0
 };
 
 struct FlowPiece {

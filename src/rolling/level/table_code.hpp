@@ -11,36 +11,53 @@
 namespace rolling_ellipse {
 namespace {
 
+// A number of several places side by side; the first or last one fills lanes beyond the ends.
+inline Pack gathered(const TablePlace* places, int count, int first, double TablePlace::* number) {
+    Pack found{};
+    for (int lane = 0; lane < lanes; ++lane) {
+        const int i = first + lane < count ? first + lane : count - 1;
+        set_lane(found, lane, places[i < 0 ? 0 : i].*number);
+    }
+    return found;
+}
+
 void states(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
-            PlaceBatch& at, int lane) {
-    const Pack y = load(at.y + lane);
-    const Pack from = load(at.from + lane);
-    const Pack middle = 0.5 * (y + from);
-    const Pack half = 0.5 * (y - from);
+            TablePlace* places, int count) {
     // Places are so near to each other that eight nodes are exact to rounding.
     constexpr GaussRule rule = gauss_rules[6];
     static_assert(rule.size == 8);
-    Pack time{}, path{};
-    for (int i = 0; i < rule.size / 2; ++i) {
-        const Pack offset = half * rule.nodes[i];
-        const PhaseWay<Pack> before = phase_rate_at(rate, map, 0.0, middle - offset);
-        const PhaseWay<Pack> after = phase_rate_at(rate, map, 0.0, middle + offset);
-        time += rule.weights[i] * (before.time + after.time);
-        path += rule.weights[i] * (before.path + after.path);
-    }
-    store(time * half, at.time + lane);
-    store(path * half, at.path + lane);
+    for (int first = 0; first < count; first += lanes) {
+        const Pack y = gathered(places, count, first, &TablePlace::y);
+        const Pack from = gathered(places, count, first - 1, &TablePlace::y);
+        const Pack middle = 0.5 * (y + from);
+        const Pack half = 0.5 * (y - from);
+        Pack time{}, path{};
+        for (int i = 0; i < rule.size / 2; ++i) {
+            const Pack offset = half * rule.nodes[i];
+            const PhaseWay<Pack> before = phase_rate_at(rate, map, 0.0, middle - offset);
+            const PhaseWay<Pack> after = phase_rate_at(rate, map, 0.0, middle + offset);
+            time += rule.weights[i] * (before.time + after.time);
+            path += rule.weights[i] * (before.path + after.path);
+        }
+        time *= half;
+        path *= half;
 
-    const Mask<Pack> at_tip = y > 0.5 * map.quarter;
-    const Place<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
-    const MotionPoint<Pack> now = motion_point(rate, amplitude, phase_point(map, place));
-    const Mask<Pack> near_tip = now.sin_phi > now.cos_phi;
-    const Pack angle = octant_angle(min(now.sin_phi, now.cos_phi), max(now.sin_phi, now.cos_phi));
-    store(now.sin_phi, at.sin + lane);
-    store(now.cos_phi, at.cos + lane);
-    store(near_tip ? pack(1.0) : pack(0.0), at.near_tip + lane);
-    store(near_tip ? -angle : angle, at.angle + lane);
-    store(now.omega, at.omega + lane);
+        const Mask<Pack> at_tip = y > 0.5 * map.quarter;
+        const Place<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
+        const auto [sin, cos, omega] = motion_point(rate, amplitude, phase_point(map, place));
+        const Mask<Pack> near_tip = sin > cos;
+        const Pack angle = octant_angle(min(sin, cos), max(sin, cos));
+        for (int lane = 0; lane < lanes && first + lane < count; ++lane) {
+            TablePlace& at = places[first + lane];
+            at.sin = sin[lane];
+            at.cos = cos[lane];
+            at.quarters = near_tip[lane] ? 1.0 : 0.0;
+            at.angle = near_tip[lane] ? -angle[lane] : angle[lane];
+            at.omega = omega[lane];
+            at.time = time[lane];
+            at.path = path[lane];
+        }
+    }
 }
 
 // The last terms, of which one may be small by chance, are some roundings beside what the series is
@@ -55,26 +72,36 @@ inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, 
            (abs(series[table_order]) * (power * radius) <= rest * size);
 }
 
-void series(const SeriesConstants& body, double unit, PlaceBatch& at, int lane) {
-    const Pack sin = load(at.sin + lane);
-    const Pack omega = load(at.omega + lane) * unit;
-    const auto motion = motion_series<table_order>(body, sin, load(at.cos + lane), omega);
-    for (int k = 0; k < table_size; ++k) {
-        store(motion.angle[k], at.series[k][0] + lane);
-        store(motion.omega[k], at.series[k][1] + lane);
-        store(motion.path[k], at.series[k][2] + lane);
+void series(const SeriesConstants& body, double time_unit, double length_unit, TablePlace* places,
+            int count, FlowPiece* pieces) {
+    const double per_unit = 1 / time_unit;
+    for (int first = 0; first < count; first += lanes) {
+        const Pack sin = gathered(places, count, first, &TablePlace::sin);
+        const Pack cos = gathered(places, count, first, &TablePlace::cos);
+        const Pack omega = gathered(places, count, first, &TablePlace::omega) * time_unit;
+        const Pack radius = gathered(places, count, first, &TablePlace::radius);
+        const auto motion = motion_series<table_order>(body, sin, cos, omega);
+        const Pack path = sin * __builtin_sqrt(body.short_axis2);
+        const Mask<Pack> good = holds(motion.angle, sin, radius) &
+                                holds(motion.omega, abs(omega), radius) &
+                                holds(motion.path, path, radius);
+        for (int lane = 0; lane < lanes && first + lane < count; ++lane) {
+            TablePlace& at = places[first + lane];
+            at.holds = good[lane] ? 1.0 : 0.0;
+            auto& rows = pieces[first + lane].series.rows;
+            for (int k = 0; k < table_size; ++k) {
+                rows[k][0] = motion.angle[k][lane];
+                rows[k][1] = motion.omega[k][lane] * per_unit;
+                rows[k][2] = motion.path[k][lane] * length_unit;
+            }
+            rows[0][0] = at.angle;
+        }
     }
-    const Pack radius = load(at.radius + lane);
-    const Pack path = sin * __builtin_sqrt(body.short_axis2);
-    const Mask<Pack> good = holds(motion.angle, sin, radius) &
-                            holds(motion.omega, abs(omega), radius) &
-                            holds(motion.path, path, radius);
-    store(good ? pack(1.0) : pack(0.0), at.holds + lane);
 }
 
 // The most times that are on the way through `read` together.
 constexpr int block = 64;
-static_assert(block % lanes == 0 && batch_size % lanes == 0);
+static_assert(block % lanes == 0);
 
 struct alignas(64) Block {
     double turns[block];  // whole half turns
