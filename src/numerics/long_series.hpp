@@ -7,10 +7,15 @@
 #include <cmath>
 
 #include "numerics/numbers.hpp"
-#include "numerics/pair.hpp"
 #include "numerics/series.hpp"
 
 namespace rolling_ellipse {
+
+// Two doubles that are computed at once where the processor can, with the bits of one after the
+// other.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+
+inline Pair pair(double first, double second) { return Pair{first, second}; }
 
 inline constexpr int long_order = 24;
 using LongSeries = std::array<double, long_order + 1>;

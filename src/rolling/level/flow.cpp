@@ -32,7 +32,7 @@ double reach(const Series& series) {
 // A move so short that one power series knows it: it keeps the digits of what has changed.
 std::optional<FlowSample> short_move(const RollingFlow& flow, double t) {
     const auto [unit, short_axis, c2, sin, cos] = flow.from.view;
-    if (!may_be_short(t, flow.from.omega, flow.from.body.gravity, short_axis)) return std::nullopt;
+    if (!may_be_short(flow.from, t)) return std::nullopt;
     const double unit2 = square(unit);
     const SeriesConstants body{
         square(short_axis) / unit2, c2 / unit2, flow.from.body.gravity * square(t) / unit,

@@ -23,8 +23,9 @@ RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);
 
 // Whether one power series about the start may cover a move: a bound by the time scales of the flat
 // position and of turning.
-inline bool may_be_short(double t, double omega, double gravity, double short_axis) {
-    return std::abs(t) * (std::abs(omega) + std::sqrt(gravity / short_axis)) < 0.05;
+inline bool may_be_short(const RollingStart& from, double t) {
+    const double rate = std::sqrt(from.body.gravity / from.view.short_axis);
+    return std::abs(t) * (std::abs(from.omega) + rate) < 0.05;
 }
 
 // The state at a time |t| <= longest_time.

@@ -132,14 +132,8 @@ void reduce(const FlowReader& motion, const double* times, int n, Block& found) 
     }
 }
 
-struct Motions {
-    Pack angle;
-    Pack omega;
-    Pack path;
-};
-
 // One series at several times: even and odd powers, as two sums need not wait for each other.
-inline Motions together(const TableSeries& series, Pack z) {
+inline MotionSample<Pack> together(const TableSeries& series, Pack z) {
     const auto& rows = series.rows;
     const Pack z2 = z * z;
     const auto column = [&](int i) {
@@ -205,10 +199,10 @@ void look_up(const FlowReader& motion, int n, Block& block) {
         if (holds(*recent)) {
             const Pack z = ((since - recent->centre.high) + (since_low - recent->centre.low)) *
                            motion.per_unit;
-            const Motions found = together(recent->series, z);
-            store(found.angle, block.angle + i);
+            const MotionSample<Pack> found = together(recent->series, z);
+            store(found.theta, block.angle + i);
             store(found.omega, block.omega + i);
-            store(found.path, block.path + i);
+            store(found.x, block.path + i);
             store(pack(recent->quarters), block.quarters + i);
             continue;
         }
@@ -245,10 +239,10 @@ bool combine(const FlowReader& motion, const double* times, int n, const Block& 
                  ((quarters * motion.quarter_path - motion.path) + heading * load(block.path + i));
         const Mask<Pack> at_start = abs(t) <= motion.start_radius;
         if (any(at_start)) {
-            const Motions at = together(motion.start, t * motion.per_unit);
-            theta = at_start ? motion.theta + at.angle : theta;
+            const MotionSample<Pack> at = together(motion.start, t * motion.per_unit);
+            theta = at_start ? motion.theta + at.theta : theta;
             omega = at_start ? at.omega : omega;
-            x = at_start ? motion.x + at.path : x;
+            x = at_start ? motion.x + at.x : x;
         }
         const Mask<Pack> lost = (abs(time) >= motion.last_end) & ~at_start;
         if (any(lost)) {

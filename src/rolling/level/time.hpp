@@ -7,9 +7,11 @@
 // from where it starts, so that a short way is known as well as a long one.
 #pragma once
 
+#include <array>
+#include <iterator>
 #include <limits>
 
-#include "numerics/quadrature.hpp"
+#include "numerics/gauss_legendre.hpp"
 #include "rolling/level/rates.hpp"
 
 namespace rolling_ellipse {
@@ -32,8 +34,26 @@ constexpr double largest_finite = std::numeric_limits<double>::max();
 constexpr double longest_panel = 6.0;
 constexpr int most_pairs = most_places / 2;
 
-// Gauss-Legendre rules as pairs of nodes -x and +x; a rule that is shorter than its neighbour's in
-// another lane goes on with no weight.
+// The longest intervals over which the rules of the table have full double precision, each so many
+// times as long as twice the distance that its complex neighbourhood is free of singularities. The
+// error falls like rho^(-2n), rho the sum of the semi-axes of the ellipse with the ends as foci and
+// that distance as its height (L. N. Trefethen, SIAM Rev. 50 (2008) 67, theorem 4.5):
+// rho = exp(asinh(1/length)).
+constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
+    constexpr double log_accuracy = 38.0;  // -ln(3e-17)
+    std::array<double, std::size(gauss_rules)> found{};
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const double x = log_accuracy / (2 * gauss_rules[i].size);
+        double sinh = x;
+        double term = x;
+        for (int k = 2; k < 60; k += 2) sinh += term *= x * x / (k * (k + 1));
+        found[i] = 1 / sinh;
+    }
+    return found;
+}();
+
+// Gauss-Legendre rules as pairs of nodes -x and +x. A rule with fewer nodes than that of another
+// lane goes on with zeros.
 template <class T>
 struct NodePairs {
     int count;
@@ -41,7 +61,8 @@ struct NodePairs {
     T weights[most_pairs];
 };
 
-// For panels of this length, see longest_lengths.
+// The smallest rules with full double precision for panels of this length; the largest one for
+// longer panels.
 template <class T>
 inline void set_rules(NodePairs<T>& pairs, T length) {
     T index{};
@@ -50,18 +71,14 @@ inline void set_rules(NodePairs<T>& pairs, T length) {
         if (!any(is_longer)) break;
         index = is_longer ? index + 1 : index;
     }
-    const auto size = [](double of) { return (gauss_rules[static_cast<int>(of)].size + 1) / 2; };
-    const auto set = [&](int i, int lane, const GaussRule& rule) {
-        const bool has = i < (rule.size + 1) / 2;
-        const double node = has ? rule.nodes[i] : 0.0;
-        const double weight = has ? rule.weights[i] : 0.0;
-        set_lane(pairs.nodes[i], lane, node);
-        set_lane(pairs.weights[i], lane, node == 0 ? 0.5 * weight : weight);
-    };
-    pairs.count = size(largest(index));
+    pairs.count = (gauss_rules[static_cast<int>(largest(index))].size + 1) / 2;
     for (int lane = 0; lane < lanes_of<T>; ++lane) {
         const GaussRule& rule = gauss_rules[static_cast<int>(lane_of(index, lane))];
-        for (int i = 0; i < pairs.count; ++i) set(i, lane, rule);
+        for (int i = 0; i < pairs.count; ++i) {
+            const double weight = rule.weights[i];
+            set_lane(pairs.nodes[i], lane, rule.nodes[i]);
+            set_lane(pairs.weights[i], lane, rule.nodes[i] == 0 ? 0.5 * weight : weight);
+        }
     }
 }
 
