@@ -104,23 +104,6 @@ bool all(const Bernstein<N>& p, Sign wanted) {
 }
 
 template <int N>
-Sign sign_below(const Bernstein<N>& p, int depth) {
-    if (sign(p.coefficients.front()) == Sign::negative) return Sign::negative;
-    if (sign(p.coefficients.back()) == Sign::negative) return Sign::negative;
-    if (all(p, Sign::positive)) return Sign::positive;
-    if (depth == deepest || all(p, Sign::undecided)) return Sign::undecided;
-    const Parts<N> parts = divided(p);
-    const Sign left = sign_below(parts.left, depth + 1);
-    if (left != Sign::positive) {
-        // Undecided here does not hide a proof of the contrary there.
-        return left == Sign::negative || sign_below(parts.right, depth + 1) != Sign::negative
-                   ? left
-                   : Sign::negative;
-    }
-    return sign_below(parts.right, depth + 1);
-}
-
-template <int N>
 int sign_changes(const Bernstein<N>& p) {
     int changes = 0;
     double last = 0.0;
@@ -135,18 +118,11 @@ int sign_changes(const Bernstein<N>& p) {
 // The one sign change of p in (0, 1).
 template <int N>
 double single_root(const Bernstein<N>& p) {
-    RootBracket bracket(0.0, 1.0, p.coefficients.front().value, p.coefficients.back().value);
-    for (int i = 0; i < 100; ++i) {
-        const auto [low, high] = bracket.ends();
-        if (!(high - low > epsilon * high)) break;
-        double x = i % 4 == 3 ? 0.5 * (low + high) : bracket.secant();
-        if (!(x > low && x < high)) x = 0.5 * (low + high);
-        if (x == low || x == high) break;
-        const double f = value(p, x);
-        if (f == 0.0) return x;
-        bracket.take(x, f);
-    }
-    return 0.5 * (bracket.ends().low + bracket.ends().high);
+    const auto [low, high] = bisect_root(0.0, 1.0, [&](double x) {
+        if (x == 0) return p.coefficients.front().value;
+        return x == 1 ? p.coefficients.back().value : value(p, x);
+    });
+    return 0.5 * (low + high);
 }
 
 template <int N>
@@ -174,8 +150,21 @@ void collect_roots(const Bernstein<N>& p, double start, double width, int depth,
 
 // positive: everywhere on [0, 1]; negative: somewhere, provably; undecided: rounding cannot tell.
 template <int N>
-Sign sign_on_unit_interval(const Bernstein<N>& p) {
-    return detail::sign_below(p, 0);
+Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
+    if (sign(p.coefficients.front()) == Sign::negative) return Sign::negative;
+    if (sign(p.coefficients.back()) == Sign::negative) return Sign::negative;
+    if (detail::all(p, Sign::positive)) return Sign::positive;
+    if (depth == detail::deepest || detail::all(p, Sign::undecided)) return Sign::undecided;
+    const Parts<N> parts = divided(p);
+    const Sign left = sign_on_unit_interval(parts.left, depth + 1);
+    if (left != Sign::positive) {
+        // Undecided here does not hide a proof of the contrary there.
+        return left == Sign::negative ||
+                       sign_on_unit_interval(parts.right, depth + 1) != Sign::negative
+                   ? left
+                   : Sign::negative;
+    }
+    return sign_on_unit_interval(parts.right, depth + 1);
 }
 
 // The first place in [0, 1] from which on p is negative, provably. What rounding cannot tell from

@@ -40,9 +40,9 @@ class RootBracket {
         const auto [low, high] = ends_;
         const double few = 4 * epsilon * std::max(std::abs(low), std::abs(high));
         if (secants_ < most_secants && high - low > 2 * few) {
-            const double secant = RootBracket::secant();
-            const bool halve = secants_++ % 4 == 3 || !(secant >= low && secant <= high);
-            return std::clamp(halve ? 0.5 * (low + high) : secant, low + few, high - few);
+            const double place = secant();
+            const bool halve = secants_++ % 4 == 3 || !(place >= low && place <= high);
+            return std::clamp(halve ? 0.5 * (low + high) : place, low + few, high - few);
         }
         secants_ = most_secants;
         const double middle = low + 0.5 * (high - low);
@@ -63,13 +63,13 @@ class RootBracket {
         }
     }
 
+    Bracket ends() const { return ends_; }
+
+  private:
     double secant() const {
         return (ends_.low * f_high_ - ends_.high * f_low_) / (f_high_ - f_low_);
     }
 
-    Bracket ends() const { return ends_; }
-
-  private:
     Bracket ends_;
     double f_low_;
     double f_high_;

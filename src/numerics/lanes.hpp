@@ -100,10 +100,12 @@ inline double largest(T x) {
 }
 
 // Every lane from the element of the array that it names.
-inline double element(const double* from, double index) { return from[static_cast<int>(index)]; }
-inline Pack element(const Pack* from, Pack index) {
-    Pack found;
-    for (int i = 0; i < lanes; ++i) found[i] = from[static_cast<int>(index[i])][i];
+template <class T>
+inline T element(const T* from, T index) {
+    T found{};
+    for (int i = 0; i < lanes_of<T>; ++i) {
+        set_lane(found, i, lane_of(from[static_cast<int>(lane_of(index, i))], i));
+    }
     return found;
 }
 

@@ -33,10 +33,7 @@ double reach(const Series& series) {
 std::optional<FlowSample> short_move(const RollingFlow& flow, double t) {
     const auto [unit, short_axis, c2, sin, cos] = flow.from.view;
     if (!may_be_short(flow.from, t)) return std::nullopt;
-    const double unit2 = square(unit);
-    const SeriesConstants body{
-        square(short_axis) / unit2, c2 / unit2, flow.from.body.gravity * square(t) / unit,
-        flow.phase.rate.d0 / square(unit2), flow.phase.rate.d1 / square(unit2)};
+    const SeriesConstants body = series_constants(flow, t);
     const auto series = motion_series<series_order>(body, sin, cos, flow.from.omega * t);
     if (!(std::min(reach(series.angle), reach(series.omega)) >= 1)) return std::nullopt;
     Series gain = series.omega;

@@ -12,14 +12,6 @@
 
 namespace rolling_ellipse {
 
-// Bodies that roll, each at its own time: places in `starts` and `times`.
-struct BodiesAtTimes {
-    const RollingStart* starts;
-    const double* times;
-    const std::uint32_t* places;
-    int count;
-};
-
 struct Kernel {
     const char* name;  // of the vector level
     // The rates of one motion at y = quarters Y + offset, |quarters| <= 1; there is room for a
@@ -28,7 +20,8 @@ struct Kernel {
                   const double* offsets, int count, PhaseWays<double>& found);
     // The states of bodies, written to their places; and for every body of the list whether it is
     // one of those that have to be taken alone. Null in the kernel that takes bodies one by one.
-    void (*sample)(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone);
+    void (*sample)(const RollingStart* starts, const double* times, const std::uint32_t* places,
+                   int count, FlowSample* samples, bool* is_open);
     // The motion at the coordinate of each place.
     void (*states)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
                    TablePlace* places, int count);

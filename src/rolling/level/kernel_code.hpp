@@ -20,23 +20,24 @@ void rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double qu
 }
 
 // Times that are refused, and motions that take long about the tip, are left to the way of one.
-void sample(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone) {
+void sample(const RollingStart* starts, const double* times, const std::uint32_t* places, int count,
+            FlowSample* samples, bool* is_open) {
     PhaseMotion<Pack> motion;
-    for (int first = 0; first < bodies.count; first += lanes) {
+    for (int first = 0; first < count; first += lanes) {
         PhaseStart<Pack> start{};
         Pack t{};
         for (int lane = 0; lane < lanes; ++lane) {  // the last one fills lanes that are left
-            const int at = first + lane < bodies.count ? first + lane : bodies.count - 1;
-            set_lane(start, lane, bodies.starts[bodies.places[at]]);
-            t[lane] = bodies.times[bodies.places[at]];
+            const int at = first + lane < count ? first + lane : count - 1;
+            set_lane(start, lane, starts[places[at]]);
+            t[lane] = times[places[at]];
         }
         set_motion(motion, start);
         const Mask<Pack> is_late = abs(t) > 1e15 * motion.phase.half_turn.high;
         const Mask<Pack> left = is_late | motion.phase.map.has_tail;
         const MotionSample<Pack> now = sample_at(motion, start, left ? Pack{} : t);
-        for (int lane = 0; lane < lanes && first + lane < bodies.count; ++lane) {
-            samples[bodies.places[first + lane]] = {now.theta[lane], now.omega[lane], now.x[lane]};
-            alone[first + lane] = left[lane] != 0;
+        for (int lane = 0; lane < lanes && first + lane < count; ++lane) {
+            samples[places[first + lane]] = {now.theta[lane], now.omega[lane], now.x[lane]};
+            is_open[first + lane] = left[lane] != 0;
         }
     }
 }

@@ -66,7 +66,7 @@ void sample(const Kernel& kernel, const RollingStart* starts, const double* time
             if (keys[k] != alone) places[ends[keys[k]]++] = static_cast<std::uint32_t>(begin + k);
         }
         std::array<bool, most_bodies> is_open;
-        kernel.sample({starts, times, places.data(), sorted}, samples, is_open.data());
+        kernel.sample(starts, times, places.data(), sorted, samples, is_open.data());
         for (int k = 0; k < sorted; ++k) {
             const std::uint32_t i = places[k];
             if (is_open[k]) samples[i] = sample_alone(starts[i], times[i]);

@@ -39,13 +39,10 @@ class TableMaker {
         const PhaseRate<double>& rate = flow.phase.rate;
         rotates_ = flow.kind == MotionKind::rotation;
         length_ = flow.from.view.long_axis;
-        const double area = square(length_);
         const double fastest =
             (rotates_ ? 1.0 : std::sqrt(rate.amplitude2)) / shape_factor<double>(rate, 0.0);
         unit_ = std::min(0.5 / fastest, 0.5 * double(flow.phase.quarter_turn));
-        body_ = {square(rate.short_axis / length_), rate.c2 / area,
-                 flow.from.body.gravity * square(unit_) / length_, rate.d0 / square(area),
-                 rate.d1 / square(area)};
+        body_ = series_constants(flow, unit_);
     }
 
     // None where no series holds.

@@ -6,7 +6,7 @@
 
 #include "numerics/lanes.hpp"
 #include "numerics/series.hpp"
-#include "rolling/level/phase.hpp"
+#include "rolling/level/flow.hpp"
 
 namespace rolling_ellipse {
 
@@ -18,6 +18,16 @@ struct MotionSeries {
 };
 
 namespace {
+
+// The constants of a motion, for time in this unit [s].
+inline SeriesConstants series_constants(const RollingFlow& flow, double time_unit) {
+    const PhaseRate<double>& rate = flow.phase.rate;
+    const double length = flow.from.view.long_axis;
+    const double area = length * length;
+    return {rate.short_axis / length * (rate.short_axis / length), rate.c2 / area,
+            flow.from.body.gravity * (time_unit * time_unit) / length, rate.d0 / (area * area),
+            rate.d1 / (area * area)};
+}
 
 // The series from the sine and cosine of the angle from the flat position and the angular velocity.
 // Physics (18) with D h^2 = d0 + d1 q, u = h^2, q and p the square of the sine and the product of
