@@ -1,6 +1,5 @@
-// Sums of two doubles: 106 bits for the few numbers that need them (periods, phases, multiples of
-// pi). Algorithms: T. J. Dekker, Numer. Math. 18 (1971) 224; J. R. Shewchuk, Discrete Comput. Geom.
-// 18 (1997) 305.
+// Sums of two doubles with 106 bits, for periods, phases and multiples of pi. Algorithms: T. J.
+// Dekker, Numer. Math. 18 (1971) 224; J. R. Shewchuk, Discrete Comput. Geom. 18 (1997) 305.
 #pragma once
 
 #include <cmath>
@@ -9,7 +8,8 @@
 
 namespace rolling_ellipse {
 
-// high + low, |low| <= ulp(high)/2; of a double, or of lanes of them (numerics/lanes.hpp).
+// The sum high + low with |low| <= ulp(high)/2; T is a double or several lanes
+// (numerics/lanes.hpp).
 template <class T>
 struct TwoParts {
     T high{};

@@ -1,10 +1,10 @@
-// Several doubles side by side, and functions of them and of one double, which give the same bits:
-// templates over a number T, which is a double or a Pack. For files that are compiled once for
-// every vector level, see rolling/level/lanes_avx2.cpp: everything here is in an anonymous
-// namespace, so that no function of a wide level can come to run on a machine without it.
+// Several doubles side by side, a Pack, and functions that give the same bits for a double and for
+// a Pack: templates over the number T. Files that include this are compiled once for every vector
+// level, as rolling/level/lanes_avx2.cpp. All names are in an anonymous namespace, so that no
+// function of a wide level can be linked into code for machines without it.
 //
-// The same operations in the same order at every level: a fused multiply-add serves two_product
-// alone, which is exact without it as well.
+// Operations and their order are the same at every level. Only two_product uses a fused
+// multiply-add; its result is exact with and without.
 #pragma once
 
 #include <type_traits>
@@ -35,7 +35,7 @@ using PackPair = TwoParts<Pack>;
 template <class T>
 using Bits = std::conditional_t<std::is_same_v<T, double>, unsigned long long, PackBits>;
 
-// The same number, a double or lanes already, in all lanes.
+// A number in all lanes; a Pack stays as it is.
 template <class T, class Number>
 inline T filled(Number value) {
     return value - T{};
@@ -65,7 +65,7 @@ inline T number(Bits<T> of) {
     return found;
 }
 
-// One lane of a number, of which a double has one.
+// Access to one lane of a number; a double has one lane.
 template <class T>
 inline constexpr int lanes_of = sizeof(T) / sizeof(double);
 inline double lane_of(double x, int) { return x; }
@@ -99,7 +99,7 @@ inline double largest(T x) {
     return found;
 }
 
-// Every lane from the element of the array that it names.
+// For every lane, its value in the element of the array with the index in that lane.
 template <class T>
 inline T element(const T* from, T index) {
     T found{};
@@ -143,7 +143,7 @@ inline T min(T x, T y) {
     return x < y ? x : y;
 }
 
-// The nearest whole number, for |x| < 2^51, and the next one from x on, downwards and upwards.
+// The nearest whole number, for |x| < 2^51, and the next whole number below and above.
 template <class T>
 inline T nearest(T x) {
     return (x + to_integer) - to_integer;
@@ -182,8 +182,8 @@ inline T horner(T x, double highest, Doubles... lower) {
 constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // ln 2 to 42 bits: multiples of it are exact
 constexpr double ln2_low = 0x1.ef35793c76730p-45;
 
-// sinh v and e^-v, 0 <= v < 700: from sinh r and cosh r, v = n ln 2 + r, by the addition theorems,
-// so that a small sinh keeps its digits.
+// sinh v and e^-v for 0 <= v < 700, by the addition theorems from sinh r and cosh r with
+// v = n ln 2 + r, so that a small sinh keeps its digits.
 template <class T>
 struct Hyperbolic {
     T sinh;
@@ -196,8 +196,8 @@ inline Hyperbolic<T> hyperbolic(T v) {
     const T r = (v - n * ln2_high) - n * ln2_low;
     const T x = r * r;
     const T x2 = x * x;
-    // Taylor series: |r| <= 0.35, the first terms left out are below 5e-18. Pairs of terms do not
-    // wait for each other.
+    // Taylor series: |r| <= 0.35, the first terms left out are below 5e-18. Pairs of terms are
+    // independent of each other, which shortens the chain of operations.
     const T odd = r * x *
                   (((x * (1.0 / 120) + 1.0 / 6) + x2 * (x * (1.0 / 362880) + 1.0 / 5040)) +
                    (x2 * x2) * (x * (1.0 / 6227020800) + 1.0 / 39916800));
@@ -211,8 +211,8 @@ inline Hyperbolic<T> hyperbolic(T v) {
     return {sinh_n + (sinh_n * even + cosh_n * sinh_r), 2 * down * (1 + (even - sinh_r))};
 }
 
-// The natural logarithm of a normal positive number: of a power of two and of m between sqrt(1/2)
-// and sqrt(2), by the series of 2 artanh((m - 1)/(m + 1)).
+// The natural logarithm of a normal positive number 2^n m, m between sqrt(1/2) and sqrt(2), by the
+// series of 2 artanh((m - 1)/(m + 1)).
 template <class T>
 inline T log(T x) {
     constexpr unsigned long long root_half = 0x3fe6a09e667f3bcdULL;
@@ -227,7 +227,8 @@ inline T log(T x) {
     return n * ln2_high + (2 * f + (2 * f * s * sum + n * ln2_low));
 }
 
-// The inverse of sinh, for 0 <= x < 1e150: e^asinh(x) = 1 + gain, whose rounding is made good.
+// The inverse of sinh for 0 <= x < 1e150: e^asinh(x) = 1 + gain; the rounding of this sum is
+// corrected.
 template <class T>
 inline T asinh(T x) {
     const T gain = x + x * x / (1 + sqrt(1 + x * x));
@@ -235,8 +236,8 @@ inline T asinh(T x) {
     return log(one_more) + (gain - (one_more - 1)) / one_more;
 }
 
-// The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos: of the tangent, or of
-// that of its distance from 45 degrees; a polynomial of least error (2e-19) for 22.5 degrees.
+// The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos. A polynomial of least
+// error (2e-19) serves up to 22.5 degrees; above, it takes the distance from 45 degrees.
 template <class T>
 inline T octant_angle(T sin, T cos) {
     const auto upper = sin > 0.41421356237309503 * cos;
@@ -264,7 +265,7 @@ inline T angle_of(T sin, T cos) {
 using rolling_ellipse::two_product;
 
 #if !defined(__FMA__)
-// A number as a sum of two of 26 bits.
+// A number as a sum of two numbers of 26 bits.
 inline PackPair halves(Pack x) {
     const Pack shifted = 134217729.0 * x;  // 2^27 + 1
     const Pack high = shifted - (shifted - x);

@@ -1,5 +1,5 @@
-// Polynomials of small degree, the degree known to the compiler: no loop is longer than it has to
-// be. Every coefficient carries the sum of the magnitudes of the terms it was made from.
+// Polynomials of a small degree fixed at compile time. Every coefficient carries a bound of its
+// rounding.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace rolling_ellipse {
 
-// A number and the magnitude of the terms that were summed up to it.
+// A number, and the sum of the magnitudes of the terms from which it was computed.
 struct Tracked {
     double value = 0.0;
     double magnitude = 0.0;
@@ -32,8 +32,8 @@ inline Tracked operator*(Tracked x, Tracked y) {
 
 enum class Sign { positive, negative, undecided };
 
-// How far rounding may have moved a number: coefficients of degree 10 pass some 60 additions and
-// products, each good to half an ulp, and the parameters they start from are rounded themselves.
+// Bound of the rounding error of a number: coefficients of degree 10 pass some 60 additions and
+// products with errors of half an ulp each, and their parameters are rounded, too.
 inline double margin(Tracked number) {
     constexpr double rounding_units = 64;
     return rounding_units * epsilon * number.magnitude;

@@ -1,4 +1,4 @@
-// Gauss-Legendre quadrature with the number of nodes that the nearest singularities ask for.
+// Gauss-Legendre quadrature. The nearest singularities fix the number of nodes.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace rolling_ellipse {
 
-// The smallest tabled rule with at least n nodes; the largest one where n exceeds the table.
+// The smallest tabled rule with at least n nodes; the largest rule if n exceeds the table.
 inline const GaussRule& gauss_rule(int n) {
     for (const GaussRule& rule : gauss_rules) {
         if (rule.size >= n) return rule;
@@ -18,7 +18,7 @@ inline const GaussRule& gauss_rule(int n) {
     return gauss_rules[std::size(gauss_rules) - 1];
 }
 
-// The nodes of a rule, ascending, on -1 .. 1.
+// A node of a rule on -1 .. 1.
 struct Node {
     double place;
     double weight;
@@ -30,10 +30,10 @@ inline Node node_of(const GaussRule& rule, int i) {
     return {left ? -rule.nodes[from_middle] : rule.nodes[from_middle], rule.weights[from_middle]};
 }
 
-// Nodes for full double precision where the integrand is singular at the points place +- i height,
-// both mapped to the interval -1 .. 1: the error falls like rho^(-2n), rho the sum of the semi-axes
-// of the smallest ellipse with foci +-1 through a singularity (Trefethen, SIAM Rev. 50 (2008) 67,
-// theorem 4.5).
+// Number of nodes for full double precision if the integrand is singular at the points
+// place +- i height, in the coordinate that maps the interval to -1 .. 1. The error falls like
+// rho^(-2n), rho the sum of the semi-axes of the smallest ellipse with foci +-1 through a
+// singularity (Trefethen, SIAM Rev. 50 (2008) 67, theorem 4.5).
 inline int nodes_needed(double height, std::initializer_list<double> places) {
     constexpr double log_accuracy = 38.0;  // -ln(3e-17)
     double axis = infinity;
@@ -46,7 +46,7 @@ inline int nodes_needed(double height, std::initializer_list<double> places) {
     return 1 + static_cast<int>(std::ceil(log_accuracy / (2 * std::log(rho))));
 }
 
-// The integral of f from v0 to v1, as a double-double: the sum itself adds no rounding.
+// The integral of f from v0 to v1 as a double-double: the summation adds no rounding.
 template <class Function>
 DoubleDouble integrate(const GaussRule& rule, double v0, double v1, const Function& f) {
     const double middle = 0.5 * (v0 + v1);

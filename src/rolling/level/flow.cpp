@@ -11,31 +11,32 @@
 namespace rolling_ellipse {
 namespace {
 
-// The radius within which a series is as good as a double, beside its own size there: the last
-// terms are one rounding then, and what is left out, smaller by another tenth, is less.
-double reach(const Series& series) {
-    constexpr double rest = 1e-16;  // half an ulp
+// The radius at which the last terms of a series are half an ulp of its size. The terms left out
+// are smaller by another tenth.
+double radius_of(const Series& series) {
+    constexpr double half_ulp = 1e-16;
     double radius = 1.0;
-    for (int i = 0; i < 3; ++i) {  // its size depends on the radius, by a small power of it
+    for (int i = 0; i < 3; ++i) {  // the size depends on the radius by a small power
         const double size = std::max({std::abs(series[0]), std::abs(series[1]) * radius,
                                       std::abs(series[2]) * square(radius)});
         double least = infinity;
         for (const int k : {series_order - 1, series_order}) {
             const double last = std::abs(series[k]);
-            if (last > 0) least = std::min(least, std::pow(rest * size / last, 1.0 / k));
+            if (last > 0) least = std::min(least, std::pow(half_ulp * size / last, 1.0 / k));
         }
         radius = least;
     }
     return radius;
 }
 
-// A move so short that one power series knows it: it keeps the digits of what has changed.
+// The state after a short move by one power series, which keeps the digits of the change; none if
+// the move is too long for it.
 std::optional<FlowSample> short_move(const RollingFlow& flow, double t) {
     const auto [unit, short_axis, c2, sin, cos] = flow.from.view;
     if (!may_be_short(flow.from, t)) return std::nullopt;
     const SeriesConstants body = series_constants(flow, t);
     const auto series = motion_series<series_order>(body, sin, cos, flow.from.omega * t);
-    if (!(std::min(reach(series.angle), reach(series.omega)) >= 1)) return std::nullopt;
+    if (!(std::min(radius_of(series.angle), radius_of(series.omega)) >= 1)) return std::nullopt;
     Series gain = series.omega;
     gain[0] = 0.0;
     return FlowSample{flow.from.theta + value(series.angle, 1.0),
@@ -90,8 +91,8 @@ double period(const RollingFlow& flow) {
 }
 
 DoubleDouble time_since_flat(const RollingFlow& flow, const PhasePoint<double>& phase) {
-    const Place<double> at = place_of(flow.phase.map, phase);
-    const double time = way_between(flow.phase, at.quarters, 0.0, at.offset).way.time;
+    const PhasePlace<double> at = place_of(flow.phase.map, phase);
+    const double time = integral_between(flow.phase, at.quarters, 0.0, at.offset).sum.time;
     if (at.quarters == 0) return {time, 0.0};
     return flow.phase.quarter_turn * at.quarters + time;
 }
@@ -109,7 +110,8 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
         sin = flow.direction * (cos < 0 ? -sin : sin);
         cos = std::abs(cos);
     } else {
-        // amplitude^2 - sin^2 = cos^2 - kappa^2: the smaller ones have the digits.
+        // amplitude^2 - sin^2 = cos^2 - kappa^2: the difference of the smaller numbers has more
+        // digits.
         const double amplitude = flow.amplitude;
         const double kappa = flow.phase.rate.kappa;
         const double left = std::abs(sin) < cos ? (amplitude - sin) * (amplitude + sin)
@@ -121,7 +123,7 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
         half_turns = on_way_back == flow.on_way_back ? 0.0 : 1.0;
     }
     DoubleDouble time = time_since_flat(flow, {sin, cos}) - time_since_flat(flow, flow.start_phase);
-    // On the same way and behind the start: in the next swing.
+    // An angle behind the start, in its direction, is passed in the next swing.
     if (flow.kind == MotionKind::libration && half_turns == 0 && time.high < 0) half_turns = 2.0;
     if (half_turns != 0) {
         if (std::isinf(flow.phase.half_turn.high)) return infinity;

@@ -1,5 +1,5 @@
-// The code of a Kernel. It is compiled for each vector level in a source of its own, see
-// numerics/lanes.hpp: nothing of the library is called.
+// The functions of a Kernel. Each vector level compiles them in its own source, so they call no
+// function of the standard library (numerics/lanes.hpp).
 #pragma once
 
 #include "rolling/level/kernel.hpp"
@@ -10,23 +10,23 @@ namespace rolling_ellipse {
 namespace {
 
 void rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
-           const double* offsets, int count, PhaseWays<double>& found) {
+           const double* offsets, int count, PhaseRates<double>& found) {
     for (int i = 0; i < count; i += lanes) {
-        const PhaseWay<Pack> at = phase_rate_at(rate, map, quarters, load(offsets + i));
+        const PhaseIncrement<Pack> at = phase_rate_at(rate, map, quarters, load(offsets + i));
         store(at.time, found.time + i);
         store(at.angle, found.angle + i);
         store(at.path, found.path + i);
     }
 }
 
-// Times that are refused, and motions that take long about the tip, are left to the way of one.
+// Bodies with times that are refused, or with motions that stay long at the tip, are left open.
 void sample(const RollingStart* starts, const double* times, const std::uint32_t* places, int count,
             FlowSample* samples, bool* is_open) {
     PhaseMotion<Pack> motion;
     for (int first = 0; first < count; first += lanes) {
         PhaseStart<Pack> start{};
         Pack t{};
-        for (int lane = 0; lane < lanes; ++lane) {  // the last one fills lanes that are left
+        for (int lane = 0; lane < lanes; ++lane) {  // the last body fills the remaining lanes
             const int at = first + lane < count ? first + lane : count - 1;
             set_lane(start, lane, starts[places[at]]);
             t[lane] = times[places[at]];

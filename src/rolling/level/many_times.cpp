@@ -11,7 +11,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// Motions have 10 to 60 pieces a quarter turn; on the separatrix there is no end of them.
+// A quarter turn has 10 to 60 pieces; near the separatrix their number has no bound.
 constexpr std::size_t most_pieces = 1000;
 
 // Angle and path since the flat position, each as quarter turns plus an offset from the nearest one
@@ -47,8 +47,8 @@ class TableMaker {
 
     // None where no series holds.
     std::optional<FlowTable> make() {
-        // In the coordinate y, in which all that is singular is half_pi away from the motion: what
-        // series of this order reach in nearly all motions.
+        // Spacings in the coordinate y, in which all singularities are pi/2 away from the motion.
+        // The first one suffices for series of this order in nearly all motions.
         for (const double spacing : {0.122, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
@@ -65,7 +65,8 @@ class TableMaker {
   private:
     void place(double spacing) {
         constexpr double wider = 1.5;  // from 45 degrees of the phase on
-        // So much further, a body on the separatrix is on the tip to rounding.
+        // At this distance beyond 45 degrees, a body on the separatrix is on the tip within
+        // rounding.
         constexpr double longest_rise = 38.0;
         const PhaseMap<double>& map = flow_.phase.map;
         const double middle = asinh(1 / map.grade);
@@ -99,7 +100,7 @@ class TableMaker {
                            [](const TablePlace& place) { return place.holds > 0; });
     }
 
-    // From the end that is nearer: the flat position, or the tip or the turning point.
+    // The times of the pieces, counted from the nearer end of the quarter.
     void add_times() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const DoubleDouble quarter = flow_.phase.quarter_turn;
@@ -123,7 +124,7 @@ class TableMaker {
         }
     }
 
-    // Counted from the flat position or, near it, from the tip.
+    // The paths of the pieces, counted from the flat position or, near the tip, from the tip.
     void add_paths() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const auto path = [&](std::size_t i) -> double& { return pieces[i].series.rows[0][2]; };
@@ -134,7 +135,7 @@ class TableMaker {
         if (pieces[last].quarters == 0) return;
         const PhaseMap<double>& map = flow_.phase.map;
         const bool has_tip = places_[last].y == map.quarter;
-        const Place<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last].y};
+        const PhasePlace<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last].y};
         const MotionPoint<double> tip =
             motion_point(flow_.phase.rate, flow_.amplitude, phase_point(map, end));
         path(last) = quarter_position(flow_.from.view, tip.sin_phi, tip.cos_phi).path;
@@ -145,7 +146,7 @@ class TableMaker {
     void add_start() {
         const FlatView& at_start = flow_.from.view;
         table_.reader.start_time = time_since_flat(flow_, flow_.start_phase);
-        // Its radius is somewhat like that of the piece about the same place.
+        // First guess of the radius: the length of the piece about the same place.
         const double since = std::abs(double(table_.reader.start_time));
         const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
                                         [&](const FlowPiece& p) { return since < p.high; });

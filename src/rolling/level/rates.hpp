@@ -1,6 +1,6 @@
-// How fast time, angle and path grow along the coordinate y of rolling/level/phase.hpp:
+// The rates of time, angle and path in the coordinate y of rolling/level/phase.hpp:
 //     dphase/dy = speed sqrt((g^2 cos^2 + sin^2) (cos^2 + kappa^2 sin^2)),
-// whose last root cancels that of the integrand. The path of the centre grows by h dphi.
+// whose last root cancels the root of the integrand. The path of the centre grows by h dphi.
 #pragma once
 
 #include "rolling/level/coordinate.hpp"
@@ -16,20 +16,21 @@ inline T shape_factor2(const PhaseRate<C>& rate, T sin2_phi) {
     return rate.scale2 * (rate.d0 + rate.d1 * sin2_phi) * (rate.energy_height + sqrt(h2)) / h2;
 }
 
-// The rates at y = quarters Y + offset, |quarters| <= 1, of the motion with the constants C at the
-// places T: one motion or as many as places. With the phase as sin^2/q and cos^2/q, h^2 = N/q, and
-// so the other factors: one quotient serves all. Terms without the offset are computed once for all
+// The rates at y = quarters Y + offset, |quarters| <= 1. The constants C are those of one motion
+// for all places T, or of one motion for each. The phase is known as sin^2/q and cos^2/q, and h^2 =
+// N/q, so that all factors share one quotient. Terms without the offset are computed once for all
 // places of a loop.
 template <class C, class T>
-inline PhaseWay<T> phase_rate_at(const PhaseRate<C>& rate, const PhaseMap<C>& map, C quarters,
-                                 T offset) {
+inline PhaseIncrement<T> phase_rate_at(const PhaseRate<C>& rate, const PhaseMap<C>& map, C quarters,
+                                       T offset) {
     constexpr double farthest = 150.0;  // e^(4 of it) is a double
     const C one = filled<C>(1.0);
     const C half_turn = 2 * map.quarter;
     const T tip_here = filled<T>(quarters != 0 ? one : C{});
     const T scale2_here = filled<T>(quarters != 0 ? map.tip_scale2 : map.flat_scale2);
     const T scale2_there = filled<T>(quarters != 0 ? map.flat_scale2 : map.tip_scale2);
-    // The nearest flat or tip: that from which the places are counted, or another one.
+    // The nearest flat position or tip: the origin of the offset, or a place one or two quarters
+    // on.
     const T from_here = abs(offset);
     const T a_turn_on = abs(from_here - half_turn);
     const T same = from_here < a_turn_on ? from_here : a_turn_on;
@@ -61,7 +62,7 @@ inline PhaseWay<T> phase_rate_at(const PhaseRate<C>& rate, const PhaseMap<C>& ma
     const C time_factor = map.speed * map.speed * rate.scale2;
     const T time = sqrt((time_factor * inertia) * graded * ((rate.energy_height + h) * inverse));
     const T size = map.speed * sqrt(graded * along) * per_q;
-    // A libration that has passed its turning point goes back.
+    // The angle of a libration falls beyond its turning point.
     const T to_tip = quarters > 0 ? -offset : offset;
     const auto goes_on =
         quarters != 0 ? (to_tip > 0) & (to_tip < half_turn) : abs(to_tip) < map.quarter;
@@ -72,18 +73,18 @@ inline PhaseWay<T> phase_rate_at(const PhaseRate<C>& rate, const PhaseMap<C>& ma
 
 // The rates of bodies side by side, at a few places of each.
 inline void phase_rates(const PhaseRate<Pack>& rate, const PhaseMap<Pack>& map, Pack quarters,
-                        const Pack* offsets, int count, PhaseWays<Pack>& found) {
+                        const Pack* offsets, int count, PhaseRates<Pack>& found) {
     for (int i = 0; i < count; ++i) {
-        const PhaseWay<Pack> at = phase_rate_at(rate, map, quarters, offsets[i]);
+        const PhaseIncrement<Pack> at = phase_rate_at(rate, map, quarters, offsets[i]);
         found.time[i] = at.time;
         found.angle[i] = at.angle;
         found.path[i] = at.path;
     }
 }
 
-// The rates of one body at places side by side; after the last there is room for a Pack.
+// The rates of one body at places side by side; the arrays have room for a Pack after the last.
 inline void phase_rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
-                        double* offsets, int count, PhaseWays<double>& found) {
+                        double* offsets, int count, PhaseRates<double>& found) {
     for (int i = count; i % widest_pack != 0; ++i) offsets[i] = offsets[count - 1];
     kernel().rates(rate, map, quarters, offsets, count, found);
 }

@@ -1,5 +1,5 @@
-// The code of a FlowKernel. It is compiled for each vector level in a source of its own, see
-// numerics/lanes.hpp: nothing of the library is called.
+// The functions of a Kernel that make and read tables. Each vector level compiles them in its own
+// source, so they call no function of the standard library (numerics/lanes.hpp).
 #pragma once
 
 #include "numerics/gauss_legendre.hpp"
@@ -23,7 +23,7 @@ inline Pack gathered(const TablePlace* places, int count, int first, double Tabl
 
 void states(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
             TablePlace* places, int count) {
-    // Places are so near to each other that eight nodes are exact to rounding.
+    // Between neighbouring places eight nodes are exact to rounding.
     constexpr GaussRule rule = gauss_rules[6];
     static_assert(rule.size == 8);
     for (int first = 0; first < count; first += lanes) {
@@ -34,8 +34,8 @@ void states(const PhaseRate<double>& rate, const PhaseMap<double>& map, double a
         Pack time{}, path{};
         for (int i = 0; i < rule.size / 2; ++i) {
             const Pack offset = half * rule.nodes[i];
-            const PhaseWay<Pack> before = phase_rate_at(rate, map, 0.0, middle - offset);
-            const PhaseWay<Pack> after = phase_rate_at(rate, map, 0.0, middle + offset);
+            const PhaseIncrement<Pack> before = phase_rate_at(rate, map, 0.0, middle - offset);
+            const PhaseIncrement<Pack> after = phase_rate_at(rate, map, 0.0, middle + offset);
             time += rule.weights[i] * (before.time + after.time);
             path += rule.weights[i] * (before.path + after.path);
         }
@@ -43,7 +43,7 @@ void states(const PhaseRate<double>& rate, const PhaseMap<double>& map, double a
         path *= half;
 
         const Mask<Pack> at_tip = y > 0.5 * map.quarter;
-        const Place<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
+        const PhasePlace<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
         const auto [sin, cos, omega] = motion_point(rate, amplitude, phase_point(map, place));
         const Mask<Pack> near_tip = sin > cos;
         const Pack angle = octant_angle(min(sin, cos), max(sin, cos));
@@ -60,8 +60,8 @@ void states(const PhaseRate<double>& rate, const PhaseMap<double>& map, double a
     }
 }
 
-// The last terms, of which one may be small by chance, are some roundings beside what the series is
-// part of; what is left out is smaller by another twentieth.
+// Whether the last two terms of a series, of which one may be small by chance, are a few roundings
+// of the sum to which it is added. The terms left out are smaller by another twentieth.
 inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, Pack radius) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
@@ -99,7 +99,7 @@ void series(const SeriesConstants& body, double time_unit, double length_unit, T
     }
 }
 
-// The most times that are on the way through `read` together.
+// Largest number of times that `read` takes through its stages together.
 constexpr int block = 64;
 static_assert(block % lanes == 0);
 
@@ -107,14 +107,15 @@ struct alignas(64) Block {
     double turns[block];  // whole half turns
     double time[block];   // since the nearest flat position, in two parts
     double low[block];
-    // Since there, or since the tip that is so many quarters from it.
+    // Since there, or since the tip at this number of quarters from there.
     double angle[block];
     double omega[block];
     double path[block];
     double quarters[block];
 };
 
-// t + start - n T without rounding. Of a late time the low part of n T is longer than a piece.
+// Reduces t + start by n half turns without rounding. At late times even the low part of n T is
+// longer than a piece.
 void reduce(const FlowReader& motion, const double* times, int n, Block& found) {
     const DoubleDouble period = motion.half_turn;
     const DoubleDouble start = motion.start_time;
@@ -132,7 +133,7 @@ void reduce(const FlowReader& motion, const double* times, int n, Block& found) 
     }
 }
 
-// One series at several times: even and odd powers, as two sums need not wait for each other.
+// One series at several times. The sums of even and odd powers are independent of each other.
 inline MotionSample<Pack> together(const TableSeries& series, Pack z) {
     const auto& rows = series.rows;
     const Pack z2 = z * z;
@@ -150,7 +151,7 @@ inline MotionSample<Pack> together(const TableSeries& series, Pack z) {
     return {column(0), column(1), column(2)};
 }
 
-// A series at one time: its columns side by side, and its even and odd rows.
+// A series at one time, with its columns and its even and odd rows side by side.
 inline void alone(const TableSeries& series, double z, Block& found, int i) {
     constexpr int parts = 2 * series_columns / lanes;
     const double z2 = z * z;
@@ -176,7 +177,8 @@ inline void alone(const TableSeries& series, double z, Block& found, int i) {
     found.path[i] = sum[2];
 }
 
-// By halves, without a branch for the processor to guess: times may come in any order.
+// The piece at a time by bisection, without a branch that the processor would mispredict for times
+// in any order.
 inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
     int i = 0;
     for (int half = motion.half; half > 0; half /= 2) {
@@ -185,7 +187,8 @@ inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
     return motion.pieces[i];
 }
 
-void look_up(const FlowReader& motion, int n, Block& block) {
+// The series of all times.
+void sample_series(const FlowReader& motion, int n, Block& block) {
     const FlowPiece* recent = motion.pieces;
     for (int i = 0; i < n; i += lanes) {
         const Pack time = load(block.time + i);
@@ -217,7 +220,7 @@ void look_up(const FlowReader& motion, int n, Block& block) {
     }
 }
 
-// The motion at these times; theta is NaN beyond its pieces. Returns whether one is.
+// The motion from its series. Beyond the pieces theta is NaN; returns whether one is.
 bool combine(const FlowReader& motion, const double* times, int n, const Block& block,
              const FlowColumns& out) {
     bool some_lost = false;
@@ -259,7 +262,7 @@ bool combine(const FlowReader& motion, const double* times, int n, const Block& 
 bool read_block(const FlowReader& motion, const double* times, int n, const FlowColumns& out) {
     Block block;
     reduce(motion, times, n, block);
-    look_up(motion, n, block);
+    sample_series(motion, n, block);
     return combine(motion, times, n, block, out);
 }
 
@@ -270,7 +273,7 @@ bool read(const FlowReader& motion, const double* times, std::size_t n, const Fl
         some_lost |= read_block(motion, times + i, block, out.from(i));
     }
     if (i == n) return some_lost;
-    // The last of them fills what is left of a pack.
+    // The last time fills the remaining lanes of a pack.
     const int left = int(n - i);
     double last[block], theta[block], omega[block], x[block];
     for (int j = 0; j < block; ++j) last[j] = times[j < left ? i + j : n - 1];
