@@ -1,5 +1,5 @@
-// The functions of several doubles side by side against those of the C library in long double, at
-// the narrowest level; tests/rolling/test_lanes.py has all levels give the same bits.
+// The functions of numerics/lanes.hpp against the C library in long double, at the narrowest level.
+// tests/rolling/test_lanes.py shows that all levels give the same bits.
 
 #include "numerics/lanes.hpp"
 
@@ -12,8 +12,8 @@ namespace {
 
 int failures = 0;
 
-// The largest error of a function at places from low to high in equal ratios, in units in the last
-// place of the answer.
+// Checks the largest error of a function, in ulp of the exact value, at places from low to high in
+// equal ratios.
 template <class Function, class Exact>
 void within(double ulps, const char* what, double low, double high, const Function& function,
             const Exact& exact) {
@@ -30,7 +30,7 @@ void within(double ulps, const char* what, double low, double high, const Functi
             const double size = std::abs(static_cast<double>(expected));
             const double ulp = std::nextafter(size, INFINITY) - size;
             const double off = static_cast<double>(std::abs(found[lane] - expected)) / ulp;
-            if (!(off <= worst)) worst = off;  // also if it is no number
+            if (!(off <= worst)) worst = off;  // also for NaN
         }
     }
     const bool holds = worst <= ulps;
@@ -40,8 +40,8 @@ void within(double ulps, const char* what, double low, double high, const Functi
 
 }  // namespace
 
-// Half an ulp is the last rounding; each step before it, a quotient or a sum of two terms of one
-// size, adds as much again: three of them, four in sinh, five in asinh.
+// Bounds: the last rounding is half an ulp, and each step before it, a quotient or a sum of two
+// terms of one size, adds half an ulp: up to three steps, four in sinh, five in asinh.
 int main() {
     within(
         2.5, "sinh", 1e-300, 20.0, [](Pack v) { return hyperbolic(v).sinh; },

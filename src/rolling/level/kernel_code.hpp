@@ -11,8 +11,12 @@ namespace {
 
 void rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
            const double* offsets, int count, PhaseRates<double>& found) {
+    // Local copies, which the compiler need not load again after a store into `found`.
+    const PhaseRate<double> constants = rate;
+    const PhaseMap<double> coordinate = map;
     for (int i = 0; i < count; i += lanes) {
-        const PhaseIncrement<Pack> at = phase_rate_at(rate, map, quarters, load(offsets + i));
+        const PhaseIncrement<Pack> at =
+            phase_rate_at(constants, coordinate, quarters, load(offsets + i));
         store(at.time, found.time + i);
         store(at.angle, found.angle + i);
         store(at.path, found.path + i);

@@ -63,6 +63,7 @@ class TableMaker {
     }
 
   private:
+    // Places from the flat position to the end of the quarter.
     void place(double spacing) {
         constexpr double wider = 1.5;  // from 45 degrees of the phase on
         // At this distance beyond 45 degrees, a body on the separatrix is on the tip within
@@ -143,6 +144,7 @@ class TableMaker {
             path(i - 1) = path(i) - places_[i].path;
     }
 
+    // The series about t = 0, with the largest radius of some tries.
     void add_start() {
         const FlatView& at_start = flow_.from.view;
         table_.reader.start_time = time_since_flat(flow_, flow_.start_phase);
@@ -168,6 +170,7 @@ class TableMaker {
         table_.reader.start_radius = first == same.end() ? 0.0 : unit_ * first->radius;
     }
 
+    // The numbers of the reader.
     void describe() {
         FlowReader& reader = table_.reader;
         const std::vector<FlowPiece>& pieces = table_.pieces;
@@ -214,8 +217,8 @@ std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // A table costs as much as ten single times; but where a few places are looked at again and
-    // again, now some of them and now others (roots), their bits should not change.
+    // A table costs as much as ten single times. Below 40 times there is none, so that a search for
+    // a root, which asks for a few times again and again, always gets the same bits.
     constexpr std::size_t few = 40;
     if (expected >= few) table_ = flow_table(flow);
 }

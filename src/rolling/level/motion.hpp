@@ -112,28 +112,18 @@ inline T heading_of(const PhaseMotion<T>& motion) {
     return motion.phase.rate.rotates ? motion.direction : libration;
 }
 
-// A time split into whole turns (or swings) and the remainder.
-template <class T>
-struct Reduced {
-    T time;
-    T turns;
-};
-template <class T>
-inline Reduced<T> reduced(const TwoParts<T>& turn, T t) {
-    const T turns = nearest<T>(t / turn.high);
-    const TwoParts<T> whole = two_product(turns, turn.high);
-    const T rest = ((t - whole.high) - whole.low) - turns * turn.low;
-    return {turns != 0 ? rest : t, turns};
-}
-
 // The state at a time; x is the path since the start.
 template <class T>
 MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& from, T t) {
     const PhaseTime<T>& phase = motion.phase;
     const auto rotates = phase.rate.rotates;
     const T factor = rotates ? filled<T>(1.0) : filled<T>(2.0);
+    // The time without whole turns, or swings.
     const TwoParts<T> turn = {factor * phase.half_turn.high, factor * phase.half_turn.low};
-    const auto [time, turns] = reduced<T>(turn, t);
+    const T turns = nearest<T>(t / turn.high);
+    const TwoParts<T> in_turns = two_product(turns, turn.high);
+    const T rest = ((t - in_turns.high) - in_turns.low) - turns * turn.low;
+    const T time = turns != 0 ? rest : t;
     const auto [to, gain] = move(phase, motion.start_place, time);
     const T heading = heading_of(motion);
     const MotionPoint<T> now =

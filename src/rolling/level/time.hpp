@@ -18,12 +18,6 @@
 namespace rolling_ellipse {
 namespace {
 
-template <class T>
-inline TwoParts<T> times(const TwoParts<T>& x, T y) {
-    const TwoParts<T> whole = two_product(x.high, y);
-    return quick_two_sum(whole.high, whole.low + x.low * y);
-}
-
 // Adds a term to a sum; `low` collects the roundings.
 template <class T>
 inline void add(TwoParts<T>& sum, T term) {
@@ -265,7 +259,8 @@ void integrate_quarter(PhaseTime<T>& phase) {
     f[-1] = f[1];
     f[most + 1] = f[most - 1];
     phase.quarter_path = path * map.step;
-    phase.quarter_turn = times<T>(sum, map.step);
+    const TwoParts<T> whole = two_product(sum.high, map.step);
+    phase.quarter_turn = quick_two_sum(whole.high, whole.low + sum.low * map.step);
     if (any(map.has_tail)) {
         const TwoParts<T> tail = two_product(map.quarter, beyond);
         const TwoParts<T> all = (phase.quarter_turn + tail.high) + tail.low;
