@@ -20,15 +20,15 @@ HEADER = """\
 
 namespace rolling_ellipse {{
 
-// One half of a symmetric rule: nodes x >= 0, ascending; the rule takes +x and -x with the same
-// weight, and a node 0 once.
+// Nodes x >= 0 of a symmetric rule, ascending, and their weights. The rule takes +x and -x with the
+// same weight, and a node 0 once.
 struct GaussRule {{
     int size;
-    const double* nodes;
-    const double* weights;
+    double nodes[{half}];
+    double weights[{half}];
 }};
 
-namespace gauss_tables {{
+inline constexpr GaussRule gauss_rules[] = {{
 """
 
 
@@ -62,21 +62,16 @@ def literal(value: mpf) -> str:
     return repr(float(value))
 
 
-def array(name: str, values: list[mpf]) -> str:
-    return f"inline constexpr double {name}[] = {{{', '.join(map(literal, values))}}};"
+def braced(values: tuple[mpf, ...]) -> str:
+    return f"{{{', '.join(map(literal, values))}}}"
 
 
 def main() -> None:
     mp.dps = DIGITS + 10
-    print(HEADER.format(digits=DIGITS), end="")
+    print(HEADER.format(digits=DIGITS, half=max(SIZES) // 2), end="")
     for n in SIZES:
-        rule = half_rule(n)
-        print(array(f"nodes_{n}", [x for x, _ in rule]))
-        print(array(f"weights_{n}", [w for _, w in rule]))
-    print("}  // namespace gauss_tables\n")
-    print("inline constexpr GaussRule gauss_rules[] = {")
-    for n in SIZES:
-        print(f"    {{{n}, gauss_tables::nodes_{n}, gauss_tables::weights_{n}}},")
+        nodes, weights = zip(*half_rule(n), strict=True)
+        print(f"    {{{n}, {braced(nodes)}, {braced(weights)}}},")
     print("};\n\n}  // namespace rolling_ellipse")
 
 

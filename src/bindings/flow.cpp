@@ -20,15 +20,15 @@ RollingStart validated_start(const Body& body, double theta, double omega) {
     return rolling_start(body, theta, omega);
 }
 
-RollingMotion validated_motion(const Body& body, double theta, double omega) {
-    return rolling_motion(validated_start(body, theta, omega));
+RollingFlow validated_flow(const Body& body, double theta, double omega) {
+    return rolling_flow(validated_start(body, theta, omega));
 }
 
 py::tuple flow_scalar(double t, double a, double b, double theta, double omega, double gravity,
                       std::optional<double> gyration2) {
-    const RollingMotion motion = validated_motion(body(a, b, gyration2, gravity), theta, omega);
-    validate_time(t, longest_time(motion));
-    const FlowSample now = sample(motion, t);
+    const RollingFlow flow = validated_flow(body(a, b, gyration2, gravity), theta, omega);
+    validate_time(t, longest_time(flow));
+    const FlowSample now = sample(flow, t);
     return py::make_tuple(now.theta, now.omega, now.x);
 }
 
@@ -37,8 +37,7 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
                      std::optional<double> gyration2, int workers) {
     const py::ssize_t n = t.size();
     require_length("t", t, n);
-    const RollingFlow flow =
-        rolling_flow(validated_start(body(a, b, gyration2, gravity), theta, omega));
+    const RollingFlow flow = validated_flow(body(a, b, gyration2, gravity), theta, omega);
     const FlowSampler sampler(flow, n);
     const double longest = longest_time(flow);
     const double most = std::min(longest, std::numeric_limits<double>::max());
@@ -55,13 +54,12 @@ py::tuple flow_times(const Array& t, double a, double b, double theta, double om
     return out.tuple();
 }
 
-LaneLevel level_called(const std::string& wanted) {
-    const std::vector<LaneLevel> levels = lane_levels();
-    if (wanted == "best") return levels.back();
+const Kernel& kernel_called(const std::string& wanted) {
+    if (wanted == "best") return kernel();
     std::string names;
-    for (const LaneLevel level : levels) {
-        if (name(level) == wanted) return level;
-        names += ", '" + name(level) + "'";
+    for (const Kernel& each : kernels()) {
+        if (each.name == wanted) return each;
+        names += ", '" + std::string(each.name) + "'";
     }
     throw std::invalid_argument("level must be one of 'best'" + names + ", got '" + wanted + "'");
 }
@@ -71,10 +69,10 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
                      const std::string& level) {
     const Arguments<7> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
     // Lanes do not pay for one scene.
-    const LaneLevel lanes = level_called(n == 1 && level == "best" ? "one by one" : level);
+    const Kernel& lanes = kernel_called(n == 1 && level == "best" ? "one by one" : level);
     FlowArrays out(n);
     const FlowColumns found = out.columns();
-    const auto sample_all = [&](LaneLevel by, py::ssize_t begin, py::ssize_t end) {
+    const auto sample_all = [&](const Kernel& by, py::ssize_t begin, py::ssize_t end) {
         std::array<RollingStart, scenes_at_once> starts;
         std::array<double, scenes_at_once> times;
         std::array<FlowSample, scenes_at_once> samples;
@@ -94,7 +92,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
             } catch (const std::invalid_argument&) {
                 // Lanes validate times last. One by one, the first wrong scene is named.
                 for (py::ssize_t i = begin; i < end; ++i) {
-                    of.naming(i, [&] { sample_all(LaneLevel::one_by_one, i, i + 1); });
+                    of.naming(i, [&] { sample_all(kernels().front(), i, i + 1); });
                 }
             }
         }
@@ -104,7 +102,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
 
 std::vector<std::string> flow_levels() {
     std::vector<std::string> names;
-    for (const LaneLevel level : lane_levels()) names.push_back(name(level));
+    for (const Kernel& each : kernels()) names.push_back(each.name);
     return names;
 }
 

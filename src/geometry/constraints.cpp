@@ -5,22 +5,16 @@
 namespace rolling_ellipse {
 namespace {
 
-// The lowest point of an ellipse with its centre at height z, seen from the centre, by its implicit
-// equation d^T M d = 1 in ground axes, physics (11): no support function, so that each road checks
-// the other.
-struct LowestPoint {
-    double height;  // over the ground [m]
-    double depth;   // under the centre [m]
-};
-
-LowestPoint lowest_point(const Axes& axes, double theta, double z) {
+// Depth of the lowest point of an ellipse under its centre [m], by the implicit equation d^T M d =
+// 1 in ground axes, physics (11): without the support function, so that each method checks the
+// other.
+double lowest_depth(const Axes& axes, double theta) {
     const double along_a = std::sin(theta) / axes.b;
     const double along_b = std::cos(theta) / axes.a;
     // M = R^T diag(1/a^2, 1/b^2) R has det M = 1/(a b)^2; on the line at depth y the form is least
     // at y^2 det M/M_xx, which is 1 where the line is tangent.
     const double m_xx = along_a * along_a + along_b * along_b;
-    const double depth = axes.a * axes.b * std::sqrt(m_xx);
-    return {z - depth, depth};
+    return axes.a * axes.b * std::sqrt(m_xx);
 }
 
 }  // namespace
@@ -72,10 +66,10 @@ ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Co
     ConstraintResiduals result;
     result.position = position_residuals(axes, q);
     result.velocity = constraint_matrix(axes, q) * q_dot;
-    const LowestPoint lowest = lowest_point(axes, q[coordinate::theta], q[coordinate::z]);
-    result.gap = lowest.height;
+    const double depth = lowest_depth(axes, q[coordinate::theta]);
+    result.gap = q[coordinate::z] - depth;
     // v + omega x d for the clockwise omega, x_dot + omega d_z: physics (12).
-    result.slip = q_dot[coordinate::x] - q_dot[coordinate::theta] * lowest.depth;
+    result.slip = q_dot[coordinate::x] - q_dot[coordinate::theta] * depth;
     return result;
 }
 

@@ -4,8 +4,8 @@
 //     f2 = z - r cos(psi - theta)
 //     f3 = r - a b/sqrt(b^2 sin^2 psi + a^2 cos^2 psi)
 //     f4 = psi - theta - atan2((a^2 - b^2) sin theta cos theta, b^2 cos^2 theta + a^2 sin^2 theta)
-// f1 is the report's eq 10 put right: the material point at the contact, not the geometric one, has
-// no velocity. f4 is its eq 5 on the branch that is continuous over all theta.
+// f1 is the report's eq 10, corrected: the material point at the contact, not the geometric one,
+// has no velocity. f4 is the report's eq 5 on the branch that is continuous over all theta.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,14 +26,14 @@ namespace coordinate {
 enum : int { x, z, theta, psi, r };
 }
 
-// Rows: the coefficients of q_dot in f1 and in the rates of f2, f3, f4: physics (14).
+// The matrix A of the constraints A q_dot = 0. Its rows are the coefficients of q_dot in f1 and in
+// the rates of f2, f3, f4: physics (14).
 ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q);
 
-// What the second derivatives of the constraints have beside matrix * q_ddot, physics (15): the
-// rate of the matrix times q_dot.
+// A_dot q_dot, the velocity term of the second derivatives of the constraints: physics (15).
 Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const Coordinates& q_dot);
 
-// f2 [m], f3 [m], f4 [rad].
+// The residuals f2 [m], f3 [m], f4 [rad].
 Eigen::Vector3d position_residuals(const Axes& axes, const Coordinates& q);
 
 struct ConstraintResiduals {

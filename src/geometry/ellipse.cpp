@@ -12,9 +12,9 @@ struct CarlsonPair {
     double rd;
 };
 
-// Duplication, then the series in the symmetric functions of the deviations.
-// B. C. Carlson, Numer. Algorithms 10 (1995) 13; DLMF 19.36(i). Both series end at order 7: the
-// error is about (largest deviation)^8 / 100, below 1e-18 once that is < 1e-2.
+// R_F and R_D by duplication, then by series in the symmetric functions of the deviations. B. C.
+// Carlson, Numer. Algorithms 10 (1995) 13; DLMF 19.36(i). Both series end at order 7: the error is
+// about (largest deviation)^8 / 100, below 1e-18 once that is < 1e-2.
 CarlsonPair carlson(double x, double y, double z) {
     constexpr double series_radius = 1e-2;
     double rd_sum = 0.0;
@@ -23,7 +23,7 @@ CarlsonPair carlson(double x, double y, double z) {
         const double mean = (x + y + 3 * z) / 5;
         const double spread =
             std::max({std::abs(mean - x), std::abs(mean - y), std::abs(mean - z)});
-        if (!(spread >= series_radius * mean)) break;  // also for an angle that is no number
+        if (!(spread >= series_radius * mean)) break;  // also for NaN
         const double rx = std::sqrt(x);
         const double ry = std::sqrt(y);
         const double rz = std::sqrt(z);
@@ -67,8 +67,8 @@ CarlsonPair carlson(double x, double y, double z) {
     return result;
 }
 
-// The arc between the contact at the tip and that at an offset, physics (10): DLMF 19.25.10 without
-// its last term, which is the lead -h' of the centre.
+// The arc from the contact at the tip to the contact at an offset, physics (10): DLMF 19.25.10
+// without its last term, the lead -h' of the centre.
 double arc_from_tip(double long_axis, double short_axis, double s, double c) {
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
     const double h = root_of_squares(long_axis * c, short_axis * s);
@@ -77,8 +77,8 @@ double arc_from_tip(double long_axis, double short_axis, double s, double c) {
     return short_axis * short_axis * s * (rf + c2 * s * s / 3 * rd);
 }
 
-// Way of the centre, or of the contact along the ellipse (h' more), from theta = 0 over an offset
-// with sine and cosine >= 0: physics (9). No form is a difference of terms.
+// Path of the centre, and of the contact along the ellipse (h' more), from theta = 0 over an offset
+// with sine and cosine >= 0: physics (9). The digits of a small path are kept.
 struct QuarterPath {
     double centre;
     double contact;
@@ -93,7 +93,7 @@ QuarterPath quarter_path(const Axes& axes, double s, double c) {
     return {contact - geometry(axes, s, c).dh, contact};
 }
 
-// centre_path for an angle of any size: whole quarter turns and what is over.
+// The paths for an angle of any size: whole half turns and a remainder.
 QuarterPath unwrapped_path(const Axes& axes, double theta) {
     if (axes.a == axes.b) return {axes.a * theta, axes.a * theta};
     const double s = std::sin(theta);
@@ -140,7 +140,7 @@ FlatView flat_view(const Axes& axes, double sin, double cos) {
 bool is_equilibrium(const Geometry& at, double incline) {
     const bool is_circle = at.dh == 0 && at.ddh == 0;
     if (is_circle) return incline == 0;
-    // A nearly round body has a small h' everywhere: there the angle counts, h'/h''.
+    // A nearly round body has a small h' everywhere. Its angle h'/h'' from equilibrium counts.
     const double size = std::min(at.h, std::abs(at.ddh) + std::abs(incline) * at.h);
     return std::abs(at.dh - incline * at.h) <= equal_ulps * epsilon * size;
 }

@@ -15,7 +15,7 @@ struct Axes {
     double b;
 };
 
-// Everything local that follows from the angle.
+// The local geometry at an angle.
 struct Geometry {
     double sin;
     double cos;
@@ -46,8 +46,8 @@ inline Geometry geometry(const Axes& axes, double theta) {
     return geometry(axes, std::sin(theta), std::cos(theta));
 }
 
-// A position as seen from the flat one, long axis first: phi is theta for a >= b, otherwise
-// theta - pi/2, and folded by half turns (under which the ellipse is the same) to cos phi >= 0.
+// A position by its angle phi from the flat one: phi is theta for a >= b, otherwise theta - pi/2.
+// Half turns, after which the ellipse is the same, fold it to cos phi >= 0.
 struct FlatView {
     double long_axis;
     double short_axis;
@@ -59,8 +59,8 @@ struct FlatView {
 FlatView flat_view(const Axes& axes, double theta);
 FlatView flat_view(const Axes& axes, double sin, double cos);
 
-// How much lower the centre at a height h is than over the tip, and how much higher than over the
-// flat: as products, since differences of the heights would have lost their digits.
+// The heights L - h and h - S of the centre under its place over the tip and over its place over
+// the flat [m]. They are products, since differences of heights would lose digits.
 inline double under_tip(const FlatView& at, double h) {
     return at.c2 * square(at.cos) / (at.long_axis + h);
 }
@@ -68,21 +68,21 @@ inline double over_flat(const FlatView& at, double h) {
     return at.c2 * square(at.sin) / (at.short_axis + h);
 }
 
-// Is the contact right below the centre, to within 8 ulp of the height and of the angle? On a slope
-// the vertical meets the ground h tan(slope) = h incline downhill of the foot of h.
+// Whether the contact is right below the centre, to within 8 ulp of the height and of the angle. On
+// a slope the vertical meets the ground h tan(slope) = h incline downhill of the foot of h.
 bool is_equilibrium(const Geometry& at, double incline = 0.0);
 
-// psi - theta = atan2(h', h): the angle from the vertical to the contact, between -pi/2 and pi/2.
+// The angle psi - theta = atan2(h', h) from the vertical to the contact, between -pi/2 and pi/2.
 double contact_angle_offset(const Geometry& at);
 
-// psi of the report's eq 5, continuous over all theta.
+// The angle psi of the report's eq 5, continuous over all theta.
 double contact_angle(const Axes& axes, double theta);
 
-// d psi/d theta and d^2 psi/d theta^2.
+// The derivatives d psi/d theta and d^2 psi/d theta^2.
 double contact_angle_rate(const Axes& axes, const Geometry& at);
 double contact_angle_second(const Axes& axes, const Geometry& at);
 
-// Distance from the centre to the contact, r^2 = h^2 + h'^2.
+// Distance r of the contact from the centre [m], r^2 = h^2 + h'^2.
 double contact_distance(const Axes& axes, const Geometry& at);
 
 // Radius of the ellipse in the body direction psi (report eq 6, physics (7)), and its derivatives.
@@ -90,14 +90,14 @@ double polar_radius(const Axes& axes, double psi);
 double polar_radius_derivative(const Axes& axes, double psi);
 double polar_radius_second(const Axes& axes, double psi);
 
-// The integral of h from 0 to theta, physics (9): the path of the centre in rolling; unwrapped.
+// The path of the centre in rolling from 0 to theta [m], the integral of h: physics (9).
 double centre_path(const Axes& axes, double theta);
 
-// centre_path + h' = arc length along the ellipse from the contact at 0 to that at theta.
+// Arc length along the ellipse from the contact at 0 to the contact at theta [m]: centre_path + h'.
 double arc_length(const Axes& axes, double theta);
 
-// The integral of h over an offset, of sine s >= 0 and cosine c >= 0, from the position in which
-// the long (flat) or the short axis (tip) is parallel to the ground.
+// The path of the centre over an offset with sine s >= 0 and cosine c >= 0, from the flat position
+// (long axis parallel to the ground) or from the tip (short axis parallel to the ground).
 double path_from_flat(double long_axis, double short_axis, double s, double c);
 double path_from_tip(double long_axis, double short_axis, double s, double c);
 

@@ -1,4 +1,4 @@
-// Polynomials on one interval: signs that are proved, roots that are all found.
+// Polynomials on one interval: proved signs, and all roots.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace rolling_ellipse {
 
-// Bernstein coefficients on [0, 1]: their least and largest bound the polynomial.
+// A polynomial by its Bernstein coefficients on [0, 1]. The least and the largest of them bound it.
 template <int Degree>
 struct Bernstein {
     std::array<Tracked, Degree + 1> coefficients{};
@@ -20,7 +20,8 @@ struct Bernstein {
 
 namespace detail {
 
-// binomial(i, j)/binomial(degree, j), physics (37)
+// The matrix binomial(i, j)/binomial(degree, j) from powers to Bernstein coefficients, physics
+// (37).
 template <int Degree>
 constexpr auto bernstein_matrix() {
     std::array<std::array<double, Degree + 1>, Degree + 1> rows{};
@@ -55,7 +56,7 @@ Bernstein<N> bernstein(const Polynomial<N>& p) {
     return result;
 }
 
-// The value at 0 < x < 1: Horner's scheme in the smaller of x/(1 - x) and its inverse.
+// The value at 0 < x < 1, by Horner's scheme in x/(1 - x) or its inverse, whichever is smaller.
 template <int N>
 double value(const Bernstein<N>& p, double x) {
     static constexpr auto binomial = detail::binomials<N>();
@@ -71,7 +72,7 @@ double value(const Bernstein<N>& p, double x) {
     return sum * power;
 }
 
-// p on [0, at] and on [at, 1]: de Casteljau's subdivision.
+// A polynomial on [0, at] and on [at, 1], by de Casteljau's subdivision.
 template <int N>
 struct Parts {
     Bernstein<N> left;
@@ -94,30 +95,13 @@ Parts<N> divided(const Bernstein<N>& p, double at = 0.5) {
 
 namespace detail {
 
-// Bisections after which an interval of [0, 1] counts as a point.
+// Number of bisections after which an interval of [0, 1] counts as a point.
 constexpr int deepest = 48;
 
 template <int N>
 bool all(const Bernstein<N>& p, Sign wanted) {
     return std::all_of(p.coefficients.begin(), p.coefficients.end(),
                        [wanted](Tracked c) { return sign(c) == wanted; });
-}
-
-template <int N>
-Sign sign_below(const Bernstein<N>& p, int depth) {
-    if (sign(p.coefficients.front()) == Sign::negative) return Sign::negative;
-    if (sign(p.coefficients.back()) == Sign::negative) return Sign::negative;
-    if (all(p, Sign::positive)) return Sign::positive;
-    if (depth == deepest || all(p, Sign::undecided)) return Sign::undecided;
-    const Parts<N> parts = divided(p);
-    const Sign left = sign_below(parts.left, depth + 1);
-    if (left != Sign::positive) {
-        // Undecided here does not hide a proof of the contrary there.
-        return left == Sign::negative || sign_below(parts.right, depth + 1) != Sign::negative
-                   ? left
-                   : Sign::negative;
-    }
-    return sign_below(parts.right, depth + 1);
 }
 
 template <int N>
@@ -132,21 +116,14 @@ int sign_changes(const Bernstein<N>& p) {
     return changes;
 }
 
-// The one sign change of p in (0, 1).
+// The root of a p that changes its sign once in (0, 1).
 template <int N>
 double single_root(const Bernstein<N>& p) {
-    RootBracket bracket(0.0, 1.0, p.coefficients.front().value, p.coefficients.back().value);
-    for (int i = 0; i < 100; ++i) {
-        const auto [low, high] = bracket.ends();
-        if (!(high - low > epsilon * high)) break;
-        double x = i % 4 == 3 ? 0.5 * (low + high) : bracket.secant();
-        if (!(x > low && x < high)) x = 0.5 * (low + high);
-        if (x == low || x == high) break;
-        const double f = value(p, x);
-        if (f == 0.0) return x;
-        bracket.take(x, f);
-    }
-    return 0.5 * (bracket.ends().low + bracket.ends().high);
+    const auto [low, high] = bisect_root(0.0, 1.0, [&](double x) {
+        if (x == 0) return p.coefficients.front().value;
+        return x == 1 ? p.coefficients.back().value : value(p, x);
+    });
+    return 0.5 * (low + high);
 }
 
 template <int N>
@@ -172,14 +149,28 @@ void collect_roots(const Bernstein<N>& p, double start, double width, int depth,
 
 }  // namespace detail
 
-// positive: everywhere on [0, 1]; negative: somewhere, provably; undecided: rounding cannot tell.
+// The sign on [0, 1]: positive everywhere, negative somewhere (both proved), or undecided by
+// rounding.
 template <int N>
-Sign sign_on_unit_interval(const Bernstein<N>& p) {
-    return detail::sign_below(p, 0);
+Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
+    if (sign(p.coefficients.front()) == Sign::negative) return Sign::negative;
+    if (sign(p.coefficients.back()) == Sign::negative) return Sign::negative;
+    if (detail::all(p, Sign::positive)) return Sign::positive;
+    if (depth == detail::deepest || detail::all(p, Sign::undecided)) return Sign::undecided;
+    const Parts<N> parts = divided(p);
+    const Sign left = sign_on_unit_interval(parts.left, depth + 1);
+    if (left != Sign::positive) {
+        // An undecided left half does not hide a negative right half.
+        return left == Sign::negative ||
+                       sign_on_unit_interval(parts.right, depth + 1) != Sign::negative
+                   ? left
+                   : Sign::negative;
+    }
+    return sign_on_unit_interval(parts.right, depth + 1);
 }
 
-// The first place in [0, 1] from which on p is negative, provably. What rounding cannot tell from
-// zero is not negative; where only that comes before, it is so at once.
+// The first place in [0, 1] from which on p is provably negative. A value within rounding of zero
+// does not count as negative. The place is 0 if only such values come before negative ones.
 template <int N>
 std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
     int changes = 0;
@@ -203,7 +194,7 @@ std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
     return right ? std::optional(0.5 + 0.5 * *right) : std::nullopt;
 }
 
-// All places in [0, 1] where p changes sign or may touch zero, ascending.
+// All places in [0, 1] where p changes its sign or may touch zero, ascending.
 template <int N>
 std::vector<double> roots_on_unit_interval(const Bernstein<N>& p) {
     std::vector<double> roots;

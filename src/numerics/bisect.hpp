@@ -1,4 +1,4 @@
-// Bisection to the last bit, and what comes to the same more quickly.
+// Bisection to the last bit, a faster search for a change of sign, and golden sections.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 
 namespace rolling_ellipse {
 
-// Two neighbouring doubles, of which only the upper one is "high".
+// Two neighbouring doubles; a predicate is false at `low` and true at `high`.
 struct Bracket {
     double low;
     double high;
 };
 
-// Between a number that is not high and one that is; low < high.
+// Bisection between low < high, where the predicate is false at `low` and true at `high`.
 template <class Predicate>
 Bracket bisect(double low, double high, const Predicate& is_high) {
     for (;;) {
@@ -25,24 +25,24 @@ Bracket bisect(double low, double high, const Predicate& is_high) {
     }
 }
 
-// The same for the sign of a function, by the secants of the Illinois method (M. Dowell, P.
-// Jarratt, BIT 11 (1971) 168). A place next to an end of the bracket is moved a few doubles on: so
-// the other end comes near, too. The function is evaluated by whoever holds the bracket:
+// A change of sign of a function between two numbers, by the secants of the Illinois method (M.
+// Dowell, P. Jarratt, BIT 11 (1971) 168). A secant that hits next to an end of the bracket is moved
+// a few doubles inwards, so that the other end comes near, too. The caller evaluates the function:
 //     while (const auto x = bracket.next()) bracket.take(*x, f(*x));
 class RootBracket {
   public:
     RootBracket(double low, double high, double f_low, double f_high)
         : ends_{low, high}, f_low_(f_low), f_high_(f_high), rises_(f_high > 0) {}
 
-    // The next place to evaluate at; none where the ends are neighbours.
+    // The next place to evaluate; none if the ends are neighbours.
     std::optional<double> next() {
         constexpr int most_secants = 40;
         const auto [low, high] = ends_;
         const double few = 4 * epsilon * std::max(std::abs(low), std::abs(high));
         if (secants_ < most_secants && high - low > 2 * few) {
-            const double secant = RootBracket::secant();
-            const bool halve = secants_++ % 4 == 3 || !(secant >= low && secant <= high);
-            return std::clamp(halve ? 0.5 * (low + high) : secant, low + few, high - few);
+            const double place = secant();
+            const bool halve = secants_++ % 4 == 3 || !(place >= low && place <= high);
+            return std::clamp(halve ? 0.5 * (low + high) : place, low + few, high - few);
         }
         secants_ = most_secants;
         const double middle = low + 0.5 * (high - low);
@@ -63,19 +63,19 @@ class RootBracket {
         }
     }
 
+    Bracket ends() const { return ends_; }
+
+  private:
     double secant() const {
         return (ends_.low * f_high_ - ends_.high * f_low_) / (f_high_ - f_low_);
     }
 
-    Bracket ends() const { return ends_; }
-
-  private:
     Bracket ends_;
     double f_low_;
     double f_high_;
     bool rises_;
     int secants_ = 0;
-    int kept_ = 0;  // the end that was taken last: +1 the upper one, -1 the lower one
+    int kept_ = 0;  // the end that was moved last: +1 the upper one, -1 the lower one
 };
 
 template <class Function>
@@ -83,6 +83,25 @@ Bracket bisect_root(double low, double high, const Function& f) {
     RootBracket bracket(low, high, f(low), f(high));
     while (const auto x = bracket.next()) bracket.take(*x, f(*x));
     return bracket.ends();
+}
+
+// The place of a single extremum in an interval by golden sections, to 1e-8 of the interval:
+// closer, the function is flat. The comparison takes two places, the lower one first; it is true if
+// the extremum is below the upper one.
+template <class Comparison>
+double golden_section(double low, double high, const Comparison& is_below_upper) {
+    constexpr double golden = 0.6180339887498949;
+    constexpr int sections = 40;
+    for (int i = 0; i < sections; ++i) {
+        const double left = high - golden * (high - low);
+        const double right = low + golden * (high - low);
+        if (is_below_upper(left, right)) {
+            high = right;
+        } else {
+            low = left;
+        }
+    }
+    return 0.5 * (low + high);
 }
 
 }  // namespace rolling_ellipse

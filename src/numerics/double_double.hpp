@@ -1,6 +1,5 @@
-// Sums of two doubles: 106 bits for the few numbers that need them (periods, phases, multiples of
-// pi). Algorithms: T. J. Dekker, Numer. Math. 18 (1971) 224; J. R. Shewchuk, Discrete Comput. Geom.
-// 18 (1997) 305.
+// Sums of two doubles with 106 bits, for periods, phases and multiples of pi. Algorithms: T. J.
+// Dekker, Numer. Math. 18 (1971) 224; J. R. Shewchuk, Discrete Comput. Geom. 18 (1997) 305.
 #pragma once
 
 #include <cmath>
@@ -9,7 +8,8 @@
 
 namespace rolling_ellipse {
 
-// high + low, |low| <= ulp(high)/2; of a double, or of lanes of them (numerics/lanes.hpp).
+// The sum high + low with |low| <= ulp(high)/2; T is a double or several lanes
+// (numerics/lanes.hpp).
 template <class T>
 struct TwoParts {
     T high{};
@@ -19,14 +19,16 @@ struct TwoParts {
 };
 using DoubleDouble = TwoParts<double>;
 
-inline DoubleDouble quick_two_sum(double large, double small) {
-    const double sum = large + small;
+template <class T>
+inline TwoParts<T> quick_two_sum(T large, T small) {
+    const T sum = large + small;
     return {sum, small - (sum - large)};
 }
 
-inline DoubleDouble two_sum(double x, double y) {
-    const double sum = x + y;
-    const double y_part = sum - x;
+template <class T>
+inline TwoParts<T> two_sum(T x, T y) {
+    const T sum = x + y;
+    const T y_part = sum - x;
     return {sum, (x - (sum - y_part)) + (y - y_part)};
 }
 
@@ -35,21 +37,22 @@ inline DoubleDouble two_product(double x, double y) {
     return {product, std::fma(x, y, -product)};
 }
 
-inline DoubleDouble operator-(DoubleDouble x) { return {-x.high, -x.low}; }
+inline DoubleDouble operator-(const DoubleDouble& x) { return {-x.high, -x.low}; }
 
-inline DoubleDouble operator+(DoubleDouble x, double y) {
-    const DoubleDouble sum = two_sum(x.high, y);
+template <class T>
+inline TwoParts<T> operator+(const TwoParts<T>& x, T y) {
+    const TwoParts<T> sum = two_sum(x.high, y);
     return quick_two_sum(sum.high, sum.low + x.low);
 }
 
-inline DoubleDouble operator+(DoubleDouble x, DoubleDouble y) {
+inline DoubleDouble operator+(const DoubleDouble& x, const DoubleDouble& y) {
     const DoubleDouble sum = two_sum(x.high, y.high);
     return quick_two_sum(sum.high, sum.low + (x.low + y.low));
 }
 
-inline DoubleDouble operator-(DoubleDouble x, DoubleDouble y) { return x + (-y); }
+inline DoubleDouble operator-(const DoubleDouble& x, const DoubleDouble& y) { return x + (-y); }
 
-inline DoubleDouble operator*(DoubleDouble x, double y) {
+inline DoubleDouble operator*(const DoubleDouble& x, double y) {
     const DoubleDouble product = two_product(x.high, y);
     return quick_two_sum(product.high, std::fma(x.low, y, product.low));
 }

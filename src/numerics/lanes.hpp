@@ -1,13 +1,13 @@
-// Several doubles side by side, and functions of them and of one double, which give the same bits:
-// templates over a number T, which is a double or a Pack. For files that are compiled once for
-// every vector level, see rolling/level/lanes_avx2.cpp: everything here is in an anonymous
-// namespace, so that no function of a wide level can come to run on a machine without it.
+// Several doubles side by side, a Pack, and functions that give the same bits for a double and for
+// a Pack: templates over the number T. Files that include this are compiled once for every vector
+// level, as rolling/level/lanes_avx2.cpp. All names are in an anonymous namespace, so that no
+// function of a wide level can be linked into code for machines without it.
 //
-// The same operations in the same order at every level: a fused multiply-add serves two_product
-// alone, which is exact without it as well.
+// Operations and their order are the same at every level. Only two_product uses a fused
+// multiply-add; its result is exact with and without.
 #pragma once
 
-#include <cmath>
+#include <type_traits>
 
 #include "numerics/double_double.hpp"
 
@@ -33,20 +33,11 @@ using PackBits = unsigned long long __attribute__((vector_size(lanes * sizeof(do
 using PackPair = TwoParts<Pack>;
 
 template <class T>
-struct BitsOf {
-    using Type = PackBits;
-};
-template <>
-struct BitsOf<double> {
-    using Type = unsigned long long;
-};
-template <class T>
-using Bits = typename BitsOf<T>::Type;
-template <class T>
-using Mask = decltype(T{} < T{});
+using Bits = std::conditional_t<std::is_same_v<T, double>, unsigned long long, PackBits>;
 
-template <class T>
-inline T filled(double value) {
+// A number in all lanes; a Pack stays as it is.
+template <class T, class Number>
+inline T filled(Number value) {
     return value - T{};
 }
 
@@ -74,7 +65,7 @@ inline T number(Bits<T> of) {
     return found;
 }
 
-// One lane of a number, of which a double has one.
+// Access to one lane of a number; a double has one lane.
 template <class T>
 inline constexpr int lanes_of = sizeof(T) / sizeof(double);
 inline double lane_of(double x, int) { return x; }
@@ -108,11 +99,13 @@ inline double largest(T x) {
     return found;
 }
 
-// Every lane from the element of the array that it names.
-inline double element(const double* from, double index) { return from[static_cast<int>(index)]; }
-inline Pack element(const Pack* from, Pack index) {
-    Pack found;
-    for (int i = 0; i < lanes; ++i) found[i] = from[static_cast<int>(index[i])][i];
+// For every lane, its value in the element of the array with the index in that lane.
+template <class T>
+inline T element(const T* from, T index) {
+    T found{};
+    for (int i = 0; i < lanes_of<T>; ++i) {
+        set_lane(found, i, lane_of(from[static_cast<int>(lane_of(index, i))], i));
+    }
     return found;
 }
 
@@ -150,13 +143,10 @@ inline T min(T x, T y) {
     return x < y ? x : y;
 }
 
-// 1.5 2^52, whose last bit is 1: a sum with it is rounded to whole numbers.
-constexpr double rounder = 6755399441055744.0;
-
-// The nearest whole number, for |x| < 2^51, and the next one from x on, downwards and upwards.
+// The nearest whole number, for |x| < 2^51, and the next whole number below and above.
 template <class T>
 inline T nearest(T x) {
-    return (x + rounder) - rounder;
+    return (x + to_integer) - to_integer;
 }
 template <class T>
 inline T rounded_down(T x) {
@@ -178,14 +168,22 @@ inline Mask<T> is_odd(T n) {
 // 2^n for a whole number |n| <= 1022.
 template <class T>
 inline T power_of_two(T n) {
-    return number<T>((bits<T>(n + rounder) << 52) + (1023ULL << 52));
+    return number<T>((bits<T>(n + to_integer) << 52) + (1023ULL << 52));
+}
+
+// A polynomial by Horner's scheme; the coefficients are in the order of falling powers.
+template <class T, class... Doubles>
+inline T horner(T x, double highest, Doubles... lower) {
+    T sum = filled<T>(highest);
+    ((sum = sum * x + lower), ...);
+    return sum;
 }
 
 constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // ln 2 to 42 bits: multiples of it are exact
 constexpr double ln2_low = 0x1.ef35793c76730p-45;
 
-// sinh v and e^-v, 0 <= v < 700: from sinh r and cosh r, v = n ln 2 + r, by the addition theorems,
-// so that a small sinh keeps its digits.
+// sinh v and e^-v for 0 <= v < 700, by the addition theorems from sinh r and cosh r with
+// v = n ln 2 + r, so that a small sinh keeps its digits.
 template <class T>
 struct Hyperbolic {
     T sinh;
@@ -198,8 +196,8 @@ inline Hyperbolic<T> hyperbolic(T v) {
     const T r = (v - n * ln2_high) - n * ln2_low;
     const T x = r * r;
     const T x2 = x * x;
-    // Taylor series: |r| <= 0.35, the first terms left out are below 5e-18. Pairs of terms do not
-    // wait for each other.
+    // Taylor series: |r| <= 0.35, the first terms left out are below 5e-18. Pairs of terms are
+    // independent of each other, which shortens the chain of operations.
     const T odd = r * x *
                   (((x * (1.0 / 120) + 1.0 / 6) + x2 * (x * (1.0 / 362880) + 1.0 / 5040)) +
                    (x2 * x2) * (x * (1.0 / 6227020800) + 1.0 / 39916800));
@@ -213,8 +211,8 @@ inline Hyperbolic<T> hyperbolic(T v) {
     return {sinh_n + (sinh_n * even + cosh_n * sinh_r), 2 * down * (1 + (even - sinh_r))};
 }
 
-// The natural logarithm of a normal positive number: of a power of two and of m between sqrt(1/2)
-// and sqrt(2), by the series of 2 artanh((m - 1)/(m + 1)).
+// The natural logarithm of a normal positive number 2^n m, m between sqrt(1/2) and sqrt(2), by the
+// series of 2 artanh((m - 1)/(m + 1)).
 template <class T>
 inline T log(T x) {
     constexpr unsigned long long root_half = 0x3fe6a09e667f3bcdULL;
@@ -224,20 +222,13 @@ inline T log(T x) {
     const T n = number<T>(exponent | 0x4330000000000000ULL) - (4503599627370496.0 + 1023);
     const T f = (m - 1) / (m + 1);
     const T s = f * f;
-    T sum = s * (1.0 / 23) + 1.0 / 21;
-    sum = sum * s + 1.0 / 19;
-    sum = sum * s + 1.0 / 17;
-    sum = sum * s + 1.0 / 15;
-    sum = sum * s + 1.0 / 13;
-    sum = sum * s + 1.0 / 11;
-    sum = sum * s + 1.0 / 9;
-    sum = sum * s + 1.0 / 7;
-    sum = sum * s + 1.0 / 5;
-    sum = sum * s + 1.0 / 3;
+    const T sum = horner(s, 1.0 / 23, 1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13, 1.0 / 11,
+                         1.0 / 9, 1.0 / 7, 1.0 / 5, 1.0 / 3);
     return n * ln2_high + (2 * f + (2 * f * s * sum + n * ln2_low));
 }
 
-// The inverse of sinh, for 0 <= x < 1e150: e^asinh(x) = 1 + gain, whose rounding is made good.
+// The inverse of sinh for 0 <= x < 1e150: e^asinh(x) = 1 + gain; the rounding of this sum is
+// corrected.
 template <class T>
 inline T asinh(T x) {
     const T gain = x + x * x / (1 + sqrt(1 + x * x));
@@ -245,26 +236,19 @@ inline T asinh(T x) {
     return log(one_more) + (gain - (one_more - 1)) / one_more;
 }
 
-// The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos: of the tangent, or of
-// that of its distance from 45 degrees; a polynomial of least error (2e-19) for 22.5 degrees.
+// The angle of the point (cos, sin) in the first octant, 0 <= sin <= cos. A polynomial of least
+// error (2e-19) serves up to 22.5 degrees; above, it takes the distance from 45 degrees.
 template <class T>
 inline T octant_angle(T sin, T cos) {
     const auto upper = sin > 0.41421356237309503 * cos;
     const T y = (upper ? sin - cos : sin) / (upper ? sin + cos : cos);
     const T z = y * y;
-    T sum = z * 0.016285756855221028 - 0.034570561981427744;
-    sum = sum * z + 0.04551593220626549;
-    sum = sum * z - 0.05230454270650244;
-    sum = sum * z + 0.05878928997834775;
-    sum = sum * z - 0.06666424885738255;
-    sum = sum * z + 0.07692296375032143;
-    sum = sum * z - 0.09090908753500877;
-    sum = sum * z + 0.11111111105155447;
-    sum = sum * z - 0.14285714285659828;
-    sum = sum * z + 0.19999999999999804;
-    sum = sum * z - 0.3333333333333333;
+    const T sum = horner(z, 0.016285756855221028, -0.034570561981427744, 0.04551593220626549,
+                         -0.05230454270650244, 0.05878928997834775, -0.06666424885738255,
+                         0.07692296375032143, -0.09090908753500877, 0.11111111105155447,
+                         -0.14285714285659828, 0.19999999999999804, -0.3333333333333333);
     const T over = y * (z * sum);
-    return upper ? 0.78539816339744830962 + (y + (over + 3.06161699786838301793e-17)) : y + over;
+    return upper ? 0.5 * half_pi_exact.high + (y + (over + 0.5 * half_pi_exact.low)) : y + over;
 }
 
 // The angle of the point (cos, sin), between -pi and pi.
@@ -278,25 +262,10 @@ inline T angle_of(T sin, T cos) {
     return copysign(angle, sin);
 }
 
-// The operations of numerics/double_double.hpp for a Pack.
-
-using rolling_ellipse::quick_two_sum;
 using rolling_ellipse::two_product;
-using rolling_ellipse::two_sum;
-
-inline PackPair quick_two_sum(Pack large, Pack small) {
-    const Pack sum = large + small;
-    return {sum, small - (sum - large)};
-}
-
-inline PackPair two_sum(Pack x, Pack y) {
-    const Pack sum = x + y;
-    const Pack y_part = sum - x;
-    return {sum, (x - (sum - y_part)) + (y - y_part)};
-}
 
 #if !defined(__FMA__)
-// A number as a sum of two of 26 bits.
+// A number as a sum of two numbers of 26 bits.
 inline PackPair halves(Pack x) {
     const Pack shifted = 134217729.0 * x;  // 2^27 + 1
     const Pack high = shifted - (shifted - x);
@@ -316,11 +285,6 @@ inline PackPair two_product(Pack x, Pack y) {
     return {product,
             ((p.high * q.high - product) + p.high * q.low + p.low * q.high) + p.low * q.low};
 #endif
-}
-
-inline PackPair operator+(PackPair x, Pack y) {
-    const PackPair sum = two_sum(x.high, y);
-    return quick_two_sum(sum.high, sum.low + x.low);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Power series that solve an arc, a few to each: their cost grows with the order little faster than
-// their reach, and each has its price besides.
+// Power series of high order, which solve an arc in a few pieces. Their cost grows little faster
+// with the order than their radius, and each piece has a fixed cost besides.
 #pragma once
 
 #include <algorithm>
@@ -7,41 +7,45 @@
 #include <cmath>
 
 #include "numerics/numbers.hpp"
-#include "numerics/pair.hpp"
 #include "numerics/series.hpp"
 
 namespace rolling_ellipse {
 
+// Two doubles in one register, where the processor has such; the bits are those of single doubles.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+
+inline Pair pair(double first, double second) { return Pair{first, second}; }
+
 inline constexpr int long_order = 24;
 using LongSeries = std::array<double, long_order + 1>;
 
-// Two series, of which two products at a time are made.
+// Two series whose products are computed at the same time.
 using TwoSeries = std::array<Pair, long_order + 1>;
 
-// The terms of the coefficient k of a product for which all is known before the coefficients k.
+// The terms 1 .. k-1 of the coefficient k of a product: they need no coefficient k of a factor.
 template <class Coefficients>
 inline auto inner(const Coefficients& p, const Coefficients& q, int k) {
     return terms(p, q, k, 1, k - 1);
 }
 
-// The terms 0 and k, of which the one is the other for k = 0.
+// The terms p_0 q_k + p_k q_0 of the coefficient k of a product; p_0 q_0 for k = 0.
 template <class Coefficients>
 inline auto outer(const Coefficients& p, const Coefficients& q, int k) {
     return k == 0 ? p[0] * q[0] : p[0] * q[k] + p[k] * q[0];
 }
 
-// 1/(k + 1), what the coefficient k of a rate is to be multiplied with.
+// The factors 1/(k + 1) that integrate the coefficient k of a rate.
 inline constexpr auto over_next = [] {
     std::array<double, long_order + 1> found{};
     for (int k = 0; k <= long_order; ++k) found[k] = 1.0 / (k + 1);
     return found;
 }();
 
-// The distance from its centre at which the last terms of a series are a twentieth of an ulp beside
-// its own size; the terms left out are smaller by another fifth. Half an ulp would be too much,
-// since it may have the same sign in one step after another. Four terms are looked at, as symmetry
-// may hide three; each as it would be at the end of a series that falls by a fifth from term to
-// term. Found as a fixed point, of which each step divides the error of the logarithm by eight.
+// The radius at which the last terms of a series are a twentieth of an ulp of its size; the terms
+// left out are smaller by another fifth. Half an ulp would be too much, since it may have the same
+// sign in one step after another. Four terms count, as symmetry may hide three, each scaled to the
+// end of a series that falls by a fifth from term to term. Each step of the fixed-point iteration
+// divides the error of the logarithm by eight.
 inline double reach(const LongSeries& series) {
     constexpr double rest = 1e-17;
     constexpr double fall = 0.2;

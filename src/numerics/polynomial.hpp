@@ -1,12 +1,48 @@
-// Polynomials of small degree, the degree known to the compiler: no loop is longer than it has to
-// be. Every coefficient carries the sum of the magnitudes of the terms it was made from.
+// Polynomials of a small degree fixed at compile time. Every coefficient carries a bound of its
+// rounding.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
-#include "numerics/tracked.hpp"
+#include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
+
+// A number, and the sum of the magnitudes of the terms from which it was computed.
+struct Tracked {
+    double value = 0.0;
+    double magnitude = 0.0;
+};
+
+inline Tracked tracked(double value) { return {value, std::abs(value)}; }
+
+inline Tracked operator+(Tracked x, Tracked y) {
+    return {x.value + y.value, x.magnitude + y.magnitude};
+}
+
+inline Tracked operator-(Tracked x, Tracked y) {
+    return {x.value - y.value, x.magnitude + y.magnitude};
+}
+
+inline Tracked operator*(Tracked x, Tracked y) {
+    return {x.value * y.value, x.magnitude * y.magnitude};
+}
+
+enum class Sign { positive, negative, undecided };
+
+// Bound of the rounding error of a number: coefficients of degree 10 pass some 60 additions and
+// products with errors of half an ulp each, and their parameters are rounded, too.
+inline double margin(Tracked number) {
+    constexpr double rounding_units = 64;
+    return rounding_units * epsilon * number.magnitude;
+}
+
+inline Sign sign(Tracked number) {
+    if (number.value > margin(number)) return Sign::positive;
+    return number.value < -margin(number) ? Sign::negative : Sign::undecided;
+}
 
 // Coefficients of 1, x, x^2, ...
 template <int Degree>

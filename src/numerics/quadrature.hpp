@@ -1,7 +1,6 @@
-// Gauss-Legendre quadrature with the number of nodes that the nearest singularities ask for.
+// Gauss-Legendre quadrature. The nearest singularities fix the number of nodes.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
@@ -11,7 +10,7 @@
 
 namespace rolling_ellipse {
 
-// The smallest tabled rule with at least n nodes; the largest one where n exceeds the table.
+// The smallest tabled rule with at least n nodes; the largest rule if n exceeds the table.
 inline const GaussRule& gauss_rule(int n) {
     for (const GaussRule& rule : gauss_rules) {
         if (rule.size >= n) return rule;
@@ -19,7 +18,7 @@ inline const GaussRule& gauss_rule(int n) {
     return gauss_rules[std::size(gauss_rules) - 1];
 }
 
-// The nodes of a rule, ascending, on -1 .. 1.
+// A node of a rule on -1 .. 1.
 struct Node {
     double place;
     double weight;
@@ -31,10 +30,10 @@ inline Node node_of(const GaussRule& rule, int i) {
     return {left ? -rule.nodes[from_middle] : rule.nodes[from_middle], rule.weights[from_middle]};
 }
 
-// Nodes for full double precision where the integrand is singular at the points place +- i height,
-// both mapped to the interval -1 .. 1: the error falls like rho^(-2n), rho the sum of the semi-axes
-// of the smallest ellipse with foci +-1 through a singularity (Trefethen, SIAM Rev. 50 (2008) 67,
-// theorem 4.5).
+// Number of nodes for full double precision if the integrand is singular at the points
+// place +- i height, in the coordinate that maps the interval to -1 .. 1. The error falls like
+// rho^(-2n), rho the sum of the semi-axes of the smallest ellipse with foci +-1 through a
+// singularity (Trefethen, SIAM Rev. 50 (2008) 67, theorem 4.5).
 inline int nodes_needed(double height, std::initializer_list<double> places) {
     constexpr double log_accuracy = 38.0;  // -ln(3e-17)
     double axis = infinity;
@@ -47,45 +46,16 @@ inline int nodes_needed(double height, std::initializer_list<double> places) {
     return 1 + static_cast<int>(std::ceil(log_accuracy / (2 * std::log(rho))));
 }
 
-// The longest intervals over which the rules of the table have full double precision, each so many
-// times as long as twice the distance that its complex neighbourhood is free of singularities. The
-// error falls like rho^(-2n), rho the sum of the semi-axes of the ellipse with the ends as foci and
-// that distance as its height (L. N. Trefethen, SIAM Rev. 50 (2008) 67, theorem 4.5):
-// rho = exp(asinh(1/length)).
-inline constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
-    constexpr double log_accuracy = 38.0;  // -ln(3e-17)
-    std::array<double, std::size(gauss_rules)> found{};
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        const double x = log_accuracy / (2 * gauss_rules[i].size);
-        double sinh = x;
-        double term = x;
-        for (int k = 2; k < 60; k += 2) sinh += term *= x * x / (k * (k + 1));
-        found[i] = 1 / sinh;
-    }
-    return found;
-}();
-
-// The smallest rule with full double precision over an interval of such a length; the largest where
-// the interval is longer.
-inline const GaussRule& rule_for_length(double length) {
-    std::size_t i = 0;
-    while (i + 1 < longest_lengths.size() && longest_lengths[i] < length) ++i;
-    return gauss_rules[i];
-}
-
-// The integral of f from v0 to v1, as a double-double: the sum itself adds no rounding.
+// The integral of f from v0 to v1 as a double-double: the summation adds no rounding.
 template <class Function>
 DoubleDouble integrate(const GaussRule& rule, double v0, double v1, const Function& f) {
     const double middle = 0.5 * (v0 + v1);
     const double half = 0.5 * (v1 - v0);
     DoubleDouble sum{};
-    const int half_size = (rule.size + 1) / 2;
-    for (int i = 0; i < half_size; ++i) {
+    for (int i = 0; i < (rule.size + 1) / 2; ++i) {
         const double offset = half * rule.nodes[i];
-        const double pair = offset == 0.0 && rule.nodes[i] == 0.0
-                                ? f(middle)
-                                : f(middle - offset) + f(middle + offset);
-        sum = sum + two_product(rule.weights[i], pair);
+        const double weight = rule.nodes[i] == 0 ? 0.5 * rule.weights[i] : rule.weights[i];
+        sum = sum + two_product(weight, f(middle - offset) + f(middle + offset));
     }
     return sum * half;
 }

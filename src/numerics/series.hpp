@@ -1,5 +1,5 @@
-// Power series in one variable, cut at an order, and the rules for their coefficients (A. Jorba,
-// M. Zou, Experiment. Math. 14 (2005) 99), of numbers or of lanes of them.
+// Truncated power series in one variable and the rules for their coefficients (A. Jorba, M. Zou,
+// Experiment. Math. 14 (2005) 99), for doubles or several lanes.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace rolling_ellipse {
 inline constexpr int series_order = 16;
 using Series = std::array<double, series_order + 1>;
 
-// The terms first .. last of the coefficient k of a product; two sums need not wait for each other.
+// The terms first .. last of the coefficient k of a product, as two independent sums.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto terms(const Coefficients& p, const Coefficients& q, int k,
                                          int first, int last) {
@@ -33,14 +33,14 @@ template <class Coefficients>
     return terms(p, q, k, 0, k);
 }
 
-// The coefficient k of a square, without the first `from` terms and as many of the last.
+// The coefficient k of a square, without the first `from` and the last `from` terms.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto self_product(const Coefficients& p, int k, int from = 0) {
     const auto pairs = 2 * terms(p, p, k, from, (k + 1) / 2 - 1);
     return k % 2 == 0 && k / 2 >= from ? pairs + p[k / 2] * p[k / 2] : pairs;
 }
 
-// Two sums do not wait for each other, which halves the wait.
+// The value at z. Two independent sums halve the time of the chain of operations.
 template <std::size_t Size>
 double value(const std::array<double, Size>& series, double z) {
     static_assert(Size % 2 == 1 && Size > 2);

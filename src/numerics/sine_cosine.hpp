@@ -1,4 +1,5 @@
-// Sine and cosine for inner loops: no calls, no branches, the same bits with every C library.
+// Sine and cosine for inner loops, without calls and branches; the bits are the same with every C
+// library.
 #pragma once
 
 #include <cmath>
@@ -9,10 +10,11 @@
 
 namespace rolling_ellipse {
 
+// Largest angle [rad] that nearest_quarter takes.
 inline constexpr double largest_in_quarters = 1e5;
 
-// An angle up to that less the nearest multiple of pi/2, to the last bit, and whether that is an
-// odd one. W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980, chapter 8.
+// An angle less the nearest multiple of pi/2, to the last bit, and whether the multiple is odd.
+// W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980, chapter 8.
 struct QuarterAngle {
     double rest;
     bool odd;
@@ -37,8 +39,8 @@ struct SineCosine {
     double cosine;
 };
 
-// For |angle| <= pi/4, where what is left out of the series is 5e-17 of the sine and 2e-18 of the
-// cosine. Terms are paired so that they do not wait for each other.
+// Sine and cosine for |angle| <= pi/4. The terms left out of the series are 5e-17 of the sine and
+// 2e-18 of the cosine. Pairs of terms are independent of each other.
 inline SineCosine sine_cosine_of_rest(double angle) {
     const double z = angle * angle;
     const double z2 = z * z;

@@ -12,11 +12,11 @@
 namespace rolling_ellipse {
 namespace {
 
-// Dense outputs have degrees up to 7; other quantities are met in shorter parts.
+// Dense outputs have degrees up to 7; other quantities need shorter intervals.
 constexpr int degree = 8;
 
-// Chebyshev's nodes on [0, 1], to four digits, and a place between them at which their polynomial
-// is compared with the quantity.
+// Chebyshev's nodes on [0, 1], to four digits. At one more place between them, `compared`, the
+// polynomial is compared with the quantity.
 constexpr std::array<double, degree + 2> places = {0.0076, 0.067, 0.1786, 0.329, 0.41,
                                                    0.5,    0.671, 0.8214, 0.933, 0.9924};
 constexpr int compared = 4;
@@ -54,12 +54,12 @@ struct Part {
     int depth = 0;
 };
 
-// Adds the turning points in some parts; false where the polynomials do not meet the quantity.
+// Adds the turning points in some intervals; false if a polynomial misses the quantity.
 bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
                std::vector<double>& times) {
     constexpr double roundings = 1000;  // the inverse of the basis has a norm of 300
     constexpr int deepest = 16;
-    std::size_t halvings = 64 * parts.size();  // all that there may be: no help for noise
+    std::size_t halvings = 64 * parts.size();  // a limit, since halving does not help against noise
     bool all_met = true;
     while (!parts.empty()) {
         std::vector<double> at;

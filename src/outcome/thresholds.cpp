@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numerics/golden_section.hpp"
+#include "numerics/bisect.hpp"
 #include "proof/forces.hpp"
 
 namespace rolling_ellipse {

@@ -220,7 +220,7 @@ EndOfRolling end_of_rolling(const RollingStart& from, double friction) {
 
 double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
     if (!end.angle) return infinity;
-    if (*end.angle == flow.theta) return 0.0;
+    if (*end.angle == flow.from.theta) return 0.0;
     // On a tip, with less than the smallest speed that there is in its units.
     if (flow.kind == MotionKind::rest) return infinity;
     return time_of_passing(flow, *end.angle, end.heading);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "numerics/bisect.hpp"
-#include "numerics/golden_section.hpp"
 #include "numerics/quadrature.hpp"
 #include "proof/law.hpp"
 #include "rolling/stepped/equation.hpp"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "numerics/bisect.hpp"
-#include "numerics/golden_section.hpp"
 #include "proof/law.hpp"
 
 namespace rolling_ellipse {

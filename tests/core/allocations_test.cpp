@@ -147,18 +147,18 @@ void bodies_allocate_nothing() {
         times.push_back(2.0);
     }
     std::vector<FlowSample> samples(times.size());
-    for (const LaneLevel level : lane_levels()) {
+    for (const Kernel& kernel : kernels()) {
         const auto take = [&](std::size_t count) {
             return allocations(
-                [&] { sample(level, starts.data(), times.data(), count, samples.data()); });
+                [&] { sample(kernel, starts.data(), times.data(), count, samples.data()); });
         };
         const long once = take(n);
         const long both = take(2 * n);
-        check(once == both, name(level).c_str(), once, both);
+        check(once == both, kernel.name, once, both);
     }
     for (std::size_t i = 0; i < 2 * n; ++i) {
         const long one =
-            allocations([&] { samples[i] = sample(rolling_motion(starts[i]), times[i]); });
+            allocations([&] { samples[i] = sample(rolling_flow(starts[i]), times[i]); });
         const long judged = allocations([&] { classify(starts[i].body, 0.6, 0.1, 1.0); });
         check(one == 0, "one state", 0, one);
         check(judged == 0, "one outcome", 0, judged);

@@ -195,14 +195,9 @@ void of_equal_forces_the_first_is_reported() {
     CHECK(watch.holds_until == infinity);
 }
 
-std::vector<Kernel> kernels_of_this_machine() {
-    std::vector<Kernel> found;
-    for (const LaneLevel level : lane_levels()) found.push_back(kernel(level));
-    return found;
-}
-
-bool same_bits(const PlaceBatch& one, const PlaceBatch& other) {
-    return std::memcmp(&one, &other, sizeof(PlaceBatch)) == 0;
+template <class Each>
+bool same_bits(const std::vector<Each>& one, const std::vector<Each>& other) {
+    return std::memcmp(one.data(), other.data(), one.size() * sizeof(Each)) == 0;
 }
 
 // Places, series and times of one motion by the kernel of each level.
@@ -210,33 +205,38 @@ void every_vector_level_has_the_same_bits() {
     const Body body{2.0, 1.0, 1.25, 9.81};
     for (const double omega : {1.0, 3.2}) {  // libration and rotation
         const RollingFlow flow = rolling_flow(rolling_start(body, 0.2, omega));
-        const FlowTable table = flow_table(flow);
+        const FlowTable table = flow_table(flow).value();
         const PhaseRate<double>& rate = flow.phase.rate;
         const PhaseMap<double>& map = flow.phase.map;
         std::vector<double> times;
         for (int i = 0; i < 4003; ++i)
             times.push_back(std::sin(7.0 * i) * (i % 3 == 0 ? 1e9 : 5.0));
-        PlaceBatch first_places{};
+        constexpr int count = 11;
+        std::vector<TablePlace> first_places;
+        std::vector<FlowPiece> first_pieces;
         std::vector<double> first;
-        for (const Kernel& kernel : kernels_of_this_machine()) {
-            PlaceBatch places{};
-            for (int i = 0; i < batch_size; ++i) {
-                places.y[i] = 0.12 * i + 0.11;
-                places.from[i] = 0.12 * i;
-                places.radius[i] = 0.1;
+        for (const Kernel& kernel : kernels()) {
+            std::vector<TablePlace> places(count);
+            std::vector<FlowPiece> pieces(count);
+            for (int i = 0; i < count; ++i) {
+                places[i].y = 0.12 * i + 0.11;
+                places[i].radius = 0.1;
             }
-            kernel.states(rate, map, flow.amplitude, places);
-            kernel.series({0.25, 0.75, 1.0, rate.d0 / 16, rate.d1 / 16}, 0.5, places);
+            kernel.states(rate, map, flow.amplitude, places.data(), count);
+            kernel.series({0.25, 0.75, 1.0, rate.d0 / 16, rate.d1 / 16}, 0.5, 2.0, places.data(),
+                          count, pieces.data());
             std::vector<double> read(3 * times.size());
             double* const theta = read.data();
             const FlowColumns out{theta, theta + times.size(), theta + 2 * times.size()};
-            CHECK(!kernel.read(reader(table), times.data(), times.size(), out));
+            CHECK(!kernel.read(table.reader, times.data(), times.size(), out));
             if (first.empty()) {
                 first_places = places;
+                first_pieces = pieces;
                 first = read;
             }
-            CHECK(places.omega[0] > 0 && places.series[2][2][3] != 0);
+            CHECK(places[0].omega > 0 && pieces[count - 1].series.rows[2][2] != 0);
             CHECK(same_bits(places, first_places));
+            CHECK(same_bits(pieces, first_pieces));
             CHECK(read == first);
         }
     }

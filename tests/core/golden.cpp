@@ -320,7 +320,7 @@ void print_bodies() {
         times.push_back((draw() - 0.5) * (i % 5 == 0 ? 1e4 : 20.0));
     }
     std::vector<FlowSample> side_by_side(count);
-    sample(lane_levels().back(), starts.data(), times.data(), count, side_by_side.data());
+    sample(kernel(), starts.data(), times.data(), count, side_by_side.data());
     for (int i = 0; i < count; ++i) {
         const auto& [body, theta, omega, view, height, rests] = starts[i];
         print("body", {times[i], body.a, body.b, theta, omega, body.gravity, body.gyration2});

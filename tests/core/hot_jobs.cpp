@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "motions.hpp"
-#include "numerics/lane_levels.hpp"
 #include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
@@ -20,7 +19,7 @@ void require(bool holds) {
 
 void one_state() {
     const RollingStart start = rolling_start(ellipse(0.1, 3.2).body(), 0.1, 3.2);
-    require(sample(rolling_motion(start), 5.0).theta > 0.1);
+    require(sample(rolling_flow(start), 5.0).theta > 0.1);
 }
 
 void thousand_samples() {
@@ -70,6 +69,6 @@ int main(int count, char** words) {
     if (which < 0 || which >= static_cast<int>(std::size(jobs))) return 2;
     jobs[which]();  // makes the static tables
     counted(jobs[which]);
-    std::puts(name(lane_levels().back()).c_str());
+    std::puts(kernel().name);
     return 0;
 }

@@ -1,4 +1,4 @@
-// Functions of packed doubles against the C library in long double, at the narrowest level.
+// The functions of numerics/lanes.hpp against the C library in long double, at the narrowest level.
 // tests/rolling/test_lanes.py shows that all levels give the same bits.
 
 #include "numerics/lanes.hpp"
@@ -12,7 +12,8 @@ namespace {
 
 int failures = 0;
 
-// Checks the largest error [ulp] of a function at places from low to high in equal ratios.
+// Checks the largest error of a function, in ulp of the exact value, at places from low to high in
+// equal ratios.
 template <class Function, class Exact>
 void within(double ulps, const char* what, double low, double high, const Function& function,
             const Exact& exact) {
@@ -29,7 +30,7 @@ void within(double ulps, const char* what, double low, double high, const Functi
             const double size = std::abs(static_cast<double>(expected));
             const double ulp = std::nextafter(size, INFINITY) - size;
             const double off = static_cast<double>(std::abs(found[lane] - expected)) / ulp;
-            if (!(off <= worst)) worst = off;  // also if it is no number
+            if (!(off <= worst)) worst = off;  // also for NaN
         }
     }
     const bool holds = worst <= ulps;
@@ -39,8 +40,8 @@ void within(double ulps, const char* what, double low, double high, const Functi
 
 }  // namespace
 
-// Bounds: half an ulp for the last rounding, and half an ulp for each quotient, or sum of two terms
-// of one size, before it: three of them, four in sinh, five in asinh.
+// Bounds: the last rounding is half an ulp, and each step before it, a quotient or a sum of two
+// terms of one size, adds half an ulp: up to three steps, four in sinh, five in asinh.
 int main() {
     within(
         2.5, "sinh", 1e-300, 20.0, [](Pack v) { return hyperbolic(v).sinh; },

@@ -81,7 +81,7 @@ Numbers bodies() {
         times.push_back(2.0);
     }
     std::vector<FlowSample> found(times.size());
-    sample(lane_levels().back(), starts.data(), times.data(), times.size(), found.data());
+    sample(kernel(), starts.data(), times.data(), times.size(), found.data());
     Numbers numbers;
     for (const FlowSample& each : found) numbers.push_back(each.theta + each.omega + each.x);
     return numbers;

@@ -312,7 +312,7 @@ void check_flow(const Scene& scene, Bytes& bytes) {
         const double blur = square(thin) * epsilon * (1 + std::abs(found.theta));
         if (whole < 1e90) CHECK(std::abs(energy_at(found) - whole) <= (1e-9 + 8 * blur) * whole);
     };
-    check_state(sample(static_cast<const RollingMotion&>(flow), t));
+    check_state(sample(flow, t));
     constexpr int count = 8;
     double times[count];
     for (int i = 0; i < count; ++i) times[i] = t * (i + 1) / count;
@@ -320,9 +320,9 @@ void check_flow(const Scene& scene, Bytes& bytes) {
     FlowSampler(flow, 1000)(times, count, samples);
     std::for_each(samples, samples + count, check_state);
     const std::vector<RollingStart> starts(count, start);
-    sample(lane_levels().back(), starts.data(), times, count, samples);
+    sample(kernel(), starts.data(), times, count, samples);
     for (int i = 0; i < count; ++i) {
-        const FlowSample alone = sample(static_cast<const RollingMotion&>(flow), times[i]);
+        const FlowSample alone = sample(flow, times[i]);
         CHECK(samples[i].theta == alone.theta && samples[i].omega == alone.omega);
     }
     CHECK(period(flow) > 0);

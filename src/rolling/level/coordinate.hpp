@@ -9,10 +9,10 @@
 namespace rolling_ellipse {
 namespace {
 
-// The hyperbolic sine of so much is infinite beside the phase; its square is not, as doubles go.
+// At this offset the tip is reached within rounding, and the square of sinh is still a double.
 constexpr double largest_offset = 300.0;
 
-// A and B as polynomials of c; the terms left out are below rounding for q <= 1/32.
+// Sets A and B as polynomials of c; the terms left out are below rounding for q <= 1/32.
 template <class T>
 void set_theta_functions(PhaseMap<T>& map, T q) {
     const T q2 = q * q;
@@ -31,16 +31,16 @@ void set_theta_functions(PhaseMap<T>& map, T q) {
     map.b[2] = 4 * q6;
 }
 
-// sc of x = sinh(y).
-template <class T>
-inline T sine_ratio(const PhaseMap<T>& map, T x) {
+// The ratio sc for x = sinh(y).
+template <class C, class T>
+inline T sine_ratio(const PhaseMap<C>& map, T x) {
     const T c = 1 + 2 * (x * x);
     const T a = map.a[0] + c * (map.a[1] + c * (map.a[2] + c * map.a[3]));
     const T b = map.b[0] + c * (map.b[1] + c * map.b[2]);
     return map.sine_scale * x * b / a;
 }
 
-// For kappa, and a g that is no larger than the given one.
+// Sets the map for kappa and a g of at most the given one.
 template <class T>
 void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     constexpr double steps_per_unit = 4.0;
@@ -51,7 +51,7 @@ void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     const T complement = min<T>(kappa * largest_grade, filled<T>(largest_complement));
     const T quarter = complement > 0 ? log<T>(4 / complement) : filled<T>(infinity);
     map.has_tail = complement < 2 * falling_in_tail * largest_grade;
-    T length = quarter;  // a nome a little below that of k' follows from whole steps of it
+    T length = quarter;  // whole steps of it give a nome a little below that of k'
     if (any(map.has_tail)) length = map.has_tail ? tail + log<T>(2 / largest_grade) : quarter;
     map.steps = rounded_up<T>(length * steps_per_unit);
     map.step = map.has_tail ? filled<T>(1 / steps_per_unit) : quarter / map.steps;
@@ -64,8 +64,9 @@ void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     map.tip_scale2 = kappa * kappa * sine_scale2;
 }
 
+// The place of a phase.
 template <class T>
-Place<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
+PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     constexpr double converged = 1e-8;
     constexpr int most_steps = 10;
     const T sin = abs(phase.sin);
@@ -92,12 +93,13 @@ Place<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     return {at_tip ? side : T{}, side * (at_tip ? -offset : offset)};
 }
 
-// With full relative accuracy of both, for a place that has the nearest quarter.
-template <class T>
-PhasePoint<T> phase_point(const PhaseMap<T>& map, const Place<T>& at) {
+// Sine and cosine of the phase, each to full relative accuracy; `at` must use the nearest quarter.
+template <class C, class T>
+PhasePoint<T> phase_point(const PhaseMap<C>& map, const PhasePlace<T>& at) {
     const auto at_tip = is_odd(at.quarters);
     const T sinh = hyperbolic(min<T>(abs(at.offset), filled<T>(largest_offset))).sinh;
-    const T tan = (at_tip ? map.kappa : map.grade) * sine_ratio(map, copysign(sinh, at.offset));
+    const T scale = at_tip ? filled<T>(map.kappa) : filled<T>(map.grade);
+    const T tan = scale * sine_ratio(map, copysign(sinh, at.offset));
     const T cos = 1 / sqrt(1 + tan * tan);
     const T sin = tan * cos;
     const T half_turns = rounded_down<T>(0.5 * at.quarters);
@@ -105,9 +107,9 @@ PhasePoint<T> phase_point(const PhaseMap<T>& map, const Place<T>& at) {
     return {sign * (at_tip ? cos : sin), sign * (at_tip ? -sin : cos)};
 }
 
-// The place so much further on, with the nearest quarter.
+// The place at a distance from another one, with the nearest quarter.
 template <class T>
-Place<T> moved(const PhaseMap<T>& map, const Place<T>& from, T distance) {
+PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distance) {
     const T offset = from.offset + distance;
     const auto is_beyond = abs(offset) > 0.5 * map.quarter;
     const T quarters = is_beyond ? nearest<T>(offset / map.quarter) : T{};

@@ -1,51 +1,48 @@
-// The inner loops of exact rolling: the same code for several vector levels (lanes_*.cpp), of which
-// the best one of the machine is taken, with the same bits at every level (see numerics/lanes.hpp).
+// The inner loops of exact rolling. The same code is compiled for several vector levels
+// (lanes_*.cpp) and gives the same bits at every level (numerics/lanes.hpp).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
-#include "numerics/lane_levels.hpp"
 #include "rolling/level/phase.hpp"
 #include "rolling/level/start.hpp"
 #include "rolling/level/table.hpp"
 
 namespace rolling_ellipse {
 
-// Bodies that roll, each at its own time: places in `starts` and `times`.
-struct BodiesAtTimes {
-    const RollingStart* starts;
-    const double* times;
-    const std::uint32_t* places;
-    int count;
-};
-
 struct Kernel {
-    // The rates of one motion at y = quarters Y + offset, |quarters| <= 1; there is room for a
-    // whole number of packs of offsets.
+    const char* name;  // of the vector level
+    // The rates of one motion at y = quarters Y + offset, |quarters| <= 1. The arrays have room for
+    // a whole number of packs.
     void (*rates)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
-                  const double* offsets, int count, PhaseWays<double>& found);
-    // The states of bodies, written to their places; and for every body of the list whether it is
-    // one of those that have to be taken alone.
-    void (*sample)(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone);
+                  const double* offsets, int count, PhaseRates<double>& found);
+    // The states of bodies, each at its own time: starts[p], times[p] and samples[p] for every p in
+    // `places`. A body stays open if it has to be sampled alone. Null in the kernel that takes
+    // bodies one by one.
+    void (*sample)(const RollingStart* starts, const double* times, const std::uint32_t* places,
+                   int count, FlowSample* samples, bool* is_open);
+    // The motion at the coordinate of each place.
     void (*states)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
-                   PlaceBatch& places);
-    void (*series)(const SeriesConstants& body, double unit, PlaceBatch& places);
-    // The first time that is not within most in size, NaN neither; n if there is none.
+                   TablePlace* places, int count);
+    // The series of the pieces about places, in units of time and length; the path starts at 0.
+    void (*series)(const SeriesConstants& body, double time_unit, double length_unit,
+                   TablePlace* places, int count, FlowPiece* pieces);
+    // Index of the first time that is NaN or larger than `most` in size; n if there is none.
     std::size_t (*first_beyond)(const double* times, std::size_t n, double most);
-    // The motion at many times; theta is NaN where no piece reaches. Returns whether one is.
+    // The motion at many times. Where no piece reaches, theta is NaN; returns whether one is.
     bool (*read)(const FlowReader& motion, const double* times, std::size_t n,
                  const FlowColumns& out);
 };
 
-Kernel kernel_baseline();
 Kernel kernel_avx2();
 Kernel kernel_avx512();
 
-// For a level that the machine has; the narrowest serves all below.
-Kernel kernel(LaneLevel level);
+// The kernels that this processor can run, the fastest last. The first one takes bodies one by one.
+const std::vector<Kernel>& kernels();
 
-// The best one of the machine.
+// The fastest kernel of this processor.
 const Kernel& kernel();
 
 }  // namespace rolling_ellipse

@@ -1,5 +1,5 @@
-// The code of a Kernel. It is compiled for each vector level in a source of its own, see
-// numerics/lanes.hpp: nothing of the library is called.
+// The functions of a Kernel. Each vector level compiles them in its own source, so they call no
+// function of the standard library (numerics/lanes.hpp).
 #pragma once
 
 #include "rolling/level/kernel.hpp"
@@ -10,52 +10,44 @@ namespace rolling_ellipse {
 namespace {
 
 void rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
-           const double* offsets, int count, PhaseWays<double>& found) {
-    const PhaseRate<Pack> of = spread(rate);
-    const PhaseMap<Pack> in = spread(map);
+           const double* offsets, int count, PhaseRates<double>& found) {
+    // Local copies, which the compiler need not load again after a store into `found`.
+    const PhaseRate<double> constants = rate;
+    const PhaseMap<double> coordinate = map;
     for (int i = 0; i < count; i += lanes) {
-        const PhaseWay<Pack> at = phase_rate_at(of, in, pack(quarters), load(offsets + i));
+        const PhaseIncrement<Pack> at =
+            phase_rate_at(constants, coordinate, quarters, load(offsets + i));
         store(at.time, found.time + i);
         store(at.angle, found.angle + i);
         store(at.path, found.path + i);
     }
 }
 
-// Times that are refused, and motions that take long about the tip, are left to the way of one.
-void sample(const BodiesAtTimes& bodies, FlowSample* samples, bool* alone) {
+// Bodies with times that are refused, or with motions that stay long at the tip, are left open.
+void sample(const RollingStart* starts, const double* times, const std::uint32_t* places, int count,
+            FlowSample* samples, bool* is_open) {
     PhaseMotion<Pack> motion;
-    for (int first = 0; first < bodies.count; first += lanes) {
+    for (int first = 0; first < count; first += lanes) {
         PhaseStart<Pack> start{};
         Pack t{};
-        for (int lane = 0; lane < lanes; ++lane) {  // the last one fills lanes that are left
-            const int at = first + lane < bodies.count ? first + lane : bodies.count - 1;
-            set_lane(start, lane, bodies.starts[bodies.places[at]]);
-            t[lane] = bodies.times[bodies.places[at]];
+        for (int lane = 0; lane < lanes; ++lane) {  // the last body fills the remaining lanes
+            const int at = first + lane < count ? first + lane : count - 1;
+            set_lane(start, lane, starts[places[at]]);
+            t[lane] = times[places[at]];
         }
         set_motion(motion, start);
         const Mask<Pack> is_late = abs(t) > 1e15 * motion.phase.half_turn.high;
         const Mask<Pack> left = is_late | motion.phase.map.has_tail;
         const MotionSample<Pack> now = sample_at(motion, start, left ? Pack{} : t);
-        for (int lane = 0; lane < lanes && first + lane < bodies.count; ++lane) {
-            samples[bodies.places[first + lane]] = {now.theta[lane], now.omega[lane], now.x[lane]};
-            alone[first + lane] = left[lane] != 0;
+        for (int lane = 0; lane < lanes && first + lane < count; ++lane) {
+            samples[places[first + lane]] = {now.theta[lane], now.omega[lane], now.x[lane]};
+            is_open[first + lane] = left[lane] != 0;
         }
     }
 }
 
-constexpr Kernel compiled = {rates,
-                             sample,
-                             [](const PhaseRate<double>& rate, const PhaseMap<double>& map,
-                                double amplitude, PlaceBatch& places) {
-                                 for (int i = 0; i < batch_size; i += lanes)
-                                     states(rate, map, amplitude, places, i);
-                             },
-                             [](const SeriesConstants& body, double unit, PlaceBatch& places) {
-                                 for (int i = 0; i < batch_size; i += lanes)
-                                     series(body, unit, places, i);
-                             },
-                             first_beyond,
-                             read};
+constexpr const char* level = lanes == 2 ? "sse2" : lanes == 4 ? "avx2" : "avx512";
+constexpr Kernel compiled = {level, rates, sample, states, series, first_beyond, read};
 
 }  // namespace
 }  // namespace rolling_ellipse

@@ -1,6 +1,7 @@
 #include "rolling/level/many_times.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -10,41 +11,63 @@
 namespace rolling_ellipse {
 namespace {
 
-// Motions have 10 to 60 pieces a quarter turn; on the separatrix there is no end of them.
+// A quarter turn has 10 to 60 pieces; near the separatrix their number has no bound.
 constexpr std::size_t most_pieces = 1000;
+
+// Angle and path since the flat position, each as quarter turns plus an offset from the nearest one
+// (|angle| <= pi/4): differences keep their digits near the flat and near the tip.
+struct QuarterPosition {
+    double quarters;
+    double angle;
+    double path;
+};
+
+QuarterPosition quarter_position(const FlatView& body, double sin, double cos) {
+    const double s = std::abs(sin);
+    if (s <= cos) {
+        const double path = path_from_flat(body.long_axis, body.short_axis, s, cos);
+        return {0.0, std::atan2(sin, cos), std::copysign(path, sin)};
+    }
+    const double path = path_from_tip(body.long_axis, body.short_axis, cos, s);
+    return {std::copysign(1.0, sin), -std::copysign(std::atan2(cos, s), sin),
+            -std::copysign(path, sin)};
+}
 
 class TableMaker {
   public:
     explicit TableMaker(const RollingFlow& flow) : flow_(flow), kernel_(kernel()) {
         const PhaseRate<double>& rate = flow.phase.rate;
         rotates_ = flow.kind == MotionKind::rotation;
-        length_ = flow.start.long_axis;
-        const double area = square(length_);
+        length_ = flow.from.view.long_axis;
         const double fastest =
             (rotates_ ? 1.0 : std::sqrt(rate.amplitude2)) / shape_factor<double>(rate, 0.0);
         unit_ = std::min(0.5 / fastest, 0.5 * double(flow.phase.quarter_turn));
-        body_ = {square(rate.short_axis / length_), rate.c2 / area,
-                 flow.gravity * square(unit_) / length_, rate.d0 / square(area),
-                 rate.d1 / square(area)};
+        body_ = series_constants(flow, unit_);
     }
 
-    FlowTable make() {
-        // In the coordinate y, in which all that is singular is half_pi away from the motion: what
-        // series of this order reach in nearly all motions.
+    // None where no series holds.
+    std::optional<FlowTable> make() {
+        // Spacings in the coordinate y, in which all singularities are pi/2 away from the motion.
+        // The first one suffices for series of this order in nearly all motions.
         for (const double spacing : {0.122, 0.1, 0.07, 0.05}) {
             place(spacing);
             if (places_.size() > most_pieces) break;
             if (!expand()) continue;
-            fill();
-            break;
+            add_times();
+            add_paths();
+            add_start();
+            describe();
+            return std::move(table_);
         }
-        return std::move(table_);
+        return std::nullopt;
     }
 
   private:
+    // Places from the flat position to the end of the quarter.
     void place(double spacing) {
         constexpr double wider = 1.5;  // from 45 degrees of the phase on
-        // So much further, a body on the separatrix is on the tip to rounding.
+        // At this distance beyond 45 degrees, a body on the separatrix is on the tip within
+        // rounding.
         constexpr double longest_rise = 38.0;
         const PhaseMap<double>& map = flow_.phase.map;
         const double middle = asinh(1 / map.grade);
@@ -52,85 +75,47 @@ class TableMaker {
         const int up = static_cast<int>(std::ceil(middle / spacing));
         const int down = static_cast<int>(std::ceil((end - middle) / (wider * spacing)));
         places_.clear();
-        for (int i = 0; i < up; ++i) places_.push_back(middle * i / up);
-        for (int i = 0; i < down; ++i) places_.push_back(middle + (end - middle) * i / down);
-        places_.push_back(end);
+        const auto add = [&](double y) { places_.emplace_back().y = y; };
+        for (int i = 0; i < up; ++i) add(middle * i / up);
+        for (int i = 0; i < down; ++i) add(middle + (end - middle) * i / down);
+        add(end);
     }
 
     std::size_t count() const { return places_.size(); }
 
-    double& at(PlaceBatch::Eight PlaceBatch::* column, std::size_t i) {
-        return (batches_[i / batch_size].*column)[i % batch_size];
-    }
+    // Half the time to the place before, or to the next one.
+    double half_way_back(std::size_t i) { return 0.5 * places_[i == 0 ? 1 : i].time; }
+    double half_way_on(std::size_t i) { return half_way_back(std::min(i + 1, count() - 1)); }
 
-    // Half the time to the place before, or to the one after.
-    double half_way_back(std::size_t i) { return 0.5 * at(&PlaceBatch::time, i == 0 ? 1 : i); }
-    double half_way_on(std::size_t i) {
-        return half_way_back(i + 1 < count() ? i + 1 : count() - 1);
-    }
-
-    // The states of all places, and their series: do these meet half way?
+    // The motion at all places, and the series about them; false if two series do not meet half
+    // way.
     bool expand() {
-        batches_.resize((count() + batch_size - 1) / batch_size);
-        const std::size_t all = batches_.size() * batch_size;
-        for (std::size_t i = 0; i < all; ++i) {
-            const std::size_t j = std::min(i, count() - 1);
-            at(&PlaceBatch::y, i) = places_[j];
-            at(&PlaceBatch::from, i) = places_[j == 0 ? 0 : j - 1];
-        }
-        for (PlaceBatch& places : batches_) {
-            kernel_.states(flow_.phase.rate, flow_.phase.map, flow_.amplitude, places);
-        }
-        for (std::size_t i = 0; i < all; ++i) {
-            const std::size_t j = std::min(i, count() - 1);
-            at(&PlaceBatch::radius, i) = std::max(half_way_back(j), half_way_on(j)) / unit_;
-        }
-        bool hold = true;
-        for (PlaceBatch& places : batches_) {
-            kernel_.series(body_, unit_, places);
-            for (const double holds : places.holds) hold = hold && holds > 0;
-        }
-        return hold;
-    }
-
-    void fill() {
-        std::vector<FlowPiece>& pieces = table_.pieces;
-        pieces.resize(count());
+        const int n = static_cast<int>(count());
+        kernel_.states(flow_.phase.rate, flow_.phase.map, flow_.amplitude, places_.data(), n);
         for (std::size_t i = 0; i < count(); ++i) {
-            pieces[i].quarters = at(&PlaceBatch::near_tip, i);
-            fill(pieces[i].series, batches_[i / batch_size], i % batch_size);
-            pieces[i].series.rows[0][0] = at(&PlaceBatch::angle, i);
+            places_[i].radius = std::max(half_way_back(i), half_way_on(i)) / unit_;
         }
-        add_times();
-        add_paths();
-        add_start();
-        describe();
+        table_.pieces.resize(count());
+        kernel_.series(body_, unit_, length_, places_.data(), n, table_.pieces.data());
+        return std::all_of(places_.begin(), places_.end(),
+                           [](const TablePlace& place) { return place.holds > 0; });
     }
 
-    // All but what the angle is counted from.
-    void fill(TableSeries& found, const PlaceBatch& from, std::size_t lane) const {
-        const double per_unit = 1 / unit_;
-        for (int k = 0; k < table_size; ++k) {
-            found.rows[k][0] = from.series[k][0][lane];
-            found.rows[k][1] = from.series[k][1][lane] * per_unit;
-            found.rows[k][2] = from.series[k][2][lane] * length_;
-        }
-    }
-
-    // From the end that is nearer: the flat position, or the tip or the turning point.
+    // The times of the pieces, counted from the nearer end of the quarter.
     void add_times() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const DoubleDouble quarter = flow_.phase.quarter_turn;
         DoubleDouble time{};
         for (std::size_t i = 0; i < count(); ++i) {
-            if (i > 0) time = time + at(&PlaceBatch::time, i);
+            if (i > 0) time = time + places_[i].time;
             pieces[i].centre = time;
+            pieces[i].quarters = places_[i].quarters;
         }
         if (std::isfinite(quarter.high)) {
             time = quarter;
             for (std::size_t i = count() - 1; double(time) > 0.5 * double(quarter); --i) {
                 pieces[i].centre = time;
-                time = time + -at(&PlaceBatch::time, i);
+                time = time + -places_[i].time;
             }
         }
         double low = 0.0;
@@ -140,52 +125,62 @@ class TableMaker {
         }
     }
 
-    // Counted from the flat position or, near it, from the tip.
+    // The paths of the pieces, counted from the flat position or, near the tip, from the tip.
     void add_paths() {
         std::vector<FlowPiece>& pieces = table_.pieces;
         const auto path = [&](std::size_t i) -> double& { return pieces[i].series.rows[0][2]; };
-        const auto step = [&](std::size_t i) { return at(&PlaceBatch::path, i); };
         for (std::size_t i = 1; i < count() && pieces[i].quarters == 0; ++i) {
-            path(i) = path(i - 1) + step(i);
+            path(i) = path(i - 1) + places_[i].path;
         }
         const std::size_t last = count() - 1;
         if (pieces[last].quarters == 0) return;
         const PhaseMap<double>& map = flow_.phase.map;
-        const bool has_tip = places_[last] == map.quarter;
-        const Place<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last]};
-        path(last) = position_at(flow_, phase_point(map, end)).path;
+        const bool has_tip = places_[last].y == map.quarter;
+        const PhasePlace<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last].y};
+        const MotionPoint<double> tip =
+            motion_point(flow_.phase.rate, flow_.amplitude, phase_point(map, end));
+        path(last) = quarter_position(flow_.from.view, tip.sin_phi, tip.cos_phi).path;
         for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
-            path(i - 1) = path(i) - step(i);
+            path(i - 1) = path(i) - places_[i].path;
     }
 
+    // The series about t = 0, with the largest radius of some tries.
     void add_start() {
-        // Its radius is somewhat like that of the piece about the same place.
-        const double since = std::abs(double(flow_.start_time));
+        const FlatView& at_start = flow_.from.view;
+        table_.reader.start_time = time_since_flat(flow_, flow_.start_phase);
+        // First guess of the radius: the length of the piece about the same place.
+        const double since = std::abs(double(table_.reader.start_time));
         const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
                                         [&](const FlowPiece& p) { return since < p.high; });
-        PlaceBatch same;
+        constexpr int tries = 8;
+        std::array<TablePlace, tries> same{};
+        std::array<FlowPiece, tries> pieces;
         double radius = (piece->high - piece->low) / unit_;
-        for (int i = 0; i < batch_size; ++i) {
-            same.sin[i] = flow_.start.sin;
-            same.cos[i] = flow_.start.cos;
-            same.omega[i] = flow_.omega;
-            same.radius[i] = radius;
+        for (TablePlace& place : same) {
+            place.sin = at_start.sin;
+            place.cos = at_start.cos;
+            place.omega = flow_.from.omega;
+            place.radius = radius;
             radius *= 0.75;
         }
-        kernel_.series(body_, unit_, same);
-        fill(table_.start, same, 0);
-        const auto first = std::find(same.holds, same.holds + batch_size, 1.0) - same.holds;
-        table_.reader.start_radius = first == batch_size ? 0.0 : unit_ * same.radius[first];
+        kernel_.series(body_, unit_, length_, same.data(), tries, pieces.data());
+        const auto first = std::find_if(same.begin(), same.end(),
+                                        [](const TablePlace& place) { return place.holds > 0; });
+        table_.reader.start = pieces[0].series;
+        table_.reader.start_radius = first == same.end() ? 0.0 : unit_ * first->radius;
     }
 
+    // The numbers of the reader.
     void describe() {
         FlowReader& reader = table_.reader;
         const std::vector<FlowPiece>& pieces = table_.pieces;
         reader.half = 1;
         while (2 * reader.half <= int(pieces.size()) - 1) reader.half *= 2;
-        // The last piece is taken for all that is beyond.
+        reader.pieces = pieces.data();
+        // The last piece is taken for all later times.
         table_.ends.assign(2 * reader.half - 1, infinity);
         for (std::size_t i = 0; i + 1 < pieces.size(); ++i) table_.ends[i] = pieces[i].high;
+        reader.ends = table_.ends.data();
         reader.last_end = pieces.back().high;
         reader.per_unit = 1 / unit_;
         const DoubleDouble half_turn = flow_.phase.half_turn;
@@ -193,16 +188,16 @@ class TableMaker {
             reader.half_turn = half_turn;
             reader.half_turns_per_time = 1 / half_turn.high;
         }
-        reader.start_time = flow_.start_time;
-        reader.spin = heading(flow_);
+        reader.spin = heading_of<double>(flow_);
         reader.alternates = !rotates_;
         reader.quarters_per_half_turn = rotates_ ? 2 * flow_.direction : 0.0;
-        const QuarterPosition& from = flow_.start_position;
+        const FlatView& view = flow_.from.view;
+        const QuarterPosition from = quarter_position(view, view.sin, view.cos);
         reader.quarters = from.quarters;
-        reader.angle = two_sum(flow_.theta, -from.angle);
+        reader.angle = two_sum(flow_.from.theta, -from.angle);
         reader.path = from.path;
-        reader.quarter_path = flow_.quarter_path;
-        reader.theta = flow_.theta;
+        reader.quarter_path = path_from_flat(view.long_axis, view.short_axis, 1.0, 0.0);
+        reader.theta = flow_.from.theta;
         reader.x = flow_.x;
     }
 
@@ -213,34 +208,23 @@ class TableMaker {
     double length_;
     double unit_;
     SeriesConstants body_;
-    std::vector<double> places_;
-    std::vector<PlaceBatch> batches_;
+    std::vector<TablePlace> places_;
 };
 
 }  // namespace
 
-FlowTable flow_table(const RollingFlow& flow) { return TableMaker(flow).make(); }
-
-FlowReader reader(const FlowTable& table) {
-    FlowReader found = table.reader;
-    found.pieces = table.pieces.data();
-    found.ends = table.ends.data();
-    found.start = &table.start;
-    return found;
-}
+std::optional<FlowTable> flow_table(const RollingFlow& flow) { return TableMaker(flow).make(); }
 
 FlowSampler::FlowSampler(const RollingFlow& flow, std::size_t expected) : flow_(flow) {
     if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return;
-    // A table costs as much as ten single times; but where a few places are looked at again and
-    // again, now some of them and now others (roots), their bits should not change.
+    // A table costs as much as ten single times. Below 40 times there is none, so that a search for
+    // a root, which asks for a few times again and again, always gets the same bits.
     constexpr std::size_t few = 40;
-    if (expected < few) return;
-    table_ = flow_table(flow);
-    if (table_->pieces.empty()) table_.reset();
+    if (expected >= few) table_ = flow_table(flow);
 }
 
 void FlowSampler::operator()(const double* times, std::size_t n, const FlowColumns& out) const {
-    if (table_ && !kernel().read(reader(*table_), times, n, out)) return;
+    if (table_ && !kernel().read(table_->reader, times, n, out)) return;
     for (std::size_t i = 0; i < n; ++i) {
         if (!table_ || std::isnan(out.theta[i])) store(sample(flow_, times[i]), out, i);
     }

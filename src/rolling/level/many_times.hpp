@@ -1,9 +1,9 @@
-// Exact rolling at many times: Taylor series in time, each about a point of the exact solution.
+// Exact rolling at many times, by Taylor series in time about points of the exact solution.
 //
-// The series cover the quarter turn (or swing) from the flat position on; everything else is its
-// mirror image. One more starts at t = 0, so that small moves keep their digits. The coefficients
-// follow from the equation of motion by the rules for products, quotients and roots of series
-// (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
+// The series cover the quarter turn (or swing) from the flat position on; all other times are
+// mirror images. One more series starts at t = 0, so that small moves keep their digits. The
+// coefficients follow from the equation of motion by the rules for products, quotients and roots of
+// series (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 #pragma once
 
 #include <cstddef>
@@ -15,28 +15,31 @@
 
 namespace rolling_ellipse {
 
+// Writes a sample into place i of the columns.
 inline void store(const FlowSample& sample, const FlowColumns& columns, std::size_t i) {
     columns.theta[i] = sample.theta;
     columns.omega[i] = sample.omega;
     columns.x[i] = sample.x;
 }
 
-// The table of a rotation or a libration, for any time; no pieces where no series holds.
+// The table of a rotation or a libration, for any time. Never copied: the reader, which a kernel
+// takes, points to the pieces and their ends.
 struct FlowTable {
+    FlowTable() = default;
+    FlowTable(FlowTable&&) = default;
+    FlowTable& operator=(FlowTable&&) = default;
+
     std::vector<FlowPiece> pieces;
     std::vector<double> ends;
-    TableSeries start;  // about t = 0; its angle and path are those since then
-    FlowReader reader;  // but for what it points to
+    FlowReader reader;
 };
 
-FlowTable flow_table(const RollingFlow& flow);
+// None where no series holds.
+std::optional<FlowTable> flow_table(const RollingFlow& flow);
 
-// The table as a kernel reads it, as long as it lives.
-FlowReader reader(const FlowTable& table);
-
-// A motion, which has to live as long, to be sampled at so many times in all: few of them are not
-// worth a table, nor are rest and uniform rotation. The bits depend on the time alone, not on those
-// beside it.
+// Sampler of a motion, to which it refers, for an expected number of times. A few times need no
+// table, nor do rest and uniform rotation. The bits of a sample depend on its time only, not on the
+// others.
 class FlowSampler {
   public:
     FlowSampler(const RollingFlow& flow, std::size_t expected);

@@ -1,5 +1,5 @@
-// An exact rolling motion from its start on, by its phase: that of one body, or of several side by
-// side, with the same bits.
+// An exact rolling motion by its phase, from its start on: of one body, T = double, or of several
+// bodies side by side, with the same bits.
 #pragma once
 
 #include "rolling/level/start.hpp"
@@ -8,7 +8,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The numbers of a start.
+// The numbers of a RollingStart.
 template <class T>
 struct PhaseStart {
     T long_axis, short_axis, c2;
@@ -62,12 +62,13 @@ inline PhaseRate<T> phase_rate(const PhaseStart<T>& at) {
     return rate;
 }
 
-// scale sqrt(D (H + h)) where phi has this sine.
-template <class T>
-inline T shape_factor(const PhaseRate<T>& rate, T sin_phi) {
+// The factor scale sqrt(D (H + h)) at an angle phi with this sine.
+template <class C, class T>
+inline T shape_factor(const PhaseRate<C>& rate, T sin_phi) {
     return sqrt(shape_factor2(rate, sin_phi * sin_phi));
 }
 
+// Sets the motion of a start.
 template <class T>
 void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
     set_phase_time(motion.phase, phase_rate(at));
@@ -78,13 +79,14 @@ void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
     const T sin = motion.direction * at.sin;
     const T cos = rotates ? at.cos : at.omega * shape_factor(motion.phase.rate, at.sin);
     motion.amplitude = sqrt(sin * sin + cos * cos);
-    // At rest it goes back from either side in the same way.
+    // A body at rest on the upper side is at its turning point, on the way back.
     const auto rests_beyond = (cos == 0) & (sin > 0) & negated(rotates);
     motion.on_way_back = (cos < 0) | rests_beyond;
     motion.start_phase = {motion.on_way_back ? -sin : sin, abs(cos)};
     motion.start_place = place_of(motion.phase.map, motion.start_phase);
 }
 
+// Angle from the flat position and angular velocity at a point of a motion.
 template <class T>
 struct MotionPoint {
     T sin_phi;
@@ -92,10 +94,9 @@ struct MotionPoint {
     T omega;
 };
 
-// Angle and angular velocity at a phase, on the way up: physics (30), the energy integral at the
-// point itself.
-template <class T>
-inline MotionPoint<T> motion_point(const PhaseRate<T>& rate, T amplitude, const PhasePoint<T>& at) {
+// The point of a motion at a phase, on the way up: physics (30), the energy integral at the point.
+template <class C, class T>
+inline MotionPoint<T> motion_point(const PhaseRate<C>& rate, C amplitude, const PhasePoint<T>& at) {
     const T sin_phi = rate.rotates ? at.sin : amplitude * at.sin;
     const T factor = shape_factor(rate, sin_phi);
     const T across = rate.kappa * at.sin;
@@ -104,39 +105,29 @@ inline MotionPoint<T> motion_point(const PhaseRate<T>& rate, T amplitude, const 
             (rate.rotates ? root : amplitude * at.cos) / factor};
 }
 
-// +1 or -1: which way the motion goes at its start, for angles and for omega.
+// Sign of the motion at its start, for angles and for omega: +1 or -1.
 template <class T>
 inline T heading_of(const PhaseMotion<T>& motion) {
     const T libration = motion.on_way_back ? filled<T>(-1.0) : filled<T>(1.0);
     return motion.phase.rate.rotates ? motion.direction : libration;
 }
 
-// A time without whole turns, or swings, and these.
-template <class T>
-struct Reduced {
-    T time;
-    T turns;
-};
-template <class T>
-inline Reduced<T> reduced(const TwoParts<T>& turn, T t) {
-    const T turns = nearest<T>(t / turn.high);
-    const TwoParts<T> whole = two_product(turns, turn.high);
-    const T rest = ((t - whole.high) - whole.low) - turns * turn.low;
-    return {turns != 0 ? rest : t, turns};
-}
-
-// Where a motion is at a time, and the path since the start.
+// The state at a time; x is the path since the start.
 template <class T>
 MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& from, T t) {
     const PhaseTime<T>& phase = motion.phase;
     const auto rotates = phase.rate.rotates;
     const T factor = rotates ? filled<T>(1.0) : filled<T>(2.0);
+    // The time without whole turns, or swings.
     const TwoParts<T> turn = {factor * phase.half_turn.high, factor * phase.half_turn.low};
-    const auto [time, turns] = reduced<T>(turn, t);
-    const auto [to, way] = move(phase, motion.start_place, time);
+    const T turns = nearest<T>(t / turn.high);
+    const TwoParts<T> in_turns = two_product(turns, turn.high);
+    const T rest = ((t - in_turns.high) - in_turns.low) - turns * turn.low;
+    const T time = turns != 0 ? rest : t;
+    const auto [to, gain] = move(phase, motion.start_place, time);
     const T heading = heading_of(motion);
     const MotionPoint<T> now =
-        motion_point<T>(phase.rate, motion.amplitude, phase_point(phase.map, to));
+        motion_point(phase.rate, motion.amplitude, phase_point(phase.map, to));
 
     const T sin_phi = heading * now.sin_phi;
     const T swung = angle_of<T>(sin_phi * from.cos - now.cos_phi * from.sin,
@@ -144,7 +135,7 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const TwoParts<T> whole = two_product(2 * turns, filled<T>(half_pi_exact.high));
     const TwoParts<T> whole_turns =
         quick_two_sum(whole.high, whole.low + 2 * turns * half_pi_exact.low);
-    TwoParts<T> turned = whole_turns + way.angle;
+    TwoParts<T> turned = whole_turns + gain.angle;
     const auto creeps = (phase.half_turn.high > largest_finite) & (now.sin_phi > now.cos_phi);
     if (any(creeps & rotates)) {  // to the tip
         const PhasePoint<T>& start = motion.start_phase;
@@ -156,17 +147,17 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const TwoParts<T> rolled =
         TwoParts<T>{heading * turned.high, heading * turned.low} + from.theta;
 
-    // The place of a libration beyond a turning point is that as far before it: so its path is
-    // without the way to that and back.
+    // The place of a libration beyond a turning point is the mirror image before it. The path
+    // between the places leaves out the way to the turning point and back, which cancels.
     const auto turned_back = (now.omega < 0) & negated(rotates);
-    T path = way.path;
+    T path = gain.path;
     if (any(turned_back)) {
-        const Place<T>& start = motion.start_place;
+        const PhasePlace<T>& start = motion.start_place;
         const T side = copysign(filled<T>(1.0), to.quarters != 0 ? to.quarters : to.offset);
         const T distance = (2 * side - to.quarters - start.quarters) * phase.map.quarter -
                            (to.offset + start.offset);
         const T end = start.offset + (turned_back ? distance : T{});
-        const T between = way_between(phase, start.quarters, start.offset, end).way.path;
+        const T between = integral_between(phase, start.quarters, start.offset, end).sum.path;
         path = turned_back ? between : path;
     }
     const TwoParts<T> paths = two_product(2 * turns, phase.quarter_path);

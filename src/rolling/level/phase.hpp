@@ -1,5 +1,5 @@
-// An exact rolling motion as the phase sees it: the integrand of the time, the coordinate in which
-// it is integrated, and the integrals; of one body, T = double, or of as many as a Pack has lanes.
+// An exact rolling motion by its phase: the integrand of the time, the coordinate in which it is
+// integrated, and the integrals; of one body, T = double, or of as many bodies as a Pack has lanes.
 //
 // With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
 // H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral
@@ -11,8 +11,8 @@
 //     libration: amplitude^2 = (H^2 - S^2)/c^2, scale^2 = 1/(2 g c^2), kappa^2 = (L^2 - H^2)/c^2
 // No term is a difference that cancels, but for H - L itself.
 //
-// The coordinate y sweeps the phase evenly, physics (61): nothing peaks in it, at the flat however
-// thin the body, or at the tip however near the separatrix.
+// In the coordinate y no integrand has a peak, physics (61): neither at the flat of a thin body nor
+// at the tip of a motion near the separatrix.
 //     tan phase = g sc(w, k),   k' = kappa g,   w = theta_3(q)^2 y,   q = e^(-2 Y),
 // sc = sn/cn of Jacobi with the complementary modulus k'. The flat position is at y = 0, the tip or
 // turning point at y = Y, and all is symmetric about both. The integrand of the time is singular
@@ -23,10 +23,6 @@
 #include "numerics/double_double.hpp"
 
 namespace rolling_ellipse {
-
-// Whether something holds: of a number, or of each of its lanes.
-template <class T>
-using Truth = decltype(T{} < T{});
 
 // The constants of the integrand.
 template <class T>
@@ -39,17 +35,17 @@ struct PhaseRate {
     T kappa;
     T d0;
     T d1;
-    Truth<T> rotates;
+    Mask<T> rotates;
 };
 
 // The constants of the coordinate.
 template <class T>
 struct PhaseMap {
-    T quarter;          // Y; infinite on the separatrix
-    T step;             // of the trapezoidal rule that integrates over a quarter
-    T steps;            // in a quarter, or as far as the tail
-    Truth<T> has_tail;  // the quarter is longer than the steps: as doubles go, the tip is reached
-    T grade;            // g
+    T quarter;         // Y; infinite on the separatrix
+    T step;            // of the trapezoidal rule that integrates over a quarter
+    T steps;           // number in a quarter, or up to the tail
+    Mask<T> has_tail;  // the quarter is longer than the steps, which end at the tip within rounding
+    T grade;           // g
     T kappa;
     T speed;        // dw/dy
     T sine_scale;   // C
@@ -59,9 +55,10 @@ struct PhaseMap {
     T b[3];
 };
 
-// A point of the coordinate, y = quarters Y + offset; the nearest quarter unless told otherwise.
+// A point of the coordinate, y = quarters Y + offset, with the nearest quarter unless a function
+// says otherwise.
 template <class T>
-struct Place {
+struct PhasePlace {
     T quarters;
     T offset;
 };
@@ -73,26 +70,27 @@ struct PhasePoint {
     T cos;
 };
 
-// A way along y, or its rate: time [s], angle [rad], path of the centre [m].
+// Time [s], angle [rad] and path of the centre [m] along an interval of y, or their rates in y.
 template <class T>
-struct PhaseWay {
+struct PhaseIncrement {
     T time;
     T angle;
     T path;
 };
 
-// The rates at several places. Those of one body are computed side by side, a Pack of the widest
-// level at once.
+// Rates at several places. The places of one body are computed side by side, one Pack of the widest
+// level at a time.
 inline constexpr int widest_pack = 8;
-inline constexpr int most_places = 48;  // the nodes of a panel and its end
+inline constexpr int most_places = 48;  // nodes of a panel and its end
 
 template <class T>
-struct alignas(64) PhaseWays {
+struct alignas(64) PhaseRates {
     T time[most_places];
     T angle[most_places];
     T path[most_places];
 };
 
+// The time as a function of the phase.
 template <class T>
 struct PhaseTime {
     PhaseRate<T> rate;
@@ -100,8 +98,8 @@ struct PhaseTime {
     TwoParts<T> quarter_turn;  // to the tip or turning point; infinite on the separatrix
     TwoParts<T> half_turn;     // in which the phase advances by pi
     T quarter_path;            // of the centre; of a rotation
-    // dt/dy at the steps of the map, and one beside them, and what cubics through it make of the
-    // time since the flat: where to look for a time.
+    // For first guesses of the place at a time: dt/dy at the steps of the map and one step beyond
+    // its ends, and the time since the flat by cubics through these.
     static constexpr int most_steps = 160;
     T slope[most_steps + 3];
     T time[most_steps + 2];
@@ -117,17 +115,18 @@ struct SeriesConstants {
     double d1;
 };
 
-// A motion from its start on.
+// A libration or rotation from its start on.
 template <class T>
 struct PhaseMotion {
     PhaseTime<T> phase;
     T direction;                // of rotation; +1 for libration
     T amplitude;                // sin phi_max of a libration; 1 for rotation
-    Truth<T> on_way_back;       // at the start of a libration: its phase is beyond +-pi/2
-    PhasePoint<T> start_phase;  // without that half turn
-    Place<T> start_place;
+    Mask<T> on_way_back;        // at the start of a libration: its phase is beyond +-pi/2
+    PhasePoint<T> start_phase;  // less half a turn if on the way back
+    PhasePlace<T> start_place;
 };
 
+// The state of a motion: angle [rad], angular velocity [rad/s], position of the centre [m].
 template <class T>
 struct MotionSample {
     T theta;

@@ -1,12 +1,12 @@
-// Exact rolling on level ground as power series in time about a place of the motion: of one body or
-// place, T = double, or of several side by side.
+// Exact rolling on level ground as power series in time about a place of the motion: about one
+// place, T = double, or about several side by side.
 #pragma once
 
 #include <array>
 
 #include "numerics/lanes.hpp"
 #include "numerics/series.hpp"
-#include "rolling/level/phase.hpp"
+#include "rolling/level/flow.hpp"
 
 namespace rolling_ellipse {
 
@@ -19,7 +19,18 @@ struct MotionSeries {
 
 namespace {
 
-// The series from the sine and cosine of the angle from the flat position and the angular velocity.
+// The constants of a motion, for time in this unit [s].
+inline SeriesConstants series_constants(const RollingFlow& flow, double time_unit) {
+    const PhaseRate<double>& rate = flow.phase.rate;
+    const double length = flow.from.view.long_axis;
+    const double area = length * length;
+    return {rate.short_axis / length * (rate.short_axis / length), rate.c2 / area,
+            flow.from.body.gravity * (time_unit * time_unit) / length, rate.d0 / (area * area),
+            rate.d1 / (area * area)};
+}
+
+// The series about the place with this sine and cosine of the angle from the flat position and this
+// angular velocity.
 // Physics (18) with D h^2 = d0 + d1 q, u = h^2, q and p the square of the sine and the product of
 // sine and cosine of the angle:
 //     omega' u (d0 + d1 q) = -c2 p (g u h + S^2 omega^2),   q' = 2 p omega,   p' = (1 - 2 q) omega

@@ -5,7 +5,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// physics (26)
+// The height of the energy, physics (26).
 EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
     const double h2 = square(at.short_axis) + at.c2 * square(at.sin);
     const double h = std::sqrt(h2);
@@ -37,7 +37,7 @@ ShapePlace place_at(const Shape& shape, double h2, double sin2, double cos2) {
 RollingStart rolling_start(const Body& body, double theta, double omega) {
     omega = zero_if_negligible(omega);
     FlatView view = flat_view(body.axes(), theta);
-    // From the tip it goes down, with the same bits to either side.
+    // A body that starts on the tip moves down, with the same bits to either side.
     if (view.cos == 0 && omega != 0) view.sin = -std::copysign(1.0, omega);
     const bool rests = omega == 0 && is_equilibrium(geometry(body.axes(), theta));
     return {body, theta, omega, view, energy_height(view, body, omega), rests};

@@ -1,4 +1,4 @@
-// The start of rolling on level ground: what the proof and the motion both begin with.
+// The start of rolling on level ground, for the proof and for the motion.
 #pragma once
 
 #include "scene/scene.hpp"
@@ -14,8 +14,9 @@ struct Shape {
 
 Shape shape(const Body& body, const FlatView& view);
 
-// What a body of a shape has at a place, by the squares of the sine and cosine of its angle from
-// the flat position; of D = kh + h'^2 and of N = (kh + omega^2 normal_part)/D, physics (16, 23).
+// A place of a body in rolling, by the squares of the sine and cosine of its angle from the flat
+// position, with the parts of D = kh + h'^2 and of N = (kh + omega^2 normal_part)/D, physics (16,
+// 23).
 struct ShapePlace {
     double h2;
     double h;
@@ -43,7 +44,7 @@ struct RollingStart {
     double omega;
     FlatView view;
     EnergyHeight height;
-    bool rests;  // in equilibrium, for ever
+    bool rests;  // in equilibrium for all times
 };
 
 RollingStart rolling_start(const Body& body, double theta, double omega);

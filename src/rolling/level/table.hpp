@@ -1,4 +1,4 @@
-// A table of exact rolling, and the numbers of which it is made and by which it is read.
+// The table of an exact motion: its places, its pieces, and the numbers by which it is read.
 #pragma once
 
 #include <cstddef>
@@ -8,71 +8,64 @@
 
 namespace rolling_ellipse {
 
-inline constexpr int batch_size = 8;  // places of a table that are made at once
 inline constexpr int table_order = 14;
 inline constexpr int table_size = table_order + 1;
 inline constexpr int series_columns = 4;  // angle, omega, path; a row of a series fills a register
 
-// Angle, angular velocity and path as power series in time, from a place of the motion on. One
-// more row, of zeros: rows are read in pairs.
+// Power series in time of angle, angular velocity and path about a place. The last row is zero,
+// since rows are read in pairs.
 struct TableSeries {
     alignas(64) double rows[table_size + 1][series_columns];
 };
 
-// Places of a table side by side, and what is made of them.
-struct alignas(64) PlaceBatch {
-    using Eight = double[batch_size];
-    Eight y;     // the coordinate of rolling/level/phase.hpp
-    Eight from;  // that of the place before
-    // The motion there, on the way up, and time and path since the place before.
-    Eight sin;  // of the angle from the flat position
-    Eight cos;
-    Eight near_tip;  // 1 or 0
-    Eight angle;     // from the nearer one of flat position and tip
-    Eight omega;
-    Eight time;
-    Eight path;
-    // Angle, angular velocity and path as power series; whether they are as good as doubles as far
-    // as a radius, in units of their variable.
-    Eight series[table_size][3];
-    Eight radius;
-    Eight holds;  // 1 or 0
+// A place of a table, and the motion there on the way up.
+struct TablePlace {
+    double y;         // the coordinate of rolling/level/phase.hpp
+    double sin, cos;  // of the angle from the flat position
+    double quarters;  // from the flat position to the nearer one of it and the tip: 0 or 1
+    double angle;     // from there
+    double omega;
+    double time, path;  // since the place before
+    double radius;  // of the time interval in which the series is used, in units of its variable
+    double holds;   // 1 if the series has full double precision there, otherwise 0
 };
 
+// The series of an interval of times since the flat position.
 struct FlowPiece {
-    DoubleDouble centre;  // times since the flat position
+    DoubleDouble centre;
     double low;
     double high;
-    double quarters;  // from the flat position to where angle and path are counted from
+    double quarters;  // from the flat position to the origin of angle and path
     TableSeries series;
 };
 
-// A motion as its pieces see it.
+// A motion as the kernel reads it.
 struct FlowReader {
     const FlowPiece* pieces;
-    const double* ends;  // of the pieces, and infinities: 2 half - 1 of them
+    const double* ends;  // of the pieces, then infinities: 2 half - 1 numbers
     int half;
     double last_end;
-    double per_unit;  // of time, to the variable of the series
-    // Half turns and the time since the flat position.
+    double per_unit;  // variable of the series over time [1/s]
+    // The time of a half turn, and the time of the start since the flat position.
     DoubleDouble half_turn;
     double half_turns_per_time;
     DoubleDouble start_time;
-    // Which way it goes: spin after an even number of half turns, and whether it changes with them.
+    // Sign of the motion after an even number of half turns, and 1 if each half turn changes it.
     double spin;
     double alternates;
     double quarters_per_half_turn;
-    // The start.
+    // The start, as quarters and an offset.
     double quarters;
-    DoubleDouble angle;  // theta less that of the start from its quarter
-    double path;         // that of the start from its quarter
+    DoubleDouble angle;  // theta less the offset of the angle
+    double path;         // offset of the path
     double quarter_path;
     double theta;
     double x;
-    double start_radius;  // of times for which its own series holds
-    const TableSeries* start;
+    double start_radius;  // largest |t| of the series about the start [s]
+    TableSeries start;    // about t = 0, with angle and path since then
 };
 
+// Arrays of the samples of many times.
 struct FlowColumns {
     double* theta;
     double* omega;

@@ -1,5 +1,5 @@
-// The code of a FlowKernel. It is compiled for each vector level in a source of its own, see
-// numerics/lanes.hpp: nothing of the library is called.
+// The functions of a Kernel that make and read tables. Each vector level compiles them in its own
+// source, so they call no function of the standard library (numerics/lanes.hpp).
 #pragma once
 
 #include "numerics/gauss_legendre.hpp"
@@ -11,41 +11,57 @@
 namespace rolling_ellipse {
 namespace {
 
-void states(const PhaseRate<double>& one_rate, const PhaseMap<double>& one_map, double amplitude,
-            PlaceBatch& at, int lane) {
-    const PhaseRate<Pack> rate = spread(one_rate);
-    const PhaseMap<Pack> map = spread(one_map);
-    const Pack y = load(at.y + lane);
-    const Pack from = load(at.from + lane);
-    const Pack middle = 0.5 * (y + from);
-    const Pack half = 0.5 * (y - from);
-    // Places are so near to each other that eight nodes are exact to rounding.
-    constexpr int pairs = 4;
-    Pack time{}, path{};
-    for (int i = 0; i < pairs; ++i) {
-        const Pack offset = half * gauss_tables::nodes_8[i];
-        const PhaseWay<Pack> before = phase_rate_at(rate, map, Pack{}, middle - offset);
-        const PhaseWay<Pack> after = phase_rate_at(rate, map, Pack{}, middle + offset);
-        time += gauss_tables::weights_8[i] * (before.time + after.time);
-        path += gauss_tables::weights_8[i] * (before.path + after.path);
+// A number of several places side by side; the first or last one fills lanes beyond the ends.
+inline Pack gathered(const TablePlace* places, int count, int first, double TablePlace::* number) {
+    Pack found{};
+    for (int lane = 0; lane < lanes; ++lane) {
+        const int i = first + lane < count ? first + lane : count - 1;
+        set_lane(found, lane, places[i < 0 ? 0 : i].*number);
     }
-    store(time * half, at.time + lane);
-    store(path * half, at.path + lane);
-
-    const Mask<Pack> at_tip = y > 0.5 * map.quarter;
-    const Place<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
-    const MotionPoint<Pack> now = motion_point(rate, pack(amplitude), phase_point(map, place));
-    const Mask<Pack> near_tip = now.sin_phi > now.cos_phi;
-    const Pack angle = octant_angle(min(now.sin_phi, now.cos_phi), max(now.sin_phi, now.cos_phi));
-    store(now.sin_phi, at.sin + lane);
-    store(now.cos_phi, at.cos + lane);
-    store(near_tip ? pack(1.0) : pack(0.0), at.near_tip + lane);
-    store(near_tip ? -angle : angle, at.angle + lane);
-    store(now.omega, at.omega + lane);
+    return found;
 }
 
-// The last terms, of which one may be small by chance, are some roundings beside what the series is
-// part of; what is left out is smaller by another twentieth.
+void states(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
+            TablePlace* places, int count) {
+    // Between neighbouring places eight nodes are exact to rounding.
+    constexpr GaussRule rule = gauss_rules[6];
+    static_assert(rule.size == 8);
+    for (int first = 0; first < count; first += lanes) {
+        const Pack y = gathered(places, count, first, &TablePlace::y);
+        const Pack from = gathered(places, count, first - 1, &TablePlace::y);
+        const Pack middle = 0.5 * (y + from);
+        const Pack half = 0.5 * (y - from);
+        Pack time{}, path{};
+        for (int i = 0; i < rule.size / 2; ++i) {
+            const Pack offset = half * rule.nodes[i];
+            const PhaseIncrement<Pack> before = phase_rate_at(rate, map, 0.0, middle - offset);
+            const PhaseIncrement<Pack> after = phase_rate_at(rate, map, 0.0, middle + offset);
+            time += rule.weights[i] * (before.time + after.time);
+            path += rule.weights[i] * (before.path + after.path);
+        }
+        time *= half;
+        path *= half;
+
+        const Mask<Pack> at_tip = y > 0.5 * map.quarter;
+        const PhasePlace<Pack> place = {at_tip ? pack(1.0) : Pack{}, at_tip ? y - map.quarter : y};
+        const auto [sin, cos, omega] = motion_point(rate, amplitude, phase_point(map, place));
+        const Mask<Pack> near_tip = sin > cos;
+        const Pack angle = octant_angle(min(sin, cos), max(sin, cos));
+        for (int lane = 0; lane < lanes && first + lane < count; ++lane) {
+            TablePlace& at = places[first + lane];
+            at.sin = sin[lane];
+            at.cos = cos[lane];
+            at.quarters = near_tip[lane] ? 1.0 : 0.0;
+            at.angle = near_tip[lane] ? -angle[lane] : angle[lane];
+            at.omega = omega[lane];
+            at.time = time[lane];
+            at.path = path[lane];
+        }
+    }
+}
+
+// Whether the last two terms of a series, of which one may be small by chance, are a few roundings
+// of the sum to which it is added. The terms left out are smaller by another twentieth.
 inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, Pack radius) {
     constexpr double rest = 1e-15;
     constexpr double rest_before = 2e-14;
@@ -56,39 +72,50 @@ inline Mask<Pack> holds(const std::array<Pack, table_size>& series, Pack whole, 
            (abs(series[table_order]) * (power * radius) <= rest * size);
 }
 
-void series(const SeriesConstants& body, double unit, PlaceBatch& at, int lane) {
-    const Pack sin = load(at.sin + lane);
-    const Pack omega = load(at.omega + lane) * unit;
-    const auto motion = motion_series<table_order>(body, sin, load(at.cos + lane), omega);
-    for (int k = 0; k < table_size; ++k) {
-        store(motion.angle[k], at.series[k][0] + lane);
-        store(motion.omega[k], at.series[k][1] + lane);
-        store(motion.path[k], at.series[k][2] + lane);
+void series(const SeriesConstants& body, double time_unit, double length_unit, TablePlace* places,
+            int count, FlowPiece* pieces) {
+    const double per_unit = 1 / time_unit;
+    for (int first = 0; first < count; first += lanes) {
+        const Pack sin = gathered(places, count, first, &TablePlace::sin);
+        const Pack cos = gathered(places, count, first, &TablePlace::cos);
+        const Pack omega = gathered(places, count, first, &TablePlace::omega) * time_unit;
+        const Pack radius = gathered(places, count, first, &TablePlace::radius);
+        const auto motion = motion_series<table_order>(body, sin, cos, omega);
+        const Pack path = sin * __builtin_sqrt(body.short_axis2);
+        const Mask<Pack> good = holds(motion.angle, sin, radius) &
+                                holds(motion.omega, abs(omega), radius) &
+                                holds(motion.path, path, radius);
+        for (int lane = 0; lane < lanes && first + lane < count; ++lane) {
+            TablePlace& at = places[first + lane];
+            at.holds = good[lane] ? 1.0 : 0.0;
+            auto& rows = pieces[first + lane].series.rows;
+            for (int k = 0; k < table_size; ++k) {
+                rows[k][0] = motion.angle[k][lane];
+                rows[k][1] = motion.omega[k][lane] * per_unit;
+                rows[k][2] = motion.path[k][lane] * length_unit;
+            }
+            rows[0][0] = at.angle;
+        }
     }
-    const Pack radius = load(at.radius + lane);
-    const Pack path = sin * __builtin_sqrt(body.short_axis2);
-    const Mask<Pack> good = holds(motion.angle, sin, radius) &
-                            holds(motion.omega, abs(omega), radius) &
-                            holds(motion.path, path, radius);
-    store(good ? pack(1.0) : pack(0.0), at.holds + lane);
 }
 
-// The most times that are on the way through `read` together.
+// Largest number of times that `read` takes through its stages together.
 constexpr int block = 64;
-static_assert(block % lanes == 0 && batch_size % lanes == 0);
+static_assert(block % lanes == 0);
 
 struct alignas(64) Block {
     double turns[block];  // whole half turns
     double time[block];   // since the nearest flat position, in two parts
     double low[block];
-    // Since there, or since the tip that is so many quarters from it.
+    // Since there, or since the tip at this number of quarters from there.
     double angle[block];
     double omega[block];
     double path[block];
     double quarters[block];
 };
 
-// t + start - n T without rounding. Of a late time the low part of n T is longer than a piece.
+// Reduces t + start by n half turns without rounding. At late times even the low part of n T is
+// longer than a piece.
 void reduce(const FlowReader& motion, const double* times, int n, Block& found) {
     const DoubleDouble period = motion.half_turn;
     const DoubleDouble start = motion.start_time;
@@ -106,14 +133,8 @@ void reduce(const FlowReader& motion, const double* times, int n, Block& found) 
     }
 }
 
-struct Motions {
-    Pack angle;
-    Pack omega;
-    Pack path;
-};
-
-// One series at several times: even and odd powers, as two sums need not wait for each other.
-inline Motions together(const TableSeries& series, Pack z) {
+// One series at several times. The sums of even and odd powers are independent of each other.
+inline MotionSample<Pack> together(const TableSeries& series, Pack z) {
     const auto& rows = series.rows;
     const Pack z2 = z * z;
     const auto column = [&](int i) {
@@ -130,7 +151,7 @@ inline Motions together(const TableSeries& series, Pack z) {
     return {column(0), column(1), column(2)};
 }
 
-// A series at one time: its columns side by side, and its even and odd rows.
+// A series at one time, with its columns and its even and odd rows side by side.
 inline void alone(const TableSeries& series, double z, Block& found, int i) {
     constexpr int parts = 2 * series_columns / lanes;
     const double z2 = z * z;
@@ -156,7 +177,8 @@ inline void alone(const TableSeries& series, double z, Block& found, int i) {
     found.path[i] = sum[2];
 }
 
-// By halves, without a branch for the processor to guess: times may come in any order.
+// The piece at a time by bisection, without a branch that the processor would mispredict for times
+// in any order.
 inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
     int i = 0;
     for (int half = motion.half; half > 0; half /= 2) {
@@ -165,7 +187,8 @@ inline const FlowPiece& piece_at(const FlowReader& motion, double time) {
     return motion.pieces[i];
 }
 
-void look_up(const FlowReader& motion, int n, Block& block) {
+// The series of all times.
+void sample_series(const FlowReader& motion, int n, Block& block) {
     const FlowPiece* recent = motion.pieces;
     for (int i = 0; i < n; i += lanes) {
         const Pack time = load(block.time + i);
@@ -179,10 +202,10 @@ void look_up(const FlowReader& motion, int n, Block& block) {
         if (holds(*recent)) {
             const Pack z = ((since - recent->centre.high) + (since_low - recent->centre.low)) *
                            motion.per_unit;
-            const Motions found = together(recent->series, z);
-            store(found.angle, block.angle + i);
+            const MotionSample<Pack> found = together(recent->series, z);
+            store(found.theta, block.angle + i);
             store(found.omega, block.omega + i);
-            store(found.path, block.path + i);
+            store(found.x, block.path + i);
             store(pack(recent->quarters), block.quarters + i);
             continue;
         }
@@ -197,7 +220,7 @@ void look_up(const FlowReader& motion, int n, Block& block) {
     }
 }
 
-// The motion at these times; theta is NaN beyond its pieces. Returns whether one is.
+// The motion from its series. Beyond the pieces theta is NaN; returns whether one is.
 bool combine(const FlowReader& motion, const double* times, int n, const Block& block,
              const FlowColumns& out) {
     bool some_lost = false;
@@ -219,10 +242,10 @@ bool combine(const FlowReader& motion, const double* times, int n, const Block& 
                  ((quarters * motion.quarter_path - motion.path) + heading * load(block.path + i));
         const Mask<Pack> at_start = abs(t) <= motion.start_radius;
         if (any(at_start)) {
-            const Motions at = together(*motion.start, t * motion.per_unit);
-            theta = at_start ? motion.theta + at.angle : theta;
+            const MotionSample<Pack> at = together(motion.start, t * motion.per_unit);
+            theta = at_start ? motion.theta + at.theta : theta;
             omega = at_start ? at.omega : omega;
-            x = at_start ? motion.x + at.path : x;
+            x = at_start ? motion.x + at.x : x;
         }
         const Mask<Pack> lost = (abs(time) >= motion.last_end) & ~at_start;
         if (any(lost)) {
@@ -239,7 +262,7 @@ bool combine(const FlowReader& motion, const double* times, int n, const Block& 
 bool read_block(const FlowReader& motion, const double* times, int n, const FlowColumns& out) {
     Block block;
     reduce(motion, times, n, block);
-    look_up(motion, n, block);
+    sample_series(motion, n, block);
     return combine(motion, times, n, block, out);
 }
 
@@ -250,7 +273,7 @@ bool read(const FlowReader& motion, const double* times, std::size_t n, const Fl
         some_lost |= read_block(motion, times + i, block, out.from(i));
     }
     if (i == n) return some_lost;
-    // The last of them fills what is left of a pack.
+    // The last time fills the remaining lanes of a pack.
     const int left = int(n - i);
     double last[block], theta[block], omega[block], x[block];
     for (int j = 0; j < block; ++j) last[j] = times[j < left ? i + j : n - 1];

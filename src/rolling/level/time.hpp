@@ -1,27 +1,24 @@
-// Time as a function of the phase of an exact rolling motion, and its inverse: integrals of
-// rolling/level/rates.hpp.
+// Time as a function of the phase of an exact rolling motion, and its inverse, by integrals of the
+// rates of rolling/level/rates.hpp.
 //
 // The rates are even about the flat and the tip and analytic for |Im y| < pi/2. So the trapezoidal
-// rule has the time of a quarter, with an error that falls like exp(-pi^2/step) (L. N. Trefethen,
-// J. A. C. Weideman, SIAM Rev. 56 (2014) 385). A part of a quarter is Gauss-Legendre quadrature,
-// from where it starts, so that a short way is known as well as a long one.
+// rule gives the time of a quarter, with an error that falls like exp(-pi^2/step) (L. N. Trefethen,
+// J. A. C. Weideman, SIAM Rev. 56 (2014) 385). A part of a quarter is integrated from its start
+// by Gauss-Legendre quadrature, so that a short interval has the same relative accuracy as a long
+// one.
 #pragma once
 
+#include <array>
+#include <iterator>
 #include <limits>
 
-#include "numerics/quadrature.hpp"
+#include "numerics/gauss_legendre.hpp"
 #include "rolling/level/rates.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-template <class T>
-inline TwoParts<T> times(const TwoParts<T>& x, T y) {
-    const TwoParts<T> whole = two_product(x.high, y);
-    return quick_two_sum(whole.high, whole.low + x.low * y);
-}
-
-// The terms of a sum, whose roundings are kept.
+// Adds a term to a sum; `low` collects the roundings.
 template <class T>
 inline void add(TwoParts<T>& sum, T term) {
     const TwoParts<T> next = two_sum(sum.high, term);
@@ -32,8 +29,25 @@ constexpr double largest_finite = std::numeric_limits<double>::max();
 constexpr double longest_panel = 6.0;
 constexpr int most_pairs = most_places / 2;
 
-// Gauss-Legendre rules as pairs of nodes -x and +x; a rule that is shorter than its neighbour's in
-// another lane goes on with no weight.
+// The longest intervals on which the rules of the table have full double precision, in units of
+// twice the distance of the nearest complex singularity. The error falls like rho^(-2n), rho the
+// sum of the semi-axes of the ellipse with the ends as foci and that distance as its height (L. N.
+// Trefethen, SIAM Rev. 50 (2008) 67, theorem 4.5): rho = exp(asinh(1/length)).
+constexpr std::array<double, std::size(gauss_rules)> longest_lengths = [] {
+    constexpr double log_accuracy = 38.0;  // -ln(3e-17)
+    std::array<double, std::size(gauss_rules)> found{};
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const double x = log_accuracy / (2 * gauss_rules[i].size);
+        double sinh = x;
+        double term = x;
+        for (int k = 2; k < 60; k += 2) sinh += term *= x * x / (k * (k + 1));
+        found[i] = 1 / sinh;
+    }
+    return found;
+}();
+
+// Gauss-Legendre rules as pairs of nodes -x and +x. Zeros fill a rule with fewer nodes than another
+// lane has.
 template <class T>
 struct NodePairs {
     int count;
@@ -41,7 +55,8 @@ struct NodePairs {
     T weights[most_pairs];
 };
 
-// For panels of this length, see longest_lengths.
+// The smallest rules with full double precision for panels of this length; the largest one for
+// longer panels.
 template <class T>
 inline void set_rules(NodePairs<T>& pairs, T length) {
     T index{};
@@ -50,38 +65,34 @@ inline void set_rules(NodePairs<T>& pairs, T length) {
         if (!any(is_longer)) break;
         index = is_longer ? index + 1 : index;
     }
-    const auto size = [](double of) { return (gauss_rules[static_cast<int>(of)].size + 1) / 2; };
-    const auto set = [&](int i, int lane, const GaussRule& rule) {
-        const bool has = i < (rule.size + 1) / 2;
-        const double node = has ? rule.nodes[i] : 0.0;
-        const double weight = has ? rule.weights[i] : 0.0;
-        set_lane(pairs.nodes[i], lane, node);
-        set_lane(pairs.weights[i], lane, node == 0 ? 0.5 * weight : weight);
-    };
-    pairs.count = size(largest(index));
+    pairs.count = (gauss_rules[static_cast<int>(largest(index))].size + 1) / 2;
     for (int lane = 0; lane < lanes_of<T>; ++lane) {
         const GaussRule& rule = gauss_rules[static_cast<int>(lane_of(index, lane))];
-        for (int i = 0; i < pairs.count; ++i) set(i, lane, rule);
+        for (int i = 0; i < pairs.count; ++i) {
+            const double weight = rule.weights[i];
+            set_lane(pairs.nodes[i], lane, rule.nodes[i]);
+            set_lane(pairs.weights[i], lane, rule.nodes[i] == 0 ? 0.5 * weight : weight);
+        }
     }
 }
 
-// A way, and the rates at its end.
+// Time, angle and path of an interval of y, and the rates at its end.
 template <class T>
-struct WayTo {
-    PhaseWay<T> way;
-    PhaseWay<T> end;
+struct Integral {
+    PhaseIncrement<T> sum;
+    PhaseIncrement<T> end;
 };
 
-// From one offset to another, by as many panels as it takes.
+// The interval from one offset to another, by panels.
 template <class T>
-WayTo<T> way_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T end) {
+Integral<T> integral_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T end) {
     const T panels = 1 + rounded_down<T>(abs<T>(end - begin) / longest_panel);
     const T half = 0.5 * (end - begin) / panels;
     NodePairs<T> pairs;
     set_rules<T>(pairs, abs(half) * (2 / pi));
     const int count = pairs.count;
     T offsets[most_places];
-    PhaseWays<T> rates;
+    PhaseRates<T> rates;
     TwoParts<T> time{}, angle{}, path{};
     const int most_panels = static_cast<int>(largest(panels));
     for (int panel = 0; panel < most_panels; ++panel) {
@@ -110,39 +121,40 @@ inline T end_of_steps(const PhaseMap<T>& map) {
     return map.steps * map.step;
 }
 
-// From one offset to another; bodies side by side have no tails.
-inline WayTo<Pack> way_between(const PhaseTime<Pack>& phase, Pack quarters, Pack begin, Pack end) {
-    return way_by_panels<Pack>(phase, quarters, begin, end);
+// The interval from one offset to another; bodies side by side have no tails.
+inline Integral<Pack> integral_between(const PhaseTime<Pack>& phase, Pack quarters, Pack begin,
+                                       Pack end) {
+    return integral_by_panels<Pack>(phase, quarters, begin, end);
 }
 
-// Around a tip that is far enough nothing but time goes on, at one rate: for minutes near the
-// separatrix, and for ever on it.
-inline WayTo<double> way_between(const PhaseTime<double>& phase, double quarters, double begin,
-                                 double end) {
-    constexpr double long_way = 12.0;
+// The interval from one offset to another. Around a tip that is far away only the time grows, at a
+// constant rate: for minutes near the separatrix, and without end on it.
+inline Integral<double> integral_between(const PhaseTime<double>& phase, double quarters,
+                                         double begin, double end) {
+    constexpr double long_interval = 12.0;
     const PhaseMap<double>& map = phase.map;
     const double edge = 2 * end_of_steps(map);
-    if (map.quarter <= edge || abs(end - begin) <= long_way) {
-        return way_by_panels(phase, quarters, begin, end);
+    if (map.quarter <= edge || abs(end - begin) <= long_interval) {
+        return integral_by_panels(phase, quarters, begin, end);
     }
-    // The ends of that part, in size of the offset.
+    // The ends of this part, as sizes of the offset.
     const double from = quarters == 0 ? edge : 0.0;
     const double to = quarters == 0 ? 2 * map.quarter - edge : map.quarter - edge;
     for (const double limit : {-to, -from, from, to}) {
         if (limit == 0 || !(limit > min(begin, end) && limit < max(begin, end))) continue;
-        const WayTo<double> first = way_between(phase, quarters, begin, limit);
-        const WayTo<double> second = way_between(phase, quarters, limit, end);
-        return {{first.way.time + second.way.time, first.way.angle + second.way.angle,
-                 first.way.path + second.way.path},
+        const Integral<double> first = integral_between(phase, quarters, begin, limit);
+        const Integral<double> second = integral_between(phase, quarters, limit, end);
+        return {{first.sum.time + second.sum.time, first.sum.angle + second.sum.angle,
+                 first.sum.path + second.sum.path},
                 second.end};
     }
     const double middle = abs(0.5 * (begin + end));
-    if (!(middle >= from && middle <= to)) return way_by_panels(phase, quarters, begin, end);
-    const PhaseWay<double> slope = way_by_panels(phase, quarters, end, end).end;
+    if (!(middle >= from && middle <= to)) return integral_by_panels(phase, quarters, begin, end);
+    const PhaseIncrement<double> slope = integral_by_panels(phase, quarters, end, end).end;
     return {{(end - begin) * slope.time, 0.0, 0.0}, slope};
 }
 
-// A cubic for dt/dy in the step after a place, and its integral.
+// dt/dy and the time, by a cubic for dt/dy in a step and its integral.
 template <class T>
 struct Cubic {
     T slope;
@@ -163,7 +175,7 @@ inline Cubic<T> in_step(const PhaseTime<T>& phase, T i, T s) {
             phase.map.step * s * (f0 + s * (m0 / 2 + s * (p2 / 3 + s * p3 / 4)))};
 }
 
-// To a few digits: the time since the flat, for 0 <= y <= Y, dt/dy, and the place at a time.
+// dt/dy and the time since the flat at 0 <= y <= Y, to a few digits.
 template <class T>
 inline Cubic<T> rough_time(const PhaseTime<T>& phase, T y) {
     const PhaseMap<T>& map = phase.map;
@@ -178,6 +190,7 @@ inline Cubic<T> rough_time(const PhaseTime<T>& phase, T y) {
                                                     : element(phase.time, i) + at.time};
 }
 
+// The place y at a time since the flat, to a few digits.
 template <class T>
 inline T rough_place(const PhaseTime<T>& phase, T time) {
     const PhaseMap<T>& map = phase.map;
@@ -197,9 +210,9 @@ inline T rough_place(const PhaseTime<T>& phase, T time) {
                      : map.step * (i + s) + (time - begin - at.time) / at.slope;
 }
 
-// To a few digits, how far in y a time reaches.
+// The distance in y that a time reaches, to a few digits.
 template <class T>
-inline T rough_distance(const PhaseTime<T>& phase, const Place<T>& from, T time) {
+inline T rough_distance(const PhaseTime<T>& phase, const PhasePlace<T>& from, T time) {
     const T quarter = phase.map.quarter;
     const T y = (from.quarters != 0 ? from.quarters * quarter : T{}) + from.offset;
     const Cubic<T> start = rough_time<T>(phase, abs(y));
@@ -213,7 +226,7 @@ inline T rough_distance(const PhaseTime<T>& phase, const Place<T>& from, T time)
                : place + (some ? 2 * half_turns * quarter : T{}) - y;
 }
 
-// dt/dy at the steps: the quarter by the trapezoidal rule.
+// Sets dt/dy at the steps, and integrates the quarter by the trapezoidal rule.
 template <class T>
 void integrate_quarter(PhaseTime<T>& phase) {
     const PhaseMap<T>& map = phase.map;
@@ -223,8 +236,8 @@ void integrate_quarter(PhaseTime<T>& phase) {
     TwoParts<T> sum{};
     T path{};
     T offsets[most_places];
-    PhaseWays<T> rates;
-    T beyond{};  // what is left of dt/dy at the tip
+    PhaseRates<T> rates;
+    T beyond{};  // dt/dy at the tip
     if (any(map.has_tail)) {
         offsets[0] = T{};
         phase_rates(phase.rate, map, filled<T>(1.0), offsets, 1, rates);
@@ -237,7 +250,7 @@ void integrate_quarter(PhaseTime<T>& phase) {
         for (int i = first; i < first + count; ++i) {
             const auto is_end = i == 0 ? n > -1 : n == i;
             const T weight = is_end ? filled<T>(0.5) : n > i ? filled<T>(1.0) : T{};
-            // about the end all is even
+            // even about the end
             f[i] = n < i ? f[i - 2] : rates.time[i - first];
             add<T>(sum, weight * (rates.time[i - first] - beyond));
             path += weight * rates.path[i - first];
@@ -246,7 +259,8 @@ void integrate_quarter(PhaseTime<T>& phase) {
     f[-1] = f[1];
     f[most + 1] = f[most - 1];
     phase.quarter_path = path * map.step;
-    phase.quarter_turn = times<T>(sum, map.step);
+    const TwoParts<T> whole = two_product(sum.high, map.step);
+    phase.quarter_turn = quick_two_sum(whole.high, whole.low + sum.low * map.step);
     if (any(map.has_tail)) {
         const TwoParts<T> tail = two_product(map.quarter, beyond);
         const TwoParts<T> all = (phase.quarter_turn + tail.high) + tail.low;
@@ -261,6 +275,7 @@ void integrate_quarter(PhaseTime<T>& phase) {
     }
 }
 
+// Sets the time as a function of the phase for these constants.
 template <class T>
 void set_phase_time(PhaseTime<T>& phase, const PhaseRate<T>& rate) {
     phase.rate = rate;
@@ -275,49 +290,50 @@ void set_phase_time(PhaseTime<T>& phase, const PhaseRate<T>& rate) {
     phase.half_turn = {2 * phase.quarter_turn.high, 2 * phase.quarter_turn.low};
 }
 
-// Where a motion is after a time of at most a full swing, and the way there.
+// The place after a time of at most a full swing, and the interval from the start to it.
 template <class T>
 struct PhaseMove {
-    Place<T> to;
-    PhaseWay<T> way;
+    PhasePlace<T> to;
+    PhaseIncrement<T> sum;
 };
 
-// Newton's method: the way is integrated to a first guess, and extended by what is missing. The
-// last step is so small that its square is below rounding, or the place does not show it.
+// Newton's method: the interval is integrated to a first guess, and extended by the missing time.
+// The last step is so small that its square is below rounding, or that it does not change the
+// place.
 template <class T>
-PhaseMove<T> move(const PhaseTime<T>& phase, const Place<T>& from, T time) {
+PhaseMove<T> move(const PhaseTime<T>& phase, const PhasePlace<T>& from, T time) {
     constexpr double smallest_step = 3e-9;
     constexpr double largest_step = 0.5;
     constexpr int most_steps = 60;
-    // To places that are doubles themselves, so that the way and the place it leads to agree.
+    // Ends of intervals are doubles, so that the integral and the place agree.
     const auto to_double = [&](T distance) { return (from.offset + distance) - from.offset; };
     T distance = to_double(rough_distance(phase, from, time));
-    auto [way, slope] = way_between(phase, from.quarters, from.offset, from.offset + distance);
+    auto [sum, slope] = integral_between(phase, from.quarters, from.offset, from.offset + distance);
     auto open = time == time;
     for (int i = 0; i < most_steps; ++i) {
-        const T missing = (time - way.time) / slope.time;
+        const T missing = (time - sum.time) / slope.time;
         const T step = max<T>(min<T>(missing, filled<T>(largest_step)), filled<T>(-largest_step));
         const T begin = from.offset + distance;
         const T least =
             max<T>(smallest_step * min<T>(abs(distance), filled<T>(1.0)), epsilon * abs(begin));
         const auto is_last = open & (abs(step) <= least);
-        way.angle = is_last ? way.angle + step * slope.angle : way.angle;
-        way.path = is_last ? way.path + step * slope.path : way.path;
+        sum.angle = is_last ? sum.angle + step * slope.angle : sum.angle;
+        sum.path = is_last ? sum.path + step * slope.path : sum.path;
         open = open & (abs(step) > least);
         const T next = to_double(distance + step);
         const T after = open ? next : distance;
         distance = is_last ? distance + step : after;
         if (!any(open)) break;
-        const WayTo<T> more = way_between(phase, from.quarters, begin, from.offset + after);
-        way.time = open ? way.time + more.way.time : way.time;
-        way.angle = open ? way.angle + more.way.angle : way.angle;
-        way.path = open ? way.path + more.way.path : way.path;
+        const Integral<T> more = integral_between(phase, from.quarters, begin, from.offset + after);
+        sum.time = open ? sum.time + more.sum.time : sum.time;
+        sum.angle = open ? sum.angle + more.sum.angle : sum.angle;
+        sum.path = open ? sum.path + more.sum.path : sum.path;
         slope.time = open ? more.end.time : slope.time;
         slope.angle = open ? more.end.angle : slope.angle;
         slope.path = open ? more.end.path : slope.path;
     }
-    way.time = time;
-    return {moved(phase.map, from, distance), way};
+    sum.time = time;
+    return {moved(phase.map, from, distance), sum};
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "numerics/double_double.hpp"
-#include "numerics/tracked.hpp"
+#include "numerics/polynomial.hpp"
 #include "rolling/slope/series.hpp"
 #include "scene/scene.hpp"
 
