@@ -47,7 +47,7 @@ Outcome followed(const Scene& scene, const State& start, const Checkpoint& check
         const SlopePlace next = place_after(flow.body, flow.energy, piece);
         const double turns = double(time_of_turning(piece));
         const double tips = time_of_tip(piece);
-        const bool breaks = watch.look(piece);
+        const bool breaks = watch.examine(piece);
         const LawMeetings met = watch.met();
         const double first = std::min(turns, tips);
         const auto before = [&](const std::optional<Meeting>& meeting) {

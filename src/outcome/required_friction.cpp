@@ -14,13 +14,10 @@ double required_friction(const Scene& scene) {
     Scene rough = scene;
     rough.friction = infinity;
     const State start = initial_state(rough).state;
-    const Body body = scene.body();
-    if (scene.slope != 0) {
-        const std::optional<SlopeExtremes> found = extremes_on_slope(rough, start);
-        return found ? std::max(in_the_blow, found->most_friction) : infinity;
-    }
-    const RollingStart rolling = rolling_start(body, start.theta, start.omega);
-    const Certificate found = certify_rolling(rolling, scene.mass, rough.friction);
+    const Certificate found =
+        scene.slope != 0 ? certify_on_slope(rough, start, {Validity::no_proof})
+                         : certify_rolling(rolling_start(scene.body(), start.theta, start.omega),
+                                           scene.mass, rough.friction);
     return std::max(in_the_blow, *found.largest_friction_needed);
 }
 
