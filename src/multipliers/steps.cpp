@@ -217,16 +217,17 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples) {
     with_integrator(motion, [&](auto integrator, const auto& steps) {
-        look(integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
-            CoordinateState state = state_at(motion, knot, change);
-            for (const int angle : {coordinate::theta, coordinate::psi}) {
-                const DoubleDouble rest = two_sum(state.q[angle], 0.0);
-                state.q[angle] =
-                    static_cast<double>(motion.angle_base + half_turn * knot.periods + rest);
-            }
-            state.q[coordinate::x] += motion.x_base;
-            samples[i] = state;
-        });
+        sample_steps(
+            integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
+                CoordinateState state = state_at(motion, knot, change);
+                for (const int angle : {coordinate::theta, coordinate::psi}) {
+                    const DoubleDouble rest = two_sum(state.q[angle], 0.0);
+                    state.q[angle] =
+                        static_cast<double>(motion.angle_base + half_turn * knot.periods + rest);
+                }
+                state.q[coordinate::x] += motion.x_base;
+                samples[i] = state;
+            });
     });
 }
 

@@ -106,10 +106,10 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples) {
     with_integrator(motion, [&](auto integrator) {
         StepView view(motion);
-        look(integrator, motion.steps, times, n,
-             [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
-                 samples[i] = view(knot, change);
-             });
+        sample_steps(integrator, motion.steps, times, n,
+                     [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
+                         samples[i] = view(knot, change);
+                     });
     });
 }
 
