@@ -271,7 +271,7 @@ LawMeetings law_meetings(SlopeFlow& flow, double friction, double until) {
     if (flow.climb) {
         append(all, law_in_half_turn(flow, friction, flow.start));
         if (all.broken) return all;
-        append(all, law_in_run(flow, *flow.climb, friction, flow.climbed - 1));
+        append(all, law_in_run(flow, *flow.climb, friction, flow.climb->half_turns - 1));
         if (all.broken) return all;
     }
     LawWatch watch(flow, friction);

@@ -147,7 +147,7 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
     const double curvature = body.gravity.along * top.dh - body.gravity.into * top.ddh;
     const double least = std::max(energy - lost + body.gravity.into * fall(body, run.at, top).value,
                                   least_levels * body.gain);
-    const double flat = std::asinh(std::sqrt(body.series.d0 / body.series.d1));
+    const double flat = std::asinh(std::sqrt(body.d0 / body.d1));
     const double beside_hill =
         curvature > 0 ? std::min(std::sqrt(2 * least / curvature), 1.0) : 1.0;
 
