@@ -63,7 +63,7 @@ py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const 
 // The nearest state that meets the constraints.
 py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
     CoordinateState state = single_state(q, q_dot);
-    ConstrainedBody(scene).project(state.q, state.q_dot);
+    ConstrainedBody(scene).project(state);
     return py::make_tuple(Array(5, state.q.data()), Array(5, state.q_dot.data()));
 }
 

@@ -9,7 +9,10 @@
 namespace rolling_ellipse {
 namespace {
 
-CoordinateState state_of(const Vector<10>& y) { return {y.head<5>(), y.tail<5>()}; }
+template <int N>
+CoordinateState state_of(const Vector<N>& y) {
+    return {y.template head<5>(), y.template segment<5>(5)};
+}
 
 // The index-1 system for y = (q, q_dot).
 struct IndexOne {
@@ -17,7 +20,7 @@ struct IndexOne {
     const SteppedMultipliers& motion;
 
     Vector<10> operator()(double, const Vector<10>& y) const {
-        const CoordinateState state = state_of(y);
+        const CoordinateState state = state_of<10>(y);
         Vector<10> rate;
         rate << state.q_dot, accelerations(motion.body, motion.settings, state).q_ddot;
         return rate;
@@ -108,12 +111,12 @@ SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
                                const Settings& settings) {
     const ConstrainedBody body(scene);
     const auto& [q, q_dot] = start.state;
-    SteppedMultipliers motion{body,    settings,         body.specific_energy(q, q_dot).total(),
+    SteppedMultipliers motion{body,    settings,         body.specific_energy(start.state).total(),
                               start.x, start.angle_base, {}};
     const double size = settings.step.value_or(0.0);
     if (settings.stabilization == Stabilization::ggl) {
         Vector<17> y;
-        y << q, q_dot, body.solve(q, q_dot).multipliers / scene.mass, Eigen::Vector3d::Zero();
+        y << q, q_dot, body.solve(start.state).multipliers / scene.mass, Eigen::Vector3d::Zero();
         motion.steps = Steps<17>{size, {{0.0, y, Vector<17>::Zero(), 0.0}}};
     } else {
         Vector<10> y;
@@ -123,27 +126,25 @@ SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
     return motion;
 }
 
-bool projects(Stabilization stabilization) {
-    return stabilization == Stabilization::projection ||
-           stabilization == Stabilization::projection_energy;
+bool projects(const SteppedMultipliers& motion) {
+    return motion.settings.stabilization == Stabilization::projection ||
+           motion.settings.stabilization == Stabilization::projection_energy;
 }
 
 // Project a state by the stabilization in force; returns the largest residual before.
-double project(const SteppedMultipliers& motion, Coordinates& q, Coordinates& q_dot) {
+double project(const SteppedMultipliers& motion, CoordinateState& state) {
     if (motion.settings.stabilization == Stabilization::projection_energy) {
-        return motion.body.project(q, q_dot, motion.specific_energy);
+        return motion.body.project(state, motion.specific_energy);
     }
-    return motion.body.project(q, q_dot);
+    return motion.body.project(state);
 }
 
 template <int N>
 AfterStep adjust(SteppedMultipliers& motion, Point<N>& point) {
-    if (!projects(motion.settings.stabilization)) return AfterStep::go_on;
-    Coordinates q = point.y.template head<5>();
-    Coordinates q_dot = point.y.template segment<5>(5);
-    motion.most_projected = std::fmax(motion.most_projected, project(motion, q, q_dot));
-    point.y.template head<5>() = q;
-    point.y.template segment<5>(5) = q_dot;
+    if (!projects(motion)) return AfterStep::go_on;
+    CoordinateState state = state_of<N>(point.y);
+    motion.most_projected = std::fmax(motion.most_projected, project(motion, state));
+    point.y.template head<10>() << state.q, state.q_dot;
     point.carry.setZero();
     return AfterStep::changed;
 }
@@ -165,11 +166,8 @@ double reduce(Point<N>& point) {
 template <int N>
 CoordinateState state_at(const SteppedMultipliers& motion, const Knot<N>& knot,
                          const Vector<N>& change) {
-    const Vector<N> y = knot.y + (knot.carry + change);
-    CoordinateState state{y.template head<5>(), y.template segment<5>(5)};
-    if (projects(motion.settings.stabilization) && !change.isZero(0)) {
-        project(motion, state.q, state.q_dot);
-    }
+    CoordinateState state = state_of<N>(knot.y + (knot.carry + change));
+    if (projects(motion) && !change.isZero(0)) project(motion, state);
     return state;
 }
 
@@ -235,9 +233,9 @@ std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evalua
     std::vector<Invariants> found;
     with_integrator(motion, [&](auto integrator, const auto& steps) {
         survey(integrator, steps, evaluations, [&](const auto& knot, const auto& change) {
-            const auto [q, q_dot] = state_at(motion, knot, change);
+            const CoordinateState state = state_at(motion, knot, change);
             found.push_back(
-                {motion.body.specific_energy(q, q_dot), motion.body.largest_residual(q)});
+                {motion.body.specific_energy(state), motion.body.largest_residual(state.q)});
         });
     });
     return found;
@@ -248,7 +246,7 @@ std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evalua
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
                                  const CoordinateState& state) {
     if (settings.stabilization != Stabilization::baumgarte) {
-        return body.solve(state.q, state.q_dot);
+        return body.solve(state);
     }
     const Axes& axes = body.axes();
     const auto [alpha, beta] = settings.baumgarte;

@@ -36,36 +36,7 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     }
 }
 
-// The samples of a motion. All times of a step share what is known at its knot.
-class StepView {
-  public:
-    explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
-
-    FlowSample operator()(const Knot<2>& knot, const Vector<2>& change) {
-        if (&knot != knot_) move_to(knot);
-        const double rest = knot.y[0] + (knot.carry[0] + change[0]);
-        const double path = change[0] == 0 ? centre_path(motion_.axes, rest) : path_(rest);
-        return {static_cast<double>(theta_ + change[0]), knot.y[1] + (knot.carry[1] + change[1]),
-                static_cast<double>(motion_.x_base + (path_before_ + path))};
-    }
-
-  private:
-    void move_to(const Knot<2>& knot) {
-        knot_ = &knot;
-        theta_ =
-            motion_.theta_base + half_turn * knot.periods + DoubleDouble{knot.y[0], knot.carry[0]};
-        path_before_ = knot.periods * motion_.half_turn_path;
-    }
-
-    const SteppedRolling& motion_;
-    PathSeries path_;
-    const Knot<2>* knot_ = nullptr;
-    DoubleDouble theta_;
-    double path_before_ = 0.0;  // of the half turns until then
-};
-
-}  // namespace
-
+// The motion before its first step.
 SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings) {
     const Axes axes = scene.axes();
     const double rest = within_a_turn(start.theta);
@@ -79,6 +50,8 @@ SteppedRolling rolling_from(const Scene& scene, const State& start, const Settin
     motion.steps.knots.push_back({0.0, {rest, start.omega}, Vector<2>::Zero(), 0.0});
     return motion;
 }
+
+}  // namespace
 
 Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& start,
                                               const Settings& settings, double t_end,
@@ -104,13 +77,24 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 }
 
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples) {
-    with_integrator(motion, [&](auto integrator) {
-        StepView view(motion);
-        sample_steps(integrator, motion.steps, times, n,
-                     [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
-                         samples[i] = view(knot, change);
-                     });
-    });
+    PathSeries path(motion.axes);
+    const Knot<2>* last = nullptr;
+    DoubleDouble theta;        // at the last knot
+    double path_before = 0.0;  // of the half turns before it
+    const auto take = [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
+        if (&knot != last) {
+            last = &knot;
+            theta = motion.theta_base + half_turn * knot.periods +
+                    DoubleDouble{knot.y[0], knot.carry[0]};
+            path_before = knot.periods * motion.half_turn_path;
+        }
+        const double rest = knot.y[0] + (knot.carry[0] + change[0]);
+        const double over = change[0] == 0 ? centre_path(motion.axes, rest) : path(rest);
+        samples[i] = {double(theta + change[0]), knot.y[1] + (knot.carry[1] + change[1]),
+                      double(motion.x_base + (path_before + over))};
+    };
+    with_integrator(
+        motion, [&](auto integrator) { sample_steps(integrator, motion.steps, times, n, take); });
 }
 
 std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations) {
@@ -122,10 +106,10 @@ std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluation
         survey(integrator, motion.steps, evaluations,
                [&](const Knot<2>& knot, const Vector<2>& change) {
                    const Vector<2> y = knot.y + (knot.carry + change);
-                   double x = 0.0;
-                   if (!f.is_level()) {
-                       x = knot.periods * motion.half_turn_path + (path(y[0]) - path_before);
-                   }
+                   // The path of the centre, which changes the energy on a slope only.
+                   const double x = f.is_level() ? 0.0
+                                                 : knot.periods * motion.half_turn_path +
+                                                       (path(y[0]) - path_before);
                    found.push_back({f.energy(geometry(motion.axes, y[0]), y[1], x), 0.0});
                });
     });
