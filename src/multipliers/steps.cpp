@@ -5,6 +5,7 @@
 #include "geometry/half_turns.hpp"
 #include "integrator/radau.hpp"
 #include "integrator/runge_kutta.hpp"
+#include "rolling/stepped/steps.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -95,16 +96,9 @@ void with_integrator(Motion& motion, Action action) {
     }
     auto& steps = std::get<Steps<10>>(motion.steps);
     const IndexOne f{motion};
-    switch (motion.settings.method) {
-        case Method::rk4:
-            return action(ExplicitMethod<RungeKutta4, IndexOne>(f), steps);
-        case Method::dopri5:
-            return action(ExplicitMethod<DormandPrince5, IndexOne>(f), steps);
-        case Method::dop853:
-            return action(ExplicitMethod<DormandPrince853, IndexOne>(f), steps);
-        default:
-            no_integrator_for(motion.settings.method);
-    }
+    with_tableau(motion.settings.method, [&](auto tableau) {
+        action(ExplicitMethod<decltype(tableau), IndexOne>(f), steps);
+    });
 }
 
 SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,

@@ -29,7 +29,6 @@ EnergyRange energy_range(const RollingStart& start) {
     const double unit = at.long_axis;
     EnergyRange range{};
     static_cast<Shape&>(range) = shape(start.body, at);
-    range.energy = height.total / unit;
     range.libration = height.over_tip < 0;
     if (range.libration) {
         range.width = height.over_flat / unit;
@@ -42,7 +41,7 @@ EnergyRange energy_range(const RollingStart& start) {
 }
 
 EnergyRange separatrix_range(const Shape& shape) {
-    return {shape, 1.0, shape.c2 / (1 + shape.short_axis), 0.0, 0.0, false};
+    return {shape, shape.c2 / (1 + shape.short_axis), 0.0, 0.0, false};
 }
 
 ForcePolynomials force_polynomials(const EnergyRange& range) {

@@ -18,7 +18,6 @@ namespace rolling_ellipse {
 
 // The heights h = short_axis + width x, 0 <= x <= 1, that a body of a shape reaches.
 struct EnergyRange : Shape {
-    double energy;      // H
     double width;       // of the heights reached
     double energy_gap;  // H minus the greatest height reached (0 in libration)
     double tip_gap;     // 1 minus the greatest height reached (0 in rotation)

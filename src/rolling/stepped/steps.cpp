@@ -19,20 +19,16 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     const RollingEquation& f = motion.equation;
     const int stages = motion.settings.stages.value_or(default_stages);
     switch (motion.settings.method) {
-        case Method::rk4:
-            return action(ExplicitMethod<RungeKutta4, RollingEquation>(f));
-        case Method::dopri5:
-            return action(ExplicitMethod<DormandPrince5, RollingEquation>(f));
         case Method::radau:
             return action(Radau<RollingEquation>(f));
         case Method::gauss:
             if (stages == 2) return action(Gauss<2, RollingEquation>(f));
             if (stages == 3) return action(Gauss<3, RollingEquation>(f));
             return action(Gauss<4, RollingEquation>(f));
-        case Method::dop853:
-            return action(ExplicitMethod<DormandPrince853, RollingEquation>(f));
         default:
-            no_integrator_for(motion.settings.method);
+            return with_tableau(motion.settings.method, [&](auto tableau) {
+                action(ExplicitMethod<decltype(tableau), RollingEquation>(f));
+            });
     }
 }
 

@@ -1,6 +1,7 @@
 // Rolling by numerical integration: the state at any time.
 #pragma once
 
+#include "integrator/explicit_tableaus.hpp"
 #include "integrator/steps.hpp"
 #include "rolling/level/flow.hpp"
 #include "rolling/stepped/equation.hpp"
@@ -19,6 +20,21 @@ struct SteppedRolling {
     double half_turn_path;    // of the centre
     Steps<2> steps;
 };
+
+// Call action(tableau) with the tableau of an explicit method.
+template <class Action>
+auto with_tableau(Method method, const Action& action) {
+    switch (method) {
+        case Method::rk4:
+            return action(RungeKutta4{});
+        case Method::dopri5:
+            return action(DormandPrince5{});
+        case Method::dop853:
+            return action(DormandPrince853{});
+        default:
+            no_integrator_for(method);
+    }
+}
 
 Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& start,
                                               const Settings& settings, double t_end,
