@@ -29,6 +29,7 @@ class ConstrainedBody {
     explicit ConstrainedBody(const Scene& scene);
 
     const Axes& axes() const { return axes_; }
+    double length() const { return length_; }
 
     // Accelerations and multipliers for A q_ddot = demand, from one factorisation.
     MultiplierSolution solve(const Coordinates& q, const Eigen::Vector4d& demand) const;
@@ -69,7 +70,7 @@ class ConstrainedBody {
     double mass_;
     double gyration2_;
     GroundGravity gravity_;
-    double length_;  // unit of length that makes angles and displacements comparable
+    double length_;  // the long semi-axis, which makes angles and displacements comparable
 };
 
 }  // namespace rolling_ellipse

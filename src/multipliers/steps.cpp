@@ -55,8 +55,7 @@ struct IndexTwo {
     }
 
     Vector<17> typical() const {
-        const Axes& axes = motion.body.axes();
-        const double length = std::fmax(axes.a, axes.b);
+        const double length = motion.body.length();
         const double gravity = motion.body.specific_force().norm();
         const double rate = std::sqrt(gravity / length);
         Vector<17> typical;
@@ -68,10 +67,9 @@ struct IndexTwo {
     // Finite differences by q, accurate enough for a simplified Newton iteration; the rest is
     // linear.
     Matrix<17> jacobian(double t, const Vector<17>& y) const {
-        const Axes& axes = motion.body.axes();
-        const double length = std::fmax(axes.a, axes.b);
+        const double length = motion.body.length();
         const Coordinates unit{length, length, 1.0, 1.0, length};
-        const ConstraintMatrix a = constraint_matrix(axes, y.head<5>());
+        const ConstraintMatrix a = constraint_matrix(motion.body.axes(), y.head<5>());
         const Vector<17> here = (*this)(t, y);
         Matrix<17> jacobian = Matrix<17>::Zero();
         for (int i = 0; i < 5; ++i) {
