@@ -103,7 +103,7 @@ py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Ar
     const py::ssize_t n = theta.size();
     require_length("theta", theta, n);
     require_length("omega", omega, n);
-    const RollingDynamics dynamics(scene);
+    const RollingEquation rolling(scene.body(), scene.slope);
     std::vector<Array> out = empty_arrays(5, n);
     std::array<double*, 5> columns{};
     std::transform(out.begin(), out.end(), columns.begin(),
@@ -113,7 +113,7 @@ py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Ar
             const double speed = omega.data()[i];
             const double angle = theta.data()[i];
             const Geometry at = geometry(scene.axes(), angle);
-            const ContactForce force = dynamics.force(at, speed);
+            const ContactForce force = rolling.force(scene.mass, at, speed);
             const State state = in_contact(at, angle, speed, 0.0, 0.0, Mode::rolling);
             const double row[] = {state.z, state.x_dot, state.z_dot, force.normal, force.friction};
             for (std::size_t column = 0; column < columns.size(); ++column) {

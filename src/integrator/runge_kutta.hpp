@@ -6,7 +6,6 @@
 #include <array>
 #include <type_traits>
 
-#include "integrator/dense_output.hpp"
 #include "integrator/explicit_tableaus.hpp"
 #include "integrator/system.hpp"
 

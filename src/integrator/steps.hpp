@@ -20,7 +20,6 @@
 #include <optional>
 #include <vector>
 
-#include "integrator/dense_output.hpp"
 #include "integrator/system.hpp"
 
 namespace rolling_ellipse {

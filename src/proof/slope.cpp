@@ -31,7 +31,8 @@ class Well {
           gravity_(scene.ground_gravity()),
           gyration2_(scene.body().gyration2),
           pull_(scene.gravity * (scene.a - scene.b) * (scene.a + scene.b)),
-          dynamics_(scene) {
+          mass_(scene.mass),
+          rolling_(scene.body(), scene.slope) {
         const auto found = equilibria(axes_.a, axes_.b, std::tan(scene.slope));
         if (!found) return;
         upright_ = half_pi + found->upright;
@@ -87,7 +88,7 @@ class Well {
     ContactForce force(double angle) const {
         const Geometry at = geometry(axes_, angle);
         const double omega2 = 2 * std::max(energy(angle), 0.0) / inertia(at);
-        return dynamics_.force(at, std::sqrt(omega2));
+        return rolling_.force(mass_, at, std::sqrt(omega2));
     }
 
     double needed(double angle) const { return friction_needed(force(angle)); }
@@ -141,7 +142,8 @@ class Well {
     const GroundGravity gravity_;
     const double gyration2_;
     const double pull_;  // g (a^2 - b^2)
-    const RollingDynamics dynamics_;
+    const double mass_;
+    const RollingEquation rolling_;
     double upright_ = 0.0;
     double lying_ = 0.0;
     double start_ = 0.0;

@@ -185,7 +185,7 @@ SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const S
     return place;
 }
 
-// Physics (18, 20); RollingDynamics has the same forces for a scene.
+// Physics (18, 20); RollingEquation has the same forces in SI units.
 ContactForce contact_force(const SlopeBody& body, const SlopePlace& place) {
     const Geometry at = geometry(body, place);
     const double omega2 = square(place.omega);

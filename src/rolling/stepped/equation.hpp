@@ -41,6 +41,20 @@ class RollingEquation {
     Vector<2> operator()(double t, const Vector<2>& y) const;
     Matrix<2> jacobian(double t, const Vector<2>& y) const;
     SpecificEnergy energy(const Geometry& at, double omega, double x) const;
+
+    // Accelerations of theta and of the centre, and the contact force of a body with a mass:
+    // physics (20), Newton's law for the centre.
+    struct Accelerations {
+        double theta;
+        double x;
+        double z;
+    };
+    Accelerations accelerations(const Geometry& at, double omega) const;
+    ContactForce force(double mass, const Accelerations& of_centre) const;
+    ContactForce force(double mass, const Geometry& at, double omega) const {
+        return force(mass, accelerations(at, omega));
+    }
+
     bool is_level() const { return gravity_.along == 0; }
     Vector<2> mass() const { return Vector<2>::Ones(); }
     Vector<2> typical() const {
@@ -87,28 +101,7 @@ class RollingEquation {
     return {y[1], acceleration(turned_[odd], sine, cosine, y[1])};
 }
 
-// Accelerations and contact force of a rolling body: physics (20), Newton's law for the centre.
-class RollingDynamics {
-  public:
-    explicit RollingDynamics(const Scene& scene);
-
-    struct Accelerations {
-        double theta;
-        double x;
-        double z;
-    };
-    Accelerations accelerations(const Geometry& at, double omega) const;
-    ContactForce force(const Accelerations& of_centre) const;
-    ContactForce force(const Geometry& at, double omega) const {
-        return force(accelerations(at, omega));
-    }
-
-  private:
-    RollingEquation equation_;
-    double mass_;
-    GroundGravity gravity_;
-};
-
+// The contact force of a rolling body.
 ContactForce rolling_force(const Scene& scene, double theta, double omega);
 
 // Second derivatives of the coordinates psi and r of the contact point.
