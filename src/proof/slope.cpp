@@ -66,13 +66,13 @@ class Well {
 
     double energy(double angle) const { return energy_ + gained(angle); }
 
-    // W at an angle minus W at the start. Over short ways the difference of two heights, or of two
-    // paths, would have lost its digits: there it is a quadrature of physics (62).
+    // W at an angle minus W at the start. Over small angles the difference of two heights, or of
+    // two paths, would have lost its digits: there it is a quadrature of physics (62).
     double gained(double angle) const {
-        const double way = angle - start_;
+        const double turned = angle - start_;
         const Geometry from = geometry(axes_, start_);
         const auto [a, b] = axes_;
-        if (std::abs(way) < 0.1 * b / a) {
+        if (std::abs(turned) < 0.1 * b / a) {
             const auto rate = [&](double at) {
                 const double swung = std::sin(at - lying_) * std::sin(upright_ - at);
                 return -pull_ * swung / geometry(axes_, at).h;
@@ -80,7 +80,7 @@ class Well {
             return double(integrate(gauss_rule(20), start_, angle, rate));
         }
         const double path = centre_path(axes_, angle) - centre_path(axes_, start_);
-        const double rise = (a - b) * (a + b) * std::sin(angle + start_) * std::sin(way) /
+        const double rise = (a - b) * (a + b) * std::sin(angle + start_) * std::sin(turned) /
                             (geometry(axes_, angle).h + from.h);
         return gravity_.along * path - gravity_.into * rise;
     }

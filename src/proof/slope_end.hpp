@@ -1,4 +1,4 @@
-// Where rolling on a slope ends: the law of the contact along the motion, as polynomials of time.
+// The end of rolling on a slope: the law of the contact along the motion, as polynomials of time.
 //
 // N and F come from the same power series as the motion, N = g_into + h'' and F = x'' - g_along, so
 // that the first place at which the law is broken is the first root of a polynomial. Half turns

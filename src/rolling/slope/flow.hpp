@@ -42,7 +42,7 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
 // Extend the pieces until the motion is known up to a time [s].
 void prepare(SlopeFlow& flow, double t);
 
-// Append one piece; false if the rest of the motion is known without more pieces.
+// Append one piece; false if the motion is known without more pieces.
 bool grow(SlopeFlow& flow);
 
 // The state at a prepared time in [0, longest_time]; the states at n times, fastest if ascending.
