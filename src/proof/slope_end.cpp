@@ -22,24 +22,26 @@ constexpr double rounding = 1e-12;
 
 // The margin of the law for friction to one side, over the share 0 <= x <= 1 of a piece.
 struct LawWatch::Law {
-    double side = 1.0;
-    std::array<double, degree + 1> coefficients{};
-    double size = 0.0;  // the sum of the sizes of its terms
+    double side;
+    double size;  // the sum of the sizes of its terms
+    std::array<double, degree + 1> coefficients;
 
-    Law() = default;
     Law(const SlopeBody& body, const SlopePiece& piece, double friction, double to_side)
         : side(to_side), size(law_size({body.gravity.into, body.gravity.along}, friction)) {
+        const double normal = std::isinf(friction) ? 1.0 : friction;
+        const double needed = std::isinf(friction) ? 0.0 : 1.0;
         const double z = piece.lasts / piece.unit;
         double power = 1 / square(piece.unit);
         for (int k = 0; k <= degree; ++k) {
             const double twice = (k + 2) * (k + 1) * power;
-            ContactForce term{twice * piece.series.height[k + 2], twice * piece.series.path[k + 2]};
+            double n = twice * piece.series.height[k + 2];
+            double f = twice * piece.series.path[k + 2];
             if (k == 0) {
-                term.normal += body.gravity.into;
-                term.friction -= body.gravity.along;
+                n += body.gravity.into;
+                f -= body.gravity.along;
             }
-            coefficients[k] = law_margin(term, friction, side);
-            size += law_size(term, friction);
+            coefficients[k] = normal * n - side * needed * f;
+            size += std::abs(normal * n) + std::abs(needed * f);
             power *= z;
         }
     }
@@ -137,13 +139,13 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
 bool LawWatch::examine(const SlopePiece& piece) {
     if (std::isinf(piece.lasts)) return false;
     const int count = std::isinf(friction_) ? 1 : 2;  // infinite friction leaves the law N > 0
-    Law laws[2];
+    std::optional<Law> laws[2];
     for (int i = 0; i < count; ++i) {
-        laws[i] = Law(flow_.body, piece, friction_, i == 0 ? 1.0 : -1.0);
-        if (!laws[i].is_resolved()) return examine_parts(piece);
+        laws[i].emplace(flow_.body, piece, friction_, i == 0 ? 1.0 : -1.0);
+        if (!laws[i]->is_resolved()) return examine_parts(piece);
     }
     for (int i = 0; i < count; ++i) {
-        if (near_[i].open || !laws[i].is_positive()) examine(piece, laws[i], near_[i]);
+        if (near_[i].open || !laws[i]->is_positive()) examine(piece, *laws[i], near_[i]);
     }
     at_start_ = false;
     return met_.broken.has_value();
