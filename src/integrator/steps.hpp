@@ -97,6 +97,7 @@ void sample_steps(Integrator& integrator, const Steps<N>& steps, const double* t
             step = static_cast<std::size_t>(later - knots.begin()) - 1;
             dense.reset();
         }
+        const Knot<N>& knot = knots[step];
         const double size = step == last ? 0.0 : since_knot(knots[step + 1].t);
         const double since = since_knot(t);
         Vector<N> change = Vector<N>::Zero();
@@ -104,11 +105,11 @@ void sample_steps(Integrator& integrator, const Steps<N>& steps, const double* t
             if (step < steps.dense.size()) {
                 change = steps.dense[step].change(since / size);
             } else {
-                if (!dense) dense.emplace(integrator.dense_output(knots[step].point(), size));
+                if (!dense) dense.emplace(integrator.dense_output(knot.point(), size));
                 change = dense->change(since / size);
             }
         }
-        take(i, knots[step], change);
+        take(i, knot, change);
     }
 }
 

@@ -32,6 +32,34 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     }
 }
 
+// The state at places of a motion. All places of a step share what is computed at its knot.
+class StepView {
+  public:
+    explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
+
+    FlowSample operator()(const Knot<2>& knot, const Vector<2>& change) {
+        if (&knot != knot_) move_to(knot);
+        const double rest = knot.y[0] + (knot.carry[0] + change[0]);
+        const double path = change[0] == 0 ? centre_path(motion_.axes, rest) : path_(rest);
+        return {double(theta_ + change[0]), knot.y[1] + (knot.carry[1] + change[1]),
+                double(motion_.x_base + (path_before_ + path))};
+    }
+
+  private:
+    void move_to(const Knot<2>& knot) {
+        knot_ = &knot;
+        theta_ =
+            motion_.theta_base + half_turn * knot.periods + DoubleDouble{knot.y[0], knot.carry[0]};
+        path_before_ = knot.periods * motion_.half_turn_path;
+    }
+
+    const SteppedRolling& motion_;
+    PathSeries path_;
+    const Knot<2>* knot_ = nullptr;
+    DoubleDouble theta_;
+    double path_before_ = 0.0;  // of the half turns before the knot
+};
+
 // The motion before its first step.
 SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings) {
     const Axes axes = scene.axes();
@@ -73,24 +101,13 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 }
 
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples) {
-    PathSeries path(motion.axes);
-    const Knot<2>* last = nullptr;
-    DoubleDouble theta;        // at the last knot
-    double path_before = 0.0;  // of the half turns before it
-    const auto take = [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
-        if (&knot != last) {
-            last = &knot;
-            theta = motion.theta_base + half_turn * knot.periods +
-                    DoubleDouble{knot.y[0], knot.carry[0]};
-            path_before = knot.periods * motion.half_turn_path;
-        }
-        const double rest = knot.y[0] + (knot.carry[0] + change[0]);
-        const double over = change[0] == 0 ? centre_path(motion.axes, rest) : path(rest);
-        samples[i] = {double(theta + change[0]), knot.y[1] + (knot.carry[1] + change[1]),
-                      double(motion.x_base + (path_before + over))};
-    };
-    with_integrator(
-        motion, [&](auto integrator) { sample_steps(integrator, motion.steps, times, n, take); });
+    with_integrator(motion, [&](auto integrator) {
+        StepView view(motion);
+        sample_steps(integrator, motion.steps, times, n,
+                     [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
+                         samples[i] = view(knot, change);
+                     });
+    });
 }
 
 std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations) {
