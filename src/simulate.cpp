@@ -153,7 +153,7 @@ CertifiedScene certify(const Scene& scene) {
         result.certificate = certify_rolling(*from.rolling, scene.mass, scene.friction);
     } else if (from.on_slope) {
         const LawMeetings met = law_meetings(*from.on_slope, scene.friction);
-        result.certificate = certify_on_slope(scene, from.initial.state, met);
+        result.certificate = certify_on_slope(scene, from.initial.state, end_of_rolling(met));
     }
     result.reason = reason(scene, from.initial, result.certificate);
     return result;

@@ -46,7 +46,7 @@ py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const 
 // The nearest state that satisfies the constraints.
 py::tuple projected(const Scene& scene, const Array& q, const Array& q_dot) {
     CoordinateState state = single_state(q, q_dot);
-    ConstrainedBody(scene).project(state.q, state.q_dot);
+    ConstrainedBody(scene).project(state);
     return py::make_tuple(Array(5, state.q.data()), Array(5, state.q_dot.data()));
 }
 
@@ -70,11 +70,11 @@ py::dict rolling_arrays(const Scene& scene, const Array& theta, const Array& ome
 py::dict rolling_contact_arrays(const Scene& scene, const Array& theta, const Array& omega) {
     const py::ssize_t n = theta.size();
     const Arguments<2> of({"theta", "omega"}, {theta, omega}, n);
-    const RollingDynamics dynamics(scene);
+    const RollingEquation rolling(scene.body(), scene.slope);
     const auto row = [&](py::ssize_t i) {
         const auto [angle, speed] = of[i];
         const Geometry at = geometry(scene.axes(), angle);
-        const ContactForce force = dynamics.force(at, speed);
+        const ContactForce force = rolling.force(scene.mass, at, speed);
         const State state = in_contact(at, angle, speed, 0.0, 0.0, Mode::rolling);
         return std::tuple(state.z, state.x_dot, state.z_dot, force.normal, force.friction);
     };

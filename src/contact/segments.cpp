@@ -99,13 +99,13 @@ template <class Law, class Sample>
 void look_at(const Scene& scene, const Law& law, const double* times, std::size_t n,
              Sample* samples) {
     if constexpr (std::is_same_v<Sample, ContactSample>) {  // of a law that rolls
-        const RollingDynamics dynamics(scene);
+        const RollingEquation rolling(scene.body(), scene.slope);
         std::vector<FlowSample> states(n);
         look_at(scene, law, times, n, states.data());
         for (const auto& [theta, omega, x] : states) {
             const Geometry at = geometry(scene.axes(), theta);
             *samples++ = {in_contact(at, theta, omega, x, 0.0, Mode::rolling),
-                          dynamics.force(at, omega)};
+                          rolling.force(scene.mass, at, omega)};
         }
     } else {
         std::vector<ContactSample> found(n);

@@ -23,10 +23,15 @@ class Gauss {
     // One step; false if it is so large that the stages do not converge.
     bool advance(Point<N>& point, double h) {
         const std::array<double, S> hb = weights(h);
-        StageVectors<N, S> stages = h == last_step_ ? foreseen(point) : constant(point);
+        // First guess: the collocation polynomial of the previous step, extrapolated.
+        StageVectors<N, S> stages;
+        for (int j = 0; j < S; ++j) {
+            stages[j] = point.y;
+            if (h == last_step_) stages[j] += combination(Coefficients::nu[j]);
+        }
         Stagnation<N, S> stagnation;
         bool shrinking = true;
-        for (int i = 0; shrinking || !stagnation.settled(size(point)); ++i) {
+        for (int i = 0; shrinking || !stagnation.settled(size<S>(f_, point, increments_)); ++i) {
             if (i == most_iterations) return false;
             for (int j = 0; j < S; ++j) {
                 increments_[j] = hb[j] * f_(point.t + Coefficients::c[j] * h, stages[j]);
@@ -70,25 +75,6 @@ class Gauss {
     Vector<N> combination(const double (&row)[S]) const {
         Vector<N> sum = row[0] * increments_[0];
         for (int j = 1; j < S; ++j) sum += row[j] * increments_[j];
-        return sum;
-    }
-
-    static StageVectors<N, S> constant(const Point<N>& point) {
-        StageVectors<N, S> stages;
-        stages.fill(point.y);
-        return stages;
-    }
-
-    // First guess of the stages: the collocation polynomial of the previous step, extrapolated.
-    StageVectors<N, S> foreseen(const Point<N>& point) const {
-        StageVectors<N, S> stages;
-        for (int i = 0; i < S; ++i) stages[i] = point.y + combination(Coefficients::nu[i]);
-        return stages;
-    }
-
-    Vector<N> size(const Point<N>& point) const {
-        Vector<N> sum = f_.typical() + point.y.cwiseAbs();
-        for (const Vector<N>& increment : increments_) sum += increment.cwiseAbs();
         return sum;
     }
 

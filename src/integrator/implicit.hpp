@@ -10,6 +10,14 @@ namespace rolling_ellipse {
 template <int N, int Stages>
 using StageVectors = std::array<Vector<N>, Stages>;
 
+// Size of each component of a step: an ordinary state, the point and the parts of the step.
+template <int Stages, class System, int N = System::size>
+Vector<N> size(const System& f, const Point<N>& point, const StageVectors<N, Stages>& parts) {
+    Vector<N> sum = f.typical() + point.y.cwiseAbs();
+    for (const Vector<N>& part : parts) sum += part.cwiseAbs();
+    return sum;
+}
+
 // Stopping criterion of an iteration to the last bit: no component has a shrinking change any more
 // (M. Antonana, J. Makazaga, A. Murua, Numer. Algorithms 76 (2017) 861, 3.2).
 template <int N, int Stages>

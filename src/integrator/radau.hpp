@@ -44,7 +44,7 @@ class Radau {
         w.fill(Vector<N>::Zero());
         Stagnation<N, 3> stagnation;
         bool shrinking = true;
-        for (int i = 0; shrinking || !stagnation.settled(size(point, z)); ++i) {
+        for (int i = 0; shrinking || !stagnation.settled(size<3>(f_, point, z)); ++i) {
             if (i == most_iterations) return false;
             StageVectors<N, 3> slopes;
             for (int j = 0; j < 3; ++j) {
@@ -67,7 +67,8 @@ class Radau {
             for (int j = 0; j < 3; ++j) changes[j] = next[j] - z[j];
             z = next;
             if (!in_range<N>(z[2])) return false;
-            shrinking = stagnation.shrinks(changes) && stagnation.left(size(point, z)) > rounding;
+            shrinking =
+                stagnation.shrinks(changes) && stagnation.left(size<3>(f_, point, z)) > rounding;
         }
         add<N>(point, z[2]);  // the last stage is the end of the step
         return true;
@@ -88,12 +89,6 @@ class Radau {
             result[i] = rows[i][0] * v[0] + rows[i][1] * v[1] + rows[i][2] * v[2];
         }
         return result;
-    }
-
-    Vector<N> size(const Point<N>& point, const StageVectors<N, 3>& z) const {
-        Vector<N> sum = f_.typical() + point.y.cwiseAbs();
-        for (const Vector<N>& change : z) sum += change.cwiseAbs();
-        return sum;
     }
 
     const System& f_;

@@ -4,47 +4,34 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <type_traits>
 
-#include "integrator/dense_output.hpp"
 #include "integrator/explicit_tableaus.hpp"
 #include "integrator/system.hpp"
 
 namespace rolling_ellipse {
 
-// Rows of a tableau as types: terms with a zero coefficient are removed at compile time.
-template <class Tableau, int Row>
-struct StageRow {
-    static constexpr const auto& weights = Tableau::a[Row];
-};
-template <class Tableau, int Row>
-struct ErrorRow {
-    static constexpr const auto& weights = Tableau::error[Row];
-};
-template <class Tableau, int Row>
-struct DenseRow {
-    static constexpr const auto& weights = Tableau::dense[Row];
-};
-
-// Written by components, since Eigen's expressions of vectors are not inlined here.
-template <class Row, std::size_t J, class K, int N>
-[[gnu::always_inline]] inline void add_weighted(const K& k, Vector<N>& sum) {
-    if constexpr (Row::weights[J] != 0.0) {
-        for (int i = 0; i < N; ++i) sum[i] += Row::weights[J] * k[J][i];
+// Call action(i) for First <= i < End, each i a constant of its own type.
+template <int First, int End, class Action>
+[[gnu::always_inline]] inline void unrolled(const Action& action) {
+    if constexpr (First < End) {
+        action(std::integral_constant<int, First>{});
+        unrolled<First + 1, End>(action);
     }
 }
 
-template <class Row, int N, std::size_t Size, std::size_t... J>
-[[gnu::always_inline]] inline Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k,
-                                                     std::index_sequence<J...>) {
-    Vector<N> sum = Vector<N>::Zero();
-    (add_weighted<Row, J, std::array<Vector<N>, Size>, N>(k, sum), ...);
-    return sum;
-}
-
-template <class Row, int N, std::size_t Size>
+// The sum of the first Count stages with the weights of a row; terms with a zero weight are removed
+// at compile time. Written by components, since Eigen's expressions of vectors are not inlined
+// here.
+template <const auto& Table, int Row, int Count, int N, std::size_t Size>
 [[gnu::always_inline]] inline Vector<N> weighted_sum(const std::array<Vector<N>, Size>& k) {
-    return weighted_sum<Row>(k, std::make_index_sequence<Size>{});
+    Vector<N> sum = Vector<N>::Zero();
+    unrolled<0, Count>([&](auto stage) __attribute__((always_inline)) {
+        if constexpr (constexpr double weight = Table[Row][stage]; weight != 0.0) {
+            for (int i = 0; i < N; ++i) sum[i] += weight * k[stage][i];
+        }
+    });
+    return sum;
 }
 
 template <class Tableau, class System>
@@ -52,10 +39,10 @@ class ExplicitMethod {
   public:
     static constexpr int N = System::size;
     static constexpr bool controls_error = Tableau::error_estimates > 0;
+    static constexpr int all_stages = Tableau::all_stages;
     using Dense = DenseOutput<N, Tableau::dense_terms>;
     // True if a step of controlled error computes every stage of its dense output.
-    static constexpr bool keeps_dense =
-        controls_error && Tableau::all_stages == Tableau::stages + 1;
+    static constexpr bool keeps_dense = controls_error && all_stages == Tableau::stages + 1;
 
     explicit ExplicitMethod(const System& system) : f_(system) {}
 
@@ -71,7 +58,7 @@ class ExplicitMethod {
     // The dense output of the step of size h from a point.
     Dense dense_output(const Point<N>& from, double h) {
         evaluate<0, Tableau::stages + 1>(from, h);
-        evaluate<Tableau::stages + 1, Tableau::all_stages>(from, h);
+        evaluate<Tableau::stages + 1, all_stages>(from, h);
         return dense_of_stages(h);
     }
 
@@ -134,7 +121,9 @@ class ExplicitMethod {
         dense.terms[0] = change;
         dense.terms[1] = h * slope_before - change;
         dense.terms[2] = 2 * change - h * (slope_before + slope_after);
-        add_dense_terms(h, dense, std::make_index_sequence<Tableau::dense_terms>{});
+        unrolled<0, Tableau::dense_terms>([&](auto term) {
+            dense.terms[3 + term] = h * weighted_sum<Tableau::dense, term, all_stages>(k_);
+        });
         for (Vector<N>& term : dense.terms) {
             // After an overflow in a stage the interpolant is unknown.
             if (!in_range<N>(term)) term.setZero();
@@ -152,9 +141,8 @@ class ExplicitMethod {
     [[gnu::always_inline]] void evaluate_stage(const Point<N>& from, double h) {
         Vector<N> change = from.carry;
         if constexpr (Stage > 0) {
-            using Row = StageRow<Tableau, Stage>;
-            const Vector<N> known = weighted_sum<Row>(k_, std::make_index_sequence<Stage - 1>{});
-            const double share = h * Row::weights[Stage - 1];
+            const Vector<N> known = weighted_sum<Tableau::a, Stage, Stage - 1>(k_);
+            const double share = h * Tableau::a[Stage][Stage - 1];
             for (int i = 0; i < N; ++i) {
                 change[i] = (change[i] + h * known[i]) + share * k_[Stage - 1][i];
             }
@@ -163,24 +151,13 @@ class ExplicitMethod {
         ++counts_.evaluations;
     }
 
-    template <int First, std::size_t... I>
-    void evaluate([[maybe_unused]] const Point<N>& from, [[maybe_unused]] double h,
-                  std::index_sequence<I...>) {
-        (evaluate_stage<First + static_cast<int>(I)>(from, h), ...);
-    }
-
     template <int First, int End>
     void evaluate(const Point<N>& from, double h) {
-        evaluate<First>(from, h, std::make_index_sequence<End - First>{});
+        unrolled<First, End>([&](auto stage) { evaluate_stage<stage>(from, h); });
     }
 
     Vector<N> increment(double h) const {
-        return h * weighted_sum<StageRow<Tableau, Tableau::stages>>(k_);
-    }
-
-    template <std::size_t... I>
-    void add_dense_terms([[maybe_unused]] double h, Dense& dense, std::index_sequence<I...>) const {
-        ((dense.terms[3 + I] = h * weighted_sum<DenseRow<Tableau, I>>(k_)), ...);
+        return h * weighted_sum<Tableau::a, Tableau::stages, all_stages>(k_);
     }
 
     // 1/(atol + rtol size); infinite where both are 0.
@@ -211,11 +188,12 @@ class ExplicitMethod {
                                std::abs(after.origin[i] + after.y[i]));
         }
         const Vector<N> inverse = inverse_scale(tolerance, size);
-        const double error = mean_square(weighted_sum<ErrorRow<Tableau, 0>>(k_), inverse);
+        const double error = mean_square(weighted_sum<Tableau::error, 0, all_stages>(k_), inverse);
         if constexpr (Tableau::error_estimates == 1) {
             return h * h * error;
         } else {  // HNW II.10: the estimate of order 5, damped by that of order 3
-            const double rough = mean_square(weighted_sum<ErrorRow<Tableau, 1>>(k_), inverse);
+            const double rough =
+                mean_square(weighted_sum<Tableau::error, 1, all_stages>(k_), inverse);
             return error == 0.0 ? 0.0 : h * h * error * (error / (error + 0.01 * rough));
         }
     }
@@ -243,7 +221,7 @@ class ExplicitMethod {
 
     const System& f_;
     StepCounts counts_;
-    std::array<Vector<N>, Tableau::all_stages> k_;
+    std::array<Vector<N>, all_stages> k_;
     Dense last_dense_;
 };
 

@@ -20,7 +20,6 @@
 #include <optional>
 #include <vector>
 
-#include "integrator/dense_output.hpp"
 #include "integrator/system.hpp"
 
 namespace rolling_ellipse {
@@ -75,70 +74,42 @@ Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& toler
     return integrate_by_fixed_steps(integrator, start, steps.size, t_end, max_steps, visit);
 }
 
-// Finds the step that contains a time.
-template <int N>
-class StepFinder {
-  public:
-    explicit StepFinder(const Steps<N>& steps) : steps_(steps) {}
-
-    // Move to the step that contains t; true if that is another step than before.
-    bool move_to(double t) {
-        const std::vector<Knot<N>>& knots = steps_.knots;
-        if (step_ < knots.size() && knots[step_].t <= t &&
-            (step_ + 1 == knots.size() || t < knots[step_ + 1].t)) {
-            return false;
-        }
-        const auto later =
-            std::upper_bound(knots.begin(), knots.end(), t,
-                             [](double time, const Knot<N>& knot) { return time < knot.t; });
-        step_ = static_cast<std::size_t>(later - knots.begin()) - 1;
-        return true;
-    }
-
-    const Knot<N>& knot() const { return steps_.knots[step_]; }
-
-    // The dense output of the step, or null if it is not stored.
-    const DenseOutput<N, 1>* dense() const {
-        return step_ < steps_.dense.size() ? &steps_.dense[step_] : nullptr;
-    }
-
-    // Time since the knot. A fixed step begins at the exact multiple of its size.
-    double since_knot(double t) const {
-        return steps_.size == 0 ? t - knot().t
-                                : std::fma(-static_cast<double>(step_), steps_.size, t);
-    }
-
-    // Size of the step; 0 after the last knot.
-    double size() const {
-        return step_ + 1 == steps_.knots.size() ? 0.0 : since_knot(steps_.knots[step_ + 1].t);
-    }
-
-  private:
-    const Steps<N>& steps_;
-    std::size_t step_ = static_cast<std::size_t>(-1);
-};
-
 // Call take(i, knot, change) for each of n times between the first and the last knot; the state is
 // the knot's plus the change. Fastest for sorted times.
 template <class Integrator, int N, class Take>
-void look(Integrator& integrator, const Steps<N>& steps, const double* times, std::size_t n,
-          Take take) {
-    StepFinder<N> finder(steps);
+void sample_steps(Integrator& integrator, const Steps<N>& steps, const double* times, std::size_t n,
+                  Take take) {
+    const std::vector<Knot<N>>& knots = steps.knots;
+    const std::size_t last = knots.size() - 1;
+    std::size_t step = last + 1;  // the step that contains the time; none at first
     std::optional<decltype(integrator.dense_output({}, 0.0))> dense;
+    // Time since the knot. A fixed step begins at the exact multiple of its size.
+    const auto since_knot = [&](double t) {
+        return steps.size == 0 ? t - knots[step].t
+                               : std::fma(-static_cast<double>(step), steps.size, t);
+    };
     for (std::size_t i = 0; i < n; ++i) {
-        if (finder.move_to(times[i])) dense.reset();
-        const double size = finder.size();
-        const double since = finder.since_knot(times[i]);
+        const double t = times[i];
+        if (!(step <= last && knots[step].t <= t && (step == last || t < knots[step + 1].t))) {
+            const auto later =
+                std::upper_bound(knots.begin(), knots.end(), t,
+                                 [](double time, const Knot<N>& knot) { return time < knot.t; });
+            step = static_cast<std::size_t>(later - knots.begin()) - 1;
+            dense.reset();
+        }
+        const Knot<N>& knot = knots[step];
+        const double size = step == last ? 0.0 : since_knot(knots[step + 1].t);
+        const double since = since_knot(t);
         Vector<N> change = Vector<N>::Zero();
         if (size > 0 && since != 0) {
-            if (const auto* kept = finder.dense()) {
-                change = kept->change(since / size);
+            if (step < steps.dense.size()) {
+                change = steps.dense[step].change(since / size);
             } else {
-                if (!dense) dense.emplace(integrator.dense_output(finder.knot().point(), size));
+                if (!dense) dense.emplace(integrator.dense_output(knot.point(), size));
                 change = dense->change(since / size);
             }
         }
-        take(i, finder.knot(), change);
+        take(i, knot, change);
     }
 }
 

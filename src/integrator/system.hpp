@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -44,6 +45,25 @@ void add(Point<N>& point, const Vector<N>& increment) {
         point.carry[i] = sum.low;
     }
 }
+
+// Dense output of an explicit method (E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
+// Differential Equations I, II.6): the cubic Hermite polynomial with terms of higher order,
+//     y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))),   0 <= s <= 1.
+template <int N, int Terms>
+struct DenseOutput {
+    static constexpr bool of_full_order = false;
+
+    std::array<Vector<N>, 3 + Terms> terms;
+
+    Vector<N> change(double s) const {
+        Vector<N> value = terms.back();
+        for (int i = 1 + Terms; i >= 0; --i) {
+            const double factor = i % 2 == 0 ? 1 - s : s;
+            for (int j = 0; j < N; ++j) value[j] = terms[i][j] + factor * value[j];
+        }
+        return s * value;
+    }
+};
 
 // Steps between two calls of the checkpoint: 10 us of the cheapest steps, 4 ms of the slowest.
 inline constexpr std::size_t steps_between_checks = 64;

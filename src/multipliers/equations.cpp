@@ -84,13 +84,13 @@ MultiplierSolution ConstrainedBody::solve(const Coordinates& q,
     return {q_ddot, mass_ * specific};
 }
 
-MultiplierSolution ConstrainedBody::solve(const Coordinates& q, const Coordinates& q_dot) const {
-    return solve(q, Eigen::Vector4d(-constraint_drift(axes_, q, q_dot)));
+MultiplierSolution ConstrainedBody::solve(const CoordinateState& state) const {
+    return solve(state.q, -constraint_drift(axes_, state.q, state.q_dot));
 }
 
 // physics (17)
-SpecificEnergy ConstrainedBody::specific_energy(const Coordinates& q,
-                                                const Coordinates& q_dot) const {
+SpecificEnergy ConstrainedBody::specific_energy(const CoordinateState& state) const {
+    const auto& [q, q_dot] = state;
     return {0.5 * q_dot.dot(specific_mass().cwiseProduct(q_dot)), -specific_force().dot(q)};
 }
 
@@ -98,34 +98,36 @@ double ConstrainedBody::largest_residual(const Coordinates& q) const {
     return as_length(position_residuals(axes_, q)) / length_;
 }
 
-double ConstrainedBody::project(Coordinates& q, Coordinates& q_dot) const {
+double ConstrainedBody::project(CoordinateState& state) const {
+    auto& [q, q_dot] = state;
     const double missed = project_position(q);
-    project_velocity(q, q_dot);
+    const ConstraintMatrix a = constraint_matrix(axes_, q);
+    q_dot += solve_saddle<4>(a, Coordinates::Zero(), -a * q_dot).change;
     return missed;
 }
 
-// Newton's method along the rolling direction, until the energy in excess stops shrinking. There
+// Newton's method along the rolling direction, until the energy in excess stops shrinking. Along it
 // the energy changes by D (omega domega - pull dtheta), where `pull` is the component of the force
 // over D. The correction is the least one in domega^2 + (g/L) dtheta^2, regular at turning points,
 // too.
-double ConstrainedBody::project(Coordinates& q, Coordinates& q_dot, double energy) const {
+double ConstrainedBody::project(CoordinateState& state, double energy) const {
     constexpr int most_iterations = 20;
     const double rate2 = root_of_squares(gravity_.into, gravity_.along) / length_;
-    const double missed = project(q, q_dot);
+    const double missed = project(state);
     double last = infinity;
     for (int i = 0; i < most_iterations; ++i) {
-        const double excess = specific_energy(q, q_dot).total() - energy;
+        const double excess = specific_energy(state).total() - energy;
         if (excess == 0 || !(std::abs(excess) < last)) return missed;
         last = std::abs(excess);
-        const double omega = q_dot[coordinate::theta];
-        const Coordinates along = rolling_direction(constraint_matrix(axes_, q));
+        const double omega = state.q_dot[coordinate::theta];
+        const Coordinates along = rolling_direction(constraint_matrix(axes_, state.q));
         const double inertia = along.dot(specific_mass().cwiseProduct(along));
         const double pull = specific_force().dot(along) / inertia;
         const double steepness = inertia * (pull * pull / rate2 + omega * omega);
         if (steepness == 0) return missed;
-        q += excess / steepness * pull / rate2 * along;
-        q_dot -= excess / steepness * omega * along;
-        project(q, q_dot);
+        state.q += excess / steepness * pull / rate2 * along;
+        state.q_dot -= excess / steepness * omega * along;
+        project(state);
     }
     return missed;
 }
@@ -151,11 +153,6 @@ double ConstrainedBody::project_position(Coordinates& q) const {
         q += solve_saddle<3>(rows, Coordinates::Zero(), -residuals).change;
     }
     return missed;
-}
-
-void ConstrainedBody::project_velocity(const Coordinates& q, Coordinates& q_dot) const {
-    const ConstraintMatrix a = constraint_matrix(axes_, q);
-    q_dot += solve_saddle<4>(a, Coordinates::Zero(), -a * q_dot).change;
 }
 
 }  // namespace rolling_ellipse

@@ -29,14 +29,15 @@ class ConstrainedBody {
     explicit ConstrainedBody(const Scene& scene);
 
     const Axes& axes() const { return axes_; }
+    double length() const { return length_; }
 
     // Accelerations and multipliers for A q_ddot = demand, from one factorisation.
     MultiplierSolution solve(const Coordinates& q, const Eigen::Vector4d& demand) const;
 
     // Accelerations and multipliers that keep the constraints.
-    MultiplierSolution solve(const Coordinates& q, const Coordinates& q_dot) const;
+    MultiplierSolution solve(const CoordinateState& state) const;
 
-    SpecificEnergy specific_energy(const Coordinates& q, const Coordinates& q_dot) const;
+    SpecificEnergy specific_energy(const CoordinateState& state) const;
 
     // M/m, Q/m.
     Coordinates specific_mass() const { return {1.0, 1.0, gyration2_, 0.0, 0.0}; }
@@ -45,12 +46,10 @@ class ConstrainedBody {
     // max(|f2|/L, |f3|/L, |f4|) with the long semi-axis L.
     double largest_residual(const Coordinates& q) const;
 
-    // Project a state to the nearest one, in the kinetic metric, that meets the constraints;
-    // returns the largest residual before.
-    double project(Coordinates& q, Coordinates& q_dot) const;
-
-    // The same, and the state has the given energy per mass afterwards.
-    double project(Coordinates& q, Coordinates& q_dot, double energy) const;
+    // Project a state to the nearest one, in the kinetic metric, that meets the constraints, and
+    // that has the given energy per mass if there is one; returns the largest residual before.
+    double project(CoordinateState& state) const;
+    double project(CoordinateState& state, double energy) const;
 
   private:
     template <int Rows>
@@ -66,13 +65,12 @@ class ConstrainedBody {
 
     double as_length(const Eigen::Vector3d& residuals) const;  // the largest
     double project_position(Coordinates& q) const;
-    void project_velocity(const Coordinates& q, Coordinates& q_dot) const;
 
     Axes axes_;
     double mass_;
     double gyration2_;
     GroundGravity gravity_;
-    double length_;  // unit of length that makes angles and displacements comparable
+    double length_;  // the long semi-axis, which makes angles and displacements comparable
 };
 
 }  // namespace rolling_ellipse

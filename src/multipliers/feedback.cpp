@@ -4,8 +4,7 @@
 #include <array>
 #include <complex>
 
-#include "integrator/explicit_tableaus.hpp"
-#include "numerics/numbers.hpp"
+#include "rolling/stepped/steps.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -23,31 +22,23 @@ std::complex<double> stability_function(std::complex<double> z) {
     return y;
 }
 
-template <class Tableau>
-double largest_factor(double alpha, double beta, double step) {
-    const std::complex<double> split =
-        std::sqrt(std::complex<double>(square(alpha) - square(beta)));
-    double largest = 0.0;
-    for (const std::complex<double> root :
-         {-alpha + split, -alpha - split, std::complex<double>(-2 * alpha)}) {
-        largest = std::max(largest, std::abs(stability_function<Tableau>(root * step)));
-    }
-    return largest;
-}
-
 }  // namespace
 
 double feedback_growth(const Settings& settings) {
     if (settings.stabilization != Stabilization::baumgarte || !settings.step) return 0.0;
-    const auto [alpha, beta] = settings.baumgarte;
-    switch (settings.method) {
-        case Method::rk4:
-            return largest_factor<RungeKutta4>(alpha, beta, *settings.step);
-        case Method::dopri5:
-            return largest_factor<DormandPrince5>(alpha, beta, *settings.step);
-        default:
-            return largest_factor<DormandPrince853>(alpha, beta, *settings.step);
-    }
+    const double alpha = settings.baumgarte[0];
+    const double beta = settings.baumgarte[1];
+    const std::complex<double> split =
+        std::sqrt(std::complex<double>(square(alpha) - square(beta)));
+    return with_tableau(settings.method, [&](auto tableau) {
+        double largest = 0.0;
+        for (const std::complex<double> root :
+             {-alpha + split, -alpha - split, std::complex<double>(-2 * alpha)}) {
+            const auto factor = stability_function<decltype(tableau)>(root * *settings.step);
+            largest = std::max(largest, std::abs(factor));
+        }
+        return largest;
+    });
 }
 
 }  // namespace rolling_ellipse

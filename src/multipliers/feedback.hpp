@@ -5,8 +5,8 @@
 
 namespace rolling_ellipse {
 
-// Largest growth factor of a constraint error per step; above 1 it diverges. 0 without feedback or
-// without a fixed step.
+// Largest growth factor of a constraint error per step, above 1 if the error diverges; 0 without
+// feedback or without a fixed step.
 //
 // To first order the feedback is linear. Its rates s are the roots of s^2 + 2 alpha s + beta^2 for
 // the positions and -2 alpha for f1; a step of size dt multiplies each part of the error by the

@@ -5,11 +5,15 @@
 #include "geometry/half_turns.hpp"
 #include "integrator/radau.hpp"
 #include "integrator/runge_kutta.hpp"
+#include "rolling/stepped/steps.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-CoordinateState state_of(const Vector<10>& y) { return {y.head<5>(), y.tail<5>()}; }
+template <int N>
+CoordinateState state_of(const Vector<N>& y) {
+    return {y.template head<5>(), y.template segment<5>(5)};
+}
 
 // The index-1 system for y = (q, q_dot).
 struct IndexOne {
@@ -17,7 +21,7 @@ struct IndexOne {
     const SteppedMultipliers& motion;
 
     Vector<10> operator()(double, const Vector<10>& y) const {
-        const CoordinateState state = state_of(y);
+        const CoordinateState state = state_of<10>(y);
         Vector<10> rate;
         rate << state.q_dot, accelerations(motion.body, motion.settings, state).q_ddot;
         return rate;
@@ -51,8 +55,7 @@ struct IndexTwo {
     }
 
     Vector<17> typical() const {
-        const Axes& axes = motion.body.axes();
-        const double length = std::fmax(axes.a, axes.b);
+        const double length = motion.body.length();
         const double gravity = motion.body.specific_force().norm();
         const double rate = std::sqrt(gravity / length);
         Vector<17> typical;
@@ -64,10 +67,9 @@ struct IndexTwo {
     // Finite differences by q, accurate enough for a simplified Newton iteration; the rest is
     // linear.
     Matrix<17> jacobian(double t, const Vector<17>& y) const {
-        const Axes& axes = motion.body.axes();
-        const double length = std::fmax(axes.a, axes.b);
+        const double length = motion.body.length();
         const Coordinates unit{length, length, 1.0, 1.0, length};
-        const ConstraintMatrix a = constraint_matrix(axes, y.head<5>());
+        const ConstraintMatrix a = constraint_matrix(motion.body.axes(), y.head<5>());
         const Vector<17> here = (*this)(t, y);
         Matrix<17> jacobian = Matrix<17>::Zero();
         for (int i = 0; i < 5; ++i) {
@@ -92,28 +94,21 @@ void with_integrator(Motion& motion, Action action) {
     }
     auto& steps = std::get<Steps<10>>(motion.steps);
     const IndexOne f{motion};
-    switch (motion.settings.method) {
-        case Method::rk4:
-            return action(ExplicitMethod<RungeKutta4, IndexOne>(f), steps);
-        case Method::dopri5:
-            return action(ExplicitMethod<DormandPrince5, IndexOne>(f), steps);
-        case Method::dop853:
-            return action(ExplicitMethod<DormandPrince853, IndexOne>(f), steps);
-        default:
-            no_integrator_for(motion.settings.method);
-    }
+    with_tableau(motion.settings.method, [&](auto tableau) {
+        action(ExplicitMethod<decltype(tableau), IndexOne>(f), steps);
+    });
 }
 
 SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
                                const Settings& settings) {
     const ConstrainedBody body(scene);
     const auto& [q, q_dot] = start.state;
-    SteppedMultipliers motion{body,    settings,         body.specific_energy(q, q_dot).total(),
+    SteppedMultipliers motion{body,    settings,         body.specific_energy(start.state).total(),
                               start.x, start.angle_base, {}};
     const double size = settings.step.value_or(0.0);
     if (settings.stabilization == Stabilization::ggl) {
         Vector<17> y;
-        y << q, q_dot, body.solve(q, q_dot).multipliers / scene.mass, Eigen::Vector3d::Zero();
+        y << q, q_dot, body.solve(start.state).multipliers / scene.mass, Eigen::Vector3d::Zero();
         motion.steps = Steps<17>{size, {{0.0, y, Vector<17>::Zero(), 0.0}}};
     } else {
         Vector<10> y;
@@ -123,27 +118,25 @@ SteppedMultipliers motion_from(const Scene& scene, const CoordinateStart& start,
     return motion;
 }
 
-bool projects(Stabilization stabilization) {
-    return stabilization == Stabilization::projection ||
-           stabilization == Stabilization::projection_energy;
+bool projects(const SteppedMultipliers& motion) {
+    return motion.settings.stabilization == Stabilization::projection ||
+           motion.settings.stabilization == Stabilization::projection_energy;
 }
 
 // Project a state by the stabilization in force; returns the largest residual before.
-double project(const SteppedMultipliers& motion, Coordinates& q, Coordinates& q_dot) {
+double project(const SteppedMultipliers& motion, CoordinateState& state) {
     if (motion.settings.stabilization == Stabilization::projection_energy) {
-        return motion.body.project(q, q_dot, motion.specific_energy);
+        return motion.body.project(state, motion.specific_energy);
     }
-    return motion.body.project(q, q_dot);
+    return motion.body.project(state);
 }
 
 template <int N>
 AfterStep adjust(SteppedMultipliers& motion, Point<N>& point) {
-    if (!projects(motion.settings.stabilization)) return AfterStep::go_on;
-    Coordinates q = point.y.template head<5>();
-    Coordinates q_dot = point.y.template segment<5>(5);
-    motion.most_projected = std::fmax(motion.most_projected, project(motion, q, q_dot));
-    point.y.template head<5>() = q;
-    point.y.template segment<5>(5) = q_dot;
+    if (!projects(motion)) return AfterStep::go_on;
+    CoordinateState state = state_of<N>(point.y);
+    motion.most_projected = std::fmax(motion.most_projected, project(motion, state));
+    point.y.template head<10>() << state.q, state.q_dot;
     point.carry.setZero();
     return AfterStep::changed;
 }
@@ -165,11 +158,8 @@ double reduce(Point<N>& point) {
 template <int N>
 CoordinateState state_at(const SteppedMultipliers& motion, const Knot<N>& knot,
                          const Vector<N>& change) {
-    const Vector<N> y = knot.y + (knot.carry + change);
-    CoordinateState state{y.template head<5>(), y.template segment<5>(5)};
-    if (projects(motion.settings.stabilization) && !change.isZero(0)) {
-        project(motion, state.q, state.q_dot);
-    }
+    CoordinateState state = state_of<N>(knot.y + (knot.carry + change));
+    if (projects(motion) && !change.isZero(0)) project(motion, state);
     return state;
 }
 
@@ -217,16 +207,17 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples) {
     with_integrator(motion, [&](auto integrator, const auto& steps) {
-        look(integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
-            CoordinateState state = state_at(motion, knot, change);
-            for (const int angle : {coordinate::theta, coordinate::psi}) {
-                const DoubleDouble rest = two_sum(state.q[angle], 0.0);
-                state.q[angle] =
-                    static_cast<double>(motion.angle_base + half_turn * knot.periods + rest);
-            }
-            state.q[coordinate::x] += motion.x_base;
-            samples[i] = state;
-        });
+        sample_steps(
+            integrator, steps, times, n, [&](std::size_t i, const auto& knot, const auto& change) {
+                CoordinateState state = state_at(motion, knot, change);
+                for (const int angle : {coordinate::theta, coordinate::psi}) {
+                    const DoubleDouble rest = two_sum(state.q[angle], 0.0);
+                    state.q[angle] =
+                        static_cast<double>(motion.angle_base + half_turn * knot.periods + rest);
+                }
+                state.q[coordinate::x] += motion.x_base;
+                samples[i] = state;
+            });
     });
 }
 
@@ -234,9 +225,9 @@ std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evalua
     std::vector<Invariants> found;
     with_integrator(motion, [&](auto integrator, const auto& steps) {
         survey(integrator, steps, evaluations, [&](const auto& knot, const auto& change) {
-            const auto [q, q_dot] = state_at(motion, knot, change);
+            const CoordinateState state = state_at(motion, knot, change);
             found.push_back(
-                {motion.body.specific_energy(q, q_dot), motion.body.largest_residual(q)});
+                {motion.body.specific_energy(state), motion.body.largest_residual(state.q)});
         });
     });
     return found;
@@ -247,7 +238,7 @@ std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evalua
 MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& settings,
                                  const CoordinateState& state) {
     if (settings.stabilization != Stabilization::baumgarte) {
-        return body.solve(state.q, state.q_dot);
+        return body.solve(state);
     }
     const Axes& axes = body.axes();
     const auto [alpha, beta] = settings.baumgarte;

@@ -9,12 +9,12 @@
 
 namespace rolling_ellipse {
 
-// A start whose x is 0 and whose angles are measured from a base.
+// A start in coordinates with x = 0 and angles measured from a base.
 struct CoordinateStart {
     CoordinateState state;
     double x;
     DoubleDouble angle_base;
-    bool rests = false;  // true for a body at rest for ever
+    bool rests = false;  // at rest for ever
 };
 
 struct SteppedMultipliers {
@@ -28,7 +28,7 @@ struct SteppedMultipliers {
     double most_projected = 0.0;  // largest residual of a step before its projection
 };
 
-// The start of a rolling body, and the start from any coordinates and velocities.
+// The start of a rolling body, and a start from any coordinates and velocities.
 CoordinateStart coordinate_start(const Scene& scene, const State& start);
 CoordinateStart coordinate_start(const CoordinateState& state);
 
@@ -41,8 +41,8 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples);
 
-// Energies and constraint residuals along the motion, at a twentieth of the cost of its
-// evaluations.
+// Energies and constraint residuals along a motion that took so many evaluations, at a twentieth of
+// their cost.
 std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations);
 
 // Accelerations and multipliers of a state, with Baumgarte's feedback if the settings ask for it.

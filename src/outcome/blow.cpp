@@ -49,7 +49,7 @@ Outcome outcome_on_slope(const Scene& scene, const State& start, const Checkpoin
         const SlopePlace next = place_after(flow.body, flow.energy, piece);
         const double turns = double(time_of_turning(piece));
         const double tips = time_of_tip(piece);
-        const bool breaks = watch.look(piece);
+        const bool breaks = watch.examine(piece);
         const LawMeetings met = watch.met();
         const double first = std::min(turns, tips);
         const auto before = [&](const std::optional<Meeting>& meeting) {
@@ -110,13 +110,10 @@ double required_friction(const Scene& scene) {
     Scene rough = scene;
     rough.friction = infinity;
     const State start = initial_state(rough).state;
-    const Body body = scene.body();
-    if (scene.slope != 0) {
-        const std::optional<SlopeExtremes> found = extremes_on_slope(rough, start);
-        return found ? std::max(in_the_blow, found->most_friction) : infinity;
-    }
-    const RollingStart rolling = rolling_start(body, start.theta, start.omega);
-    const Certificate found = certify_rolling(rolling, scene.mass, rough.friction);
+    const Certificate found =
+        scene.slope != 0 ? certify_on_slope(rough, start, {Validity::no_proof})
+                         : certify_rolling(rolling_start(scene.body(), start.theta, start.omega),
+                                           scene.mass, rough.friction);
     return std::max(in_the_blow, *found.largest_friction_needed);
 }
 

@@ -13,14 +13,14 @@ double theta_of(const Body& body, double angle_from_flat) {
     return body.a >= body.b ? angle_from_flat : half_pi - angle_from_flat;
 }
 
-// At a turning point the body falls back towards the flat position.
+// Sign of omega after the start. From a turning point the body falls towards the flat position.
 double direction_of(const RollingStart& from) {
     return from.omega != 0 ? std::copysign(1.0, from.omega) : -std::copysign(1.0, from.view.sin);
 }
 
-// The law on the quarter turn that the motion goes through again and again, mirrored. A place is
-// the angle from the flat position or from the tip (there negative), whichever is nearer to the
-// start: a place next to the start has all its digits.
+// The law on the quarter turn of which the motion repeats mirror images. A place is the angle from
+// the flat position or the negative angle from the tip, whichever is nearer to the start: a place
+// next to the start has all its digits.
 struct Quarter {
     const EnergyRange& range;
     double friction;
@@ -41,15 +41,15 @@ struct Quarter {
     }
 };
 
-// The start in the frame in which the motion goes forwards.
-struct Start {
+// The start on its quarter turn.
+struct QuarterStart {
     double place;
-    bool rises;  // towards the tip; a body that lies or stands is about to
-    double direction;
+    bool rises;        // towards the tip; true for a body that lies flat or stands on the tip
+    double direction;  // sign of omega
     ContactForce force;
 };
 
-Start start_on(const Quarter& quarter, const RollingStart& from) {
+QuarterStart start_on(const Quarter& quarter, const RollingStart& from) {
     const FlatView& at = from.view;
     const double direction = direction_of(from);
     const double omega2 = from.omega * from.omega * at.long_axis / from.body.gravity;
@@ -61,10 +61,10 @@ Start start_on(const Quarter& quarter, const RollingStart& from) {
             {forces.normal, forces.friction}};
 }
 
-// The place from which on the law holds: the start; ahead of it, where it is within rounding of
-// its end there, and what counts is where the motion goes; nothing where it is broken.
-std::optional<double> holds_from(const Quarter& quarter, const Start& start) {
-    constexpr double ahead = 1e-8;  // of the way: sqrt(epsilon), where rounding is overcome
+// The place from which on the law holds; empty where it is broken. It is the start, or a place
+// ahead of a start at which the law is at its limit.
+std::optional<double> holds_from(const Quarter& quarter, const QuarterStart& start) {
+    constexpr double ahead = 1e-8;  // share of the path: sqrt(epsilon), beyond rounding
     if (!at_the_limit(start.force, quarter.friction)) {
         const bool holds = law_margin(start.force, quarter.friction) > 0;
         return holds ? std::optional(start.place) : std::nullopt;
@@ -74,10 +74,9 @@ std::optional<double> holds_from(const Quarter& quarter, const Start& start) {
     return quarter.holds(next) ? std::optional(next) : std::nullopt;
 }
 
-// The zeros of the law about one that was found in its squared form, refined in the plain one: near
-// the tip both forces may be small, and their squares know half their digits only. They lie between
-// the places given; where F vanishes, too, the law may hold at what was found and be broken on both
-// sides.
+// Append the zeros of the law between `from` and `to` about a zero of its squared form. Near the
+// tip both forces may be small, and their squares have half their digits only. Where F vanishes,
+// too, the law may hold at the zero that was found and be broken on both sides of it.
 void add_refined(std::vector<double>& places, const Quarter& quarter, double found, double from,
                  double to) {
     const auto holds = [&](double place) { return quarter.holds(place); };
@@ -99,7 +98,7 @@ void add_refined(std::vector<double>& places, const Quarter& quarter, double fou
     add_between(found, high);
 }
 
-// Where the law may be broken, ascending: its zeros, and those of N, at which it is broken anyway.
+// Places at which the law may begin to be broken, ascending: its zeros and the zeros of N.
 template <int N>
 std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& contact,
                                     const Bernstein<N>& law) {
@@ -116,31 +115,31 @@ std::vector<double> breaking_places(const Quarter& quarter, const Bernstein<5>& 
     return places;
 }
 
-// Adds the ends of the part about the start on which the law holds. Next to no friction will do
-// where none is needed, flat and on the tip and wherever F vanishes: such a part may be narrower
-// than the roots of the squared form can tell.
+// Append the ends of the interval about the start on which the law holds. A tiny friction suffices
+// where F vanishes, as flat and on the tip: such an interval may be narrower than the roots of the
+// squared form can resolve.
 void add_ends_about(std::vector<double>& places, double start, const Quarter& quarter) {
     const auto holds = [&](double place) { return quarter.holds(place); };
     const auto broken = [&](double place) { return !holds(place); };
     const auto above = std::upper_bound(places.begin(), places.end(), start);
     const double next = above != places.end() ? *above : quarter.top();
     const double last = above != places.begin() ? above[-1] : quarter.flat();
-    const double on_the_way_up = 0.5 * (start + next);
-    const double on_the_way_down = 0.5 * (last + start);
-    if (broken(on_the_way_up)) places.push_back(bisect(start, on_the_way_up, broken).high);
-    if (broken(on_the_way_down)) places.push_back(bisect(on_the_way_down, start, holds).low);
+    const double above_start = 0.5 * (start + next);
+    const double below_start = 0.5 * (last + start);
+    if (broken(above_start)) places.push_back(bisect(start, above_start, broken).high);
+    if (broken(below_start)) places.push_back(bisect(below_start, start, holds).low);
     std::sort(places.begin(), places.end());
 }
 
-// The angle by which the body turns until, behind the place `from` on its way, it meets the first
-// of the places (ascending, at least one) on one side or the other of the flat position, and which
-// way it then moves; nothing where it never gets there: on the separatrix the tip is the end.
+// An angle of turning from the start, and the sign of omega at its end.
 struct Turn {
     double angle;
     double heading;
 };
 
-std::optional<Turn> first_meeting(const Quarter& quarter, const Start& start, double from,
+// The turn to the first of the places (ascending, at least one) after `from`, on either side of the
+// flat position; empty if the body never reaches one: on the separatrix it ends at the tip.
+std::optional<Turn> first_meeting(const Quarter& quarter, const QuarterStart& start, double from,
                                   const std::vector<double>& places) {
     const double on = start.direction;
     const EnergyRange& range = quarter.range;
@@ -151,15 +150,16 @@ std::optional<Turn> first_meeting(const Quarter& quarter, const Start& start, do
     if (start.rises && above != places.end()) return Turn{on * (*above - start.place), on};
     if (!start.rises) return Turn{on * ((start.place - flat) + (places.front() - flat)), on};
     if (!range.libration && range.energy_gap == 0) return std::nullopt;
-    // Over the top: the last place, on the other side of the tip or back from the turning point.
+    // The last place, met again beyond the tip or after the turning point.
     if (range.libration) return Turn{on * (places.back() - start.place), -on};
     return Turn{on * ((tip - start.place) + (tip - places.back())), on};
 }
 
-// The law holds where both polynomials are positive.
+// The end of rolling under a law that holds where both polynomials are positive.
 template <int N>
 EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polynomials,
-                           const Polynomial<N>& law_polynomial, double theta, const Start& start) {
+                           const Polynomial<N>& law_polynomial, double theta,
+                           const QuarterStart& start) {
     const Bernstein<5> contact = bernstein(polynomials.normal);
     const Bernstein<N> law = bernstein(law_polynomial);
     const Sign contact_sign = sign_on_unit_interval(contact);
@@ -172,7 +172,7 @@ EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polyn
     if (!from) return end;
     std::vector<double> places = breaking_places(quarter, contact, law);
     add_ends_about(places, *from, quarter);
-    if (places.empty()) {  // on the edge: the least margin is where the law may be broken
+    if (places.empty()) {  // on the edge: the law may be broken at its least margin
         const ForceExtremes extremes = force_extremes(quarter.range, polynomials);
         places.push_back(quarter.place(std::isinf(quarter.friction) ? extremes.least_normal
                                                                     : extremes.most_friction));
@@ -182,8 +182,8 @@ EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polyn
     return {end.validity, theta + turn->angle, turn->heading};
 }
 
-// A body that stays where it is needs no friction. Nor does a circle, but a contact without any is
-// one that slides.
+// The end of rolling of a body that needs no friction: at rest, or a circle. Contact without
+// friction slides from the start.
 std::optional<EndOfRolling> end_without_forces(const RollingStart& from, double friction) {
     if (from.rests) return EndOfRolling{Validity::valid};
     if (friction == 0) return EndOfRolling{Validity::invalid, from.theta, direction_of(from)};
@@ -195,7 +195,7 @@ EndOfRolling end_of_rolling(const RollingStart& from, const EnergyRange& range,
                             const ForcePolynomials& polynomials, double friction) {
     if (const auto end = end_without_forces(from, friction)) return *end;
     const Quarter quarter{range, friction, std::abs(from.view.sin) > std::abs(from.view.cos)};
-    const Start start = start_on(quarter, from);
+    const QuarterStart start = start_on(quarter, from);
     if (std::isinf(friction)) {
         return end_under_law(quarter, polynomials, polynomials.normal, from.theta, start);
     }
@@ -221,7 +221,7 @@ EndOfRolling end_of_rolling(const RollingStart& from, double friction) {
 double time_of_end(const RollingFlow& flow, const EndOfRolling& end) {
     if (!end.angle) return infinity;
     if (*end.angle == flow.from.theta) return 0.0;
-    // On a tip, with less than the smallest speed that there is in its units.
+    // The body stands on its tip with a speed that underflows in its units.
     if (flow.kind == MotionKind::rest) return infinity;
     return time_of_passing(flow, *end.angle, end.heading);
 }

@@ -1,4 +1,4 @@
-// Is rolling without slip valid for the whole motion? Proved by the signs of polynomials.
+// Proof, by the signs of polynomials, of how long rolling on level ground is valid.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace rolling_ellipse {
 
-// edge: rounding cannot tell. no_proof: of a start that does not roll.
+// edge: the margin of the law is 0 but for rounding. no_proof: the start does not roll.
 enum class Validity { valid, invalid, edge, no_proof };
 
-// Where rolling ends, forwards in time: theta and the sign of omega there. No angle where it does
-// not end.
+// The end of rolling, forwards in time: theta and the sign of omega there. The angle is empty if
+// rolling does not end.
 struct EndOfRolling {
     Validity validity;
     std::optional<double> angle = std::nullopt;
@@ -21,8 +21,8 @@ struct EndOfRolling {
 
 struct Certificate {
     EndOfRolling end;
-    // Over the whole motion, both directions of time; absent without a proof. Downhill for ever
-    // they are infinite, and at no angle.
+    // Extremes over the whole motion, in both directions of time; empty without a proof. A body
+    // that runs downhill for ever has infinite extremes without angles.
     std::optional<double> smallest_normal_force;        // [N]
     std::optional<double> smallest_normal_force_angle;  // theta, on level ground in [0, pi/2]
     std::optional<double> largest_friction_needed;      // max |F/N|
@@ -32,11 +32,11 @@ struct Certificate {
 Certificate certify_rolling(const RollingStart& from, double mass, double friction);
 EndOfRolling end_of_rolling(const RollingStart& from, double friction);
 
-// The time from the start of the motion to that end; infinite without one.
+// Time from the start of the motion to the end of rolling [s]; infinite without an end.
 double time_of_end(const RollingFlow& flow, const EndOfRolling& end);
 
-// Friction mu suffices where mu^2 P^2 - G Q^2 >= 0, physics (35); divided by mu^2 above 1, so that
-// any mu fits.
+// mu^2 P^2 - G Q^2, physics (35), which is at least 0 where friction mu suffices; divided by mu^2
+// for mu > 1, so that a large mu does not overflow.
 Polynomial<10> grip_polynomial(const ForcePolynomials& p, double friction);
 
 }  // namespace rolling_ellipse

@@ -14,7 +14,7 @@ Polynomial<7> normal_derivative(const ForcePolynomials& p) {
     return derivative(moment) * p.weight - 2.0 * (moment * derivative(p.weight));
 }
 
-// Numerator of d(F/N)^2/dx beside Q, (F/N)^2 = G Q^2/P^2: physics (36).
+// Numerator of d(F/N)^2/dx over Q, (F/N)^2 = G Q^2/P^2: physics (36).
 Polynomial<11> needed_derivative(const ForcePolynomials& p) {
     const Polynomial<7> bracket =
         derivative(p.friction) * p.normal - p.friction * derivative(p.normal);
@@ -29,7 +29,6 @@ EnergyRange energy_range(const RollingStart& start) {
     const double unit = at.long_axis;
     EnergyRange range{};
     static_cast<Shape&>(range) = shape(start.body, at);
-    range.energy = height.total / unit;
     range.libration = height.over_tip < 0;
     if (range.libration) {
         range.width = height.over_flat / unit;
@@ -42,7 +41,7 @@ EnergyRange energy_range(const RollingStart& start) {
 }
 
 EnergyRange separatrix_range(const Shape& shape) {
-    return {shape, 1.0, shape.c2 / (1 + shape.short_axis), 0.0, 0.0, false};
+    return {shape, shape.c2 / (1 + shape.short_axis), 0.0, 0.0, false};
 }
 
 ForcePolynomials force_polynomials(const EnergyRange& range) {
@@ -107,14 +106,14 @@ ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& p
         if (forces.normal < extremes.least_normal.normal) extremes.least_normal = forces;
         if (forces.needed() > extremes.most_friction.needed()) extremes.most_friction = forces;
     };
-    // The zeros of N first: of all places with infinite |F|/N they are the ones to name.
+    // The zeros of N come first: of all places with infinite |F|/N they are reported.
     for (const double x : roots_on_unit_interval(bernstein(polynomials.normal))) {
         RollingForces forces = rolling_forces(range, x);
         forces.normal = 0.0;
         take(forces);
     }
-    const auto take_at_roots = [&](const auto& slope) {
-        for (const double x : roots_on_unit_interval(bernstein(slope))) {
+    const auto take_at_roots = [&](const auto& derivative) {
+        for (const double x : roots_on_unit_interval(bernstein(derivative))) {
             take(rolling_forces(range, x));
         }
     };

@@ -1,4 +1,4 @@
-// The heights h that a rolling motion reaches, and the contact forces there as rational functions.
+// Heights h of a rolling motion, and its contact forces as rational functions of h.
 //
 // Lengths in units of the long semi-axis, forces in units of m g. With B = S^2, c2 = 1 - B, K =
 // k^2, u = h^2, y = u - B, s = K + 1 + B and the energy over the height e = H - h, H = E/(m g):
@@ -6,8 +6,8 @@
 //     P = h V (K + u) + 2 e (B (K + B) (c2 - 2y) - s y^2),   N = h P/V^2     physics (33)
 //     Q = -h V + 2 e (B (K - c2) + s y),                     F = h' u Q/V^2  physics (34)
 //     G = (h h')^2 = (1 - u) y                                               physics (35)
-// from N and F of rolling, physics (23, 24). Nothing cancels for nearly circular bodies (c2), nor,
-// for thin ones, near a turning point (e).
+// from N and F of rolling, physics (23, 24). No term cancels: c2 has all its digits for a nearly
+// circular body, e for a thin body near a turning point.
 #pragma once
 
 #include "numerics/bernstein.hpp"
@@ -18,7 +18,6 @@ namespace rolling_ellipse {
 
 // The heights h = short_axis + width x, 0 <= x <= 1, that a body of a shape reaches.
 struct EnergyRange : Shape {
-    double energy;      // H
     double width;       // of the heights reached
     double energy_gap;  // H minus the greatest height reached (0 in libration)
     double tip_gap;     // 1 minus the greatest height reached (0 in rotation)
@@ -43,26 +42,27 @@ struct ForcePolynomials {
 
 ForcePolynomials force_polynomials(const EnergyRange& range);
 
-// The contact forces at one place, straight from the equations of rolling.
+// Contact forces at one place, from the equations of rolling.
 struct RollingForces {
     double sin;       // of the angle from the flat position
     double cos;       // both >= 0
     double normal;    // N/(m g)
     double friction;  // |F|/(m g)
 
-    // From the flat position, 0 .. pi/2, and what is left to the tip, with its own digits.
+    // Angle from the flat position, 0 .. pi/2, and the remainder to the tip with all its digits.
     double angle() const { return std::atan2(sin, cos); }
     double angle_to_tip() const { return std::atan2(cos, sin); }
     // |F|/N; infinite where N <= 0 without N = F = 0.
     double needed() const { return friction_needed({normal, friction}); }
 };
 
+// Forces at the height h = short_axis + width x.
 RollingForces rolling_forces(const EnergyRange& range, double x);
 
-// The forces where sin^2 and cos^2 of the angle are known, which near the tip is more than x.
+// Forces by sin^2 and cos^2 of the angle, which near the tip have more digits than x.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2);
 
-// The forces where omega^2, in units of g/L, is known, too.
+// Forces by sin^2 and cos^2 of the angle and omega^2 in units of g/L.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2);
 
 struct ForceExtremes {
@@ -70,7 +70,7 @@ struct ForceExtremes {
     RollingForces most_friction;  // largest |F|/N
 };
 
-// From the critical points of N and of |F|/N, the ends of the range, and the zeros of N.
+// Extremes among the critical points of N and of |F|/N, the ends of the range and the zeros of N.
 ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& polynomials);
 
 }  // namespace rolling_ellipse

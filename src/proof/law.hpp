@@ -8,32 +8,36 @@
 
 namespace rolling_ellipse {
 
-// What is left of the law for friction to one side, -1 or 1; with infinite friction only the normal
-// force counts.
+// Margin of the law for friction to one side, -1 or 1; with infinite friction only the normal force
+// counts.
 inline double law_margin(const ContactForce& force, double friction, double side) {
     if (std::isinf(friction)) return force.normal;
     return friction * force.normal - side * force.friction;
 }
 
-// The same to either side: the law holds where it is positive.
+// Margin of the law for friction to either side: the law holds where it is positive.
 inline double law_margin(const ContactForce& force, double friction) {
     return law_margin(force, friction, std::copysign(1.0, force.friction));
 }
 
-// Behind a margin, of the operations from the angle on; beside the sum of its terms.
-inline constexpr double law_rounding = 64 * epsilon;
-// Of friction, below which numbers have fewer digits.
-inline constexpr double least_friction = std::numeric_limits<double>::min();
-
-// Whether the law is at its limit, but for that.
-inline bool at_the_limit(const ContactForce& force, double friction) {
+// The sum of the sizes of the terms of a margin.
+inline double law_size(const ContactForce& force, double friction) {
     const double normal = std::abs(force.normal);
-    const double size =
-        std::isinf(friction) ? normal : friction * normal + std::abs(force.friction);
-    return std::abs(law_margin(force, friction)) <= law_rounding * size + least_friction * normal;
+    return std::isinf(friction) ? normal : friction * normal + std::abs(force.friction);
 }
 
-// A coefficient with which the law holds there, beyond rounding.
+// Rounding of a margin beside its size, by the operations that lead from the angle to it.
+inline constexpr double law_rounding = 64 * epsilon;
+// Smallest normal double: below it friction has lost digits.
+inline constexpr double least_friction = std::numeric_limits<double>::min();
+
+// Whether the margin of the law is 0 but for rounding.
+inline bool at_the_limit(const ContactForce& force, double friction) {
+    return std::abs(law_margin(force, friction)) <=
+           law_rounding * law_size(force, friction) + least_friction * std::abs(force.normal);
+}
+
+// A friction coefficient for which a law at its limit holds beyond rounding.
 inline double beyond_the_limit(double friction) {
     return friction * (1 + 8 * law_rounding) + 8 * least_friction;
 }

@@ -8,6 +8,7 @@
 #include "numerics/bisect.hpp"
 #include "numerics/quadrature.hpp"
 #include "proof/law.hpp"
+#include "rolling/slope/motion.hpp"
 #include "rolling/stepped/equation.hpp"
 
 namespace rolling_ellipse {
@@ -29,7 +30,8 @@ class Well {
           gravity_(scene.ground_gravity()),
           gyration2_(scene.body().gyration2),
           pull_(scene.gravity * (scene.a - scene.b) * (scene.a + scene.b)),
-          dynamics_(scene) {
+          mass_(scene.mass),
+          rolling_(scene.body(), scene.slope) {
         const auto found = equilibria(axes_.a, axes_.b, std::tan(scene.slope));
         if (!found) return;
         upright_ = half_pi + found->upright;
@@ -39,10 +41,10 @@ class Well {
         holds_ = energy(upright_) < 0;
     }
 
-    // Whether the body cannot get out of it.
+    // Whether the body cannot leave it.
     bool holds() const { return holds_; }
 
-    SlopeExtremes extremes() const {
+    void add_extremes(double theta, double side, Certificate& found) const {
         const double first = bisect(upright_ - pi, std::min(start_, lying_), [&](double at) {
                                  return energy(at) >= 0;
                              }).high;
@@ -52,7 +54,10 @@ class Well {
         const std::vector<double> at = places(first, last);
         const double light = highest(at, [&](double angle) { return -force(angle).normal; });
         const double rough = highest(at, [&](double angle) { return needed(angle); });
-        return {force(light).normal, light - start_, needed(rough), rough - start_};
+        found.smallest_normal_force = force(light).normal;
+        found.smallest_normal_force_angle = theta + side * (light - start_);
+        found.largest_friction_needed = needed(rough);
+        found.largest_friction_needed_angle = theta + side * (rough - start_);
     }
 
   private:
@@ -60,13 +65,13 @@ class Well {
 
     double energy(double angle) const { return energy_ + gained(angle); }
 
-    // W at an angle less that of the start: short ways by quadrature of physics (62), as the
-    // difference of two heights, or of two paths, would have lost its digits.
+    // W at an angle minus W at the start. Over small angles the difference of two heights, or of
+    // two paths, would have lost its digits: there it is a quadrature of physics (62).
     double gained(double angle) const {
-        const double way = angle - start_;
+        const double turned = angle - start_;
         const Geometry from = geometry(axes_, start_);
         const auto [a, b] = axes_;
-        if (std::abs(way) < 0.1 * b / a) {
+        if (std::abs(turned) < 0.1 * b / a) {
             const auto rate = [&](double at) {
                 const double swung = std::sin(at - lying_) * std::sin(upright_ - at);
                 return -pull_ * swung / geometry(axes_, at).h;
@@ -74,7 +79,7 @@ class Well {
             return double(integrate(gauss_rule(20), start_, angle, rate));
         }
         const double path = centre_path(axes_, angle) - centre_path(axes_, start_);
-        const double rise = (a - b) * (a + b) * std::sin(angle + start_) * std::sin(way) /
+        const double rise = (a - b) * (a + b) * std::sin(angle + start_) * std::sin(turned) /
                             (geometry(axes_, angle).h + from.h);
         return gravity_.along * path - gravity_.into * rise;
     }
@@ -82,12 +87,13 @@ class Well {
     ContactForce force(double angle) const {
         const Geometry at = geometry(axes_, angle);
         const double omega2 = 2 * std::max(energy(angle), 0.0) / inertia(at);
-        return dynamics_.force(at, std::sqrt(omega2));
+        return rolling_.force(mass_, at, std::sqrt(omega2));
     }
 
     double needed(double angle) const { return friction_needed(force(angle)); }
 
-    // Even, and denser where the forces of a thin body change within b/a and its square.
+    // Angles from first to last: evenly spaced, and denser about the axes of a thin body, where its
+    // forces change within b/a and its square.
     std::vector<double> places(double first, double last) const {
         constexpr int count = 512;
         std::vector<double> found{first, last};
@@ -104,28 +110,29 @@ class Well {
         return found;
     }
 
-    // Where a measure is largest: golden section around every place that has more than its
-    // neighbours.
+    // The angle of the largest value of a measure: golden section about every angle whose value is
+    // no smaller than those of its neighbours.
     template <class Measure>
     static double highest(const std::vector<double>& at, const Measure& measure) {
+        std::vector<double> values(at.size());
+        std::transform(at.begin(), at.end(), values.begin(), measure);
         double place = at.front();
-        double most = measure(place);
-        const auto take = [&](double here) {
-            const double found = measure(here);
-            if (!(found > most)) return;
-            most = found;
+        double most = values.front();
+        const auto take = [&](double here, double value) {
+            if (!(value > most)) return;
+            most = value;
             place = here;
         };
-        for (std::size_t i = 0; i < at.size(); ++i) {
-            take(at[i]);
-            const double here = measure(at[i]);
-            const double low = at[i == 0 ? 0 : i - 1];
-            const double high = at[i + 1 == at.size() ? i : i + 1];
-            if (measure(low) > here || measure(high) > here) continue;
-            const auto is_below_upper = [&](double left, double right) {
+        const std::size_t last = at.size() - 1;
+        for (std::size_t i = 0; i <= last; ++i) {
+            take(at[i], values[i]);
+            const std::size_t low = i == 0 ? 0 : i - 1;
+            const std::size_t high = std::min(i + 1, last);
+            if (values[low] > values[i] || values[high] > values[i]) continue;
+            const double top = golden_section(at[low], at[high], [&](double left, double right) {
                 return measure(left) > measure(right);
-            };
-            take(golden_section(low, high, is_below_upper));
+            });
+            take(top, measure(top));
         }
         return place;
     }
@@ -134,7 +141,8 @@ class Well {
     const GroundGravity gravity_;
     const double gyration2_;
     const double pull_;  // g (a^2 - b^2)
-    const RollingDynamics dynamics_;
+    const double mass_;
+    const RollingEquation rolling_;
     double upright_ = 0.0;
     double lying_ = 0.0;
     double start_ = 0.0;
@@ -149,7 +157,7 @@ Well well_of(const Scene& scene, const State& start) {
     return Well(downhill(scene), side_of(scene) * std::atan2(at.sin, at.cos), start.omega);
 }
 
-// The friction that a motion with constant forces needs: of a body in equilibrium, and a circle.
+// The friction needed by a motion with constant forces, of a body in equilibrium or of a circle.
 std::optional<double> constant_friction(const Scene& scene, const State& start) {
     const double incline = std::tan(scene.slope);
     const Geometry here = geometry(scene.axes(), start.theta);
@@ -165,25 +173,15 @@ bool may_hold_for_ever(const Scene& scene, const State& start) {
     return constant_friction(scene, start) || well_of(scene, start).holds();
 }
 
-std::optional<SlopeExtremes> extremes_on_slope(const Scene& scene, const State& start) {
+Certificate certify_on_slope(const Scene& scene, const State& start, const EndOfRolling& end) {
     if (const auto needed = constant_friction(scene, start)) {
         const double weight = scene.mass * scene.ground_gravity().into;
-        return SlopeExtremes{weight, start.theta, *needed, start.theta};
+        return {end, weight, start.theta, *needed, start.theta};
     }
+    Certificate found{end, -infinity, std::nullopt, infinity, std::nullopt};
     const Well well = well_of(scene, start);
-    if (!well.holds()) return std::nullopt;
-    SlopeExtremes found = well.extremes();
-    found.least_normal_angle = start.theta + side_of(scene) * found.least_normal_angle;
-    found.most_friction_angle = start.theta + side_of(scene) * found.most_friction_angle;
+    if (well.holds()) well.add_extremes(start.theta, side_of(scene), found);
     return found;
-}
-
-Certificate certify_on_slope(const Scene& scene, const State& start, const LawMeetings& met) {
-    const EndOfRolling end = end_of_rolling(met);
-    const std::optional<SlopeExtremes> found = extremes_on_slope(scene, start);
-    if (!found) return {end, -infinity, std::nullopt, infinity, std::nullopt};
-    return {end, found->least_normal, found->least_normal_angle, found->most_friction,
-            found->most_friction_angle};
 }
 
 }  // namespace rolling_ellipse

@@ -1,9 +1,9 @@
-// Where rolling on a slope ends: the law of the contact along the motion, as polynomials of time.
+// The end of rolling on a slope: the law of the contact along the motion, as polynomials of time.
 //
 // N and F come from the same power series as the motion, N = g_into + h'' and F = x'' - g_along, so
 // that the first place at which the law is broken is the first root of a polynomial. Half turns
 // need not be followed one by one: at each angle N and F are linear in W = D omega^2/2, physics
-// (58), so that the law holds for an interval of W, and what holds in two half turns holds in all
+// (58), so that the law holds for an interval of W. A law that holds in two half turns holds in all
 // between them.
 #pragma once
 
@@ -15,60 +15,57 @@
 
 namespace rolling_ellipse {
 
-// A time [s] since the start, with the angle and which way it is passed.
+// A time [s] since the start, the angle there, and the sign of omega.
 struct Meeting {
     double time;
     double theta;
     double heading;
 };
 
-// What the law meets: the first place at which its margin comes down to rounding and no further,
-// and the first at which it is broken, after which nothing is looked for.
+// `touched`: the first place at which the margin of the law falls to rounding and no further.
+// `broken`: the first place at which the law fails; the search ends there.
 struct LawMeetings {
     std::optional<Meeting> touched;
     std::optional<Meeting> broken;
 };
 
-// Looks at pieces of a motion in the order of time.
+// Examines the law on pieces of a motion in the order of time.
 class LawWatch {
   public:
-    LawWatch(const SlopeFlow& flow, double friction);
+    LawWatch(const SlopeFlow& flow, double friction) : flow_(flow), friction_(friction) {}
 
     // True once the law is broken.
-    bool look(const SlopePiece& piece);
+    bool examine(const SlopePiece& piece);
 
-    // What was met; at the end of a motion that stays close to the limit, that too.
+    // The meetings so far. A motion that ends close to the limit has touched it.
     LawMeetings met() const;
 
   private:
-    bool look_at_parts(const SlopePiece& piece);
+    struct Law;
 
-    struct Near {
-        bool is = false;
-        bool from_start = false;
-        Meeting since{};
+    // A stretch of time on which the margin is within rounding of 0.
+    struct Stretch {
+        bool open = false;
+        std::optional<Meeting> begin;  // empty if it begins at the start of the motion
     };
 
-    template <class Law>
-    void examine(const SlopePiece& piece, const Law& law, double tolerance, double side,
-                 Near& near);
+    bool examine_parts(const SlopePiece& piece);
+    void examine(const SlopePiece& piece, const Law& law, Stretch& near);
+    void break_at(const Meeting& found);
     Meeting meeting(const SlopePiece& piece, double share) const;
     double margin(const SlopePiece& piece, double share, double side) const;
 
-    const SlopeBody body_;
-    const FlowSample start_;
-    const SlopePlace from_;
+    const SlopeFlow& flow_;
     const double friction_;
-    std::array<Near, 2> near_;
-    bool first_ = true;
+    std::array<Stretch, 2> near_;  // of the laws for friction to each side
+    bool at_start_ = true;
     LawMeetings met_;
 };
 
-// Forwards in time, over the whole motion or up to a time [s] at least; the flow is followed as far
-// as that takes.
+// The meetings over the whole motion, or up to a time [s] at least; extends the flow as needed.
 LawMeetings law_meetings(SlopeFlow& flow, double friction, double until = infinity);
 
-// As what certificates say: a touch is an edge.
+// The end of rolling for a certificate: a touch is an edge.
 EndOfRolling end_of_rolling(const LawMeetings& met);
 
 }  // namespace rolling_ellipse

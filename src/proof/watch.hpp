@@ -1,12 +1,12 @@
-// Contact forces along a computed motion, where no proof tells in advance that the ground can give
-// them.
+// Contact forces along a computed motion, where no proof decides in advance whether the ground can
+// give them.
 #pragma once
 
 #include <functional>
 #include <vector>
 
-#include "rolling/stepped/equation.hpp"
 #include "scene/settings.hpp"
+#include "scene/state.hpp"
 
 namespace rolling_ellipse {
 
@@ -21,8 +21,8 @@ struct ContactWatch {
 // The contact forces at n times.
 using ForcesAt = std::function<void(const double* times, std::size_t n, ContactForce* forces)>;
 
-// Looks several times between each two of the times; a violation between two looks that are both in
-// order is found by the minimum of what is left between them.
+// Samples the forces eight times between each two of the times. A violation between two samples
+// that obey the law is found at the minimum of the margin between them.
 ContactWatch watch_contact(double friction, const std::vector<double>& times,
                            const ForcesAt& forces_at, const Checkpoint& checkpoint);
 

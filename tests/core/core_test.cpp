@@ -6,10 +6,10 @@
 #include <complex>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 #include <vector>
 
-#include "integrator/first_negative.hpp"
 #include "motions.hpp"
 #include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
@@ -89,28 +89,27 @@ void a_polynomial_that_touches_zero_has_no_sign() {
     CHECK(sign_on_unit_interval(bernstein(touches - polynomial(1e-9))) != Sign::positive);
 }
 
-// A margin that is negative between two knots only, over a thousandth of their distance.
-void a_dip_between_two_knots_is_found() {
+// Contact forces that have only a normal force, sampled at whole times.
+double watched_until(const std::function<double(double)>& normal) {
+    const auto forces = [&](const double* times, std::size_t n, ContactForce* found) {
+        for (std::size_t i = 0; i < n; ++i) found[i] = {normal(times[i]), 0.0};
+    };
+    return watch_contact(infinity, {0.0, 8.0}, forces, [] {}).holds_until;
+}
+
+// A margin that is negative between two samples only, for a thousandth of their distance.
+void a_dip_between_two_samples_is_found() {
     const auto margin = [](double t) {
         const double off = (t - 2.3) / 5e-4;
-        return std::array<double, 1>{2.5e-7 * (off * off - 1)};
+        return 2.5e-7 * (off * off - 1);
     };
-    FirstNegative<1> finder;
-    for (double t = 0.0; t <= 5.0 && !(finder.found() < infinity); t += 1.0) finder.look(t, margin);
-    CHECK(std::abs(finder.found() - (2.3 - 5e-4)) < 1e-12);
-    FirstNegative<1> none;
-    for (double t = 0.0; t <= 5.0; t += 1.0) {
-        none.look(t, [&](double at) { return std::array<double, 1>{margin(at)[0] + 3e-7}; });
-    }
-    CHECK(none.found() == infinity);
-    FirstNegative<1> steep;  // through infinite margins there is no parabola
-    for (double t = 0.0; t <= 5.0; t += 1.0) {
-        steep.look(t, [&](double at) {
-            CHECK(std::isfinite(at));
-            return std::array<double, 1>{at == 2.0 ? 1.0 : infinity};
-        });
-    }
-    CHECK(steep.found() == infinity);
+    CHECK(std::abs(watched_until(margin) - (2.3 - 5e-4)) < 1e-12);
+    CHECK(watched_until([&](double t) { return margin(t) + 3e-7; }) == infinity);
+    const auto steep = [](double t) {  // no parabola passes through infinite margins
+        CHECK(std::isfinite(t));
+        return t == 2.0 ? 1.0 : infinity;
+    };
+    CHECK(watched_until(steep) == infinity);
 }
 
 // A body that rolls, slides, leaves the ground and lands.
@@ -252,7 +251,7 @@ int main() {
     equations_are_solved_whatever_their_order(std::complex<double>(0.0, 2.0));
     the_first_place_where_a_polynomial_is_negative();
     a_polynomial_that_touches_zero_has_no_sign();
-    a_dip_between_two_knots_is_found();
+    a_dip_between_two_samples_is_found();
     every_segment_knows_every_kind_of_sample();
     a_checkpoint_that_throws_ends_the_work();
     wrong_numbers_are_refused();

@@ -29,7 +29,7 @@ SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega
 const SlopePlace& first_of_pieces(const SlopeFlow& flow) { return flow.pieces.front().from; }
 
 bool climbs_for_ever(const SlopeFlow& flow) {
-    return flow.climb && flow.climbed == most_half_turns && !flow.pieces.empty();
+    return flow.climb && flow.climb->half_turns == most_half_turns && !flow.pieces.empty();
 }
 
 bool is_followed(const SlopeFlow& flow) {
@@ -41,12 +41,12 @@ double known_until(const SlopeFlow& flow) {
     return flow.pieces.empty() ? 0.0 : flow.pieces.back().end();
 }
 
-// The place at which the series begin: the start, or the end of a climb's sum.
+// The place at which the series begin: the start, or the end of the sum of a climb.
 SlopePlace begin(SlopeFlow& flow) {
     const SlopePlace& start = flow.start;
     if (start.omega == 0) flow.turnings.push_back(start.time);
     if (start.omega >= 0) return start;
-    const double n = may_run(flow.body, flow.energy.start, geometry(flow.body, start), start.omega);
+    const double n = may_run(flow.body, flow.energy.start, flow.energy.at, start.omega);
     if (n < least_climb) return start;
     SlopePlace at = start;
     while (start.quarters - at.quarters <= 2 * half_turns_before_a_run) {
@@ -54,18 +54,17 @@ SlopePlace begin(SlopeFlow& flow) {
         at = place_after(flow.body, flow.energy, flow.foot.back());
     }
     flow.climb = slope_run(flow.body, start, flow.energy.start, n);
-    flow.climbed = n;
     return place_after(*flow.climb, n);
 }
 
 SlopePlace circle_at(const SlopeFlow& flow, double t) {
     SlopePlace place = flow.start;
-    const double way = t * (flow.start.omega + 0.5 * flow.acceleration * t);
+    const double turned = t * (flow.start.omega + 0.5 * flow.acceleration * t);
     place.time = {t, 0.0};
     place.angle = place.angle + two_product(t, flow.start.omega) +
                   two_product(0.5 * flow.acceleration * t, t);
     place.omega += flow.acceleration * t;
-    place.path = {flow.body.long_axis * way, 0.0};
+    place.path = {flow.body.long_axis * turned, 0.0};
     return place;
 }
 
@@ -78,7 +77,7 @@ SlopePlace place_in_pieces(const std::vector<SlopePiece>& pieces, DoubleDouble t
     return place_in(piece, double(time - piece.from.time));
 }
 
-// Between the first turning point and the mirrored start the motion is read backwards.
+// The motion between the first turning point and the mirrored start is the motion before, reversed.
 SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
     if (!flow.turnings.empty()) {
         const DoubleDouble turning = flow.turnings.front();
@@ -93,8 +92,8 @@ SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
     return place_in_pieces(flow.pieces, time);
 }
 
-// The next piece begins at the end of the last one; after a turning point it begins at the reversed
-// start, which series beside the rim of a well would miss.
+// The begin of the next piece: the end of the last one. After a turning point it is the reversed
+// start; series continued beside the rim of a well would miss that place.
 SlopePlace next_place(const SlopeFlow& flow) {
     const SlopePiece& last = flow.pieces.back();
     const bool turned =
@@ -106,7 +105,7 @@ SlopePlace next_place(const SlopeFlow& flow) {
     return place;
 }
 
-// Rocking is symmetric about both of its turning points.
+// The place in a rocking motion, which is symmetric about both of its turning points.
 SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
     const DoubleDouble first = flow.turnings[0];
     const DoubleDouble last = flow.turnings[1];
@@ -121,7 +120,7 @@ SlopePlace place_in_swing(const SlopeFlow& flow, double t) {
     return place;
 }
 
-// Reads places of a moving body; keeps the readers of its sums from time to time.
+// Places of a moving body; the readers of its sums are kept for later times.
 class SlopeReader {
   public:
     explicit SlopeReader(const SlopeFlow& flow) : flow_(flow) {}
@@ -183,9 +182,11 @@ bool grow(SlopeFlow& flow) {
         const double at_least = w.value - 8 * epsilon * w.magnitude;
         if (may_run(flow.body, at_least, here, from.omega) > 0) flow.downhill = from;
     }
-    if (flow.downhill && from.quarters - flow.downhill->quarters > 2 * half_turns_before_a_run) {
-        flow.run =
-            slope_run(flow.body, *flow.downhill, energy_at(flow, *flow.downhill), most_half_turns);
+    const auto& downhill = flow.downhill;
+    if (downhill && from.quarters - downhill->quarters > 2 * half_turns_before_a_run) {
+        const Geometry there = geometry(flow.body, *downhill);
+        const Tracked w = energy_at(flow.body, flow.energy, *downhill, there);
+        flow.run = slope_run(flow.body, *downhill, w.value, most_half_turns);
         return false;
     }
     flow.pieces.push_back(piece_from(flow.body, from));
@@ -196,9 +197,8 @@ bool grow(SlopeFlow& flow) {
 }
 
 void prepare(SlopeFlow& flow, double t) {
-    flow.until = std::max(flow.until, t / flow.body.time);
     if (flow.pieces.empty() && !grow(flow)) return;
-    while (known_until(flow) <= flow.until && grow(flow)) continue;
+    while (known_until(flow) <= t / flow.body.time && grow(flow)) continue;
 }
 
 FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place) {
@@ -239,10 +239,6 @@ double longest_time(const SlopeFlow& prepared) {
     if (climbs_for_ever(prepared)) return unit * double(first_of_pieces(prepared).time);
     if (!prepared.run) return infinity;
     return unit * double(prepared.run->from.time + time_of(*prepared.run, most));
-}
-
-double energy_at(const SlopeFlow& flow, const SlopePlace& at) {
-    return energy_at(flow.body, flow.energy, at, geometry(flow.body, at)).value;
 }
 
 std::optional<double> period(const SlopeFlow& prepared) {

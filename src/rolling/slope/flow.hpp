@@ -20,7 +20,7 @@ namespace rolling_ellipse {
 struct SlopeFlow {
     MotionKind kind;  // `uniform` for a circle, which accelerates evenly; `rotation` until two
                       // turning points are found
-    double theta;
+    double theta;     // at the start [rad, rad/s, m]
     double omega;
     double x;
     SlopeBody body;
@@ -30,12 +30,10 @@ struct SlopeFlow {
     SlopeEnergy energy;
     std::vector<SlopePiece> foot;  // first half turn of a climb, where a sum loses digits
     std::optional<SlopeRun> climb;
-    double climbed;  // half turns
     std::vector<SlopePiece> pieces;
     std::vector<DoubleDouble> turnings;  // times of the first two turning points
     std::optional<SlopePlace> downhill;  // first place from which it runs downhill for good
     std::optional<SlopeRun> run;
-    double until;  // time up to which `prepare` was asked for
 };
 
 // A body that rolls on a slope other than 0.
@@ -44,7 +42,7 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
 // Extend the pieces until the motion is known up to a time [s].
 void prepare(SlopeFlow& flow, double t);
 
-// Append one piece; false if the rest of the motion is known without more pieces.
+// Append one piece; false if the motion is known without more pieces.
 bool grow(SlopeFlow& flow);
 
 // The state at a prepared time in [0, longest_time]; the states at n times, fastest if ascending.
@@ -54,9 +52,6 @@ FlowSample sample_of(const SlopeFlow& flow, const SlopePlace& place);
 
 // Time of 1e15 half turns or swings; infinite if the motion was not prepared for that many.
 double longest_time(const SlopeFlow& prepared);
-
-// W = D omega^2/2 at a place.
-double energy_at(const SlopeFlow& flow, const SlopePlace& at);
 
 // Time of a full swing [s]; empty if the motion does not repeat, infinite at rest.
 std::optional<double> period(const SlopeFlow& prepared);

@@ -10,11 +10,11 @@ namespace rolling_ellipse {
 namespace {
 
 // h times the moment of gravity about the contact, per unit mass. Next to an equilibrium the
-// difference of its terms would be a rounding: it is the product of physics (62) wherever there is
-// one on the slope.
+// difference of its terms would be a rounding; a slope with equilibria uses the product of physics
+// (62).
 double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, double c) {
     if (!body.equilibria) {
-        const double h2 = square(body.short_axis) + body.c2 * square(s);
+        const double h2 = body.short_axis2 + body.c2 * square(s);
         return body.gravity.along * h2 - body.gravity.into * body.c2 * s * c;
     }
     const double over_lying = double(at.angle + -body.equilibria->lying);
@@ -23,10 +23,20 @@ double gravity_drive(const SlopeBody& body, const SlopePlace& at, double s, doub
                                : -body.pull * std::sin(over_lying) * std::cos(over_upright);
 }
 
+// The time since the begin of the piece at which it turns back; infinite if it does not.
+double turning_in(const SlopePiece& piece) {
+    const double before = piece.from.omega;
+    const auto turned = [&](double since) {
+        return value(piece.series.omega, since / piece.unit) * before <= 0;
+    };
+    if (before == 0 || std::isinf(piece.lasts) || !turned(piece.lasts)) return infinity;
+    return bisect(0.0, piece.lasts, turned).high;
+}
+
 }  // namespace
 
 std::optional<Equilibria> equilibria(double long_axis, double short_axis, double incline) {
-    // A quadratic equation in the tangent of the angle, whose product of roots is known.
+    // Both tangents solve a quadratic equation; the product of its roots is known.
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
     const double both = 2 * long_axis * short_axis * incline;
     const double root = (c2 - both) * (c2 + both);
@@ -53,15 +63,11 @@ SlopeBody slope_body(const Body& from, double slope) {
     body.equilibria =
         equilibria(body.long_axis, body.short_axis, body.gravity.along / body.gravity.into);
     body.pull = gravity * body.c2;
-    const double s2 = square(body.short_axis);
-    const double l2 = square(body.long_axis);
-    body.series = {s2,
-                   l2,
-                   body.c2,
-                   body.gravity,
-                   s2 * (body.gyration2 + s2),
-                   body.c2 * (body.gyration2 + l2 + s2)};
-    body.slowest = std::sqrt(gravity * body.long_axis / (body.gyration2 + s2));
+    body.short_axis2 = square(body.short_axis);
+    body.long_axis2 = square(body.long_axis);
+    body.d0 = body.short_axis2 * (body.gyration2 + body.short_axis2);
+    body.d1 = body.c2 * (body.gyration2 + body.long_axis2 + body.short_axis2);
+    body.slowest = std::sqrt(gravity * body.long_axis / (body.gyration2 + body.short_axis2));
     body.quarter_path = path_from_flat(body.long_axis, body.short_axis, 1.0, 0.0);
     body.gain = body.gravity.along * 2 * body.quarter_path;
     return body;
@@ -110,7 +116,7 @@ SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from) {
     SlopePiece piece{};
     piece.from = from;
     piece.unit = 1 / std::max(std::abs(from.omega), body.slowest);
-    SlopeConstants constants = body.series;
+    SlopeConstants constants = body;
     constants.gravity.into *= square(piece.unit);
     constants.gravity.along *= square(piece.unit);
     const bool tip = is_odd(from.quarters);
@@ -143,26 +149,12 @@ double acceleration_in(const SlopePiece& piece, double since) {
     return derivative(piece.series.omega, since / piece.unit) / square(piece.unit);
 }
 
-namespace {
-
-// The time since the begin of the piece at which it turns back; infinite if it does not.
-double turning_in(const SlopePiece& piece) {
-    const double before = piece.from.omega;
-    const auto turned = [&](double since) {
-        return value(piece.series.omega, since / piece.unit) * before <= 0;
-    };
-    if (before == 0 || std::isinf(piece.lasts) || !turned(piece.lasts)) return infinity;
-    return bisect(0.0, piece.lasts, turned).high;
-}
-
-}  // namespace
-
 DoubleDouble time_of_turning(const SlopePiece& piece) {
     const double since = turning_in(piece);
     return since < infinity ? piece.from.time + since : DoubleDouble{infinity, 0.0};
 }
 
-// A piece may pass the tip and come back: what counts is the way to where it turns.
+// A piece may pass the tip and come back: the search ends where it turns.
 double time_of_tip(const SlopePiece& piece) {
     const double until = std::min(piece.lasts, turning_in(piece));
     if (std::isinf(until)) return infinity;
@@ -182,18 +174,18 @@ double time_of_tip(const SlopePiece& piece) {
 }
 
 SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece) {
-    constexpr double well_known = 0.1;  // share of W in the terms it is the sum of
+    constexpr double accurate = 0.1;  // least share of W in the sum of the sizes of its terms
     SlopePlace place = place_in(piece, piece.lasts);
     const Geometry here = geometry(body, place);
     const Tracked w = energy_at(body, energy, place, here);
-    if (w.value > well_known * w.magnitude) {
+    if (w.value > accurate * w.magnitude) {
         const double inertia = inertia_about_contact(body.gyration2, here);
         place.omega = std::copysign(std::sqrt(2 * w.value / inertia), place.omega);
     }
     return place;
 }
 
-// Physics (18, 20), as RollingDynamics has them for a scene.
+// Physics (18, 20); RollingEquation has the same forces in SI units.
 ContactForce contact_force(const SlopeBody& body, const SlopePlace& place) {
     const Geometry at = geometry(body, place);
     const double omega2 = square(place.omega);

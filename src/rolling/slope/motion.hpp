@@ -1,5 +1,5 @@
-// Rolling on a slope as power series in time, each about a place of the motion: they pass turning
-// points as any other place, and the next one begins where the last has lost its digits.
+// Rolling on a slope as power series in time, each about a place of the motion. A series passes a
+// turning point as any other place; the next series begins where the last one has lost its digits.
 #pragma once
 
 #include <optional>
@@ -15,44 +15,40 @@ namespace rolling_ellipse {
 // The equilibria of a body on a slope that falls to growing angles, h' = h tan(slope), physics
 // (62): stable next to the flat position, unstable next to the tip.
 struct Equilibria {
-    double lying;    // the angle from the flat position, 0 or more
-    double upright;  // the angle from the tip, 0 or less
+    double lying;    // angle from the flat position, 0 or more
+    double upright;  // angle from the tip, 0 or less
 };
 
-// Nothing where the slope is too steep for them. `incline` is its tangent.
+// Empty where the slope is too steep for equilibria. `incline` is the tangent of the slope.
 std::optional<Equilibria> equilibria(double long_axis, double short_axis, double incline);
 
 // Body and ground in units of their own, powers of two. The slope falls to the side of growing
-// angles: one that falls to the other side is looked at from behind.
-struct SlopeBody {
-    double length;  // units [m], [s]
-    double time;
-    double side;  // +1, or -1 if seen from behind
+// angles; a slope that falls to the other side is seen from behind.
+struct SlopeBody : SlopeConstants {
+    double length;  // unit [m]
+    double time;    // unit [s]
+    double side;    // +1, or -1 if seen from behind
     double long_axis;
     double short_axis;
-    double c2;
     double gyration2;
-    GroundGravity gravity;  // along > 0
     std::optional<Equilibria> equilibria;
-    double pull;            // (along^2 + into^2)^(1/2) c2
-    SlopeConstants series;  // for a time unit of 1
-    double slowest;         // rate of what gravity does from rest
-    double quarter_path;    // of the centre, in a quarter turn
-    double gain;            // of W = D omega^2/2 in half a turn downhill, physics (58)
+    double pull;          // (along^2 + into^2)^(1/2) c2
+    double slowest;       // rate at which gravity moves a body that starts at rest
+    double quarter_path;  // path of the centre in a quarter turn
+    double gain;          // of W = D omega^2/2 in half a turn downhill, physics (58)
 };
 
 SlopeBody slope_body(const Body& body, double slope);
 
-// The angle counts from the flat position (even quarters) or tip (odd quarters) nearby.
+// A place of the motion, beside the flat position (even quarters) or tip (odd quarters) nearby.
 struct SlopePlace {
     DoubleDouble time;
     double quarters;
-    DoubleDouble angle;
+    DoubleDouble angle;  // from the end of the quarters
     double omega;
     DoubleDouble path;  // of the centre, since the start
 };
 
-// The geometry of a place; h'' and the radius of curvature as everywhere.
 Geometry geometry(const SlopeBody& body, double quarters, double angle);
 inline Geometry geometry(const SlopeBody& body, const SlopePlace& at) {
     return geometry(body, at.quarters, double(at.angle));
@@ -61,18 +57,23 @@ inline Geometry geometry(const SlopeBody& body, const SlopePlace& at) {
 // The path of the centre from the flat position of quarter 0.
 double path_at(const SlopeBody& body, double quarters, double angle);
 
-// How much lower the centre is at one place than at another: as a product, since the difference of
-// the heights of what is nearly a circle would be a rounding.
+// Height of the centre at one place minus its height at another, as a product: the difference of
+// two heights of a nearly round body would be a rounding.
 Tracked fall(const SlopeBody& body, const Geometry& from, const Geometry& to);
 
-// The energy W = D omega^2/2 along the motion, from that of its start: physics (58).
+// The start of a motion, from which physics (58) has the energy W = D omega^2/2 at other places.
 struct SlopeEnergy {
-    double start;  // W
+    double start;  // W at the start
     Geometry at;
 };
 
 SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start);
 
+// W at a place.
+Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
+                  const Geometry& here);
+
+// A stretch of the motion as one power series in time.
 struct SlopePiece {
     SlopePlace from;
     double unit;   // of time, in the series
@@ -84,24 +85,21 @@ struct SlopePiece {
 
 SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from);
 
-// At a time since the begin of the piece, as the series has it.
+// The place at a time since the begin of the piece.
 SlopePlace place_in(const SlopePiece& piece, double since);
 
-// The angle over the flat position or tip that the piece begins at, and the angular acceleration.
+// The angle from the flat position or tip beside the begin of the piece, and the angular
+// acceleration, at a time since that begin.
 double angle_in(const SlopePiece& piece, double since);
 double acceleration_in(const SlopePiece& piece, double since);
 
-// Times of the motion at which it turns back in the piece, or passes the tip on its way there;
-// infinite if it does not. What it begins with does not count.
+// Times of the motion at which it turns back in the piece, and at which it passes the tip before it
+// turns; infinite if it does not. A turning point or tip at the begin of the piece does not count.
 DoubleDouble time_of_turning(const SlopePiece& piece);
 double time_of_tip(const SlopePiece& piece);
 
-// At its end, the angular velocity from the energy where that knows it better.
+// The place at the end of a piece, its omega from the energy where that is more accurate.
 SlopePlace place_after(const SlopeBody& body, const SlopeEnergy& energy, const SlopePiece& piece);
-
-// W at a place, and the sizes it was made from.
-Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
-                  const Geometry& here);
 
 // The force of the ground on a body of unit mass, in units of the body, along x as seen with the
 // slope falling to growing angles.

@@ -6,14 +6,14 @@
 
 namespace rolling_ellipse {
 
-// The constants of the series, with time in a unit of its own.
+// Constants of the equation of motion, with the angle phi from the flat position.
 struct SlopeConstants {
     double short_axis2;
     double long_axis2;
     double c2;
-    GroundGravity gravity;  // along a slope that falls to growing angles
-    double d0;              // D h^2 = d0 + d1 sin^2 phi, physics (28)
+    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28)
     double d1;
+    GroundGravity gravity;  // along > 0: the slope falls to growing angles
 };
 
 struct SlopeSeries {
@@ -23,8 +23,8 @@ struct SlopeSeries {
     LongSeries height;
 };
 
-// The series from the sine and cosine of the angle from the flat position, the angular velocity and
-// h times the moment of gravity there.
+// The series about a place, from the sine and cosine of phi, omega, and `drive`, h times the moment
+// of gravity.
 SlopeSeries slope_series(const SlopeConstants& body, double sin, double cos, double omega,
                          double drive);
 

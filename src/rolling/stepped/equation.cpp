@@ -34,27 +34,25 @@ SpecificEnergy RollingEquation::energy(const Geometry& at, double omega, double 
             gravity_.into * at.h - gravity_.along * x};
 }
 
-RollingDynamics::RollingDynamics(const Scene& scene)
-    : equation_(scene.body(), scene.slope), mass_(scene.mass), gravity_(scene.ground_gravity()) {}
-
-RollingDynamics::Accelerations RollingDynamics::accelerations(const Geometry& at,
+RollingEquation::Accelerations RollingEquation::accelerations(const Geometry& at,
                                                               double omega) const {
     const double omega2 = omega * omega;
-    const double omega_dot = equation_.acceleration(at.sin, at.cos, omega);
+    const double omega_dot = acceleration(at.sin, at.cos, omega);
     return {omega_dot, at.h * omega_dot + at.dh * omega2, at.dh * omega_dot + at.ddh * omega2};
 }
 
-ContactForce RollingDynamics::force(const Accelerations& of_centre) const {
-    return {mass_ * (gravity_.into + of_centre.z), mass_ * (of_centre.x - gravity_.along)};
+ContactForce RollingEquation::force(double mass, const Accelerations& of_centre) const {
+    return {mass * (gravity_.into + of_centre.z), mass * (of_centre.x - gravity_.along)};
 }
 
 ContactForce rolling_force(const Scene& scene, double theta, double omega) {
-    return RollingDynamics(scene).force(geometry(scene.axes(), theta), omega);
+    const RollingEquation rolling(scene.body(), scene.slope);
+    return rolling.force(scene.mass, geometry(scene.axes(), theta), omega);
 }
 
-// The multipliers of the gradients of f1 ... f4: lambda1 = F, lambda2 = N, and from the rows of psi
-// and r, which carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3.
-// At the contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
+// The multipliers of the gradients of f1 ... f4 are lambda1 = F and lambda2 = N. The rows of psi
+// and r carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3. At the
+// contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
 Eigen::Vector4d contact_multipliers(const Coordinates& q, const ContactForce& force) {
     const double offset = q[coordinate::psi] - q[coordinate::theta];
     return {force.friction, force.normal, force.normal * std::cos(offset), 0.0};
@@ -72,15 +70,15 @@ SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, dou
 RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
     const Axes axes = scene.axes();
     const Geometry at = geometry(axes, theta);
-    const RollingDynamics dynamics(scene);
-    const RollingDynamics::Accelerations acceleration = dynamics.accelerations(at, omega);
+    const RollingEquation rolling(scene.body(), scene.slope);
+    const RollingEquation::Accelerations acceleration = rolling.accelerations(at, omega);
 
     RollingDetail detail;
     detail.state = kinematics(axes, theta, omega);
     const SecondRates rates = contact_point_second_rates(axes, at, detail.state.q[coordinate::psi],
                                                          omega, acceleration.theta);
     detail.q_ddot << acceleration.x, acceleration.z, acceleration.theta, rates.psi, rates.r;
-    detail.force = dynamics.force(acceleration);
+    detail.force = rolling.force(scene.mass, acceleration);
     detail.multipliers = contact_multipliers(detail.state.q, detail.force);
     return detail;
 }

@@ -1,5 +1,5 @@
-// Rolling without slip as one degree of freedom: its equation, and everything that follows from
-// theta and omega.
+// Rolling without slip as one degree of freedom: the equation of motion, and the accelerations,
+// forces, coordinates and multipliers that follow from theta and omega.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ struct SpecificEnergy {
     double total() const { return kinetic + potential; }
 };
 
-// A state's energy, with x = 0 at the start of its motion, and its largest constraint residual:
+// Energy of a state, with x = 0 at the start of its motion, and its largest constraint residual:
 // |f2| or |f3| over the long semi-axis, or |f4|.
 struct Invariants {
     SpecificEnergy energy;
@@ -41,6 +41,20 @@ class RollingEquation {
     Vector<2> operator()(double t, const Vector<2>& y) const;
     Matrix<2> jacobian(double t, const Vector<2>& y) const;
     SpecificEnergy energy(const Geometry& at, double omega, double x) const;
+
+    // Accelerations of theta and of the centre, and the contact force of a body with a mass:
+    // physics (20), Newton's law for the centre.
+    struct Accelerations {
+        double theta;
+        double x;
+        double z;
+    };
+    Accelerations accelerations(const Geometry& at, double omega) const;
+    ContactForce force(double mass, const Accelerations& of_centre) const;
+    ContactForce force(double mass, const Geometry& at, double omega) const {
+        return force(mass, accelerations(at, omega));
+    }
+
     bool is_level() const { return gravity_.along == 0; }
     Vector<2> mass() const { return Vector<2>::Ones(); }
     Vector<2> typical() const {
@@ -62,7 +76,8 @@ class RollingEquation {
     double long_axis_;
 };
 
-// physics (18) times h^4, so that one root and one division are enough: with u = h^2, p = h h',
+// The acceleration by physics (18) times h^4, with one root and one division: with u = h^2, p = h
+// h',
 //     theta'' (u^2 (k^2 + u) + u p^2) = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
 // The division does not wait for the root.
 [[gnu::always_inline]] inline double RollingEquation::acceleration(const Squares& axes, double s,
@@ -75,7 +90,7 @@ class RollingEquation {
     return (drive - turning) * inverse;
 }
 
-// After a quarter turn the body is one with its axes exchanged.
+// The rate of y. A quarter turn exchanges the axes of the body.
 [[gnu::always_inline]] inline Vector<2> RollingEquation::operator()(double,
                                                                     const Vector<2>& y) const {
     if (!(std::abs(y[0]) <= largest_in_quarters)) {
@@ -86,42 +101,23 @@ class RollingEquation {
     return {y[1], acceleration(turned_[odd], sine, cosine, y[1])};
 }
 
-// Everything that rolling does at a place: physics (20), Newton's law for the centre.
-class RollingDynamics {
-  public:
-    explicit RollingDynamics(const Scene& scene);
-
-    struct Accelerations {
-        double theta;
-        double x;
-        double z;
-    };
-    Accelerations accelerations(const Geometry& at, double omega) const;
-    ContactForce force(const Accelerations& of_centre) const;
-    ContactForce force(const Geometry& at, double omega) const {
-        return force(accelerations(at, omega));
-    }
-
-  private:
-    RollingEquation equation_;
-    double mass_;
-    GroundGravity gravity_;
-};
-
+// The contact force of a rolling body.
 ContactForce rolling_force(const Scene& scene, double theta, double omega);
 
-// The second derivatives of psi and r of the contact point, and the multipliers that a contact
-// force makes.
+// Second derivatives of the coordinates psi and r of the contact point.
 struct SecondRates {
     double psi;
     double r;
 };
 SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, double psi,
                                        double omega, double omega_dot);
+
+// The multipliers of f1 ... f4 that have the effect of a contact force.
 Eigen::Vector4d contact_multipliers(const Coordinates& q, const ContactForce& force);
 
+// A rolling state in the coordinates of the multiplier model.
 struct RollingDetail {
-    CoordinateState state;  // its x is the integral of h from 0
+    CoordinateState state;  // x is the integral of h from 0
     Coordinates q_ddot;
     ContactForce force;
     Eigen::Vector4d multipliers;

@@ -1,5 +1,6 @@
 #include "rolling/stepped/path.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "numerics/sine_cosine.hpp"
@@ -11,32 +12,33 @@ PathSeries::PathSeries(const Axes& axes)
       c2_((axes.a - axes.b) * (axes.a + axes.b)),
       off_axis_(std::atanh(std::fmin(axes.a, axes.b) / std::fmax(axes.a, axes.b))) {}
 
-// From the nearest root of h, at which its series ends to converge.
-double PathSeries::distance(double angle) const {
-    const auto [rest, odd] = nearest_quarter(angle);
-    const bool by_flat = odd == (c2_ < 0);
-    return root_of_squares(by_flat ? std::abs(rest) : half_pi - std::abs(rest), off_axis_);
-}
-
 void PathSeries::move_to(double angle) {
     constexpr std::size_t most_known = 256;  // a half turn of the thinnest body has about a hundred
     if (!(angle <= largest_in_quarters)) {
         here_ = {angle, angle, angle, {centre_path(axes_, angle)}};
         return;
     }
-    for (const Interval& interval : known_) {
-        if (interval.holds(angle)) {
-            here_ = interval;
-            return;
-        }
+    const auto known =
+        std::find_if(known_.begin(), known_.end(),
+                     [angle](const Interval& interval) { return interval.holds(angle); });
+    if (known != known_.end()) {
+        here_ = *known;
+        return;
     }
     here_ = interval_at(angle);
     if (known_.size() == most_known) known_.clear();
     known_.push_back(here_);
 }
 
-// Intervals are halves of halves of [n, n + 1), the first that is a 3.5th of the distance or less:
-// the 17 terms then leave out less than 1e-17 of h times the interval.
+// Distance of an angle from the nearest root of h, at which its series ceases to converge.
+double PathSeries::distance(double angle) const {
+    const auto [rest, odd] = nearest_quarter(angle);
+    const bool by_flat = odd == (c2_ < 0);
+    return root_of_squares(by_flat ? std::abs(rest) : half_pi - std::abs(rest), off_axis_);
+}
+
+// The longest of the halves of halves of [n, n + 1) about an angle that is at most a 3.5th of the
+// distance: the 17 terms then leave out less than 1e-17 of h times the interval.
 PathSeries::Interval PathSeries::interval_at(double angle) const {
     constexpr double share = 3.5;
     Interval found;

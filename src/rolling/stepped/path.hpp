@@ -1,6 +1,6 @@
-// The path of the centre at many angles, of which the next is mostly close to the last: Taylor
-// series of the integral of h, physics (9), each about the middle of an interval. A body that rolls
-// over comes back to the same intervals in each half turn.
+// The path of the centre at many angles, each mostly close to the one before: Taylor series of the
+// integral of h, physics (9), each about the middle of an interval. A body that rolls over meets
+// the same intervals in each half turn, so that they are kept.
 #pragma once
 
 #include <cmath>
@@ -15,8 +15,7 @@ class PathSeries {
   public:
     explicit PathSeries(const Axes& axes);
 
-    // As centre_path, to the last place or two; what was asked before changes no bit, nor does the
-    // side of 0.
+    // centre_path to 2 ulp. Its bits do not depend on earlier calls, nor on the sign of theta.
     double operator()(double theta) {
         const double angle = std::abs(theta);
         if (!here_.holds(angle)) move_to(angle);
@@ -26,8 +25,8 @@ class PathSeries {
 
   private:
     struct Interval {
-        double low = 1.0;
-        double high = 0.0;  // at first no interval at all
+        double low = 1.0;  // an empty interval before the first call
+        double high = 0.0;
         double middle = 0.0;
         Series path{};
 
@@ -40,7 +39,7 @@ class PathSeries {
 
     Axes axes_;
     double c2_;
-    double off_axis_;  // of the roots of h, which lie beside the flat positions
+    double off_axis_;  // imaginary part of the roots of h, which lie beside the flat positions
     Interval here_;
     std::vector<Interval> known_;
 };

@@ -19,24 +19,20 @@ void with_integrator(const SteppedRolling& motion, Action action) {
     const RollingEquation& f = motion.equation;
     const int stages = motion.settings.stages.value_or(default_stages);
     switch (motion.settings.method) {
-        case Method::rk4:
-            return action(ExplicitMethod<RungeKutta4, RollingEquation>(f));
-        case Method::dopri5:
-            return action(ExplicitMethod<DormandPrince5, RollingEquation>(f));
         case Method::radau:
             return action(Radau<RollingEquation>(f));
         case Method::gauss:
             if (stages == 2) return action(Gauss<2, RollingEquation>(f));
             if (stages == 3) return action(Gauss<3, RollingEquation>(f));
             return action(Gauss<4, RollingEquation>(f));
-        case Method::dop853:
-            return action(ExplicitMethod<DormandPrince853, RollingEquation>(f));
         default:
-            no_integrator_for(motion.settings.method);
+            return with_tableau(motion.settings.method, [&](auto tableau) {
+                action(ExplicitMethod<decltype(tableau), RollingEquation>(f));
+            });
     }
 }
 
-// The samples of a motion. All times of a step share what is known at its knot.
+// The state at places of a motion. All places of a step share what is computed at its knot.
 class StepView {
   public:
     explicit StepView(const SteppedRolling& motion) : motion_(motion), path_(motion.axes) {}
@@ -45,8 +41,8 @@ class StepView {
         if (&knot != knot_) move_to(knot);
         const double rest = knot.y[0] + (knot.carry[0] + change[0]);
         const double path = change[0] == 0 ? centre_path(motion_.axes, rest) : path_(rest);
-        return {static_cast<double>(theta_ + change[0]), knot.y[1] + (knot.carry[1] + change[1]),
-                static_cast<double>(motion_.x_base + (path_before_ + path))};
+        return {double(theta_ + change[0]), knot.y[1] + (knot.carry[1] + change[1]),
+                double(motion_.x_base + (path_before_ + path))};
     }
 
   private:
@@ -61,11 +57,10 @@ class StepView {
     PathSeries path_;
     const Knot<2>* knot_ = nullptr;
     DoubleDouble theta_;
-    double path_before_ = 0.0;  // of the half turns until then
+    double path_before_ = 0.0;  // of the half turns before the knot
 };
 
-}  // namespace
-
+// The motion before its first step.
 SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings) {
     const Axes axes = scene.axes();
     const double rest = within_a_turn(start.theta);
@@ -79,6 +74,8 @@ SteppedRolling rolling_from(const Scene& scene, const State& start, const Settin
     motion.steps.knots.push_back({0.0, {rest, start.omega}, Vector<2>::Zero(), 0.0});
     return motion;
 }
+
+}  // namespace
 
 Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& start,
                                               const Settings& settings, double t_end,
@@ -106,10 +103,10 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples) {
     with_integrator(motion, [&](auto integrator) {
         StepView view(motion);
-        look(integrator, motion.steps, times, n,
-             [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
-                 samples[i] = view(knot, change);
-             });
+        sample_steps(integrator, motion.steps, times, n,
+                     [&](std::size_t i, const Knot<2>& knot, const Vector<2>& change) {
+                         samples[i] = view(knot, change);
+                     });
     });
 }
 
@@ -122,10 +119,10 @@ std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluation
         survey(integrator, motion.steps, evaluations,
                [&](const Knot<2>& knot, const Vector<2>& change) {
                    const Vector<2> y = knot.y + (knot.carry + change);
-                   double x = 0.0;
-                   if (!f.is_level()) {
-                       x = knot.periods * motion.half_turn_path + (path(y[0]) - path_before);
-                   }
+                   // The path of the centre, which changes the energy on a slope only.
+                   const double x = f.is_level() ? 0.0
+                                                 : knot.periods * motion.half_turn_path +
+                                                       (path(y[0]) - path_before);
                    found.push_back({f.energy(geometry(motion.axes, y[0]), y[1], x), 0.0});
                });
     });

@@ -1,6 +1,7 @@
 // Rolling by numerical integration: the state at any time.
 #pragma once
 
+#include "integrator/explicit_tableaus.hpp"
 #include "integrator/steps.hpp"
 #include "rolling/level/flow.hpp"
 #include "rolling/stepped/equation.hpp"
@@ -8,20 +9,32 @@
 
 namespace rolling_ellipse {
 
-// The ellipse is the same after half a turn: its angle is integrated as half turns and a rest, so
-// that it keeps its digits however far it rolls.
+// The angle is integrated as half turns, after which the ellipse is the same, and a remainder, so
+// that it keeps its digits however far the body rolls.
 struct SteppedRolling {
     RollingEquation equation;
     Axes axes;
     Settings settings;
-    DoubleDouble theta_base;  // angle at which half turns and rest are 0
+    DoubleDouble theta_base;  // angle at which half turns and remainder are 0
     DoubleDouble x_base;      // x there
-    double half_turn_path;
+    double half_turn_path;    // of the centre
     Steps<2> steps;
 };
 
-// The motion that is to be integrated: its first knot.
-SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings);
+// Call action(tableau) with the tableau of an explicit method.
+template <class Action>
+auto with_tableau(Method method, const Action& action) {
+    switch (method) {
+        case Method::rk4:
+            return action(RungeKutta4{});
+        case Method::dopri5:
+            return action(DormandPrince5{});
+        case Method::dop853:
+            return action(DormandPrince853{});
+        default:
+            no_integrator_for(method);
+    }
+}
 
 Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& start,
                                               const Settings& settings, double t_end,
@@ -30,7 +43,7 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
 // The state at n times between the first and the last knot.
 void sample(const SteppedRolling& motion, const double* times, std::size_t n, FlowSample* samples);
 
-// Energies along the motion, which has taken so many evaluations; no constraints can be missed.
+// Energies along a motion that took so many evaluations; its constraint residuals are 0.
 std::vector<Invariants> invariants(const SteppedRolling& motion, long evaluations);
 
 }  // namespace rolling_ellipse

@@ -40,16 +40,16 @@ struct FirstRates {
 // integral over the whole panel has one Gauss rule, an integral over a part of it the finer rules
 // of its parts.
 struct RunPanel {
-    double quarters;  // of the centre, with its angle
-    double angle;
+    double quarters;  // of the centre
+    double angle;     // of the centre, beside its quarters
     double scale;
     double grade;
     double first;
     double last;
-    std::size_t begin;  // its nodes
-    std::size_t end;
-    std::size_t part;  // its first part
-    int parts;
+    std::size_t begin = 0;  // index of its first node
+    std::size_t end = 0;
+    std::size_t part = 0;  // index of its first part
+    int parts = 0;
 };
 
 struct SlopeRun {
@@ -63,23 +63,30 @@ struct SlopeRun {
     std::vector<RunPanel> panels;
     RunNodes nodes;
     RunNodes part_nodes;
-    std::vector<FirstRates> first;  // one a node, downhill
+    std::vector<FirstRates> first;  // one a node, downhill only
     double mass;                    // sum of all weights
     double half_turn;               // time of the first half turn
-    double half_turns;              // largest number that may be asked for
+    double half_turns;              // largest number of half turns
 };
 
 // The run from a place: uphill for as many half turns as `may_run` allows, downhill for any number.
 SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy, double half_turns);
 
-// Largest number of half turns; the phase of more is lost in the rounding of their number.
+// Largest number of half turns: beyond it the phase is lost in the rounding of their number.
 inline constexpr double most_half_turns = 1e15;
 
-// Half turns from a place, in its direction, during which W is large enough beside w for the sum.
+// Number of half turns from a place, in its direction, during which W is large enough beside w for
+// the sum.
 double may_run(const SlopeBody& body, double energy, const Geometry& at, double omega);
 
 // Time of n half turns.
 DoubleDouble time_of(const SlopeRun& run, double half_turns);
+
+// W at a place in the first half turn.
+double level(const SlopeRun& run, double quarters, double angle, const Geometry& here);
+
+// The angular velocity at a place with that level, n half turns later.
+double omega_after(const SlopeRun& run, double half_turns, double level, const Geometry& here);
 
 // The place at v in a panel during the half turn after the first n.
 SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double half_turns);
