@@ -178,7 +178,7 @@ class ContactRun {
         sliding_on_.reset();
         const SlideStop stop = slide_on(slide, {t_end_ - t_, steps_left()}, checkpoint_);
         const double lasts = double(slide.last.time);
-        const State last = end_of(slide).state;
+        const State last = end_of(slide);
         SlidePoint end = slide.last;
         end.angle = angle_at_end(slide);
         counts_.steps += static_cast<long>(slide.pieces.size());
@@ -231,7 +231,8 @@ class ContactRun {
         const auto [lasts, small_rate] = touch_down(flight);
         const bool lands = t_ + lasts <= t_end_;
         State before = state_at(flight, lands ? lasts : t_end_ - t_);
-        if (!is_known(before)) {
+        // Bounces down a slope may grow, each more than the last, until they leave the doubles.
+        if (!is_finite(before)) {
             ending_ = Ending::step_too_small;
             t_end_ = t_;
             return finish();
@@ -243,12 +244,6 @@ class ContactRun {
         before.z = at.h;
         t_ += lasts;
         hit(before, small_rate ? *small_rate : gap_rate(before, at));
-    }
-
-    // Bounces down a slope may grow, each more than the last, until doubles reach no farther.
-    static bool is_known(const State& state) {
-        return std::isfinite(state.theta) && std::isfinite(state.x) && std::isfinite(state.z) &&
-               std::isfinite(state.x_dot) && std::isfinite(state.z_dot);
     }
 
     void hit(const State& before, double approach) {

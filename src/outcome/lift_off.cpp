@@ -94,7 +94,7 @@ class Follower {
         constexpr long most_pieces = 2000;
         Slide slide = slide_from(scene_, from, side);
         const SlideStop stop =
-            slide_on(slide, {infinity, most_pieces, tip_ + over_the_tip, false}, checkpoint_);
+            slide_on(slide, {infinity, most_pieces, tip_ + over_the_tip}, checkpoint_);
         switch (stop) {
             case SlideStop::slip_vanishes:
             case SlideStop::pressure_vanishes:
@@ -103,8 +103,7 @@ class Follower {
             default:
                 return std::nullopt;
         }
-        const ContactSample last = end_of(slide);
-        State state = last.state;
+        State state = end_of(slide);
         if (state.theta > tip_ + over_the_tip || state.omega < 0) return std::nullopt;
         if (stop == SlideStop::pressure_vanishes) return EndOfSegment{state, {Mode::flight}};
         if (stop == SlideStop::jams) {

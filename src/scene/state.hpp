@@ -25,6 +25,8 @@ inline constexpr Field<State> state_fields[] = {
     {"x", &State::x, unit::length},        {"z", &State::z, unit::length},
     {"x_dot", &State::x_dot, unit::speed}, {"z_dot", &State::z_dot, unit::speed}};
 
+bool is_finite(const State& state);
+
 // Whether the contact has no slip.
 inline bool rolls(const State& state) {
     return state.mode == Mode::rolling || state.mode == Mode::rest;
