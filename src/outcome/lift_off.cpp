@@ -6,7 +6,6 @@
 
 #include "contact/continuation.hpp"
 #include "contact/slide.hpp"
-#include "contact/units.hpp"
 #include "numerics/bisect.hpp"
 #include "proof/certificate.hpp"
 

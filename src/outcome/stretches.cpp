@@ -98,8 +98,7 @@ class Survey {
 
     void operator()(const Settling&) { follow("while it settles"); }
     void operator()(const Flight&) { follow("in flight"); }
-    void operator()(const Resting&) { follow(resting); }
-    void operator()(const Jam&) { follow(resting); }
+    void operator()(const Standing&) { follow(resting); }
 
   private:
     static constexpr const char* rolling = "while it rolls";
