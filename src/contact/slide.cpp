@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -29,6 +30,12 @@ SlidePoint moved(const SlidePiece& piece, double clock) {
             centre.path + change(motion.path),
             centre.time + lasts * unit,
             centre.energy};
+}
+
+bool is_finite(const SlidePoint& point) {
+    const DoubleDouble numbers[] = {point.angle, point.omega, point.x_dot, point.path, point.time};
+    return std::all_of(std::begin(numbers), std::end(numbers),
+                       [](const DoubleDouble& each) { return std::isfinite(double(each)); });
 }
 
 // The coefficients of a circle vanish but for the first ones, and powers of its reach are infinite.
@@ -119,7 +126,7 @@ class SlideIntegration {
         slide_.pieces.push_back({from, clock_, unit, reach_, series.motion});
         SlidePoint next = moved(slide_.pieces.back(), reach_);
         // Beyond some 1e100 powers of the rate leave the doubles.
-        if (!is_finite(sample_at(slide_, next).state)) {
+        if (!is_finite(next)) {
             slide_.pieces.pop_back();
             return SlideStop::no_progress;
         }

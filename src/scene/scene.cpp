@@ -97,15 +97,6 @@ State in_units(const State& state, const Units& units) {
     return in_si(state, {1 / units.length, 1 / units.time, 1 / units.mass});
 }
 
-// Written out, since every sample goes through it.
-State in_si(const State& state, const Units& units) {
-    const auto& [theta, omega, x, z, x_dot, z_dot, mode] = state;
-    const double speed = units.speed();
-    return {
-        theta, omega / units.time, x * units.length, z * units.length, x_dot * speed, z_dot * speed,
-        mode};
-}
-
 void validate_length(std::string_view name, double value) {
     require_positive(name, "length [m]", value);
 }

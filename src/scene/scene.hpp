@@ -128,7 +128,15 @@ Units natural_units(const Body& body, double mass = 1.0);
 Scene in_units(const Scene& scene, const Units& units);
 
 State in_units(const State& state, const Units& units);
-State in_si(const State& state, const Units& units);
+
+// Written out and inline, since every sample goes through it.
+inline State in_si(const State& state, const Units& units) {
+    const auto& [theta, omega, x, z, x_dot, z_dot, mode] = state;
+    const auto& [length, time, mass] = units;
+    const double rate = 1 / time;
+    const double speed = length * rate;
+    return {theta, omega * rate, x * length, z * length, x_dot * speed, z_dot * speed, mode};
+}
 
 inline Body body(double a, double b, std::optional<double> gyration2, double gravity) {
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
