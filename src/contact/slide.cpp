@@ -104,7 +104,7 @@ class SlideIntegration {
 
     // Adds a piece. Returns the reason if the slide stops there.
     std::optional<SlideStop> step() {
-        const SlidePoint from = last_;
+        const SlidePoint& from = last_;
         const auto [sin, cos] = sin_cos(from.angle);
         const double unit =
             std::ldexp(1.0, -std::ilogb(rate(geometry(slide_.body.axes, sin, cos))));
@@ -123,8 +123,13 @@ class SlideIntegration {
             {reach(angle), reach(omega), reach(series.rolled), reach(series.pressure), most});
         find_end(body, series);
         omega[0] = series.slip[0] = x_dot[0] = 0.0;
-        slide_.pieces.push_back({from, clock_, unit, reach_, series.motion});
-        SlidePoint next = moved(slide_.pieces.back(), reach_);
+        SlidePiece& piece = slide_.pieces.emplace_back();  // in place, as it is large
+        piece.centre = from;
+        piece.clock = clock_;
+        piece.unit = unit;
+        piece.reach = reach_;
+        piece.motion = series.motion;
+        SlidePoint next = moved(piece, reach_);
         // Beyond some 1e100 powers of the rate leave the doubles.
         if (!is_finite(next)) {
             slide_.pieces.pop_back();
