@@ -23,6 +23,8 @@ EventKind kind_of(Mode next, EventKind sliding) {
     return next == Mode::flight ? EventKind::lift_off : sliding;
 }
 
+// The motion so far, and its state at a time. Times, states and segments are in natural units;
+// settings and events are not.
 class ContactRun {
   public:
     ContactRun(const Scene& scene, const State& start, double gap_rate,
@@ -34,26 +36,20 @@ class ContactRun {
           t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
           checkpoint_(checkpoint),
           state_(in_units(start, units_)),
+          gap_rate_(gap_rate / units_.speed()),
           first_end_(end_of_rolling),
           rest_speed_(rest_speed(scene_, units_, settings)),
-          gap_rate_(gap_rate / units_.speed()),
           motion_{units_, scene_, {}, {}} {}
 
     Integration<Motion> run() {
         const double x_dot = state_.x_dot;
-        DoubleDouble angle{state_.theta, 0.0};
-        state_ = recounted(state_, angle);
+        state_ = recounted(state_, {state_.theta, 0.0}).state;
         if (scene_.friction == 0) state_.x_dot = x_dot;  // which nothing but gravity changes
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
         while (!ending_) {
             checkpoint_();
-            state_.mode = next_.mode;
-            if (is_stuck()) {
-                stop_stuck();
-            } else {
-                follow();
-            }
+            follow();
         }
         return {std::move(motion_), *ending_, t_ * units_.time, counts_};
     }
@@ -61,9 +57,8 @@ class ContactRun {
   private:
     Axes axes() const { return scene_.axes(); }
 
-    // Where a segment begins, its angle is counted from the flat position or tip beside it, where a
-    // thin body is the most sensitive to it: returns that angle, of which states have the high
-    // part.
+    // Counts an angle from the flat position or tip beside it, where a thin body is the most
+    // sensitive to it, and turns the scene so; returns the angle from there.
     DoubleDouble count_from_quarter(DoubleDouble theta) {
         if (const double rest = resolved(theta.high); rest != theta.high) {
             turned_ = turned_ + two_sum(theta.high, -rest) + theta.low;
@@ -78,20 +73,26 @@ class ContactRun {
         return angle.rest;
     }
 
-    // The state, its angle counted so; it is told with all its digits, and becomes the new one.
-    State recounted(const State& state, DoubleDouble& angle) {
+    // A state with its angle counted so, and all digits of that.
+    struct Recounted {
+        State state;
+        DoubleDouble angle;
+    };
+    Recounted recounted(const State& state, const DoubleDouble& theta) {
         const Axes before = axes();
-        angle = count_from_quarter(angle);
-        return with_angle(before, state, axes(), angle.high);
+        const DoubleDouble angle = count_from_quarter(theta);
+        return {with_angle(before, state, axes(), angle.high), angle};
     }
 
     void follow() {
+        state_.mode = next_.mode;
+        if (is_stuck()) return stop_stuck();
         if (next_.grazes) return graze();
         switch (next_.mode) {
             case Mode::rest:
                 return rest();
             case Mode::rolling:
-                return scene_.slope == 0 ? roll_exactly() : roll_on_slope();
+                return scene_.slope == 0 ? roll_on_level_ground() : roll_on_slope();
             case Mode::sliding:
                 return slide();
             case Mode::flight:
@@ -100,29 +101,23 @@ class ContactRun {
     }
 
     void rest() {
-        add_segment(Resting{state_});
+        add_segment(Standing{{state_, rolling_force(scene_, state_.theta, state_.omega)}});
         finish();
     }
 
     bool is_stuck() const { return next_.paradox != Painleve::determined; }
 
     void stop_stuck() {
-        add_segment(Jam{state_});
+        add_segment(Standing{{state_, {0.0, 0.0}}});
         ending_ = next_.paradox == Painleve::no_motion ? Ending::jammed : Ending::undetermined;
     }
 
-    void roll_exactly() {
+    void roll_on_level_ground() {
         const RollingStart start = rolling_start(scene_.body(), state_.theta, state_.omega);
-        const RollingFlow flow = rolling_flow(start, state_.x);
+        RollingFlow flow = rolling_flow(start, state_.x);
         const EndOfRolling end = end_of_this_rolling(start);
-        const double lasts = end.validity == Validity::invalid ? time_of_end(flow, end) : infinity;
-        if (lasts == infinity) {
-            validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
-        }
-        if (lasts > 0) add_segment(std::make_shared<const RollingFlow>(flow));
-        if (t_ + lasts > t_end_) return finish();
-        const FlowSample last = sample(flow, lasts);
-        stop_rolling(lasts, last.theta, last.omega, last.x);
+        roll(std::move(flow),
+             end.validity == Validity::invalid ? time_of_end(flow, end) : infinity);
     }
 
     EndOfRolling end_of_this_rolling(const RollingStart& start) const {
@@ -131,7 +126,7 @@ class ContactRun {
         const bool at_limit = friction != scene_.friction;
         if (is_first && !at_limit) return first_end_;
         EndOfRolling end = end_of_rolling(start, friction);
-        // With less friction than angles tell from none it ends where it starts.
+        // The added friction may turn the body by less than a rounding of its angle.
         if (at_limit && end.angle && std::abs(*end.angle - start.theta) < epsilon) {
             end.angle = start.theta + end.heading * epsilon;
         }
@@ -145,69 +140,53 @@ class ContactRun {
         const LawMeetings met = law_meetings(flow, friction_to_roll(), left);
         const double lasts = met.broken ? met.broken->time : infinity;
         prepare(flow, std::min(lasts, left));
-        if (lasts == infinity) {
-            validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
-        }
-        const FlowSample last = lasts < infinity ? sample(flow, lasts) : FlowSample{};
-        if (lasts > 0) add_segment(std::make_shared<const SlopeFlow>(std::move(flow)));
-        if (t_ + lasts > t_end_) return finish();
-        stop_rolling(lasts, last.theta, last.omega, last.x);
+        roll(std::move(flow), lasts);
     }
 
-    // At the limit but for rounding it may be that the ground holds the body, and that it slips:
-    // it rolls until that is clear.
+    // Where the law is at its limit but for rounding, the ground may hold the body, and may let it
+    // slip: with slightly more friction it rolls until that is clear.
     double friction_to_roll() const {
         const ContactForce force = rolling_force(scene_, state_.theta, state_.omega);
         return at_the_limit(force, scene_.friction) ? beyond_the_limit(scene_.friction)
                                                     : scene_.friction;
     }
 
-    void stop_rolling(double after, double end, double omega, double x) {
+    template <class Flow>
+    void roll(Flow flow, double lasts) {
+        if (lasts == infinity) {
+            validate_time(t_end_ * units_.time, (t_ + longest_time(flow)) * units_.time);
+        }
+        const auto kept = std::make_shared<const Flow>(std::move(flow));
+        if (lasts > 0) add_segment(kept);
+        if (!advance(lasts)) return;
+        const auto [end, omega, x] = sample(*kept, lasts);
         const double theta = count_from_quarter({end, 0.0}).high;
-        const State before =
-            in_contact(geometry(axes(), theta), theta, omega, x, 0.0, Mode::rolling);
-        t_ += after;
-        state_ = before;
-        const Continuation next = continuation(scene_, before, false);
-        go_on_with(next, kind_of(next.mode, EventKind::slip), before);
+        state_ = in_contact(geometry(axes(), theta), theta, omega, x, 0.0, Mode::rolling);
+        go_on_by_forces(EventKind::slip, false);
     }
 
     void slide() {
         Slide slide = slide_from(scene_, state_, next_.side);
         if (sliding_on_) go_on_from(*sliding_on_, slide);
         sliding_on_.reset();
-        const SlideStop stop = slide_on(slide, {t_end_ - t_, steps_left()}, checkpoint_);
-        const double lasts = double(slide.last.time);
-        const State last = end_of(slide).state;
+        const long steps_left = settings_.max_steps - counts_.steps;
+        const SlideStop stop = slide_on(slide, {t_end_ - t_, steps_left}, checkpoint_);
+        const State last = end_of(slide);
+        const DoubleDouble theta = angle_at_end(slide);
         SlidePoint end = slide.last;
-        end.angle = angle_at_end(slide);
+        const double lasts = double(end.time);
         counts_.steps += static_cast<long>(slide.pieces.size());
         if (!slide.pieces.empty()) add_segment(std::move(slide));
-        if (stop == SlideStop::too_many_pieces || stop == SlideStop::no_progress) {
-            const bool too_many = stop == SlideStop::too_many_pieces;
-            ending_ = too_many ? Ending::max_steps : Ending::step_too_small;
-            t_end_ = t_ + lasts;  // all there is
-            return finish();
-        }
-        if (stop == SlideStop::time_is_over || t_ + lasts > t_end_) return finish();
-        t_ += lasts;
-        state_ = recounted(last, end.angle);
-        end_slide(stop, State(state_));
-        if (next_.mode == Mode::sliding) sliding_on_ = end;
-    }
-
-    // By a free motion, which is that of the contact to 1e-14 until it is turned on so far.
-    void graze() {
-        const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, next_.mode};
-        const double lasts = turn_of_grazing / std::abs(state_.omega);
-        add_segment(free);
-        if (t_ + lasts > t_end_) return finish();
-        t_ += lasts;
-        const State moved = state_at(free, lasts);
-        const Geometry at = geometry(axes(), moved.theta);
-        const double slip = next_.mode == Mode::sliding ? slip_velocity(moved, at) : 0.0;
-        state_ = in_contact(at, moved.theta, moved.omega, moved.x, slip, next_.mode);
-        next_ = continuation(scene_, state_);
+        if (stop == SlideStop::too_many_pieces) return give_up(Ending::max_steps, lasts);
+        if (stop == SlideStop::no_progress) return give_up(Ending::step_too_small, lasts);
+        if (stop == SlideStop::time_is_over) return finish();
+        if (!advance(lasts)) return;
+        const Recounted here = recounted(last, theta);
+        state_ = here.state;
+        end_slide(stop, here.state);
+        if (next_.mode != Mode::sliding) return;
+        end.angle = here.angle;
+        sliding_on_ = end;
     }
 
     void end_slide(SlideStop stop, const State& before) {
@@ -221,67 +200,62 @@ class ContactRun {
         const Geometry at = geometry(axes(), before.theta);
         state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
-        if (next.mode == Mode::sliding)
-            state_.x_dot = before.x_dot;  // without the rounding of h omega
+        // The velocity of the centre has not the rounding of h omega.
+        if (next.mode == Mode::sliding) state_.x_dot = before.x_dot;
         go_on_with(next, kind_of(next.mode, EventKind::reverse), before);
+    }
+
+    // A free motion, which is that of the contact to 1e-14 until the body has turned so far.
+    void graze() {
+        const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, next_.mode};
+        const double lasts = turn_of_grazing / std::abs(state_.omega);
+        add_segment(free);
+        if (!advance(lasts)) return;
+        const State moved = state_at(free, lasts);
+        const Geometry at = geometry(axes(), moved.theta);
+        const double slip = next_.mode == Mode::sliding ? slip_velocity(moved, at) : 0.0;
+        state_ = in_contact(at, moved.theta, moved.omega, moved.x, slip, next_.mode);
+        next_ = continuation(scene_, state_);
     }
 
     void fly() {
         const Flight flight{axes(), scene_.ground_gravity(), state_, gap_rate_};
         const auto [lasts, small_rate] = touch_down(flight);
-        const bool lands = t_ + lasts <= t_end_;
-        State before = state_at(flight, lands ? lasts : t_end_ - t_);
-        if (!is_known(before)) {
-            ending_ = Ending::step_too_small;
-            t_end_ = t_;
-            return finish();
-        }
+        State before = state_at(flight, t_ + lasts <= t_end_ ? lasts : t_end_ - t_);
+        // Bounces down a slope may grow, each more than the last, until they leave the doubles.
+        if (!is_finite(before)) return give_up(Ending::step_too_small, 0.0);
         add_segment(flight);
-        if (!lands) return finish();
+        if (!advance(lasts)) return;
         before.theta = count_from_quarter(two_product(state_.omega, lasts) + state_.theta).high;
         const Geometry at = geometry(axes(), before.theta);
         before.z = at.h;
-        t_ += lasts;
-        hit(before, small_rate ? *small_rate : gap_rate(before, at));
+        hit(before, at, small_rate ? *small_rate : gap_rate(before, at));
     }
 
-    // Bounces down a slope may grow, each more than the last, until doubles reach no farther.
-    static bool is_known(const State& state) {
-        return std::isfinite(state.theta) && std::isfinite(state.x) && std::isfinite(state.z) &&
-               std::isfinite(state.x_dot) && std::isfinite(state.z_dot);
-    }
-
-    void hit(const State& before, double approach) {
-        const auto [after, rebound_or_less] = collision(scene_, before, approach);
+    void hit(const State& before, const Geometry& at, double approach) {
+        const auto [after, rebound] = collision(scene_, before, approach);
         state_ = after;
-        // Below a rounding of the speed of a fall it is none.
-        const double rebound =
-            rebound_or_less > epsilon * speed_of_fall(scene_) ? rebound_or_less : 0.0;
-        const Geometry at = geometry(axes(), before.theta);
+        // A rebound below a rounding of the speed of a fall is none.
+        if (!(rebound > epsilon * speed_of_fall(scene_))) {
+            return go_on_with(continuation(scene_, state_), EventKind::impact, before);
+        }
         const double c = free_acceleration(at, scene_.ground_gravity().into, state_.omega);
-        const double ratio = rebound / -approach;
-        if (rebound > 0 && !settles(scene_, state_.omega, {rebound, ratio, c}, rest_speed_)) {
-            return go_on_with({Mode::flight}, EventKind::impact, before, rebound);
-        }
-        if (rebound > 0) {
-            state_.mode = Mode::flight;
-            note(EventKind::impact, before);
-            if (!ending_) settle(rebound, c);
-            return;
-        }
-        go_on_with(continuation(scene_, state_), EventKind::impact, before);
+        const Bounce bounce{rebound, rebound / -approach, c};
+        go_on_with({Mode::flight}, EventKind::impact, before, rebound);
+        if (!ending_ && settles(scene_, state_.omega, bounce, rest_speed_)) settle(bounce);
     }
 
-    void settle(double rebound, double c) {
-        const Settled found = settled(scene_, state_, rebound, c);
-        DoubleDouble end = found.angle;
-        add_segment(Settling{found.lasts, state_, found.state});
-        if (t_ + found.lasts > t_end_) return finish();
-        t_ += found.lasts;
-        state_ = recounted(found.state, end);
-        const State before = state_;
-        const Continuation next = continuation(scene_, state_);
-        go_on_with(next, kind_of(next.mode, EventKind::slip), before);
+    void settle(const Bounce& first) {
+        const Settled found = settled(scene_, state_, first);
+        add_segment(Settling{axes(), found.lasts, state_, found.state});
+        if (!advance(found.lasts)) return;
+        state_ = recounted(found.state, found.angle).state;
+        go_on_by_forces(EventKind::slip);
+    }
+
+    void go_on_by_forces(EventKind sliding, bool may_roll = true) {
+        const Continuation next = continuation(scene_, state_, may_roll);
+        go_on_with(next, kind_of(next.mode, sliding), State(state_));
     }
 
     void go_on_with(const Continuation& next, EventKind kind, const State& before,
@@ -297,11 +271,12 @@ class ContactRun {
         if (static_cast<long>(motion_.events.size()) == settings_.max_events) {
             ending_ = Ending::max_events;
         } else {
-            motion_.events.push_back({t_ * units_.time, kind, seen(before), seen(state_)});
+            motion_.events.push_back({t_ * units_.time, kind, in_full(before), in_full(state_)});
         }
     }
 
-    State seen(State state) const {
+    // In SI units, with the whole angle.
+    State in_full(State state) const {
         state.theta = static_cast<double>(turned_ + state.theta);
         return in_si(state, units_);
     }
@@ -311,29 +286,43 @@ class ContactRun {
         motion_.segments.push_back({t_, std::move(law), turned_, axes_exchanged_});
     }
 
-    void finish() {
-        t_ = t_end_;
-        if (!ending_) ending_ = Ending::completed;
+    // Goes on to the end of the segment just added; false if the motion is over before.
+    bool advance(double lasts) {
+        const bool is_over = t_ + lasts > t_end_;
+        if (is_over) {
+            finish();
+        } else {
+            t_ += lasts;
+        }
+        return !is_over;
     }
 
-    long steps_left() const { return settings_.max_steps - counts_.steps; }
+    void finish() {
+        t_ = t_end_;
+        ending_ = Ending::completed;
+    }
 
-    // Times, states and segments are in units, which the settings are not.
+    // Ends the motion after so much of its last segment.
+    void give_up(Ending ending, double lasts) {
+        t_ += lasts;
+        ending_ = ending;
+    }
+
     const Units units_;
     Scene scene_;  // with its axes exchanged after an odd number of quarter turns
     const Settings& settings_;
-    double t_end_;
+    const double t_end_;
     const Checkpoint& checkpoint_;
     State state_;
     double gap_rate_;
+    const EndOfRolling first_end_;
+    const double rest_speed_;
+    Motion motion_;
     std::optional<SlidePoint> sliding_on_;  // the end of a slide that another one follows
     DoubleDouble turned_;                   // beside the angle of the state
     bool axes_exchanged_ = false;
-    const EndOfRolling first_end_;
-    const double rest_speed_;
     Continuation next_{Mode::flight};
     double t_ = 0.0;
-    Motion motion_;
     StepCounts counts_;
     std::optional<Ending> ending_;
 };

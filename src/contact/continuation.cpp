@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "contact/sliding.hpp"
-#include "contact/units.hpp"
 #include "geometry/half_turns.hpp"
 #include "proof/law.hpp"
 #include "rolling/stepped/equation.hpp"
@@ -14,36 +13,36 @@ namespace {
 
 double side_of(double v) { return std::copysign(1.0, v); }
 
-// Does it stay where it is?
+// Whether the body stays where it is.
 bool rests(const Scene& scene, const State& state, const Geometry& at) {
     const double incline = std::tan(scene.slope);
     return state.omega == 0 && is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
 }
 
-// Whether a body whose c, physics (53), is 0 but for rounding leaves the ground: h'' is least on
-// the tip, so that c falls on the way up to it, and grows from there on.
+// Whether a body with c = 0 within rounding, physics (53), leaves the ground: h'' is least on the
+// tip, so that c falls on the way up to it and grows behind it.
 bool takes_off(const Geometry& at, double omega) {
     return at.dh * omega > 0 && !is_equilibrium(at);
 }
 
-// It leaves the ground where c <= 0, physics (53), and jams where B <= 0, physics (50, 52).
+// The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52).
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side) {
     const auto [c, b] = response(sliding_body(scene, side), at, omega);
     if (c <= 0) return {Mode::flight};
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
 }
 
-// What follows for a body that slides already. Only there can a slide with N = c/B > 0, c < 0, be a
-// second motion beside flight: without slip, rolling's own N and F rule out that the slip then
-// starts to the side that this slide is for. A body may be put there, but no motion leads there: a
-// slide ends before, where c or B vanishes, and an impact goes on while B < 0 until the slip stops.
+// The continuation of a slip. Only then can a slide with N = c/B > 0, c < 0, be a second motion
+// beside flight: without slip, the N and F of rolling rule out that slip starts to the side of this
+// slide. A body may be put there, but no motion leads there: a slide ends before, where c or B
+// vanishes, and an impact with B < 0 goes on until the slip stops.
 Continuation sliding(const Scene& scene, const Geometry& at, double omega, double side) {
     const auto [c, b] = response(sliding_body(scene, side), at, omega);
     if (c < 0 && b < 0) return {Mode::sliding, side, Painleve::two_motions};
     return slide_or_leave(scene, at, omega, side);
 }
 
-// Without slip, where rolling is not possible: to the side to which the contact accelerates.
+// The start of a slip, where rolling is not possible, to the side to which the contact accelerates.
 Continuation starting_to_slide(const Scene& scene, const Geometry& at, const State& state,
                                const ContactForce& rolling) {
     const auto to_side = [&](double side) { return slide_or_leave(scene, at, state.omega, side); };
@@ -58,7 +57,7 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
     return {Mode::sliding, 0.0, Painleve::no_motion};
 }
 
-// After the geometry and the slip that are given, which may be those a moment later.
+// The continuation by the given geometry and slip, which may be those a moment later.
 Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
                              double slip, bool may_roll) {
     if (scene.friction == 0) {

@@ -25,7 +25,7 @@ BeyondSmall beyond_small(double x) {
     return {-x * y2 / 6 * sine, -square(x) * y2 / 12 * squared};
 }
 
-// Height of the body over the ground.
+// The gap between the body and the ground.
 class Gap {
   public:
     explicit Gap(const Flight& flight)
@@ -36,9 +36,8 @@ class Gap {
         return s.z + t * (s.z_dot - 0.5 * flight_.gravity.into * t);
     }
 
-    // The gap as what it was at the start and what it has gained: hops far lower than the body is
-    // high keep their digits. h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + omega t) sin(omega t):
-    // physics (55).
+    // The gap as the sum of its start and its change: hops far lower than the body keep their
+    // digits. h^2 - h0^2 = (a^2 - b^2) sin(2 theta0 + omega t) sin(omega t), physics (55).
     double value(double t) const {
         const State& s = flight_.start;
         const double fallen = 0.5 * flight_.gravity.into * t;
@@ -65,16 +64,15 @@ class Gap {
         return (flight_.gap_rate - fallen) - rise->slope * flight_.start.omega;
     }
 
-    // From the ground, by its acceleration at most.
+    // Whether the flight starts on the ground without a velocity away from it.
     bool leaves_slowly() const { return value(0.0) <= 0 && rate(0.0) <= 0; }
 
-    // When the centre comes down to a height.
+    // The time at which the centre falls to a height, the start's at most if it starts to fall.
     double falls_to(double height) const {
         const double drop = flight_.start.z - height;
         const double v = flight_.start.z_dot;
         const double root = std::sqrt(std::max(v * v + 2 * flight_.gravity.into * drop, 0.0));
-        if (v > 0) return (v + root) / flight_.gravity.into;
-        return drop > 0 ? 2 * drop / (root - v) : 0.0;
+        return v > 0 ? (v + root) / flight_.gravity.into : 2 * drop / (root - v);
     }
 
   private:
@@ -82,9 +80,9 @@ class Gap {
         return geometry(flight_.axes, flight_.start.theta + flight_.start.omega * t);
     }
 
-    // h - (h0 + h0' phi) after a small turn phi, and its derivative h' - h0', from what h^2 rises
-    // over the square of the tangent: all terms are of the order of phi^2, and the first, with the
-    // h'' of the start, keeps its digits for every body.
+    // h - (h0 + h0' phi) after a small turn phi, and its derivative h' - h0', by the difference of
+    // h^2 and the square of the tangent: all terms are of the order of phi^2, and the first, with
+    // the h'' of the start, keeps its digits for every body.
     struct Rise {
         double height;
         double slope;
@@ -114,8 +112,8 @@ class Gap {
 // The second derivative of the gap, -(g cos(alpha) + h'' omega^2) with h'' = a^2 b^2/h^3 - h, is
 // positive where h is over the only positive root of
 //     h^4 - (g cos(alpha)/omega^2) h^3 - a^2 b^2,
-// that is around the tip, and negative elsewhere: physics (55). So time falls into convex and
-// concave intervals, in each of which the first root is certain.
+// that is around the tip, and negative elsewhere, physics (55). Time is thus divided into convex
+// and concave intervals of the gap, in each of which the first root is certain.
 class Curvature {
   public:
     explicit Curvature(const Flight& flight) {
@@ -144,7 +142,7 @@ class Curvature {
 
     Interval first() const { return {0.0, switching_ ? first_end_ : infinity, convex_}; }
 
-    // When a convex interval has its tip below, in its middle.
+    // The time in the middle of a convex interval, at which the tip is below.
     double tip_time(const Interval& interval) const { return interval.end - convex_time_ / 2; }
 
     Interval after(const Interval& last) const {
@@ -152,7 +150,7 @@ class Curvature {
         return {last.end, last.end + (convex ? convex_time_ : concave_time_), convex};
     }
 
-    // The interval that holds a later time.
+    // The interval around a later time, from that time on.
     Interval around(Interval interval, double t) const {
         if (t < interval.end) return {t, interval.end, interval.convex};
         const double period = convex_time_ + concave_time_;
@@ -160,7 +158,7 @@ class Curvature {
         interval = after({interval.begin, interval.end + skipped, interval.convex});
         while (!(t < interval.end)) {
             const Interval next = after(interval);
-            if (!(interval.end < next.end)) return {t, t, next.convex};  // too fast for the clock
+            if (!(interval.end < next.end)) return {t, t, next.convex};  // shorter than an ulp
             interval = next;
         }
         return {t, interval.end, interval.convex};
@@ -187,19 +185,19 @@ class Curvature {
 
 double first_touch(const Flight& flight, const Gap& gap, bool leaves_slowly) {
     const Curvature curvature(flight);
-    // Above that it does not touch, however h is rounded.
+    // A higher centre is no contact, however h is rounded.
     const double tall = std::max(flight.axes.a, flight.axes.b) * (1 + equal_ulps * epsilon);
-    // By then it touches, however h is rounded.
+    // The time of a contact at the latest, however h is rounded.
     const double sure =
         gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - equal_ulps * epsilon));
     const auto value = [&](double t) { return gap.value(t); };
     const auto rate = [&](double t) { return gap.rate(t); };
 
     Curvature::Interval now = curvature.first();
-    // A body that leaves by its acceleration does so where the gap becomes convex.
+    // A body that leaves by its acceleration does so in a convex interval of the gap.
     if (leaves_slowly && !now.convex) {
         now = curvature.after(now);
-        // At once, or not at all.
+        // The interval begins at once, or the body does not leave.
         if (!(gap.value(now.begin) >= -equal_ulps * epsilon * tall)) return 0.0;
     }
     double before = leaves_slowly ? 0.0 : gap.rate(now.begin);  // rate at the interval's begin
@@ -214,8 +212,8 @@ double first_touch(const Flight& flight, const Gap& gap, bool leaves_slowly) {
             if (before < 0) {
                 const double lowest = after > 0 ? bisect_root(now.begin, end, rate).high : end;
                 if (gap.value(lowest) <= 0) return bisect_root(now.begin, lowest, value).high;
-                // Where the tip passes below a centre no higher than that, it touches, though the
-                // gap may be rounded to more than nothing where the body spins fast for its fall.
+                // If the tip passes below so low a centre, it touches, though the gap of a body
+                // that spins fast for its fall may be rounded to more than 0.
                 const double tip = curvature.tip_time(now);
                 if (now.begin < tip && tip <= end && gap.height(tip) <= tall) return lowest;
             }
@@ -224,7 +222,7 @@ double first_touch(const Flight& flight, const Gap& gap, bool leaves_slowly) {
             return bisect_root(from, end, value).high;
         }
         const Curvature::Interval next = curvature.after(now);
-        // Half a turn between two doubles, or from the beginning of a convex interval to its tip.
+        // Intervals, or the halves of a convex one, may be shorter than an ulp of time.
         const bool too_fast =
             !(now.end < next.end) || (next.convex && !(next.begin < curvature.tip_time(next)));
         if (too_fast || !(end < sure)) return end;

@@ -1,4 +1,5 @@
-// Flight: centre on a parabola, angular velocity constant; exact. And its end: physics (55).
+// Flight, exact: the centre on a parabola, the angular velocity constant; and its end, physics
+// (55).
 #pragma once
 
 #include <optional>
@@ -12,15 +13,15 @@ struct Flight {
     Axes axes;
     GroundGravity gravity;
     State start;
-    double gap_rate;  // at the start: z_dot - h' omega has less digits of a low hop
+    double gap_rate;  // at the start; z_dot - h' omega has fewer digits of it for a low hop
     Mode mode = Mode::flight;
 };
 
 State state_at(const Flight& flight, double t);
 
-// The first contact after the start, after infinite time where there is none. A start in contact
-// counts as leaving the ground: with the velocity, or the acceleration, that it has. After a small
-// turn the rate of the gap has digits that the velocities there do not have.
+// The first contact after the start. A start in contact counts as leaving the ground, with its
+// velocity or its acceleration. The rate of the gap is given after a small turn, where it has more
+// digits than the velocities.
 struct Landing {
     double after;
     std::optional<double> gap_rate;

@@ -8,68 +8,40 @@
 namespace rolling_ellipse {
 namespace {
 
-// Each law at times since its begin. Those that roll know theta, omega and x, from which state and
-// force follow; the others know state and force, from which all other samples follow.
+// The kind of sample that a law computes. State and force follow from it, and all else from those.
+template <class Law>
+using OwnSample = std::conditional_t<
+    std::is_same_v<Law, SteppedMultipliers>, CoordinateState,
+    std::conditional_t<std::is_same_v<Law, RollingFlow> || std::is_same_v<Law, SlopeFlow> ||
+                           std::is_same_v<Law, SteppedRolling>,
+                       FlowSample, ContactSample>>;
 
-void look_at(const Scene&, const RollingFlow& flow, const double* times, std::size_t n,
-             FlowSample* samples) {
+// A law at times since its begin; those with an overload of `sample` elsewhere have none here.
+
+void sample(const RollingFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
     FlowSampler{flow, n}(times, n, samples);
 }
 
-void look_at(const Scene&, const SlopeFlow& flow, const double* times, std::size_t n,
-             FlowSample* samples) {
-    sample(flow, times, n, samples);
-}
-
-void look_at(const Scene&, const SteppedRolling& motion, const double* times, std::size_t n,
-             FlowSample* samples) {
-    sample(motion, times, n, samples);
-}
-
-void look_at(const Scene&, const SteppedMultipliers& motion, const double* times, std::size_t n,
-             CoordinateState* samples) {
-    sample(motion, times, n, samples);
-}
-
-void look_at(const Scene&, const SteppedMultipliers& motion, const double* times, std::size_t n,
-             ContactSample* samples) {
-    std::vector<CoordinateState> states(n);
-    sample(motion, times, n, states.data());
-    for (const CoordinateState& state : states) {
-        using namespace coordinate;
-        const auto& [q, q_dot] = state;
-        const auto lambda = accelerations(motion.body, motion.settings, state).multipliers;
-        *samples++ = {{q[theta], q_dot[theta], q[x], q[z], q_dot[x], q_dot[z], Mode::rolling},
-                      {lambda[1], lambda[0]}};
-    }
-}
-
-void look_at(const Scene&, const Slide& slide, const double* times, std::size_t n,
-             ContactSample* samples) {
-    sample(slide, times, n, samples);
-}
-
-void look_at(const Scene&, const Flight& flight, const double* times, std::size_t n,
-             ContactSample* samples) {
+void sample(const Flight& flight, const double* times, std::size_t n, ContactSample* samples) {
     for (std::size_t i = 0; i < n; ++i) samples[i] = {state_at(flight, times[i]), {0.0, 0.0}};
 }
 
-void look_at(const Scene& scene, const Settling& settling, const double* times, std::size_t n,
-             ContactSample* samples) {
-    const auto& [lasts, start, end] = settling;
+// Velocities change evenly. A coordinate is the integral of its rate, and the rest of its change
+// comes evenly, too.
+void sample(const Settling& settling, const double* times, std::size_t n, ContactSample* samples) {
+    const auto& [axes, lasts, start, end] = settling;
     for (std::size_t i = 0; i < n; ++i) {
         const double share = times[i] / lasts;
         const auto between = [share](double from, double to) { return from + share * (to - from); };
-        // What a rate that goes evenly comes to, and evenly what the bounces come to beside that.
-        const auto gone = [share, time = lasts](double rate, double last_rate, double in_all) {
-            const double beside = in_all - time * (rate + 0.5 * (last_rate - rate));
-            return share * (time * (rate + 0.5 * share * (last_rate - rate)) + beside);
+        const auto change = [share, time = lasts](double rate, double last_rate, double in_all) {
+            const double rest = in_all - time * (rate + 0.5 * (last_rate - rate));
+            return share * (time * (rate + 0.5 * share * (last_rate - rate)) + rest);
         };
-        const double theta = start.theta + gone(start.omega, end.omega, end.theta - start.theta);
+        const double theta = start.theta + change(start.omega, end.omega, end.theta - start.theta);
         const State state{theta,
                           between(start.omega, end.omega),
-                          start.x + gone(start.x_dot, end.x_dot, end.x - start.x),
-                          geometry(scene.axes(), theta).h,
+                          start.x + change(start.x_dot, end.x_dot, end.x - start.x),
+                          geometry(axes, theta).h,
                           between(start.x_dot, end.x_dot),
                           between(start.z_dot, end.z_dot),
                           Mode::flight};
@@ -77,41 +49,72 @@ void look_at(const Scene& scene, const Settling& settling, const double* times, 
     }
 }
 
-void look_at(const Scene&, const Jam& jam, const double*, std::size_t n, ContactSample* samples) {
-    std::fill_n(samples, n, ContactSample{jam.state, {0.0, 0.0}});
+void sample(const Standing& standing, const double*, std::size_t n, ContactSample* samples) {
+    std::fill_n(samples, n, standing.sample);
 }
 
-void look_at(const Scene& scene, const Resting& resting, const double*, std::size_t n,
-             ContactSample* samples) {
-    const ContactForce force = rolling_force(scene, resting.state.theta, resting.state.omega);
-    std::fill_n(samples, n, ContactSample{resting.state, force});
+// Conversions of samples; of a multiplier model the force is among its unknowns.
+
+template <class Law>
+void convert(const Scene& scene, const Law&, const std::vector<FlowSample>& from,
+             ContactSample* to) {
+    const RollingEquation rolling(scene.body(), scene.slope);
+    for (const auto& [theta, omega, x] : from) {
+        const Geometry at = geometry(scene.axes(), theta);
+        *to++ = {in_contact(at, theta, omega, x, 0.0, Mode::rolling),
+                 rolling.force(scene.mass, at, omega)};
+    }
 }
 
-void take(const Scene&, const ContactSample& from, FlowSample& to) {
-    to = {from.state.theta, from.state.omega, from.state.x};
+void convert(const Scene&, const SteppedMultipliers& motion,
+             const std::vector<CoordinateState>& from, ContactSample* to) {
+    using namespace coordinate;
+    for (const CoordinateState& state : from) {
+        const auto& [q, q_dot] = state;
+        const auto lambda = accelerations(motion.body, motion.settings, state).multipliers;
+        *to++ = {{q[theta], q_dot[theta], q[x], q[z], q_dot[x], q_dot[z], Mode::rolling},
+                 {lambda[1], lambda[0]}};
+    }
 }
 
-void take(const Scene& scene, const ContactSample& from, CoordinateState& to) {
-    to = coordinate_state(scene.axes(), from.state);
+template <class Law>
+void convert(const Scene&, const Law&, const std::vector<ContactSample>& from, FlowSample* to) {
+    for (const auto& [state, force] : from) *to++ = {state.theta, state.omega, state.x};
+}
+
+template <class Law>
+void convert(const Scene& scene, const Law&, const std::vector<ContactSample>& from,
+             CoordinateState* to) {
+    for (const auto& [state, force] : from) *to++ = coordinate_state(scene.axes(), state);
 }
 
 template <class Law, class Sample>
-void look_at(const Scene& scene, const Law& law, const double* times, std::size_t n,
-             Sample* samples) {
-    if constexpr (std::is_same_v<Sample, ContactSample>) {  // of a law that rolls
-        const RollingEquation rolling(scene.body(), scene.slope);
-        std::vector<FlowSample> states(n);
-        look_at(scene, law, times, n, states.data());
-        for (const auto& [theta, omega, x] : states) {
-            const Geometry at = geometry(scene.axes(), theta);
-            *samples++ = {in_contact(at, theta, omega, x, 0.0, Mode::rolling),
-                          rolling.force(scene.mass, at, omega)};
-        }
+void evaluate(const Scene& scene, const Law& law, const double* times, std::size_t n,
+              Sample* samples) {
+    using Own = OwnSample<Law>;
+    if constexpr (std::is_same_v<Sample, Own>) {
+        sample(law, times, n, samples);
     } else {
-        std::vector<ContactSample> found(n);
-        look_at(scene, law, times, n, found.data());
-        for (std::size_t i = 0; i < n; ++i) take(scene, found[i], samples[i]);
+        std::vector<std::conditional_t<std::is_same_v<Sample, ContactSample>, Own, ContactSample>>
+            found(n);
+        evaluate(scene, law, times, n, found.data());
+        convert(scene, law, found, samples);
     }
+}
+
+ContactSample in_si(const ContactSample& sample, const Units& units) {
+    const double force = units.of(unit::force);
+    return {in_si(sample.state, units),
+            {sample.force.normal * force, sample.force.friction * force}};
+}
+
+FlowSample in_si(const FlowSample& sample, const Units& units) {
+    return {sample.theta, sample.omega / units.time, sample.x * units.length};
+}
+
+CoordinateState in_si(const CoordinateState& state, const Units& units) {
+    const Coordinates lengths{units.length, units.length, 1.0, 1.0, units.length};
+    return {state.q.cwiseProduct(lengths), state.q_dot.cwiseProduct(lengths) / units.time};
 }
 
 void turn(FlowSample& sample, const DoubleDouble& by) {
@@ -165,7 +168,7 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
     std::vector<double> since;
     since.reserve(n);
     for (std::size_t i = 0; i < n;) {
-        // The last segment that has begun at the time i, and all that follow in it.
+        // The last segment that has begun at the time i, and the times from there on within it.
         const auto time = [&, unit = units.time](std::size_t j) {
             return std::min(times[j] / unit, std::numeric_limits<double>::max());
         };
@@ -181,7 +184,7 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
         const Scene& scene = segment.axes_exchanged ? exchanged : motion_.scene;
         std::visit(
             [&](const auto& law) {
-                look_at(scene, itself(law), since.data(), since.size(), samples + i);
+                evaluate(scene, itself(law), since.data(), since.size(), samples + i);
             },
             segment.law);
         const std::size_t last = i + since.size();

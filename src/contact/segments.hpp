@@ -10,7 +10,6 @@
 
 #include "contact/flight.hpp"
 #include "contact/slide.hpp"
-#include "contact/units.hpp"
 #include "multipliers/steps.hpp"
 #include "rolling/level/many_times.hpp"
 #include "rolling/slope/flow.hpp"
@@ -28,34 +27,32 @@ struct Event {
     State after;
 };
 
-// The state just after an event; after an impact with what the ground did.
+// The state just after an event, and the impulse of the ground at an impact.
 InitialState start_after(const Scene& scene, const Event& event);
 
-// Bounces that are too small to tell apart, with what they do on average.
+// Bounces too small to resolve one by one, replaced by their averaged motion.
 struct Settling {
+    Axes axes;
     double lasts;
     State start;
     State end;
 };
 
-// The instant from which no motion goes on: no force of the ground is right.
-struct Jam {
-    State state;
+// A body that stays as it is: at rest, or at the instant from which no motion goes on, where no
+// force of the ground is right.
+struct Standing {
+    ContactSample sample;
 };
 
-struct Resting {
-    State state;
-};
-
-// A law of some kB, kept apart: in the list itself every bounce would take as much.
+// A law of some kB, kept outside of the list, in which every bounce would take as much.
 template <class Law>
 using Apart = std::shared_ptr<const Law>;
 
-// What a body does from a time on, up to the next segment.
+// The law of the motion from a time on, up to the next segment.
 struct Segment {
     double begin;
     std::variant<Apart<RollingFlow>, Apart<SlopeFlow>, SteppedRolling, SteppedMultipliers, Slide,
-                 Flight, Settling, Resting, Jam>
+                 Flight, Settling, Standing>
         law;
     DoubleDouble turned{};        // beside the angles of the law
     bool axes_exchanged = false;  // in the law: after an odd number of quarter turns
@@ -68,7 +65,7 @@ struct Motion {
     std::vector<Event> events;
 };
 
-// The law itself, wherever it is kept.
+// The law, wherever it is kept.
 template <class Law>
 const Law& itself(const Law& law) {
     return law;
@@ -82,10 +79,10 @@ const Law& itself(const Apart<Law>& law) {
 // A motion in SI units by one law.
 Motion single(const Scene& scene, decltype(Segment::law) law);
 
-// Looks at a motion at so many times in all, in parts: what many looks are worth is prepared once.
-// A sample is a FlowSample (theta, omega, x), a ContactSample (state and force) or a
-// CoordinateState, in SI units; every segment knows all three. At an event it is what holds after
-// it. A motion without segments has no samples.
+// Samples a motion at an expected number of times in all, which may come in parts: a table that so
+// many are worth is made once. A sample is a FlowSample (theta, omega, x), a ContactSample (state
+// and force) or a CoordinateState, in SI units; every segment has all three. At an event it is the
+// one just after it. A motion without segments has no samples.
 class Sampler {
   public:
     Sampler(const Motion& motion, std::size_t expected);
@@ -98,10 +95,10 @@ class Sampler {
 
   private:
     const Motion& motion_;
-    std::optional<FlowSampler> flow_;  // of a motion that is nothing but exact rolling
+    std::optional<FlowSampler> flow_;  // of a motion that is one exact rolling
 };
 
-// The times between which each step was taken, of a motion by one law that is integrated.
+// The times between the steps of an integrated motion, which has one law; else none.
 std::vector<double> knot_times(const Motion& motion);
 
 }  // namespace rolling_ellipse

@@ -9,7 +9,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// The ratio of a rebound to the last up to which bounces are summed: 1e5 of them at most.
+// The largest ratio of a rebound to the last one with which bounces are summed: at most 1e5 of
+// them.
 constexpr double largest_ratio = 0.9999;
 
 }  // namespace
@@ -20,7 +21,7 @@ double speed_of_fall(const Scene& scene) {
 
 double rest_speed(const Scene& scene, const Units& units, const Settings& settings) {
     constexpr double small = 1e-6;
-    // Where bounces are summed, c and h' stay what they are: an error of this size.
+    // Relative error of c and h', which are constant while bounces are summed.
     constexpr double large = 1e-2;
     const double unit = speed_of_fall(scene);
     if (!settings.rest_speed) return small * unit;
@@ -34,8 +35,9 @@ double rest_speed(const Scene& scene, const Units& units, const Settings& settin
     return speed;
 }
 
-// They take place under one c and h', an error of the square of how long they last beside the time
-// in which a body falls or turns by b/a: no more than the share of the speed at which it rests.
+// The bounces are summed under one c and h'. The relative error is the square of their duration by
+// the time in which the body falls, or turns by b/a; it must stay below the rest speed by the speed
+// of a fall.
 bool settles(const Scene& scene, double omega, const Bounce& first, double rest_speed) {
     const auto [rebound, ratio, c] = first;
     if (rebound > rest_speed || c <= 0 || !(ratio < largest_ratio)) return false;
@@ -45,21 +47,21 @@ bool settles(const Scene& scene, double omega, const Bounce& first, double rest_
     return 2 * rebound * rate <= longest * c * (1 - ratio);
 }
 
-// Infinitely many bounces that shrink by a ratio take a finite time, physics (57); so small ones do
-// it in place, under the c of their beginning.
-Settled settled(const Scene& scene, const State& start, double rebound, double c) {
-    constexpr double negligible_share = 1e-12;  // of the rebound: what is left adds no digit
+// Infinitely many bounces that shrink by a ratio take a finite time, physics (57). Such small ones
+// take place at one angle, under the c of their beginning.
+Settled settled(const Scene& scene, const State& start, const Bounce& first) {
+    constexpr double negligible_share = 1e-12;  // of the first rebound: smaller ones add no digit
     const Geometry at = geometry(scene.axes(), start.theta);
     const GroundGravity gravity = scene.ground_gravity();
     State moving = start;
     double lasts = 0.0;
     double turned = 0.0;
     double moved = 0.0;
-    double speed = rebound;
-    while (speed > negligible_share * rebound) {
-        const double hop = 2 * speed / c;
+    double speed = first.rebound;
+    while (speed > negligible_share * first.rebound) {
+        const double hop = 2 * speed / first.c;
         const double gained = (gravity.along - at.dh * square(moving.omega)) * hop;  // slip
-        // of the centre, which moves as the slip and (h + h' turned) omega say
+        // The centre moves with the slip and (h + h' turned) omega.
         const double velocity = moving.x_dot + at.dh * turned * moving.omega;
         moved += (velocity + 0.5 * gravity.along * hop) * hop;
         lasts += hop;

@@ -4,10 +4,9 @@
 
 namespace rolling_ellipse {
 
-// The rates of u = h^2 and p = h h' are 2 p and q times that of the angle, that of q is -4 p times
-// it.
-SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double sin, double cos,
-                         SlideClock clock) {
+// The derivatives of u = h^2, p = h h' and q = p' by the angle are 2 p, q and -4 p.
+SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, SlideClock clock) {
+    const auto [sin, cos, omega, slip_velocity, x_velocity] = centre;
     const auto [a, b] = body.axes;
     const double c2 = (a - b) * (a + b);
     const double k2 = body.gyration2;
@@ -16,27 +15,24 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
     const bool slowed = clock == SlideClock::slowed;
 
     SlideSeries slide;
-    auto& [angle, w, slip, x_dot, path, rolled, time, pressure, response, u, work] = slide;
-    // Side by side: what is multiplied at once.
+    auto& [motion, slip, rolled, pressure, response, u, work] = slide;
+    auto& [angle, w, x_dot, path, time] = motion;
+    // Two factors side by side, for two products at once.
     TwoSeries p_q, spread;   // p angle', q angle'
     TwoSeries w_u;           // omega^2, u^2
     TwoSeries h_bend, h_w2;  // h^2, (a b - u)(a b + u) omega^2
     TwoSeries p_u, lever_h;  // p L, u h
     TwoSeries u_h, v_v;      // u V, h V
-    TwoSeries l_h, c_w;      // L C, h omega
+    TwoSeries c_w;           // with lever_h: L C, h omega
     TwoSeries loads, gains;  // (u V) omega', (h V) impulse'
     TwoSeries rate_c, w_h;   // dt/dtau omega, C h
     LongSeries h, rate, impulse, pull;
-    angle[0] = at.angle;
-    w[0] = at.omega;
-    path[0] = at.path;
-    time[0] = at.time;
-    impulse[0] = 0.0;
-    work[0] = 0.0;
+    w[0] = omega;
+    angle[0] = path[0] = time[0] = impulse[0] = work[0] = 0.0;
     p_q[0] = pair(c2 * sin * cos, c2 * ((cos - sin) * (cos + sin)));
     const double u0 = square(a * sin) + square(b * cos);
     u[0] = u0;
-    // Nothing cancels for thin bodies, nor for circles.
+    // (a b - u)(a b + u) by factors: nothing cancels for thin bodies, nor for circles.
     const double bend0 = (a - b) * (b * square(cos) - a * square(sin)) * (a * b + u0);
     const double h0 = std::sqrt(u0);
     const double over_2h0 = 0.5 / h0;
@@ -49,7 +45,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
         const Pair known_bends = inner(h_bend, h_w2, k);
         const Pair known_weights = inner(p_u, lever_h, k);
         const Pair known_loads = inner(u_h, v_v, k);
-        const Pair known_torques = inner(l_h, c_w, k);
+        const Pair known_torques = inner(lever_h, c_w, k);
 
         h[k] = k == 0 ? h0 : (u[k] - known_bends[0]) * over_2h0;
         const double p = p_q[k][0];
@@ -61,7 +57,6 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
         p_u[k] = pair(p, u[k]);
         lever_h[k] = pair(lever, h[k]);
         u_h[k] = pair(u[k], h[k]);
-        l_h[k] = pair(lever, h[k]);
 
         const Pair bends = known_bends + outer(h_bend, h_w2, k);
         const Pair weights = known_weights + outer(p_u, lever_h, k);
@@ -69,7 +64,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
         v_v[k] = pair(response[k], response[k]);
         pressure[k] = body.gravity.into * weights[1] + bends[1];
         c_w[k] = pair(pressure[k], w[k]);
-        const Pair torques = known_torques + outer(l_h, c_w, k);
+        const Pair torques = known_torques + outer(lever_h, c_w, k);
         rolled[k] = torques[1];
         loads[k] = known_loads + outer(u_h, v_v, k);
 
@@ -89,8 +84,8 @@ SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double s
             spread[k] = pair(w[k], w[k]);
         }
         pull[k] = gain[1];
-        x_dot[k] = k == 0 ? at.x_dot : impulse[k] + body.gravity.along * time[k];
-        slip[k] = k == 0 ? at.slip : x_dot[k] - rolled[k];
+        x_dot[k] = k == 0 ? x_velocity : impulse[k] + body.gravity.along * time[k];
+        slip[k] = k == 0 ? slip_velocity : x_dot[k] - rolled[k];
         if (k == long_order) break;
         const Pair turns =
             (known_spread + outer(p_q, spread, k)) * pair(over_next[k], over_next[k]);

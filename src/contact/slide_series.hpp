@@ -17,21 +17,34 @@ namespace rolling_ellipse {
 
 enum class SlideClock { time, slowed };
 
-struct SlideSeries {
+// The centre of the series: sine and cosine of the angle, and velocities.
+struct SlideCentre {
+    double sin;
+    double cos;
+    double omega;
+    double slip;
+    double x_dot;
+};
+
+// The series that samples are taken from. Angle, path and time are 0 at the centre.
+struct SlideMotion {
     LongSeries angle;
     LongSeries omega;
-    LongSeries slip;
     LongSeries x_dot;
     LongSeries path;
-    LongSeries rolled;  // h omega
     LongSeries time;
+};
+
+struct SlideSeries {
+    SlideMotion motion;
+    LongSeries slip;
+    LongSeries rolled;    // h omega
     LongSeries pressure;  // C
     LongSeries response;  // V
     LongSeries height2;   // u
     LongSeries work;      // of the friction on the turning, per mass
 };
 
-SlideSeries slide_series(const SlidingBody& body, const SlideState& at, double sin, double cos,
-                         SlideClock clock);
+SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, SlideClock clock);
 
 }  // namespace rolling_ellipse

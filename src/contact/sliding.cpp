@@ -6,7 +6,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// Angular acceleration by a unit of the contact force: physics (51).
+// Angular acceleration by a unit of the contact force, physics (51).
 double spin(const SlidingBody& body, const Geometry& at) {
     return -(at.h * body.friction_share + at.dh * body.normal_share) / body.gyration2;
 }
@@ -57,8 +57,7 @@ double slowed_response_rate(const SlidingBody& body, const Geometry& at, double 
 }
 
 // The impulse of N changes omega and slip in a fixed ratio, physics (54).
-LastMoment last_moment(const SlidingBody& body, const SlideState& state) {
-    const auto [angle, omega, slip, x_dot, path, time] = state;
+LastMoment last_moment(const SlidingBody& body, double angle, double omega, double slip) {
     const Geometry at = geometry(body.axes, angle);
     const double b_derivative = response_derivative(body, at);
     const auto [c, b] = response(body, at, omega);
@@ -72,16 +71,14 @@ LastMoment last_moment(const SlidingBody& body, const SlideState& state) {
     const bool stops = impulse_to_stop >= 0 && impulse_to_stop <= impulse_to_jam;
     const double omega_after = stops ? without_slip : without_c;
     const double slip_after = stops ? 0.0 : slip + slip_by_turning * (omega_after - omega);
-    // Until B = 0, or until N = c/B has made the impulse: a slide that starts with so small a B
-    // need not turn towards B = 0, nor turn at all.
+    // The moment ends with B = 0, or when N = c/B has made the impulse: a slide that starts with so
+    // small a B need not turn towards B = 0, nor turn at all.
     const double b_rate = b_derivative * omega;
     const double until_no_b = b_rate < 0 ? -b / b_rate : infinity;
     const double until_made = (stops ? impulse_to_stop : impulse_to_jam) * b / c;
     const double least = std::min(until_no_b, until_made >= 0 ? until_made : infinity);
-    const double after = least < infinity ? least : 0.0;
-    return {stops,
-            {angle + omega * after, omega_after, slip_after, slip_after + at.h * omega_after,
-             path + x_dot * after, time + after}};
+    return {stops, omega_after, slip_after, slip_after + at.h * omega_after,
+            least < infinity ? least : 0.0};
 }
 
 }  // namespace rolling_ellipse

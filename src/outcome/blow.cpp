@@ -83,7 +83,7 @@ Outcome outcome(const Scene& scene, const Checkpoint& checkpoint) {
 }
 
 double press_to(const Scene& scene, double distance, double omega) {
-    require_finite("distance", " [m]", distance);
+    require_finite("distance", unit::length, distance);
     validate_motion(scene.body(), scene.theta, omega);
     const State state = state_before_impulse(scene);
     const Geometry at = geometry(scene.axes(), state.theta);

@@ -6,7 +6,6 @@
 
 #include "contact/continuation.hpp"
 #include "contact/slide.hpp"
-#include "contact/units.hpp"
 #include "numerics/bisect.hpp"
 #include "proof/certificate.hpp"
 
@@ -93,7 +92,7 @@ class Climb {
         constexpr long most_pieces = 2000;
         Slide slide = slide_from(scene_, from, side);
         const SlideStop stop =
-            slide_on(slide, {infinity, most_pieces, tip_ + over_the_tip, false}, checkpoint_);
+            slide_on(slide, {infinity, most_pieces, tip_ + over_the_tip}, checkpoint_);
         switch (stop) {
             case SlideStop::slip_vanishes:
             case SlideStop::pressure_vanishes:
@@ -102,8 +101,7 @@ class Climb {
             default:
                 return std::nullopt;
         }
-        const ContactSample last = end_of(slide);
-        State state = last.state;
+        State state = end_of(slide);
         if (state.theta > tip_ + over_the_tip || state.omega < 0) return std::nullopt;
         if (stop == SlideStop::pressure_vanishes) return EndOfSegment{state, {Mode::flight}};
         if (stop == SlideStop::jams) {

@@ -103,8 +103,7 @@ struct CourseOf {
 
     Course operator()(const Settling&) const { return {"while it settles"}; }
     Course operator()(const Flight&) const { return {"in flight"}; }
-    Course operator()(const Resting&) const { return {resting}; }
-    Course operator()(const Jam&) const { return {resting}; }
+    Course operator()(const Standing&) const { return {resting}; }
 
   private:
     // Is the quantity monotone in the angle of a body that rolls?

@@ -1,11 +1,10 @@
-// Numbers of a struct by name and unit. What copies, scales or names all numbers of a struct reads
-// its table, which stands below the struct.
+// The numbers of a struct by name and unit. A table of them stands below the struct; code that
+// copies, scales or names all of its numbers reads the table.
 #pragma once
 
 namespace rolling_ellipse {
 
-// A unit as it is printed (in UTF-8; C2 B2 is a raised 2), and its exponents of metre, second and
-// kilogram.
+// A unit as printed (in UTF-8; C2 B2 is a raised 2), and its exponents of metre, second, kilogram.
 struct Unit {
     const char* symbol;
     int length = 0;

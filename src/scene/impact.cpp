@@ -8,25 +8,25 @@
 namespace rolling_ellipse {
 namespace {
 
-// Velocity of the material contact point, physics (12): v along the ground, u away from it; and the
-// matrix that takes an impulse there to its change (Delassus), physics (39). W. J. Stronge, Impact
+// The velocity of the material contact point, physics (12), v along the ground and u away from it,
+// and its change by an impulse there (Delassus matrix), physics (39). W. J. Stronge, Impact
 // Mechanics (2000), ch. 3.
 struct Contact {
     double v;
     double u;
-    double u_without_slip;  // u - v gtn/gtt, what a tangential impulse that stops v makes of u
+    double u_without_slip;  // u - v gtn/gtt: u after a tangential impulse that stops v
     double gtt;
     double gtn;
     double gnn;
     double determinant;  // gtt gnn - gtn^2 = (1/m) (1/m + (h^2 + h'^2)/I)
 };
 
-// u_without_slip = (z_dot (k^2 + h^2) - x_dot h h' - k^2 h' omega)/(k^2 + h^2): a light body that
-// turns fast keeps its digits so, a body that hardly moves into the ground those of the difference.
+// u_without_slip = (z_dot (k^2 + h^2) - x_dot h h' - k^2 h' omega)/(k^2 + h^2) has more digits for
+// a light body that turns fast, the difference above for a body that hardly moves into the ground.
 Contact contact(const Scene& scene, const Geometry& at, const State& state, double gap_rate) {
     const double inverse_mass = 1 / scene.mass;
     const double inverse_inertia = 1 / scene.inertia;
-    Contact c{state.x_dot - at.h * state.omega,
+    Contact c{slip_velocity(state, at),
               gap_rate,
               0.0,
               inverse_mass + at.h * at.h * inverse_inertia,
@@ -51,7 +51,7 @@ struct Reaction {
     bool sticks = false;   // ends with v = 0
 };
 
-// mu = infinity: the limit of the law below, physics (42) (no product infinity * 0 is ever formed).
+// Infinite friction: the limit of the law below, physics (42), without a product infinity * 0.
 Reaction unlimited_friction(const Contact& c, double restitution, Restitution law) {
     const double u_without_slip = c.u_without_slip;
     const double rebound = -restitution * c.u;
@@ -60,7 +60,7 @@ Reaction unlimited_friction(const Contact& c, double restitution, Restitution la
         return {-(c.v + c.gtn * normal) / c.gtt, normal, rebound, true};
     }
     if (u_without_slip <= 0) {
-        // v = 0 and u = -e times that without slip: the full 2 x 2 system.
+        // v = 0 and u = -e u_without_slip: the full 2 x 2 system.
         const double normal = -(1 + restitution) * u_without_slip * c.gtt / c.determinant;
         return {-(c.v + c.gtn * normal) / c.gtt, normal, -restitution * u_without_slip, true};
     }
@@ -68,24 +68,21 @@ Reaction unlimited_friction(const Contact& c, double restitution, Restitution la
     return {(rebound - c.u) / c.gtn, 0.0, rebound, false};  // friction alone stops the approach
 }
 
-// The impulse path of Coulomb friction, physics (41), its normal impulse p as time: u and v change
-// linearly while it slips, and while it sticks. Compression ends with u = 0, restitution as its law
-// says.
+// The impulse path of Coulomb friction, physics (41), by the normal impulse p: u and v change
+// linearly while the contact slips, and while it sticks. Compression ends with u = 0, restitution
+// by its law.
 class ImpulsePath {
   public:
     ImpulsePath(const Contact& c, double restitution, Restitution law)
-        : u_(c.u),
-          restitution_(restitution),
-          restitution2_(restitution * restitution),
-          rebound_(-restitution * c.u),
-          law_(law) {}
+        : u_(c.u), restitution_(restitution), rebound_(-restitution * c.u), law_(law) {}
 
-    // Go on with du/dp and a tangential impulse per normal one, for at most p; false at the end.
+    // Goes on with du/dp and a tangential impulse per normal one, up to a normal impulse; false if
+    // restitution ends before.
     bool go_on(double du, double tangential, double most) {
         double left = most;
         if (u_ < 0) {
             const double p = std::fmin(du > 0 ? -u_ / du : infinity, left);
-            work_ -= restitution2_ * p * (u_ + 0.5 * du * p);
+            work_ -= square(restitution_) * p * (u_ + 0.5 * du * p);
             const bool compressed = p < left || u_ + du * p >= 0;
             advance(p, compressed ? 0.0 : u_ + du * p, tangential);
             left -= p;
@@ -102,7 +99,7 @@ class ImpulsePath {
         return true;
     }
 
-    // The slip has stopped: u is what it is without slip, and what the normal impulse adds to that.
+    // The slip has stopped: u is the sum of u_without_slip and the effect of the normal impulse.
     void stop_slip(const Contact& c) { u_ = c.u_without_slip + normal_ * (c.determinant / c.gtt); }
 
     Reaction result(bool sticks) const { return {tangential_, normal_, u_, sticks}; }
@@ -132,11 +129,10 @@ class ImpulsePath {
 
     double u_;
     double restitution_;
-    double restitution2_;
     double rebound_;  // by Newton's law
     Restitution law_;
-    double work_ = 0.0;         // that restitution still has to do, by Stronge's law
-    double last_normal_ = 0.0;  // where restitution ends by Poisson's
+    double work_ = 0.0;         // left for restitution by Stronge's law
+    double last_normal_ = 0.0;  // at the end of restitution by Poisson's law
     double normal_ = 0.0;
     double tangential_ = 0.0;
 };
@@ -162,12 +158,13 @@ Reaction coulomb_friction(const Contact& c, double friction, double restitution,
     return path.result(sticks);
 }
 
-// The gap rate is the rebound afterwards, and v = 0 where it sticks, exactly. The angular momentum
-// about the contact, which no reaction changes, gives the sticking angular velocity, physics (40):
-// k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega + rebound. Where it slips
-// on, x_dot and omega are what the impulse makes of them; of a body so light and fast that little
-// is left of omega, what z_dot, omega and the rebound are by an impulse of the given direction has
-// more digits. z_dot is what the impulse makes of it where little is left of h' omega.
+// The gap rate afterwards is exactly the rebound, and exactly v = 0 if the contact sticks. The
+// angular momentum about the contact, which no reaction changes, gives the sticking angular
+// velocity, physics (40): k^2 omega + h x_dot + h' z_dot with x_dot = h omega, z_dot = h' omega +
+// rebound. If the contact slips on, the impulse gives x_dot and omega. If little is left of the
+// omega of a light and fast body, the angular momentum about another point of the line of the
+// impulse, at the height of the centre, gives omega with more digits. If little is left of h'
+// omega, the impulse gives z_dot.
 void apply(const Scene& scene, const Geometry& at, const Reaction& reaction, State& state) {
     const double k2 = scene.inertia / scene.mass;
     const double pull = reaction.tangential / scene.mass;
@@ -204,8 +201,8 @@ bool is_struck(const Scene& scene) {
     return scene.impulse && (scene.impulse->jx != 0 || scene.impulse->jz != 0);
 }
 
-// Let the impulse act on a body that nothing holds, physics (38); returns the rate of its gap. The
-// difference of the new velocities would have less digits of it.
+// Applies the impulse to a body that nothing holds, physics (38). Returns the rate of its gap, of
+// which the difference of the new velocities would have fewer digits.
 double strike(const Scene& scene, const Impulse& j, const Geometry& at, State& state) {
     const double lifted = j.jz / scene.mass;
     const double spun = (j.jx * j.dz - j.jz * j.dx) / scene.inertia;
@@ -233,7 +230,7 @@ InitialState initial_state(const Scene& scene) {
     }
 
     Contact c = contact(scene, at, state, rate);
-    // Next to the flat position a slide would end before doubles tell its time from 0.
+    // Right beside the flat position a slide would end at a time that doubles cannot tell from 0.
     if (slip_removed && zero_if_negligible(state.theta) == 0) {
         c.gtn = 0.0;
         c.u_without_slip = c.u;
@@ -269,8 +266,8 @@ double energy_after_impulse(const Scene& scene) {
            (scene.gravity * std::max(scene.a, scene.b));
 }
 
-// The slip stops before the compression ends where |v| (Gnn - mu s Gtn) <= |u| (mu Gtt - s Gtn),
-// and does not start again where |Gtn| <= mu Gtt: physics (41).
+// The slip stops before the compression ends if |v| (Gnn - mu s Gtn) <= |u| (mu Gtt - s Gtn), and
+// does not start again if |Gtn| <= mu Gtt, physics (41).
 double sticking_friction(const Scene& scene) {
     State state = state_before_impulse(scene);
     const Geometry at = geometry(scene.axes(), state.theta);

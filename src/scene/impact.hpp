@@ -7,22 +7,22 @@
 
 namespace rolling_ellipse {
 
-// What the coefficient e of restitution means. Stronge: restitution does e^2 of the work of
+// The law of restitution with a coefficient e. Stronge: restitution does e^2 of the work of
 // compression. Poisson: it has e times the normal impulse of compression (Traite de mecanique,
 // 1833). Newton: the gap opens e times as fast as it closed.
 enum class Restitution { stronge, poisson, newton };
 
-// The state just after the applied impulse (or the scene's own state, where there is none). Its
-// mode is what its velocities look like; what forces make of it, contact/continuation.hpp says.
+// The state just after the applied impulse, or the scene's own state without one. Its mode follows
+// from its velocities; contact/continuation.hpp has the mode that the forces allow.
 struct InitialState {
     State state;
     double reaction_x;  // impulse of the ground [N s]
     double reaction_z;
     double free_omega;          // without the ground's reaction: the report's eq 48
-    double slip_removed = 0.0;  // a given one, that infinite friction takes off at once [m/s]
+    double slip_removed = 0.0;  // given slip that infinite friction stops at once [m/s]
     double energy_lost = 0.0;   // with that slip [J]
-    double gap_rate = 0.0;      // by its own digits; 0 in contact [m/s]
-    bool touching = false;      // whether the body was on the ground before
+    double gap_rate = 0.0;      // with its own digits; 0 in contact [m/s]
+    bool touching = false;      // the body was on the ground before
 };
 
 inline constexpr Field<InitialState> start_fields[] = {
@@ -33,23 +33,24 @@ inline constexpr Field<InitialState> start_fields[] = {
 
 InitialState initial_state(const Scene& scene);
 
-// The kinetic energy, beside m g times the long semi-axis, that the impulse alone makes; the ground
-// only takes some off.
+// The kinetic energy after the impulse without the ground, which can only lower it, by m g times
+// the long semi-axis.
 double energy_after_impulse(const Scene& scene);
 
-// The least coefficient of friction with which the contact does not slip after the applied impulse,
-// whatever the scene's own; infinite where no finite one does that. With any larger one it does not
-// either, and the state then is the same.
+// The least coefficient of friction with which the contact does not slip after the applied impulse;
+// infinite if no finite one is enough. The scene's own does not count. Any larger one leads to the
+// same state.
 double sticking_friction(const Scene& scene);
 
-// The kinetic energy [J] that a collision takes; not negative for rounding.
+// The kinetic energy [J] lost in a collision; not negative by rounding.
 double energy_lost(const Scene& scene, const State& before, const State& after);
 
-// The rate of the gap, which is what the lowest point moves away from the ground with.
+// The rate of the gap: the velocity of the lowest point away from the ground.
 double gap_rate(const State& state, const Geometry& at);
 
-// A body that touches the ground, just after the collision, and the rate of its gap; its mode is
-// left. The rate before is a number of its own, since a low hop has more digits of it than z_dot.
+// The state just after the collision of a body that touches the ground, with the mode it had, and
+// the rate of its gap. The rate before is an argument, as a low hop has more digits of it than
+// z_dot.
 struct Collision {
     State after;
     double rebound;

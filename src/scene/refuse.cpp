@@ -10,13 +10,13 @@
 namespace rolling_ellipse {
 namespace {
 
-// Within these no product of four lengths, an energy and gravity leaves the range of doubles.
+// Products of four lengths, an energy and gravity between these stay in the range of doubles.
 constexpr double smallest = 1e-30;
 constexpr double largest = 1e30;
 
 }  // namespace
 
-// As few digits as tell the number from its neighbours; 17 do for any.
+// The fewest digits that distinguish the number from its neighbours; 17 do for any.
 std::string text(double value) {
     if (std::isnan(value)) return "nan";
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -40,9 +40,11 @@ void refuse(std::string_view name, const std::string& requirement, double value)
                                 text(value));
 }
 
-void require_finite(std::string_view name, std::string_view unit, double value) {
+std::string in_brackets(const Unit& unit) { return std::string(" [") + unit.symbol + "]"; }
+
+void require_finite(std::string_view name, const Unit& unit, double value) {
     if (!(std::abs(value) <= largest_number)) {
-        refuse(name, "a finite number" + std::string(unit) + " of at most 1e50", value);
+        refuse(name, "a finite number" + in_brackets(unit) + " of at most 1e50", value);
     }
 }
 

@@ -1,23 +1,28 @@
-// Wrong numbers are refused by name: the argument, what was required and what came.
+// Refusals of wrong numbers by name: the argument, the requirement and the value.
 #pragma once
 
 #include <string>
 #include <string_view>
 
+#include "scene/field.hpp"
+
 namespace rolling_ellipse {
 
-// A double as Python prints it; 1e+15 and subnormal numbers in other words.
+// A double as Python prints it; 1e+15 and subnormal numbers in other digits.
 std::string text(double value);
 
 // Throws std::invalid_argument, which Python shows as ValueError: "name must be requirement, got
 // value".
 [[noreturn]] void refuse(std::string_view name, const std::string& requirement, double value);
 
-// A position, velocity or impulse; the unit is told as " [m]".
-void require_finite(std::string_view name, std::string_view unit, double value);
+// A unit as messages have it: " [m]".
+std::string in_brackets(const Unit& unit);
 
-// A quantity of a kind ("length [m]") that is positive and neither so small nor so large that
-// products of it leave the range of doubles.
+// For a position, velocity or impulse.
+void require_finite(std::string_view name, const Unit& unit, double value);
+
+// For a quantity of a kind ("length [m]") that must be positive, and neither so small nor so large
+// that products of it leave the range of doubles.
 void require_positive(std::string_view name, std::string_view kind, double value);
 
 }  // namespace rolling_ellipse

@@ -13,8 +13,8 @@ namespace {
 constexpr double aspect_limit = 1e3;
 constexpr double blow_margin = 1e-12;  // of the long semi-axis, for the rounding of a point on it
 
-// The inertia of a body, in either form, beside that of its mass at the end of the long semi-axis.
-// It is k^2 that is compared, so that whoever takes it from a scene has what a body takes.
+// The inertia as a moment or as k^2. Its bounds compare k^2 with the square of the long semi-axis,
+// so that the k^2 of a valid scene is valid for a body, too.
 void require_inertia(std::string_view name, std::string_view kind, double value, const Body& body,
                      std::string_view unit_name) {
     constexpr double least = 1e-6;
@@ -28,12 +28,12 @@ void require_inertia(std::string_view name, std::string_view kind, double value,
     }
 }
 
-// A blow touches the body where its line of action enters it: the line must not pass it by. Its
-// distance from the centre is that of two parallel tangents at most, physics (1) across the line.
+// The line of action of a blow must meet the body: its distance from the centre is at most that of
+// the parallel tangents, physics (1) across the line.
 void require_reach(const Scene& scene, const Impulse& blow) {
     const double larger = std::max(std::abs(blow.jx), std::abs(blow.jz));
     if (larger == 0) return;
-    const double jx = blow.jx / larger;  // of which the squares count, however small the blow
+    const double jx = blow.jx / larger;  // whose square is in range for every blow
     const double jz = blow.jz / larger;
     const double size = root_of_squares(jx, jz);
     const double across_x = -jz / size;
@@ -50,20 +50,9 @@ void require_reach(const Scene& scene, const Impulse& blow) {
            distance);
 }
 
-// The speeds [rad/s, m/s] of a body with at most so much energy beside m g times its long
-// semi-axis.
-double most_omega(const Body& body, double energy) {
-    const double axis = std::max(body.a, body.b);
-    return std::sqrt(energy * (body.gravity * axis) / (body.gyration2 + square(axis)));
-}
-
-double most_speed(const Body& body, double energy) {
-    return std::sqrt(energy * body.gravity * std::max(body.a, body.b));
-}
-
-void require_in_size(std::string_view name, const std::string& unit, double value, double most) {
+void require_in_size(std::string_view name, const Unit& unit, double value, double most) {
     if (std::abs(value) <= most) return;
-    refuse(name, "at most " + text(most) + unit + " in size for this body", value);
+    refuse(name, "at most " + text(most) + in_brackets(unit) + " in size for this body", value);
 }
 
 }  // namespace
@@ -96,6 +85,18 @@ Units natural_units(const Body& body, double mass) {
             std::ldexp(1.0, std::ilogb(mass))};
 }
 
+Scene in_units(const Scene& scene, const Units& units) {
+    Scene scaled{};
+    for (const SceneField& field : scene_fields) {
+        if (const auto value = field.of(scene)) field.set(scaled, *value / units.of(field.unit));
+    }
+    return scaled;
+}
+
+State in_units(const State& state, const Units& units) {
+    return in_si(state, {1 / units.length, 1 / units.time, 1 / units.mass});
+}
+
 void validate_length(std::string_view name, double value) {
     require_positive(name, "length [m]", value);
 }
@@ -116,9 +117,12 @@ void validate(const Body& body) {
 }
 
 void validate_motion(const Body& body, double theta, double omega, double most) {
-    require_finite("theta", " [rad]", theta);
-    require_finite("omega", " [rad/s]", omega);
-    require_in_size("omega", " [rad/s]", omega, most_omega(body, most));
+    require_finite("theta", unit::angle, theta);
+    require_finite("omega", unit::angular_velocity, omega);
+    const double axis = std::max(body.a, body.b);
+    const double energy = most * (body.gravity * axis);
+    require_in_size("omega", unit::angular_velocity, omega,
+                    std::sqrt(energy / (body.gyration2 + square(axis))));
 }
 
 void validate_friction(double friction) {
@@ -129,10 +133,9 @@ void validate_friction(double friction) {
 }
 
 void validate(const Impulse& impulse) {
-    require_finite("jx", " [N s]", impulse.jx);
-    require_finite("jz", " [N s]", impulse.jz);
-    require_finite("dx", " [m]", impulse.dx);
-    require_finite("dz", " [m]", impulse.dz);
+    for (const auto& [name, number, unit] : impulse_fields) {
+        require_finite(name, unit, impulse.*number);
+    }
 }
 
 void validate(const Scene& scene, double most) {
@@ -143,11 +146,8 @@ void validate(const Scene& scene, double most) {
                     "mass max(a, b)^2");
     constexpr double steepest = 1.5;
     if (!(std::abs(scene.slope) <= steepest)) {
-        const bool degrees = std::abs(scene.slope) <= 90;
-        refuse("slope",
-               std::string("an angle [rad] from -1.5 to 1.5") +
-                   (degrees ? " (degrees? times pi/180)" : ""),
-               scene.slope);
+        const char* const hint = std::abs(scene.slope) <= 90 ? " (degrees? times pi/180)" : "";
+        refuse("slope", std::string("an angle [rad] from -1.5 to 1.5") + hint, scene.slope);
     }
     validate_friction(scene.friction);
     if (!(scene.restitution >= 0 && scene.restitution <= 1)) {
@@ -155,13 +155,15 @@ void validate(const Scene& scene, double most) {
     }
     const Body body = scene.body();
     validate_motion(body, scene.theta, scene.omega, most);
-    require_finite("x", " [m]", scene.x);
-    if (scene.z) require_finite("z", " [m]", *scene.z);
-    if (scene.x_dot) require_finite("x_dot", " [m/s]", *scene.x_dot);
-    if (scene.z_dot) require_finite("z_dot", " [m/s]", *scene.z_dot);
-    require_in_size("z", " [m]", scene.z.value_or(0.0), most * std::max(scene.a, scene.b));
-    require_in_size("x_dot", " [m/s]", scene.x_dot.value_or(0.0), most_speed(body, most));
-    require_in_size("z_dot", " [m/s]", scene.z_dot.value_or(0.0), most_speed(body, most));
+    require_finite("x", unit::length, scene.x);
+    if (scene.z) require_finite("z", unit::length, *scene.z);
+    if (scene.x_dot) require_finite("x_dot", unit::speed, *scene.x_dot);
+    if (scene.z_dot) require_finite("z_dot", unit::speed, *scene.z_dot);
+    const double axis = std::max(scene.a, scene.b);
+    const double most_speed = std::sqrt(most * scene.gravity * axis);
+    require_in_size("z", unit::length, scene.z.value_or(0.0), most * axis);
+    require_in_size("x_dot", unit::speed, scene.x_dot.value_or(0.0), most_speed);
+    require_in_size("z_dot", unit::speed, scene.z_dot.value_or(0.0), most_speed);
     validate_blow(scene);
     state_before_impulse(scene);
 }
@@ -184,23 +186,25 @@ State state_before_impulse(const Scene& scene) {
                 Mode::flight};
     const double z = scene.z.value_or(at.h);
     if (!nearly_equal(z, at.h)) {
-        if (z < at.h)
+        if (z < at.h) {
             refuse("z",
                    "at least h(theta) = " + text(at.h) +
-                       " [m], the height at which "
-                       "the ellipse touches the ground",
+                       " [m], the height at which the "
+                       "ellipse touches the ground",
                    z);
+        }
         state.z = z;
         state.x_dot = scene.x_dot.value_or(0.0);
         state.z_dot = scene.z_dot.value_or(0.0);
         return state;
     }
+    const auto given_or = [](const std::optional<double>& given, double rolling) {
+        return given && !nearly_equal(*given, rolling) ? *given : rolling;
+    };
     const double rolling_x_dot = at.h * state.omega;  // physics (12)
     const double rolling_z_dot = at.dh * state.omega;
-    state.x_dot = scene.x_dot.value_or(rolling_x_dot);
-    state.z_dot = scene.z_dot.value_or(rolling_z_dot);
-    if (nearly_equal(state.x_dot, rolling_x_dot)) state.x_dot = rolling_x_dot;
-    if (nearly_equal(state.z_dot, rolling_z_dot)) state.z_dot = rolling_z_dot;
+    state.x_dot = given_or(scene.x_dot, rolling_x_dot);
+    state.z_dot = given_or(scene.z_dot, rolling_z_dot);
     if (state.z_dot < rolling_z_dot) {
         refuse("z_dot",
                "at least h'(theta)*omega = " + text(rolling_z_dot) +

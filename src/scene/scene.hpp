@@ -1,4 +1,4 @@
-// What is physically there, as plain numbers, and the rules these numbers must obey.
+// The body, its ground and its start as plain numbers, and the rules that these must obey.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace rolling_ellipse {
 
-// What the motion on level ground depends on: semi-axes [m], k^2 = I/m [m^2], gravity [m/s^2].
+// The body on level ground: semi-axes [m], k^2 = I/m [m^2], gravity [m/s^2].
 struct Body {
     double a;
     double b;
@@ -37,7 +37,7 @@ inline constexpr Field<Impulse> impulse_fields[] = {{"jx", &Impulse::jx, unit::i
                                                     {"dx", &Impulse::dx, unit::length},
                                                     {"dz", &Impulse::dz, unit::length}};
 
-// Gravity as the ground has it: into it, g cos(slope), and along it, g sin(slope) [m/s^2].
+// Gravity into the ground, g cos(slope), and along it, g sin(slope) [m/s^2].
 struct GroundGravity {
     double into;
     double along;
@@ -62,7 +62,7 @@ struct Scene {
     double theta;
     double omega;
     double x;
-    // Absent: touching the ground, and moving as rolling does (or at rest, when in the air).
+    // If absent, the body touches the ground and moves as rolling does (in the air: is at rest).
     std::optional<double> z;
     std::optional<double> x_dot;
     std::optional<double> z_dot;
@@ -73,7 +73,7 @@ struct Scene {
     GroundGravity ground_gravity() const { return rolling_ellipse::ground_gravity(gravity, slope); }
 };
 
-// A number of a Scene, and its default where that follows from the fields before it.
+// A number of a Scene, and its default if that follows from the fields before it.
 struct SceneField {
     const char* name;
     std::variant<double Scene::*, std::optional<double> Scene::*> number;
@@ -81,7 +81,7 @@ struct SceneField {
     double (*otherwise)(const Scene&) = nullptr;
 
     std::optional<double> of(const Scene& scene) const;
-    // NaN, which `validate` refuses, for a number that must be given and is absent.
+    // A number that must be given and is absent becomes NaN, which `validate` refuses.
     void set(Scene& scene, std::optional<double> value) const;
 };
 
@@ -103,12 +103,12 @@ inline constexpr SceneField scene_fields[] = {
     {"x_dot", &Scene::x_dot, unit::speed},
     {"z_dot", &Scene::z_dot, unit::speed}};
 
-// The scene of its numbers in the order of their rows; not validated.
+// The scene by its numbers in the order of the table; not validated.
 using SceneNumbers = std::array<std::optional<double>, std::size(scene_fields)>;
 Scene scene_of(const SceneNumbers& numbers, const std::optional<Impulse>& impulse);
 
-// Units of a body's own size, powers of two: a number in them keeps its bits, and what is computed
-// in them neither depends on the units that it came in nor leaves the range of doubles.
+// Units of a body's own size, powers of two: a number in them keeps its bits. Results computed in
+// them do not depend on the units of the input and stay in the range of doubles.
 struct Units {
     double length = 1.0;  // [m]
     double time = 1.0;    // [s]
@@ -121,15 +121,29 @@ struct Units {
     bool are_si() const { return length == 1 && time == 1 && mass == 1; }
 };
 
-// Next to the long semi-axis L, sqrt(L/g) and the mass.
+// The powers of two next to the long semi-axis L, sqrt(L/g) and the mass.
 Units natural_units(const Body& body, double mass = 1.0);
+
+// All numbers of a scene but those of its impulse.
+Scene in_units(const Scene& scene, const Units& units);
+
+State in_units(const State& state, const Units& units);
+
+// Written out and inline, since every sample goes through it.
+inline State in_si(const State& state, const Units& units) {
+    const auto& [theta, omega, x, z, x_dot, z_dot, mode] = state;
+    const auto& [length, time, mass] = units;
+    const double rate = 1 / time;
+    const double speed = length * rate;
+    return {theta, omega * rate, x * length, z * length, x_dot * speed, z_dot * speed, mode};
+}
 
 inline Body body(double a, double b, std::optional<double> gyration2, double gravity) {
     return {a, b, gyration2.value_or(uniform_disc_gyration2(a, b)), gravity};
 }
 
-// The largest energies, beside m g times the long semi-axis: of what is typed, and of what a motion
-// reaches, which may have gained energy down a slope.
+// The largest energies, by m g times the long semi-axis: of a scene that is typed, and of a state
+// that a motion has reached, which may have gained energy down a slope.
 inline constexpr double most_energy = 1e12;
 inline constexpr double most_energy_reached = 1e100;
 
@@ -142,14 +156,14 @@ void validate_friction(double friction);
 void validate(const Impulse& impulse);
 void validate(const Scene& scene, double most = most_energy);
 
-// That it is finite, meets the body and does not make it too fast.
+// The impulse must be finite, meet the body and not make it too fast.
 void validate_blow(const Scene& scene);
 
 // A height at which the ellipse does not touch the ground, whatever its angle.
 inline double above_ground(const Axes& axes) { return axes.a + axes.b; }
 
-// The state before any impulse: absent values filled in; values within 8 ulp of touching or of
-// rolling set exactly. Throws where the body is under the ground or moves into it.
+// The state before any impulse. Absent values are filled in; values within 8 ulp of touching or of
+// rolling are set exactly. Throws if the body is under the ground or moves into it.
 State state_before_impulse(const Scene& scene);
 
 }  // namespace rolling_ellipse

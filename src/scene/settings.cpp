@@ -26,7 +26,7 @@ void require_count(const std::string& name, long count) {
 }
 
 void validate_step(const Settings& settings, double t_end) {
-    constexpr double smallest_step_ulps = 10;  // of the last time, as for steps of controlled error
+    constexpr double smallest_step_ulps = 10;  // of the last time, as with error control
     const Method method = settings.method;
     if (!settings.step) {
         if (!needs_step(method)) return;
@@ -48,7 +48,7 @@ void validate_step(const Settings& settings, double t_end) {
     }
 }
 
-// Which methods a model has, and which stabilization goes with them.
+// Each model has its methods, and each of these its stabilizations.
 void validate_method(const Settings& settings) {
     const Method method = settings.method;
     const Stabilization stabilization = settings.stabilization;

@@ -1,4 +1,4 @@
-// How a motion is to be computed, and the rules these choices must obey.
+// The choices of how a motion is computed, and the rules that they must obey.
 #pragma once
 
 #include <array>
@@ -10,17 +10,16 @@
 
 namespace rolling_ellipse {
 
-// Names, which are in the order of the values, are in settings.cpp.
 enum class Model { automatic, rolling, multipliers, contact };
 
 enum class Method { automatic, exact, dop853, dopri5, rk4, gauss, radau };
 
-// How the constraints of the multiplier model are kept: as an index-1 system, with Baumgarte's
-// feedback, projected after each step, also onto the energy, or as the index-2 system of Gear,
-// Gupta and Leimkuhler.
+// The stabilization of the multiplier model's constraints: none (an index-1 system), Baumgarte's
+// feedback, projection after each step, projection onto the energy, too, or the index-2 system of
+// Gear, Gupta and Leimkuhler.
 enum class Stabilization { none, baumgarte, projection, projection_energy, ggl };
 
-// What people call the choices, in their order.
+// The names of the choices, in the order of their values.
 template <class Choice>
 inline constexpr std::array<const char*, 0> names{};
 template <>
@@ -66,8 +65,7 @@ inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model}
 // Called now and then during long work; throws to stop it.
 using Checkpoint = std::function<void()>;
 
-// Throws std::logic_error: a method that no model may be asked for has come where integrators are
-// chosen.
+// Throws std::logic_error, for the choice of an integrator: validation lets no such method pass.
 [[noreturn]] void no_integrator_for(Method method);
 
 // Throws std::invalid_argument naming the argument, what was required and what came.

@@ -2,9 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace rolling_ellipse {
+
+bool is_finite(const State& state) {
+    return std::all_of(std::begin(state_fields), std::end(state_fields),
+                       [&](const auto& field) { return std::isfinite(state.*field.number); });
+}
 
 bool nearly_equal(double value, double target) {
     const double ulp =

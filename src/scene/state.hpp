@@ -25,6 +25,8 @@ inline constexpr Field<State> state_fields[] = {
     {"x", &State::x, unit::length},        {"z", &State::z, unit::length},
     {"x_dot", &State::x_dot, unit::speed}, {"z_dot", &State::z_dot, unit::speed}};
 
+bool is_finite(const State& state);
+
 // Whether the contact has no slip.
 inline bool rolls(const State& state) {
     return state.mode == Mode::rolling || state.mode == Mode::rest;
@@ -44,26 +46,25 @@ struct ContactSample {
     ContactForce force;
 };
 
-// An angular velocity below 1e-100 rad/s counts as rest, and so small an angle as none where its
-// square matters: that is no longer a normal double.
+// An angular velocity below 1e-100 rad/s counts as rest. An angle of that size counts as 0 if its
+// square matters, which is not a normal double.
 inline double zero_if_negligible(double value) {
     return value > -1e-100 && value < 1e-100 ? 0.0 : value;
 }
 
-// Whether two numbers are equal but for the rounding of a few operations.
+// Whether two numbers are equal within the rounding of a few operations.
 bool nearly_equal(double value, double target);
 
 // Velocity along the ground of the material point at the contact.
 double slip_velocity(const State& state, const Geometry& at);
 
-// The slip velocity, and zero where it is rounding beside the velocity of the centre.
+// The slip velocity, or 0 if it is within the rounding of the centre's velocity.
 double slip_beyond_rounding(const State& state, const Geometry& at);
 
-// The same state by other axes and the angle that belongs to them. What touches, or has no slip,
-// goes on to do so.
+// The same state by other axes, and the angle that belongs to them. Contact and no slip remain so.
 State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta);
 
-// The state of a body that keeps to the ground.
+// The state of a body that stays in contact.
 State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode);
 
 // The acceleration c into the ground that the lowest point has without a contact force: gravity
@@ -72,7 +73,7 @@ inline double free_acceleration(const Geometry& at, double gravity_into_ground, 
     return gravity_into_ground + at.ddh * omega * omega;
 }
 
-// Whether that is 0 but for rounding.
+// Whether the free acceleration is 0 within rounding.
 inline bool is_weightless(const Geometry& at, double gravity_into_ground, double omega) {
     return nearly_equal(-at.ddh * omega * omega, gravity_into_ground);
 }
