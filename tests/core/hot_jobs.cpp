@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "motions.hpp"
+#include "rolling/level/kernel.hpp"
 #include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 

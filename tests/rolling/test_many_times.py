@@ -99,6 +99,15 @@ def test_any_number_of_times(count: int) -> None:
         assert np.all(np.abs(values - several[:count]) <= 32 * math.ulp(10.0))
 
 
+@pytest.mark.parametrize(("theta", "omega"), [(1.0, 0.0), (0.6, 0.0), (1.2, 0.9), (0.2, -2.0)])
+def test_a_mirror_image_has_the_same_bits(theta: float, omega: float) -> None:
+    """Also where the series about the start ends and those of the table begin."""
+    body = {"a": 0.375, "b": 1.0, "gravity": 1.0, "gyration2": 0.28515625}
+    times = np.linspace(0.0, 4.0, 3001)
+    one, other = (flow(times, theta=s * theta, omega=s * omega, **body) for s in (1, -1))
+    assert all(np.array_equal(left, -right) for left, right in zip(one, other, strict=True))
+
+
 @pytest.mark.parametrize("place", [0, 5, 1500, 2002])
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e300])
 def test_a_wrong_time_is_named_by_its_place(place: int, bad: float) -> None:

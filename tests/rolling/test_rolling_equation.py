@@ -92,7 +92,6 @@ def test_a_wrong_equation_is_seen() -> None:
         assert ulps(found[0], exact.acceleration, sizes.acceleration) > 500
 
 
-
 def test_derivatives_are_those_of_the_acceleration(shape: tuple[float, float]) -> None:
     """Central differences of the function itself. They miss the derivative by the third one times
     d^2/6, some (rho/b)^2 d^2 of the sizes since b/a is the finest scale of the outline, and by

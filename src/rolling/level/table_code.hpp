@@ -81,8 +81,8 @@ void series(const SeriesConstants& body, double time_unit, double length_unit, T
         const Pack omega = gathered(places, count, first, &TablePlace::omega) * time_unit;
         const Pack radius = gathered(places, count, first, &TablePlace::radius);
         const auto motion = motion_series<table_order>(body, sin, cos, omega);
-        const Pack path = sin * __builtin_sqrt(body.short_axis2);
-        const Mask<Pack> good = holds(motion.angle, sin, radius) &
+        const Pack path = abs(sin) * __builtin_sqrt(body.short_axis2);
+        const Mask<Pack> good = holds(motion.angle, abs(sin), radius) &
                                 holds(motion.omega, abs(omega), radius) &
                                 holds(motion.path, path, radius);
         for (int lane = 0; lane < lanes && first + lane < count; ++lane) {
