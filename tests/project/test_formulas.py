@@ -22,7 +22,7 @@ def headings(cell: nbformat.NotebookNode) -> list[int]:
 
 def citations(text: str) -> list[int]:
     """Numbers of the formulas that a source text cites."""
-    found = re.findall(r"\bphysics \(([^)]*)\)", text)
+    found = re.findall(r"\bphysics \(([^)]*)\)", re.sub(r"\n *// ", " ", text))
     return [int(number) for numbers in found for number in numbers.split(",")]
 
 

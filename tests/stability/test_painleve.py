@@ -68,7 +68,7 @@ def test_a_law_of_force_goes_on_with_nonsense_and_the_product_jams(scene: Scene)
         assert most > 2 * there_is
     found = simulate(scene, 1.0)
     assert found.status is Status.JAMMED and found.success
-    assert "friction would have to push it into the ground (Painleve)" in found.message
+    assert "friction would press it into the ground (Painleve)" in found.message
     assert [event.kind for event in found.events] == [EventKind.JAM]
     assert found.t.tolist() == [0.0] and found.t_end == 0.0 and found.mode[0] == Mode.SLIDING
     assert np.all(np.isfinite(found.normal_force)) and found.normal_force[0] >= 0
