@@ -92,14 +92,14 @@ def _check_options(options: argparse.Namespace) -> None:
 def _write_figure(trajectory: Trajectory, path: str) -> str:
     """Write the overview, and return its path."""
     if not Path(path).suffix:
-        path += "." + rcParams["savefig.format"]  # as matplotlib does
+        path += "." + rcParams["savefig.format"]  # matplotlib adds this suffix, too
     with replacing(path) as new:
         trajectory.plot().figure.savefig(new, format=Path(path).suffix[1:])
     return path
 
 
 def _complain(error: Exception) -> None:
-    if sys.stderr is not None:  # else print would write to stdout
+    if sys.stderr is not None:  # print(file=None) would write to stdout
         print(f"{PROGRAM}: {' '.join(str(error).split())}", file=sys.stderr)
 
 

@@ -29,7 +29,7 @@ _MOST_WORKERS = 1024
 _KNOWN = "within the range of doubles"
 _PLACE = r"\[(\d+)\]"
 _LONGEST = 300  # characters of a value in a message
-_MOST_AXES = 32  # of NumPy's broadcasting
+_MOST_AXES = 32  # largest number of axes that NumPy broadcasts
 _PIECE = 2**17  # numbers converted at a time: 10 ms at most, between which Ctrl-C acts
 _SLICED = (list, tuple, range)
 _TEXT = (str, bytes, bytearray, memoryview)  # sequences, but not of numbers
@@ -51,7 +51,7 @@ def number(name: str, value: Any) -> float:
     ValueError
         If it is beyond the range of doubles.
     """
-    if type(value) is float:  # most are, and a scene has many
+    if type(value) is float:  # the fast path: most arguments are floats
         return value
     if type(value) in _PLAIN:
         with suppress(OverflowError):  # refused below
@@ -68,7 +68,7 @@ def optional_number(name: str, value: Any) -> float | None:
 
 def whole(name: str, value: Any) -> int:
     """Return ``value`` as an int, or raise TypeError naming the argument."""
-    if type(value) is int:  # nearly always
+    if type(value) is int:  # the usual case
         return value
     _require_plain(name, value)
     if not isinstance(value, (bool, np.bool_)):
@@ -154,7 +154,7 @@ def _converted(name: str, value: Any) -> FloatArray | None:
         doubles = np.array(vector("d", found.ravel().tolist())).reshape(found.shape)
     except OverflowError:
         raise ValueError(f"{name} must be {_KNOWN}, got {shown(value)}") from None
-    except (TypeError, ValueError):  # ragged sequences, a signalling NaN
+    except (TypeError, ValueError):  # NumPy refuses ragged sequences and signalling NaNs
         return None
     require(name, _KNOWN, found, ~np.isinf(doubles) | (found == doubles))
     return doubles
@@ -168,7 +168,7 @@ def _in_pieces(name: str, entries: Any, size: int) -> FloatArray | None:
         parts = [_converted(name, entry) for entry in entries]
     known = [part for part in parts if part is not None]
     if len(known) == len(parts):
-        with suppress(ValueError):  # ragged
+        with suppress(ValueError):  # NumPy refuses ragged sequences
             return np.concatenate(known) if step > 1 else np.stack(known)
     return None
 
@@ -216,7 +216,8 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
                         _require_plain(name, entry, axes + 1)
         return
     is_masked = isinstance(value, np.ndarray) and np.any(getattr(value, "mask", False))
-    held = None if isinstance(value, np.ndarray) else getattr(value, "data", None)  # of xarray
+    # Xarray keeps the array in `data`
+    held = None if isinstance(value, np.ndarray) else getattr(value, "data", None)
     if is_masked or _has_units(value) or _has_units(held):
         raise TypeError(
             f"{name} must be plain numbers in SI units, none masked, got {shown(value)}"

@@ -64,7 +64,7 @@ class Impulse:
 
     @property
     def core(self) -> _core.Impulse:
-        """One blow as the core's object."""
+        """The blow as an object of the core."""
         return _core.Impulse(self.jx, self.jz, self.dx, self.dz)
 
     @classmethod
@@ -132,7 +132,8 @@ def _let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
     """Raise the core's error for the worst number (NaN, or else the largest), as `argument`."""
     if not values.size:
         return
-    worst = [begin + _largest(piece) for begin, piece in pieces(values)]  # of each piece
+    # Index of the worst number of each piece
+    worst = [begin + _largest(piece) for begin, piece in pieces(values)]
     index = np.unravel_index(worst[_largest(values.flat[worst])], values.shape)
     try:
         _core.Impulse(**({"jx": 0.0, "jz": 0.0, "dx": 0.0, "dz": 0.0} | {name: values[index]}))

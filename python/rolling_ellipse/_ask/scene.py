@@ -133,7 +133,7 @@ class Scene(FieldsOnly, Listed):
     z_dot: float | None = None
     impulse: Impulse | None = None
 
-    def __init__(  # twice as fast as the one of a frozen dataclass, with all checks
+    def __init__(  # twice as fast as the __init__ of a frozen dataclass, although it checks
         self,
         a: float,
         b: float,

@@ -76,7 +76,7 @@ def _whole(name: str, value: Any) -> int:
     return found
 
 
-_CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # by the types of the fields
+_CHECK_OF: dict[str, Callable[[str, Any], Any]] = {  # the check for each type of field
     "Model": partial(choice, valid=MODELS),
     "Method": partial(choice, valid=METHODS),
     "Stabilization": partial(choice, valid=STABILIZATIONS),

@@ -116,7 +116,7 @@ def events(scene: Scene, rows: Iterable[Sequence[float]]) -> Events:
     return Events(
         [
             trusted(Event, {"t": row[0], "kind": _KINDS[row[1]], "_found": row, "_scene": scene})
-            for row in rows  # of the columns `_core.COLUMNS["events"]`
+            for row in rows  # a row has the columns `_core.COLUMNS["events"]`
         ]
     )
 

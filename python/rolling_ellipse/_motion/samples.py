@@ -126,7 +126,7 @@ def touch(of: Trajectory) -> Mapping[str, FloatArray]:
 def _untouchable(values: _Values) -> _Values:
     """Return a read-only array: a copy if the array or one that it is a view of is writeable."""
     if values.base is None and not values.flags.writeable:
-        return values  # like the core's samples
+        return values  # the samples of the core are not writeable either
     layer: Any = values
     while isinstance(layer, np.ndarray) and not layer.flags.writeable:
         layer = layer.base

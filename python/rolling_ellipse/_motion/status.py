@@ -35,8 +35,9 @@ class Status(enum.Enum):
 
 
 COMPLETED = Status.COMPLETED  # cached: access by the class is five times slower
-_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two motions go on
-STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}  # by codes of endings
+_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two motions are possible
+# The status for each code of an ending
+STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}
 
 
 class IntegrationError(RuntimeError):

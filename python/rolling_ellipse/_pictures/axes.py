@@ -19,7 +19,8 @@ from .alone import Alone
 
 _Given = ParamSpec("_Given")
 _Drawn = TypeVar("_Drawn")
-_opened: ContextVar[list[Figure]] = ContextVar("_opened")  # by the plot function at work
+# Figures opened by the running plot function
+_opened: ContextVar[list[Figure]] = ContextVar("_opened")
 _with_figures = Alone()  # pyplot numbers its figures: two threads could get the same number
 
 _SHARED = {
@@ -73,7 +74,7 @@ def picture(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
 
 
 def axes_of(ax: Axes | None, size: tuple[float, float]) -> Axes:
-    """Return the Axes given, or those of a new pyplot figure of a size [inch]."""
+    """Return the given Axes, or the Axes of a new pyplot figure of a size [inch]."""
     return _new_figure(size).add_subplot() if ax is None else require_axes(ax)
 
 
@@ -109,7 +110,7 @@ def figure_of(figure: Any, size: tuple[float, float]) -> Figure:
     """Return the figure given, or a new pyplot figure of a size [inch]."""
     if figure is None:
         return _new_figure(size)
-    if not isinstance(figure, FigureBase):  # of Figure and SubFigure
+    if not isinstance(figure, FigureBase):  # base class of Figure and SubFigure
         raise TypeError(f"figure must be a matplotlib Figure or None, got {shown(figure)}")
     whole = figure.get_figure(root=True)
     if whole is not None and whole.get_layout_engine() is None:

@@ -21,7 +21,7 @@ from .comparison import Comparison
 from .legends import some_of
 from .panels import draw_error, dress_errors, finish
 
-QUANTITIES = {  # with their symbols
+QUANTITIES = {  # quantities and their symbols
     "theta": "θ", "omega": "ω", "x": "x", "z": "z", "x_dot": "x_dot", "z_dot": "z_dot",
     "contact_x": "contact", "turns": "turns", "normal_force": "N", "friction_force": "F",
     "energy": "energy", "kinetic_energy": "kinetic energy", "potential_energy": "potential energy",
@@ -104,7 +104,7 @@ def _reference_of(motion: Trajectory, reference: Trajectory | None) -> Trajector
         how = {"model": "rolling", "method": "exact"}
     try:
         return Trajectory.computed(motion.scene, replace(DEFAULTS, **how), np.array([last]))
-    except ValueError as error:  # beyond 1e15 half turns
+    except ValueError as error:  # the core refuses times beyond 1e15 half turns
         raise ValueError(
             f"reference must be given where no exact motion reaches {last:g} s: {error}"
         ) from error

@@ -17,10 +17,10 @@ from .._ask.check import FloatArray
 from .palette import INK, palette_of
 
 _SMALL = "x-small"
-_PITCH = 1.25  # of lines of text, in font sizes
-_WIDTH = 0.56  # of a letter, in font sizes
+_PITCH = 1.25  # distance of lines of text, in font sizes
+_WIDTH = 0.56  # width of a letter, in font sizes
 _MARGIN_SIZES = 4.5, 7.0  # least and largest font size beside the axes [points]
-_TALLEST = 0.35  # height of upright labels over that of the axes: higher ones are not written
+_TALLEST = 0.35  # largest height of an upright label, in heights of the axes
 _RISE = 0.65  # from a line to the middle of the letters on it, in font sizes
 _CLEAR = 0.9  # distance of a good place from other lines and names, in font sizes
 _TIGHT = 0.5  # a place with less distance is not used
@@ -195,7 +195,7 @@ def _spots(
         first, foot, last = _at(np.array([-width / 2, 0, width / 2]) + middle, along, line)
         lead = last - first
         if lead[0] < -1e-6 or (lead[0] < 1e-6 and lead[1] < 0):
-            lead = -lead  # from left to right, or upwards
+            lead = -lead  # text runs from left to right, or upwards
         lead = lead / np.hypot(*lead)
         for above in (label.above, not label.above):
             up = np.array([-lead[1], lead[0]]) * (1 if above else -1)

@@ -22,12 +22,12 @@ from .labels import label_times
 from .palette import Palette, palette_of
 
 EVENT_NAMES = {kind: kind.name.lower().replace("_", "-") for kind in EventKind}
-_SHADES: dict[Mode, tuple[float, float, str]] = {  # of face and edge, and the hatch
+_SHADES: dict[Mode, tuple[float, float, str]] = {  # opacity of face and edge, and the hatch
     Mode.SLIDING: (0.05, 0.28, "////"),
     Mode.FLIGHT: (0.1, 0.1, ""),
     Mode.REST: (0.02, 0.28, "..."),
 }
-_ROW = 0.05  # height of one of several motions, over that of the axes
+_ROW = 0.05  # height of the row of one motion, in heights of the axes
 
 
 def events_shown(motion: Trajectory) -> list[Event]:

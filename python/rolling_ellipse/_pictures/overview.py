@@ -82,7 +82,7 @@ def plot(
     Overview
         The artists.
     """
-    check_strobe(trajectory, count, t_end)  # before anything is drawn
+    check_strobe(trajectory, count, t_end)  # refuses wrong arguments before anything is drawn
     shown = Comparison(trajectory).over_time()
     (motion,) = shown.motions
     figure = figure_of(figure, (8.6, 8.0))

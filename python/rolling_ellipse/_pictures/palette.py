@@ -50,7 +50,7 @@ class Palette:
 
     @property
     def text(self) -> str:
-        """Black or white: the one that differs more from the background."""
+        """Black or white, whichever differs more from the background."""
         return "black" if _lightness(self.background) > 0.5 else "white"
 
     @cached_property

@@ -25,7 +25,7 @@ FEW = 120.0  # most half turns or swings that are drawn one by one over time
 PARTS = 800  # parts of the time of a motion with more
 _IN_A_PART = 96  # samples of a part
 _POINTS = 400, 32  # first points of a curve: in all, and in a half turn
-_MOST_POINTS = 30_000  # of a curve
+_MOST_POINTS = 30_000  # most points of a curve
 _FEWEST_DOTS = 100  # fewer samples are replaced by the points of a curve
 _ROUNDS = 16  # an interval is halved so many times at most
 _BEND = 1e-3  # a curve that misses its chord by more of its range is seen to bend
@@ -168,7 +168,7 @@ def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
         found = min(end, _used_up(motion.sol(even_times(begin, end, 2001)), turns, rate))
         if not begin < found < begin + (end - begin) / 8:
             return found
-        end = begin + 2 * (found - begin)  # once more with a finer grid
+        end = begin + 2 * (found - begin)  # a second pass with a finer grid
 
 
 def at_times(motion: Trajectory, times: FloatArray) -> Trajectory:

@@ -14,7 +14,7 @@ from .._ask.check import FloatArray
 from .._ask.scene import Scene
 
 QUARTER = math.pi / 2
-_POINTS = 801, 100_000  # in one half turn and in all
+_POINTS = 801, 100_000  # points in one half turn, and in total
 
 
 def flat_angle(scene: Scene) -> float:

@@ -1,4 +1,4 @@
-"""The work-precision diagram: cost and error of each way to compute a motion."""
+"""The work-precision diagram: time against error for each method."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .axes import axes_of, picture
 from .labels import label_ends
 from .palette import Palette, palette_of
 
-if TYPE_CHECKING:  # which imports this file
+if TYPE_CHECKING:  # results.py imports this file
     from .._verbs.work_precision.results import WorkPrecision
 
 _NAMES = {
@@ -140,7 +140,7 @@ def _tagged(runs: Sequence[Run], tags: Sequence[str] | None) -> list[Run]:
 
 
 def _styles(found: WorkPrecision, palette: Palette) -> dict[str, dict[str, Any]]:
-    """Return line properties by name: a colour for each kind of way, a marker within a kind."""
+    """Return line properties by name: a colour for each kind of method, a marker within a kind."""
     styles: dict[str, dict[str, Any]] = {}
     for run in found.runs:
         kind = (palette.blue, 1.2)

@@ -1,4 +1,4 @@
-"""A table of blows: what each makes of one scene, small enough for a page to carry."""
+"""A table of the motions of one scene after many blows, small enough for a page."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ PLACES, STRENGTHS = 25, 16
 WIDE = 14.0  # width of the view [longer semi-axes]
 _PIXEL = 2.5e-4  # tolerance over the width of the view
 _SAMPLES = 100  # of a motion; up to ten times as many if its places need them
-_STEPS, _EVENTS = 20_000, 200  # most steps and events of a motion
+_STEPS, _EVENTS = 20_000, 200  # largest numbers of steps and events of a motion
 
 
 def ranges(scene: Scene) -> tuple[FloatArray, FloatArray]:

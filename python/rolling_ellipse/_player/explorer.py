@@ -61,7 +61,7 @@ def explore(scene: Scene, *, t_end: float | None = None) -> Explorer:
 
 
 def write_explorer(scene: Scene, path: str | PathLike[str]) -> None:
-    """Write the page that `explore` makes of a scene; it raises what `Explorer.to_html` does."""
+    """Write the page of `explore` for a scene; errors are those of `Explorer.to_html`."""
     explore(scene).to_html(path)
 
 

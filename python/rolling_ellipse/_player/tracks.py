@@ -12,7 +12,7 @@ from .._motion.samples import even_times
 from .._motion.trajectory import Trajectory
 from .._pictures.sampling import halve
 
-MOST_SAMPLES = 20_000  # of one motion, 1 MB
+MOST_SAMPLES = 20_000  # most samples of one motion, 1 MB
 _RATES = {"x": "x_dot", "z": "z_dot", "theta": "omega"}
 _FORCES = ("normal_force", "friction_force")
 # Places in an interval at which a cubic is compared with the motion. They are irregular, so that a
@@ -76,7 +76,8 @@ def sample_times(
     jumps = [event.t for event in motion.events if 0 < event.t <= end]
     just_before = np.nextafter(jumps, 0.0)
     times = np.unique(np.concatenate([even_times(0.0, end, _FIRST + 1), jumps, just_before]))
-    places = np.flatnonzero(np.diff(times) > 1e-12 * end)  # of intervals that may miss
+    # Intervals in which the cubic may miss the motion
+    places = np.flatnonzero(np.diff(times) > 1e-12 * end)
     while places.size and times.size <= most:
         left, right = times[places], times[places + 1]
         force = _FORCE if times.size <= for_forces else np.inf

@@ -15,7 +15,7 @@ from ..geometry import support
 from .certify import certify
 from .outcome import outcome
 
-_SPEEDS = 2048  # number of speeds that are tried, upwards from the one that just reaches the tip
+_SPEEDS = 2048  # number of speeds that are tried, from the least that reaches the tip upwards
 _FASTEST = 1e3  # largest of them over that one
 
 

@@ -19,7 +19,7 @@ from .._ask.check import FloatArray, shown, worker_count
 
 Columns = list[FloatArray]
 
-_IN_FLIGHT = 128  # most tasks submitted at a time
+_IN_FLIGHT = 128  # largest number of tasks submitted at a time
 _HELD = 96 * 2**20  # most bytes of results that wait for earlier ones, unless one result has more
 _ELEMENTS = 2**16  # elements of a task; a multiple of the core's own parts, so that lanes agree
 
@@ -42,7 +42,7 @@ def threads_of(workers: Any) -> int | None:
     ValueError
         If the number is out of range.
     """
-    if type(workers) is int:  # nearly always
+    if type(workers) is int:  # the usual case
         return worker_count(workers)
     if isinstance(workers, type) or not (_can(workers, "submit") or _is_pool(workers)):
         try:

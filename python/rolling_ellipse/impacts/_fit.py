@@ -92,7 +92,7 @@ def fit(
     law: Law = "stronge",
     minimise: Measure = "median",
 ) -> FittedImpacts:
-    """Find the one pair of coefficients that predicts a series of measured impacts best.
+    """Find the pair of coefficients that predicts a series of measured impacts best.
 
     The error of an impact is the kinetic speed of predicted minus measured velocities after it.
     Its median, or root mean square, is evaluated on a grid over restitution (0 to 1) and the angle

@@ -21,7 +21,7 @@ _TINY = 1e-30  # a complex step this small has neither truncation nor rounding e
 
 
 def masses(body: Scene) -> FloatArray:
-    """Return the masses of x, z [kg] and theta [kg m^2]; those of psi and r are 0."""
+    """Return the masses of x, z [kg] and theta [kg m^2]; psi and r have none (0)."""
     found: FloatArray = np.array([1, 1, body.gyration2, 0, 0]) * body.mass
     return found
 

@@ -65,7 +65,7 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
             "long_name": "; ".join(each.meaning for each in MULTIPLIERS),
         },
     )
-    flags = {  # as the CF conventions write codes
+    flags = {  # codes are written by the CF conventions
         "flag_values": np.array(list(Mode), dtype=np.int8),
         "flag_meanings": " ".join(mode.name for mode in Mode),
     }

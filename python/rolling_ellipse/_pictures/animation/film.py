@@ -87,7 +87,7 @@ class RollingAnimation(FuncAnimation):
         else:
             self._undrawn = (place, new_figure, width, dpi)
 
-    if not TYPE_CHECKING:  # or every name would be known
+    if not TYPE_CHECKING:  # a __getattr__ would let type checkers accept every name
 
         def __getattr__(self, name: str) -> Any:
             """Draw a film that was only written, when one of its artists is first asked for.
@@ -143,7 +143,7 @@ class RollingAnimation(FuncAnimation):
         """Do not warn, as matplotlib does, that the animation was never shown."""
 
     def _axes(self, place: Figure | SubFigure | Axes) -> list[Axes]:
-        """Return the Axes of the strips: the one given, or new ones over one another."""
+        """Return the Axes of the strips: the given one, or new Axes stacked in a column."""
         if isinstance(place, Axes):
             place.set_aspect("equal", adjustable="datalim")
             return [place]

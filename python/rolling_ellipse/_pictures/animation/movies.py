@@ -137,9 +137,9 @@ def explained(path: str) -> Iterator[None]:
 
 
 def ffmpeg() -> str:
-    """Return the path of an ffmpeg program: that of imageio_ffmpeg, else the system's."""
+    """Return the path of ffmpeg: the program of imageio_ffmpeg, or else of the system."""
     if importlib.util.find_spec("imageio_ffmpeg") is not None:
-        with suppress(RuntimeError):  # no program for this machine
+        with suppress(RuntimeError):  # imageio_ffmpeg has no program for this machine
             return str(importlib.import_module("imageio_ffmpeg").get_ffmpeg_exe())
     if FFMpegWriter.isAvailable():
         return FFMpegWriter.bin_path()

@@ -126,7 +126,7 @@ def plot_phase_map(
         If something is no number, or `resolution` no whole one.
     """
     if ax is not None:
-        require_axes(ax)  # before the work
+        require_axes(ax)  # refuses a wrong ax before the work
     fixed = {"aspect": aspect, "energy": energy, "speed": speed, "friction": friction}
     plane = plane_of((x, y), (x_range, y_range), fixed, b, gravity)
     count = whole_within("resolution", resolution, _FINEST)

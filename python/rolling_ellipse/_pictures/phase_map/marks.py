@@ -46,7 +46,7 @@ class Mark:
     x: FloatArray
     y: FloatArray
     key: str
-    names: tuple[str, ...]  # from long to short
+    names: tuple[str, ...]  # names of a curve, from long to short
     line: dict[str, Any] = field(default_factory=dict)
     place: float = 0.5
     above: bool = True

@@ -26,9 +26,10 @@ Tables = dict[str, npt.NDArray[Any]]
 Answer: TypeAlias = Trajectory | Exception
 
 REFUSED = -1  # the ending of a scene that was refused
-MODELS, METHODS = _core.MODELS, _core.METHODS  # by their codes
+MODELS, METHODS = _core.MODELS, _core.METHODS  # names by their codes
 _COLUMNS, _STATS = _core.COLUMNS, _core.STATS
-SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}  # in the tables
+# Bytes of a sample in the tables
+SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}
 _AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
 
 

@@ -22,7 +22,7 @@ from .tables import BLOW, NAMES, WIDTH, scenes_of, table_of
 
 _FIRST, _MOST = 16, 2048  # scenes of the first and of the largest chunk
 _SHARE = 32  # all scenes before a chunk over those by which it is larger than the first
-_SAMPLES = 2**18  # most samples of a chunk
+_SAMPLES = 2**18  # largest number of samples of a chunk
 _DEFAULTS: dict[str, Any] = {field.name: field.default for field in fields(Scene)}
 
 

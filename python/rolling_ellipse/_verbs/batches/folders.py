@@ -39,7 +39,8 @@ _SAME = "a folder of the same request"
 _REQUEST, _END = "request.npz", "end.json"
 _CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
 _AGAIN = "simulate_many with the same arguments"
-_OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")  # and hidden files
+# Hidden files are allowed, too
+_OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")
 
 _Names = dict[int, list[str]]  # names of the files of chunks, by index, in order
 
@@ -296,7 +297,7 @@ def _name(index: int, request: str, scenes: FloatArray) -> str:
 
 
 def _digest_of(about: dict[str, Any], times: FloatArray) -> str:
-    """Return the hash of everything that the bits of a motion depend on besides its scene."""
+    """Return the hash of everything except the scene that the bits of a motion depend on."""
     said = {name: about[name] for name in ("schema", "version", "settings")}
     return _digest(json.dumps(said, sort_keys=True).encode() + times.tobytes())
 

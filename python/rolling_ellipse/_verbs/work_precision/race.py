@@ -165,7 +165,7 @@ class _Attempt:
 
     def __init__(self, contender: Contender, judge: Judge, setting: float) -> None:
         self.contender, self.judge, self.setting = contender, judge, setting
-        self.call: Any = None  # once it has an answer
+        self.call: Any = None  # the timed call; None before the first answer
         self.status, self.reason = COMPLETED, ""
         self.facts: dict[str, Any] = {}  # fields of its Run
         self.setup = self.spent = 0.0  # of being judged: set-up, and all else [s]
@@ -277,7 +277,7 @@ def _time_in_turns(attempts: Sequence[_Attempt], rounds: int, seconds: float) ->
     able.sort(key=lambda attempt: attempt.repeats * attempt.once)
     deadline = time.perf_counter() + seconds
     was_enabled = gc.isenabled()
-    gc.disable()  # as timeit does
+    gc.disable()  # timeit switches it off, too
     try:
         for i in range(rounds):
             for k, attempt in enumerate(able):

@@ -28,7 +28,7 @@ class Errors(Mapping[str, float]):
     touches and does not slide, over the longer semi-axis, and over that and the largest |omega|.
     """
 
-    final: float = math.nan  # of the state at the end
+    final: float = math.nan  # error of the state at the end
     l2: float = math.nan  # root mean square of the states at the sample times
     linf: float = math.nan  # largest of the states at the sample times
     energy: float = math.nan  # largest change over |kinetic| + |potential|
@@ -54,7 +54,7 @@ class Errors(Mapping[str, float]):
 
 @dataclass(frozen=True)
 class Run:
-    """One contender at one setting: what it cost, and its errors."""
+    """One contender at one setting, with its cost and its errors."""
 
     name: str
     model: str  # model, method and stabilization of `simulate`; of a peer "rolling", its name, ""
@@ -67,7 +67,7 @@ class Run:
     spread: float = math.nan  # median of the times over the least, less 1; NaN of a single timing
     steps: int = 0  # of that call, as the next two; 0 where unknown
     rejected: int = 0
-    evaluations: int = 0  # of the right-hand side
+    evaluations: int = 0  # evaluations of the right-hand side
     status: str = COMPLETED  # or a name of `Status`, "REFUSED", "FAILED", "NOT_RUN" (no time left)
     reason: str = ""  # why it has no answer, or a warning about its answer
     tags: tuple[str, ...] = ()  # "own" or "peer", and others

@@ -113,7 +113,7 @@ class Judge:
         states = [np.array(column[places], dtype=np.float64) for column in self._truth]
         known = 2 * np.spacing(np.abs(states)) / np.array(self._sizes)[:, None]
         scene = replace(self.scene, inertia=self.scene.mass * self.scene.gyration2)
-        if motion is _rolling:  # after its blow
+        if motion is _rolling:  # the start after the blow
             scene = replace(scene, omega=scene.initial_state.omega, impulse=None)
         try:
             middle = motion(scene, times)
