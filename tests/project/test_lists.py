@@ -1,7 +1,8 @@
 """The lists "To add ..." of docs/architecture.md name every file that a new thing of a kind needs.
 
 Things of that kind which are there already show it: the files that name all of them, found in the
-sources, must be those that the page names. A list of a file that moves fails, too.
+sources, must be those that the page names. A list of a file that moves fails, too. Things of which
+there is one are found by the code that depends on them (PLACES); their lists name functions.
 """
 
 import ast
@@ -13,7 +14,7 @@ from typing import NamedTuple
 import peers
 import pytest
 from oracles.paths import ROOT
-from rolling_ellipse import EventKind
+from rolling_ellipse import EventKind, Scene
 from rolling_ellipse._ask.settings import Settings
 from rolling_ellipse._motion.quantities import QUANTITIES
 
@@ -44,7 +45,11 @@ class Kind(NamedTuple):
 
 
 KINDS = {
-    "an event": Kind([kind.name for kind in EventKind]),
+    "an event": Kind(
+        [kind.name for kind in EventKind],
+        ("tests/border/test_stub.py", "tests/contact/test_contact_reference.py",
+         "tests/core/golden.cpp", "tests/core/test_core.py"),
+    ),
     "a method": Kind(
         ["dopri5"],  # in the tableaus its name is DormandPrince5
         ("src/integrator/explicit_tableaus.hpp", "src/integrator/steps.hpp",
@@ -54,9 +59,24 @@ KINDS = {
     "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"]),
     "a verb": Kind(of_room("_verbs")),
     "a column of a motion": Kind([each.name for each in QUANTITIES]),
-    "a setting": Kind([field.name for field in fields(Settings)]),
-    "a peer": Kind(PEER_MODULES),
+    "a setting": Kind([field.name for field in fields(Settings)], ("tests/border/test_fields.py",)),
+    "a field of Scene": Kind(
+        [field.name for field in fields(Scene)],
+        ("tests/border/test_fields.py", "tests/outcome/test_thresholds.py",
+         "tests/impacts/test_laws_and_fit.py"),
+    ),
+    "a peer": Kind(PEER_MODULES, ("tests/project/test_lists.py",)),
 }  # fmt: skip
+
+# Code that depends on the one thing of its kind: every file with it is in the list, or has a
+# function or constant that the list names.
+PLACES = {
+    "a friction law": r"scene_?\.friction\b|double friction[,)]|friction_share",
+    "lanes of another processor": r"__x86_64__|cpu_supports|_mm\d+_|\"sse2\"|HAS_LANES",
+    "a model": r"Model::multipliers|SteppedMultipliers|model == \"multipliers\"",
+    "a field of Scene": r"\bScene \w+\{\}",
+}
+ONE = {"rolling resistance", "another shape than the ellipse", "a way out of Python"}
 
 
 def entry(kind: str) -> str:
@@ -99,7 +119,36 @@ def test_every_peer_is_loaded() -> None:
     assert set(peers.MODULES) == set(PEER_MODULES)
 
 
+def named(text: str) -> set[str]:
+    """Names of the code in a text: with a capital, an underscore or parentheses."""
+    return set(re.findall(r"`(\w*[A-Z_]\w*|\w+(?=\(\)`))", text))
+
+
+def words_of(path: Path) -> set[str]:
+    return set(re.findall(r"\w+", path.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize("kind", PLACES)
+def test_the_page_names_the_places_of_a_thing(kind: str) -> None:
+    files = named_by_the_page(kind)
+    names = set() if kind == "a model" else named(entry(kind))  # its list has every file
+    sources = [ROOT / "CMakeLists.txt", *CORE.rglob("*.[ch]pp"), *PACKAGE.rglob("*.py")]
+    found = [path for path in sources if re.search(PLACES[kind], path.read_text(encoding="utf-8"))]
+    assert len(found) >= 3
+    found = [path for path in found if path.parent.name != "multipliers"]  # a model's own folder
+    assert not [path for path in found if path not in files and not names & words_of(path)]
+
+
+def test_every_name_on_the_page_is_one_of_the_sources() -> None:
+    folders = (CORE, PACKAGE, PEERS, ROOT / "tests")
+    sources = (path for folder in folders for path in folder.rglob("*"))
+    known = [words_of(path) for path in sources if path.suffix in (".cpp", ".hpp", ".py", ".pyi")]
+    names = named(PAGE.partition("## To add")[2])
+    assert len(names) > 50
+    assert names <= set().union(*known)
+
+
 def test_every_list_is_held() -> None:
-    """But for those of things of which there is one, or whose places `tests/border` holds."""
+    """But for those of things of which nothing is there, or one whose file says all."""
     listed = set(re.findall(r"\n\* \*\*(.+?)\*\*", PAGE.partition("## To add")[2]))
-    assert listed == {*KINDS, "a model", "a way out of Python", "a field of Scene"}
+    assert listed == {*KINDS, *PLACES, *ONE}
