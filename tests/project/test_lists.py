@@ -1,8 +1,8 @@
 """The lists "To add ..." of docs/architecture.md name every file that a new thing of a kind needs.
 
 Things of that kind which are there already show it: the files that name all of them, found in the
-sources, must be those that the page names. A list of a file that moves fails, too. Things of which
-there is one are found by the code that depends on them (PLACES); their lists name functions.
+sources, must be those that the page names. A list of a file that moves fails, too. PLACES finds the
+code that depends on a law or a processor; these lists may name functions instead of files.
 """
 
 import ast
@@ -54,7 +54,8 @@ KINDS = {
         ["dopri5"],  # in the tableaus its name is DormandPrince5
         ("src/integrator/explicit_tableaus.hpp", "src/integrator/steps.hpp",
          "src/integrator/runge_kutta.hpp", "tests/integrator/test_tableaus.py",
-         "tests/integrator/test_integrators.py"),
+         "tests/integrator/test_integrators.py", "tools/fuzz/scenes.py",
+         "benchmarks/bench_integrators.py"),
     ),
     "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"]),
     "a verb": Kind(of_room("_verbs")),
@@ -63,20 +64,22 @@ KINDS = {
     "a field of Scene": Kind(
         [field.name for field in fields(Scene)],
         ("tests/border/test_fields.py", "tests/outcome/test_thresholds.py",
-         "tests/impacts/test_laws_and_fit.py"),
+         "tests/impacts/test_laws_and_fit.py", "tests/core/motions.hpp", "tests/core/golden.cpp",
+         "tests/core/test_core.py", "tests/oracles/golden.py", "tools/fuzz/calls.py",
+         "tools/fuzz_core/fuzz_core.cpp"),
     ),
     "a peer": Kind(PEER_MODULES, ("tests/project/test_lists.py",)),
 }  # fmt: skip
 
-# Code that depends on the one thing of its kind: every file with it is in the list, or has a
-# function or constant that the list names.
+# Patterns of code that depends on a thing. Each file with the pattern is in the list of the thing,
+# or contains a name of that list.
 PLACES = {
     "a friction law": r"scene_?\.friction\b|double friction[,)]|friction_share",
     "lanes of another processor": r"__x86_64__|cpu_supports|_mm\d+_|\"sse2\"|HAS_LANES",
     "a model": r"Model::multipliers|SteppedMultipliers|model == \"multipliers\"",
     "a field of Scene": r"\bScene \w+\{\}",
 }
-ONE = {"rolling resistance", "another shape than the ellipse", "a way out of Python"}
+UNTESTED = {"rolling resistance", "another shape than the ellipse", "a way out of Python"}
 
 
 def entry(kind: str) -> str:
@@ -120,7 +123,7 @@ def test_every_peer_is_loaded() -> None:
 
 
 def named(text: str) -> set[str]:
-    """Names of the code in a text: with a capital, an underscore or parentheses."""
+    """Names of code in a text: words with a capital, an underscore or parentheses."""
     return set(re.findall(r"`(\w*[A-Z_]\w*|\w+(?=\(\)`))", text))
 
 
@@ -149,6 +152,6 @@ def test_every_name_on_the_page_is_one_of_the_sources() -> None:
 
 
 def test_every_list_is_held() -> None:
-    """But for those of things of which nothing is there, or one whose file says all."""
+    """Except lists of things that do not exist yet, and of files that share no word."""
     listed = set(re.findall(r"\n\* \*\*(.+?)\*\*", PAGE.partition("## To add")[2]))
-    assert listed == {*KINDS, *PLACES, *ONE}
+    assert listed == {*KINDS, *PLACES, *UNTESTED}
