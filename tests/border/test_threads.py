@@ -1,4 +1,4 @@
-"""Several Python threads get the bits of one thread alone, also from shared objects."""
+"""Several Python threads get the bits of one thread alone, even from shared objects."""
 
 import pickle
 import random
@@ -119,7 +119,7 @@ def at_once(work: Callable[[int], Any]) -> list[Any]:
 
 
 def test_mixed_calls_have_the_bits_of_one_thread() -> None:
-    """8000 calls: each thread makes all calls in an order of its own."""
+    """8000 calls: each thread makes all calls in its own random order."""
     alone = {(kind, place): call(place) for kind, call in KINDS.items() for place in range(PLACES)}
 
     def work(thread: int) -> int:

@@ -56,7 +56,7 @@ void bisection_by_secants_ends_at_the_same_neighbours() {
     CHECK(f(falling.low) < 0 && f(falling.high) >= 0);
 }
 
-// Elimination permutes the rows; all multipliers are halves, so nothing is rounded.
+// Elimination permutes the rows; all multipliers are halves, so no operation rounds.
 template <class Number>
 void equations_are_solved_whatever_their_order(Number unit) {
     Eigen::Matrix<Number, 3, 3> rows;
