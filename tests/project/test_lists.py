@@ -1,7 +1,7 @@
 """The lists "To add ..." of docs/architecture.md name every file that a new thing of a kind needs.
 
-Things of that kind which are there already show it: the files that name all of them, found in the
-sources, must be those that the page names. A list of a file that moves fails, too.
+Existing things of that kind prove it: the files that name all of them, found in the sources, must
+be the files on the page. A moved file breaks its list, too.
 """
 
 import ast
@@ -24,7 +24,7 @@ NAME = re.compile(r"`([\w/.]+\.(?:hpp|cpp|pyi|py))`")
 
 
 def of_room(room: str) -> list[str]:
-    """Public names that come from a room, by `__init__.pyi`."""
+    """Public names that a room defines, by `__init__.pyi`."""
     lines = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8")).body
     imports = [line for line in lines if isinstance(line, ast.ImportFrom)]
     return [line.names[0].name for line in imports if (line.module or "").startswith(room)]
@@ -37,7 +37,7 @@ PEER_MODULES = [
 
 
 class Kind(NamedTuple):
-    """Words that a file of the list holds, all of them; and files of the list that hold others."""
+    """Words that each file of a list must contain, and its files with other words."""
 
     words: list[str]
     beside: tuple[str, ...] = ()
@@ -76,7 +76,7 @@ def named_by_the_page(kind: str) -> set[Path]:
 
 
 def holding(words: list[str]) -> set[Path]:
-    """Sources that hold every word, in any case."""
+    """Sources that contain every word, in any case."""
     found = set()
     inner = (path for room in (CORE, PEERS, *ROOMS) for path in room.rglob("*"))
     for path in (*PACKAGE.glob("*"), *inner):
@@ -100,6 +100,6 @@ def test_every_peer_is_loaded() -> None:
 
 
 def test_every_list_is_held() -> None:
-    """But for those of things of which there is one, or whose places `tests/border` holds."""
+    """Every list has a test, except lists with one example, and lists that tests/border checks."""
     listed = set(re.findall(r"\n\* \*\*(.+?)\*\*", PAGE.partition("## To add")[2]))
     assert listed == {*KINDS, "a model", "a way out of Python", "a field of Scene"}
