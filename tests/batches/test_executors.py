@@ -140,7 +140,7 @@ def test_dask(dask: Client, tmp_path: Path) -> None:
 
 
 def test_few_elements_and_none() -> None:
-    """Scalars stay scalars; an array of times with a series is one task, as without executor."""
+    """Scalars stay scalars; many times of one body, evaluated by a series, stay one task."""
     body = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0}
     for t in (1.0, [], [1.0], np.linspace(0, 9, 39), np.linspace(0, 9, 41), [[1.0], [2.0]]):
         require_same(rl.flow(t, **body, workers=Here()), rl.flow(t, **body))
@@ -151,7 +151,7 @@ def test_few_elements_and_none() -> None:
 
 
 def test_what_is_asked_of_an_executor_is_no_more_than_it_can_take() -> None:
-    """Before the first result 128 tasks are given, and no more scenes are taken than theirs."""
+    """128 tasks are given before the first result is asked for, and only their scenes are taken."""
     taken = itertools.count()
     executor = Here()
 

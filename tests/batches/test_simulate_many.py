@@ -163,7 +163,7 @@ def test_progress_is_shown(
 
 
 def test_scenes_are_taken_as_they_are_needed(tmp_path: Path) -> None:
-    """With an output folder only the scenes of the current chunk are alive."""
+    """Only the scenes of the current chunk are alive if an output folder is given."""
     living: weakref.WeakSet[Scene] = weakref.WeakSet()
     most = 0
 

@@ -42,7 +42,7 @@ def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
 
 
 def test_threads_that_cannot_start_are_not_missed() -> None:
-    """With memory for some twenty thread stacks, 200 workers give the bits of one thread."""
+    """200 workers give the bits of one thread if memory ends after some twenty thread stacks."""
     code = """
         import resource
         import numpy as np

@@ -145,7 +145,7 @@ def test_a_scene_shows_what_was_said_of_it_and_what_follows() -> None:
 
 
 def test_values_come_with_their_units() -> None:
-    found = rl.thresholds(2.0, 1.0, gyration2=0.0435, friction=0.505)  # one that may jam
+    found = rl.thresholds(2.0, 1.0, gyration2=0.0435, friction=0.505)  # a body that may jam
     lines = dict(line.split(None, 1) for line in str(found).splitlines()[1:])
     assert lines["roll_over_speed"] == f"{found.roll_over_speed:.6g} rad/s"
     assert lines["tip_rate"] == f"{found.tip_rate:.6g} 1/s"

@@ -197,7 +197,7 @@ READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
 def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
     within: str, read: Callable[[rl.Trajectory], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One thread is held inside the property until the other thread is done."""
+    """A thread held inside a property lets another thread read the property of another motion."""
     held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
     begun, go_on, usual = Event(), Event(), getattr(trajectories, within)
 

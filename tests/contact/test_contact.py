@@ -73,7 +73,7 @@ def test_a_sliding_disc(slope: float, inertia: float | None) -> None:
 def test_dropped_without_spin_it_comes_to_rest(
     a: float, b: float, e: float, friction: float
 ) -> None:
-    """All bounces last v/g + 2 v e/g + 2 v e^2/g + ... = v/g (1 + e)/(1 - e) together."""
+    """All bounces last v/g + 2 v e/g + 2 v e^2/g + ... = v/g (1 + e)/(1 - e), at any rest_speed."""
     v = 1.7
     scene = Scene(a, b, z=b + v * v / (2 * GRAVITY), friction=friction, restitution=e)
     meant = v / GRAVITY * (1 + e) / (1 - e)
@@ -103,7 +103,7 @@ def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> No
             [getattr(at, each) for at in (impact.state_after, stick.state_before)]
             for each in (rate, name)
         )
-        # lasts is some 1e-6 of t, so that a rounding of t changes the share by less than 1e-9
+        # lasts is 4e-7 of t, so that a rounding of t changes the share by less than 1e-9
         most = 1e-9 * abs(last - first) + 4 * EPS * abs(first)
         assert np.all(np.abs(getattr(inside, rate) - first - share * (last - first)) <= most)
         even = lasts * (first + 0.5 * (last - first) * share) * share
@@ -132,7 +132,7 @@ def test_where_bounces_settle_along_the_ground_is_known_to_a_rounding() -> None:
 
 
 def test_bounces_down_a_steep_slope_are_even() -> None:
-    """Without friction the slope accelerates the body evenly in flight, settling and sliding."""
+    """A slope without friction accelerates the body evenly in flight, settling and sliding."""
     slope = 1.5
     scene = Scene(2.0, 1.0, friction=0.0, restitution=0.5, slope=slope, z=1.0 + 1e-12)
     motion = simulate(scene, 30.0)
@@ -376,7 +376,7 @@ def test_a_jam() -> None:
 
 
 def test_only_slip_jams() -> None:
-    """Only a slipping body can jam; without slip the contact acceleration always has a solution."""
+    """A jam needs slip; without slip the contact acceleration always has a solution."""
     jams = 0
     for scene, motion in random_motions(600, 31, friction=3.0, slope=0.0):
         if motion.status is Status.JAMMED:
@@ -574,7 +574,7 @@ def test_max_steps_stops_where_the_steps_ended() -> None:
 
 
 def test_the_start_says_what_the_body_does() -> None:
-    """On every ground and in every state, the mode of `initial_state` is the contact model's."""
+    """`initial_state` has the contact model's mode on every ground and in every state."""
     met = {mode: 0 for mode in Mode}
     for scene, motion in random_motions(2000, 71, [0.0]):
         mode = scene.initial_state.mode
@@ -607,7 +607,7 @@ def test_a_body_in_equilibrium_on_a_slope_stays_in_every_model() -> None:
 
 
 def test_leaving_the_ground_is_no_slip() -> None:
-    """On a slope rolling may continue with c <= 0; if friction then fails, the body flies."""
+    """Rolling on a slope may continue with c <= 0; if friction then fails, the body flies."""
     scene = Scene(
         1.12284991254411, 1.0, friction=8.997344246579441, restitution=1.0,
         slope=-0.4867737488001045, theta=1.3467715037863446, inertia=0.5651979815250789,

@@ -31,7 +31,7 @@ UNITS = 8  # claimed largest error, in units of the table
 
 
 class Motion(NamedTuple):
-    """One scene; kinds, values as decimal text (n, 7) and units (n, 7) of its events and end."""
+    """A scene with kinds, values as decimal text (n, 7) and units (n, 7) of its events and end."""
 
     name: str
     parameters: dict[str, float]
@@ -93,7 +93,7 @@ class Motion(NamedTuple):
 
 
 def read_table() -> list[Motion]:
-    """All scenes, in the order of the table."""
+    """The scenes of the table with their references, in its order."""
     lines = table.rows("contact_reference")
     return [
         Motion(

@@ -41,7 +41,7 @@ def lowest(moving: Trajectory) -> float:
 def test_a_tip_that_is_just_not_thrown_off_stays_on_ice(
     a: float, b: float, ulps: int, side: int, restitution: float
 ) -> None:
-    """Without friction the body slides on and keeps (k^2 + h'^2) omega^2/2 + g h."""
+    """The body slides on without friction and keeps (k^2 + h'^2) omega^2/2 + g h."""
     start = weightless_spin(a, b, tip(a, b)) * (1 + ulps * EPS / 2)
     scene = Scene(a, b, friction=0.0, theta=tip(a, b), omega=side * start, restitution=restitution)
     moving = simulate(scene, np.linspace(0.0, 1.0 / start, 200))

@@ -89,7 +89,7 @@ void a_polynomial_that_touches_zero_has_no_sign() {
     CHECK(sign_on_unit_interval(bernstein(touches - polynomial(1e-9))) != Sign::positive);
 }
 
-// Contact forces that have only a normal force, sampled at whole times.
+// End of valid contact for a normal force without friction, sampled at whole times.
 double watched_until(const std::function<double(double)>& normal) {
     const auto forces = [&](const double* times, std::size_t n, ContactForce* found) {
         for (std::size_t i = 0; i < n; ++i) found[i] = {normal(times[i]), 0.0};
@@ -105,7 +105,7 @@ void a_dip_between_two_samples_is_found() {
     };
     CHECK(std::abs(watched_until(margin) - (2.3 - 5e-4)) < 1e-12);
     CHECK(watched_until([&](double t) { return margin(t) + 3e-7; }) == infinity);
-    const auto steep = [](double t) {  // no parabola passes through infinite margins
+    const auto steep = [](double t) {  // the search fits no parabola through infinite margins
         CHECK(std::isfinite(t));
         return t == 2.0 ? 1.0 : infinity;
     };

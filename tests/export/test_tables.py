@@ -80,7 +80,7 @@ def scale(unit: str) -> float:
 
 
 def test_the_units_are_those_of_the_numbers() -> None:
-    """In a scene scaled in length, time and mass, each quantity grows as its unit does."""
+    """Each quantity of a scene scaled in length, time and mass grows as its unit does."""
     small = rl.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
     large = dataclasses.replace(
         small,

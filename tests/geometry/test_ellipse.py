@@ -1,4 +1,4 @@
-"""Each function of the geometry equals its definition, by a method that shares no formula."""
+"""Each function of the geometry equals its definition, computed by independent formulas."""
 
 from collections.abc import Callable
 

@@ -128,7 +128,7 @@ TOLERANCES = 10.0 ** -np.arange(4, 12.5, 0.5)
 @pytest.mark.parametrize("scene", TOLERANCE_SCENES.values(), ids=TOLERANCE_SCENES)
 @pytest.mark.parametrize("name", PAIRS)
 def test_the_error_is_proportional_to_the_tolerance(name: str, scene: Scene) -> None:
-    """The largest error of a motion is judged over eight decades."""
+    """The largest error of a motion is proportional to the tolerance over eight decades."""
     largest = [
         np.max(error(roll(scene, 5.0, name, rtol=rtol, atol=rtol / 100))) for rtol in TOLERANCES
     ]

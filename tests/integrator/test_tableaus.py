@@ -50,7 +50,7 @@ def test_every_tableau_is_here() -> None:
 
 @cache
 def trees(nodes: int) -> tuple[Tree, ...]:
-    """All rooted trees with the given number of nodes."""
+    """Rooted trees with the given number of nodes."""
     return tuple(forests(nodes - 1, nodes - 1))
 
 

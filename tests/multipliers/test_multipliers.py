@@ -384,7 +384,7 @@ def test_arrays_are_what_they_promise(motion: Trajectory) -> None:
 
 
 def test_a_start_in_coordinates() -> None:
-    """Without stabilization the motion starts at the given q, even off the constraints."""
+    """A motion without stabilization starts at the given q, even off the constraints."""
     q, q_dot = rl.kinematics(0.4, 2.0, a=2.0, b=1.0)
     q, q_dot = q + 1e-3 * np.arange(5), q_dot - 1e-3
     times = np.array([0.0, 0.5])

@@ -91,7 +91,7 @@ def test_projection_between_steps(scene: Scene, stabilization: Any) -> None:
 
 @pytest.mark.parametrize("name", [name for name in SCENES if "far" not in name])
 def test_energy_is_kept_at_any_time(name: str) -> None:
-    """At knots and between them the energy of every scene is kept to 8 ulp of its terms."""
+    """The energy of every scene is kept to 8 ulp of its terms, at knots and between them."""
     scene = SCENES[name]
     times = np.append(0.0, np.sort(np.random.default_rng(2).uniform(0, 3, 2000)))
     found = multipliers(scene, times, stabilization="projection+energy")

@@ -12,7 +12,7 @@ import mpmath as mp
 
 from oracles.numbers import DIGITS
 
-A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81  # all but g are exact, k^2 too
+A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81  # exact doubles, except g
 
 
 class Throw(NamedTuple):

@@ -1,7 +1,7 @@
-"""All statements of the package about a start agree with each other.
+"""Statements of the package about a start agree with each other.
 
-They are `outcome`, `classify`, `certify`, `required_friction`, `initial_state`, the model that
-"auto" takes, the first event and the first mode of the contact motion, and the sentences.
+The statements are `outcome`, `classify`, `certify`, `required_friction`, `initial_state`, the model
+that "auto" takes, the first event and the first mode of the contact motion, and the sentences.
 """
 
 import math

@@ -93,7 +93,7 @@ def test_loss_of_contact_by_its_definition(shape: Shape, kind: str) -> None:
     assert normal[0] > 0 > normal[1]
     assert np.all(extremes(rolling(shape, gyration2, lower(speed))).normal > 0)
     there = forces_at(rolling(shape, gyration2, speed), shape, found.contact_loss_angle)
-    # the least N is stationary in the angle, which is known to the root of the rounding, 1e-8
+    # N is stationary at its minimum, whose angle is known to the root of the rounding, 1e-8
     assert abs(there.normal[0]) <= 100 * there.normal_error[0]
     assert 0 <= known(found.contact_loss_angle) <= math.pi / 2
 
@@ -117,7 +117,7 @@ def test_slip_by_its_definition(shape: Shape, kind: str, friction: float) -> Non
 
 @both
 def test_slip_at_the_limits_of_friction(shape: Shape) -> None:
-    """Without friction every rocking body slips; with unlimited friction none does while N > 0."""
+    """Every rocking body slips without friction; unlimited friction prevents slip while N > 0."""
     assert thresholds(*shape, friction=0.0).slip_speed == 0
     found = thresholds(*shape)
     assert found.slip_speed >= found.contact_loss_speed * (1 - 1e-12)

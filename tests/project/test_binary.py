@@ -65,12 +65,12 @@ def test_nothing_is_fused_but_the_exact_products_of_lanes() -> None:
     fused = re.findall(r"\bvfn?m(?:add|sub)\w+", disassembled("-d", "--no-show-raw-insn"))
     told(len(fused), sorted(set(fused)))
     assert all(re.fullmatch(r"vfmsub(?:132|213|231)pd", each) for each in fused), set(fused)
-    assert fused or "sse2" not in _core.flow_levels()  # else the search recognises none
+    assert fused or "sse2" not in _core.flow_levels()  # a failed search finds none
 
 
 def test_it_calls_nothing_that_differs_between_systems() -> None:
     symbols = re.findall(r"\*UND\*.*?(\w+)$", disassembled("-T"), re.MULTILINE)
-    assert {"sin", "atan2", "PyErr_SetString"} <= set(symbols)  # else the search recognises none
+    assert {"sin", "atan2", "PyErr_SetString"} <= set(symbols)  # a failed search finds none
     assert not set(symbols) & set(UNWANTED)
 
 

@@ -265,7 +265,7 @@ def test_explore_without_a_browser_says_so(
 
 
 def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
-    """After the end of rolling the motion continues: it slips, jumps and lands."""
+    """A motion whose rolling ends continues: the body slips, jumps and lands."""
     code, out, err = command("--omega", "5.2", "--friction", "1")
     assert (code, err) == (0, "")
     assert "COMPLETED" in out and "ends at theta" in out
@@ -273,12 +273,12 @@ def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
     found = strict_json(command("--omega", "5.2", "--friction", "1", "--json").out)
     assert found["status"] == "COMPLETED" and found["valid_until"] is None
     assert [kind for _, kind in found["events"]][:3] == ["slip", "lift_off", "impact"]
-    assert "lift_off" in out and found["largest_gap"] < 1e-14  # while the body touches
+    assert "lift_off" in out and found["largest_gap"] < 1e-14  # the gap counts in contact only
     assert found["period"] is None and found["smallest_normal_force"] is None
 
 
 def test_a_slope_has_a_summary_too(command: Any) -> None:
-    """From flat the body rocks between two turning points."""
+    """A body on a slope rocks between two turning points."""
     code, out, err = command("--slope", "0.1", "--omega", "3", "--time", "2")
     assert (code, err) == (0, "")
     assert "COMPLETED" in out and "slope = 0.1 rad" in out

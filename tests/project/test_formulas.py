@@ -55,7 +55,7 @@ def test_the_core_says_once_what_the_numbers_are() -> None:
 
 
 def test_every_formula_is_shown_by_the_cell_below_it() -> None:
-    """Each text cell has one formula at most; the code cell below it checks the same number."""
+    """Each text cell has at most one formula; the code cell below it checks the same number."""
     for text, below in pairwise(CELLS):
         for number in headings(text):
             assert headings(text) == [number], f"({number}) shares its cell"

@@ -46,7 +46,7 @@ class Kind(NamedTuple):
 KINDS = {
     "an event": Kind([kind.name for kind in EventKind]),
     "a method": Kind(
-        ["dopri5"],  # in the tableaus its name is DormandPrince5
+        ["dopri5"],  # the tableaus call it DormandPrince5
         ("src/integrator/explicit_tableaus.hpp", "src/integrator/steps.hpp",
          "src/integrator/runge_kutta.hpp", "tests/integrator/test_tableaus.py",
          "tests/integrator/test_integrators.py"),

@@ -114,7 +114,7 @@ def test_scenes_that_do_not_roll_are_refused(found: Any) -> None:
 
 
 def test_a_peer_with_a_wrong_equation_is_noticed() -> None:
-    """With gravity 1e-3 too strong the error is the difference of the exact motions."""
+    """A peer with gravity 1e-3 too strong has an error equal to the difference of exact motions."""
 
     def wrong(theta: Any, omega: Any, body: Any) -> Any:
         return RATES(theta, omega, (*body[:4], 1.001 * body[4], body[5]))

@@ -22,7 +22,7 @@ TWO_TO_ONE = thresholds(A, B)
 
 
 def test_perimeter() -> None:
-    """One turn rolls 9.6884482205476762 m: 4 a E(1 - b^2/a^2)."""
+    """A turn rolls the perimeter, 9.6884482205476762 m: 4 a E(1 - b^2/a^2)."""
     turn = 2 * math.pi
     exact = 4 * A * float(mp.ellipe(mp.mpf(3) / 4))
     assert exact == 9.6884482205476762
@@ -87,7 +87,7 @@ def test_rolling_loses_contact() -> None:
 
 
 def test_the_angle_of_lost_contact_leaves_the_tip_at_root_three() -> None:
-    """Up to a/b = sqrt(3) N is smallest on the tip, where it vanishes at g a/(a^2 - b^2)."""
+    """N is smallest on the tip if a/b <= sqrt(3), and vanishes at omega^2 = g a/(a^2 - b^2)."""
     root = math.sqrt(3)
     for ratio in (1.2, 1.7, root * (1 - 1e-6)):
         found = thresholds(ratio, 1.0)
@@ -180,7 +180,7 @@ def test_the_report_scene() -> None:
     assert TWO_TO_ONE.roll_over_speed < start.omega < TWO_TO_ONE.contact_loss_speed
     assert start.free_omega > TWO_TO_ONE.contact_loss_speed  # too fast to roll
     assert certify(rl.scenes.report).validity is Validity.VALID
-    assert rl.simulate(rl.scenes.report, 6.0).turns[-1] > 1  # it rolls over
+    assert rl.simulate(rl.scenes.report, 6.0).turns[-1] > 1  # more than one turn
 
 
 def test_reactions_of_the_report_scene() -> None:

@@ -101,7 +101,7 @@ def test_units_of_any_size_leave_the_motion(data: Any) -> None:
 
 @given(st.data())
 def test_axes_may_change_their_names(data: Any) -> None:
-    """Exchanged a and b are the same body a quarter turn on."""
+    """A body with a and b exchanged is the same body a quarter turn on."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     t = data.draw(spans(motion, 1e4))

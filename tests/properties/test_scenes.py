@@ -32,7 +32,7 @@ METHODS: list[dict[str, Any]] = [
     {"model": "rolling", "method": "dop853"},
     {"model": "rolling", "method": "gauss"},
     {"model": "multipliers", "stabilization": "projection+energy"},
-    {"model": "multipliers"},  # not "radau", whose matrices are one-sided differences
+    {"model": "multipliers"},  # "radau" is left out: its matrices are one-sided differences
 ]
 
 
@@ -145,7 +145,7 @@ def blur(scene: Scene, state: InitialState) -> float:
 
 
 def surface_speed(scene: Scene, state: InitialState) -> float:
-    """Size of the terms of the slip, which is their difference [m/s]."""
+    """Sum of the two terms whose difference is the slip, without signs [m/s]."""
     return abs(state.x_dot) + abs(state.omega) * max(scene.a, scene.b)
 
 
@@ -197,7 +197,7 @@ def turned_round(at: Sample) -> dict[str, float]:
 
 @given(st.data())
 def test_a_motion_without_friction_goes_back_where_it_came_from(data: Any) -> None:
-    """With e = 1 and mu = 0 the reversed motion passes its events in the opposite order.
+    """A reversed motion with e = 1 and mu = 0 passes its events in the opposite order.
 
     The bound is the change of the start when the motion is off by roundings at any of its times.
     """
