@@ -284,7 +284,7 @@ def test_a_motion_shows_its_bodies(scene: rl.Scene) -> None:
 
 
 def test_the_bodies_are_where_the_motion_is() -> None:
-    """Pixels are written to the first decimal; clockwise in the picture is clockwise."""
+    """Pixels are written to 0.1; a body that turns clockwise does so in the picture."""
     motion = rl.simulate(rl.scenes.report, 3.0)
     _, places, (rx, ry) = drawn(motion)
     assert rx == pytest.approx(2 * ry, rel=0.01)  # a = 2 b

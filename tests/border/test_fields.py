@@ -44,7 +44,7 @@ def names(kind: Any) -> list[str]:
 
 
 def changed(name: str) -> Scene:
-    """A scene that differs in this number alone."""
+    """START with one number changed by 2^-6 of itself."""
     return START.replace(**{name: getattr(START, name) * (1 + 2**-6)})
 
 

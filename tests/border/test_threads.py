@@ -107,7 +107,7 @@ def eager_threads() -> Iterator[None]:
 
 
 def at_once(work: Callable[[int], Any]) -> list[Any]:
-    """Results of a work of all threads, which start together."""
+    """Results of `work` in all threads, which start together."""
     start = Barrier(THREADS)
 
     def begin(thread: int) -> Any:
@@ -181,7 +181,7 @@ def test_what_is_computed_late_is_the_same_for_all(make: Callable[[], Any]) -> N
 
 
 def test_the_names_that_a_trajectory_keeps_are_seen() -> None:
-    """The test above reads properties of the samples and late answers of the solver."""
+    """`late_names` finds the properties of the samples and the late answers of the solver."""
     seen = {"events", "psi", "energy", "normal_force", "turns", "reason", "stats"}
     assert seen <= set(late_names(ROLLED))
 

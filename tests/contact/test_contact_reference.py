@@ -1,4 +1,4 @@
-"""The contact model against 30 digits (reference/make_contact_reference.py).
+"""The contact model agrees with 30 digits (reference/make_contact_reference.py).
 
 Every event has a time and a state just after it, each with a unit: its change when every input
 changes by a relative 2.2e-16, the shift of the event itself included. The claim: events of the same

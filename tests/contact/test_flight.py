@@ -1,4 +1,4 @@
-"""The first touch-down of flights, against dense sampling in long double."""
+"""The first touch-down of flights agrees with dense sampling in long double."""
 
 import math
 from typing import Any

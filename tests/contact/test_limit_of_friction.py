@@ -26,7 +26,7 @@ PLACES = [  # theta, omega: rising, sinking, at rest, turning back at once, star
 
 
 def needed(a: float, b: float, theta: float, omega: float) -> float:
-    """|F|/N at the start, by the oracle."""
+    """Friction that rolling needs at the start, |F|/N, by the oracle."""
     on = motion(*(np.array([value]) for value in (a, b, (a * a + b * b) / 4, 9.81, theta, omega)))
     found = forces(on, *reduced([theta], a, b))
     return float(abs(found.friction[0]) / found.normal[0])

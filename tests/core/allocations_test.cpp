@@ -165,7 +165,7 @@ void bodies_allocate_nothing() {
     }
 }
 
-// A vector is counted.
+// The counter counts the allocation of one vector.
 void it_counts() {
     const long once = allocations([] { std::vector<double> one(3); });
     check(once == 1, "a vector", once, 1);

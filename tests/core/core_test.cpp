@@ -74,7 +74,7 @@ void the_first_place_where_a_polynomial_is_negative() {
     CHECK(!first_negative(bernstein(dips + polynomial(0.0625))));
     const auto grazes = first_negative(bernstein(dips + polynomial(0.0625 - 1e-12)));
     CHECK(grazes && std::abs(*grazes - (0.5 - 1e-6)) < 1e-9);
-    // A start at zero that rises is no end; a start below zero is.
+    // A polynomial that starts at zero and rises is not negative there; one below zero is.
     const auto later = first_negative(bernstein(polynomial(0.0, 1.0, -2.0)));
     CHECK(later && std::abs(*later - 0.5) <= 2 * epsilon);
     CHECK(first_negative(bernstein(polynomial(-1.0, 3.0))) == 0.0);
@@ -141,7 +141,7 @@ void every_segment_knows_every_kind_of_sample() {
         const State& state = states[i].state;
         const auto& [q, q_dot] = coordinates[i];
         const auto close =
-            [](double one, double other) {  // flow samples of rolling have a formula of their own
+            [](double one, double other) {  // flow samples of rolling use another formula
                 return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
             };
         CHECK(close(flows[i].theta, state.theta) && close(flows[i].omega, state.omega));

@@ -35,7 +35,7 @@ OTHERS = ("body", "rolled", "thresholds", "classify")
 
 
 def found(name: str) -> str | None:
-    """A program that the test extra puts beside the interpreter, or one of the system."""
+    """Path of a program beside the interpreter (from the test extra), else of the system's."""
     scripts = sysconfig.get_path("scripts")
     return shutil.which(name, path=os.pathsep.join((scripts, os.environ.get("PATH", ""))))
 

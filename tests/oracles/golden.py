@@ -67,7 +67,7 @@ def golden() -> tuple[str, list[Record]]:
 
 
 def printed(program: Path, **environment: str) -> tuple[str, list[Record]]:
-    """Records of the program golden of a build."""
+    """C library and records that a build's program `golden` prints."""
     done = subprocess.run(
         [str(program)], env=os.environ | environment, capture_output=True, text=True, timeout=300
     )

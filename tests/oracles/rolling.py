@@ -117,7 +117,7 @@ def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:
 
 
 class Chart(NamedTuple):
-    """tan phi = waist sinh v, 0 <= v <= top: even steps of v resolve a thin ellipse at every scale.
+    """Coordinate v, 0 <= v <= top, with tan phi = waist sinh v, for even steps at every scale.
 
     The narrowest feature (1 - (b/a)^2 small inertia) is (b/a)^2 wide; tan phi = 1e9 stands for
     the tip, where every force is even in pi/2 - phi: the difference is 1e-18.

@@ -1,4 +1,4 @@
-"""`outcome`, `required_friction` and `blow_to` against motions, formulas and bisection."""
+"""`outcome`, `required_friction` and `blow_to` agree with motions, formulas and bisection."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""`classify` where the answer is known: edges, shapes of arrays, arguments."""
+"""`classify` gives known answers: edges, shapes of arrays, arguments."""
 
 import math
 from typing import Any

@@ -68,7 +68,7 @@ def least_slack(sample: Sample) -> Long:
     moving, angle = sample.motion(), start_of(sample).angle
     on = oracles.rolling.chart(moving)
     highest = on.waist * np.sinh(on.top)
-    tangent = np.where(angle == -PI / 2, -np.longdouble(1e9), np.tan(angle))  # tan of rounding
+    tangent = np.where(angle == -PI / 2, -np.longdouble(1e9), np.tan(angle))  # not 1/rounding
     tangent = np.clip(tangent, -np.longdouble(1e9), highest)
     begin = np.arcsinh(tangent / on.waist)
     share = np.linspace(np.longdouble(0), 1, STEPS + 1)

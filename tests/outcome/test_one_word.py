@@ -177,7 +177,7 @@ def test_scenes_of_which_two_things_were_said() -> None:
         (Scene(1.0, 1.0, friction=0.0, omega=3.0), Outcome.SLIPS),
         (Scene(1.0, 1.0, friction=0.0), Outcome.RESTS),
         (Scene(2.0, 1.0, theta=0.5, x_dot=3.0), Outcome.ROCKS),
-        (  # over the tip by 0.8 degrees, and back
+        (  # the body passes the tip by 0.8 degrees and returns
             Scene(
                 0.2521, 0.249, slope=-0.79, omega=8.591, inertia=0.01358, friction=1e3
             ),

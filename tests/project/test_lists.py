@@ -24,7 +24,7 @@ NAME = re.compile(r"`([\w/.]+\.(?:hpp|cpp|pyi|py))`")
 
 
 def of_room(room: str) -> list[str]:
-    """Public names that a room defines, by `__init__.pyi`."""
+    """Public names that the package imports from a room, by `__init__.pyi`."""
     lines = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8")).body
     imports = [line for line in lines if isinstance(line, ast.ImportFrom)]
     return [line.names[0].name for line in imports if (line.module or "").startswith(room)]

@@ -129,7 +129,7 @@ def test_where_it_starts_along_the_ground_changes_nothing_else(data: Any) -> Non
     # x is a sum with one rounding per event, and few within an arc
     sums = 4 + 4 * len(one.events)
     size = abs(away) + np.max(np.abs(one.x), initial=0.0)
-    subnormal = 5e-324 * max(1.0, scene.a, scene.b)  # of a length in units of the body
+    subnormal = 5e-324 * max(1.0, scene.a, scene.b)  # smallest length in units of the body
     assert np.all(np.abs(one.x + away - other.x) <= sums * (EPS * size + subnormal))
 
 
