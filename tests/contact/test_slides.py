@@ -2,7 +2,7 @@
 
 With s the sign of the slip, per unit mass: N = z'' + g cos(alpha) and F = -s mu N integrate to
     x' = x0' - s mu (h' omega - h0' omega0 + g cos(alpha) t) + g sin(alpha) t,
-    x = x0 + x0' t - s mu (h - h0 - h0' omega0 t + g cos(alpha) t^2/2) + g sin(alpha) t^2/2,
+    x = x0 + x0' t - s mu (h - h0 - h0' omega0 t + g cos(alpha) t^2/2) + g sin(alpha) t^2/2.
 test_contact_reference.py judges omega in 30 digits.
 """
 

@@ -140,10 +140,10 @@ void every_segment_knows_every_kind_of_sample() {
         using namespace coordinate;
         const State& state = states[i].state;
         const auto& [q, q_dot] = coordinates[i];
-        const auto close =
-            [](double one, double other) {  // flow samples of rolling use another formula
-                return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
-            };
+        // Flow samples of rolling use another formula.
+        const auto close = [](double one, double other) {
+            return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
+        };
         CHECK(close(flows[i].theta, state.theta) && close(flows[i].omega, state.omega));
         CHECK(close(flows[i].x, state.x) && close(q[x], state.x) && close(q[z], state.z));
         CHECK(close(q_dot[x], state.x_dot) && close(q_dot[theta], state.omega));

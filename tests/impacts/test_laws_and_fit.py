@@ -200,7 +200,7 @@ def test_poisson_is_the_ratio_of_impulses(friction: float) -> None:
 
 
 def test_without_friction_or_restitution_the_laws_are_one() -> None:
-    """Without friction the path is straight: work, impulse and speed are in the same proportion;
+    """The path without friction is straight: work, impulse and speed are in the same proportion;
     and e = 0 ends every law at the end of compression."""
     state = approaching(300)
     for friction, restitution in ((0.0, 0.6), (0.0, 1.0), (0.5, 0.0), (math.inf, 0.0)):
@@ -275,7 +275,7 @@ def test_kinetic_speed_is_the_energy() -> None:
 # ---------------------------------------------------------------------------------------- fit
 
 
-E, MU = 0.61, 0.25  # true values, which are no points of the first grid
+E, MU = 0.61, 0.25  # true values, which are not on the first grid
 
 
 def series(law: Any, noise: float, count: int = 1000) -> tuple[Any, Any]:

@@ -1,7 +1,7 @@
 """Stepped rolling: orders, tolerances, peers, conserved quantities, endings and refusals.
 
 The reference on level ground is the exact flow, which takes no steps and has an error of 1e-15
-(test_flow_reference.py judges it in 40 digits); on a slope it is the energy.
+(test_flow_reference.py judges it in 40 digits). The reference on a slope is the energy.
 """
 
 import itertools

@@ -33,7 +33,7 @@ class Violation(AssertionError):
 
 def require(actual: Long, exact: Any, terms: Long, factors: int) -> None:
     """`actual` is a sum of products of up to `factors` rounded numbers, and `terms` the sum of
-    their sizes: each factor may have an error of its rounding, twice if it was computed."""
+    their sizes: each factor may have the error of its rounding, or twice that if computed."""
     off = np.abs(long(actual) - exact)
     allowed = 2 * factors * ROUNDING * long(terms)
     if not np.all(off <= allowed):

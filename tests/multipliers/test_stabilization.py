@@ -48,7 +48,7 @@ def test_what_each_stabilization_is_worth() -> None:
 
 
 def test_the_path_shows_what_no_residual_does() -> None:
-    """Without slip x is a function of theta, but its constraint is one of velocities only: x leaves
+    """Rolling makes x a function of theta, but its constraint is one of velocities only: x leaves
     the path by the truncation of the steps, in proportion to time, with or without projection."""
     for name in ("projection", "projection+energy"):
         found = kept(name)

@@ -20,7 +20,7 @@ class Throw(NamedTuple):
 
     omega: float  # [rad/s]
     distance: float  # omega/omega_R - 1
-    half: float  # time until it lies flat again [s], at theta = pi or back at 0
+    half: float  # time until the body lies flat again [s], at theta = pi or 0
 
     @property
     def rolls_over(self) -> bool:

@@ -212,7 +212,7 @@ def test_to_stop_a_body() -> None:
 @pytest.mark.parametrize("distance", [1.5, -1.5, 0.6])
 @pytest.mark.parametrize("theta", [0.0, 0.25])
 def test_the_least_that_rolls_over(theta: float, distance: float) -> None:
-    """At rest the press is F = m D omega/(d - h') with D omega^2 = 2 g (a - h). The motion passes
+    """A press at rest is F = m D omega/(d - h') with D omega^2 = 2 g (a - h). The motion passes
     the tip with 1e-12 more, and turns back with 1e-12 less."""
     scene = replace(REPORT, theta=theta)
     blow = blow_to(scene, distance)

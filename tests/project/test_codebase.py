@@ -56,7 +56,7 @@ void many(const double* __restrict x, const double* __restrict y, double* __rest
 
 
 def run(*command: str | Path) -> str:
-    """Output of a command in the checkout; it is the message if the command fails."""
+    """Output of a command in the checkout, which is also the message if the command fails."""
     done = subprocess.run(
         [str(part) for part in command], cwd=ROOT, capture_output=True, text=True, timeout=300
     )
