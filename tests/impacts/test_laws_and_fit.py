@@ -187,7 +187,7 @@ def test_newton_is_the_ratio_of_gap_rates() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.1, 0.4, 1.1, math.inf])
 def test_poisson_is_the_ratio_of_impulses(friction: float) -> None:
-    """Restitution's impulse is e times that of compression, which is the impulse for e = 0. An
+    """Restitution's impulse is e times compression's, which is the whole impulse for e = 0. An
     impulse is a change of z_dot (0.1 to 10 m/s, at velocities up to 10 m/s), with some ten
     roundings."""
     state = approaching(300)

@@ -1,8 +1,8 @@
 """The model "multipliers": its matrix, accelerations, multipliers and motions.
 
 The reference differentiates f1 ... f4 of oracles/constraints.py numerically in mpmath. The solution
-of the linear system is substituted into it, with a matrix in long double and its rate by complex
-steps. The reference of motions is exact rolling.
+of the linear system is substituted into the system, with a matrix in long double and its rate by
+complex steps. The reference of motions is exact rolling.
 """
 
 import math

@@ -133,8 +133,8 @@ def test_order_of_the_index_2_system() -> None:
 # the thin scene is left out: it passes its flat side, some (b/a)^2 wide, in less than a step
 @pytest.mark.parametrize("name", [n for n in SCENES if "far" not in n and n != "thin"])
 def test_index_2_keeps_the_constraints_everywhere(name: str) -> None:
-    """At knots and between them, for any truncation error: residuals of 64 ulp of the size, plus
-    the effect of an ulp of psi on f3 (R' up to a/b of the size) and on the rates (once more)."""
+    """Residuals at knots and between, for any truncation error: 64 ulp of the size, plus the
+    effect of an ulp of psi on f3 (R' up to a/b of the size) and on the rates (once more)."""
     scene = SCENES[name]
     times = np.sort(np.append(np.arange(65) / 64, (np.arange(64) + 0.37) / 64))
     found, exact = ggl(scene, times, step=2.0**-6), simulate(scene, times, model="rolling")

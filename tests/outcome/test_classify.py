@@ -122,7 +122,7 @@ def test_beyond_the_slip_it_rolls_over_first() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.5, 10.0, math.inf])
 def test_too_fast_for_the_ground(friction: float) -> None:
-    """On the tip the free body leaves the ground from omega^2 = g L/(L^2 - S^2) on. At 1:1.5, below
+    """The free body on its tip leaves the ground from omega^2 = g L/(L^2 - S^2) on. At 1:1.5, below
     root three, N of rolling first vanishes there, too: at lower speeds the body rolls over if
     friction is infinite. 1e-11 of the speed, 2e-11 of c, is far above rounding."""
     limit = math.sqrt(9.81 * 1.5 / (1.5**2 - 1))

@@ -1,7 +1,6 @@
 """The sources: linters, formatters, type checker, generated files, one version, order of imports.
 
-All paths begin at this file: the suite runs from a source checkout with the package installed as by
-users.
+All paths begin at this file: the suite runs from a source checkout with an installed package.
 """
 
 import ast

@@ -70,7 +70,7 @@ def test_roll_over_decides_between_rocking_and_turning() -> None:
 
 
 def test_rolling_loses_contact() -> None:
-    """N vanishes at 62.36 deg if the speed at flat is 4.8432 rad/s or more."""
+    """N first vanishes when the speed at flat reaches 4.8432 rad/s, at 62.36 deg."""
     speed = TWO_TO_ONE.contact_loss_speed
     assert round(speed, 4) == 4.8432
     assert round(math.degrees(known(TWO_TO_ONE.contact_loss_angle)), 2) == 62.36
