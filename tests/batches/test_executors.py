@@ -1,4 +1,5 @@
-"""Executors of every kind, real and made up: the same bits, and nothing lost but what was."""
+"""Batches on executors, real and made up, have the bits of `simulate_many` without executor and
+lose only the scenes of lost tasks."""
 
 import itertools
 import os
@@ -22,12 +23,12 @@ from rolling_ellipse import Scene, WorkerError, load_many, scenes, simulate_many
 from rolling_ellipse._verbs import workers
 from rolling_ellipse._verbs.batches.asked import sizes
 
-THETA = np.linspace(0.0, 1.0, 5000)  # two tasks, of 2048 and the rest
+THETA = np.linspace(0.0, 1.0, 5000)  # 5000 elements are two tasks, of 2048 and 2952
 MANY = [Scene(2.0, 1.0, theta=0.3, omega=1e-3 * (i + 1)) for i in range(400)]
 
 
 class Here(Executor):
-    """Runs what it is given at once; it loses the tasks that it is told to, and then refuses."""
+    """Executor that runs each task at once, fails for the tasks in `lost` and may refuse more."""
 
     def __init__(self, lost: tuple[int, ...] = (), closes_after: int = 10**9) -> None:
         self.lost, self.closes_after = lost, closes_after
@@ -48,7 +49,7 @@ class Here(Executor):
 
 
 class Waiting(Here):
-    """Has done the first tasks; the others never come to an end."""
+    """Executor that does the first `does` tasks; later tasks never end."""
 
     def __init__(self, does: int) -> None:
         super().__init__()
@@ -79,13 +80,13 @@ class Mapping:
 
 @pytest.fixture(autouse=True)
 def smaller_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of elements, so that some thousand are several tasks."""
+    """A task has 2048 elements at most, so that 5000 elements are several tasks."""
     monkeypatch.setattr(workers, "_ELEMENTS", 2048)
 
 
 @pytest.fixture(scope="module")
 def processes() -> Iterator[ProcessPoolExecutor]:
-    """Started afresh: a fork of a process with threads may hang."""
+    """Pool of two spawned processes: a forked copy of a process with threads may hang."""
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         yield pool
 
@@ -139,7 +140,7 @@ def test_dask(dask: Client, tmp_path: Path) -> None:
 
 
 def test_few_elements_and_none() -> None:
-    """Scalars stay scalars; what has a series is asked of one task, as without executor."""
+    """Scalars stay scalars; many times of one body, evaluated by a series, stay one task."""
     body = {"a": 2.0, "b": 1.0, "theta": 0.1, "omega": 1.0}
     for t in (1.0, [], [1.0], np.linspace(0, 9, 39), np.linspace(0, 9, 41), [[1.0], [2.0]]):
         require_same(rl.flow(t, **body, workers=Here()), rl.flow(t, **body))
@@ -150,7 +151,7 @@ def test_few_elements_and_none() -> None:
 
 
 def test_what_is_asked_of_an_executor_is_no_more_than_it_can_take() -> None:
-    """Scenes of an endless iterable are taken as tasks come back: some two hundred ahead."""
+    """128 tasks are given before the first result is asked for, and only their scenes are taken."""
     taken = itertools.count()
     executor = Here()
 
@@ -171,7 +172,7 @@ def test_what_is_asked_of_an_executor_is_no_more_than_it_can_take() -> None:
 
 
 class Heavy(Here):
-    """Counts the bytes of results that nobody has asked for."""
+    """Executor that counts the bytes of results that nobody has asked for."""
 
     held = most = largest = 0
 
@@ -191,7 +192,7 @@ class Heavy(Here):
 
 
 class HeavyMap:
-    """A pool that gives back all that it was given at once."""
+    """Pool that returns the results of all its tasks at once."""
 
     most = largest = 0
 
@@ -220,15 +221,15 @@ def test_results_that_wait_have_few_bytes(
     pool: Any,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """No more than are allowed, or one result. That chunks grow by up to a sixteenth is seen a task
-    late."""
+    """The bytes that wait stay below the allowed number, or are one result. A chunk may be a
+    sixteenth larger than the one before, and the limit follows one task later."""
     monkeypatch.setattr(workers, "_HELD", bytes_held)
     executor = pool()
     simulate_many([scenes.rocking] * 100, np.linspace(0.0, 3.0, samples), workers=executor, **way)
     assert executor.most <= max(17 / 16 * bytes_held, executor.largest)
 
 
-# ------------------------------------------------------------------------- workers that get lost
+# ---------------------------------------------------------------------------------- lost workers
 
 
 def begins() -> list[int]:
@@ -291,9 +292,10 @@ def test_functions_raise_what_the_executor_says() -> None:
 
 
 def test_a_process_killed_in_the_middle(tmp_path: Path) -> None:
-    """Of a real pool: what was finished is the same, the rest says what happened.
+    """A killed process breaks its pool: finished chunks are kept, the other scenes are
+    WorkerErrors.
 
-    The pool dies after a chunk of scenes at rest, in the middle of a scene of hours.
+    The pool dies after a chunk of scenes at rest, within a scene that takes hours.
     """
     quick, out = [Scene(2.0, 1.0)] * 16, tmp_path / "out"
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
@@ -308,7 +310,7 @@ def test_a_process_killed_in_the_middle(tmp_path: Path) -> None:
             )
         assert isinstance(caught.value.__cause__, WorkerError)
         assert isinstance(caught.value.__cause__.__cause__, BrokenProcessPool)
-        found = simulate_many(quick, TIMES, workers=pool)  # which is broken now
+        found = simulate_many(quick, TIMES, workers=pool)  # the pool is broken now
         assert {type(each) for each in found} == {WorkerError}
     (kept,) = out.glob("*-*.npz")
     file = kept.stat().st_ino
@@ -320,7 +322,7 @@ def test_a_process_killed_in_the_middle(tmp_path: Path) -> None:
 
 
 def test_an_interrupt_keeps_what_is_done_and_cancels_the_rest(tmp_path: Path) -> None:
-    """The fifth task never ends; of those behind it none is left to be begun."""
+    """The fifth task never ends; the interrupt cancels all tasks behind it."""
     executor, out = Waiting(4), tmp_path / "out"
     with ctrl_c_after(0.5):
         simulate_many(MANY, [1.0], workers=executor, out=out)
@@ -332,7 +334,7 @@ def test_an_interrupt_keeps_what_is_done_and_cancels_the_rest(tmp_path: Path) ->
 
 
 def test_what_ended_out_of_order_is_kept_too(tmp_path: Path) -> None:
-    """An interrupt that comes while the first task is waited for, as a server may send it."""
+    """The interrupt comes during the wait for the first task; five later chunks are kept."""
     out = tmp_path / "out"
 
     class Late(Future[Any]):

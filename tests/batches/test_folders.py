@@ -1,4 +1,4 @@
-"""A folder of motions: the same bits, gone on with, and nothing else taken for it."""
+"""A folder of motions has the bits of memory, can be continued, and accepts no foreign files."""
 
 import errno
 import json
@@ -34,13 +34,13 @@ def chunks(folder: Path) -> list[Path]:
 
 
 def states(folder: Path) -> dict[str, tuple[int, int]]:
-    """What changes if a file is written again."""
+    """File number and time of each chunk, which change if the file is written again."""
     found = {path.name: path.stat() for path in chunks(folder)}
     return {name: (of.st_ino, of.st_mtime_ns) for name, of in found.items()}
 
 
 def require_equal(found: Any, expected: Any) -> None:
-    """The same, but for the events, which a folder keeps and memory computes when asked."""
+    """Require equal motions and errors; events kept by a folder must equal computed events."""
     for one, other in zip(found, expected, strict=True):
         assert type(one) is type(other) and str(one) == str(other)
         ours, theirs = (getattr(each, "trajectory", each) for each in (one, other))
@@ -67,7 +67,7 @@ def test_it_comes_back(way: dict[str, Any], out: Path) -> None:
 
 
 def test_numbers_that_are_written_in_no_other_way(out: Path) -> None:
-    """Zeros of both signs, infinite friction, what was not given, the last bit of a blow."""
+    """Signs of zeros, infinite friction, missing arguments and last bits of a blow survive."""
     mine = [
         Scene(2.0, 1.0, x=-0.0, omega=-0.0, theta=0.1, friction=np.inf),
         Scene(2.0, 1.0, z=2.0, x_dot=-0.0, impulse=Impulse(0.1, -0.0, dx=1 / 3)),
@@ -78,7 +78,7 @@ def test_numbers_that_are_written_in_no_other_way(out: Path) -> None:
     assert [repr(each.scene) for each in found] == [repr(scene) for scene in mine]
 
 
-@pytest.mark.parametrize("end", [5e-324, 512 * 5e-324])  # of the other, a thousandth is one, too
+@pytest.mark.parametrize("end", [5e-324, 512 * 5e-324])  # 512 * 5e-324 / 1000 rounds to 5e-324
 def test_an_end_so_near_that_samples_coincide(out: Path, end: float) -> None:
     simulate_many([scenes.rocking], end, out=out)
     require_equal(load_many(out), singly([scenes.rocking], end))
@@ -91,7 +91,7 @@ def test_of_arrays_and_of_nothing(out: Path, tmp_path: Path) -> None:
     assert list(load_many(tmp_path / "none")) == []
 
 
-# ------------------------------------------------------------------------------------ going on
+# -------------------------------------------------------------------------------- continuation
 
 
 def test_what_is_there_is_not_computed_again(out: Path) -> None:
@@ -106,7 +106,7 @@ def test_what_is_there_is_not_computed_again(out: Path) -> None:
     assert set(now) == set(everything) and len(told) == 1
     assert {name for name in now if now[name] != everything[name]} == {first.name}
     require_equal(load_many(out), simulate_many(GRID, TIMES))
-    last.unlink()  # of a complete folder as well: so a damaged file is made again
+    last.unlink()  # a damaged file of a complete folder is also made again
     simulate_many(GRID, TIMES, out=out)
     require_equal(load_many(out), simulate_many(GRID, TIMES))
 
@@ -149,7 +149,7 @@ def test_another_version_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(folders, "version", lambda name: "0.0.9")
     with pytest.raises(ValueError, match=r"^out must be .* version '\d.*', not '0.0.9'"):
         simulate_many(GRID, TIMES, out=out)
-    list(load_many(out))  # which another version can read
+    list(load_many(out))  # numbers of another version can be read
     monkeypatch.setattr(folders, "_SCHEMA", 99)
     with pytest.raises(ValueError, match=r"^path must be a folder of schema 99, got .* of 2"):
         load_many(out)
@@ -173,7 +173,7 @@ def test_what_is_no_folder_of_motions(tmp_path: Path) -> None:
         load_many(3)  # type: ignore[arg-type]
     assert sorted(os.listdir(tmp_path)) == [".DS_Store", "lost+found", "mine.txt"]
     (tmp_path / "mine.txt").unlink()
-    simulate_many(GRID, TIMES, out=tmp_path)  # beside what is nobody's work
+    simulate_many(GRID, TIMES, out=tmp_path)  # the folder may hold foreign files
     require_equal(load_many(tmp_path), simulate_many(GRID, TIMES))
 
 
@@ -192,16 +192,16 @@ def remake(folder: Path) -> None:
 
 @pytest.mark.parametrize(("name", "stride"), [("chunk", 17), ("request.npz", 17), ("end.json", 1)])
 def test_every_damaged_byte_is_found_or_harmless(name: str, stride: int, small: Path) -> None:
-    """A byte changed anywhere: refused by the name of the file, or in a place that says nothing, as
-    the dates of a zip archive do. The same call of simulate_many then mends it, but for the
-    request, which it refuses; without that file it goes on."""
+    """A file with a changed byte is refused by its name, or the byte means nothing, as the dates of
+    a zip archive do. The same call of simulate_many then repairs chunks and end.json. It refuses a
+    damaged request.npz, and continues when that file is removed."""
     path = chunks(small)[0] if name == "chunk" else small / name
     whole, expected = path.read_bytes(), list(load_many(small))
     refused = 0
     for place in range(0, len(whole), stride):
         path.write_bytes(whole[:place] + bytes([whole[place] ^ 0x11]) + whole[place + 1 :])
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of the headers of NumPy's files
+            warnings.simplefilter("ignore")  # warnings about the headers of NumPy's files
             try:
                 found = list(load_many(small))
             except ValueError as error:
@@ -229,7 +229,7 @@ def test_other_files_in_their_places(name: str, content: bytes, small: Path) -> 
 
 @pytest.mark.parametrize("count", [-1, 0, 2, 4, 49, 10**6, 10**18, "3", 3.0, True, None])
 def test_an_end_that_tells_of_other_scenes(count: Any, small: Path) -> None:
-    """They are three: with fewer, or more, there would be other chunks."""
+    """The folder has three scenes; another count would need other chunks."""
     end = json.loads((small / "end.json").read_text())
     (small / "end.json").write_text(json.dumps(end | {"scenes": count}))
     with pytest.raises(ValueError, match=r"end\.json|the file 00000001-"):
@@ -238,11 +238,11 @@ def test_an_end_that_tells_of_other_scenes(count: Any, small: Path) -> None:
     assert len(list(load_many(small))) == 3
 
 
-# ------------------------------------------------------------------------------ folders in one
+# -------------------------------------------------------------------------- two folders in one
 
 
 def merged(folder: Path, other: Path) -> None:
-    """As by cp -r other/* folder."""
+    """Copy all files of `other` into `folder`, as `cp -r other/* folder` does."""
     for path in other.iterdir():
         shutil.copy(path, folder)
 
@@ -266,7 +266,7 @@ def test_two_folders_in_one_are_refused(changes: Any, out: Path, tmp_path: Path)
     for call in (asked, asked | changes):
         with pytest.raises(ValueError, match=r"^out must be a folder of the same"):
             simulate_many(**call, out=out)
-    for name in theirs:  # as is said
+    for name in theirs:  # the error text asks for this removal
         (out / name).unlink()
     for name in ("request.npz", "end.json"):
         (out / name).unlink()
@@ -282,7 +282,7 @@ def test_parts_of_one_folder_make_it_whole(out: Path, tmp_path: Path) -> None:
     merged(out, tmp_path / "other")
     require_equal(load_many(out), simulate_many(GRID, TIMES))
     simulate_many(GRID | {"omega": GRID["omega"][:49]}, TIMES, out=tmp_path / "first")
-    merged(out, tmp_path / "first")  # whose end is another one
+    merged(out, tmp_path / "first")  # the end.json of `first` counts other scenes
     with pytest.raises(ValueError, match=r"^path must have just the files of its end\.json"):
         load_many(out)
     simulate_many(GRID, TIMES, out=out)
@@ -290,7 +290,7 @@ def test_parts_of_one_folder_make_it_whole(out: Path, tmp_path: Path) -> None:
 
 
 def test_a_chunk_under_the_name_of_another_request(out: Path, tmp_path: Path) -> None:
-    """Its numbers would be states at other times."""
+    """A chunk of another request has states at other times."""
     simulate_many(GRID, [2.0, 6.0], out=out)
     simulate_many(GRID, [1.0, 5.0], out=tmp_path / "other")
     for mine, other in zip(chunks(out), chunks(tmp_path / "other"), strict=True):
@@ -301,7 +301,7 @@ def test_a_chunk_under_the_name_of_another_request(out: Path, tmp_path: Path) ->
     require_equal(load_many(out), simulate_many(GRID, [2.0, 6.0]))
 
 
-# ------------------------------------------------------------------------- links, what was left
+# -------------------------------------------------------------------------- links and leftovers
 
 
 def test_links_lead_to_no_file_outside(out: Path, tmp_path: Path) -> None:
@@ -343,7 +343,7 @@ def test_what_killed_runs_have_left_is_removed_and_what_is_written_now_is_not(ou
 
 
 def test_a_full_disk(out: Path) -> None:
-    """Files may be of 15 kB here, and the first chunk, of 1600 samples, takes 40 kB."""
+    """Files may have 15 kB here, and the first chunk, of 1600 samples, needs 40 kB."""
     small = [Scene(2.0, 1.0, theta=0.3, omega=0.1)] * 40
     with files_of_at_most(15_000), pytest.raises(OSError) as caught:
         simulate_many(small, np.linspace(0, 1, 100), out=out)
@@ -354,7 +354,7 @@ def test_a_full_disk(out: Path) -> None:
 
 
 def test_an_interrupt_loses_no_finished_chunk(out: Path) -> None:
-    """Sixteen scenes at rest in no time, then one of hours: stopped, and gone on with."""
+    """Sixteen scenes at rest are done at once; a scene of hours behind them is interrupted."""
     quick = [Scene(2.0, 1.0)] * 16
 
     def last() -> Iterator[Scene]:

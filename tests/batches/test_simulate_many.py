@@ -1,4 +1,4 @@
-"""`simulate_many` beside `simulate`: the same bits, exceptions in place, scenes from arrays."""
+"""`simulate_many` has the bits of `simulate`, exceptions in place and scenes from arrays."""
 
 import inspect
 import itertools
@@ -33,7 +33,7 @@ WAYS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("workers", [1, 2, -1])
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 def test_bits_of_simulate(way: dict[str, Any], workers: int) -> None:
-    """Fields, events, messages of exceptions; and no warning, which the suite would raise."""
+    """Fields, events and messages of exceptions are equal, and no warning appears."""
     found = simulate_many(NAMED, TIMES, workers=workers, **way)
     for one, other in zip(found, singly(NAMED, TIMES, **way), strict=True):
         require_same(one, other)
@@ -42,7 +42,7 @@ def test_bits_of_simulate(way: dict[str, Any], workers: int) -> None:
 
 
 def test_the_ways_lead_everywhere() -> None:
-    """What the test above compares: motions, refusals, and both ways to stop early."""
+    """The settings in WAYS give motions, refusals and both kinds of early stops."""
     found = {name: simulate_many(NAMED, TIMES, **way) for name, way in WAYS.items()}
     kinds = {name: {type(each) for each in answers} for name, answers in found.items()}
     assert kinds["rolling"] == {rl.Trajectory, ValueError}
@@ -55,13 +55,13 @@ def test_the_ways_lead_everywhere() -> None:
 
 @pytest.mark.parametrize("t", [0, 0.7, [0.5], [0.0, 1e9], np.linspace(0, 1, 3000)], ids=str)
 def test_times_as_of_simulate(t: Any) -> None:
-    """The last of more samples than the core looks at in one go."""
+    """3000 times are more samples than the core evaluates in one block."""
     for one, scene in zip(simulate_many(ROLLING, t), ROLLING, strict=True):
         require_same(one, simulate(scene, t))
 
 
 def test_bodies_at_the_limits() -> None:
-    """Also for a thousand million half turns: nothing here may depend on the neighbours."""
+    """Extreme bodies have the bits of `simulate`: bodies must not affect their neighbours."""
     shapes = [(1e3, 1.0), (1.0, 1e3), (1.0, 1.0), (1e-30, 1e-30), (1e30, 1e28)]
     bodies = [Scene(a, b, omega=math.sqrt(20 / max(a, b))) for a, b in shapes]
     t = [0.0, 1e-3, 1e9]
@@ -73,7 +73,7 @@ def test_bodies_at_the_limits() -> None:
 
 
 def test_arrays_broadcast() -> None:
-    """In C order; a number beside arrays, None where Scene has it, blows as well."""
+    """Arrays broadcast in C order, with numbers, None and blows among them."""
     a, friction = np.array([1.0, 2.0, 3.0]), np.array([0.2, math.inf])
     blow = Impulse(0.0, [[[-1.0]], [[-20.0]]], dx=0.5)
     grid = {"a": a[:, None], "b": 1, "friction": friction, "impulse": blow, "z": None, "x": -0.0}
@@ -85,11 +85,11 @@ def test_arrays_broadcast() -> None:
     assert len(found) == 12
     for one, other in zip(found, singly(each, TIMES), strict=True):
         require_same(one, other)
-        assert repr(one.scene) == repr(other.scene)  # of the zeros, too
+        assert repr(one.scene) == repr(other.scene)  # repr shows the sign of a zero
 
 
 def test_every_argument_of_a_scene_has_its_place() -> None:
-    """Each another number than the default, so that no two can be exchanged unseen."""
+    """Each argument has its own number, not the default, so that every exchange is seen."""
     arguments: dict[str, Any] = {
         "a": 2.0, "b": 1.5, "mass": 3.0, "gravity": 8.0, "inertia": 1.1, "slope": 0.1,
         "friction": 0.7, "restitution": 0.3, "theta": 0.2, "omega": 0.4, "x": 5.0, "z": 6.0,
@@ -132,7 +132,7 @@ def test_arguments_are_those_of_simulate() -> None:
 
 
 def test_sizes_of_chunks() -> None:
-    """They cover all scenes in order, grow from 16 to 2048, and hold no more samples than 2^18."""
+    """Chunks cover all scenes in order, grow from 16 to 2048 and hold at most 2^18 samples."""
     for samples in (1, 1001, 2**20):
         found = list(itertools.islice(sizes(samples), 500))
         assert [begin for begin, _ in found] == list(
@@ -163,7 +163,7 @@ def test_progress_is_shown(
 
 
 def test_scenes_are_taken_as_they_are_needed(tmp_path: Path) -> None:
-    """With a folder to write to, no more scenes live than those of the chunk in work."""
+    """Only the scenes of the current chunk are alive if an output folder is given."""
     living: weakref.WeakSet[Scene] = weakref.WeakSet()
     most = 0
 
@@ -190,7 +190,7 @@ def test_scenes_are_taken_as_they_are_needed(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_ctrl_c_stops_scenes_of_hours(workers: int) -> None:
-    """In the middle of a scene, in whatever thread it is, and no thread is left."""
+    """The interrupt stops a scene within its steps, in any thread, and no thread is left."""
     before = len(list(Path("/proc/self/task").iterdir()))
     with ctrl_c_after(0.2):
         simulate_many([scenes.rocking] * 2, 1e6, workers=workers, **ENDLESS)

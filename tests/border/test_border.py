@@ -1,4 +1,4 @@
-"""The border to the C++ core: arrays, threads and Ctrl-C; names and help."""
+"""The border between Python and the C++ core: arrays, threads, Ctrl-C, names and help."""
 
 import inspect
 import re
@@ -25,8 +25,8 @@ SLIDES = simulate(scenes.slip, 1.0)._solution
 
 
 def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
-    """A `const double*` to them would be undefined behaviour. All arrays come in through one type,
-    which copies them."""
+    """Unaligned numbers are copied: a `const double*` to them would be undefined behaviour. All
+    arrays come in through one type, which copies them."""
     aligned = np.linspace(0.0, 1.0, 100_001)
     there = np.frombuffer(b"-" + aligned.tobytes(), float, aligned.size, offset=1)
     copied = []
@@ -42,7 +42,7 @@ def test_numbers_that_are_not_aligned_are_copied_on_their_way_in() -> None:
 
 
 def test_threads_that_cannot_start_are_not_missed() -> None:
-    """With memory for a few stacks only, the answer has the bits of one thread."""
+    """200 workers give the bits of one thread if memory ends after some twenty thread stacks."""
     code = """
         import resource
         import numpy as np
@@ -103,7 +103,7 @@ LOOPS: dict[str, Callable[[], Any]] = {
 @pytest.mark.parametrize("loop", LOOPS.values(), ids=LOOPS.keys())
 def test_ctrl_c_ends_every_long_loop(loop: Callable[[], Any]) -> None:
     """The signal comes after a quarter of a second; each loop would take many seconds more."""
-    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
+    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # the handler of SIGINT
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.25)
         with pytest.raises(KeyboardInterrupt):

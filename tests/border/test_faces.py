@@ -1,4 +1,4 @@
-"""Printed objects: names for codes, tables with units, HTML without colours of its own."""
+"""Printed objects show names for codes, tables with units, and HTML without its own colours."""
 
 import copy
 import dataclasses
@@ -145,7 +145,7 @@ def test_a_scene_shows_what_was_said_of_it_and_what_follows() -> None:
 
 
 def test_values_come_with_their_units() -> None:
-    found = rl.thresholds(2.0, 1.0, gyration2=0.0435, friction=0.505)  # one that may jam
+    found = rl.thresholds(2.0, 1.0, gyration2=0.0435, friction=0.505)  # a body that may jam
     lines = dict(line.split(None, 1) for line in str(found).splitlines()[1:])
     assert lines["roll_over_speed"] == f"{found.roll_over_speed:.6g} rad/s"
     assert lines["tip_rate"] == f"{found.tip_rate:.6g} 1/s"
@@ -235,7 +235,7 @@ def test_events_as_a_dataframe() -> None:
 
 
 def test_infinite_friction_is_not_said_to_fail() -> None:
-    """Its slip before a lift-off has a reason of its own."""
+    """The slip before a lift-off under infinite friction has its own reason."""
     events = rl.simulate(rl.Scene(2.0, 1.0, omega=5.2), 1.0).events
     kinds = [each.kind for each in events]
     assert kinds[:2] == [rl.EventKind.SLIP, rl.EventKind.LIFT_OFF]
@@ -278,18 +278,18 @@ def test_a_motion_shows_its_bodies(scene: rl.Scene) -> None:
     assert 2500 < len(html) < 6000 and repr(motion)[1:-1] in html
     (width, height), places, axes = drawn(motion)
     assert 30 < width <= 480 and 15 < height <= 180 and len(places) == 9
-    for x, y, _ in places:  # to 0.1 px, as written
+    for x, y, _ in places:  # positions are written to 0.1 px
         assert max(axes) - 0.1 <= x <= width - max(axes) + 0.1
         assert max(axes) - 0.1 <= y <= height - min(axes) + 0.1
 
 
 def test_the_bodies_are_where_the_motion_is() -> None:
-    """Pixels are written to the first decimal; clockwise in the picture is clockwise."""
+    """Pixels are written to 0.1; a body that turns clockwise does so in the picture."""
     motion = rl.simulate(rl.scenes.report, 3.0)
     _, places, (rx, ry) = drawn(motion)
     assert rx == pytest.approx(2 * ry, rel=0.01)  # a = 2 b
     at = motion.sol(np.linspace(0.0, 3.0, 9))
-    scale = rx / 2.0  # pixels for a metre, to 0.05 / rx
+    scale = rx / 2.0  # pixels per metre, to 0.05 / rx
     for (x, y, turn), centre, z, theta in zip(places, at.x, at.z, at.theta, strict=True):
         allowed = 0.1 + 0.05 / rx * scale * abs(centre)
         assert abs((x - places[0][0]) - scale * centre) <= allowed

@@ -1,4 +1,4 @@
-"""Each field of the core's tables survives every way through the package.
+"""Each field of the core's tables survives every path through the package.
 
 A contact motion has the same bits in all units that are powers of two. So each field has the
 dimension of its unit.
@@ -44,7 +44,7 @@ def names(kind: Any) -> list[str]:
 
 
 def changed(name: str) -> Scene:
-    """A scene that differs in this number alone."""
+    """START with one number changed by 2^-6 of itself."""
     return START.replace(**{name: getattr(START, name) * (1 + 2**-6)})
 
 
@@ -90,7 +90,7 @@ def test_a_scene_keeps_its_numbers(road: str, name: str, tmp_path: Path) -> None
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_a_number_changes_the_motion(name: str) -> None:
-    """The core reads it, and so do the units of a contact motion."""
+    """The core reads the number, and so do the units of a contact motion."""
     one, other = (rl.simulate(scene, TIMES, model="contact") for scene in (START, changed(name)))
     assert any(getattr(one, each).tobytes() != getattr(other, each).tobytes() for each in STATE)
 
@@ -133,7 +133,7 @@ def test_a_motion_is_the_same_in_other_units(units: tuple[int, int, int]) -> Non
 
 
 def test_the_dimension_of_every_number_is_seen() -> None:
-    """A test of `exponents`."""
+    """`exponents` finds the dimensions of four known units."""
     assert exponents("kg m²").tolist() == [2, 0, 1]
     assert exponents("N s").tolist() == [1, -1, 1]
     assert exponents("m/s²").tolist() == [1, -2, 0]

@@ -1,4 +1,4 @@
-"""The fuzzer of `tools/fuzz_api.py`: a short run; its reach; and planted faults, which it finds."""
+"""The fuzzer of `tools/fuzz_api.py`: a short run, its coverage, and planted faults it finds."""
 
 import inspect
 import subprocess
@@ -18,7 +18,7 @@ def tools(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_nothing_is_found() -> None:
-    """The output has the lines of each finding."""
+    """A short run finds nothing; on failure the assertion shows the lines of each finding."""
     command = [sys.executable, str(TOOLS / "fuzz_api.py"), "--seed", "1", "--calls", str(CALLS)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, (

@@ -231,7 +231,7 @@ for thing in core_objects().values():
 
 
 def test_the_core_refuses() -> None:
-    """In a process of its own, which an object that is pickled may end."""
+    """Pickling runs in a separate process, because a pickled core object might end it."""
     command = [sys.executable, "-c", CORE, os.fspath(TESTS)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr

@@ -1,5 +1,4 @@
-"""Films, pictures, pages and races never change state that all threads share, not even for a
-while."""
+"""Films, pictures, pages and races never change state that all threads share, not even briefly."""
 
 import sys
 import warnings
@@ -25,7 +24,7 @@ WARNED = 100
 
 @pytest.fixture(autouse=True)
 def style_of_a_user() -> Iterator[None]:
-    """Settings that films must ignore."""
+    """Two settings of a user that films must ignore."""
     with matplotlib.rc_context({"savefig.bbox": "tight", "animation.ffmpeg_path": "elsewhere"}):
         yield
     plt.close("all")
@@ -66,7 +65,7 @@ def warned() -> None:
 
 
 def test_threads_leave_what_they_share(tmp_path: Path) -> None:
-    """Nine threads at once. Each warning is shown, and each figure has a number of its own."""
+    """Nine threads work at once; each warning is shown, and each figure has its own number."""
     films = [lambda i=i: film(tmp_path / f"film{i}.{'gif' if i else 'mp4'}") for i in range(3)]
     work: list[Callable[[], Any]] = [
         *films, pictures, pictures, race, lambda: explorer(tmp_path / "explorer.html"), warned,
@@ -126,12 +125,12 @@ def test_a_film_leaves_settings_alone_while_it_is_written(
 
     monkeypatch.setattr(Figure, "savefig", compared)
     film(tmp_path / f"film.{suffix}")
-    assert len(seen) >= 11  # 1 s, 10 frames a second
+    assert len(seen) >= 11  # at least 11 frames: 1 s at 10 frames a second
     assert all(seen)
 
 
 def test_a_picture_that_fails_closes_its_own_figure_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Other figures are opened meanwhile."""
+    """The failing picture closes its own figure, while another figure is opened beside it."""
     mine, usual = [], plt.figure
 
     def beside(**options: Any) -> Figure:

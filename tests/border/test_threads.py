@@ -1,4 +1,4 @@
-"""Several Python threads get the bits of one thread alone, also from shared objects."""
+"""Several Python threads get the bits of one thread alone, even from shared objects."""
 
 import pickle
 import random
@@ -107,7 +107,7 @@ def eager_threads() -> Iterator[None]:
 
 
 def at_once(work: Callable[[int], Any]) -> list[Any]:
-    """Results of a work of all threads, which start together."""
+    """Results of `work` in all threads, which start together."""
     start = Barrier(THREADS)
 
     def begin(thread: int) -> Any:
@@ -119,7 +119,7 @@ def at_once(work: Callable[[int], Any]) -> list[Any]:
 
 
 def test_mixed_calls_have_the_bits_of_one_thread() -> None:
-    """8000 calls: each thread makes all calls in an order of its own."""
+    """8000 calls: each thread makes all calls in its own random order."""
     alone = {(kind, place): call(place) for kind, call in KINDS.items() for place in range(PLACES)}
 
     def work(thread: int) -> int:
@@ -181,7 +181,7 @@ def test_what_is_computed_late_is_the_same_for_all(make: Callable[[], Any]) -> N
 
 
 def test_the_names_that_a_trajectory_keeps_are_seen() -> None:
-    """The test above reads properties of the samples and late answers of the solver."""
+    """`late_names` finds the properties of the samples and the late answers of the solver."""
     seen = {"events", "psi", "energy", "normal_force", "turns", "reason", "stats"}
     assert seen <= set(late_names(ROLLED))
 
@@ -197,7 +197,7 @@ READS: dict[str, tuple[str, Callable[[rl.Trajectory], Any]]] = {
 def test_a_property_of_one_motion_does_not_wait_for_that_of_another(
     within: str, read: Callable[[rl.Trajectory], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One thread is held inside the property until the other thread is done."""
+    """A thread held inside a property lets another thread read the property of another motion."""
     held, other = (pickle.loads(pickle.dumps(TOUCHED)) for _ in range(2))
     begun, go_on, usual = Event(), Event(), getattr(trajectories, within)
 

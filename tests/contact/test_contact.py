@@ -1,4 +1,4 @@
-"""The contact model: what joins its arcs, closed forms, and what no motion of it may ever do."""
+"""The contact model: transitions between arcs, closed forms, and laws that every motion obeys."""
 
 import dataclasses
 import itertools
@@ -40,7 +40,7 @@ def random_motions(
 @pytest.mark.parametrize("slope", [0.0, 0.1, 0.5])
 @pytest.mark.parametrize("inertia", [None, 2.0])
 def test_a_sliding_disc(slope: float, inertia: float | None) -> None:
-    """x.. = g (sin - mu cos), omega. = mu g cos a/k^2 until omega a = x.; then it rolls."""
+    """x.. = g (sin - mu cos), omega. = mu g cos a/k^2 until omega a = x.; then the disc rolls."""
     a, mu, speed, mass = 0.7, 0.1, 3.0, 2.0
     scene = Scene(
         a, a, mass=mass, inertia=inertia, slope=slope, friction=mu, x_dot=speed, omega=0.0
@@ -73,7 +73,7 @@ def test_a_sliding_disc(slope: float, inertia: float | None) -> None:
 def test_dropped_without_spin_it_comes_to_rest(
     a: float, b: float, e: float, friction: float
 ) -> None:
-    """v/g + 2 v e/g + 2 v e^2/g + ... = v/g (1 + e)/(1 - e), however many bounces are counted."""
+    """All bounces last v/g + 2 v e/g + 2 v e^2/g + ... = v/g (1 + e)/(1 - e), at any rest_speed."""
     v = 1.7
     scene = Scene(a, b, z=b + v * v / (2 * GRAVITY), friction=friction, restitution=e)
     meant = v / GRAVITY * (1 + e) / (1 - e)
@@ -88,8 +88,8 @@ def test_dropped_without_spin_it_comes_to_rest(
 
 
 def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> None:
-    """Infinitely many bounces are one segment, in which the velocities go evenly from one end to
-    the other; theta and x are what that comes to, and what the bounces come to beside it."""
+    """Infinitely many bounces are one segment with linearly interpolated velocities; theta and x
+    are their integrals plus the averaged displacement of the bounces."""
     scene = Scene(2.0, 1.0, theta=0.3, omega=1.0, z=2.5, friction=0.4, restitution=0.5, x_dot=1.0)
     motion = simulate(scene, 2.0)
     stays = next(i for i, each in enumerate(motion.events) if each.kind is EventKind.STICK)
@@ -103,7 +103,7 @@ def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> No
             [getattr(at, each) for at in (impact.state_after, stick.state_before)]
             for each in (rate, name)
         )
-        # the share of the time is of a millionth of it, and so known to 1e-9
+        # lasts is 4e-7 of t, so that a rounding of t changes the share by less than 1e-9
         most = 1e-9 * abs(last - first) + 4 * EPS * abs(first)
         assert np.all(np.abs(getattr(inside, rate) - first - share * (last - first)) <= most)
         even = lasts * (first + 0.5 * (last - first) * share) * share
@@ -112,13 +112,13 @@ def test_what_settles_goes_evenly_from_its_last_impact_to_where_it_stays() -> No
         most = 1e-9 * abs(end - start) + 4 * EPS * abs(start)
         assert np.all(np.abs(getattr(inside, name) - expected) <= most), name
     at = support(inside.theta, scene.a, scene.b)
-    # The height is that of an angle from the next quarter turn, which is the same but for rounding.
+    # The height belongs to an angle reduced to the next quarter turn: equal but for rounding.
     assert np.all(np.abs(inside.z - at.h) <= 2 * EPS * at.h)
     assert np.all(inside.normal_force == 0)
 
 
 def test_where_bounces_settle_along_the_ground_is_known_to_a_rounding() -> None:
-    """A thousand of them, and x may be far greater than the way that they take together."""
+    """A thousand bounces end at the same distance from x = 0 and from x = 1, but for rounding."""
     scene = Scene(
         0.03, 1.0, gravity=1.0, inertia=0.001, theta=1.5718, omega=1.0,
         impulse=Impulse(jz=1e-7), restitution=1.0,
@@ -132,7 +132,7 @@ def test_where_bounces_settle_along_the_ground_is_known_to_a_rounding() -> None:
 
 
 def test_bounces_down_a_steep_slope_are_even() -> None:
-    """Without friction the body is accelerated evenly, while it flies, settles or slides."""
+    """A slope without friction accelerates the body evenly in flight, settling and sliding."""
     slope = 1.5
     scene = Scene(2.0, 1.0, friction=0.0, restitution=0.5, slope=slope, z=1.0 + 1e-12)
     motion = simulate(scene, 30.0)
@@ -143,7 +143,7 @@ def test_bounces_down_a_steep_slope_are_even() -> None:
 
 
 def test_forces_are_in_newtons_where_only_the_mass_is_no_unit_of_its_own_size() -> None:
-    """The units of length and time of this scene are metres and seconds, and 8 kg is its mass's."""
+    """This scene has unit length and time in metres and seconds; only its mass unit is 8 kg."""
     light = Scene(1.2, 0.8, gravity=1.0, theta=0.3, omega=2.0, friction=0.2, x_dot=1.0)
     heavy = dataclasses.replace(light, mass=8.0)
     one, eight = (simulate(scene, np.linspace(0.0, 3.0, 31)) for scene in (light, heavy))
@@ -156,7 +156,7 @@ def test_forces_are_in_newtons_where_only_the_mass_is_no_unit_of_its_own_size() 
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (0.7, 1.9)])
 @pytest.mark.parametrize("side", [1, -1])
 def test_held_on_a_slope(a: float, b: float, side: int) -> None:
-    """Where the contact is under the centre, tan(alpha) = h'/h, and mu >= tan(alpha)."""
+    """The contact is under the centre, tan(alpha) = h'/h, and mu >= tan(alpha) holds the body."""
     theta = side * 0.3
     at = support(theta, a, b)
     slope = math.atan2(at.slope, at.h)
@@ -181,8 +181,8 @@ JAMS_ON_THE_WAY = [
 
 
 def slowed_slide(scene: Scene, side: float) -> Any:
-    """B and c of an angle and speed; rates of theta, omega, slip, time and ln B in a clock of its
-    own, dt = B dtau, so that nothing cancels or grows near B = 0."""
+    """B and c of an angle and speed; rates of theta, omega, slip, time and ln B in a rescaled time
+    tau, dt = B dtau, in which nothing cancels or grows near B = 0."""
     k2, grip = scene.gyration2, scene.friction * side
 
     def forces(theta: float, omega: float) -> tuple[Any, float, float]:
@@ -211,7 +211,7 @@ def slide_in_its_own_clock(
     least_b: float = 0.0,
     least_c: float = -math.inf,
 ) -> Any:
-    """By SciPy: theta, omega, slip and t where the slip vanishes, or B or c is so small."""
+    """theta, omega, slip and t by SciPy where the slip vanishes or B or c reaches its bound."""
     forces, rates = slowed_slide(scene, side)
     ends = [
         lambda _, y: side * y[2],
@@ -233,7 +233,7 @@ def slide_in_its_own_clock(
 def test_a_slide_that_comes_out_of_a_small_response(
     friction: float, theta: float, omega: float
 ) -> None:
-    """From B = 0.005, where N = c/B is large, to where c = 0 lets the body go."""
+    """The slide lasts from B = 0.005, where N = c/B is large, to the lift-off at c = 0."""
     at = support(theta, 2.0, 1.0)
     scene = Scene(
         2.0, 1.0, theta=theta, omega=omega, x_dot=float(at.h) * omega + 500, friction=friction
@@ -245,7 +245,7 @@ def test_a_slide_that_comes_out_of_a_small_response(
     assert lift.kind is EventKind.LIFT_OFF
     assert forces(lift.state_before.theta, lift.state_before.omega)[1] > 0.025
     expected = slide_in_its_own_clock(scene, scene.initial_state, 0.0, 1.0, least_c=0.0)
-    # the tolerance of the reference, over the dozens of its steps, and of its end
+    # tolerance of the reference, over dozens of steps, and of its end
     found = [
         lift.state_before.theta,
         lift.state_before.omega,
@@ -259,8 +259,8 @@ def test_a_slide_that_comes_out_of_a_small_response(
 def test_a_jam_on_the_way(scene: Scene) -> None:
     """B = 0 and c = 0 at once (F. Genot, B. Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653).
 
-    c dies out more slowly than B: where SciPy stops some is left of it, and with it of omega and
-    slip, in the fixed ratio in which the impulse of N changes them.
+    c vanishes more slowly than B: where SciPy stops, a part of c is left, and a part of omega and
+    slip in the fixed ratio in which the impulse of N changes them.
     """
     motion = simulate(scene, 5.0, model="contact")
     assert motion.status is Status.JAMMED and motion.events[-1].kind is EventKind.JAM
@@ -296,7 +296,7 @@ NO_JAMS = [  # a, b, friction, slip 0.05 rad before B = 0
 def test_a_slip_that_ends_just_before_a_jam(
     a: float, b: float, friction: float, slip: float
 ) -> None:
-    """So near B = 0 that the impulse of N takes no time; omega and what is left of the energy."""
+    """Near B = 0 the impulse of N takes no time: omega and the remaining energy follow from it."""
     body = Scene(a, b, friction=friction)
     response_of = slowed_slide(body, 1.0)[0]
     angles = np.linspace(0.0, math.pi / 2, 10001)
@@ -322,8 +322,8 @@ def test_a_slip_that_ends_just_before_a_jam(
 @pytest.mark.parametrize("short", [1e-3, 1e-5, 1e-7, 1e-9])
 @pytest.mark.parametrize("slope", [0.0, 0.02])
 def test_short_slips_are_found(slope: float, short: float) -> None:
-    """The friction misses the largest |F|/N of rolling by a part `short`: a slip of a duration like
-    its square root, down to microseconds."""
+    """The friction is below the largest |F|/N of rolling by a part `short`; the slip lasts about as
+    long as its square root, down to microseconds."""
     rolling = Scene(2.0, 1.0, omega=3.2, slope=slope)
     times = np.linspace(0, 0.9, 200_001)
     needed = simulate(rolling, times, model="contact").friction_needed
@@ -338,7 +338,7 @@ def test_short_slips_are_found(slope: float, short: float) -> None:
 
 
 def test_the_limit_of_much_friction() -> None:
-    """mu = 1e3, 1e4.5, 1e6 approach mu = infinity like 1/mu, in a slide that N = 0 has begun."""
+    """mu = 1e3, 1e4.5 and 1e6 approach mu = infinity like 1/mu, in a slide that begins at N = 0."""
     times = np.linspace(0, 0.35, 351)
     scene = Scene(2.0, 1.0, omega=5.0)
     limit = simulate(scene, times)
@@ -359,7 +359,7 @@ def test_the_limit_of_much_friction() -> None:
 
 
 def test_a_jam() -> None:
-    """Gnn < mu s Gnt with c > 0: whatever N >= 0, friction pushes it further into the ground."""
+    """Gnn < mu s Gnt with c > 0: for every N >= 0 friction pushes the body into the ground."""
     contact = response(JAMMING, JAMMING.initial_state)
     assert contact.slip > 0 and contact.normal < 3.0 * contact.coupling
     motion = simulate(JAMMING, 1.0)
@@ -371,12 +371,12 @@ def test_a_jam() -> None:
         motion.sol(0.1)
     backwards = dataclasses.replace(JAMMING, x_dot=-5.0)
     assert simulate(backwards, 1.0).status is Status.COMPLETED
-    below = dataclasses.replace(JAMMING, friction=1.35)  # Painleve's smallest: 1.3527
+    below = dataclasses.replace(JAMMING, friction=1.35)  # Painleve's smallest friction is 1.3527
     assert simulate(below, 1.0).status is Status.COMPLETED
 
 
 def test_only_slip_jams() -> None:
-    """Without slip the acceleration of the contact always has an answer."""
+    """A jam needs slip; without slip the contact acceleration always has a solution."""
     jams = 0
     for scene, motion in random_motions(600, 31, friction=3.0, slope=0.0):
         if motion.status is Status.JAMMED:
@@ -392,8 +392,8 @@ INDETERMINATE = Scene(2.0, 1.0, theta=0.988, omega=6.0, friction=2.0, x_dot=11.5
 
 
 def test_two_motions_are_told_and_none_is_taken() -> None:
-    """Gnn < mu s Gnt with c < 0: the body flies off, or N = c/B > 0 keeps it sliding; both obey
-    Newton's and Coulomb's laws."""
+    """Gnn < mu s Gnt with c < 0: the body flies off, or N = c/B > 0 keeps it sliding; both motions
+    obey Newton's and Coulomb's laws."""
     start = INDETERMINATE.initial_state
     contact = response(INDETERMINATE, start)
     at = support(start.theta, 2.0, 1.0)
@@ -404,7 +404,7 @@ def test_two_motions_are_told_and_none_is_taken() -> None:
     motion = simulate(INDETERMINATE, 1.0)
     assert motion.status is Status.JAMMED and "two motions" in motion.message
     assert kinds(motion) == [EventKind.JAM] and motion.t.tolist() == [0.0]
-    # with less friction, or slip to the other side, or a little air below it, it flies
+    # less friction, slip to the other side, or a small gap: the body flies
     higher = {"z": start.z + 1e-6, "z_dot": start.z_dot}
     others: list[dict[str, Any]] = [{"friction": 1.3}, {"x_dot": 8.0}, higher]
     for other in others:
@@ -412,7 +412,7 @@ def test_two_motions_are_told_and_none_is_taken() -> None:
 
 
 def test_a_blow_may_lead_to_two_motions() -> None:
-    """Pushed along the ground through its centre, the body slides faster and turns as before."""
+    """A push along the ground through its centre makes the body slide faster and turn as before."""
     scene = dataclasses.replace(INDETERMINATE, x_dot=None)
     start = scene.initial_state
     push = Impulse(jx=known(INDETERMINATE.x_dot) - start.x_dot)
@@ -423,7 +423,7 @@ def test_a_blow_may_lead_to_two_motions() -> None:
 
 
 def test_no_motion_leads_to_two_motions() -> None:
-    """Slides end before they come there, and an impact ends without the slip that it takes."""
+    """Slides end before two motions are possible, and an impact ends without the slip for it."""
     jams = 0
     for _, motion in random_motions(600, 43, friction=3.0, restitution=0.0):
         jams += motion.status is Status.JAMMED
@@ -436,13 +436,13 @@ def test_unlimited_friction_never_jams() -> None:
         assert motion.status in (Status.COMPLETED, Status.MAX_EVENTS), scene
 
 
-# ----------------------------------------------------------------------------- what may never be
+# -------------------------------------------------------------------------- laws of every motion
 
 
 def test_what_no_motion_may_do() -> None:
-    """Sampled 1e5 times: it never enters the ground, N >= 0, friction within its cone and against
-    the slip, and energy only falls. Integrated arcs are good to 1e-13 a step at their ends and a
-    few 1e-11 between; bounces that are summed gain no more than the square of their duration."""
+    """1e5 samples obey the laws: no penetration, N >= 0, friction within its cone and against the
+    slip, energy never grows. Integrated arcs have an error of 1e-13 per step at their ends and a
+    few 1e-11 between them; averaged bounces gain at most the square of their duration."""
     for i, (scene, motion) in enumerate(random_motions(100, 41, np.linspace(0, 4, 1001), 300)):
         size, weight = max(scene.a, scene.b), scene.mass * scene.gravity
         residuals = motion.constraint_residuals()
@@ -485,7 +485,7 @@ def test_auto_takes_the_contact_model_only_where_it_is_needed() -> None:
         (rl.scenes.slope, "contact"),
         (dataclasses.replace(rl.scenes.rolling, friction=0.1), "contact"),
     ):
-        for t in (0.001, 5.0):  # whatever the span
+        for t in (0.001, 5.0):  # a short and a long span
             assert simulate(scene, t).model == model
     forced = simulate(rl.scenes.report, 5.0, model="contact")
     assert np.array_equal(forced.theta, simulate(rl.scenes.report, 5.0).theta)
@@ -505,7 +505,7 @@ def test_samples_at_an_event_show_what_holds_after_it(name: str) -> None:
 
 
 def test_what_happens_at_the_last_time_has_happened() -> None:
-    """Impacts of exact flights, whose times do not depend on the span."""
+    """Impacts end exact flights, whose times do not depend on the span."""
     events = simulate(rl.scenes.bounce, 5.0).events
     assert len(events) >= 5
     for event in events:
@@ -528,7 +528,7 @@ def test_a_scene_made_on_the_way_goes_on_alike(name: str) -> None:
 
 
 def test_a_start_that_cannot_roll_slides_at_once() -> None:
-    """|F| > mu N at t = 0: to the side against the friction needed, the slip growing like t."""
+    """|F| > mu N at t = 0: the body slips against the friction needed, with a slip like t."""
     scene = Scene(2.0, 1.0, theta=0.5, friction=0.1)
     needed = simulate(dataclasses.replace(scene, friction=math.inf), [0.0]).friction_force[0]
     motion = simulate(scene, [0.0, 1e-4, 2e-4])
@@ -556,12 +556,12 @@ def test_max_events() -> None:
 
 
 def test_max_steps_stops_where_the_steps_ended() -> None:
-    """Those of all arcs count: the slope scene takes several slides of some dozens of steps."""
+    """max_steps counts the steps of all arcs; the slide of the slip scene needs more than five."""
     whole = simulate(rl.scenes.slip, 5.0)
     cut = simulate(rl.scenes.slip, 5.0, max_steps=5, raise_on_failure=False)
     assert cut.status is Status.MAX_STEPS and cut.stats["steps"] == 5
     assert cut.message.startswith("max_steps = 5 was reached at t = ")
-    assert cut.message.endswith(": allow more steps")  # they have no tolerance
+    assert cut.message.endswith(": allow more steps")  # a slide has no tolerance to change
     assert 0 < cut.t_end < whole.events[0].t and cut.t[-1] <= cut.t_end
     assert np.allclose(cut.omega, whole.omega[: cut.t.size], rtol=1e-11, atol=1e-13)
     steps = simulate(rl.scenes.slope, 5.0).stats["steps"]
@@ -574,7 +574,7 @@ def test_max_steps_stops_where_the_steps_ended() -> None:
 
 
 def test_the_start_says_what_the_body_does() -> None:
-    """On every ground and in every state, the mode of `initial_state` is the contact model's."""
+    """`initial_state` has the contact model's mode on every ground and in every state."""
     met = {mode: 0 for mode in Mode}
     for scene, motion in random_motions(2000, 71, [0.0]):
         mode = scene.initial_state.mode
@@ -607,7 +607,7 @@ def test_a_body_in_equilibrium_on_a_slope_stays_in_every_model() -> None:
 
 
 def test_leaving_the_ground_is_no_slip() -> None:
-    """On a slope rolling may go on with c <= 0; where its grip ends then, the body flies."""
+    """Rolling on a slope may continue with c <= 0; if friction then fails, the body flies."""
     scene = Scene(
         1.12284991254411, 1.0, friction=8.997344246579441, restitution=1.0,
         slope=-0.4867737488001045, theta=1.3467715037863446, inertia=0.5651979815250789,
@@ -631,8 +631,8 @@ def test_leaving_the_ground_is_no_slip() -> None:
 @pytest.mark.parametrize("theta", [-3e15, 1e16, 1e22, -1e50])
 @pytest.mark.parametrize("omega", [0.5, 3.0])
 def test_an_angle_without_parts_of_a_turn_is_where_it_points(theta: float, omega: float) -> None:
-    """The motion is that of the same body whose angle is what is left of it without half turns:
-    slides, jumps and rolls to a few roundings of the angle, 40 of the time at worst."""
+    """An angle far from zero and its remainder modulo pi give the same slides, jumps and rolls, to
+    a few roundings of the angle and at most 40 of the time."""
     with mp.workdps(400):
         rest = float(mp.mpf(theta) - mp.nint(mp.mpf(theta) / mp.pi) * mp.pi)
     near = Scene(1.0, 0.2, theta=rest, omega=omega, friction=0.6, restitution=0.5, x_dot=2.0)
@@ -650,8 +650,8 @@ def test_an_angle_without_parts_of_a_turn_is_where_it_points(theta: float, omega
 
 @pytest.mark.parametrize("omega", [-1e-88, -1e-100, -1e-150, 1e-200, -5e-324])
 def test_next_to_no_speed_on_a_tip(omega: float) -> None:
-    """It rolls where the angle of the tip, as a double, lets it fall to; or stays if its speed is
-    none in its units. There is an end to the search for that of rolling."""
+    """The body rolls if the rounded angle of the tip lets it fall, or rests if its speed vanishes
+    in its own units. The search for the end of rolling always stops."""
     thin = Scene(6.1e-13, 6.05e-14, theta=math.pi / 2, omega=omega, friction=0.89, gravity=1.0)
     high = Scene(1e-3, 1.0, omega=omega, friction=1.9, gravity=1.6e29)
     for scene in (thin, high):
@@ -661,7 +661,7 @@ def test_next_to_no_speed_on_a_tip(omega: float) -> None:
 
 
 def test_a_flight_farther_than_doubles_reach_says_so() -> None:
-    """Bounces down a steep slope go faster and farther each time."""
+    """Bounces down a steep slope get faster and longer each time."""
     scene = Scene(1.0, 1e-3, theta=3.5438281059200847, omega=-1e-3, slope=-1.5, restitution=1.0)
     motion = simulate(scene, 1e300, model="contact", raise_on_failure=False)
     assert motion.status is Status.STEP_TOO_SMALL and len(motion.events) > 5
@@ -673,7 +673,7 @@ def test_a_flight_farther_than_doubles_reach_says_so() -> None:
 
 
 def test_a_slide_takes_as_many_steps_whatever_its_size() -> None:
-    """Not only for powers of two: the tolerance is of the body's own size."""
+    """Sizes other than powers of two take as many steps: the tolerance is relative to the body."""
     counts = []
     for b in (1.0, 1e-9, 1e12, 3e-25):
         scene = Scene(2 * b, b, omega=4.77 / math.sqrt(b), friction=0.5)
@@ -686,7 +686,7 @@ def test_a_slide_takes_as_many_steps_whatever_its_size() -> None:
 def test_endless_friction_next_to_the_flat_position_is_that_in_it(
     theta: float, omega: float
 ) -> None:
-    """A slide there would end at theta/100, and its friction, c/Gtn, leave the doubles."""
+    """A slide at this angle would end at theta/100, and its friction, c/Gtn, would overflow."""
     flat = Scene(2.0, 1.0, theta=0.0, omega=omega, friction=math.inf, x_dot=0.0)
     expected, found = (
         simulate(scene, 10 / abs(omega), model="contact", max_events=20)
@@ -698,7 +698,7 @@ def test_endless_friction_next_to_the_flat_position_is_that_in_it(
 
 
 def test_a_rebound_of_a_rounding_on_the_tip_does_not_take_the_body_through_the_ground() -> None:
-    """Rounding leaves it no speed off the ground, and its weight presses it there."""
+    """Rounding leaves the body no speed off the ground, and its weight presses it down."""
     scene = Scene(
         1.0, 0.8, gravity=1.0, inertia=0.41, friction=0.0, restitution=1.0,
         theta=-3 * math.pi / 2, omega=1.0, impulse=Impulse(0.5, 0.0, dx=0.0, dz=0.4),

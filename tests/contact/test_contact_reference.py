@@ -1,9 +1,10 @@
-"""The contact model against 30 digits (reference/make_contact_reference.py).
+"""The contact model agrees with 30 digits (reference/make_contact_reference.py).
 
-Every event has a time, a state just after it and a unit for each of them: what a relative change
-of 2.2e-16 of every input does to it, the way the event itself moves included. The claim judged:
-events of the same kinds in the same order, every value within 8 units and what the two doubles that
-stand for it make of it: an ulp of itself, and what two ulp of theta do to the rest.
+Every event has a time and a state just after it, each with a unit: its change when every input
+changes by a relative 2.2e-16, the shift of the event itself included. The claim: events of the same
+kinds in the same order, every value within 8 units plus the rounding of the two doubles that
+represent it, which is an ulp of the value itself and the effect of two ulp of theta on the other
+values.
 """
 
 import functools
@@ -25,12 +26,12 @@ INPUTS = (
     "x", "z", "x_dot", "z_dot",
 )  # fmt: skip
 VALUES = ("t", "theta", "omega", "x", "z", "x_dot", "z_dot")
-COLUMNS = {name: name + "0" if name in VALUES else name for name in INPUTS}  # of Scene: column
-UNITS = 8  # what is claimed
+COLUMNS = {name: name + "0" if name in VALUES else name for name in INPUTS}  # field: column
+UNITS = 8  # claimed largest error, in units of the table
 
 
 class Motion(NamedTuple):
-    """One scene; kinds, values as decimal text (n, 7) and units (n, 7) of its events and end."""
+    """A scene with kinds, values as decimal text (n, 7) and units (n, 7) of its events and end."""
 
     name: str
     parameters: dict[str, float]
@@ -45,7 +46,7 @@ class Motion(NamedTuple):
 
     @property
     def scene(self) -> Scene:
-        """What the table says, in the product's words."""
+        """The scene of the table's parameters."""
         parameters: dict[str, Any] = dict(self.parameters)
         return Scene(parameters.pop("a"), parameters.pop("b"), **parameters)
 
@@ -58,9 +59,9 @@ class Motion(NamedTuple):
 
     @property
     def rounding(self) -> NDArray[np.float64]:
-        """What a state of doubles cannot tell (n, 7): theta is known to an ulp or two.
+        """Rounding of a state of doubles (n, 7): theta is known to an ulp or two.
 
-        What follows from theta, h and h' and their rates, is that of another place then.
+        h, h' and their rates change with theta.
         """
         p, values = self.parameters, np.array(self.values, float)
         ulp: NDArray[np.float64] = np.spacing(np.abs(values))
@@ -72,13 +73,13 @@ class Motion(NamedTuple):
 
     @property
     def sizes(self) -> NDArray[np.float64]:
-        """What the tests of the judge change a value by (n, 7), times 1e-9.
+        """Sizes of the values (n, 7); the tests of the judge change a value by 1e-9 of its size.
 
-        The time itself, and the size of the state as a whole, not of a component that happens to
-        pass through zero: a method's error does not know of that. For theta a radian at least, as
-        the shape depends on it like that; for the centre the longer semi-axis, by which a turn
-        moves it; for rates the speed V with m V^2/2 the kinetic energy and what the longer
-        semi-axis is worth in weight, and V/k.
+        A time has its own size. A component of the state that passes through zero does not measure
+        a method's error, so a size belongs to the state as a whole: for theta a radian at least,
+        because the shape depends on it like that; for the centre the longer semi-axis, by which a
+        turn moves it; for rates the speed V, where m V^2/2 is the kinetic energy plus the weight
+        times the longer semi-axis, and V/k.
         """
         p, values = self.parameters, np.array(self.values, float)
         longer, k2 = max(p["a"], p["b"]), self.gyration2
@@ -92,7 +93,7 @@ class Motion(NamedTuple):
 
 
 def read_table() -> list[Motion]:
-    """All scenes, in the order of the table."""
+    """The scenes of the table with their references, in its order."""
     lines = table.rows("contact_reference")
     return [
         Motion(
@@ -111,11 +112,11 @@ MOTIONS = read_table()
 each_motion = pytest.mark.parametrize("motion", MOTIONS, ids=[one.name for one in MOTIONS])
 
 
-# ------------------------------------------------------------------------ what is compared
+# ------------------------------------------------------------------------------ comparison
 
 
 class Computed(NamedTuple):
-    """Kinds and values (n, 7) of the product's events and last sample, and how it ended."""
+    """Kinds and values (n, 7) of the package's events and last sample, and its status."""
 
     kinds: list[str]
     values: list[list[float]]
@@ -123,7 +124,7 @@ class Computed(NamedTuple):
 
 
 def computed(scene: Scene, end: float) -> Computed:
-    """The product's answer; a jam at the start is followed on, to no avail."""
+    """The package's answer; a jam at the start (end = 0) also ends a simulation of 1 s."""
     found = simulate(scene, end or 1.0, model="contact", raise_on_failure=False)
     rows = [
         [event.t, *(getattr(event.state_after, name) for name in VALUES[1:])]
@@ -135,7 +136,7 @@ def computed(scene: Scene, end: float) -> Computed:
 
 @functools.cache
 def answer(number: int) -> Computed:
-    """The product's answer to a scene of the table."""
+    """The package's answer to a scene of the table."""
     motion = MOTIONS[number]
     return computed(motion.scene, float(motion.values[-1][0]))
 
@@ -150,18 +151,18 @@ def errors(motion: Motion, values: list[list[float]]) -> NDArray[np.float64]:
 
 
 def shares(motion: Motion, values: list[list[float]]) -> NDArray[np.float64]:
-    """Errors (n, 7) as shares of what is claimed; at t = 0 a time is exact."""
+    """Errors (n, 7) divided by the claimed bound; a time 0 must be exact."""
     allowed = UNITS * motion.units + motion.rounding
     found: NDArray[np.float64] = errors(motion, values) / np.maximum(allowed, 1e-300)
     return found
 
 
-# ----------------------------------------------------------------------------- the product
+# ----------------------------------------------------------------------------- the package
 
 
 @each_motion
 def test_events_and_states_are_right(motion: Motion) -> None:
-    """The same kinds of events, and times and states as claimed."""
+    """Kinds of events agree, and times and states have the claimed accuracy."""
     found = answer(MOTIONS.index(motion))
     assert [*found.kinds, "state"] == motion.kinds
     assert found.status is (Status.JAMMED if "jam" in motion.kinds else Status.COMPLETED)
@@ -169,7 +170,7 @@ def test_events_and_states_are_right(motion: Motion) -> None:
 
 
 def test_an_error_of_1e_9_is_seen() -> None:
-    """The judge is sharp: 1e-9 of the size of any value of a first event is far too much."""
+    """The judge is sharp: 1e-9 of the size of any value of a first event exceeds ten bounds."""
     for motion in MOTIONS:
         values = np.array(motion.values, float)
         off = shares(motion, (values + 1e-9 * motion.sizes).tolist())
@@ -178,7 +179,7 @@ def test_an_error_of_1e_9_is_seen() -> None:
 
 
 def test_a_small_change_of_an_input_is_seen() -> None:
-    """1e-9 more gravity, in every scene in which anything moves."""
+    """1e-9 more gravity is seen in every scene in which anything moves."""
     compared = 0
     for motion in MOTIONS:
         if "jam" in motion.kinds:
@@ -189,14 +190,14 @@ def test_a_small_change_of_an_input_is_seen() -> None:
         if [*found.kinds, "state"] == motion.kinds:
             assert shares(motion, found.values).max() > 1, motion.name
             compared += 1
-    assert compared >= 100  # of 110: jams, and motions that come to other events, are left out
+    assert compared >= 100  # of 110: jams, and motions that reach other events, are left out
 
 
 # ------------------------------------------------------------------------------- the table
 
 
 def test_table_covers_what_it_promises() -> None:
-    """Every kind of event, friction and restitution, slopes, circles, thin and standing bodies."""
+    """The table has all kinds of events, friction, restitution, slopes, round and thin bodies."""
     kinds = [kind for one in MOTIONS for kind in one.kinds]
     least = {"slip": 30, "stick": 30, "reverse": 8, "lift_off": 12, "impact": 80}
     least |= {"rest": 3, "jam": 4, "state": 60}
@@ -214,12 +215,12 @@ def test_table_covers_what_it_promises() -> None:
     assert (np.maximum(ratio, 1 / ratio) > 10).sum() >= 6
     assert (columns["mass"] != 1).sum() >= 30 and (columns["gravity"] != 9.81).sum() >= 20
     assert np.isfinite(columns["inertia"]).sum() >= 20
-    # beyond this a reference says nothing: the scene itself does not fix the answer
+    # a larger unit would mean that the scene itself does not determine the answer
     assert max(one.units.max() for one in MOTIONS) <= 1e-9
 
 
 class Laws:
-    """A scene in mpf, and what holds at a state (theta, omega, x, z, x_dot, z_dot)."""
+    """A scene in mpf, and the laws for its states (theta, omega, x, z, x_dot, z_dot)."""
 
     def __init__(self, motion: Motion) -> None:
         p = {name: mpmath.mpf(value) for name, value in motion.parameters.items()}
@@ -239,20 +240,20 @@ class Laws:
         return support(theta, self.a, self.b)
 
     def flown(self, state: Any, t: Any) -> tuple[Any, ...]:
-        """A state after a flight of a time."""
+        """State after a flight of time t."""
         theta, omega, x, z, x_dot, z_dot = state
         x, z = x + (x_dot + self.down * t / 2) * t, z + (z_dot - self.level * t / 2) * t
         return theta + omega * t, omega, x, z, x_dot + self.down * t, z_dot - self.level * t
 
     def motion(self, state: Any) -> tuple[Any, Any, Any]:
-        """Slip and gap rate, and the size of what they are made of."""
+        """Slip, gap rate, and the size of their terms."""
         theta, omega, _, _, x_dot, z_dot = state
         h, arm, _ = self.support(theta)
         size = abs(x_dot) + abs(z_dot) + (h + abs(arm)) * abs(omega) + mpmath.sqrt(self.level * h)
         return x_dot - h * omega, z_dot - arm * omega, size
 
     def forces(self, state: Any) -> tuple[Any, Any, Any, Any]:
-        """c, N and F of rolling per mass, and the size of what they are made of."""
+        """c, N and F of rolling per mass, and the size of their terms."""
         theta, omega = state[:2]
         h, arm, bend = self.support(theta)
         spin = omega**2
@@ -264,7 +265,7 @@ class Laws:
         return c, c + arm * spin_up, friction, size
 
     def collided(self, before: Any, after: Any) -> None:
-        """Newton's and Coulomb's laws, no energy gained, and e where the slip never ends."""
+        """Newton's and Coulomb's laws hold, energy never grows, and e holds while slip lasts."""
         h, arm, _ = self.support(after[0])
         slip, rate, size = self.motion(before)
         new_slip, new_rate, new_size = self.motion(after)
@@ -286,9 +287,10 @@ SMALL = mpmath.mpf("1e-23")
 
 @each_motion
 def test_table_keeps_the_laws(motion: Motion) -> None:
-    """The table's numbers, made in a coordinate of their own, put into the support function.
+    """The table's numbers, computed in another coordinate, satisfy the laws of the support
+    function.
 
-    They are rounded at 5e-30; 1e-23 of the terms that are added is above all that.
+    The numbers are rounded at 5e-30; 1e-23 of the added terms exceeds all roundings.
     """
     with mpmath.workdps(50):
         laws = Laws(motion)
@@ -298,7 +300,7 @@ def test_table_keeps_the_laws(motion: Motion) -> None:
             t, *state = map(mpmath.mpf, texts)
             slip, rate, size = laws.motion(state)
             h = laws.support(state[0])[0]
-            if flying and kind != "rest":  # which comes after bounces without number
+            if flying and kind != "rest":  # rest comes after infinitely many bounces
                 flown = laws.flown(last, t - then)
                 for i in (0, 2, 3) if kind == "impact" else range(6):
                     assert abs(flown[i] - state[i]) < SMALL * (1 + abs(state[i]) + size)

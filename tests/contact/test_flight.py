@@ -1,4 +1,4 @@
-"""The first touch-down of flights, against dense sampling in long double."""
+"""The first touch-down of flights agrees with dense sampling in long double."""
 
 import math
 from typing import Any
@@ -10,12 +10,12 @@ from oracles.geometry import support
 from oracles.numbers import EPS
 from rolling_ellipse import EventKind, Impulse, Mode, Scene, simulate
 
-Long = Any  # arrays of np.longdouble
+Long = Any  # an array of np.longdouble
 GRAVITY = 9.81
 
 
 def first_impact(scene: Scene) -> float:
-    """Time of the first event, which is an impact, of a body that falls for 1000 s at most."""
+    """Time of the first event, which is an impact; the flight lasts 1000 s at most."""
     motion = simulate(scene, 1000.0, model="contact", max_events=1, raise_on_failure=False)
     assert motion.events[0].kind is EventKind.IMPACT
     return motion.events[0].t
@@ -31,7 +31,7 @@ class Gap:
         )
         self.weight = np.longdouble(scene.gravity) * np.cos(np.longdouble(scene.slope))
         if abs(self.z - support(self.theta, self.a, self.b).h) <= 8 * EPS * self.z:
-            at = support(self.theta, self.a, self.b)  # what touches does so exactly
+            at = support(self.theta, self.a, self.b)  # a touching body touches exactly
             self.z_dot += at.slope * self.omega - np.longdouble(
                 support(start.theta, scene.a, scene.b).slope * start.omega
             )
@@ -50,14 +50,14 @@ class Gap:
         return -self.weight - at.curvature * self.omega**2
 
     def rounding(self, t: float) -> float:
-        """What double arithmetic may be off by at time t: of z, of the angle, of h."""
+        """Rounding error of double arithmetic at time t: of z, of the angle and of h."""
         z = abs(self.z) + abs(self.z_dot) * t + self.weight * t * t / 2
         turned = (abs(self.theta) + abs(self.omega) * t) * max(self.a, self.b)
         return float(8 * EPS * (z + turned))
 
     def lowest_before(self, t: float) -> float:
-        """Smallest value strictly inside (0, t): 500 looks per half turn, and Newton's method on
-        the rate at each dip, so that one between two looks does not hide."""
+        """Smallest value strictly inside (0, t): 500 samples per half turn, and Newton's method on
+        the rate at each dip, so that no dip hides between two samples."""
         looks = 500 * (2 + int(abs(self.omega) * t / math.pi))
         times = np.linspace(0, np.longdouble(t), looks + 1)[1:-1]
         values = self(times)
@@ -70,7 +70,7 @@ class Gap:
 
 
 def random_flight(rng: np.random.Generator) -> Scene:
-    """Slow and fast spins, dropped, thrown, or leaving the ground with some speed."""
+    """A body with slow or fast spin, dropped, thrown, or leaving the ground with some speed."""
     a, b = (10 ** rng.uniform(-0.7, 0.7, 2)).tolist()
     theta, omega = float(rng.uniform(-4, 4)), float(rng.normal() * 10 ** rng.uniform(-2, 1.5))
     at = support(theta, a, b)
@@ -82,7 +82,7 @@ def random_flight(rng: np.random.Generator) -> Scene:
 
 
 def check(scene: Scene) -> None:
-    """It touches there, and nowhere before."""
+    """The body touches the ground at its first impact, and nowhere before."""
     t, gap = first_impact(scene), Gap(scene)
     assert abs(gap(np.longdouble(t))) <= gap.rounding(t) + EPS * t * abs(gap.rate(t))
     assert gap.lowest_before(t * (1 - 1e-9)) >= -gap.rounding(t)
@@ -97,7 +97,7 @@ def test_the_first_touch_of_random_flights() -> None:
 @pytest.mark.parametrize("miss", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("omega", [8.0, -40.0, 700.0])
 def test_a_graze_is_told_from_a_miss(omega: float, miss: float) -> None:
-    """The tip passes `miss` above the ground, and lands later; or below it, and has landed."""
+    """A tip `miss` above the ground passes and lands later; a tip `miss` below has landed."""
     landings = []
     for offset in (miss, -miss):
         gap = Gap(Scene(2.0, 1.0, theta=0.3, omega=omega, z=3.0, z_dot=1.0))
@@ -112,7 +112,7 @@ def test_a_graze_is_told_from_a_miss(omega: float, miss: float) -> None:
         check(scene)
         landings.append((first_impact(scene), float(t)))
     (missed, t_missed), (hit, t_hit) = landings
-    # below the ground for sqrt(2 miss/acceleration) on either side of the dip
+    # the tip is below the ground for sqrt(2 miss/acceleration) on either side of the dip
     assert missed > t_missed
     half = math.sqrt(2 * miss / float(Gap(scene).acceleration(t_hit)))
     assert t_hit - 1.5 * half - 1e-3 * half <= hit < t_hit
@@ -148,7 +148,7 @@ def test_leaving_by_acceleration_alone(omega: float, beyond: float, slope: float
 def test_a_blow_that_presses_leaves_no_speed_into_the_ground(
     b: float, theta: float, omega: float, strength: float
 ) -> None:
-    """The body flies at once, from a closed gap that has no rate, whatever the blow gave."""
+    """The body flies at once from a closed gap with gap rate zero, after a blow of any strength."""
     blow = Impulse(0.0, -strength, dx=0.0, dz=0.0)
     scene = Scene(2.0, b, theta=theta, omega=omega, friction=0.6, impulse=blow)
     start = scene.initial_state
@@ -161,7 +161,7 @@ def test_a_blow_that_presses_leaves_no_speed_into_the_ground(
 
 
 def test_a_hop_far_lower_than_the_body_is_timed_to_the_last_bits() -> None:
-    """Leaving with u, lying flat without spin: 2 u/g, however small u is beside sqrt(g b)."""
+    """A flat body that leaves with speed u and no spin flies for 2 u/g, however small u is."""
     for u in (1e-3, 1e-7, 1e-11):
         t = first_impact(Scene(2.0, 1.0, z_dot=u, friction=0.0, restitution=0.5))
         assert t == pytest.approx(2 * u / GRAVITY, rel=4 * EPS)
@@ -189,11 +189,11 @@ def test_samples_in_flight_are_the_parabola() -> None:
 
 @pytest.mark.parametrize("omega", [1.0, 10.0])
 def test_small_hops_of_a_turning_circle(omega: float) -> None:
-    """Its h is rounded to one side or the other of its radius; the hops are far lower than that."""
+    """A circle's h is its radius, rounded up or down; the hops are far lower than that rounding."""
     scene = Scene(1.0, 1.0, z=1.5, omega=omega, x_dot=1.0, friction=0.0, restitution=0.6)
     events = simulate(scene, 3.0).events
     landing = math.sqrt(2 * 0.5 / 9.81)
-    # 28 impacts and the sum of the others, each time right to a few ulp
+    # 28 impacts and the sum of the others, each time exact to a few ulp
     assert events[-1].t == pytest.approx(landing * (1 + 2 * 0.6 / 0.4), rel=1e-14)
 
 
@@ -202,7 +202,7 @@ def test_a_spin_too_fast_for_the_clock_comes_down_all_the_same(
     b: float, restitution: float
 ) -> None:
     """Bounces down a steep slope grow until a body turns by more than half a turn between two
-    doubles of time. It lands, with no more energy than it had, to roundings of the kinetic one."""
+    doubles of time. The body lands without a gain of energy, to roundings of the kinetic energy."""
     scene = Scene(1.0, b, theta=3.54, omega=-1e-3, slope=-1.5, restitution=restitution)
     motion = simulate(scene, [0.0, 1e20], model="contact")
     times = [event.t for event in motion.events]
@@ -214,8 +214,8 @@ def test_a_spin_too_fast_for_the_clock_comes_down_all_the_same(
 
 @pytest.mark.parametrize("strength", [1e-3, 1e-6, 1e-9])
 def test_the_hop_after_a_weak_blow_is_timed_to_the_last_bits(strength: float) -> None:
-    """The speed off the ground is what the blow gives, and not a difference of velocities that are
-    1e9 times as fast. Judged in 40 digits: speed and time take some ten operations each."""
+    """The speed off the ground comes from the blow alone, without a difference of velocities that
+    are 1e9 times as fast. Judged in 40 digits: speed and time take some ten operations each."""
     blow = Impulse(0.3 * strength, strength, dx=0.2, dz=0.4)
     scene = Scene(2.0, 1.3, theta=0.7, omega=1.1, friction=0.4, impulse=blow)
     landing = simulate(scene, 1.0, model="contact").events[0]

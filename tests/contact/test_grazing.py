@@ -1,8 +1,9 @@
-"""Where a body in contact is weightless but for rounding: it neither takes off nor sinks.
+"""A body in contact that is weightless but for rounding neither takes off nor sinks.
 
-The free acceleration into the ground, c = g cos(alpha) + h'' omega^2, is least on the tip. Spun
-there with omega^2 = g cos(alpha)/|h''| a body is free for an instant, and pressed before and after;
-at an angle at which c = 0 it leaves on the way to the tip, and stays on the way from it.
+The free acceleration into the ground, c = g cos(alpha) + h'' omega^2, is least on the tip. A body
+that spins there with omega^2 = g cos(alpha)/|h''| is free for an instant, and pressed before and
+after. At an angle with c = 0 it leaves while it turns towards the tip, and stays while it turns
+away.
 """
 
 import math
@@ -13,12 +14,12 @@ from oracles.numbers import EPS
 from rolling_ellipse import EventKind, Mode, Scene, Status, Trajectory, geometry, simulate
 
 BODIES = [(2.0, 1.0), (1.0, 1.3), (1.0, 30.0)]
-ULPS = [-3, -1, 0, 1, 3]  # of omega^2, beside which c is 0
-GRAZES = 2.0**-21  # [rad], twice the way that is less than numbers tell
+ULPS = [-3, -1, 0, 1, 3]  # ulp of omega^2, off its value at c = 0
+GRAZES = 2.0**-21  # [rad], twice the longest flight that is too short to resolve
 
 
 def weightless_spin(a: float, b: float, theta: float, gravity: float = 9.81) -> float:
-    """omega at which c = 0."""
+    """Positive omega at which c = 0."""
     h = float(geometry.support(theta, a=a, b=b))
     return math.sqrt(gravity / (h - (a * b) ** 2 / h**3))
 
@@ -28,7 +29,7 @@ def tip(a: float, b: float) -> float:
 
 
 def lowest(moving: Trajectory) -> float:
-    """The gap where it is least, in the size of the body."""
+    """Smallest gap of a motion, in units of the longer semi-axis."""
     a, b = moving.scene.a, moving.scene.b
     return float(np.min(moving.z - geometry.support(moving.theta, a=a, b=b))) / max(a, b)
 
@@ -40,7 +41,7 @@ def lowest(moving: Trajectory) -> float:
 def test_a_tip_that_is_just_not_thrown_off_stays_on_ice(
     a: float, b: float, ulps: int, side: int, restitution: float
 ) -> None:
-    """Without friction what is left is (k^2 + h'^2) omega^2/2 + g h."""
+    """The body slides on without friction and keeps (k^2 + h'^2) omega^2/2 + g h."""
     start = weightless_spin(a, b, tip(a, b)) * (1 + ulps * EPS / 2)
     scene = Scene(a, b, friction=0.0, theta=tip(a, b), omega=side * start, restitution=restitution)
     moving = simulate(scene, np.linspace(0.0, 1.0 / start, 200))
@@ -59,7 +60,7 @@ def test_a_tip_that_is_just_not_thrown_off_stays_on_ice(
 def test_a_rough_ground_keeps_a_weightless_tip_as_well(
     a: float, b: float, friction: float, ulps: int
 ) -> None:
-    """It slips or rolls on from there, and no event lasts less than can be told."""
+    """The body slips or rolls on from the tip, and no event follows another too soon to resolve."""
     start = weightless_spin(a, b, tip(a, b)) * (1 + ulps * EPS / 2)
     scene = Scene(a, b, friction=friction, theta=tip(a, b), omega=start)
     moving = simulate(scene, np.linspace(0.0, 0.5 / start, 200), model="contact")
@@ -78,7 +79,7 @@ def test_a_rough_ground_keeps_a_weightless_tip_as_well(
 def test_beside_the_tip_c_decides_by_where_it_goes(
     friction: float, from_the_tip: bool, ulps: int
 ) -> None:
-    away = 0.6  # from the tip at pi/2
+    away = 0.6  # angle from the tip at pi/2
     theta = math.pi / 2 - away
     omega = weightless_spin(2.0, 1.0, theta) * (1 + ulps * EPS / 2) * (-1 if from_the_tip else 1)
     scene = Scene(2.0, 1.0, friction=friction, theta=theta, omega=omega, x_dot=1.0)
@@ -103,9 +104,9 @@ def test_a_weightless_tip_on_a_rough_slope_gains_no_energy(
 
 
 def test_friction_without_end_makes_a_tip_weightless_and_keeps_it_so() -> None:
-    """A tip that slips on it is spun up in no time until c = 0. From there on friction keeps the
-    gap closed without a normal force: the centre falls freely, h = a - g t^2/2, and c comes back
-    as the square of the angle, from below its rounding."""
+    """Infinite friction on a slipping tip spins it up in no time until c = 0. After that friction
+    keeps the gap closed without a normal force: the centre falls freely, h = a - g t^2/2, and c
+    grows again as the square of the angle, from below its rounding."""
     scene = Scene(75.0, 50.0, gravity=1.0, theta=-math.pi / 2, x_dot=17.0)
     moving = simulate(scene, np.linspace(0.0, 4.0, 60), model="contact")
     assert all(each.kind is not EventKind.LIFT_OFF for each in moving.events)

@@ -1,7 +1,7 @@
-"""Friction that is what a start without slip needs, but for rounding.
+"""Friction equals the need of a start without slip, but for rounding.
 
-Whether such a body rolls or slips is for its next moment to say. What matters is that it does one
-of them, as with a little more friction or a little less.
+The next moment decides whether such a body rolls or slips. It must do one of them, as with a little
+more friction or a little less.
 """
 
 import math
@@ -13,7 +13,7 @@ from oracles.numbers import EPS
 from oracles.rolling import forces, motion
 from rolling_ellipse import Mode, Scene, Status, simulate
 
-PLACES = [  # theta, omega: rising, sinking, at rest, turning back at once, from beside the tip
+PLACES = [  # theta, omega: rising, sinking, at rest, turning back at once, starting near the tip
     (0.4, 1.0),
     (-0.4, 1.0),
     (0.4, 0.0),
@@ -26,7 +26,7 @@ PLACES = [  # theta, omega: rising, sinking, at rest, turning back at once, from
 
 
 def needed(a: float, b: float, theta: float, omega: float) -> float:
-    """|F|/N at the start, by the oracle."""
+    """Friction that rolling needs at the start, |F|/N, by the oracle."""
     on = motion(*(np.array([value]) for value in (a, b, (a * a + b * b) / 4, 9.81, theta, omega)))
     found = forces(on, *reduced([theta], a, b))
     return float(abs(found.friction[0]) / found.normal[0])
@@ -44,7 +44,7 @@ def test_at_the_limit_a_body_moves_as_beside_it(
     moving = simulate(scene, times, model="contact", max_events=12)
     assert moving.status is Status.COMPLETED
     assert np.max(np.diff(moving.energy)) <= 32 * EPS * moving.energy[0]
-    # of the friction, and beside the tip, where none is needed, of an angle that takes as much
+    # relative change of friction; near the tip, which needs none, an absolute one of 1e-3 * beside
     beside = 1e-9
     near = [
         simulate(
@@ -62,7 +62,7 @@ def test_at_the_limit_a_body_moves_as_beside_it(
 def test_an_equilibrium_on_a_slope_with_just_enough_friction(
     slope: float, omega: float, ulps: int
 ) -> None:
-    """h' = h tan(alpha): it stays where it is, or rocks there, and slips by next to nothing."""
+    """h' = h tan(alpha): the body stays there or rocks about it, and hardly slips."""
     a, b, incline = 9.0, 1.0, math.tan(slope)
     c2 = a * a - b * b
     theta = math.atan(2 * incline * b * b / (c2 + math.sqrt(c2**2 - (2 * a * b * incline) ** 2)))
@@ -72,7 +72,7 @@ def test_an_equilibrium_on_a_slope_with_just_enough_friction(
     )  # fmt: skip
     moving = simulate(scene, 10.0, model="contact", max_events=100)
     assert moving.status is Status.COMPLETED
-    # 1e-9 rad/s over the rate of rocking, some 1/s; and 10 s of it, did nothing hold it
+    # 1e-9 rad/s over the rate of rocking, some 1/s, or 1e-9 rad/s for 10 s without any restraint
     assert np.max(np.abs(moving.theta - theta)) <= 1e-8
     assert np.all(np.isin(moving.mode, [Mode.ROLLING, Mode.SLIDING, Mode.REST]))
 

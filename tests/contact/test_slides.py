@@ -1,9 +1,9 @@
-"""Slides against what is known of them in closed form, which their series do not use.
+"""Slides agree with closed forms, which their series do not use.
 
 With s the sign of the slip, per unit mass: N = z'' + g cos(alpha) and F = -s mu N integrate to
     x' = x0' - s mu (h' omega - h0' omega0 + g cos(alpha) t) + g sin(alpha) t,
-    x = x0 + x0' t - s mu (h - h0 - h0' omega0 t + g cos(alpha) t^2/2) + g sin(alpha) t^2/2,
-What omega does, test_contact_reference.py judges in 30 digits.
+    x = x0 + x0' t - s mu (h - h0 - h0' omega0 t + g cos(alpha) t^2/2) + g sin(alpha) t^2/2.
+test_contact_reference.py judges omega in 30 digits.
 """
 
 import math
@@ -37,14 +37,14 @@ def slides(count: int, seed: int, **given: Any) -> list[tuple[Scene, Trajectory]
 
 
 def friction_share(scene: Scene, motion: Trajectory) -> float:
-    """-mu s: slip may start from nothing, so its sign is that in the middle."""
+    """-mu s: slip may start from zero, so its sign is taken in the middle."""
     h = support(float(motion.theta[20]), scene.a, scene.b)[0]
     return -math.copysign(scene.friction, motion.x_dot[20] - h * motion.omega[20])
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.2, -0.4])
 def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
-    """Each of the terms is rounded, and theta, of which they are made, to some ulp."""
+    """Each term is rounded, and theta, an argument of all terms, to some ulp."""
     for scene, motion in slides(20, seed=5, slope=slope):
         assert set(motion.mode) == {Mode.SLIDING}
         start = scene.initial_state
@@ -68,7 +68,8 @@ def test_velocity_and_path_follow_from_angle_and_time(slope: float) -> None:
 
 
 def test_a_frictionless_slide_keeps_its_energy() -> None:
-    """(k^2 + h'^2) omega^2/2 + g h, over a thousand oscillations: rounding walks at random.
+    """(k^2 + h'^2) omega^2/2 + g h over a thousand oscillations changes by a random walk of
+    roundings.
 
     A slide over a period takes some dozen pieces, each of which rounds theta and omega once.
     """
@@ -86,9 +87,9 @@ def test_a_frictionless_slide_keeps_its_energy() -> None:
 def test_a_frictionless_slide_creeps_over_the_tip_as_often_as_it_comes_there(
     a: float, b: float, theta: float, creep: float
 ) -> None:
-    """Each time with the omega of the first: the energy has few roundings beside the tip, though in
-    between it falls by the difference of the axes. A few for omega, and for what the tip is missed
-    by, where the doubles of the angle are 1e-15 apart."""
+    """Each pass of the tip has the omega of the first: the energy has few roundings there, though
+    in between it falls by the difference of the axes. The bound allows a few roundings of omega,
+    and a missed tip, where the doubles of the angle are 1e-15 apart."""
     scene = Scene(a, b, theta=theta, omega=creep, x_dot=1.0, friction=0.0)
     motion = simulate(scene, 60.0, model="contact")
     times = [float(motion.when(theta=theta + k * math.pi)[0]) for k in (1, 2, 3)]
@@ -98,15 +99,15 @@ def test_a_frictionless_slide_creeps_over_the_tip_as_often_as_it_comes_there(
 
 
 def test_few_pieces_make_a_slide() -> None:
-    """Their reach is some fifth of the distance to the nearest singularity in complex time."""
+    """Pieces reach some fifth of the distance to the nearest singularity in complex time."""
     whole = simulate(scenes.slip, 3.0, model="contact")
     assert [each.kind for each in whole.events] == [EventKind.STICK]
     assert whole.stats["steps"] <= 20 and whole.stats["evaluations"] == 0
 
 
 def test_a_slide_is_as_smooth_where_pieces_meet() -> None:
-    """Samples next to each other, closer than any piece: second differences are those of a
-    smooth function, h^2 times the second derivative, and the rounding of three samples."""
+    """Samples lie closer together than any piece: second differences are h^2 times the second
+    derivative of a smooth function, plus the rounding of three samples."""
     step = 1e-5
     times = np.arange(0.0, 1.4, step)
     motion = simulate(scenes.slip, times, model="contact")
@@ -120,11 +121,13 @@ def test_a_slide_is_as_smooth_where_pieces_meet() -> None:
 
 @pytest.mark.parametrize("theta", [1e-8, 1e-12, 1e-13, 1e-16, 1e-20, 1e-30, 1e-80])
 def test_a_slide_that_begins_next_to_no_response(theta: float) -> None:
-    """Nearly flat, endless friction turns the body by 1/B, B in proportion to theta: within a time
-    like theta it sticks, as by an impulse along the ground, J = 1/(1/m + h^2/I) of the slip.
+    """Infinite friction turns a nearly flat body by 1/B, and B is in proportion to theta: within a
+    time like theta it sticks, as after an impulse along the ground, J = 1/(1/m + h^2/I) of the
+    slip.
 
-    The body has turned by less than 2 theta by then, and what that changes is no more; the rest is
-    rounding. Powers of 1/theta as high as the series has would leave the doubles."""
+    Until then the body turns by less than 2 theta, which changes no velocity by more; the rest is
+    rounding. The highest powers of 1/theta in the series would overflow.
+    """
     scene = Scene(1.0, 0.5, gravity=1.0, theta=theta, x_dot=-1.0)
     stick = simulate(scene, 1.0, model="contact").events[0]
     assert stick.kind is EventKind.STICK
@@ -134,7 +137,7 @@ def test_a_slide_that_begins_next_to_no_response(theta: float) -> None:
 
 
 def test_a_slide_too_quick_for_any_power_says_so() -> None:
-    """A ball falls along next to no slope, until the square of its time is no double."""
+    """A ball falls along a slope of 1e-200, until the square of its time overflows."""
     scene = Scene(1.0, 1.0, slope=1e-200, friction=1e-236)
     found = simulate(scene, [0.0, 1e100, 1e200], model="contact", raise_on_failure=False)
     assert found.status is Status.STEP_TOO_SMALL and found.events == ()
@@ -144,7 +147,7 @@ def test_a_slide_too_quick_for_any_power_says_so() -> None:
 
 
 def spinning_on_a_slope(rng: np.random.Generator, roundness: float) -> Scene:
-    """Without friction, and so fast that its spin lifts it off, or nearly does."""
+    """A body without friction whose fast spin lifts it off, or nearly does."""
     b = 1.0 + roundness * (1 if rng.random() < 0.5 else -1)
     slope, theta = float(rng.uniform(-1.5, 1.5)), float(rng.uniform(-7, 7))
     omega = math.sqrt(GRAVITY * math.cos(slope) / (roundness * rng.uniform(0.2, 4.0)))
@@ -153,7 +156,7 @@ def spinning_on_a_slope(rng: np.random.Generator, roundness: float) -> Scene:
 
 @pytest.mark.parametrize("roundness", [2.0**-8, 2.0**-20, 2.0**-30, 2.0**-38])
 def test_a_nearly_round_body_leaves_a_slope_where_nothing_presses_it(roundness: float) -> None:
-    """Its centre falls evenly; it lifts off where g cos(alpha) + h'' omega^2 = 0, not before."""
+    """The centre falls evenly; the body lifts off where g cos(alpha) + h'' omega^2 = 0."""
     rng = np.random.default_rng(int(1 / roundness) % 1000)
     left = 0
     for scene in (spinning_on_a_slope(rng, roundness) for _ in range(60)):
@@ -165,7 +168,7 @@ def test_a_nearly_round_body_leaves_a_slope_where_nothing_presses_it(roundness: 
         found = motion.sol(np.linspace(0.0, end, 501)[:-1])
         fallen = scene.gravity * math.sin(scene.slope) * found.t**2 / 2
         start = scene.initial_state.x_dot * found.t
-        # x_dot is slip + h omega, and each a double
+        # x_dot is slip + h omega, each rounded to a double
         most = 8 * EPSILON * (1 + abs(scene.omega) * end + fallen)
         assert np.all(np.abs(found.x - start - fallen) <= most)
         into = scene.gravity * math.cos(scene.slope)
@@ -181,9 +184,10 @@ def test_a_nearly_round_body_leaves_a_slope_where_nothing_presses_it(roundness: 
 @pytest.mark.parametrize("k2", [1e-6, 0.25, 1.0])
 @pytest.mark.parametrize("turned", [1.0, 1e3, 1e6])
 def test_a_ball_slides_evenly_however_far_it_turns(k2: float, turned: float) -> None:
-    """Half of mu g a/k^2 t^2 and mu g t, until a omega is x': one part in 1 + k^2/a^2 earlier than
-    its spin alone would end. What is left of the spin is a difference, good to its roundings."""
-    spin_end = 2.0  # where a omega alone would vanish
+    """The slide goes mu g t^2/2 along, at speed mu g t, until a omega equals x': one part in 1 +
+    k^2/a^2 before friction would end the spin alone. The remaining spin is a difference, exact to
+    its roundings."""
+    spin_end = 2.0  # time at which a omega alone would vanish
     omega = 2 * turned / spin_end
     friction = omega / spin_end * k2 / GRAVITY
     scene = Scene(1.0, 1.0, inertia=k2, friction=friction, omega=omega, x_dot=0.0)
@@ -195,12 +199,12 @@ def test_a_ball_slides_evenly_however_far_it_turns(k2: float, turned: float) -> 
     lost = 1 - np.array([0.0, 0.25, 0.5, 1.0]) / (1 + k2)
     assert np.all(np.abs(motion.omega - omega * lost) <= 8 * EPSILON * omega)
     path = friction * GRAVITY * motion.t[:3] ** 2 / 2
-    terms = path + omega * motion.t[:3]  # x_dot is slip + h omega, and each a double
+    terms = path + omega * motion.t[:3]  # x_dot is slip + h omega, each rounded to a double
     assert np.all(np.abs(np.abs(motion.x[:3]) - path) <= 8 * EPSILON * terms)
 
 
 def test_without_friction_the_centre_moves_uniformly() -> None:
-    """To the last bit of x_dot, and to that of x = x0 + x_dot t: no sum with h omega is in it."""
+    """x_dot is constant to the last bit, and x = x0 + x_dot t: no sum with h omega is in it."""
     found = slides(40, 31, friction=0.0, slope=0.0)
     for scene, motion in found:
         start = scene.initial_state.x_dot

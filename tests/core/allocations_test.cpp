@@ -106,13 +106,13 @@ void steps_allocate_nothing() {
                 steps[times - 1] = solution.counts.steps;
             });
         }
-        // With one allocation a step the difference would be 50 at least.
+        // One allocation per step would make a difference of 50 at least.
         check(steps[1] - steps[0] >= 50 && found[1] - found[0] <= vectors, job.name, found[0],
               found[1]);
     }
 }
 
-// Samples of the same segments; each segment may allocate once.
+// Twice as many samples of the same segments: each segment may allocate once.
 template <class Sample>
 void kind_of_sample(const Job& job, const Solution& solution) {
     const Sampler sampler(solution.motion, 1000);
@@ -165,7 +165,7 @@ void bodies_allocate_nothing() {
     }
 }
 
-// A vector is counted.
+// The counter counts the allocation of one vector.
 void it_counts() {
     const long once = allocations([] { std::vector<double> one(3); });
     check(once == 1, "a vector", once, 1);

@@ -56,7 +56,7 @@ void bisection_by_secants_ends_at_the_same_neighbours() {
     CHECK(f(falling.low) < 0 && f(falling.high) >= 0);
 }
 
-// Elimination permutes the rows; all multipliers are halves, so nothing is rounded.
+// Elimination permutes the rows; all multipliers are halves, so no operation rounds.
 template <class Number>
 void equations_are_solved_whatever_their_order(Number unit) {
     Eigen::Matrix<Number, 3, 3> rows;
@@ -74,7 +74,7 @@ void the_first_place_where_a_polynomial_is_negative() {
     CHECK(!first_negative(bernstein(dips + polynomial(0.0625))));
     const auto grazes = first_negative(bernstein(dips + polynomial(0.0625 - 1e-12)));
     CHECK(grazes && std::abs(*grazes - (0.5 - 1e-6)) < 1e-9);
-    // A start at zero that rises is no end; a start below zero is.
+    // A polynomial that starts at zero and rises is not negative there; one below zero is.
     const auto later = first_negative(bernstein(polynomial(0.0, 1.0, -2.0)));
     CHECK(later && std::abs(*later - 0.5) <= 2 * epsilon);
     CHECK(first_negative(bernstein(polynomial(-1.0, 3.0))) == 0.0);
@@ -89,7 +89,7 @@ void a_polynomial_that_touches_zero_has_no_sign() {
     CHECK(sign_on_unit_interval(bernstein(touches - polynomial(1e-9))) != Sign::positive);
 }
 
-// Contact forces that have only a normal force, sampled at whole times.
+// End of valid contact for a normal force without friction, sampled at whole times.
 double watched_until(const std::function<double(double)>& normal) {
     const auto forces = [&](const double* times, std::size_t n, ContactForce* found) {
         for (std::size_t i = 0; i < n; ++i) found[i] = {normal(times[i]), 0.0};
@@ -105,7 +105,7 @@ void a_dip_between_two_samples_is_found() {
     };
     CHECK(std::abs(watched_until(margin) - (2.3 - 5e-4)) < 1e-12);
     CHECK(watched_until([&](double t) { return margin(t) + 3e-7; }) == infinity);
-    const auto steep = [](double t) {  // no parabola passes through infinite margins
+    const auto steep = [](double t) {  // the search fits no parabola through infinite margins
         CHECK(std::isfinite(t));
         return t == 2.0 ? 1.0 : infinity;
     };
@@ -140,10 +140,10 @@ void every_segment_knows_every_kind_of_sample() {
         using namespace coordinate;
         const State& state = states[i].state;
         const auto& [q, q_dot] = coordinates[i];
-        const auto close =
-            [](double one, double other) {  // flow samples of rolling have a formula of their own
-                return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
-            };
+        // Flow samples of rolling use another formula.
+        const auto close = [](double one, double other) {
+            return std::abs(one - other) <= 1e-13 * (1 + std::abs(one));
+        };
         CHECK(close(flows[i].theta, state.theta) && close(flows[i].omega, state.omega));
         CHECK(close(flows[i].x, state.x) && close(q[x], state.x) && close(q[z], state.z));
         CHECK(close(q_dot[x], state.x_dot) && close(q_dot[theta], state.omega));

@@ -91,7 +91,7 @@ struct Asked {
     std::optional<double> step = {};
     std::optional<int> stages = {};
     int samples = 13;
-    int printed = 13;  // of the samples
+    int printed = 13;  // number of printed samples
 };
 
 Scene thin() {

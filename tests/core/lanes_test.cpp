@@ -30,7 +30,7 @@ void within(double ulps, const char* what, double low, double high, const Functi
             const double size = std::abs(static_cast<double>(expected));
             const double ulp = std::nextafter(size, INFINITY) - size;
             const double off = static_cast<double>(std::abs(found[lane] - expected)) / ulp;
-            if (!(off <= worst)) worst = off;  // also for NaN
+            if (!(off <= worst)) worst = off;  // true for NaN, too
         }
     }
     const bool holds = worst <= ulps;

@@ -43,7 +43,7 @@ inline Scene on_slope(Scene scene, double slope) {
     return scene;
 }
 
-// The end of a test program: a line, and the exit code.
+// Prints the verdict of a test program and returns its exit code.
 inline int verdict(int failures) {
     std::printf(failures == 0 ? "all hold\n" : "%d do not hold\n", failures);
     return failures == 0 ? 0 : 1;

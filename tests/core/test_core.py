@@ -35,7 +35,7 @@ OTHERS = ("body", "rolled", "thresholds", "classify")
 
 
 def found(name: str) -> str | None:
-    """A program that the test extra puts beside the interpreter, or one of the system."""
+    """Path of a program beside the interpreter (from the test extra), else of the system's."""
     scripts = sysconfig.get_path("scripts")
     return shutil.which(name, path=os.pathsep.join((scripts, os.environ.get("PATH", ""))))
 
@@ -48,7 +48,7 @@ def run(*command: str) -> str:
 
 @pytest.fixture(scope="module")
 def build(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of the programs: a minute of work for one core."""
+    """Folder of the programs, whose build takes one core a minute."""
     cmake, ninja = found("cmake"), found("ninja")
     compiler = os.environ.get("CXX") or found("c++") or found("g++") or found("clang++")
     for name, program in {"CMake": cmake, "C++ compiler": compiler}.items():
@@ -95,7 +95,7 @@ def test_the_second_build_has_the_committed_bits(second: tuple[str, list[Record]
 def test_another_rounding_of_the_c_library_stays_within_the_bound(
     build: Path, second: tuple[str, list[Record]]
 ) -> None:
-    """glibc without fused multiply-add, as on a processor that has none."""
+    """glibc without fused multiply-add rounds as on a processor that has none."""
     library, records = printed(build / "golden", GLIBC_TUNABLES="glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4")
     if library == second[0]:
         pytest.skip(f"{library} has one rounding only")
@@ -128,7 +128,7 @@ def compare(mine: list[Record], through_python: list[Record], bound: float) -> N
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_motions_through_python(name: str) -> None:
-    """Within the bound: without a compiler the bits of this C library are unknown."""
+    """Motions stay within the bound: without a compiler the bits of this C library are unknown."""
     motion = [each for each in blocks(RECORDS, "motion")[name] if each.kind not in OTHERS]
     compare(motion[2:], list(motion_through_python(motion)), OTHER_LIBRARY)
 

@@ -102,7 +102,7 @@ Numbers judgements(double omega) {
             period(scene_of(omega))};
 }
 
-// All works; one of them samples a motion that all threads share.
+// The works of a thread; one of them samples a motion that all threads share.
 std::vector<Work> works() {
     static const Solution shared =
         simulate(scene_of(6.0), loose(Model::contact, Method::automatic), 2.0, [] {});

@@ -1,4 +1,4 @@
-"""`replacing`: a file is the old one or the new one, whatever happens in between."""
+"""`replacing` leaves either the old file or the complete new file, whatever interrupts it."""
 
 import os
 import re
@@ -58,7 +58,7 @@ def test_names_in_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.chdir(tmp_path)
     with replacing("motion.npz") as new:
         new.write_bytes(NEW)
-        monkeypatch.chdir("/")  # what was meant stays meant
+        monkeypatch.chdir("/")  # a relative path keeps its meaning
     assert names(tmp_path) == ["motion.npz"]
 
 
@@ -134,7 +134,7 @@ def test_the_owner_stays(old: Path) -> None:
 
 
 def test_a_file_that_is_not_to_be_written_is_not() -> None:
-    """Root may write to any file, so root tries it as nobody, in a folder open to all."""
+    """Root may write to any file, so root tries it as user `nobody`, in a folder open to all."""
     nobody, user = 65534, os.geteuid()
     with tempfile.TemporaryDirectory() as folder:
         os.chmod(folder, 0o777)
@@ -195,7 +195,7 @@ def test_devices_and_pipes_are_written_not_replaced(tmp_path: Path) -> None:
 def test_wrong_places_are_refused_by_name(
     name: str, kind: type[OSError], old: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By the name given, not that of a file nobody asked for; before any work; as `open` does."""
+    """The error of `open` is raised before any work, and names the given path."""
     monkeypatch.chdir(old.parent)
     Path("folder").mkdir()
     Path("loop").symlink_to("loop")

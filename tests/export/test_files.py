@@ -1,4 +1,4 @@
-"""Files of trajectories: what is damaged is refused by name, and what was there stays."""
+"""Files of trajectories: damaged ones are refused by name; an old file survives a failed save."""
 
 import copy
 import dataclasses
@@ -102,7 +102,7 @@ def test_damage_is_refused_or_does_no_harm(
             found = rl.load(path)
         except ValueError as error:
             assert re.match(REFUSED, str(error)), (i, damage)
-        else:  # a date, or the header of a member that the directory repeats
+        else:  # the byte is in a date, or in a member header that the directory repeats
             harmless += 1
             require_same(found, dataclasses.replace(motions[name], kept_events=found.events))
     assert 100 < harmless < 800
@@ -124,7 +124,7 @@ def test_no_damage_is_no_damage(
 
 
 def places(part: Any, road: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """The road to every value, and to every part that holds values."""
+    """Paths (keys and indices) of every value, and of every part that holds values."""
     yield road
     if isinstance(part, (dict, list)):
         for key in part if isinstance(part, dict) else range(len(part)):
@@ -157,11 +157,11 @@ WRONG_VALUES: dict[str, Any] = {
 
 @pytest.mark.parametrize("name", SAVED)
 def test_wrong_values_are_refused(name: str, contents: dict[str, bytes], tmp_path: Path) -> None:
-    """Every value of the text turned into many others: what is read is what would be written."""
+    """Each value of the text is replaced by many others; a file still read is saved unchanged."""
     path, again = tmp_path / "motion.npz", tmp_path / "again.npz"
     about, arrays = taken_apart(contents[name])
     taken = set()
-    about["events"] = about["events"][:1]  # the others are no different
+    about["events"] = about["events"][:1]  # the other events have the same form
     roads = [road for road in places(about) if road]
     for road in roads:
         for label, value in WRONG_VALUES.items():
@@ -261,7 +261,7 @@ def test_samples_in_any_order_and_of_another_machine(
     assert rl.load(path).theta.dtype == np.float64
 
 
-# ------------------------------------------------------------------------- made to do harm
+# ------------------------------------------------------------------------- malicious files
 
 
 class Harmful:
@@ -282,14 +282,14 @@ def test_nothing_is_unpickled(
 
 
 def test_nothing_is_unpacked(contents: dict[str, bytes], tmp_path: Path) -> None:
-    """A file of a megabyte could hold arrays of a gigabyte."""
+    """A compressed file of a megabyte could hold arrays of a gigabyte."""
     about, arrays = taken_apart(contents["rolling"])
     content = put_together(about, arrays, np.savez_compressed)
     refusal(content, tmp_path / "motion.npz", ".* must not be compressed")
 
 
 def test_a_member_is_read_once(contents: dict[str, bytes], tmp_path: Path) -> None:
-    """A directory of a million members that are all the same bytes would take a week."""
+    """A directory with a million members of the same bytes would take a week."""
     path = tmp_path / "motion.npz"
     path.write_bytes(contents["rolling"])
     with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
@@ -299,7 +299,7 @@ def test_a_member_is_read_once(contents: dict[str, bytes], tmp_path: Path) -> No
 
 @pytest.mark.parametrize("begin", [b"", b"PK\x03\x04"])
 def test_a_huge_file_is_not_read_to_be_refused(begin: bytes, tmp_path: Path) -> None:
-    """Of 6 GiB, with other first bytes or without the end of an archive, and an endless one."""
+    """A file of 6 GiB with two kinds of first bytes, and an endless file, are refused early."""
     huge, many = tmp_path / "motion.npz", tmp_path / "many"
     many.mkdir()
     (many / "request.npz").symlink_to(huge)

@@ -1,4 +1,4 @@
-"""Tables of a trajectory: the same numbers, in the units they say, in files and back."""
+"""Tables of a trajectory have its numbers, in the stated units, in files and back."""
 
 import dataclasses
 import warnings
@@ -26,7 +26,7 @@ def motion(request: pytest.FixtureRequest) -> rl.Trajectory:
 
 
 def scene_in(facts: Mapping[str, Any]) -> rl.Scene:
-    """The scene that the attributes of a table tell of."""
+    """The scene that the attributes of a table describe."""
     names = {field.name for field in dataclasses.fields(rl.Scene)}
     blow = {k.removeprefix("impulse_"): v for k, v in facts.items() if k.startswith("impulse_")}
     given = {name: facts[name] for name in names & set(facts)}
@@ -62,7 +62,7 @@ def test_no_array_of_a_trajectory_is_left_out(motion: rl.Trajectory) -> None:
     public = [name for name in dir(motion) if not name.startswith("_")]
     arrays = {name for name in public if isinstance(getattr(motion, name), np.ndarray)}
     listed = {each.name for each in (TIME, *QUANTITIES, MODE)}
-    assert listed | {"multipliers", "q", "q_dot"} == arrays  # q: x, z, theta, psi, r once more
+    assert listed | {"multipliers", "q", "q_dot"} == arrays  # q repeats x, z, theta, psi, r
 
 
 LENGTH, DURATION, MASS = 4.0, 2.0, 8.0  # powers of two: the scaled motion has the same digits
@@ -73,14 +73,14 @@ SCALES = {
 
 
 def scale(unit: str) -> float:
-    """Factor of a quantity in a world whose metre, second and kilogram are these."""
+    """Factor of a quantity in `unit` between a scene and its scaled copy."""
     over, _, under = unit.partition("/")
     factors = [SCALES[part] for part in over.split()]
     return float(np.prod(factors)) / (SCALES[under] if under else 1.0)
 
 
 def test_the_units_are_those_of_the_numbers() -> None:
-    """In a world scaled in length, time and mass each quantity grows as its unit does."""
+    """Each quantity of a scene scaled in length, time and mass grows as its unit does."""
     small = rl.Scene(0.7, 1.9, mass=3.0, gravity=3.7, theta=0.4, omega=1.0, x=-5.0)
     large = dataclasses.replace(
         small,
@@ -99,8 +99,8 @@ def test_the_units_are_those_of_the_numbers() -> None:
     for name in one.columns.drop("mode"):
         expected = one[name].to_numpy() * scale(units[name])
         largest = np.max(np.abs(expected))
-        assert largest > 0 or name == "lambda4"  # zero while the body rolls
-        # rounding apart; a wrong unit is wrong by a factor of 2 or more
+        assert largest > 0 or name == "lambda4"  # lambda4 is zero while the body rolls
+        # rounding apart; a wrong unit would change a value by a factor of 2 or more
         assert other[name].to_numpy() == pytest.approx(expected, rel=0, abs=1e-12 * largest), name
 
 

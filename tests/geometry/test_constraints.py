@@ -1,8 +1,8 @@
-"""The report's constraints at states that obey them or not, and the coordinates of rolling.
+"""The report's constraints at states that obey or break them, and the coordinates of rolling.
 
-q = (x, z, theta, psi, r). Everything is held against f1 ... f4 written down once more in mpmath,
-their rates by numerical differentiation along q_dot, and gap and slip by turning the outline.
-Bounds: a few ulp of the terms that a residual is the difference of.
+q = (x, z, theta, psi, r). The references are f1 ... f4 in mpmath, their rates by numerical
+differentiation along q_dot, and gap and slip from the turned outline. Bounds: a few ulp of the
+terms of each residual.
 """
 
 import math
@@ -19,7 +19,7 @@ from rolling_ellipse import constraints, kinematics
 
 Shape = tuple[float, float]
 NAMES = ["x", "z", "theta", "psi", "r"]
-# the neutral shape, a hair beside it, generic, standing, thin
+# a circle, nearly a circle, generic, standing, thin
 THREE_AND_MORE = [(1.0, 1.0), (1.0 + 1e-8, 1.0), (2.0, 1.0), (0.7, 1.9), (2.0, 0.02), (0.03, 1.3)]
 STATES = 40
 
@@ -29,14 +29,14 @@ def digits() -> None:
     mp.mp.dps = DIGITS
 
 
-# ---------------------------------------------------------- what their rounding is worth
+# -------------------------------------------------------------------- bounds by rounding
 
 
 def position_terms(q: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """How large the terms of f2, f3, f4 are."""
+    """Sizes of the terms of f2, f3, f4."""
     _, z, theta, psi, r = q
     polar = a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2)
-    turned = abs(r * mp.sin(psi - theta) * (psi - theta))  # the rounding of psi - theta
+    turned = abs(r * mp.sin(psi - theta) * (psi - theta))  # rounding of psi - theta
     return [abs(z) + abs(r) + turned, abs(r) + polar, abs(psi - theta) + abs(lead(theta, a, b))]
 
 
@@ -47,14 +47,14 @@ def residuals(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
 
 
 def residual_terms(y: Sequence[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """How large the terms of the seven residuals are: sums of what is added, without signs."""
+    """Sizes of the terms of the seven residuals: their sums without signs."""
     q, q_dot = y[:5], [abs(rate) for rate in y[5:]]
     x_dot, z_dot, omega, psi_dot, r_dot = q_dot
     _, _, theta, psi, r = q
     turned = abs(psi - theta)
     sine, cosine = abs(mp.sin(psi - theta)), abs(mp.cos(psi - theta))
     polar_rate = abs(along(positions, q, [0, 0, 0, 1, 0], a, b)[1])
-    lead_rate = 1 + along(positions, q, [0, 0, -1, 0, 0], a, b)[2]  # d psi / d theta + 1 at least
+    lead_rate = 1 + along(positions, q, [0, 0, -1, 0, 0], a, b)[2]  # at least 1 + d psi / d theta
     return [
         *position_terms(q, a, b),
         x_dot + abs(r) * (cosine + sine * turned) * omega,
@@ -72,7 +72,7 @@ def flatten(found: object) -> list[float]:
 
 
 def random_states(shape: Shape, count: int) -> np.ndarray:
-    """(q, q_dot) that obey nothing, of the size of the body."""
+    """Random (q, q_dot) of the size of the body, which break all constraints."""
     generator = np.random.default_rng(20)
     size = max(shape)
     spread = np.array([size, size, 3.0, 3.0, size, size, size, 1.0, 1.0, size])
@@ -88,8 +88,8 @@ def outline_right(t: mp.mpf, a: mp.mpf, b: mp.mpf, theta: mp.mpf) -> mp.mpf:
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
 def test_residuals_of_inconsistent_states(shape: Shape) -> None:
-    """Against the definitions: an evaluation may lose 16 ulp of the terms (products of a few sines,
-    quotients and roots, each half an ulp to one)."""
+    """Residuals equal their definitions, to 16 ulp of their terms: an evaluation takes products of
+    a few sines, quotients and roots, and each adds half an ulp to one."""
     a, b = map(mp.mpf, shape)
     for y in random_states(shape, STATES):
         found = flatten(constraints(y[:5], y[5:], a=shape[0], b=shape[1]))
@@ -101,8 +101,8 @@ def test_residuals_of_inconsistent_states(shape: Shape) -> None:
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
 def test_gap_and_slip_by_turning_the_outline(shape: Shape) -> None:
-    """Lowest point of the outline and the velocity of the material there, in the air and under the
-    ground alike; 8 ulp of the terms, and psi and r have no say in it."""
+    """Gap and slip equal the lowest point of the outline and the velocity of the material there,
+    above and below the ground, to 8 ulp of the terms; psi and r have no effect."""
     a, b = map(mp.mpf, shape)
     for y in random_states(shape, 12):
         z, theta, x_dot, omega = (mp.mpf(y[k]) for k in (1, 2, 5, 7))
@@ -122,21 +122,21 @@ def test_gap_and_slip_by_turning_the_outline(shape: Shape) -> None:
 
 
 def rolling_coordinates(theta: float, a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """q at an angle."""
+    """q of a rolling body at an angle."""
     h, slope = oracles.geometry.height(theta, a, b), oracles.geometry.support(theta, a, b).slope
     path = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
     return [path, h, mp.mpf(theta), theta + lead(theta, a, b), mp.hypot(h, slope)]
 
 
 def polar(psi: mp.mpf, a: mp.mpf, b: mp.mpf) -> mp.mpf:
-    """r of f3."""
+    """r by f3, as a function of psi."""
     return a * b / mp.sqrt((b * mp.sin(psi)) ** 2 + (a * mp.cos(psi)) ** 2)
 
 
 @pytest.mark.parametrize("shape", THREE_AND_MORE)
 def test_kinematics_against_differentiation(shape: Shape) -> None:
-    """Each of the ten by its definition and d/d theta: relative, but for psi, which is theta plus
-    its lead, and what comes from psi: r and its rate may follow the psi that is handed out."""
+    """Each of the ten coordinates and rates equals its definition and d/d theta: relative, except
+    psi, which is theta plus its lead, and r and its rate, which may follow the rounding of psi."""
     omega = -1.7
     for theta in (0.0, 1e-5, 0.3, 1.2, math.pi / 2, -2.5, 40.3, 9999.5):
         q, q_dot = kinematics(theta, omega, a=shape[0], b=shape[1])
@@ -158,10 +158,10 @@ def test_kinematics_against_differentiation(shape: Shape) -> None:
             ]
             r_slopes = mp.diffs(partial(polar, a=a, b=b), psi, 2)
             _, r_slope, r_bend = (abs(value) for value in r_slopes)
-            grain = abs(psi) + 8 * abs(psi - theta)  # of psi, in units of 2^-52
+            grain = abs(psi) + 8 * abs(psi - theta)  # rounding of psi, in units of 2^-52
         allowed = [16 * exact[0], 4 * exact[1], 0, grain, 8 * r + r_slope * grain]
         allowed_rates = [16 * abs(rate) for rate in rates]
-        allowed_rates[4] += abs(rates[3]) * r_bend * grain + mp.mpf(10) ** -40  # 0 of a circle
+        allowed_rates[4] += abs(rates[3]) * r_bend * grain + mp.mpf(10) ** -40  # 0 for a circle
         for k in range(5):
             assert abs(float(q[k]) - exact[k]) <= EPS * abs(allowed[k]), (NAMES[k], theta)
             off = abs(float(q_dot[k]) - rates[k] * omega)

@@ -1,4 +1,4 @@
-"""The geometry against its definitions: each function by a road that shares no formula with it."""
+"""Each function of the geometry equals its definition, computed by independent formulas."""
 
 from collections.abc import Callable
 
@@ -38,7 +38,7 @@ def outline_parameter(theta: float, a: float, b: float) -> mp.mpf:
     return mp.mpf(theta) + mp.atan2((mp.mpf(a) - b) * sine * cosine, a * sine**2 + b * cosine**2)
 
 
-# ------------------------------------------------------------------ the oracles by themselves
+# ------------------------------------------------------------------ self-tests of the oracles
 
 
 def test_oracle_support_is_the_lowest_point(shape: Shape) -> None:
@@ -51,8 +51,9 @@ def test_oracle_support_is_the_lowest_point(shape: Shape) -> None:
 
 
 def test_oracle_closed_form_is_the_derivative(shape: Shape) -> None:
-    """The one closed form of h, h', h'' in the suite, in its three arithmetics: mpf, and long
-    double (1e-13 of the largest: a flat body beside its flat side bends 1e6 times its height)."""
+    """The closed form of h, h', h'' in the suite equals numerical derivatives in mpf, and in long
+    double to 1e-13 of the largest: h'' of a thin body near its flat position is 1e6 times its
+    height."""
     for theta in (0.0, 1e-3, 0.7, 1.5707, -2.2, 40.3):
         exact = oracles.geometry.height_slopes(theta, *shape)
         closed = oracles.geometry.support(mp.mpf(theta), *map(mp.mpf, shape))
@@ -64,7 +65,7 @@ def test_oracle_closed_form_is_the_derivative(shape: Shape) -> None:
 
 
 def test_oracle_lengths_are_the_integrals(shape: Shape) -> None:
-    """Both closed forms used below, against Gauss quadrature of the definitions."""
+    """The closed forms of both lengths in this file equal Gauss quadrature of their definitions."""
     a, b = map(mp.mpf, shape)
     theta = 1.1
     waist = min(a, b) / max(a, b)
@@ -81,8 +82,9 @@ def test_oracle_lengths_are_the_integrals(shape: Shape) -> None:
 
 
 def test_support_and_its_slope(shape: Shape, angles: list[float]) -> None:
-    """h and h' are sums or products of positive terms, a - b apart, which is exact near a circle:
-    relative, at most 3 roundings each in sin, cos and the axes and 3 more on the way."""
+    """h and h' are sums or products of positive terms, except a - b, which is exact near a circle.
+    So errors are relative: at most 3 roundings each in sin, cos and the axes, and 3 more after
+    them."""
     for theta in angles:
         h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
         assert ulps(geometry.support(theta, a=shape[0], b=shape[1]), h, h) <= 4
@@ -90,13 +92,13 @@ def test_support_and_its_slope(shape: Shape, angles: list[float]) -> None:
         a, b = map(mp.mpf, shape)
         exact = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h
         assert abs(exact - slope) <= mp.mpf(10) ** -25 * max(shape)
-        # 1e-300 * 1e-3 * 1e-3 is still a normal double: nothing may vanish
+        # 1e-300 * 1e-3 * 1e-3 is still a normal double: no value may underflow
         assert ulps(actual, exact, exact) <= 8
 
 
 def test_curvatures(shape: Shape, angles: list[float]) -> None:
-    """rho = a^2 b^2 / h^3 carries 3 times the error of h (4 ulp) and a few roundings of its own;
-    h'' = rho - h is a difference: relative to the terms, not to itself."""
+    """rho = a^2 b^2 / h^3 has 3 times the error of h (4 ulp) and a few roundings; h'' = rho - h is
+    a difference, whose error is relative to its terms."""
     for theta in angles:
         h, _, curvature = oracles.geometry.height_slopes(theta, *shape)
         radius = h + curvature
@@ -107,12 +109,12 @@ def test_curvatures(shape: Shape, angles: list[float]) -> None:
 
 
 def test_contact_polar(shape: Shape, angles: list[float]) -> None:
-    """r is relative; psi = theta + (an angle within pi/2) is right to the rounding of the sum and
-    to the relative error of its second term."""
+    """r has a relative error; psi = theta + (an angle within pi/2) has the rounding of the sum and
+    the relative error of the second term."""
     for theta in angles:
         h, slope, _ = oracles.geometry.height_slopes(theta, *shape)
         a, b = map(mp.mpf, shape)
-        slope = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h  # relative, also near 0
+        slope = (a - b) * (a + b) * mp.sin(theta) * mp.cos(theta) / h  # relative error, also near 0
         distance, lead = mp.hypot(h, slope), mp.atan2(slope, h)
         actual = geometry.contact_distance(theta, a=shape[0], b=shape[1])
         assert ulps(actual, distance, distance) <= 8
@@ -122,8 +124,8 @@ def test_contact_polar(shape: Shape, angles: list[float]) -> None:
 
 
 def test_arc_length(shape: Shape, angles: list[float]) -> None:
-    """The outline's own length up to the contact point. The integrand is positive, so relative:
-    the angle's double errors are of the order of one ulp of it, the integral's a few more."""
+    """Arc length is the outline's length up to the contact point. The integrand is positive, so the
+    error is relative: one ulp by the error of the angle, and a few by the integral."""
     for theta in angles:
         exact = boundary_length(outline_parameter(theta, *shape), *shape)
         actual = geometry.arc_length(theta, a=shape[0], b=shape[1])
@@ -131,8 +133,8 @@ def test_arc_length(shape: Shape, angles: list[float]) -> None:
 
 
 def test_centre_path(shape: Shape, angles: list[float]) -> None:
-    """x = integral of h: positive and with a condition number near 1, so relative to x itself.
-    (As the difference arc - h' it would lose (longer/shorter)^2 near the flat.)"""
+    """x = integral of h is positive with a condition number near 1, so its error is relative. (The
+    difference arc - h' would lose (longer/shorter)^2 near the flat position.)"""
     a, b = map(mp.mpf, shape)
     for theta in angles:
         exact = b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)

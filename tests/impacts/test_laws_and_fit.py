@@ -1,5 +1,5 @@
-"""Single impacts by three laws, against the impulse path walked in small steps; the fit of one
-pair of coefficients to a series of them."""
+"""Single impacts by three laws agree with small steps along the impulse path; a fit finds one pair
+of coefficients from a series of impacts."""
 
 import itertools
 import math
@@ -17,7 +17,7 @@ K2 = (0.7**2 + 0.3**2) / 4
 
 
 def approaching(count: int, seed: int = 1, **body: float) -> np.ndarray:
-    """theta, x_dot, z_dot, omega of contacts that move into the ground, any slip, shape (4, n)."""
+    """theta, x_dot, z_dot, omega of approaching contacts with any slip, shape (4, n)."""
     rng = np.random.default_rng(seed)
     theta, omega = rng.uniform(-4, 4, count), rng.normal(0, 3, count)
     shape = body or BODY
@@ -33,7 +33,7 @@ def approaching(count: int, seed: int = 1, **body: float) -> np.ndarray:
 
 
 def contact(state: np.ndarray, velocities: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Slip and gap rate."""
+    """Slip and gap rate of velocities at a state."""
     h, slope = (f(state[0], **BODY) for f in (geometry.support, geometry.support_slope))
     return velocities[0] - h * velocities[2], velocities[1] - slope * velocities[2]
 
@@ -43,24 +43,24 @@ def speed(velocities: np.ndarray, k2: float = K2) -> np.ndarray:
 
 
 def after(state: Any, law: Any, friction: float, restitution: float, **body: Any) -> np.ndarray:
-    """Velocities, shape (3, ...)."""
+    """Velocities after an impact, shape (3, ...)."""
     shape = BODY | body
     return np.stack(
         impacts.collide(*state, **shape, friction=friction, restitution=restitution, law=law)
     )
 
 
-# ------------------------------------------------------------------------------- the oracle
+# ----------------------------------------------------------------------------------- oracle
 
 
-PUSHES = 5000  # each as large as this part of the approach
+PUSHES = 5000  # steps of the oracle; each impulse step is the approach speed over PUSHES
 
 
 def walked(law: Any, state: np.ndarray, friction: float, restitution: float) -> np.ndarray:
-    """One small push after another; after each, the friction that stops the slip, cut off at
-    the cone, and a look at whether restitution has done its share. No case is told from another.
-    The body is a column of Cartesian velocities, moved by Newton's and Euler's laws per kilogram.
-    """
+    """Velocities after many small normal impulses, each followed by the friction that stops the
+    slip, limited by the cone, and by a check whether restitution is complete. The steps distinguish
+    no cases. The body is a column of Cartesian velocities, moved by Newton's and Euler's laws per
+    kilogram."""
     theta, x_dot, z_dot, omega = state
     h, slope = (f(theta, **BODY) for f in (geometry.support, geometry.support_slope))
     first = u = contact(state, state[1:])[1]
@@ -69,7 +69,7 @@ def walked(law: Any, state: np.ndarray, friction: float, restitution: float) -> 
     work: Any = 0.0
     compression_impulse = compression_work = 0.0
     while True:
-        # G_tt = 1 + h^2/k^2 answers to the trial slip after the push alone
+        # trial slip after the normal impulse alone; G_tt = 1 + h^2/k^2
         trial = x_dot - h * (omega - slope * step / K2)
         pull = float(np.clip(-trial / (1 + h * h / K2), -friction * step, friction * step))
         x_dot, z_dot = x_dot + pull, z_dot + step
@@ -91,9 +91,9 @@ def walked(law: Any, state: np.ndarray, friction: float, restitution: float) -> 
 def test_laws_against_the_path_in_small_steps(
     law: Any, friction: float, restitution: float
 ) -> None:
-    """The walk is late by a push at the end of compression, which restitution at most doubles,
-    and by one at its own end. A push with its friction, sqrt(1 + mu^2) < 1.5 of it, moves the body
-    by sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three of them by 2e-3 of the approach."""
+    """The oracle is late by a step at the end of compression, which restitution at most doubles,
+    and by one at its own end. A step with its friction, sqrt(1 + mu^2) < 1.5 of it, moves the body
+    by sqrt(1 + (h^2 + h'^2)/k^2) < 2.1 times as much: three steps by 2e-3 of the approach."""
     for state in approaching(25, seed=3).T:
         found = after(state, law, friction, restitution)
         true = walked(law, state, friction, restitution)
@@ -102,7 +102,7 @@ def test_laws_against_the_path_in_small_steps(
 
 
 def test_the_laws_are_told_apart() -> None:
-    """The bound of the test above is far below what it has to see."""
+    """Any two laws differ by 2e-2 of the approach at least; the test above allows 2e-3."""
     state = approaching(25, seed=3)
     found = [after(state, law, 0.4, 0.6) for law in LAWS]
     approach = -contact(state, state[1:])[1]
@@ -110,13 +110,13 @@ def test_the_laws_are_told_apart() -> None:
         assert np.max(speed(one - other) / approach) > 2e-2
 
 
-# --------------------------------------------------------------------------- what must hold
+# ------------------------------------------------------------------------------- invariants
 
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("friction", [0.0, 0.15, 0.8, math.inf])
 def test_an_impulse_at_the_contact_within_the_cone(law: Any, friction: float) -> None:
-    """Velocities of up to 10 m/s, and some tens of roundings each."""
+    """Velocities reach 10 m/s, with some tens of roundings each."""
     state = approaching(400)
     velocities = after(state, law, friction, 0.7)
     h, slope = (f(state[0], **BODY) for f in (geometry.support, geometry.support_slope))
@@ -138,14 +138,14 @@ def test_stronge_and_poisson_create_no_energy(law: Any, shape: tuple[float, floa
     for friction in (0.0, 0.1, 0.5, 1.2, 1e6, math.inf):
         for restitution in (0.0, 0.5, 0.9, 1.0):
             found = after(state, law, friction, restitution, a=a, b=b)
-            # some tens of roundings
+            # the bound allows some tens of roundings
             assert np.all(speed(found, k2) <= speed(state[1:], k2) * (1 + 100 * EPS))
 
 
 def test_a_light_thin_body_that_turns_fast_keeps_its_energy() -> None:
-    """h' omega is up to 100 times z_dot: no velocity may be what is left of such a difference.
+    """h' omega is up to 100 times z_dot: no velocity may be the difference of two such terms.
 
-    Three velocities of some ten roundings each, the energy twice as much of its own size.
+    Three velocities have some ten roundings each, and the energy twice as many of its own size.
     """
     random = np.random.default_rng(6)
     body: dict[str, Any] = {"a": 1.0, "b": 0.05, "gyration2": 1e-4}
@@ -167,7 +167,8 @@ def test_a_light_thin_body_that_turns_fast_keeps_its_energy() -> None:
 
 def test_newton_creates_energy() -> None:
     """The contact slips forwards behind the centre. Friction helps the approach until the slip
-    stops; what it adds to u is not in u before, but the whole approach is given back."""
+    stops. Its part of the approach is missing in the initial u, but all of the approach is
+    returned."""
     theta = -math.pi / 4
     h, slope = geometry.support(theta, **BODY), geometry.support_slope(theta, **BODY)
     before = np.array([0.5, -1.0, 0.0])  # no spin: slip 0.5 m/s, approach 1 m/s
@@ -186,8 +187,9 @@ def test_newton_is_the_ratio_of_gap_rates() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.1, 0.4, 1.1, math.inf])
 def test_poisson_is_the_ratio_of_impulses(friction: float) -> None:
-    """Beside that of compression, which is all without restitution. An impulse is what z_dot gains
-    (0.1 to 10 m/s of up to 10 m/s), by some ten roundings of what goes into it."""
+    """Restitution's impulse is e times compression's, which is the whole impulse for e = 0. An
+    impulse is a change of z_dot (0.1 to 10 m/s, at velocities up to 10 m/s), with some ten
+    roundings."""
     state = approaching(300)
     compression, all_of_it = (
         impacts.collide(*state, **BODY, friction=friction, restitution=e, law="poisson")[1]
@@ -198,18 +200,18 @@ def test_poisson_is_the_ratio_of_impulses(friction: float) -> None:
 
 
 def test_without_friction_or_restitution_the_laws_are_one() -> None:
-    """No corner in the path: work, impulse and speed are in the same proportion; and e = 0 ends
-    each at the end of compression."""
+    """The path without friction is straight: work, impulse and speed are in the same proportion;
+    and e = 0 ends every law at the end of compression."""
     state = approaching(300)
     for friction, restitution in ((0.0, 0.6), (0.0, 1.0), (0.5, 0.0), (math.inf, 0.0)):
         found = [after(state, law, friction, restitution) for law in LAWS]
         for other in found[1:]:
-            assert np.max(speed(other - found[0])) < 1e-13  # ten velocities' worth of roundings
+            assert np.max(speed(other - found[0])) < 1e-13  # roundings of ten velocities
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_unlimited_friction_is_the_limit_of_much(law: Any) -> None:
-    """What is left goes like 1/mu: a tenth of it for ten times the friction."""
+    """The difference from the limit falls like 1/mu: a tenth for ten times the friction."""
     state = approaching(300)
     limit, much, more = (after(state, law, mu, 0.7) for mu in (math.inf, 1e5, 1e6))
     ratio = np.max(speed(much - limit)) / np.max(speed(more - limit))
@@ -222,11 +224,11 @@ def test_a_contact_that_leaves_is_left_alone(law: Any) -> None:
     assert found == (1.0, 2.0, 0.5)
 
 
-# ---------------------------------------------------------------- the law of the simulations
+# -------------------------------------------------------------------- law of the simulations
 
 
 def test_stronge_is_what_a_simulated_body_does() -> None:
-    """A thrown ellipse meets the ground; the event has both sides of the impact, to the bit."""
+    """An event of a thrown ellipse has the states before and after its impact, to the bit."""
     scene = Scene(
         2.0, 1.0, mass=3.0, theta=0.4, z=2.5, x_dot=1.5, z_dot=0.0, omega=1.0, friction=0.3,
         restitution=0.6,
@@ -235,7 +237,7 @@ def test_stronge_is_what_a_simulated_body_does() -> None:
     before, then = hit.state_before, hit.state_after
     state = (before.theta, before.x_dot, before.z_dot, before.omega)
     found = after(state, "stronge", 0.3, 0.6, a=2.0, b=1.0)
-    # the mass is 3 kg there and 1 kg here: some of the roundings differ
+    # the mass is 3 kg in the scene and 1 kg in `collide`: some roundings differ
     assert found == pytest.approx([then.x_dot, then.z_dot, then.omega], rel=64 * EPS)
 
 
@@ -270,14 +272,14 @@ def test_kinetic_speed_is_the_energy() -> None:
     assert np.allclose(both, np.sqrt([[25, 34], [16, 25]]), rtol=4 * EPS)
 
 
-# ------------------------------------------------------------------------------------ the fit
+# ---------------------------------------------------------------------------------------- fit
 
 
-E, MU = 0.61, 0.25  # on no point of a first grid
+E, MU = 0.61, 0.25  # true values, which are not on the first grid
 
 
 def series(law: Any, noise: float, count: int = 1000) -> tuple[Any, Any]:
-    """Impacts with these coefficients and normal noise, the same in each kinetic direction."""
+    """Impacts with coefficients E and MU, and equal normal noise in each kinetic direction."""
     before = approaching(count, seed=7)
     blur = np.random.default_rng(8).normal(0, 1, (3, count)) * noise
     return before, after(before, law, MU, E) + blur / np.array([[1.0], [1.0], [math.sqrt(K2)]])
@@ -286,7 +288,7 @@ def series(law: Any, noise: float, count: int = 1000) -> tuple[Any, Any]:
 @pytest.mark.parametrize("minimise", ["median", "rms"])
 @pytest.mark.parametrize("law", LAWS)
 def test_fit_finds_the_coefficients_without_noise(law: Any, minimise: Any) -> None:
-    """To its last step, 1/10240 of the range of either coefficient."""
+    """The fit is exact to its last step, 1/10240 of the range of either coefficient."""
     fitted = impacts.fit(*series(law, 0.0, 60), **BODY, law=law, minimise=minimise)
     assert fitted.restitution == pytest.approx(E, abs=1 / 10240)
     assert math.atan(fitted.friction) == pytest.approx(math.atan(MU), abs=math.pi / 2 / 10240)
@@ -295,10 +297,11 @@ def test_fit_finds_the_coefficients_without_noise(law: Any, minimise: Any) -> No
 
 @pytest.mark.parametrize("law", LAWS)
 def test_fit_finds_the_coefficients_through_noise(law: Any) -> None:
-    """Four standard deviations each. The impacts move by 0.96 m/s (root mean square) for one of e
-    and by 1.83 m/s for one of mu, so noise of 0.2 m/s in 1000 impacts leaves 0.2/sqrt(1000) over
-    that. The length of three normal numbers has the mean square 3, known to 2/sqrt(6000) of it,
-    and the median 1.538, where its density is 0.578: known to 0.5/(0.578 sqrt(1000))."""
+    """The bound is four standard deviations. The impacts move by 0.96 m/s (root mean square) per
+    unit of e and by 1.83 m/s per unit of mu, so noise of 0.2 m/s in 1000 impacts gives
+    0.2/sqrt(1000) over those. The length of three normal numbers has the mean square 3, known to
+    2/sqrt(6000) of it, and the median 1.538, where its density is 0.578: known to 0.5/(0.578
+    sqrt(1000))."""
     fitted = impacts.fit(*series(law, 0.2), **BODY, law=law, minimise="rms")
     sigma = 0.2 / math.sqrt(1000)
     assert fitted.restitution == pytest.approx(E, abs=4 * sigma / 0.96)
@@ -336,11 +339,11 @@ def test_errors_are_those_of_the_coefficients_found() -> None:
 
 
 def test_what_sticks_bounds_friction_from_below() -> None:
-    """Any friction above the largest |J_t|/J_n of these impacts makes the same of them."""
+    """Any friction above the largest |J_t|/J_n of sticking impacts gives the same velocities."""
     before: Any = approaching(200, seed=9)
     found: Any = after(before, "stronge", math.inf, 0.5)
     normal = found[1] - before[2]
-    kept = normal > 0.05  # where friction alone stops the approach, none is enough
+    kept = normal > 0.05  # friction alone may stop the approach at a smaller impulse
     before, found = before[:, kept], found[:, kept]
     enough = np.max(np.abs(found[0] - before[1]) / normal[kept])
     fitted = impacts.fit(before, found, **BODY, minimise="rms")
@@ -354,7 +357,7 @@ def test_what_sticks_bounds_friction_from_below() -> None:
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("law", LAWS)
 def test_no_impacts_come_to_nothing(law: Any) -> None:
-    """Whatever the numbers beside an empty array are."""
+    """An empty array gives empty results, whatever the other numbers are."""
     found = impacts.collide(
         theta=0.0, x_dot=0.0, z_dot=[], omega=-math.inf, a=2.0, b=1.0, friction=0.2,
         restitution=0.5, law=law,

@@ -1,7 +1,7 @@
-"""Stepping rolling: orders, tolerances, peers, what they conserve, how they end, what is refused.
+"""Stepped rolling: orders, tolerances, peers, conserved quantities, endings and refusals.
 
-The truth on level ground is the exact flow, which steps nothing and is good to 1e-15 (held against
-40 digits by test_flow_reference.py); on a slope it is the energy.
+The reference on level ground is the exact flow, which takes no steps and has an error of 1e-15
+(test_flow_reference.py judges it in 40 digits). The reference on a slope is the energy.
 """
 
 import itertools
@@ -18,7 +18,7 @@ from rolling_ellipse import IntegrationError, Mode, Scene, Status, Trajectory
 from scipy.integrate import solve_ivp
 from stability_laws import exponent
 
-# most motions here are about the rolling equation, whether a ground could give the forces or not
+# these motions are solutions of the rolling equation, even where a ground could not give the forces
 pytestmark = pytest.mark.filterwarnings("ignore:rolling is valid until")
 
 METHODS: dict[str, dict[str, Any]] = {
@@ -40,7 +40,7 @@ STANDING = Scene(0.7, 1.9, theta=1.2, omega=1.0)
 
 
 def roll(scene: Scene, t: Any, name: str, **how: Any) -> Trajectory:
-    """The motion by a method of METHODS, however it ends."""
+    """The motion by a method of METHODS, without an exception if it fails."""
     return rl.simulate(scene, t, model="rolling", raise_on_failure=False, **METHODS[name], **how)
 
 
@@ -49,7 +49,7 @@ def stepped(scene: Scene, t: Any, name: str, step: float = 0.02) -> Trajectory:
 
 
 def error(trajectory: Trajectory) -> np.ndarray:
-    """Distance from the exact motion at each sample: of theta and of omega, in its own size."""
+    """Distance from the exact motion at each sample: theta [rad], omega / max(largest omega, 1)."""
     exact = rl.simulate(trajectory.scene, trajectory.t, method="exact")
     fastest = np.max(np.abs(exact.omega))
     off: np.ndarray = np.hypot(
@@ -64,16 +64,16 @@ def same_bits(one: Trajectory, other: Trajectory) -> bool:
 
 # ------------------------------------------------------------------------------------ orders
 
-# rotation, libration, and nearly a circle, long enough for errors to add up. Order 8 shows only
-# between where the next term of the error is small and where rounding begins: mild outlines. The
-# last number is the largest step tried [s].
+# Rotation, libration, and nearly a circle, long enough for errors to add up. Order 8 shows only
+# between the sizes of the next error term and of rounding: mild outlines. The last number is the
+# largest step tried [s].
 ORDER_SCENES = {
     "rotation": (Scene(2.0, 1.0, omega=3.2), 5.0, 0.1),
     "libration": (Scene(1.2, 1.0, theta=0.5), 3.0, 0.25),
     "circle-like": (Scene(1.1, 1.0, theta=0.3, omega=2.0), 2.0, 0.25),
 }
-# errors used for the fit: well above rounding, an ulp of theta, 2e-15, of either solution, and
-# small enough for the leading term to rule
+# Errors used for the fit: well above rounding (2e-15, an ulp of theta, in either solution), and
+# small enough for the leading term to dominate.
 LOW_ORDER_WINDOW = (1e-12, 1e-9)
 HIGH_ORDER_WINDOW = (6e-14, 3e-11)
 BETWEEN = (0.25, 0.5, 0.8)
@@ -82,7 +82,7 @@ BETWEEN = (0.25, 0.5, 0.8)
 def errors_at_and_between_steps(
     scene: Scene, t_end: float, name: str, steps: int
 ) -> tuple[float, float]:
-    """Root mean square error at the ends of up to 60 steps, and at three places inside each."""
+    """Root mean square error at the ends of up to 60 steps, and at three times inside each."""
     h = t_end / steps
     first = np.unique(np.linspace(0, steps - 1, 60).astype(int))[:, None]
     times = np.minimum((first + np.array([*BETWEEN, 1.0])) * h, t_end)
@@ -115,7 +115,7 @@ def test_measured_order_is_the_nominal_one(where: str, name: str) -> None:
 # -------------------------------------------------------------------------------- tolerances
 
 
-# not beside the separatrix, where a motion amplifies errors by any factor
+# no motion near the separatrix, where errors are amplified without bound
 TOLERANCE_SCENES = {
     "rolling": rl.scenes.rolling,
     "rocking": rl.scenes.rocking,
@@ -128,7 +128,7 @@ TOLERANCES = 10.0 ** -np.arange(4, 12.5, 0.5)
 @pytest.mark.parametrize("scene", TOLERANCE_SCENES.values(), ids=TOLERANCE_SCENES)
 @pytest.mark.parametrize("name", PAIRS)
 def test_the_error_is_proportional_to_the_tolerance(name: str, scene: Scene) -> None:
-    """Over eight decades; the largest error of the motion, as that at one time may pass 0."""
+    """The largest error of a motion is proportional to the tolerance over eight decades."""
     largest = [
         np.max(error(roll(scene, 5.0, name, rtol=rtol, atol=rtol / 100))) for rtol in TOLERANCES
     ]
@@ -156,8 +156,8 @@ def rolling_equation(scene: Scene) -> Callable[[float, Any], list[float]]:
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
-    """The same pairs with the same step control: steps and evaluations within 10 %, the error at
-    the end no larger in the mean; where the tolerance is loose, chance moves single ones."""
+    """SciPy has the same pairs with the same step control: steps and evaluations agree within 10 %,
+    and the mean error at the end is no larger; at loose tolerances chance changes single errors."""
     gains = []
     for scene, rtol in itertools.product(TOLERANCE_SCENES.values(), TOLERANCES[::3]):
         trajectory = roll(scene, [5.0], name, rtol=rtol, atol=rtol / 100)
@@ -179,8 +179,8 @@ def test_as_good_as_scipy_at_the_same_tolerance(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["gauss2", "gauss3", "gauss4"])
 def test_gauss_undoes_itself(name: str) -> None:
-    """Turned round, the steps lead back to the start, however coarse they are: up to the rounding
-    of 240 steps, an ulp each at most. Radau, which damps, does not get back."""
+    """Reversed steps return to the start at any step size, up to the rounding of 240 steps, an ulp
+    each at most. Radau, which damps, does not return."""
 
     def back(name: str) -> float:
         there = stepped(rl.scenes.rocking, [6.0], name, 0.05)
@@ -197,8 +197,9 @@ def test_gauss_undoes_itself(name: str) -> None:
 def test_the_stages_are_solved_however_near_an_equilibrium_a_step_starts(
     name: str, angle: float
 ) -> None:
-    """Where theta'' nearly vanishes, so does every other change of the iteration for the stages:
-    that is no reason to end it. A start moved by d moves the end by a few d, and by rounding."""
+    """theta'' nearly vanishes at such angles, and so does every other change of the iteration for
+    the stages: that must not end it. A start moved by d moves the end by a few d, and by
+    rounding."""
     scene = Scene(2.0, 1.0, theta=angle, omega=3.2)
     reference = stepped(scene, [0.03], name, 0.03)
     for d in (1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5):
@@ -214,7 +215,7 @@ def test_the_stages_are_solved_however_near_an_equilibrium_a_step_starts(
 @pytest.mark.parametrize("half_turns", [1, 2, -3])
 def test_half_turns_make_no_difference(name: str, half_turns: int) -> None:
     """The ellipse is the same after half a turn, whose double is within 4e-16; a fixed step makes
-    the same errors, and the swing amplifies the difference some hundredfold."""
+    the same errors, and the motion amplifies the difference some hundredfold."""
     start = Scene(2.0, 1.0, theta=0.4, omega=3.0)
     one = stepped(start, 3.0, name)
     other = stepped(replace(start, theta=0.4 + half_turns * math.pi), 3.0, name)
@@ -225,7 +226,7 @@ def test_half_turns_make_no_difference(name: str, half_turns: int) -> None:
 
 @each_method
 def test_far_from_zero_nothing_is_lost(name: str) -> None:
-    """Angles of 1e6 have a grain of 1e-10: the motion has the error of one near 0, and that."""
+    """Angles of 1e6 have an ulp of 1e-10: the error is that of a motion near 0 plus this ulp."""
     far = Scene(2.0, 1.0, theta=1e6, omega=3.0, x=-1e6)
     near = replace(far, theta=math.remainder(1e6, 2 * math.pi), x=0.0)
     here, there = (stepped(scene, 3.0, name) for scene in (near, far))
@@ -261,8 +262,8 @@ def test_steps_do_not_depend_on_units(name: str, weight: float, unit: float) -> 
 @pytest.mark.parametrize("unit", UNITS.values(), ids=UNITS)
 @pytest.mark.parametrize("name", PAIRS)
 def test_control_of_the_error_does_not_depend_on_units(name: str, unit: float) -> None:
-    """Relative tolerances alone; only the first step, a guess, knows of seconds, and grows tenfold
-    a step until it fits."""
+    """With relative tolerances alone only the first step, a guess, depends on seconds; it grows
+    tenfold per step until it fits."""
     scene = Scene(1.3, 1.0, theta=0.4, omega=1.7)
     time = math.sqrt(unit)
     scaled = Scene(1.3 * unit, unit, theta=0.4, omega=1.7 / time)
@@ -285,8 +286,8 @@ EXTREME = {
 @pytest.mark.parametrize("where", EXTREME)
 @each_method
 def test_extreme_scales(name: str, where: str) -> None:
-    """As far as a scene may go, in steps of a thousandth of the time simulated: even order 4 is
-    then within 1e-9 of the size of the motion."""
+    """The largest and smallest scenes, in steps of a thousandth of the time simulated: even order 4
+    is then within 1e-9 of the size of the motion."""
     scene, time = EXTREME[where]
     trajectory = stepped(scene, np.linspace(0, time, 101), name, time / 1000)
     exact = rl.simulate(scene, trajectory.t, method="exact")
@@ -299,8 +300,8 @@ def test_extreme_scales(name: str, where: str) -> None:
 @pytest.mark.parametrize("theta", [1e-8, 1e-100, 1e-155, 1e-160, 1e-165, 1e-200, 1e-300])
 @pytest.mark.parametrize("name", PAIRS)
 def test_a_motion_far_below_the_tolerance_takes_few_steps(name: str, theta: float) -> None:
-    """Errors whose squares are no doubles any more are small all the same; none can add more than
-    the 1e-12 that the tolerance allows it."""
+    """Errors whose squares underflow are still small; each adds at most the 1e-12 of the
+    tolerance."""
     trajectory = roll(Scene(2.0, 1.0, theta=theta), 5.0, name, max_steps=200)
     assert trajectory.status is Status.COMPLETED
     assert np.max(error(trajectory)) <= 1e-10
@@ -326,8 +327,8 @@ def test_a_short_span_takes_few_steps(name: str, span: float) -> None:
 )
 @each_method
 def test_what_rests_stays(name: str, scene: Scene) -> None:
-    """Whatever the method: pi/2 is a double only within rounding, and from there the equation
-    would take half a minute to fall off the tip."""
+    """A resting body stays at rest with every method: pi/2 is a double only within rounding, and
+    from there the equation would take half a minute to fall off the tip."""
     for how in [{"step": 0.1}] if name not in PAIRS else [{"step": 0.1}, {}]:
         trajectory = roll(scene, 60.0, name, **how)
         assert np.all(trajectory.mode == Mode.REST)
@@ -344,8 +345,8 @@ def test_what_rests_stays(name: str, scene: Scene) -> None:
 )
 @each_method
 def test_the_last_step_ends_at_the_end(name: str, span: float, step: float, steps: int) -> None:
-    """With a shorter one where needed, and none for the rounding of 0.7/0.1. The error is that of
-    even steps, of up to (0.3/0.25)^8 = 4.3 times less."""
+    """The last step is shorter where needed, and none is added for the rounding of 0.7/0.1. The
+    error is that of even steps, which is up to (0.3/0.25)^8 = 4.3 times smaller."""
     scene = replace(rl.scenes.rocking, omega=1.0)
     trajectory = stepped(scene, span, name, step)
     assert trajectory.stats["steps"] == steps
@@ -363,7 +364,8 @@ def test_time_zero(name: str) -> None:
 
 @each_method
 def test_samples_do_not_depend_on_what_else_is_asked_for(name: str) -> None:
-    """More than a thousand of them, each third, in another order, and beyond any chunk."""
+    """Samples keep their bits among others: more than a thousand, each third, in another order, and
+    beyond any chunk."""
     times = np.linspace(0, 5, 5001)
     trajectory = stepped(rl.scenes.rolling, times, name)
     third = stepped(rl.scenes.rolling, times[1001::3], name)
@@ -377,8 +379,8 @@ def test_samples_do_not_depend_on_what_else_is_asked_for(name: str) -> None:
 
 @each_method
 def test_dense_output_meets_the_steps(name: str) -> None:
-    """A motion that ends with a step has the same state there as one that goes on, up to the
-    rounding of its shorter last step; on both sides of it there is no jump."""
+    """A motion that ends with a step has the same state there as one that continues, up to the
+    rounding of its shorter last step; there is no jump between its two sides."""
     scene, step = rl.scenes.rolling, 0.02
     whole = stepped(scene, 2.0, name, step)
     for n in (1, 7, 50, 99):
@@ -392,9 +394,9 @@ def test_dense_output_meets_the_steps(name: str) -> None:
 
 
 def test_dense_output_is_as_good_after_the_steps_of_which_it_is_kept() -> None:
-    """That of the first 2**17 steps is kept, of the others computed again: between the ends of a
-    step the error differs from theirs by as much on one side as on the other, 6e-11, where a step
-    is 0.01. Steps go through all their sizes in 350, a half turn."""
+    """Dense output is kept for the first 2**17 steps and computed again for later ones: between the
+    ends of a step its error differs from theirs by 6e-11, equally before and after, where a step is
+    0.01. Step sizes repeat after 350 steps, a half turn."""
     scene, kept, around = rl.scenes.rolling, 2**17, 400
     how = {"rtol": 1e-12, "atol": 1e-12}
     steps = roll(scene, [10.0], "dopri5", **how).stats["steps"]
@@ -413,7 +415,7 @@ def test_dense_output_is_as_good_after_the_steps_of_which_it_is_kept() -> None:
     assert 0 < between(kept) <= 2 * between(kept - around)
 
 
-# -------------------------------------------------------------------------------- how it ends
+# ------------------------------------------------------------------------------------ endings
 
 
 @pytest.mark.parametrize("how", [{}, {"step": 0.01}], ids=["controlled", "fixed"])
@@ -465,7 +467,7 @@ OVERSTEPPED = {"thin": Scene(2.0, 0.002, theta=0.3, omega=1.0), "fast": Scene(2.
 def test_steps_much_too_large_give_no_nonsense_numbers(
     name: str, scene: Scene, step: float
 ) -> None:
-    """They are refused (STEP_TOO_LARGE) or wrong, but what there is, is finite."""
+    """The steps are refused (STEP_TOO_LARGE) or inaccurate, but all samples are finite."""
     trajectory = stepped(scene, 100.0, name, step)
     refused = trajectory.status is Status.STEP_TOO_LARGE
     assert refused or trajectory.t.size == 1001

@@ -1,9 +1,9 @@
-"""The coefficients of the integrators: what they must satisfy, from the doubles themselves.
+"""The coefficients of the integrators satisfy their order conditions as doubles.
 
 Explicit methods by rooted trees: a method has order p where, for every tree of up to p nodes,
 phi(tree) = 1/gamma(tree) (J. C. Butcher; E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
-Differential Equations I, II.2). Implicit ones by the simplifying assumptions B, C, D of II.7 and
-IV.5 there. Everything in long double, whose own rounding is 2000 times below that of the doubles.
+Differential Equations I, II.2). Implicit methods by the simplifying assumptions B, C, D of II.7 and
+IV.5 there. The arithmetic is long double, whose rounding is 2000 times below that of the doubles.
 """
 
 from collections.abc import Callable, Iterator
@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 from rolling_ellipse import _core
 
-Long = Any  # arrays of np.longdouble
-Tree = tuple[Any, ...]  # its branches, sorted; () is a single node
+Long = Any  # an array of np.longdouble
+Tree = tuple[Any, ...]  # the branches, sorted; () is a single node
 TABLEAUS = _core.tableaus()
 EXPLICIT = ("rk4", "dopri5", "dop853")
 GAUSS = ("gauss2", "gauss3", "gauss4")
-ROUNDING = 2.0**-53  # of one coefficient, relative
+ROUNDING = 2.0**-53  # relative rounding of one coefficient
 
 
 def long(values: Any) -> Long:
@@ -28,12 +28,12 @@ def long(values: Any) -> Long:
 
 
 class Violation(AssertionError):
-    """A condition that the coefficients do not meet."""
+    """A condition that the coefficients do not satisfy."""
 
 
 def require(actual: Long, exact: Any, terms: Long, factors: int) -> None:
-    """`actual` is a sum of products of up to `factors` rounded numbers, `terms` the sum of their
-    sizes: each factor may be off by its rounding, once more for a number that was computed."""
+    """`actual` is a sum of products of up to `factors` rounded numbers, and `terms` the sum of
+    their sizes: each factor may have the error of its rounding, or twice that if computed."""
     off = np.abs(long(actual) - exact)
     allowed = 2 * factors * ROUNDING * long(terms)
     if not np.all(off <= allowed):
@@ -50,12 +50,12 @@ def test_every_tableau_is_here() -> None:
 
 @cache
 def trees(nodes: int) -> tuple[Tree, ...]:
-    """All rooted trees of so many nodes."""
+    """Rooted trees with the given number of nodes."""
     return tuple(forests(nodes - 1, nodes - 1))
 
 
 def forests(nodes: int, largest: int) -> Iterator[Tree]:
-    """Multisets of trees with so many nodes together, none larger than `largest`."""
+    """Multisets of trees with a total number of nodes, none larger than `largest`."""
     if nodes == 0:
         yield ()
         return
@@ -77,7 +77,7 @@ def gamma(tree: Tree) -> int:
 
 
 def elementary_weight(a: Long, b: Long) -> Callable[[Tree], Long]:
-    """phi of a method, for one tree after the other."""
+    """phi of a method, as a function of the tree."""
 
     @cache
     def stage_weight(tree: Tree) -> Long:
@@ -87,8 +87,8 @@ def elementary_weight(a: Long, b: Long) -> Callable[[Tree], Long]:
 
 
 def require_order(a: Long, b: Long, sizes: Long, order: int, s: float = 1.0) -> None:
-    """The weights b, sums of terms of these sizes, give the solution at the fraction s of a step
-    to that order."""
+    """The weights b, sums of terms of these sizes, give the solution at the fraction s of a step to
+    the given order."""
     phi, size = elementary_weight(a, b), elementary_weight(np.abs(a), sizes)
     for nodes in range(1, order + 1):
         for tree in trees(nodes):
@@ -96,7 +96,7 @@ def require_order(a: Long, b: Long, sizes: Long, order: int, s: float = 1.0) -> 
 
 
 def require_no_effect(a: Long, weights: Long, sizes: Long, order: int) -> None:
-    """The weights, as a difference of two results of that order, give nothing up to it."""
+    """The weights, a difference of two results of the given order, vanish up to this order."""
     phi, size = elementary_weight(a, weights), elementary_weight(np.abs(a), sizes)
     for nodes in range(1, order + 1):
         for tree in trees(nodes):
@@ -104,7 +104,7 @@ def require_no_effect(a: Long, weights: Long, sizes: Long, order: int) -> None:
 
 
 def test_trees_are_counted_right() -> None:
-    """Numbers of rooted trees (OEIS A000081), the double factorials that gamma must not exceed."""
+    """Counts of rooted trees are OEIS A000081; gamma has its known values for 3 and 4 nodes."""
     assert [len(trees(n)) for n in range(1, 10)] == [1, 1, 2, 4, 9, 20, 48, 115, 286]
     assert all(len(set(trees(n))) == len(trees(n)) for n in range(1, 10))
     assert {gamma(tree) for tree in trees(3)} == {3, 6}
@@ -120,7 +120,7 @@ class Explicit(NamedTuple):
     order: int
     stages: int
     c: Long
-    a: Long  # all stages: those of the step, the slope at its end, those of the dense output
+    a: Long  # all stages: for the step, for the slope at its end, for the dense output
     error: Long
     dense: Long
 
@@ -135,14 +135,14 @@ def explicit(name: str) -> Explicit:
     return Explicit(t["order"], t["stages"], *map(long, (t["c"], t["a"], error, dense)))
 
 
-# orders of the results that each row of the error estimate compares with, and of dense output
+# orders of the lower results that each row of the error estimate uses, and of dense output
 ERROR_ORDERS = {"rk4": (), "dopri5": (4,), "dop853": (5, 3)}
 DENSE_ORDERS = {"rk4": 3, "dopri5": 4, "dop853": 7}
 
 
 def dense_weights(method: Explicit, s: float) -> tuple[Long, Long]:
-    """b_j(s) of y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))), with
-    F0 = y(1) - y(0), F1 = h y'(0) - F0, F2 = 2 F0 - h (y'(0) + y'(1)); and the sizes added up."""
+    """b_j(s) of y(s) - y(0) = s (F0 + (1-s) (F1 + s (F2 + (1-s) (F3 + s (F4 + ...))))), with F0 =
+    y(1) - y(0), F1 = h y'(0) - F0, F2 = 2 F0 - h (y'(0) + y'(1)); and the sums of their sizes."""
     b = method.b
     before, after = np.eye(len(b), dtype=np.longdouble)[[0, method.stages]]
     terms = [b, before - b, 2 * b - before - after, *method.dense]
@@ -163,7 +163,7 @@ def check_explicit(method: Explicit, error_orders: tuple[int, ...], dense_order:
     require_order(a, b, np.abs(b), method.order)
     for weights, order in zip(method.error, error_orders, strict=True):
         require_no_effect(a, weights, np.abs(weights) + np.abs(b), order)
-    for weights in method.dense:  # what the cubic gives exactly needs no more terms
+    for weights in method.dense:  # cubic polynomials need no more terms
         require_no_effect(a, weights, np.abs(weights), 3)
     for s in (0.1, 0.37, 0.5, 0.83, 1.0):
         require_order(a, *dense_weights(method, s), dense_order, s)
@@ -184,7 +184,7 @@ def test_explicit_methods_are_explicit(name: str) -> None:
 
 @pytest.mark.parametrize("name", EXPLICIT)
 def test_no_order_is_higher_than_it_says(name: str) -> None:
-    """So that the conditions are seen to tell methods apart: one order more is refused."""
+    """The conditions distinguish methods: one order more is refused."""
     method = explicit(name)
     with pytest.raises(Violation):
         require_order(method.a, method.b, np.abs(method.b), method.order + 1)
@@ -204,7 +204,7 @@ def test_the_error_estimate_of_dopri5_compares_with_its_fourth_order_weights() -
 
 @pytest.mark.parametrize("name", EXPLICIT)
 def test_a_wrong_digit_in_an_explicit_method_is_seen(name: str) -> None:
-    """Every coefficient in turn off by 1e-12: some condition breaks."""
+    """Each coefficient in turn is changed by 1e-12, and some condition breaks."""
     check_explicit(explicit(name), ERROR_ORDERS[name], DENSE_ORDERS[name])
     for field in ("c", "a", "error", "dense"):
         for index in zip(*np.nonzero(getattr(explicit(name), field)), strict=True):
@@ -224,13 +224,13 @@ def powers(c: Long, highest: int) -> tuple[Long, Long]:
 
 
 def check_quadrature(b: Long, c: Long, order: int) -> None:
-    """B(order): the weights integrate polynomials of degree below it."""
+    """B(order): the weights integrate polynomials of degree below the order."""
     k, ck = powers(c, order)
     require(b @ ck, long(1) / k, b @ ck, order)
 
 
 def check_stages(a: Long, sizes: Long, c: Long, order: int) -> None:
-    """C(order): so do the stages."""
+    """C(order): the stages integrate polynomials of degree below the order."""
     k, ck = powers(c, order)
     exact = c[:, None] ** k / k
     require(a @ ck, exact, sizes @ ck + exact, order + 1)
@@ -248,12 +248,12 @@ def check_gauss(c: Long, b: Long, mu: Long, nu: Long) -> None:
     stages = len(c)
     if np.any(mu + mu.T != 1):  # long double holds these sums exactly
         raise Violation("mu_ij + mu_ji is not 1")
-    sizes = (np.abs(mu) + 1) * b  # mu_ij is rounded with mu_ji, not by its own size
+    sizes = (np.abs(mu) + 1) * b  # mu_ij and mu_ji are rounded together, to an absolute error
     check_quadrature(b, c, 2 * stages)
     check_stages(mu * b, sizes, c, stages)
     check_dual(mu * b, sizes, b, c, stages)
-    # stages of the next step: the slopes of this one as a polynomial of degree below the number
-    # of stages, integrated from the end of the step to 1 + c_i
+    # Stages of the next step: the polynomial of degree below the number of stages through the
+    # slopes of this step, integrated from the end of the step to 1 + c_i.
     k, ck = powers(c, stages)
     foreseen = ((1 + c[:, None]) ** k - 1) / k
     require((nu * b) @ ck, foreseen, np.abs(nu * b) @ ck + foreseen, stages + 2)
@@ -302,7 +302,7 @@ def test_no_gauss_order_is_higher_than_it_says(name: str) -> None:
 
 @pytest.mark.parametrize("name", GAUSS)
 def test_gauss_weights_are_symmetric(name: str) -> None:
-    """c_i + c_(s+1-i) = 1 and b_i = b_(s+1-i): run backwards, the step undoes itself."""
+    """c_i + c_(s+1-i) = 1 and b_i = b_(s+1-i): the reversed step undoes the step."""
     method = collocation(name)
     assert np.array_equal(method["b"], method["b"][::-1])
     require(method["c"] + method["c"][::-1], 1, np.ones_like(method["c"]), 1)

@@ -1,8 +1,8 @@
-"""The model "multipliers": its matrix, its accelerations and multipliers, its motions.
+"""The model "multipliers": its matrix, accelerations, multipliers and motions.
 
-The constraints are differentiated numerically in mpmath (f1 ... f4 as oracles/constraints.py writes
-them down); the linear system is put to the test by substituting its solution back, with a matrix
-written here in long double and its rate by complex steps; motions are held against exact rolling.
+The reference differentiates f1 ... f4 of oracles/constraints.py numerically in mpmath. The solution
+of the linear system is substituted into the system, with a matrix in long double and its rate by
+complex steps. The reference of motions is exact rolling.
 """
 
 import math
@@ -21,7 +21,7 @@ from rolling_ellipse import Scene, Status, Trajectory, _core, simulate
 from rolling_ellipse._ask.settings import Settings
 
 Shape = tuple[float, float]
-Long = Any  # arrays of np.longdouble
+Long = Any  # an array of np.longdouble
 SHAPES = {
     "circle": (1.0, 1.0),
     "circle + 1e-8": (1.0 + 1e-8, 1.0),
@@ -35,7 +35,7 @@ QUARTER = math.pi / 2
 
 
 def random_states(shape: Shape, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """q and q_dot that obey nothing, of the size of the body, r > 0."""
+    """q and q_dot of the size of the body that break all constraints, with r > 0."""
     generator = np.random.default_rng(31)
     size = max(shape)
     q = generator.normal(size=(count, 5)) * [size, size, 3.0, 3.0, size]
@@ -44,8 +44,8 @@ def random_states(shape: Shape, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def states(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
-    """States that obey nothing; rolling ones at quarter turns and far away; the latter, too, a
-    little off the constraints."""
+    """States that break the constraints, rolling states at quarter turns and far away, and rolling
+    states moved slightly off the constraints."""
     angles = [k * QUARTER for k in (-3, -1, 0, 1, 2, 6)] + [0.3, 1e5, -1e5, 25000 * QUARTER]
     rolling = rl.kinematics(np.array(angles), -1.7, a=shape[0], b=shape[1])
     free = random_states(shape, 16)
@@ -55,18 +55,18 @@ def states(shape: Shape) -> tuple[np.ndarray, np.ndarray]:
     return q, q_dot
 
 
-# ------------------------------------------------------------------ the matrix and its rate
+# ---------------------------------------------------------------------- matrix and its rate
 
 
 def exact_matrix(q: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[list[mp.mpf]]:
-    """What q_dot is multiplied with in f1 and in the rates of f2, f3, f4."""
+    """Factors of q_dot in f1 and in the rates of f2, f3, f4."""
     units = [[mp.mpf(j == k) for k in range(5)] for j in range(5)]
     columns = [[no_slip(q, unit), *along(positions, q, unit, a, b)] for unit in units]
     return [[columns[j][k] for j in range(5)] for k in range(4)]
 
 
 def exact_drift(q: list[mp.mpf], q_dot: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> list[mp.mpf]:
-    """Rate of f1 and second rates of f2, f3, f4 when q moves on with a constant q_dot."""
+    """Rate of f1 and second rates of f2, f3, f4 when q moves with a constant q_dot."""
 
     def later(t: mp.mpf) -> list[mp.mpf]:
         return [value + t * rate for value, rate in zip(q, q_dot, strict=True)]
@@ -76,8 +76,8 @@ def exact_drift(q: list[mp.mpf], q_dot: list[mp.mpf], a: mp.mpf, b: mp.mpf) -> l
 
 
 def drift_terms(q: Long, q_dot: Long, a: float, b: float) -> list[float]:
-    """How large the terms of the drift are: sums without signs, with what the rounding of
-    psi - theta does to its sine and cosine."""
+    """Sizes of the terms of the drift: sums without signs, with the effect of the rounding of psi -
+    theta on its sine and cosine."""
     _, _, theta, psi, r = (float(value) for value in q)
     _, _, omega, psi_dot, r_dot = (abs(float(value)) for value in q_dot)
     lean = psi - theta
@@ -92,24 +92,24 @@ def drift_terms(q: Long, q_dot: Long, a: float, b: float) -> list[float]:
         (r * sine * turn + r_dot * cosine) * omega,
         2 * r_dot * sine * turn + r * cosine * turn**2,
         second * psi_dot**2,
-        0.0,  # a product: as good as its value
+        0.0,  # a product has its own relative accuracy
     ]
 
 
 @each_shape
 def test_matrix_and_drift_by_differentiation(shape: Shape) -> None:
-    """At any state, not only at rolling ones: 16 ulp of an entry or of the terms it is made of
-    (products of some ten factors, each an ulp at most, and sums of few)."""
+    """Entries at any state, rolling or not, to 16 ulp of themselves or their terms (products of
+    some ten factors, each with an ulp at most, and sums of few)."""
     a, b = map(mp.mpf, shape)
     q, q_dot = states(shape)
     rows, drift = _core.constraint_system(q, q_dot, *shape)
     assert rows.shape == (len(q), 20) and drift.shape == (len(q), 4)
     off_rows, off_drift = [], []
-    rest = mp.mpf(10) ** -30  # more than a numerical derivative leaves of an entry that is 0
+    rest = mp.mpf(10) ** -30  # larger than a numerical derivative of an entry that is 0
     with mp.workdps(DIGITS):
         for i in range(len(q)):
             point, rate = ([mp.mpf(value) for value in values[i]] for values in (q, q_dot))
-            grain = abs(q[i, 4] * (q[i, 3] - q[i, 2]))  # of r cos, r sin by rounding psi - theta
+            grain = abs(q[i, 4] * (q[i, 3] - q[i, 2]))  # rounding of psi - theta in r cos, r sin
             for k, row in enumerate(exact_matrix(point, a, b)):
                 for found, entry in zip(rows[i, 5 * k : 5 * k + 5], row, strict=True):
                     terms = abs(entry) + (grain if k < 2 else 0) + rest
@@ -122,15 +122,15 @@ def test_matrix_and_drift_by_differentiation(shape: Shape) -> None:
     assert max(off_rows) <= 16 and max(off_drift) <= 16
 
 
-# ---------------------------------------------------------------------- the linear system
+# -------------------------------------------------------------------------- linear system
 
 
 def misses(
     scene: Scene, how: Settings, q: Long, q_dot: Long, q_ddot: Long, multipliers: Long
 ) -> dict[str, Long]:
-    """By how much M q_ddot = Q + A^T lambda and A q_ddot + A_dot q_dot = 0 (or Baumgarte's
-    feedback) are missed, relative to the sums of their terms without signs; for the second each row
-    times the largest acceleration, angles as ways: what elimination can promise."""
+    """Residuals of M q_ddot = Q + A^T lambda and of A q_ddot + A_dot q_dot = 0 (or Baumgarte's
+    feedback), relative to the sums of their terms without signs; for the second each row times the
+    largest acceleration, with angles as lengths, as elimination can guarantee it."""
     point, rate = q.astype(np.longdouble), q_dot.astype(np.longdouble)
     mass, force = forces(scene)
     rows, slopes = matrix(point, scene.a, scene.b), matrix_slopes(point, scene.a, scene.b)
@@ -161,8 +161,9 @@ def misses(
 @each_shape
 @pytest.mark.parametrize("stabilization", ["none", "baumgarte"])
 def test_back_substitution(shape: Shape, stabilization: str) -> None:
-    """With formulas that the core does not know: 1e-13 (some 500 ulp; a solution by elimination
-    misses by its growth times the nine sums of each row). On a slope, at states of any kind."""
+    """Formulas independent of the core give residuals of 1e-13 (some 500 ulp; elimination has a
+    residual of its growth times the nine sums of each row). The ground is a slope, at states of any
+    kind."""
     scene = Scene(*shape, mass=3.0, gravity=3.7, slope=-0.2)
     how = settings(stabilization=stabilization, baumgarte=(3.0, 5.0))
     q, q_dot = states(shape)
@@ -174,7 +175,7 @@ def test_back_substitution(shape: Shape, stabilization: str) -> None:
 
 @pytest.mark.parametrize("column", range(9))
 def test_back_substitution_sees_a_millionth(column: int) -> None:
-    """In any acceleration or multiplier, somewhere."""
+    """A change of 1e-6 in any acceleration or multiplier is seen at some state."""
     scene, how = Scene(2.0, 1.0), settings()
     q, q_dot = states((2.0, 1.0))
     q_ddot, multipliers = _core.multiplier_detail(scene.core, how.core, q, q_dot)
@@ -187,7 +188,7 @@ def test_back_substitution_sees_a_millionth(column: int) -> None:
 @each_shape
 def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
     """50 random rolling states: accelerations, N, F and all multipliers of the model "rolling", to
-    1e-12 of the terms they are made of (gravity is one: z_ddot is lambda_2/m - g)."""
+    1e-12 of their terms (gravity is one: z_ddot is lambda_2/m - g)."""
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(7)
     theta, omega = generator.uniform(-10, 10, 50), generator.normal(0, 3, 50)
     known = _core.rolling_detail(scene.core, theta, omega, np.zeros(50))
@@ -202,7 +203,8 @@ def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
     terms = np.stack([way, way, angular[:, 0], angular[:, 1], way], axis=1)
     shares = np.abs(found - exact) / np.where(terms > 0, terms, EPS)
     push = scene.mass * way[:, None] * np.ones(4)
-    # lambda_4 = R' lambda_3 - r sin(psi - theta) lambda_2 is 0 as far as psi lets R'(psi) be so
+    # lambda_4 = R' lambda_3 - r sin(psi - theta) lambda_2 is 0 but for the rounding of psi in
+    # R'(psi)
     slope = np.abs(matrix(q, *shape)[:, 2, 3])
     aspect = max(shape) / min(shape)
     push[:, 3] *= r + slope + r * aspect**2 * EPS * np.abs(q[:, 3]) / 1e-12
@@ -212,11 +214,11 @@ def test_rolling_states_accelerate_as_they_roll(shape: Shape) -> None:
     assert np.array_equal(exact_multipliers[:, :2], np.stack([friction, normal], axis=1))
 
 
-# ---------------------------------------------------------------------- the projection
+# -------------------------------------------------------------------------- projection
 
 
 def rolling_direction(q: np.ndarray, a: float, b: float) -> Long:
-    """q_dot of theta_dot = 1 that the constraints allow."""
+    """Allowed q_dot with theta_dot = 1."""
     rows = matrix(q.astype(np.longdouble), a, b)
     direction = np.zeros(5, np.longdouble)
     direction[[0, 2, 3]] = -rows[0, 2], 1, -rows[3, 2]
@@ -227,9 +229,9 @@ def rolling_direction(q: np.ndarray, a: float, b: float) -> Long:
 
 @each_shape
 def test_projection_meets_the_constraints_at_the_nearest_state(shape: Shape) -> None:
-    """From some 1e-4 off: residuals of the size of rounding, and a change without a part along the
-    rolling direction, in the metric of M: of velocities none but rounding, of positions what is of
-    second order (x, which no position constraint contains, stays)."""
+    """A state some 1e-4 off is projected: residuals are of the size of rounding, and the change has
+    no part along the rolling direction, in the metric of M: rounding for velocities, second order
+    for positions (x, which no position constraint contains, stays)."""
     scene, generator = Scene(*shape, mass=3.0), np.random.default_rng(11)
     inertia = np.array([1, 1, scene.gyration2, 0, 0], np.longdouble)
     size, least = max(shape), min(shape)
@@ -269,10 +271,10 @@ FORCES = ("normal_force", "friction_force")
 @pytest.mark.parametrize("stabilization", EXPLICIT)
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 def test_motions_are_those_of_rolling(scene: Scene, stabilization: Any) -> None:
-    """2 s at rtol 1e-12, beside the model "rolling" (exact where it can be, dop853 at 1e-13). 1e-9:
-    some 100 steps, each 1e-12 off, and the motion parts neighbours by at most some exp(lambda t) =
-    e^3.4 on the way; a rounding of a far theta (1.5e-11) parts them, too. With feedback the forces
-    contain what is missed in velocity, times 2 alpha m = 60 kg/s at most."""
+    """2 s at rtol 1e-12, compared with the model "rolling" (exact where possible, dop853 at 1e-13).
+    The bound 1e-9: some 100 steps, each 1e-12 off, and errors grow by at most some exp(lambda t) =
+    e^3.4; a rounding of a far theta (1.5e-11) grows, too. With feedback the forces contain the
+    residual of velocity, times 2 alpha m = 60 kg/s at most."""
     times = np.linspace(0, 2, 41)
     tight: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-13} if scene.slope else {}
     exact = simulate(scene, times, model="rolling", **tight)
@@ -280,7 +282,7 @@ def test_motions_are_those_of_rolling(scene: Scene, stabilization: Any) -> None:
         scene, times, model="multipliers", stabilization=stabilization, rtol=1e-12, atol=1e-12
     )
     assert (found.model, found.method, found.status) == ("multipliers", "dop853", Status.COMPLETED)
-    # d^2 psi/dtheta^2 and the forces multiply an error in theta by a power of the aspect
+    # d^2 psi/dtheta^2 and the forces multiply an error in theta by a power of the aspect ratio
     allowed = 1e-9 * (max(scene.a, scene.b) / min(scene.a, scene.b)) ** 2
     feedback = 60 if stabilization == "baumgarte" else 1
     off = {}
@@ -292,8 +294,8 @@ def test_motions_are_those_of_rolling(scene: Scene, stabilization: Any) -> None:
 
 @pytest.mark.parametrize("stabilization", EXPLICIT)
 def test_far_starts_are_as_good_as_near_ones(stabilization: Any) -> None:
-    """theta = 1e5, whose last digit is 1.5e-11: 10 s at rtol 1e-13 end as exactly as a sample can
-    say it. A psi rounded like theta would break f4 by as much and be carried on for the 10 s."""
+    """theta = 1e5 has an ulp of 1.5e-11: 10 s at rtol 1e-13 end with the accuracy of a sample. A
+    psi rounded like theta would break f4 by an ulp, and the 10 s would keep this error."""
     scene = Scene(2.0, 1.0, theta=1e5, omega=3.2)
     found = simulate(
         scene, [10.0], model="multipliers", stabilization=stabilization, rtol=1e-13, atol=1e-13
@@ -306,15 +308,15 @@ def test_far_starts_are_as_good_as_near_ones(stabilization: Any) -> None:
 @pytest.mark.parametrize("stabilization", EXPLICIT)
 @pytest.mark.parametrize("theta", [0.0, QUARTER])
 def test_rest(theta: float, stabilization: Any) -> None:
-    """On the flat side nothing moves. On the tip theta is a double, and what rounding leaves grows
-    like exp(1.674 t), 4300 times in 5 s: 8 ulp of the angle become 1.5e-11."""
+    """A flat body does not move. On the tip theta is a double, and its rounding grows like
+    exp(1.674 t), 4300 times in 5 s: 8 ulp of the angle become 1.5e-11."""
     scene = Scene(2.0, 1.0, mass=3.0, theta=theta, x=4.0)
     found = simulate(scene, 5.0, model="multipliers", stabilization=stabilization)
     grown = 1.5e-11 if theta else 0.0
     assert np.max(np.abs(found.q - found.q[0])) <= grown
-    rate = 20 if stabilization == "baumgarte" else 1.674  # of what errors do there: 2 alpha
-    assert np.max(np.abs(found.q_dot)) <= 2 * rate * grown  # x' = h omega, the fastest
-    # the forces answer theta by some ten weights per radian, with feedback a hundred
+    rate = 20 if stabilization == "baumgarte" else 1.674  # growth rate; 2 alpha with feedback
+    assert np.max(np.abs(found.q_dot)) <= 2 * rate * grown  # x' = h omega is the fastest
+    # forces change with theta by some ten weights per radian, with feedback a hundred
     assert np.max(np.abs(found.normal_force - 3 * 9.81)) <= 100 * grown + 8 * EPS * 3 * 9.81
 
 
@@ -328,8 +330,8 @@ ORDERS = {
 @pytest.mark.parametrize("stabilization", ["none", "baumgarte", "projection"])
 @pytest.mark.parametrize("method", ORDERS)
 def test_order(method: Any, stabilization: Any) -> None:
-    """Largest error of q at all knots of 3.37 half turns over the size of the steps. At these sizes
-    the terms of the next order are still seen: the slope lies between the two orders, closer to its
+    """Largest error of q at all knots of 3.37 half turns, as a power of the step. The terms of the
+    next order still contribute: the slope lies between the two orders, closer to the method's
     own."""
     order, counts = ORDERS[method]
     scene = Scene(1.2, 1.0, theta=0.2, omega=4.0)
@@ -360,7 +362,7 @@ def motion(request: pytest.FixtureRequest) -> Iterator[Trajectory]:
 
 
 def test_arrays_are_what_they_promise(motion: Trajectory) -> None:
-    """Shapes, types, and that the stored state is the one everything is computed from."""
+    """Shapes and types are as documented, and every property is computed from the stored state."""
     n = motion.t.size
     for name, columns in {"q": 5, "q_dot": 5, "multipliers": 4}.items():
         values = getattr(motion, name)
@@ -382,7 +384,7 @@ def test_arrays_are_what_they_promise(motion: Trajectory) -> None:
 
 
 def test_a_start_in_coordinates() -> None:
-    """Without stabilization the motion starts there, off the constraints or not."""
+    """A motion without stabilization starts at the given q, even off the constraints."""
     q, q_dot = rl.kinematics(0.4, 2.0, a=2.0, b=1.0)
     q, q_dot = q + 1e-3 * np.arange(5), q_dot - 1e-3
     times = np.array([0.0, 0.5])

@@ -1,6 +1,6 @@
-"""What each stabilization of the model "multipliers" does at its knots and between them.
+"""Each stabilization of the model "multipliers" at its knots and between them.
 
-How constraints drift without one, and what feedback costs, is in tests/stability.
+tests/stability has the drift of constraints without stabilization, and the cost of feedback.
 """
 
 import math
@@ -23,13 +23,14 @@ ROCKING = Scene(2.0, 1.0, theta=0.2, omega=1.0)
 multipliers = partial(simulate, model="multipliers", max_steps=10_000_000)
 
 
-# ---------------------------------------------------------------------------- beside each other
+# ----------------------------------------------------------------------------------- comparison
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 def test_what_each_stabilization_is_worth() -> None:
-    """Errors of theta: the drift costs most, feedback less, projection little, and with the energy
-    least, from 10 half turns on. Residuals: feedback bounds them, projection leaves rounding."""
+    """Errors of theta from 10 half turns on: largest by drift, smaller with feedback, small with
+    projection, least with the energy too. Residuals: feedback bounds them, projection leaves
+    rounding."""
     exact = simulate(FED_BACK, kept("none").t)
     errors = {name: np.abs(kept(name).theta - exact.theta) for name in KEPT}
     gaps = {name: np.abs(kept(name).constraint_residuals().gap) for name in KEPT}
@@ -41,14 +42,14 @@ def test_what_each_stabilization_is_worth() -> None:
     for better, worse in pairwise(order):
         assert np.all(2 * errors[better][later] < errors[worse][later]), (better, worse)
     assert gaps["none"][-1] > 0.1 and gaps["gains of 10"][-1] < 1e-6
-    # theta is 3000 at the end, its last digit 5e-13, and the ground feels it through h'
+    # theta is 3000 at the end, with an ulp of 5e-13, and h' carries it into the gap
     grain = 4 * np.spacing(kept("projection").theta) * FED_BACK.a
     assert np.all(gaps["projection"] <= grain) and np.all(gaps["projection+energy"] <= grain)
 
 
 def test_the_path_shows_what_no_residual_does() -> None:
-    """Without slip x is a function of theta, but the constraint on it is one of velocities only: x
-    leaves the path by what the steps truncate, in proportion to time, projection or not."""
+    """Rolling makes x a function of theta, but its constraint is one of velocities only: x leaves
+    the path by the truncation of the steps, in proportion to time, with or without projection."""
     for name in ("projection", "projection+energy"):
         found = kept(name)
         path = centre_path(found.theta, a=1.5, b=1.0) - centre_path(0.2, a=1.5, b=1.0)
@@ -65,9 +66,9 @@ def test_the_path_shows_what_no_residual_does() -> None:
 @pytest.mark.parametrize("stabilization", ["projection", "projection+energy"])
 @pytest.mark.parametrize("scene", [ROTATION, ROCKING], ids=["rotation", "rocking"])
 def test_projection_between_steps(scene: Scene, stabilization: Any) -> None:
-    """10 half turns with dop853 at rtol 1e-10, at 10 000 times that are no knots: 1e-8 from exact
-    rolling (some 500 steps, each 1e-10 off in theta = 30, and errors of both signs), and residuals
-    of rounding: 16 ulp of theta as the constraints feel it, times the rates for velocities."""
+    """10 half turns with dop853 at rtol 1e-10, at 10 000 times between knots: 1e-8 from exact
+    rolling (some 500 steps, each 1e-10 off in theta = 30, with errors of both signs), and residuals
+    of rounding: 16 ulp of theta in the constraints, times the rates for velocities."""
     times = np.sort(np.random.default_rng(1).uniform(0, 10 * half_turn(scene), 10_000))
     exact, found = simulate(scene, times), multipliers(scene, times, stabilization=stabilization)
     off = {
@@ -90,7 +91,7 @@ def test_projection_between_steps(scene: Scene, stabilization: Any) -> None:
 
 @pytest.mark.parametrize("name", [name for name in SCENES if "far" not in name])
 def test_energy_is_kept_at_any_time(name: str) -> None:
-    """At knots and between, of every scene: 8 ulp of the terms of the energy."""
+    """The energy of every scene is kept to 8 ulp of its terms, at knots and between them."""
     scene = SCENES[name]
     times = np.append(0.0, np.sort(np.random.default_rng(2).uniform(0, 3, 2000)))
     found = multipliers(scene, times, stabilization="projection+energy")
@@ -107,9 +108,9 @@ ggl = partial(multipliers, method="radau", stabilization="ggl")
 
 
 def test_order_of_the_index_2_system() -> None:
-    """Radau IIA with three stages has order 5 there for positions and velocities; the multipliers
-    of a trajectory are computed from these, so that they have it, too (E. Hairer, G. Wanner,
-    Solving Ordinary Differential Equations II, VII.4)."""
+    """Radau IIA with three stages has order 5 in the index-2 system for positions and velocities;
+    the multipliers of a trajectory are computed from these and so have it, too (E. Hairer, G.
+    Wanner, Solving Ordinary Differential Equations II, VII.4)."""
     span = 1.37 * half_turn(FED_BACK)
     counts = [40, 80, 160]
     errors = []
@@ -129,11 +130,11 @@ def test_order_of_the_index_2_system() -> None:
     assert np.max(np.abs(slopes - 5)) <= 0.15
 
 
-# without the thin one: it passes its flat side, some (b/a)^2 wide, in less than a step
+# the thin scene is left out: it passes its flat side, some (b/a)^2 wide, in less than a step
 @pytest.mark.parametrize("name", [n for n in SCENES if "far" not in n and n != "thin"])
 def test_index_2_keeps_the_constraints_everywhere(name: str) -> None:
-    """At knots and between them, whatever the truncation error: 64 ulp of the size, and what the
-    last digit of psi does to f3 (R' up to a/b of the size) and to the rates (once more)."""
+    """Residuals at knots and between, for any truncation error: 64 ulp of the size, plus the
+    effect of an ulp of psi on f3 (R' up to a/b of the size) and on the rates (once more)."""
     scene = SCENES[name]
     times = np.sort(np.append(np.arange(65) / 64, (np.arange(64) + 0.37) / 64))
     found, exact = ggl(scene, times, step=2.0**-6), simulate(scene, times, model="rolling")
@@ -145,7 +146,7 @@ def test_index_2_keeps_the_constraints_everywhere(name: str) -> None:
     grain = 64 * EPS * size * aspect
     rate = 1 + np.max(np.abs(found.psi_dot))
     assert position <= grain and velocity <= grain * aspect * rate
-    assert truncation <= 1e-5  # the largest of these scenes has 1.4e-6
+    assert truncation <= 1e-5  # the largest truncation error of these scenes is 1.4e-6
 
 
 UNSOLVABLE = {"uphill": 2.0**-5, "standing": 2.0**-4, "thin": 2.0**-6}
@@ -153,8 +154,8 @@ UNSOLVABLE = {"uphill": 2.0**-5, "standing": 2.0**-4, "thin": 2.0**-6}
 
 @pytest.mark.parametrize(("name", "step"), UNSOLVABLE.items(), ids=UNSOLVABLE)
 def test_a_step_that_is_not_solved_is_not_taken(name: str, step: float) -> None:
-    """Where Newton's iteration gives up, the motion ends at the knot before, which meets the
-    constraints like all others: a step of the index-2 system ends on them or not at all."""
+    """If Newton's iteration fails, the motion ends at the knot before, which obeys the constraints
+    like all others: a step of the index-2 system ends on them or is not taken."""
     times = np.arange(round(1 / step) + 1) * step
     found = ggl(SCENES[name], times, step=step, raise_on_failure=False)
     told(f"{name}: {found.status.name} at {found.t_end} s, residuals {worst_residual(found):.1e}")
@@ -162,8 +163,8 @@ def test_a_step_that_is_not_solved_is_not_taken(name: str, step: float) -> None:
 
 
 def test_index_2_far_from_zero() -> None:
-    """A start 15 915 turns on (theta = 1e5, its last digit 1.5e-11) turns as far in 1 s as the one
-    near 0: 1e-10, that digit twice and e^1.7, by which the motion parts neighbours."""
+    """A start 15 915 turns on (theta = 1e5, ulp 1.5e-11) turns as far in 1 s as the one near 0, to
+    1e-10: this ulp twice, times e^1.7, the growth of errors."""
     near, far = (
         Scene(2.0, 1.0, theta=0.2 + turns * 2 * math.pi, omega=3.2) for turns in (0, 15_915)
     )

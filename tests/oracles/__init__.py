@@ -1,1 +1,1 @@
-"""Helpers of several tests: references for the package, scenes, tables, paths."""
+"""Helpers shared by several tests: references for the package, scenes, tables, paths."""

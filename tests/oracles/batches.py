@@ -13,7 +13,7 @@ NAMED = [
     rl.scenes.circle, rl.scenes.thin, rl.scenes.slope, rl.scenes.slip, rl.scenes.jump,
     rl.scenes.drop, rl.scenes.bounce, rl.Scene(2.0, 1.0, friction=0.1, omega=3.0),
 ]  # fmt: skip
-# hours for a rolling scene, no time for one at rest
+# hours of work for a rolling scene, no time for a scene at rest
 ENDLESS: dict[str, Any] = {
     "model": "rolling", "method": "rk4", "step": 1e-7, "max_steps": 2**31 - 1,
 }  # fmt: skip

@@ -1,11 +1,11 @@
-"""Random blows, and their outcomes read off the computed motions."""
+"""Random blows, and their outcomes as seen in the computed motions."""
 
 import math
 
 import numpy as np
 from rolling_ellipse import EventKind, Impulse, Mode, Outcome, Scene, Status, simulate
 
-SPANS = 24  # each twice as long as the one before
+SPANS = 24  # number of spans, each twice as long as the one before
 SAMPLES = 300
 AT_ONCE = {
     Mode.SLIDING: Outcome.SLIPS,
@@ -16,8 +16,8 @@ ENDS_ROLLING = {EventKind.SLIP: Outcome.SLIPS, EventKind.LIFT_OFF: Outcome.LOSES
 
 
 def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
-    """Any shape up to 30:1, at rest or rolling, with a blow about strong enough to roll it over,
-    mostly a press."""
+    """A scene of any shape up to 30:1, at rest or rolling, with a blow about strong enough to roll
+    it over, mostly a press."""
     b = 10 ** rng.uniform(-1, 1)
     a = b * 10 ** rng.uniform(-1.5, 1.5) if rng.random() < 0.8 else b
     mass, gravity = 10 ** rng.uniform(-1, 1, 2)
@@ -26,7 +26,7 @@ def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
     push = rng.choice([0.0, rng.normal()])
     theta = rng.choice([0.0, rng.uniform(-4, 4)])
     share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
-    along, across = a * share * math.cos(at), b * share * math.sin(at)  # a point of the body
+    along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
     return Scene(
         a,
         b,
@@ -46,7 +46,7 @@ def random_scene(rng: np.random.Generator, slope: bool = False) -> Scene:
 
 
 def tips_passed(scene: Scene, theta: float) -> int:
-    """Half turns from a tip, or from the start of a circle."""
+    """Number of tips passed up to theta; for a circle, half turns from its start."""
     first = math.pi / 2 if scene.a > scene.b else 0.0 if scene.a < scene.b else scene.theta
     return math.floor((theta - first) / math.pi)
 

@@ -15,7 +15,7 @@ def lead(theta: Any, a: Any, b: Any) -> Any:
 
 
 def positions(q: Sequence[Any], a: Any, b: Any) -> list[Any]:
-    """f2, f3, f4."""
+    """f2, f3, f4 [m, m, rad]."""
     _, z, theta, psi, r = q
     return [
         z - r * mp.cos(psi - theta),

@@ -25,7 +25,7 @@ class Response(NamedTuple):
 
 
 def response(scene: Scene, state: InitialState) -> Response:
-    """Response of a touching body: rates of the material point, and 1/m + arm^2/I."""
+    """Response of a touching body: rates of the contact point's material, and 1/m + arm^2/I."""
     at = support(state.theta, scene.a, scene.b)
     mass, inertia = scene.mass, scene.mass * scene.gyration2
     return Response(
@@ -39,7 +39,8 @@ def response(scene: Scene, state: InitialState) -> Response:
 
 def reaction_by_pieces(contact: Response, friction: float, e: float) -> tuple[float, float]:
     """Reaction by Stronge's law. Slip v and gap rate u are linear in the normal impulse p between a
-    stop, a stick and a reversal; it ends when restitution has done e^2 of compression's work."""
+    stop, a stick and a reversal. The impact ends when restitution has done e^2 of compression's
+    work."""
     slip, gap_rate, tangential, normal, coupling = contact
     along = across = work = 0.0
     owed = math.inf  # work of restitution, known when compression ends

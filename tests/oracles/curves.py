@@ -26,7 +26,7 @@ TWO_PANELS = (rl.plot_forces, rl.plot_constraints)
 
 
 def seen(motion: rl.Trajectory, line: Line2D) -> rl.Trajectory:
-    """The motion at the times of a curve over time, which cover the span of the motion."""
+    """The motion at the times of a curve over time, which must cover the span of the motion."""
     times = data(line)[0]
     assert times[0] == motion.t[0] and times[-1] == motion.t[-1] and np.all(np.diff(times) >= 0)
     return motion.sol(times)

@@ -20,7 +20,7 @@ SIGNS = st.sampled_from([1.0, -1.0])
 
 
 def numbers(low: float, high: float) -> st.SearchStrategy[float]:
-    """Numbers in a range; those whose square would be subnormal are 0."""
+    """Numbers in a range; numbers with a subnormal square become 0."""
     return st.floats(low, high).map(lambda value: value if abs(value) > 1e-100 else 0.0)
 
 
@@ -40,12 +40,12 @@ SLOPES = st.one_of(numbers(-1.5, 1.5), st.builds(math.copysign, st.floats(1e-6, 
 
 @st.composite
 def bodies(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
-    """a, b, gravity and gyration2: circles, nearly circles, thin ones either way up."""
+    """a, b, gravity and gyration2 of circles, near circles and thin bodies, lying or standing."""
     size = draw(powers(-3, 3))
     near = st.builds(lambda e, s: 1 + s * 10.0**e, st.floats(-15, -1), SIGNS)
     thin = st.floats(-thinnest, thinnest).map(lambda exponent: 10.0**exponent)
     ratio = draw(st.one_of(st.just(1.0), near, st.floats(0.3, 3.0), thin))
-    limit = 1e3 * (1 - 1e-9)  # roundings of it are still accepted
+    limit = 1e3 * (1 - 1e-9)  # products of this limit are still accepted after rounding
     ratio = min(max(ratio, 1 / limit), limit)
     a, b = (size, size / ratio) if ratio > 1 else (size * ratio, size)
     spread2 = max(a, b) ** 2
@@ -65,7 +65,7 @@ def rate(body: dict[str, float]) -> float:
 
 @st.composite
 def motions(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
-    """A body that rolls, from slow rocking to fast turning."""
+    """A rolling body, from slow rocking to fast turning."""
     body = draw(bodies(thinnest))
     speed = draw(st.one_of(st.just(0.0), powers(-6, 2), st.floats(0.1, 5.0)))
     omega = draw(SIGNS) * speed * rate(body)
@@ -74,14 +74,14 @@ def motions(draw: Draw, thinnest: float = 3.0) -> dict[str, float]:
 
 @st.composite
 def spans(draw: Draw, motion: dict[str, float], most: float) -> float:
-    """A time of at most so many half turns or swings."""
+    """A time [s] of at most `most` half turns or swings."""
     half_turns = draw(powers(-3, math.log10(most)))
     return float(half_turns * math.pi / max(abs(motion["omega"]), rate(motion)))
 
 
 def at_its_limit(values: dict[str, Any]) -> dict[str, Any]:
-    """Spin of a weightless body, h'' omega^2 = -g cos(alpha), if there is one; else the friction
-    coefficient that rolling needs. Both are exact to rounding."""
+    """Argument omega of a weightless body, h'' omega^2 = -g cos(alpha), if there is one; else the
+    friction that rolling needs. Both are exact to rounding."""
     a, b, theta, slope = (values[name] for name in ("a", "b", "theta", "slope"))
     h, tilt = geometry.support(theta, a=a, b=b), geometry.support_slope(theta, a=a, b=b)
     radius = (a * b) ** 2 / h**3
@@ -99,7 +99,7 @@ def at_its_limit(values: dict[str, Any]) -> dict[str, Any]:
 
 @st.composite
 def scene_arguments(draw: Draw, /, **given: Any) -> dict[str, Any]:
-    """Keyword arguments of a Scene: on any ground, in any state, some struck, some at a limit."""
+    """Keyword arguments of a Scene on any ground, in any state, some with a blow or at a limit."""
     of = draw(motions(thinnest=1.5))
     mass = draw(powers(-2, 2))
     values = {

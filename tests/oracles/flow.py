@@ -1,4 +1,4 @@
-"""Units of the answers of `flow`: the effect of one rounding of every input, and two ulp.
+"""Units of the answers of `flow`: the effect of one rounding of every input, plus two ulp.
 
 `grain` and `carried` are computed by `flow` itself: they bound differences between answers of the
 package, never an error.
@@ -13,7 +13,7 @@ from rolling_ellipse import flow, geometry
 from oracles.numbers import EPS
 
 # One unit is the unavoidable error of a backward stable method that rounds every input once; four
-# allow some roundings inside.
+# units allow some more roundings.
 LARGEST_ERROR = 4.0
 
 PARAMETERS = ("a", "b", "gyration2", "gravity", "theta", "omega")

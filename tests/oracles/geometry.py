@@ -1,6 +1,6 @@
 """The ellipse on its tangent, by definition and in the closed form of the suite.
 
-Nothing of the package is imported here. theta is clockwise positive. "flat" is the position of
+This file imports no part of the package. theta is clockwise positive. "flat" is the position of
 least height, "tip" the position of largest height. The reduced angle phi in [0, pi/2] is the
 rotation away from flat, whichever semi-axis is longer.
 """
@@ -51,7 +51,7 @@ def lowest_point(theta: float, a: float, b: float) -> Any:
 
 
 def height(theta: Any, a: float, b: float) -> Any:
-    """h(theta) [m], closed form (held against `lowest_point` by test_ellipse.py)."""
+    """h(theta) [m], closed form (test_ellipse.py compares it with `lowest_point`)."""
     return mp.sqrt((a * mp.sin(theta)) ** 2 + (b * mp.cos(theta)) ** 2)
 
 
@@ -75,8 +75,8 @@ class Support(NamedTuple):
 
 
 def support(theta: Any, a: Any, b: Any) -> Support:
-    """Support function at angles that are numbers, arrays of any float, or mpf (held against
-    `height_slopes`, that is against the definition, by test_ellipse.py)."""
+    """Support function at angles that are numbers, arrays of any float, or mpf (test_ellipse.py
+    compares it with `height_slopes`, the definition)."""
     values = (theta, a, b)
     arithmetic: Any = np
     if any(isinstance(value, mp.mpf) for value in values):
@@ -87,8 +87,8 @@ def support(theta: Any, a: Any, b: Any) -> Support:
 
 
 def _support(sine: Any, cosine: Any, a: Any, b: Any, root: Any) -> Support:
-    """h'' = (a b)^2/h^3 - h in factors: near a circle, and beside the flat side of a thin body,
-    the terms cancel."""
+    """h, h' and h'' = (a b)^2/h^3 - h in factors, because the terms of h'' cancel near a circle and
+    near the flat side of a thin body."""
     h = root((a * sine) ** 2 + (b * cosine) ** 2)
     bend = (a - b) * (b * cosine**2 - a * sine**2)
     return Support(h, (a - b) * (a + b) * sine * cosine / h, bend * (a * b + h * h) / h**3)
@@ -103,7 +103,7 @@ def reduced(theta: ArrayLike, a: ArrayLike, b: ArrayLike) -> tuple[Long, Long]:
 
 
 class Outline(NamedTuple):
-    """h, h', rho, h'' [m]; h' signed as for phi in [0, pi/2] with a the longer one."""
+    """h, h', rho, h'' [m]; h' has the sign for phi in [0, pi/2] with a the longer axis."""
 
     h: Long
     slope: Long
@@ -112,7 +112,7 @@ class Outline(NamedTuple):
 
 
 def outline(a: Long, b: Long, sine: Long, cosine: Long) -> Outline:
-    """The outline at a reduced angle."""
+    """h, h', rho and h'' at a reduced angle."""
     longer, shorter = np.maximum(a, b), np.minimum(a, b)
     h, slope, curvature = _support(sine, cosine, longer, shorter, np.sqrt)
     return Outline(h, slope, (a * b) ** 2 / h**3, curvature)

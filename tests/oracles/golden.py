@@ -1,4 +1,4 @@
-"""The records of tests/core/golden.cpp: read, compared, and made again through Python."""
+"""The records of tests/core/golden.cpp: read, compared, and computed again through Python."""
 
 import math
 import os
@@ -17,8 +17,8 @@ from .paths import TESTS
 
 GOLDEN = TESTS / "core" / "golden.txt"
 
-# Another C library rounds its sin and cos in another way. Exact motions and fixed steps then change
-# by roundings, steps of controlled error by no more than the tolerance of 1e-10.
+# Bound for another C library, which rounds sin and cos differently. Exact motions and fixed steps
+# then change by roundings, steps of controlled error by no more than their tolerance of 1e-10.
 OTHER_LIBRARY = 1e-10
 
 _COLUMNS = {
@@ -34,7 +34,7 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class Record:
-    """A line: its kind, words and numbers."""
+    """A line of golden.txt: its kind, words and numbers."""
 
     kind: str
     words: tuple[str, ...]
@@ -55,19 +55,19 @@ def record(line: str) -> Record:
 
 
 def read(text: str) -> tuple[str, list[Record]]:
-    """The C library, and the records."""
+    """Name of the C library, and the records of a text."""
     library, *lines = text.splitlines()
     assert library.startswith("library ")
     return library, [record(line) for line in lines]
 
 
 def golden() -> tuple[str, list[Record]]:
-    """The committed bits."""
+    """C library and records of the committed golden.txt."""
     return read(GOLDEN.read_text(encoding="utf-8"))
 
 
 def printed(program: Path, **environment: str) -> tuple[str, list[Record]]:
-    """Records of the program golden of a build."""
+    """C library and records that a build's program `golden` prints."""
     done = subprocess.run(
         [str(program)], env=os.environ | environment, capture_output=True, text=True, timeout=300
     )
@@ -100,12 +100,12 @@ def difference(one: list[Record], other: list[Record]) -> tuple[float, str]:
             if math.isnan(x) and math.isnan(y):
                 continue
             off = max(abs(x - y) / max(1.0, abs(x)), math.ulp(0.0))  # more than 0 for -0 and 0
-            if not off <= worst:  # also for NaN
+            if not off <= worst:  # a NaN is taken, too
                 worst, where = off, pair
     return worst, where
 
 
-# ------------------------------------------------------------------- the same through Python
+# -------------------------------------------------------------------- records through Python
 
 
 def given(value: float) -> float | None:
@@ -132,7 +132,7 @@ def at(state: Any) -> tuple[float, ...]:
 
 
 def motion_through_python(motion: list[Record]) -> Iterator[Record]:
-    """The records that follow "motion" and "scene"."""
+    """The records of a motion after "motion" and "scene"."""
     (_, model, method, stabilization), scene = motion[0].words, scene_of(motion[1].numbers)
     t_end, samples, step, stages = motion[0].numbers
     times = np.array([t_end * i / (samples - 1) for i in range(int(samples))])
@@ -143,7 +143,7 @@ def motion_through_python(motion: list[Record]) -> Iterator[Record]:
         warnings.simplefilter("ignore", rl.StabilityWarning)
         found = rl.simulate(scene, times, **chosen)
     solution = next(each for each in motion if each.kind == "solution")
-    ending, followed_until, _ = solution.numbers  # they have no name in Python
+    ending, followed_until, _ = solution.numbers  # Python has no names for these two
     yield Record("solution", (found.model, found.method),
                  (ending, followed_until, found.valid_until))  # fmt: skip
     for event in found.events:

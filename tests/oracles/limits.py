@@ -1,4 +1,4 @@
-"""Ctrl-C after some time, and a disk that is full."""
+"""Ctrl-C after some time, and a full disk."""
 
 import resource
 import signal
@@ -10,8 +10,8 @@ import pytest
 
 @contextmanager
 def ctrl_c_after(seconds: float) -> Iterator[None]:
-    """What is done inside must end by a KeyboardInterrupt; a negative time sets no alarm."""
-    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
+    """Require that the block ends by a KeyboardInterrupt; a negative time sets no alarm."""
+    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # the handler of SIGINT
     try:
         if seconds >= 0:
             signal.setitimer(signal.ITIMER_REAL, seconds)

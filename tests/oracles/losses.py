@@ -1,13 +1,13 @@
 """Stepped runs of all kinds, fine and much too coarse, and their losses.
 
-They are judged by samples of the trajectory, eight a step, and by the equation of motion solved
+Runs are judged by eight samples of the trajectory per step, and by the equation of motion, solved
 here from the start of each step. A loss is divided by its limit:
 
 * the energy: its largest change at any time, over the largest kinetic + |potential| energy
   (x from the start), over 1e-2 or ten rtol;
 * the constraints: the largest of |f2|, |f3| over the long semi-axis and |f4|, over 1e-3;
-* the motion: the angle by which a step ends beside the exact motion from its beginning, over
-  0.1 rad; ten rtol of the size of theta are no surprise there either.
+* the motion: the difference of the angles at the end of a step and of the exact motion from its
+  beginning, over 0.1 rad or ten rtol of the size of theta.
 """
 
 import math
@@ -20,7 +20,7 @@ from rolling_ellipse import Scene, StabilityWarning, Trajectory, simulate
 
 Floats = NDArray[np.float64]
 
-SAMPLES = 8  # in a step
+SAMPLES = 8  # samples per step
 
 
 class Run(NamedTuple):
@@ -66,7 +66,7 @@ def drawn(seed: int) -> Run:
 
 
 def told(run: Run) -> tuple[Trajectory, list[str]]:
-    """The motion of a run, as far as it is followed, and the warnings of its stability."""
+    """The motion of a run up to its end or failure, and the texts of its StabilityWarnings."""
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         motion = simulate(run.scene, [0.0, run.t_end], raise_on_failure=False, **run.how)
@@ -74,7 +74,7 @@ def told(run: Run) -> tuple[Trajectory, list[str]]:
 
 
 def lost(run: Run, motion: Trajectory) -> float:
-    """The largest of the three losses over its limit."""
+    """The largest of the three losses, each divided by its limit."""
     knots = np.unique([*motion._solution.knots(), motion.t_end])
     inside = np.arange(SAMPLES) / SAMPLES
     times = np.append((knots[:-1, None] + np.diff(knots)[:, None] * inside).ravel(), knots[-1])
@@ -101,9 +101,8 @@ def _energy(scene: Scene, seen: Trajectory) -> float:
 
 
 def _solved(scene: Scene, theta: Floats, omega: Floats, steps: Floats) -> Floats:
-    """Angles at the ends of all steps: physics (18) by the classical method, in ever more parts
-    until two solutions agree to 1e-4. A step where they never do keeps its angle and is not
-    judged."""
+    """Angles at the ends of all steps: physics (18) by the classical method, in more parts until
+    two solutions agree to 1e-4. A step without agreement keeps its angle and is not judged."""
     a2, b2, k2 = scene.a**2, scene.b**2, scene.gyration2
     into, along = scene.gravity * math.cos(scene.slope), scene.gravity * math.sin(scene.slope)
 

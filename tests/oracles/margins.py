@@ -1,4 +1,4 @@
-"""Figures of a test beside its bounds."""
+"""Printed figures of a test beside its bounds."""
 
 
 def told(*values: object) -> None:

@@ -1,5 +1,4 @@
-"""The model "multipliers": a matrix, its slopes and forces apart from the core; scenes,
-settings."""
+"""The model "multipliers": matrix, slopes and forces independent of the core; scenes, settings."""
 
 import dataclasses
 import math
@@ -32,13 +31,13 @@ SCENES = {
 
 
 def settings(**changes: Any) -> Settings:
-    """Arguments of `simulate`, the model being "multipliers"."""
+    """Settings of the model "multipliers" without stabilization, with the given changes."""
     ours = {"model": "multipliers", "stabilization": "none"}
     return dataclasses.replace(DEFAULTS, **(ours | changes))
 
 
 def matrix(q: Long, a: float, b: float) -> Long:
-    """(..., 4, 5) in (complex) long double; d psi/d theta from tan psi = (a/b)^2 tan theta."""
+    """Matrix (..., 4, 5) in (complex) long double; d psi/d theta by tan psi = (a/b)^2 tan theta."""
     theta, psi, r = q[..., 2], q[..., 3], q[..., 4]
     long_a, long_b = np.longdouble(a), np.longdouble(b)
     sine, cosine = np.sin(psi - theta), np.cos(psi - theta)
@@ -65,7 +64,7 @@ def matrix_slopes(q: Long, a: float, b: float) -> Long:
 
 
 def forces(scene: Scene) -> tuple[Long, Long]:
-    """The diagonal of M, and Q."""
+    """Diagonal of the mass matrix M, and the generalized forces Q."""
     mass, slope = np.longdouble(scene.mass), np.longdouble(scene.slope)
     weight = mass * scene.gravity
     inertia = mass * scene.gyration2

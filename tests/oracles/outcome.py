@@ -17,7 +17,7 @@ FRICTIONS = [0.0, 0.05, 0.3, 1.0, 3.0, math.inf]
 
 
 class Sample(NamedTuple):
-    """Scenes as columns."""
+    """Columns of scenes."""
 
     a: Floats
     b: Floats
@@ -41,7 +41,7 @@ class Sample(NamedTuple):
         return found
 
     def scene(self, row: int) -> Scene:
-        """The scene of a row, with mass 1: its moment of inertia is gyration2."""
+        """The scene of a row with mass 1, whose moment of inertia is gyration2."""
         a, b, omega, theta, friction, gravity, inertia = (float(field[row]) for field in self)
         return Scene(
             a, b, omega=omega, theta=theta, friction=friction, gravity=gravity, inertia=inertia
@@ -50,8 +50,8 @@ class Sample(NamedTuple):
 
 def random_sample(count: int, seed: int) -> Sample:
     """Scenes of every shape up to 100:1 at any angle, some on an axis, some hundreds of turns away;
-    at rest, swinging or turning over, up to beyond the loss of contact; with friction from a list,
-    at random, or close to the friction that the whole motion needs."""
+    at rest, rocking or rolling over, up to beyond the loss of contact; with friction from a list,
+    at random, or close to the need of the whole motion."""
     rng = np.random.default_rng(seed)
     thin, ordinary = rng.uniform(-2, 2, count), rng.uniform(-0.5, 0.5, count)
     b = 10 ** rng.uniform(-1, 1, count)

@@ -26,8 +26,8 @@ SETTINGS: tuple[dict[str, Any], ...] = (
 
 
 def random_motion(rng: np.random.Generator) -> Trajectory:
-    """A motion of a body of some metres: rolling by each method, some on a slope, and contact
-    motions that start in the air or with slip, some of them bouncing."""
+    """A motion of a body of some metres: rolling by each method, some on a slope, or a contact
+    motion that starts in the air or with slip, some with bounces."""
     settings = SETTINGS[rng.integers(len(SETTINGS))]
     contact = settings["model"] == "contact"
     a, b = rng.uniform(0.3, 3.0, 2) if rng.random() < 0.9 else (1.5, 1.5)
@@ -57,9 +57,9 @@ def times_of_events(motion: Trajectory) -> Floats:
 
 
 def dense_times(motion: Trajectory) -> Floats:
-    """Even times, and close ones on both sides of each event."""
+    """Even times, and times just before and at each event."""
     events = times_of_events(motion)
-    slow = motion.method == "radau"  # each sample solves for the stages of a step
+    slow = motion.method == "radau"  # radau solves for the stages of a step at each sample
     even = np.linspace(0.0, motion.t_end, DENSE // 8 if slow else DENSE)
     both = np.concatenate([even, np.nextafter(events, 0), events])
     return np.unique(both[(both >= 0) & (both <= motion.t_end)])

@@ -1,4 +1,4 @@
-"""Ways to pickle and copy, objects for them, and the comparison of the results."""
+"""Methods to pickle and copy, objects for them, and the comparison of the results."""
 
 import copy
 import dataclasses
@@ -23,7 +23,7 @@ ROADS: dict[str, Callable[[Any], Any]] = {
 
 
 def require_same(one: Any, other: Any, where: str = "it") -> None:
-    """Require the same types and bits all the way down, and arrays with the same flag."""
+    """Require the same types and bits in all nested parts, and arrays with the same flag."""
     assert type(one) is type(other), where
     if isinstance(one, np.ndarray):
         assert one.dtype == other.dtype and one.shape == other.shape, where

@@ -74,14 +74,13 @@ def frames_of(image: Image) -> int:
 
 
 def luminance(colour: Any) -> float:
-    """Relative to white (IEC 61966-2-1 for sRGB)."""
+    """Luminance of a colour relative to white (IEC 61966-2-1 for sRGB)."""
     linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
     return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))
 
 
 def shows_something(figure: Figure) -> bool:
-    """Whether every axes has finite limits and an artist at a finite place, and none at
-    infinity."""
+    """True if each axes has finite limits and an artist at a finite place, and none at infinity."""
     for ax in figure.axes:
         points = [np.asarray(line.get_xydata(), float) for line in ax.lines]
         points += [np.asarray(body.get_extents().get_points()) for body in ax.patches]

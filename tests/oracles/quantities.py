@@ -1,4 +1,4 @@
-"""Numbers with units as libraries make them, and plain numbers that look like them."""
+"""Numbers with units as other libraries make them, and plain numbers that resemble them."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 class Pint:
-    """An object around a number or an array, as Quantity of pint: it is converted when asked."""
+    """An object around a number or an array, as Quantity of pint; NumPy converts it on request."""
 
     def __init__(self, magnitude: Any, units: str = "centimeter") -> None:
         self.magnitude, self.units = magnitude, units
@@ -25,7 +25,7 @@ class Astropy(np.ndarray):
 
 
 class Unyt(np.ndarray):
-    """A subclass of arrays with a property, as unyt_array, and Quantity of quantities."""
+    """A subclass of arrays with a property `units`, as unyt_array, and Quantity of quantities."""
 
     @property
     def units(self) -> Any:
@@ -33,13 +33,13 @@ class Unyt(np.ndarray):
 
 
 class Brian(np.ndarray):
-    """A subclass of arrays that says dimensions, as Quantity of brian2."""
+    """A subclass of arrays with an attribute `dimensions`, as Quantity of brian2."""
 
     dimensions = frozenset({"length"})
 
 
 class OpenMM:
-    """An object with an attribute of its own, as Quantity of openmm."""
+    """An object with a value and a unit, as Quantity of openmm."""
 
     def __init__(self, value: Any) -> None:
         self.value, self.unit = value, "angstrom"
@@ -49,7 +49,7 @@ class OpenMM:
 
 
 class Labelled:
-    """An array with notes that are read as attributes, as DataArray of xarray."""
+    """An array whose notes can be read as attributes, as DataArray of xarray."""
 
     __slots__ = ("attrs", "data")
 
@@ -66,7 +66,7 @@ class Labelled:
 
 
 class NetCDF:
-    """A variable with the names of its axes, as that of netCDF4."""
+    """A variable with the names of its axes, as Variable of netCDF4."""
 
     dimensions = ("time",)
 
@@ -84,7 +84,7 @@ def with_unit(values: Any) -> Astropy:
 
 
 def quantities(value: Any) -> list[Any]:
-    """A number or an array with units, of every library."""
+    """Numbers or arrays with units, one from each library."""
     found = [
         Pint(value), Pint(value, "dimensionless"), with_unit(value), np.array(value).view(Unyt),
         np.array(value).view(Brian), Labelled(Pint(value)),

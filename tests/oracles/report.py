@@ -19,7 +19,7 @@ def start(theta: float, omega: float, printed: tuple[str, ...] = ()) -> tuple[Ar
 
 
 def off_by(f2: float, f3: float, f4: float) -> tuple[Array, Array]:
-    """At rest, flat, with these residuals."""
+    """Coordinates and rates at rest in the flat position, with residuals f2, f3 and f4."""
     psi = f4
     r = f3 + 2.0 / math.sqrt(math.sin(psi) ** 2 + 4 * math.cos(psi) ** 2)
     return np.array([0, f2 + r * math.cos(psi), 0, psi, r]), np.zeros(5)

@@ -1,4 +1,4 @@
-"""Rolling on level ground by brute force; nothing of the package is imported here.
+"""Rolling on level ground by brute force, without any part of the package.
 
 mpmath serves single points, `numpy.longdouble` thousands of scenes with hundreds of samples. Forces
 come from Newton's law with the acceleration and the energy, never from a polynomial.
@@ -36,7 +36,7 @@ def forces_by_differentiation(
 
 
 class Motion(NamedTuple):
-    """Rolling motions, one per entry; `lift` is E/m above lying flat at rest [m^2/s^2]."""
+    """Rolling motions, one per entry; `lift` is E/m above the flat position at rest [m^2/s^2]."""
 
     a: Long
     b: Long
@@ -65,7 +65,7 @@ def motion(
     theta: ArrayLike,
     omega: ArrayLike,
 ) -> Motion:
-    """The motion through a state, its energy above flat free of cancellation."""
+    """The motion through a state; its energy above flat is computed without cancellation."""
     fields = np.broadcast_arrays(a, b, gyration2, gravity, omega)
     a, b, gyration2, gravity, omega = (np.asarray(field, np.longdouble) for field in fields)
     sine, cosine = reduced(theta, a, b)
@@ -77,7 +77,7 @@ def motion(
 
 
 def speed(moving: Motion, sine: Long, cosine: Long) -> Long:
-    """|omega| at a reduced angle [rad/s]; 0 where the motion does not get there."""
+    """|omega| at a reduced angle [rad/s]; 0 where the motion does not reach it."""
     h, slope, *_ = outline(moving.a, moving.b, sine, cosine)
     longer, shorter = np.maximum(moving.a, moving.b), np.minimum(moving.a, moving.b)
     rise = (longer - shorter) * (longer + shorter) * sine**2 / (h + shorter)
@@ -87,11 +87,11 @@ def speed(moving: Motion, sine: Long, cosine: Long) -> Long:
 
 
 def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:
-    """Newton's law at a reduced angle; friction signed as for phi and h' >= 0.
+    """Newton's law at a reduced angle; friction has the sign for phi and h' >= 0.
 
     The errors allow 1e-12 of the sum of the terms; the effect of 16 ulp of the energy (measured
     from the ground, as E/m - g h is formed) on omega^2 and the force; and the effect of an ulp of a
-    or b, which is the largest near a circle, where all depends on a - b.
+    or b, which is the largest near a circle, where all forces depend on a - b.
     """
     h, slope, rho, curvature = outline(moving.a, moving.b, sine, cosine)
     inertia = moving.gyration2 + h * h + slope * slope
@@ -117,7 +117,7 @@ def forces(moving: Motion, sine: Long, cosine: Long) -> Forces:
 
 
 class Chart(NamedTuple):
-    """tan phi = waist sinh v, 0 <= v <= top: even steps of v resolve a thin ellipse at every scale.
+    """Coordinate v, 0 <= v <= top, with tan phi = waist sinh v, for even steps at every scale.
 
     The narrowest feature (1 - (b/a)^2 small inertia) is (b/a)^2 wide; tan phi = 1e9 stands for
     the tip, where every force is even in pi/2 - phi: the difference is 1e-18.
@@ -151,8 +151,8 @@ def chart(moving: Motion) -> Chart:
 def golden_minimum(
     function: Callable[[Long], Long], low: Long, high: Long, rounds: int = 40
 ) -> Long:
-    """Places of minima in many brackets: to 1e-8 of the bracket, so the value (flat there) is known
-    to 1e-16 of the curvature; a minimum at an end is exact."""
+    """Places of minima in many brackets: to 1e-8 of the bracket, so the value (stationary there) is
+    known to 1e-16 of the curvature; a minimum at an end is exact."""
     ends = low, high
     golden = (np.sqrt(np.longdouble(5)) - 1) / 2
     left, right = high - golden * (high - low), low + golden * (high - low)
@@ -173,7 +173,7 @@ def golden_minimum(
 
 
 def local_minima(values: Long, keep: Long) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """(row, column) of the first samples of dips that go down to `keep` of their row."""
+    """(row, column) of the first samples of dips whose values are at most `keep` of their row."""
     padded = np.pad(values, ((0, 0), (1, 1)), constant_values=np.inf)
     least = (values < padded[:, :-2]) & (values <= padded[:, 2:]) & (values <= keep[:, None])
     rows, columns = np.nonzero(least)
@@ -200,8 +200,8 @@ def _least_per_row(rows: NDArray[np.intp], values: Long, count: int) -> NDArray[
 
 
 def extremes(moving: Motion, samples: int = 300) -> Extremes:
-    """Dense samples, every candidate refined by golden section; |F|/N once more around the
-    smallest N, where it is as narrow as N is small."""
+    """Extremes by dense samples and golden section for every candidate; |F|/N is sampled again
+    around the smallest N, where its peak is as narrow as N is small."""
     count = moving.a.size
     on = chart(moving)
     step = on.top / (samples - 1)
@@ -259,9 +259,9 @@ def extremes(moving: Motion, samples: int = 300) -> Extremes:
 def contact_loss_lift(
     a: ArrayLike, b: ArrayLike, gyration2: ArrayLike, gravity: ArrayLike, samples: int = 300
 ) -> Long:
-    """Smallest `lift` at which N reaches 0 somewhere: N is linear in the energy at each angle."""
+    """Smallest `lift` for which N reaches 0: N is linear in the energy at each angle."""
     still = motion(a, b, gyration2, gravity, 0.0, 0.0)
-    still = still._replace(lift=still.gravity * 2 * np.maximum(still.a, still.b))  # all the way
+    still = still._replace(lift=still.gravity * 2 * np.maximum(still.a, still.b))  # beyond the tip
     on = chart(still)
 
     def lift(moving: Motion, on: Chart, v: Long) -> Long:

@@ -12,7 +12,7 @@ import mpmath as mp
 
 from oracles.numbers import DIGITS
 
-A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81  # all but g are exact, k^2 too
+A, B, GYRATION2, GRAVITY = 2.0, 1.0, 1.25, 9.81  # exact doubles, except g
 
 
 class Throw(NamedTuple):
@@ -20,7 +20,7 @@ class Throw(NamedTuple):
 
     omega: float  # [rad/s]
     distance: float  # omega/omega_R - 1
-    half: float  # until it lies flat again, having rolled over (theta = pi) or back (0) [s]
+    half: float  # time until the body lies flat again [s], at theta = pi or 0
 
     @property
     def rolls_over(self) -> bool:
@@ -55,5 +55,5 @@ def throw(k: int, side: int) -> Throw:
         scene = reference.Scene(A, B, GYRATION2, GRAVITY, 0.0, omega)
         moving = reference.RollingEllipse(scene, rule())
         thrown = Throw(omega, float(mp.mpf(omega) / exact - 1), float(2 * moving.quarter_time))
-        assert moving.rocks != thrown.rolls_over  # by its energy, and by its speed
+        assert moving.rocks != thrown.rolls_over  # the energy and the speed agree
         return thrown

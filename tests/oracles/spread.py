@@ -1,6 +1,6 @@
 """Bounds of the difference of two answers that are equal but for rounding.
 
-They come from answers of the package at inputs that are moved by their rounding. So they bound
+They are computed from answers of the package at inputs changed by their rounding. So they bound
 differences between answers of the package, never an error.
 """
 
@@ -16,13 +16,13 @@ Floats = NDArray[np.float64]
 Inputs = Mapping[str, float]
 Answer = Callable[..., Floats]
 
-# A backward stable method is exact for inputs that are off by one rounding each; four allow some
-# roundings inside.
+# A backward stable method is exact for inputs that are off by one rounding each; four roundings
+# allow some more.
 ROUNDINGS = 4
 
 
 def roundings(inputs: Inputs) -> dict[str, float]:
-    """Four roundings of every number, and of 1 at least for an angle."""
+    """Four roundings of every number; an angle counts as 1 rad at least."""
     return {
         name: ROUNDINGS * EPS * (max(abs(value), 1.0) if name == "theta" else abs(value))
         for name, value in inputs.items()
@@ -30,7 +30,7 @@ def roundings(inputs: Inputs) -> dict[str, float]:
 
 
 def spread(answer: Answer, inputs: Inputs, errors: Inputs) -> Floats:
-    """Sum of the changes of an answer when each input is off by its error, to either side."""
+    """Sum of the changes of an answer when each input changes by its error, in both directions."""
     middle = answer(**inputs)
     total = ROUNDINGS * np.spacing(np.abs(middle))
     for name, error in errors.items():

@@ -22,7 +22,7 @@ KEPT: dict[str, dict[str, Any]] = {
 
 @cache
 def kept(name: str) -> Trajectory:
-    """A rotation by rk4 in 127 steps a half turn, with a stabilization of KEPT."""
+    """A rotation by rk4 in 127 steps per half turn, with a stabilization of KEPT."""
     times = SPANS * half_turn(FED_BACK)
     how: dict[str, Any] = {"method": "rk4", "step": 2.0**-7, "max_steps": 10_000_000}
     return simulate(FED_BACK, times, **how, **KEPT[name])

@@ -10,7 +10,7 @@ EXACT = Context(prec=60)
 
 
 def rows(name: str) -> list[dict[str, str]]:
-    """All lines of a table, by column."""
+    """Lines of a table as dicts by the names of its columns."""
     with (REFERENCE / f"{name}.csv").open(newline="") as file:
         return list(csv.DictReader(file))
 

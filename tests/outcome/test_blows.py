@@ -1,4 +1,4 @@
-"""`outcome`, `required_friction` and `blow_to` against motions, formulas and bisection."""
+"""`outcome`, `required_friction` and `blow_to` agree with motions, formulas and bisection."""
 
 import math
 from dataclasses import replace
@@ -28,8 +28,8 @@ REPORT = rl.scenes.report
 
 
 def test_the_reports_blow() -> None:
-    """Pressed 1.5 m beside the centre it rolls over from F = m (k^2 + b^2) omega_R/d = 44.3 N s on,
-    needs 2/3 of friction for the blow, and loses N from 4.8432 rad/s, 72.65 N s, on."""
+    """A press 1.5 m beside the centre rolls the body over from F = m (k^2 + b^2) omega_R/d = 44.3 N
+    s on. The blow needs a friction of 2/3, and N vanishes from 4.8432 rad/s, 72.65 N s, on."""
     assert outcome(REPORT) is Outcome.ROLLS_OVER
     assert outcome(replace(REPORT, impulse=None)) is Outcome.RESTS
     F = np.array([10.0, 44.0, 44.4, 72.6, 72.7, -1.0])
@@ -41,7 +41,7 @@ def test_the_reports_blow() -> None:
 
 
 def test_starts_without_rolling() -> None:
-    """At 56.6 degrees a slide to the front jams if the friction is more than 1.3527."""
+    """A slide at 56.6 degrees to the front jams if the friction is more than 1.3527."""
     jams: dict[str, Any] = {"theta": math.radians(56.636), "x_dot": 5.0}
     for scene, expected in (
         (rl.scenes.drop, Outcome.LOSES_CONTACT),
@@ -61,9 +61,10 @@ def test_starts_without_rolling() -> None:
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_on_a_slope(side: int) -> None:
-    """A circle runs down or, against it, turns back after omega^2 (a^2 + k^2)/(2 g sin(slope)) of
-    path: more than half a turn or not. Equilibrium at h' = h tan(slope) rests with the friction
-    tan(slope). 2:1 on 0.1 rocks in its well and rolls over from flat at 3 rad/s downhill."""
+    """A circle rolls down the slope or, against it, turns back after a path of omega^2 (a^2 +
+    k^2)/(2 g sin(slope)): more than half a turn or not. Equilibrium at h' = h tan(slope) rests with
+    the friction tan(slope). The 2:1 disc on 0.1 rocks, and rolls over from flat at 3 rad/s
+    downhill."""
     round_one = Scene(1.0, 1.0, slope=0.1 * side)
     assert outcome(round_one) is Outcome.ROLLS_OVER
     half_turn = math.sqrt(2 * 9.81 * math.sin(0.1) * math.pi / 1.5)
@@ -82,7 +83,7 @@ def test_on_a_slope(side: int) -> None:
 
 
 def test_on_a_hardly_sloping_ground_it_is_given_up() -> None:
-    """Beside its tip, 1e-15 off equilibrium, it would take 21 growth times, of 0.6 s, to fall."""
+    """A start near the tip, 1e-15 off equilibrium, would fall in 21 growth times of 0.6 s."""
     slope = 1e-3
     incline = math.tan(slope)
     tangent = (3 + math.sqrt(9 - 16 * incline**2)) / (8 * incline)
@@ -109,9 +110,9 @@ def test_impulses_broadcast_and_replace_that_of_the_scene() -> None:
 
 
 def test_required_friction_is_what_blow_and_motion_need() -> None:
-    """The largest |F|/N of the rolling after it, from a walk in long double (1e-12 of the forces);
-    below it the certificate knows that rolling ends, with a little more it is proved: its squared
-    polynomials leave some 1e-6 undecided between these."""
+    """Required friction is the largest |F|/N of the rolling after the blow, sampled in long double
+    (1e-12 of the forces). Below it the certificate finds the end of rolling, with a little more it
+    proves rolling: its squared polynomials leave some 1e-6 between these undecided."""
     rng = np.random.default_rng(11)
     by_the_blow = by_the_motion = never = 0
     for _ in range(400):
@@ -162,8 +163,8 @@ def test_required_friction_where_it_is_known() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_required_friction_in_a_well(seed: int) -> None:
-    """Rocking on a slope: with it the computed motion rolls on, with 1e-8 less it slips; what
-    needs infinitely much runs down and away."""
+    """A body that rocks on a slope rolls on with this friction in the computed motion, and slips
+    with 1e-8 less. A body whose required friction is infinite rolls down and away."""
     rng = np.random.default_rng(seed)
     finite = 0
     while finite < 5:
@@ -191,7 +192,7 @@ def test_required_friction_in_a_well(seed: int) -> None:
 @pytest.mark.parametrize("distance", [1.2, -0.4])
 @pytest.mark.parametrize("theta", [0.0, 0.3, -2.0])
 def test_the_speed_that_was_asked_for(theta: float, distance: float, before: float) -> None:
-    """The blow law turns F back into omega within its own rounding: of the gain, and of both."""
+    """The blow law gives omega from F within the rounding of the gain and of both speeds."""
     scene = replace(REPORT, theta=theta, omega=before, impulse=Impulse(3.0))
     lead = float(rl.geometry.support_slope(theta, a=2.0, b=1.0))
     wanted = before + math.copysign(0.9, distance - lead)
@@ -211,8 +212,8 @@ def test_to_stop_a_body() -> None:
 @pytest.mark.parametrize("distance", [1.5, -1.5, 0.6])
 @pytest.mark.parametrize("theta", [0.0, 0.25])
 def test_the_least_that_rolls_over(theta: float, distance: float) -> None:
-    """At rest it takes F = m D omega/(d - h') with D omega^2 = 2 g (a - h). The motion itself: with
-    1e-12 more it passes the tip, with 1e-12 less it turns back."""
+    """A press at rest is F = m D omega/(d - h') with D omega^2 = 2 g (a - h). The motion passes
+    the tip with 1e-12 more, and turns back with 1e-12 less."""
     scene = replace(REPORT, theta=theta)
     blow = blow_to(scene, distance)
     h = math.hypot(2.0 * math.sin(theta), math.cos(theta))
@@ -231,8 +232,8 @@ def test_the_least_that_rolls_over(theta: float, distance: float) -> None:
 
 
 def test_a_harder_press_may_need_less_friction() -> None:
-    """1.1:1 needs 0.0614 at the speed of the separatrix, 0.0492 at twice that: with 0.055 it is a
-    speed between them, at which the motion needs just that."""
+    """A 1.1:1 disc needs 0.0614 at the speed of the separatrix, 0.0492 at twice that. With a
+    friction of 0.055 the press gives a speed between them, at which the motion needs 0.055."""
     scene = Scene(1.1, 1.0, friction=0.055)
     blow = blow_to(scene, 0.02)
     after = replace(scene, impulse=blow)
@@ -242,7 +243,8 @@ def test_a_harder_press_may_need_less_friction() -> None:
 
 
 def test_blow_to_where_presses_are_as_large_as_they_may_be() -> None:
-    """A thousand times faster would ask for more: F d makes the speed, as with a longer lever."""
+    """A lever a thousand times shorter would need a larger press than allowed; F d gives the speed,
+    as with a longer lever."""
     usual, huge = (
         -blow_to(replace(REPORT, friction=math.inf), distance).jz for distance in (1e-3, 2e-6)
     )

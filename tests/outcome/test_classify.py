@@ -1,4 +1,4 @@
-"""`classify` where the answer is known: edges, shapes of arrays, arguments."""
+"""`classify` gives known answers: edges, shapes of arrays, arguments."""
 
 import math
 from typing import Any
@@ -34,7 +34,7 @@ def test_it_rests(a: float, b: float, theta: float, friction: float) -> None:
 
 
 def test_at_rest_beside_an_equilibrium_it_falls() -> None:
-    """And comes back, if friction holds it; from 1e-9 beside the tip as well."""
+    """A body at rest falls and returns if friction holds it, even from 1e-9 beside the tip."""
     for theta in (0.3, -0.3, 1e-9, math.pi / 2 - 1e-6, math.pi / 2 + 1e-6):
         assert classify(a=1.5, b=1.0, omega=0.0, theta=theta) is Outcome.ROCKS
         assert classify(a=1.5, b=1.0, omega=0.0, theta=theta, friction=0) is Outcome.SLIPS
@@ -43,14 +43,14 @@ def test_at_rest_beside_an_equilibrium_it_falls() -> None:
 @pytest.mark.parametrize("friction", [0.0, 1e-9, 0.5, math.inf])
 @pytest.mark.parametrize("omega", [-1e6, -1e-5, 1.0, 1e6])
 def test_a_circle_rolls_for_ever_on_any_friction(omega: float, friction: float) -> None:
-    """Without any its contact slides, though it moves in the same way."""
+    """A circle without friction moves in the same way, but its contact slides."""
     for theta in (0.0, 0.7, 500.0):
         found = classify(a=0.7, b=0.7, omega=omega, theta=theta, friction=friction)
         assert found is (Outcome.ROLLS_OVER if friction else Outcome.SLIPS)
 
 
 def separatrix_speed(a: float, b: float, gravity: float) -> Any:
-    """From the flat, of a disc: k^2 as the double it is formed to."""
+    """Speed of the separatrix at the flat position, of a disc whose k^2 is rounded to a double."""
     longer, shorter = mp.mpf(max(a, b)), mp.mpf(min(a, b))
     gyration2 = mp.mpf((a * a + b * b) / 4)
     return mp.sqrt(2 * mp.mpf(gravity) * (longer - shorter) / (gyration2 + shorter**2))
@@ -59,9 +59,9 @@ def separatrix_speed(a: float, b: float, gravity: float) -> Any:
 @pytest.mark.parametrize("gravity", [9.81, 1.62])
 @pytest.mark.parametrize(("a", "b"), [(2.0, 1.0), (1.5, 1.0), (0.3, 0.9), (9.5, 1.0), (1.0, 9.5)])
 def test_beside_the_separatrix(a: float, b: float, gravity: float) -> None:
-    """Infinite friction, and a shape (below 9.75) that keeps N > 0 a little beyond the separatrix.
-    A few ulp beside it EDGE or the truth; on it, as near as a double comes, EDGE. The way up starts
-    flat for every shape: theta = pi/2 is off by 6e-17, whose square has no say."""
+    """Friction is infinite, and the shape (below 9.75) keeps N > 0 a little beyond the separatrix.
+    A few ulp off the separatrix the answer is EDGE or the truth; at the nearest double, EDGE. Every
+    start is flat: theta = pi/2 is off by 6e-17, whose square has no effect."""
     mp.mp.dps = DIGITS
     exact = separatrix_speed(a, b, gravity)
     theta = 0.0 if a > b else math.pi / 2
@@ -86,8 +86,8 @@ def test_beside_the_separatrix(a: float, b: float, gravity: float) -> None:
     [(2.0, 1.0, 2.5), (2.0, 1.0, 3.2), (2.0, 1.0, 4.5), (0.7, 1.9, 1.0), (20.0, 1.0, 1.0)],
 )
 def test_the_friction_that_the_certificate_asks_for(a: float, b: float, omega: float) -> None:
-    """From the flat the way up meets every height of the motion; |F|/N of forces that are rounded
-    at 1e-14 or so of the weight, where N is a tenth of it and more, is good to 1e-13 or so."""
+    """The motion from flat up passes every height; |F|/N is known to 1e-13 or so, as the forces are
+    rounded at 1e-14 or so of the weight, and N is a tenth of it or more."""
     theta = 0.0 if a > b else math.pi / 2
     needed = certify(Scene(a, b, omega=omega, theta=theta)).largest_friction_needed
     assert needed is not None
@@ -100,8 +100,9 @@ def test_the_friction_that_the_certificate_asks_for(a: float, b: float, omega: f
 
 
 def test_beyond_the_slip_it_rolls_over_first() -> None:
-    """2:1 at 4.5 rad/s in the flat needs 0.647 at 48.6 degrees and next to nothing beside the tip:
-    started on the same motion beyond that, it gets over the tip; on its way down it does not."""
+    """The 2:1 disc at 4.5 rad/s in flat needs 0.647 at 48.6 degrees and hardly any friction near
+    the tip. A start of the same motion above that angle passes the tip if it rises, and slips if it
+    falls."""
     friction = 0.5
     moving = oracles.rolling.motion([2.0], [1.0], [1.25], [9.81], [0.0], [4.5])
     for angle, up, down in (
@@ -121,8 +122,8 @@ def test_beyond_the_slip_it_rolls_over_first() -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.5, 10.0, math.inf])
 def test_too_fast_for_the_ground(friction: float) -> None:
-    """On the tip the free body leaves the ground from omega^2 = g L/(L^2 - S^2) on; at 1:1.5, below
-    root three, that is also where N of rolling vanishes first: below it all is well if the
+    """The free body on its tip leaves the ground from omega^2 = g L/(L^2 - S^2) on. At 1:1.5, below
+    root three, N of rolling first vanishes there, too: at lower speeds the body rolls over if
     friction is infinite. 1e-11 of the speed, 2e-11 of c, is far above rounding."""
     limit = math.sqrt(9.81 * 1.5 / (1.5**2 - 1))
     at: dict[str, Any] = {"a": 1.0, "b": 1.5, "friction": friction}
@@ -137,9 +138,9 @@ def test_too_fast_for_the_ground(friction: float) -> None:
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_from_exactly_on_the_tip_either_way(side: int) -> None:
-    """theta = 0 with b the longer one is the tip exactly. The half turn to the next tip lies ahead
-    whichever way it goes, and with it the flat position, where it is fastest: at 1 rad/s it
-    needs more than 0.1 on the way down."""
+    """theta = 0 with b the longer axis is the tip exactly. In either direction the half turn to the
+    next tip lies ahead, with the flat position, where omega is largest: at 1 rad/s the body needs
+    more than 0.1 on its fall."""
     at: dict[str, Any] = {"a": 1.0, "b": 2.0, "omega": float(side)}
     assert classify(**at, friction=0.1) is Outcome.SLIPS
     assert classify(**at) is Outcome.ROLLS_OVER
@@ -149,7 +150,7 @@ def test_from_exactly_on_the_tip_either_way(side: int) -> None:
 @pytest.mark.parametrize(("a", "b"), [(1e3, 1.0), (1.0, 1e3), (1.0, 1e-3), (1e-3, 1.0)])
 def test_the_thinnest(a: float, b: float) -> None:
     """c stays positive in the flat position, where h'' = L^2/S - S > 0, at any speed; at 1e4 rad/s
-    rolling would need the ground to pull as soon as it rises."""
+    rolling would need a pull of the ground as soon as the body rises."""
     flat = 0.0 if a > b else math.pi / 2
     tip = math.pi / 2 - flat
     slow = 1e-3 * thresholds(a, b).contact_loss_speed
@@ -202,7 +203,7 @@ def test_the_default_is_a_disc_on_earth_with_unlimited_friction_lying_on_its_sid
 
 
 def test_workers_and_inputs() -> None:
-    """20,000 scenes: the same answers whoever computes them; the inputs are left alone."""
+    """20,000 scenes have the same answers for any number of workers; the inputs do not change."""
     sample = random_sample(400, 21)
     big = Sample(*(np.tile(field, 50) for field in sample))
     big = big._replace(omega=big.omega * np.linspace(0.5, 1.5, big.omega.size))

@@ -1,7 +1,7 @@
-"""`classify` on random scenes: against a walk along the angles, and against `certify`.
+"""`classify` on random scenes agrees with a search along the angles, and with `certify`.
 
-The walk is brute force in long double: Newton's law (oracles/rolling.py) at thousands of angles
-from the start on, through the flat position if the body goes down first, to the tip or the turning
+The search is brute force in long double: Newton's law (oracles/rolling.py) at thousands of angles
+from the start on, through the flat position if the body falls first, to the tip or the turning
 point.
 """
 
@@ -19,15 +19,16 @@ from oracles.rolling import Motion
 from rolling_ellipse import Outcome, classify
 
 STEPS, CHUNK = 4000, 100
-CLEAR = 1e-6  # of the forces, of the energy, of gravity: nearer to zero a margin decides nothing
+CLEAR = 1e-6  # share of forces, energy and gravity; a margin nearer to zero decides nothing
 
 
-# ----------------------------------------------------------------------------------------- the walk
+# ------------------------------------------------------------------------------------------- search
 
 
 class Start(NamedTuple):
-    """Where it goes, and the reduced angle counted that way: rising from the flat at 0 to the tip
-    at pi/2. Exactly on the tip it has the half turn before it, whichever way it goes."""
+    """Direction of a start, and its reduced angle in that direction: rising from flat at 0 to the
+    tip at pi/2. Exactly on the tip it is -pi/2, because the half turn lies ahead in either
+    direction."""
 
     direction: Long
     angle: Long
@@ -42,16 +43,16 @@ def start_of(sample: Sample) -> Start:
 
 
 def at_rest(sample: Sample) -> NDArray[np.bool_]:
-    """No motion, and exactly on an axis (nothing else in these samples is near to one)."""
+    """True for a body without motion, exactly on an axis (no other sample is near to one)."""
     offset = sample.theta - np.where(sample.a < sample.b, PI / 2, np.longdouble(0))
     resting: NDArray[np.bool_] = (sample.omega == 0) & (2 * offset / PI % 1 == 0)
     return resting
 
 
 def slack(moving: Motion, friction: Long, tangent: Long) -> Long:
-    """How far rolling is from its end at a tangent of the reduced angle: 1 when all of the forces
-    would have to go. The oracle's errors are 1e-12 of their terms, and more where the energy, or
-    a - b, is all rounding."""
+    """Margin of rolling at a tangent of the reduced angle: 1 when all of the forces would have to
+    vanish. The oracle's errors are 1e-12 of their terms, and more where the energy, or a - b,
+    consists of rounding."""
     cosine = 1 / np.sqrt(1 + tangent**2)
     found = oracles.rolling.forces(moving, np.abs(tangent) * cosine, cosine)
     contact = found.normal / found.normal_error
@@ -62,12 +63,12 @@ def slack(moving: Motion, friction: Long, tangent: Long) -> Long:
 
 
 def least_slack(sample: Sample) -> Long:
-    """On the way from the start up to the tip or the turning point: steps even in v, tan = waist
-    sinh v, fine beside the flat and the tip; dips towards zero refined by golden section."""
+    """Smallest margin from the start up to the tip or the turning point: steps even in v, tan =
+    waist sinh v, fine near flat and tip; dips towards zero are refined by golden section."""
     moving, angle = sample.motion(), start_of(sample).angle
     on = oracles.rolling.chart(moving)
     highest = on.waist * np.sinh(on.top)
-    tangent = np.where(angle == -PI / 2, -np.longdouble(1e9), np.tan(angle))  # tan of rounding
+    tangent = np.where(angle == -PI / 2, -np.longdouble(1e9), np.tan(angle))  # not 1/rounding
     tangent = np.clip(tangent, -np.longdouble(1e9), highest)
     begin = np.arcsinh(tangent / on.waist)
     share = np.linspace(np.longdouble(0), 1, STEPS + 1)
@@ -77,8 +78,8 @@ def least_slack(sample: Sample) -> Long:
         moving.at((slice(None), None)), friction[:, None], on.waist[:, None] * np.sinh(v)
     )
     least: Long = values.min(1)
-    # between samples at most 0.016 apart a dip goes deeper by 3e-5 of its second derivative by v,
-    # and what changes within v = 0.1 or so is not in these forces
+    # Between samples at most 0.016 apart a dip is deeper by 3e-5 of its second derivative by v at
+    # most, and these forces have no feature narrower than v = 0.1 or so.
     rows, columns = oracles.rolling.local_minima(values, np.where(least < -0.01, -np.inf, 0.01))
     if rows.size:
         part, held, waist = moving.at(rows), friction[rows], on.waist[rows]
@@ -93,7 +94,7 @@ def least_slack(sample: Sample) -> Long:
 
 class Walk(NamedTuple):
     outcome: Codes
-    clear: NDArray[np.bool_]  # no margin within CLEAR of zero
+    clear: NDArray[np.bool_]  # no margin is within CLEAR of zero
 
 
 def walk(sample: Sample) -> Walk:
@@ -123,7 +124,8 @@ class Walked(NamedTuple):
 
 @pytest.fixture(scope="module")
 def walked() -> list[Walked]:
-    """In chunks: 100 scenes x 4001 angles of long double are 6.4 MB per intermediate array."""
+    """The answers of 600 scenes in chunks: 100 scenes x 4001 angles of long double are 6.4 MB per
+    intermediate array."""
     chunks = []
     for seed in range(6):
         sample = random_sample(CHUNK, seed)
@@ -134,7 +136,8 @@ def walked() -> list[Walked]:
 
 
 def test_the_random_scenes_meet_every_case(walked: list[Walked]) -> None:
-    """Every outcome; up and down; and bodies that would slip on heights they do not meet."""
+    """The scenes have every outcome, rise and fall, and include bodies that would slip only at
+    heights out of reach."""
     counts: Counter[int] = Counter()
     beyond = up = down = 0
     for sample, truth in walked:
@@ -166,19 +169,19 @@ def test_what_comes_first_on_the_walk(walked: list[Walked]) -> None:
 
 
 def test_a_wrong_way_is_noticed(walked: list[Walked]) -> None:
-    """The tester tested: what is met first depends on which way it goes."""
+    """The opposite direction changes the first event of some scenes, so the test above is sharp."""
     differ = 0
     for sample, truth in walked:
         differ += int((sample._replace(omega=-sample.omega).outcomes() != truth).sum())
     assert differ >= 5
 
 
-# ------------------------------------------------------------------------------------------ a crowd
+# -------------------------------------------------------------------------------------- many scenes
 
 
 def test_a_crowd_never_jams_and_is_hardly_ever_undecided() -> None:
-    """1e5 scenes; rounding blurs the margins by 1e-12 or so of what they can be, so that even
-    crowds about the thresholds leave far fewer than one in a thousand undecided."""
+    """Among 1e5 scenes rounding changes the margins by 1e-12 or so of their largest value, so that
+    even many scenes near the thresholds leave far fewer than one in a thousand undecided."""
     rng = np.random.default_rng(31)
     count = 100_000
     a = 10 ** rng.uniform(-2, 2, count)

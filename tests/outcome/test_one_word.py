@@ -1,7 +1,7 @@
-"""What the package says of a start, in all its words: they never contradict each other.
+"""Statements of the package about a start agree with each other.
 
-`outcome`, `classify`, `certify`, `required_friction`, `initial_state`, the model that "auto"
-takes, the first event and the first mode of the contact motion, and the sentences.
+The statements are `outcome`, `classify`, `certify`, `required_friction`, `initial_state`, the model
+that "auto" takes, the first event and the first mode of the contact motion, and the sentences.
 """
 
 import math
@@ -38,8 +38,8 @@ DOES = {
 
 
 def drawn_scene(rng: np.random.Generator) -> Scene:
-    """Circles, both names of the long axis, every friction; rolling, slipping, in the air, at rest,
-    turning too fast for the ground; struck or not."""
+    """A random scene: circles, either axis longer, every friction; rolling, slipping, in the air,
+    at rest, turning too fast for the ground; with or without a blow."""
     a, b = 10 ** rng.uniform(-0.7, 0.7, 2)
     b = a if rng.random() < 0.12 else b
     inertia = (a * a + b * b) / 4 * rng.choice([1.0, 10 ** rng.uniform(-1, 1)])
@@ -61,7 +61,7 @@ def drawn_scene(rng: np.random.Generator) -> Scene:
         strength = math.sqrt(GRAVITY * max(a, b)) * 10 ** rng.uniform(-1.5, 0.7)
         push = rng.choice([0.0, rng.normal()])
         share, at = math.sqrt(rng.random()), rng.uniform(0, 2 * math.pi)
-        along, across = a * share * math.cos(at), b * share * math.sin(at)  # a point of the body
+        along, across = a * share * math.cos(at), b * share * math.sin(at)  # point of the body
         values["impulse"] = Impulse(
             strength * push,
             strength * rng.choice([-1.0, -1.0, 1.0]),
@@ -80,7 +80,7 @@ def pressed_by_gravity(scene: Scene, start: InitialState) -> float:
 
 
 def contradictions(scene: Scene) -> list[str]:
-    """What is said of the scene and cannot all be true, as names of the rules that are broken."""
+    """Names of the rules that the package's statements about a scene break."""
     start, proof = scene.initial_state, certify(scene)
     contact = simulate(scene, [0.0], model="contact", raise_on_failure=False)
     auto = simulate(scene, [0.0], raise_on_failure=False)
@@ -177,7 +177,7 @@ def test_scenes_of_which_two_things_were_said() -> None:
         (Scene(1.0, 1.0, friction=0.0, omega=3.0), Outcome.SLIPS),
         (Scene(1.0, 1.0, friction=0.0), Outcome.RESTS),
         (Scene(2.0, 1.0, theta=0.5, x_dot=3.0), Outcome.ROCKS),
-        (  # over the tip by 0.8 degrees, and back
+        (  # the body passes the tip by 0.8 degrees and returns
             Scene(
                 0.2521, 0.249, slope=-0.79, omega=8.591, inertia=0.01358, friction=1e3
             ),
@@ -192,7 +192,7 @@ def test_scenes_of_which_two_things_were_said() -> None:
 
 def wedged_scenes(count: int) -> Iterator[tuple[Scene, float]]:
     """Starts without slip with c < 0 < N, and the friction that rolling needs: h'' < 0 as on the
-    tip, the speed so that c is what is wanted, N and F by Newton's law."""
+    tip, a speed that gives the chosen c, N and F by Newton's law."""
     rng = np.random.default_rng(3)
     while count:
         a, b = 10 ** rng.uniform(-0.4, 0.4, 2)
@@ -216,7 +216,8 @@ def wedged_scenes(count: int) -> Iterator[tuple[Scene, float]]:
 
 
 def test_where_a_body_may_roll_and_fly_both_are_told() -> None:
-    """It rolls with the friction that this takes, and with less it flies."""
+    """The body rolls with enough friction, and flies with less; the message says that both are
+    possible."""
     told = "two motions are possible"
     for scene, needed in wedged_scenes(300):
         for friction in (1.01 * needed, 10 * needed, math.inf):

@@ -1,4 +1,4 @@
-"""`thresholds`: closed forms, printed numbers, and each speed by what it is the threshold of."""
+"""`thresholds` agree with closed forms, printed numbers, and the definition of each speed."""
 
 import math
 from dataclasses import replace
@@ -32,7 +32,7 @@ def flat_of(shape: Shape) -> float:
 
 
 def rolling(shape: Shape, gyration2: float, omega: Any) -> oracles.rolling.Motion:
-    """Passing the flat position at these speeds [rad/s]."""
+    """Motions that pass the flat position at these speeds [rad/s]."""
     lying = oracles.rolling.motion(
         *shape, gyration2, GRAVITY, flat_of(shape), np.atleast_1d(np.longdouble(0))
     )
@@ -60,7 +60,7 @@ inertias = pytest.mark.parametrize("kind", ["disc", "hoop", "core"])
 @both
 @inertias
 def test_closed_forms(shape: Shape, kind: str) -> None:
-    """From the potential g h alone: the barrier, and its curvature at the bottom and at the top."""
+    """The potential g h alone gives the closed forms: its barrier and its curvatures."""
     mp.mp.dps = DIGITS
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
@@ -84,8 +84,8 @@ def test_defaults_are_the_disc_on_earth_without_limit_of_friction() -> None:
 @both
 @inertias
 def test_loss_of_contact_by_its_definition(shape: Shape, kind: str) -> None:
-    """N stays positive all the way round below the speed and does not just above it; at the speed
-    it vanishes at the angle."""
+    """N stays positive in the whole turn below the speed, and not just above it; at the speed it
+    vanishes at the angle."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     speed = found.contact_loss_speed
@@ -93,7 +93,7 @@ def test_loss_of_contact_by_its_definition(shape: Shape, kind: str) -> None:
     assert normal[0] > 0 > normal[1]
     assert np.all(extremes(rolling(shape, gyration2, lower(speed))).normal > 0)
     there = forces_at(rolling(shape, gyration2, speed), shape, found.contact_loss_angle)
-    # the least N is flat in the angle, which is known to the root of the rounding, 1e-8
+    # N is stationary at its minimum, whose angle is known to the root of the rounding, 1e-8
     assert abs(there.normal[0]) <= 100 * there.normal_error[0]
     assert 0 <= known(found.contact_loss_angle) <= math.pi / 2
 
@@ -102,7 +102,7 @@ def test_loss_of_contact_by_its_definition(shape: Shape, kind: str) -> None:
 @inertias
 @pytest.mark.parametrize("friction", [0.01, 0.2, 0.5, 1.3, 10.0])
 def test_slip_by_its_definition(shape: Shape, kind: str, friction: float) -> None:
-    """The smallest flat speed whose motion needs the friction somewhere: no slower one does."""
+    """The slip speed is the smallest speed at flat whose motion needs the given friction."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2, friction=friction)
     speed = found.slip_speed
@@ -117,7 +117,7 @@ def test_slip_by_its_definition(shape: Shape, kind: str, friction: float) -> Non
 
 @both
 def test_slip_at_the_limits_of_friction(shape: Shape) -> None:
-    """None at all: it slips as soon as it rocks. Without limit: not while N > 0."""
+    """Every rocking body slips without friction; unlimited friction prevents slip while N > 0."""
     assert thresholds(*shape, friction=0.0).slip_speed == 0
     found = thresholds(*shape)
     assert found.slip_speed >= found.contact_loss_speed * (1 - 1e-12)
@@ -128,7 +128,7 @@ def test_slip_at_the_limits_of_friction(shape: Shape) -> None:
 @both
 @inertias
 def test_friction_to_roll_over(shape: Shape, kind: str) -> None:
-    """The most that is needed at the energy of the barrier; inf where N is lost before."""
+    """The largest friction needed at the energy of the barrier; inf if N vanishes before."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     rise = GRAVITY * np.array([abs(np.longdouble(shape[0]) - np.longdouble(shape[1]))])
@@ -142,8 +142,8 @@ def test_friction_to_roll_over(shape: Shape, kind: str) -> None:
 
 
 def painleve(shape: Shape, gyration2: float) -> tuple[float, float]:
-    """Least mu with a normal response <= 0 to a normal push while sliding, and the reduced angle:
-    1/m + h'^2/I <= mu h |h'|/I."""
+    """Least mu for which a normal push on a sliding contact has a normal response <= 0, and its
+    reduced angle: 1/m + h'^2/I <= mu h |h'|/I."""
 
     def least(tangent: Long) -> Long:
         cosine = 1 / np.sqrt(1 + tangent**2)
@@ -160,7 +160,7 @@ def painleve(shape: Shape, gyration2: float) -> tuple[float, float]:
 @both
 @inertias
 def test_painleve(shape: Shape, kind: str) -> None:
-    """The value to 1e-13; the angle of a minimum to the root of that."""
+    """The least friction is exact to 1e-13; the angle of a minimum to the root of that."""
     gyration2 = gyration2_of(shape, kind)
     found = thresholds(*shape, gravity=GRAVITY, gyration2=gyration2)
     friction, angle = painleve(shape, gyration2)
@@ -205,17 +205,17 @@ def tip_speed2(shape: Shape) -> float:
     [((2.0, 1.0), "disc"), ((1.0, 5.0), "disc"), ((0.7, 1.9), "hoop"), ((9.0, 1.0), "core")],
 )
 def test_lift_off_with_infinite_friction(shape: Shape, kind: str) -> None:
-    """Rolling ends where N = 0, and the slide after it has N = 0 too: the centre is in free fall,
-    with contact, which just reaches the tip if z.^2 = h'^2 omega^2 = 2 g (L - h). Two equations
-    for the angle and the speed at which the slide begins, to 30 digits; the package decides the
-    first by the root of a polynomial and the second in closed form: 1e-11 allows 1e-13 of forces
-    that cancel down to N = 0 a hundredfold."""
+    """Rolling ends where N = 0, and the slide after it has N = 0 too: the centre falls freely, with
+    contact, and just reaches the tip if z.^2 = h'^2 omega^2 = 2 g (L - h). Two equations give the
+    angle and the speed at which the slide begins, to 30 digits. The package solves the first by the
+    root of a polynomial and the second in closed form: 1e-11 allows 1e-13 of forces that cancel to
+    N = 0 a hundredfold."""
     mp.mp.dps = DIGITS
     gyration2 = gyration2_of(shape, kind)
     long, short = mp.mpf(max(shape)), mp.mpf(min(shape))
 
     def state(angle: Any) -> tuple[Any, Any]:
-        """N/m of rolling at that speed, and E/m."""
+        """N/m of rolling with the energy that just reaches the tip, and E/m."""
         sine, cosine = mp.sin(angle), mp.cos(angle)
         h = mp.sqrt((long * sine) ** 2 + (short * cosine) ** 2)
         slope = (long**2 - short**2) * sine * cosine / h
@@ -248,9 +248,9 @@ def test_lift_off_with_infinite_friction(shape: Shape, kind: str) -> None:
 @both
 @inertias
 def test_lift_off_without_friction(shape: Shape, kind: str) -> None:
-    """(k^2 + h'^2) omega^2/2 + g h stays: nothing pushes sideways; h' = 0 in the flat and on the
-    tip. The package integrates, to 1e-13 a step; one slide from the flat to the tip is some ten
-    steps, whose errors nothing amplifies here: 1e-12."""
+    """(k^2 + h'^2) omega^2/2 + g h is constant without a force along the ground; h' = 0 in flat and
+    on the tip. The package integrates, to 1e-13 per step; one slide from flat to tip takes some ten
+    steps, whose errors do not grow here: 1e-12."""
     gyration2 = gyration2_of(shape, kind)
     rise = GRAVITY * abs(shape[0] - shape[1])
     exact = math.sqrt(tip_speed2(shape) + 2 * rise / gyration2)
@@ -266,9 +266,9 @@ def test_lift_off_without_friction(shape: Shape, kind: str) -> None:
     ],
 )  # fmt: skip
 def test_lift_off_is_a_threshold(shape: Shape, kind: str, friction: float) -> None:
-    """Slower, it keeps the ground up to the tip; faster, it leaves it before; not only beside the
-    threshold, where 1e-10 of the speed makes the c that vanishes on the tip vanish some 1e-5 rad
-    before, but everywhere. Slides are judged in 30 digits by test_contact_reference.py."""
+    """A slower body stays on the ground up to the tip; a faster body leaves it before. This holds
+    near the threshold, where 1e-10 of the speed moves the zero of c from the tip by some 1e-5 rad,
+    and far from it. test_contact_reference.py judges slides in 30 digits."""
     gyration2 = gyration2_of(shape, kind)
     speed = lift_off(shape, gyration2, friction)
     flat = flat_of(shape)
@@ -298,10 +298,9 @@ def on_its_way_up(event: Event) -> bool:
 
 @pytest.mark.parametrize("friction", [0.25, 0.3, 0.45, 0.505])
 def test_jams_between_speeds_of_leaving(friction: float) -> None:
-    """A body with its mass near the centre, above Painleve's friction: what the numbers say of
-    each speed is what the contact model does, also beside the ends of the ranges. Not closer than
-    1e-4: slides that run into the point at which c and B vanish together tell a jam from leaving
-    by their last digits."""
+    """A body with its mass near the centre, above Painleve's friction: the contact model confirms
+    the jam speeds, even near the ends of the ranges. The distance from an end is 1e-4 at least:
+    where c and B vanish together, the last digits of a slide decide between a jam and leaving."""
     gyration2 = 0.0435
     found = thresholds(2.0, 1.0, gravity=GRAVITY, gyration2=gyration2, friction=friction)
     assert friction > found.painleve_friction
@@ -325,7 +324,7 @@ def test_discs_do_not_jam_before_they_leave() -> None:
 
 
 def test_it_slips_before_it_lifts_off() -> None:
-    """Random bodies; where the slip begins on the tip itself the two speeds are the same."""
+    """The slip speed is at most the lift-off speed; they are equal where slip begins on the tip."""
     rng = np.random.default_rng(41)
     for _ in range(150):
         long, short = 10 ** rng.uniform(0.05, 2.9), 10 ** rng.uniform(-1, 1)
@@ -338,20 +337,22 @@ def test_it_slips_before_it_lifts_off() -> None:
 
 def test_lift_off_of_nearly_circles_with_infinite_friction() -> None:
     """Up to a/b = root three N of rolling vanishes on the tip first, with omega^2 = g a/(a^2 - b^2)
-    and N = c = 0: slip and lift-off are one."""
+    and N = c = 0: slip and lift-off are one event."""
     for k in range(60):
         ratio = 1 + 10 ** (-4 + 0.06 * k)
         found = thresholds(ratio, 1.0, friction=math.inf)
         speed2 = 9.81 * ratio / ((ratio - 1) * (ratio + 1))
         gyration2 = (ratio * ratio + 1) / 4
         flat2 = ((gyration2 + ratio**2) * speed2 + 2 * 9.81 * (ratio - 1)) / (gyration2 + 1)
-        # closed forms, and rolling that ends some 1e-7 beside the tip: c feels the square of that
+        # closed forms, and rolling that ends some 1e-7 beside the tip: c changes by the square of
+        # that
         assert found.lift_off_speed == pytest.approx(math.sqrt(flat2), rel=1e-12)
         assert known(found.slip_speed) <= found.lift_off_speed
 
 
 def test_what_takes_long_is_found_when_asked_for() -> None:
-    """And then it is a field as any other, in copies and comparisons as well."""
+    """Slow fields are computed on first access, and then are fields as any other, in copies and
+    comparisons, too."""
     found, again = thresholds(2.0, 1.0, friction=0.5), thresholds(2.0, 1.0, friction=0.5)
     assert "lift_off_speed" not in vars(found) and "jam_speeds" not in vars(found)
     assert found.lift_off_speed is found.lift_off_speed is vars(found)["lift_off_speed"]

@@ -1,5 +1,4 @@
-"""The installed extension: its instructions, its symbols, and the state of the processor after it
-is loaded."""
+"""The installed extension: its instructions, symbols, and effect on the processor's state."""
 
 import platform
 import re
@@ -55,8 +54,8 @@ def disassembled(*options: str) -> str:
 def test_nothing_is_fused_but_the_exact_products_of_lanes() -> None:
     """two_product of src/numerics/lanes.hpp is x y - round(x y), packed, in AVX2 and AVX-512.
 
-    A compiler that fuses a product and a sum by itself would make additions too, and instructions
-    of single numbers. std::fma is a call.
+    A compiler that fuses a product and a sum by itself would also fuse additions, and single
+    numbers. std::fma is a call.
     """
     if platform.machine() != "x86_64":
         pytest.skip(f"the instructions are those of x86-64, not of {platform.machine()}")
@@ -66,17 +65,17 @@ def test_nothing_is_fused_but_the_exact_products_of_lanes() -> None:
     fused = re.findall(r"\bvfn?m(?:add|sub)\w+", disassembled("-d", "--no-show-raw-insn"))
     told(len(fused), sorted(set(fused)))
     assert all(re.fullmatch(r"vfmsub(?:132|213|231)pd", each) for each in fused), set(fused)
-    assert fused or "sse2" not in _core.flow_levels()  # none: they are not recognised
+    assert fused or "sse2" not in _core.flow_levels()  # a failed search finds none
 
 
 def test_it_calls_nothing_that_differs_between_systems() -> None:
     symbols = re.findall(r"\*UND\*.*?(\w+)$", disassembled("-T"), re.MULTILINE)
-    assert {"sin", "atan2", "PyErr_SetString"} <= set(symbols)  # else none are recognised
+    assert {"sin", "atan2", "PyErr_SetString"} <= set(symbols)  # a failed search finds none
     assert not set(symbols) & set(UNWANTED)
 
 
 def test_subnormal_numbers_survive_the_import() -> None:
-    """A library linked with -ffast-math would make the processor flush them to zero."""
+    """A library linked with -ffast-math would make the processor flush subnormals to zero."""
     done = subprocess.run(
         [sys.executable, "-c", SUBNORMALS], capture_output=True, text=True, timeout=120
     )

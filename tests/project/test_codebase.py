@@ -1,7 +1,6 @@
-"""The sources: linters, formatters, type checker, generated files, one version, walls.
+"""The sources: linters, formatters, type checker, generated files, one version, order of imports.
 
-All paths start beside this file: the suite runs from a source checkout with the package installed
-as users install it.
+All paths begin at this file: the suite runs from a source checkout with an installed package.
 """
 
 import ast
@@ -29,12 +28,12 @@ GENERATED = {
 PYTHON_FOLDERS = ("python", "tests", "tools", "docs", "benchmarks", "reference")
 BINDINGS = ROOT / "src" / "bindings"
 CORE = [path for path in SOURCES if path.parent != BINDINGS]
-# The order of the data: a folder includes only itself and those before it; "" is src itself.
+# Folders in the order of the data: a folder includes only itself and earlier ones; "" is src.
 FOLDERS = (
     "numerics", "integrator", "geometry", "scene", "rolling/level", "rolling/slope",
     "rolling/stepped", "proof", "multipliers", "contact", "outcome", "", "bindings",
 )  # fmt: skip
-# Rooms and bare modules of the package in the same order; "" is the package itself. Functions may
+# Rooms and single modules of the package in the same order; "" is the package itself. Functions may
 # import a later room that is slow to load.
 PACKAGE = ROOT / "python" / "rolling_ellipse"
 ROOMS = (
@@ -56,7 +55,7 @@ void many(const double* __restrict x, const double* __restrict y, double* __rest
 
 
 def run(*command: str | Path) -> str:
-    """Output of a command in the checkout, which is the message if it fails."""
+    """Output of a command in the checkout, which is also the message if the command fails."""
     done = subprocess.run(
         [str(part) for part in command], cwd=ROOT, capture_output=True, text=True, timeout=300
     )
@@ -64,14 +63,14 @@ def run(*command: str | Path) -> str:
     return done.stdout
 
 
-SCRIPTS = Path(sysconfig.get_path("scripts"))  # where the test extra puts its programs
+SCRIPTS = Path(sysconfig.get_path("scripts"))  # folder of the programs of the test extra
 
 
 # -------------------------------------------------------------------------------- tools
 
 
 RUFF = [sys.executable, "-m", "ruff"]
-# Newer versions of `ruff format` also take code in Markdown, where comments are aligned.
+# Checks: newer versions of `ruff format` would format code in Markdown, where comments are aligned.
 CHECKS: dict[str, tuple[list[str | Path], list[str | Path], str, str]] = {
     "ruff": ([*RUFF, "check", "--no-cache"], ["."], "unused.py", "import os\n"),
     "ruff format": (
@@ -126,7 +125,7 @@ def test_one_version() -> None:
     found = re.search(r"^version:\s*\"?([^\"\s]+)", citation, re.MULTILINE)
     assert found and found[1] == version
     assert rolling_ellipse.__version__ == version
-    # and nowhere else
+    # the version is written in no other source
     literal = f'"{version}"'
     for path in (*SOURCES, *(ROOT / "python").rglob("*.py"), ROOT / "CMakeLists.txt"):
         assert literal not in path.read_text(encoding="utf-8"), path
@@ -171,7 +170,7 @@ def test_wheels_are_tried_by_tests_of_the_suite() -> None:
         assert f"def {test or 'test_'}" in (ROOT / file).read_text(encoding="utf-8"), name
 
 
-# --------------------------------------------------------------------------------- walls
+# ---------------------------------------------------------------------- order of imports
 
 
 def included(path: Path) -> list[str]:
@@ -202,11 +201,12 @@ def test_each_folder_includes_only_those_before_it() -> None:
             assert (ROOT / "src" / other).is_file(), f"{name}: {other} is not a path from src"
             assert folder_of(other) <= folder_of(name), f"{name} includes {other}"
             between += folder_of(other) < folder_of(name)
-    assert between > 50  # fewer: the includes are no longer recognised
+    assert between > 50  # fewer: the search no longer recognises includes
 
 
 def statements(body: Sequence[ast.stmt]) -> Iterator[tuple[ast.ImportFrom, bool]]:
-    """Imports within the package, those for type checkers left out; whether a call makes them."""
+    """Imports within the package, except those for type checkers, each with True if it is in a
+    function."""
     for statement in body:
         if isinstance(statement, ast.ImportFrom) and statement.level:
             yield statement, False
@@ -217,7 +217,7 @@ def statements(body: Sequence[ast.stmt]) -> Iterator[tuple[ast.ImportFrom, bool]
 
 
 def imported(path: Path) -> Iterator[tuple[str, bool]]:
-    """The files that a file imports, by their paths in the package; whether a call does so."""
+    """Files that a file imports, by path in the package, each with True if a function does so."""
     here = path.relative_to(PACKAGE).parts
     for statement, late in statements(ast.parse(path.read_text(encoding="utf-8")).body):
         module = [*here[: -statement.level], *(statement.module or "").split(".")]
@@ -242,7 +242,7 @@ def test_each_room_imports_only_those_before_it() -> None:
             is_slow = late and ROOMS[room_of(other)] == SLOW
             assert is_slow or room_of(other) <= room_of(name), f"{name} imports {other}"
             between += room_of(other) < room_of(name)
-    assert between > 200  # fewer: the imports are no longer recognised
+    assert between > 200  # fewer: the search no longer recognises imports
 
 
 def test_the_architecture_page_names_every_room() -> None:
@@ -252,12 +252,12 @@ def test_the_architecture_page_names_every_room() -> None:
 
 
 def test_no_files_import_each_other_in_a_circle() -> None:
-    """Neither when they are loaded nor later, but for type checkers."""
+    """Imports have no circle, neither at load time nor in functions, except for type checkers."""
     graph = {
         path.relative_to(PACKAGE).as_posix(): {other for other, _ in imported(path)}
         for path in PACKAGE.rglob("*.py")
     }
-    assert len(list(TopologicalSorter(graph).static_order())) == len(graph) + 1  # the core's stub
+    assert len(list(TopologicalSorter(graph).static_order())) == len(graph) + 1  # the core's .pyi
     graph["_ask/scene.py"] |= {"_motion/events.py"}
     with pytest.raises(CycleError, match=r"_ask/scene\.py"):
         TopologicalSorter(graph).prepare()
@@ -312,7 +312,7 @@ def test_nothing_is_fused_unless_written(fused: Callable[..., list[str]], tmp_pa
 
 
 def test_nothing_is_fused_in_vectors_where_they_are_wanted(fused: Callable[..., list[str]]) -> None:
-    """A compiler fuses packed numbers; fused instructions of single numbers are written."""
+    """A compiler would fuse packed numbers; single fused numbers come from written calls of fma."""
     build = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     found = re.search(
         r"set_source_files_properties\(([^)]*)PROPERTIES COMPILE_OPTIONS (.+)\)", build

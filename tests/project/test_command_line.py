@@ -1,4 +1,4 @@
-"""`python -m rolling_ellipse`: as a user types it, and its parts through `main`."""
+"""`python -m rolling_ellipse` in a process as users type it, and its parts through `main`."""
 
 import json
 import math
@@ -42,7 +42,7 @@ class Answer(NamedTuple):
 
 
 def typed(folder: Path, *arguments: str, **environment: str) -> Answer:
-    """The command in a process and a folder of its own."""
+    """The command in its own process and folder."""
     return ran(folder, sys.executable, "-m", "rolling_ellipse", *arguments, **environment)
 
 
@@ -62,7 +62,7 @@ def command(capsys: pytest.CaptureFixture[str], monkeypatch: Any, tmp_path: Path
     def run(*arguments: str) -> Answer:
         try:
             code = main(list(arguments))
-        except SystemExit as stopped:  # argparse leaves like this
+        except SystemExit as stopped:  # argparse ends by SystemExit
             code = int(stopped.code or 0)
         captured = capsys.readouterr()
         return Answer(code, captured.out, captured.err)
@@ -82,7 +82,7 @@ def strict_json(text: str) -> dict[str, Any]:
 
 
 def named(text: str) -> dict[str, str]:
-    """The lines of a summary: names, and texts from column 18 on."""
+    """Names and texts of the lines of a summary; texts begin in column 18."""
     return {line[:17].rstrip(): line[18:] for line in text.splitlines()}
 
 
@@ -106,7 +106,7 @@ def test_without_options_it_is_the_report_scene(tmp_path: Path) -> None:
     assert lines["distance"].startswith(f"{trajectory.x[-1]:.12g} m in 6 s, ")
     assert lines["distance"].endswith(f", {trajectory.turns[-1]:.6g} turns")
     assert lines["smallest N"] == f"{certificate.smallest_normal_force:.6g} N"
-    assert list(tmp_path.iterdir()) == []  # nothing is written unless asked
+    assert list(tmp_path.iterdir()) == []  # the command writes no file unless asked
 
 
 def test_json_on_stdout(tmp_path: Path) -> None:
@@ -126,7 +126,7 @@ def test_json_on_stdout(tmp_path: Path) -> None:
 
 
 def test_options_change_the_scene_of_the_report(command: Any) -> None:
-    """A given speed takes the blow away."""
+    """A given speed replaces the blow."""
     options: dict[str, Any] = {
         "a": 3.0, "b": 1.5, "mass": 2.0, "theta": 0.3, "omega": 1.25, "friction": 5.0,
         "restitution": 0.5,
@@ -202,7 +202,7 @@ def test_how_long_until_it_repeats(command: Any) -> None:
 
 
 def test_what_is_written_is_said(command: Any, tmp_path: Path) -> None:
-    """A figure without a suffix is a PNG."""
+    """A figure whose path has no suffix is a PNG."""
     options = ["--plot", "overview", "--save", "roll.gif", "--time", "0.1"]
     lines = command(*options).out.splitlines()
     written = [line[18:] for line in lines if line.startswith("written")]
@@ -222,7 +222,7 @@ def test_what_is_written_is_said(command: Any, tmp_path: Path) -> None:
 
 @pytest.fixture
 def pages(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """The scenes of the pages written, and the addresses opened."""
+    """List that receives the scenes of written pages and the addresses opened."""
     found: list[Any] = []
 
     def write_explorer(scene: rl.Scene, path: str) -> None:
@@ -265,7 +265,7 @@ def test_explore_without_a_browser_says_so(
 
 
 def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
-    """The motion goes on: it slips, jumps and lands."""
+    """A motion whose rolling ends continues: the body slips, jumps and lands."""
     code, out, err = command("--omega", "5.2", "--friction", "1")
     assert (code, err) == (0, "")
     assert "COMPLETED" in out and "ends at theta" in out
@@ -273,12 +273,12 @@ def test_where_rolling_ends_the_summary_says_so(command: Any) -> None:
     found = strict_json(command("--omega", "5.2", "--friction", "1", "--json").out)
     assert found["status"] == "COMPLETED" and found["valid_until"] is None
     assert [kind for _, kind in found["events"]][:3] == ["slip", "lift_off", "impact"]
-    assert "lift_off" in out and found["largest_gap"] < 1e-14  # while it touches
+    assert "lift_off" in out and found["largest_gap"] < 1e-14  # the gap counts in contact only
     assert found["period"] is None and found["smallest_normal_force"] is None
 
 
 def test_a_slope_has_a_summary_too(command: Any) -> None:
-    """From flat it rocks between two turning points."""
+    """A body on a slope rocks between two turning points."""
     code, out, err = command("--slope", "0.1", "--omega", "3", "--time", "2")
     assert (code, err) == (0, "")
     assert "COMPLETED" in out and "slope = 0.1 rad" in out
@@ -291,7 +291,7 @@ def test_a_slope_has_a_summary_too(command: Any) -> None:
 
 
 def test_extreme_motions_are_still_json(command: Any) -> None:
-    """No infinite number is written: no friction limit, rest, contact lost, the separatrix."""
+    """JSON has no infinite number: no friction limit, rest, contact lost, the separatrix."""
     speed = rl.thresholds(2.0, 1.0).roll_over_speed
     for options in (
         "--omega 50", f"--theta {math.pi / 2} --omega 0", "--omega 5.2 --friction 0",
@@ -313,7 +313,7 @@ def test_save_writes_an_animation(tmp_path: Path) -> None:
             picture.seek(i)
             shown += picture.info["duration"]
             picture.load()
-    assert 450 <= shown <= 1000  # the half second [ms], the last frame may stay longer
+    assert 450 <= shown <= 1000  # half a second [ms]; the last frame may stay longer
 
 
 # ------------------------------------------------------------------------------ bad input
@@ -450,7 +450,7 @@ def test_an_ffmpeg_that_does_not_work_is_one_line(tmp_path: Path, program: str, 
 
 
 def shell(folder: Path, command: str) -> Answer:
-    """A line of bash in which `roll` is the command; the exit code is that of the pipe's start."""
+    """A line of bash in which `roll` is the command; the exit code is the one of `roll`."""
     roll = f"roll() {{ {shlex.quote(sys.executable)} -m rolling_ellipse --time 1 $*; }}"
     return ran(folder, "bash", "-c", f"{roll}; {command}; exit ${{PIPESTATUS[0]}}")
 
@@ -472,7 +472,7 @@ def test_with_closed_streams(tmp_path: Path) -> None:
 
 
 def test_interrupted_it_says_nothing(tmp_path: Path) -> None:
-    """Ctrl-C, once the work has begun."""
+    """Ctrl-C after the work has begun ends the command without an error text."""
     program = (
         "import os, signal, sys\n"
         "from rolling_ellipse import __main__ as command_line\n"

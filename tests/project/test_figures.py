@@ -16,7 +16,7 @@ DOCS = ROOT / "docs"
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 RACE = DOCS / "peers_R_10.37.json"
 NOTEBOOK = ROOT / "notebooks" / "06_speed_and_accuracy.ipynb"
-# a time below a second, or a ratio ("25 × 16" is a size)
+# pattern of a time below a second, or a ratio ("25 × 16" is a size)
 MEASURED = re.compile(r"\d\s*(?:µs|us|ms|ns|microseconds?|nanoseconds?)\b|\d\s*×(?!\s*\d)")
 MARKED = re.compile(r"<!-- (\w+): made by .*?<!-- end of \1 -->", flags=re.DOTALL)
 

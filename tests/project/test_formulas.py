@@ -1,4 +1,4 @@
-"""The numbered formulas: defined and shown true in the physics notebook, cited by the core.
+"""The numbered formulas are defined and verified in the physics notebook, and cited by the core.
 
 A comment of the core that says ``physics (12)`` means the formula under the heading ``### (12)`` of
 notebooks/02_physics.ipynb; ``physics (23, 24)`` means two of them.
@@ -37,7 +37,7 @@ def test_citations_are_told_from_other_brackets() -> None:
 
 def test_each_number_is_defined_once_and_none_is_missing() -> None:
     assert list(range(1, len(DEFINED) + 1)) == DEFINED
-    assert len(DEFINED) >= 30  # fewer: the headings are no longer recognised
+    assert len(DEFINED) >= 30  # fewer: the search no longer recognises headings
 
 
 def test_every_formula_is_cited_by_the_core() -> None:
@@ -55,7 +55,7 @@ def test_the_core_says_once_what_the_numbers_are() -> None:
 
 
 def test_every_formula_is_shown_by_the_cell_below_it() -> None:
-    """One formula to a cell of text; the cell of code below it checks that very number."""
+    """Each text cell has at most one formula; the code cell below it checks the same number."""
     for text, below in pairwise(CELLS):
         for number in headings(text):
             assert headings(text) == [number], f"({number}) shares its cell"

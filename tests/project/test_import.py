@@ -80,7 +80,7 @@ ctypes.CDLL("libm.so.6").fesetenv(environment)
 
 
 def changed(deed: str) -> str:
-    """Names of the state that a program changes, in a process of its own."""
+    """Names of the state that a program changes, in a separate process."""
     done = subprocess.run(
         [sys.executable, "-c", STATE.replace("{deed}", deed)],
         env=os.environ | {"MPLBACKEND": "agg"}, capture_output=True, text=True, timeout=300,
@@ -97,7 +97,7 @@ def test_the_process_is_left_as_it_was(deed: str) -> None:
 
 
 def test_no_backend_is_chosen_without_a_picture() -> None:
-    """Importing the pictures leaves the choice open, as matplotlib itself does."""
+    """Importing the pictures leaves the choice of backend open, as matplotlib itself does."""
     script = f"import matplotlib; {EVERY_NAME}; print(matplotlib.get_backend(auto_select=False))"
     environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
     done = subprocess.run(

@@ -25,7 +25,7 @@ NAME = re.compile(r"`([\w/.]+\.(?:hpp|cpp|pyi|py))`")
 
 
 def of_room(room: str) -> list[str]:
-    """Public names that come from a room, by `__init__.pyi`."""
+    """Public names that the package imports from a room, by `__init__.pyi`."""
     lines = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8")).body
     imports = [line for line in lines if isinstance(line, ast.ImportFrom)]
     return [line.names[0].name for line in imports if (line.module or "").startswith(room)]
@@ -38,7 +38,7 @@ PEER_MODULES = [
 
 
 class Kind(NamedTuple):
-    """Words that a file of the list holds, all of them; and files of the list that hold others."""
+    """Words that each file of a list must contain, and its files with other words."""
 
     words: list[str]
     beside: tuple[str, ...] = ()
@@ -51,7 +51,7 @@ KINDS = {
          "tests/core/golden.cpp", "tests/core/test_core.py"),
     ),
     "a method": Kind(
-        ["dopri5"],  # in the tableaus its name is DormandPrince5
+        ["dopri5"],  # the tableaus call it DormandPrince5
         ("src/integrator/explicit_tableaus.hpp", "src/integrator/steps.hpp",
          "src/integrator/runge_kutta.hpp", "tests/integrator/test_tableaus.py",
          "tests/integrator/test_integrators.py", "tools/fuzz/scenes.py",
@@ -99,7 +99,7 @@ def named_by_the_page(kind: str) -> set[Path]:
 
 
 def holding(words: list[str]) -> set[Path]:
-    """Sources that hold every word, in any case."""
+    """Sources that contain every word, in any case."""
     found = set()
     inner = (path for room in (CORE, PEERS, *ROOMS) for path in room.rglob("*"))
     for path in (*PACKAGE.glob("*"), *inner):

@@ -1,4 +1,4 @@
-"""The notebooks: committed as they ran, small, and running again without an error."""
+"""The notebooks are committed with their output, small, and run again without an error."""
 
 import json
 import shutil
@@ -10,7 +10,7 @@ from nbclient import NotebookClient
 from oracles.paths import ROOT
 
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("**/*.ipynb"))
-LIMIT = 1_500_000  # bytes: more is slow to open on the web
+LIMIT = 1_500_000  # bytes; a larger file is slow to open on the web
 WIDTH = 105  # characters of a JupyterLab cell in a window of 1280 pixels
 
 
@@ -35,7 +35,7 @@ def test_notebook_is_committed_as_it_ran(path: Path) -> None:
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_is_plain(path: Path) -> None:
-    """Valid, with the kernel every Jupyter has, and without traces of the machine it ran on."""
+    """A notebook is valid, has Jupyter's standard kernel, and no traces of a machine."""
     notebook = json.loads(path.read_text(encoding="utf-8"))
     nbformat.validate(notebook)
     assert notebook["metadata"]["kernelspec"]["name"] == "python3"
@@ -51,9 +51,9 @@ def test_notebook_ends_in_an_assertion(path: Path) -> None:
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_runs(path: Path, tmp_path: Path) -> None:
-    for module in path.parent.glob("*.py"):  # which it imports from its own folder
+    for module in path.parent.glob("*.py"):  # modules that the notebook imports
         shutil.copy(module, tmp_path)
     notebook = nbformat.read(path, 4)
     resources = {"metadata": {"path": str(tmp_path)}}
-    # raises CellExecutionError with the cell and its traceback
+    # execute raises CellExecutionError with the cell and its traceback
     NotebookClient(notebook, timeout=600, kernel_name="python3", resources=resources).execute()

@@ -18,8 +18,8 @@ from rolling_ellipse import Mode, Scene, flow, period, simulate
 R = Scene(2.0, 1.0, theta=0.2, omega=3.2)
 T = 1.37 * period(R) / 2
 TOLERANCE = 1e-10
-# The tolerance bounds the error of a step. The errors of a few hundred steps, each growing tenfold
-# at most over the tip, add up to less than 1e4 tolerances.
+# The tolerance bounds the error of a step. The errors of a few hundred steps grow tenfold at most
+# over the tip, and their sum stays below 1e4 tolerances.
 BOUND = 1e4 * TOLERANCE
 
 
@@ -114,7 +114,7 @@ def test_scenes_that_do_not_roll_are_refused(found: Any) -> None:
 
 
 def test_a_peer_with_a_wrong_equation_is_noticed() -> None:
-    """With gravity 1e-3 too strong the error is the difference of the exact motions."""
+    """A peer with gravity 1e-3 too strong has an error equal to the difference of exact motions."""
 
     def wrong(theta: Any, omega: Any, body: Any) -> Any:
         return RATES(theta, omega, (*body[:4], 1.001 * body[4], body[5]))
@@ -126,7 +126,7 @@ def test_a_peer_with_a_wrong_equation_is_noticed() -> None:
 
 
 def test_quick_benchmark(found: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    """Its judge is independent of the package, and its table has every contender.
+    """The benchmark's judge is independent of the package, and its table has every contender.
 
     An hour is allowed, so that the result does not depend on the load of the machine.
     """
@@ -145,7 +145,7 @@ def test_quick_benchmark(found: Any, capsys: pytest.CaptureFixture[str]) -> None
 
 
 def test_the_judge_sees_a_small_error() -> None:
-    """It shares no line with exact rolling, and agrees with it within a few roundings of 7."""
+    """The judge shares no line with exact rolling, and agrees with it to a few roundings of 7."""
     exact = bench_peers.in_40_digits(R)
     off = [float(v[0] - own) for v, own in zip(exact([T]), exact_end(T), strict=True)]
     assert 0 < max(map(abs, off)) < 1e-14
@@ -154,7 +154,7 @@ def test_the_judge_sees_a_small_error() -> None:
 
 
 def test_mujoco_follows_the_exact_motion_with_stiff_contacts() -> None:
-    """The error of tuned contacts falls with the step, that of default contacts does not."""
+    """The error of tuned contacts falls with the step, the error of default contacts does not."""
     pytest.importorskip("mujoco")
     mujoco_ellipse = importlib.import_module("peers.mujoco_ellipse")
     t_end = 5.0

@@ -1,6 +1,6 @@
 """Physical numbers of the 2:1 disc on Earth, to all known digits.
 
-Public functions give them, and motions confirm those that say what a motion does.
+Public functions return them, and computed motions confirm them.
 """
 
 import math
@@ -22,12 +22,12 @@ TWO_TO_ONE = thresholds(A, B)
 
 
 def test_perimeter() -> None:
-    """One turn rolls 9.6884482205476762 m: 4 a E(1 - b^2/a^2)."""
+    """A turn rolls the perimeter, 9.6884482205476762 m: 4 a E(1 - b^2/a^2)."""
     turn = 2 * math.pi
     exact = 4 * A * float(mp.ellipe(mp.mpf(3) / 4))
     assert exact == 9.6884482205476762
     assert rl.geometry.arc_length(turn, a=A, b=B) == pytest.approx(exact, rel=4 * EPS)
-    # the centre is above the contact as at the start, so it has moved as far
+    # the centre is above the contact as at the start, so it has moved by the same distance
     times = np.array([0.0, period(rl.scenes.rolling)])
     trajectory = rl.simulate(rl.scenes.rolling, times)
     assert trajectory.x[1] == pytest.approx(exact, rel=16 * EPS)
@@ -37,11 +37,11 @@ def test_perimeter() -> None:
 
 def test_path_of_the_centre_in_space() -> None:
     """Project Euler 525: the centre of a 4:2 ellipse moves C = 21.38816906 m in one turn, the
-    integral of |d(x, h)/d theta| = r; from the rates of a motion."""
+    integral of |d(x, h)/d theta| = r; here by the rates of a motion."""
     turning = Scene(4.0, 2.0, omega=3.0)
     trajectory = rl.simulate(turning, np.linspace(0, period(turning), 2001))
     speed = np.hypot(trajectory.x_dot, trajectory.z_dot)
-    # a smooth periodic function: the trapezoidal rule is exact to rounding
+    # for a smooth periodic function the trapezoidal rule is exact to rounding
     way = float(np.sum((speed[1:] + speed[:-1]) / 2 * np.diff(trajectory.t)))
     assert round(way, 8) == 21.38816906
 
@@ -50,27 +50,27 @@ def test_path_of_the_centre_in_space() -> None:
 
 
 def test_roll_over_decides_between_rocking_and_turning() -> None:
-    """2.953 rad/s: a body with 1e-12 less speed comes back, one with 1e-12 more rolls over."""
+    """2.953 rad/s: a body with 1e-12 less speed turns back, one with 1e-12 more rolls over."""
     speed = TWO_TO_ONE.roll_over_speed
     assert round(speed, 3) == 2.953
     exact = math.sqrt(2 * GRAVITY * (A - B) / (GYRATION2 + B * B))
     assert speed == pytest.approx(exact, rel=2 * EPS)
-    times = np.linspace(0, 60, 4001)  # a swing or turn takes some 45 s there
+    times = np.linspace(0, 60, 4001)  # a rocking or turn takes some 45 s
     slower = flow(times, a=A, b=B, theta=0.0, omega=speed * (1 - 1e-12))[0]
     faster = flow(times, a=A, b=B, theta=0.0, omega=speed * (1 + 1e-12))[0]
     assert np.max(slower) < math.pi / 2 and slower[-1] < 1
     assert np.all(np.diff(faster) > 0) and faster[-1] > math.pi
-    # it turns back at p before the tip, where g c^2/(2 a) p^2 is the missing energy: 2e-12 of
+    # The body turns back at p before the tip, where g c^2/(2 a) p^2 is the missing energy: 2e-12 of
     # g (a - b). Within 6 ms around that time the angle changes by 1e-4 of p.
     around = np.linspace(4, 15, 4001)
     reached = np.max(flow(around, a=A, b=B, theta=0.0, omega=speed * (1 - 1e-12))[0])
     turning_point = math.sqrt(4e-12 * (A - B) * A / (A * A - B * B))
-    # 1e-3: the speed is a double, 1e-12 of it is 4500 ulp
+    # 1e-3: the speed is a double, and 1e-12 of it is 4500 ulp
     assert math.pi / 2 - reached == pytest.approx(turning_point, rel=1e-3)
 
 
 def test_rolling_loses_contact() -> None:
-    """From 4.8432 rad/s at the flat on, N vanishes at 62.36 deg."""
+    """N first vanishes when the speed at flat reaches 4.8432 rad/s, at 62.36 deg."""
     speed = TWO_TO_ONE.contact_loss_speed
     assert round(speed, 4) == 4.8432
     assert round(math.degrees(known(TWO_TO_ONE.contact_loss_angle)), 2) == 62.36
@@ -80,21 +80,21 @@ def test_rolling_loses_contact() -> None:
     just_below = Scene(A, B, omega=speed * (1 - 1e-9))
     trajectory = rl.simulate(just_below, np.linspace(0, 0.6, 100_001))
     least = np.argmin(trajectory.normal_force)
-    # 2e-9 of the energy is missing, so some 2e-8 of the weight is left; N is flat there and changes
-    # by 1e-9 within 1e-5 rad
+    # 2e-9 of the energy is missing, so some 2e-8 of the weight is left; N is stationary there and
+    # changes by 1e-9 within 1e-5 rad
     assert 0 < trajectory.normal_force[least] < 1e-7 * GRAVITY
     assert math.degrees(trajectory.theta[least]) == pytest.approx(62.36, abs=0.01)
 
 
 def test_the_angle_of_lost_contact_leaves_the_tip_at_root_three() -> None:
-    """Up to a/b = sqrt(3) N is smallest on the tip, where it vanishes at g a/(a^2 - b^2)."""
+    """N is smallest on the tip if a/b <= sqrt(3), and vanishes at omega^2 = g a/(a^2 - b^2)."""
     root = math.sqrt(3)
     for ratio in (1.2, 1.7, root * (1 - 1e-6)):
         found = thresholds(ratio, 1.0)
         assert found.contact_loss_angle == pytest.approx(math.pi / 2, abs=1e-7)
         on_tip = GRAVITY * ratio / (ratio**2 - 1)
         k2 = (ratio**2 + 1) / 4
-        # energy from the tip down to the flat
+        # energy at flat from the energy on the tip
         flat2 = ((k2 + ratio**2) * on_tip + 2 * GRAVITY * (ratio - 1)) / (k2 + 1)
         assert found.contact_loss_speed == pytest.approx(math.sqrt(flat2), rel=1e-9)
     for excess in (1e-4, 1e-2):
@@ -111,7 +111,7 @@ def test_no_roll_over_by_rolling_alone_above_9_753() -> None:
 
 
 def test_painleve() -> None:
-    """(k^2 + h'^2)/(h |h'|) is 1.352698667647026 at least, at 56.636 deg."""
+    """The smallest (k^2 + h'^2)/(h |h'|) is 1.352698667647026, at 56.636 deg."""
     assert TWO_TO_ONE.painleve_friction == pytest.approx(1.352698667647026, rel=4 * EPS)
     assert round(math.degrees(known(TWO_TO_ONE.painleve_angle)), 3) == 56.636
     thin, rod = thresholds(1.0, 1e-3), thresholds(1.0, 1e-3, gyration2=1 / 3)
@@ -123,8 +123,8 @@ def test_painleve() -> None:
 
 
 def test_small_rocking() -> None:
-    """3.616628264005025 rad/s. The period grows with the square of the amplitude: the next order
-    (Richardson) is of its fourth power."""
+    """Small rocking has 3.616628264005025 rad/s. The period grows with the square of the amplitude:
+    the next order (Richardson) is of its fourth power."""
     rate = TWO_TO_ONE.rocking_rate
     assert rate == pytest.approx(3.616628264005025, rel=4 * EPS)
     small, large = (
@@ -141,7 +141,7 @@ def test_small_rocking() -> None:
 def test_small_rocking_is_harmonic() -> None:
     amplitude, times = 1e-7, np.linspace(0, 10, 2001)
     theta = flow(times, a=A, b=B, theta=amplitude, omega=0.0)[0]
-    # next order: amplitude^2 in the phase, some 36 rad of it
+    # next order: amplitude^2 times the phase, some 36 rad
     harmonic = amplitude * np.cos(3.616628264005025 * times)
     assert np.max(np.abs(theta - harmonic)) <= 1e-12 * amplitude * 40
 
@@ -157,7 +157,7 @@ def test_falling_from_the_tip() -> None:
     away = (theta - start) + (mp.mpf(start) - mp.pi / 2)  # the double pi/2 is not the tip
     away = np.array(away, dtype=float)
     first = float(mp.mpf(start) - mp.pi / 2)
-    # next order: the square of the distance, 1e-7 cosh(8.4) = 2e-4 at the end; and an ulp of theta
+    # next order: the square of the distance, 1e-7 cosh(8.4) = 2e-4 at the end; plus an ulp of theta
     assert np.allclose(away, first * np.cosh(rate * times), rtol=1e-6, atol=4 * EPS)
     assert np.allclose(omega, first * rate * np.sinh(rate * times), rtol=1e-6, atol=4 * EPS)
     late = times > 2
@@ -165,7 +165,7 @@ def test_falling_from_the_tip() -> None:
     assert slopes[:20] == pytest.approx(rate / np.tanh(rate * times[late][:20]), rel=1e-2)
 
 
-# ------------------------------------------------------------------------ the impulse
+# ---------------------------------------------------------------------------- impulse
 
 
 def test_the_report_scene() -> None:
@@ -180,11 +180,11 @@ def test_the_report_scene() -> None:
     assert TWO_TO_ONE.roll_over_speed < start.omega < TWO_TO_ONE.contact_loss_speed
     assert start.free_omega > TWO_TO_ONE.contact_loss_speed  # too fast to roll
     assert certify(rl.scenes.report).validity is Validity.VALID
-    assert rl.simulate(rl.scenes.report, 6.0).turns[-1] > 1  # it rolls over
+    assert rl.simulate(rl.scenes.report, 6.0).turns[-1] > 1  # more than one turn
 
 
 def test_reactions_of_the_report_scene() -> None:
-    """Sticking: L_x = m h omega - J_x, L_z = m h' omega - J_z."""
+    """The reactions of a sticking contact are L_x = m h omega - J_x and L_z = m h' omega - J_z."""
     start = rl.scenes.report.initial_state
     assert start.reaction_x == pytest.approx(10 * 1.0 * 3.2, rel=4 * EPS)
     assert start.reaction_z == pytest.approx(48, rel=4 * EPS)
@@ -204,7 +204,7 @@ def test_the_impulse_law_of_sticking(theta: float, omega: float) -> None:
 
 
 def test_it_sticks_from_two_thirds_on() -> None:
-    """Pressed flat at d: mu >= b d/(k^2 + b^2) = 2/3, whatever the force."""
+    """A press at d on a flat body sticks if mu >= b d/(k^2 + b^2) = 2/3, at any force."""
     for force in (1e-3, 48.0, 1e5):
         for change, mode in ((1e-9, Mode.ROLLING), (-1e-9, Mode.SLIDING)):
             blow = replace(
@@ -214,8 +214,8 @@ def test_it_sticks_from_two_thirds_on() -> None:
 
 
 def test_little_friction_reverses_the_slip() -> None:
-    """theta = 0.5, mu = 0.2, J = (-1, -4) at dx = 0.6 give -0.8618 rad/s; sticking, -0.7171
-    rad/s."""
+    """theta = 0.5, mu = 0.2, J = (-1, -4) at dx = 0.6 give -0.8618 rad/s with slip and -0.7171
+    rad/s with a sticking contact."""
     scene = Scene(A, B, theta=0.5, friction=0.2, impulse=Impulse(-1.0, -4.0, dx=0.6))
     assert round(scene.initial_state.omega, 4) == -0.8618
     assert round(replace(scene, friction=math.inf).initial_state.omega, 4) == -0.7171

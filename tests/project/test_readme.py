@@ -1,4 +1,4 @@
-"""The Python code of the README runs, one block after the other."""
+"""The Python code of the README runs, one block after another."""
 
 import re
 from pathlib import Path
@@ -15,7 +15,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
 
 
-@pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")  # which it speaks of
+@pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")  # README shows it
 def test_the_lines_of_the_readme_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert len(BLOCKS) >= 4

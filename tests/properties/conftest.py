@@ -1,10 +1,10 @@
-"""How many examples the properties have, and which.
+"""Number and choice of the examples of the properties.
 
-The suite draws the same ones every time, a few of each property. Any number of new ones:
+The suite draws the same few examples of each property every time. Any number of new ones:
 
     ROLLING_ELLIPSE_EXAMPLES=5000 pytest tests/properties
 
-What fails is printed as the smallest example that does, with a line that draws it again.
+A failure is printed as its smallest example, with a line that draws it again.
 """
 
 import os
@@ -13,8 +13,7 @@ from pathlib import Path
 
 from hypothesis import HealthCheck, settings
 
-#: Constants of the sources, which hypothesis tries as numbers, are kept there and not in the
-#: checkout.
+#: Folder for constants of the sources, which hypothesis tries as numbers, outside the checkout.
 FOLDER = Path(tempfile.gettempdir()) / "rolling_ellipse_hypothesis"
 
 examples = os.environ.get("ROLLING_ELLIPSE_EXAMPLES")
@@ -23,7 +22,7 @@ settings.register_profile(
     "rolling_ellipse",
     max_examples=int(examples or 60),
     derandomize=examples is None,
-    deadline=None,  # whatever else the machine does
+    deadline=None,  # the load of the machine has no effect
     database=None,
     print_blob=True,
     suppress_health_check=[HealthCheck.too_slow],

@@ -1,4 +1,4 @@
-"""What is true of every certificate: what more friction, another mass or a mirror do to it."""
+"""Properties of every certificate: effects of more friction, another mass and a mirror."""
 
 import math
 from typing import Any
@@ -20,8 +20,8 @@ def rolling_scenes(draw: Any) -> Scene:
 
 @given(st.data())
 def test_more_friction_never_ends_a_rolling(data: Any) -> None:
-    """The set of states that the ground holds only grows with mu: what was valid stays valid, and
-    what ends does not end sooner."""
+    """The set of states that the ground holds only grows with mu: valid rolling stays valid, and an
+    end of rolling never comes sooner."""
     scene = data.draw(rolling_scenes())
     more = scene.friction * (1 + data.draw(powers(-16, 3))) + data.draw(powers(-16, 1))
     less, better = certify(scene), certify(scene.replace(friction=more))
@@ -41,10 +41,11 @@ def test_more_friction_never_ends_a_rolling(data: Any) -> None:
 def test_the_ground_holds_what_it_holds_with_the_friction_that_is_required(data: Any) -> None:
     scene = data.draw(rolling_scenes())
     needed = required_friction(scene)
-    assume(1e-200 < needed < 1e5)  # of fewer the millionth is no double
+    assume(1e-200 < needed < 1e5)  # a millionth of less than 1e-200 may be subnormal
     above = certify(scene.replace(friction=needed * (1 + 1e-6)))
     below = certify(scene.replace(friction=needed * (1 - 1e-6)))
-    # Forces of a - b, or of what is left of a weight: a millionth of them is next to rounding.
+    # Forces are in proportion to a - b, or are the rest of a nearly cancelled weight: then a
+    # millionth of them is close to rounding.
     pressed = above.smallest_normal_force
     lifts = pressed is not None and pressed < 0.01 * scene.mass * scene.gravity
     unsure = (Validity.EDGE,) if lifts or abs(scene.a / scene.b - 1) < 0.05 else ()
@@ -96,7 +97,7 @@ def test_thresholds_grow_with_friction(data: Any) -> None:
     friction = data.draw(FRICTIONS)
     more = friction + data.draw(powers(-16, 3))
     one, other = thresholds(**body, friction=friction), thresholds(**body, friction=more)
-    # each is a root of its own polynomial, to roundings
+    # each speed is a root of its own polynomial, to roundings
     assert other.slip_speed >= one.slip_speed * (1 - 1e-12)
     assert other.slip_speed <= other.contact_loss_speed * (1 + 1e-12)
     assert (one.roll_over_speed, one.contact_loss_speed) == (

@@ -1,5 +1,4 @@
-"""What is true of all rolling on level ground: its symmetries, its composition, its energy, its
-volume in phase space."""
+"""Properties of rolling on level ground: symmetries, composition, energy, phase-space volume."""
 
 import math
 from typing import Any
@@ -17,26 +16,26 @@ MOST_HALF_TURNS = 1e9
 
 
 def state(t: float, **motion: float) -> Floats:
-    """theta, omega and x after t."""
+    """theta, omega and x after time t."""
     return np.array(flow(t, **motion))
 
 
 def leave_equilibria_out(motion: dict[str, float]) -> None:
-    """Within 8 ulp of one a body at rest stays for ever, where a rounding further on it does not:
-    no bound spans that."""
+    """Reject a body at rest near an equilibrium: within 8 ulp of it the body stays for ever, a
+    rounding farther it does not, and no bound covers both."""
     roundness = abs(motion["a"] / motion["b"] - motion["b"] / motion["a"])
     leaning = roundness * abs(math.sin(2 * motion["theta"]))
     assume(motion["omega"] != 0 or roundness == 0 or leaning > 1e-6)
 
 
 def path_grain(motion: dict[str, float]) -> Floats:
-    """x is a difference of lengths like the body's, each rounded."""
+    """Rounding of theta, omega and x: x is a difference of rounded lengths like the body's."""
     return np.array([0.0, 0.0, ROUNDINGS * EPS * max(motion["a"], motion["b"])])
 
 
 def known_to_where_shifted(t: float, turned: dict[str, float], shift: float) -> Floats:
-    """An angle to which another is added, and from which it is taken again, twice two roundings:
-    of the angle that the motion starts from, too."""
+    """Bound of rounding for an angle that is shifted and shifted back: two roundings each time, for
+    the initial angle, too."""
     error = 2 * EPS * (abs(turned["theta"] - shift) + abs(shift))
     moved = spread(state, {"t": t} | turned, {"theta": error})
     return known_to(state, {"t": t} | turned) + moved + np.array([error, 0.0, 0.0])
@@ -44,18 +43,19 @@ def known_to_where_shifted(t: float, turned: dict[str, float], shift: float) -> 
 
 @given(st.data())
 def test_the_mirror_image_has_the_same_bits(data: Any) -> None:
-    """x -> -x: nothing of the arithmetic has a side."""
+    """x -> -x changes no bit: the arithmetic has no side."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
     image = motion | {"theta": -motion["theta"], "omega": -motion["omega"]}
     assert_array_equal(state(t, **image), -state(t, **motion))
-    times = np.linspace(0.0, t, 300)  # so many are read off series
+    times = np.linspace(0.0, t, 300)  # many times are evaluated by series
     assert_array_equal(flow(times, **image), np.negative(flow(times, **motion)))
 
 
 @given(st.data())
 def test_backwards_is_forwards_with_the_speed_turned_round(data: Any) -> None:
-    """To rounding: what has passed is told from the other side of the phase."""
+    """A motion backwards in time equals one with opposite speed, to rounding: its phase is counted
+    from the other side."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     t = data.draw(spans(motion, 1e4))
@@ -67,7 +67,7 @@ def test_backwards_is_forwards_with_the_speed_turned_round(data: Any) -> None:
 
 @given(st.data())
 def test_units_of_powers_of_two_leave_the_bits(data: Any) -> None:
-    """Lengths, times: what is computed has no dimension, or is a product."""
+    """Units of length and time change no bits: computed values are dimensionless or products."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
     metre, second = (2.0 ** data.draw(st.integers(-20, 20)) for _ in range(2))
@@ -88,7 +88,7 @@ def in_units(motion: dict[str, float], metre: float, second: float) -> dict[str,
 
 @given(st.data())
 def test_units_of_any_size_leave_the_motion(data: Any) -> None:
-    """To what the rounding of the numbers in them does."""
+    """Units of any size change the motion by no more than the rounding of its inputs."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     t = data.draw(spans(motion, 1e4))
@@ -101,7 +101,7 @@ def test_units_of_any_size_leave_the_motion(data: Any) -> None:
 
 @given(st.data())
 def test_axes_may_change_their_names(data: Any) -> None:
-    """a and b exchanged are the same body a quarter turn on."""
+    """A body with a and b exchanged is the same body a quarter turn on."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     t = data.draw(spans(motion, 1e4))
@@ -127,7 +127,8 @@ def test_half_a_turn_shows_the_same_body(data: Any) -> None:
 
 @given(st.data())
 def test_two_moves_are_one(data: Any) -> None:
-    """t1, then t2, is t1 + t2: to the errors of the state between, carried on, and of both."""
+    """A move by t1, then by t2, equals one by t1 + t2, to the errors of the intermediate state, as
+    t2 changes them, and of both results."""
     motion = data.draw(motions())
     leave_equilibria_out(motion)
     first, second = data.draw(spans(motion, 1e4)), data.draw(SIGNS) * data.draw(spans(motion, 1e4))
@@ -146,7 +147,7 @@ def test_two_moves_are_one(data: Any) -> None:
 
 
 def energy(theta: float, omega: float, a: float, b: float, gravity: float, gyration2: float) -> Any:
-    """E/m, and by how much it changes where theta and omega are off by a rounding."""
+    """Energy per mass E/m [m^2/s^2]."""
     h = geometry.support(theta, a=a, b=b)
     slope = geometry.support_slope(theta, a=a, b=b)
     kinetic = 0.5 * (gyration2 + h * h + slope * slope) * omega**2
@@ -155,7 +156,7 @@ def energy(theta: float, omega: float, a: float, b: float, gravity: float, gyrat
 
 @given(st.data())
 def test_energy_stays_for_a_milliard_half_turns(data: Any) -> None:
-    """It is as well known as theta and omega are: an ulp of a large angle is a move."""
+    """The energy is known as well as theta and omega: an ulp of a large angle is a motion."""
     motion = data.draw(motions())
     t = data.draw(spans(motion, MOST_HALF_TURNS))
     theta, omega, _ = flow(t, **motion)
@@ -170,11 +171,11 @@ def test_energy_stays_for_a_milliard_half_turns(data: Any) -> None:
 
 @given(st.data())
 def test_phase_space_keeps_its_volume(data: Any) -> None:
-    """det d(theta, D omega)/d(theta0, D0 omega0) = 1, D the inertia about the contact.
+    """det d(theta, D omega)/d(theta0, D0 omega0) = 1, with D the inertia about the contact.
 
-    By central differences over s and 2s: one Richardson step leaves errors of the order s^4, of
-    which what the step changed is a fivefold overestimate where s^2 is small beside 1; where the
-    two differ by much, s is no small step for this motion.
+    The derivatives are central differences over s and 2s: one Richardson step leaves errors of the
+    order s^4. The change by this step is a fivefold overestimate of them where s^2 is small beside
+    1; where the two differ by much, s is too large for this motion.
     """
     motion = data.draw(motions(thinnest=1.5))
     t = data.draw(spans(motion, 20.0))
@@ -186,7 +187,7 @@ def test_phase_space_keeps_its_volume(data: Any) -> None:
         h = geometry.support(theta, **body)
         return float(motion["gyration2"] + h**2 + geometry.support_slope(theta, **body) ** 2)
 
-    unit = inertia(0.0) * rate(motion)  # of the momentum: both columns are of the same kind
+    unit = inertia(0.0) * rate(motion)  # momentum; both columns get one dimension
     theta0 = motion["theta"]
     momentum0 = inertia(theta0) * motion["omega"] / unit
 
@@ -212,5 +213,5 @@ def test_phase_space_keeps_its_volume(data: Any) -> None:
     noise = known_to(state, inputs)[:2] * [1, inertia(theta0) / unit] / s
     error = np.abs(best - fine) + noise[:, None]
     assume(np.all(error <= 1e-3 * np.max(np.abs(best))))
-    size = np.abs(best[::-1, ::-1])  # what multiplies the error of each entry in the determinant
+    size = np.abs(best[::-1, ::-1])  # factor of the error of each entry in the determinant
     assert abs(np.linalg.det(best) - 1) <= 2 * np.sum(size * error) + 1e-12

@@ -1,4 +1,4 @@
-"""What is true of every scene, whatever its motion does: symmetries, and energy that only goes."""
+"""Properties of every scene and all its motions: symmetries, and energy that never grows."""
 
 import math
 from collections.abc import Callable
@@ -23,7 +23,7 @@ from rolling_ellipse import (
     simulate,
 )
 
-ODD = ("theta", "omega", "x", "x_dot", "friction_force")  # change their sign in a mirror
+ODD = ("theta", "omega", "x", "x_dot", "friction_force")  # quantities odd under reflection
 EVEN = ("z", "z_dot", "normal_force", "mode", "t")
 ENOUGH: dict[str, Any] = {"max_events": 60, "max_steps": 3000, "raise_on_failure": False}
 METHODS: list[dict[str, Any]] = [
@@ -32,7 +32,7 @@ METHODS: list[dict[str, Any]] = [
     {"model": "rolling", "method": "dop853"},
     {"model": "rolling", "method": "gauss"},
     {"model": "multipliers", "stabilization": "projection+energy"},
-    {"model": "multipliers"},  # not "radau", whose matrices are differences to one side
+    {"model": "multipliers"},  # "radau" is left out: its matrices are one-sided differences
 ]
 
 
@@ -79,7 +79,7 @@ def test_the_mirror_image_has_the_same_bits(data: Any) -> None:
 
 @given(st.data())
 def test_units_of_powers_of_two_leave_the_bits(data: Any) -> None:
-    """Lengths, times and masses; on a slope as well, and through all events."""
+    """Units of length, time and mass change no bits, on a slope, too, and through all events."""
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
     metre, second, kilogram = (2.0 ** data.draw(st.integers(-12, 12)) for _ in range(3))
@@ -116,7 +116,7 @@ def test_units_of_powers_of_two_leave_the_bits(data: Any) -> None:
 
 @given(st.data())
 def test_where_it_starts_along_the_ground_changes_nothing_else(data: Any) -> None:
-    """x is only added: to the rounding of the sum."""
+    """A shift along the ground is only added to x, to the rounding of the sum."""
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 2)) * clock(scene)
     away = data.draw(st.floats(-1e3, 1e3)) * max(scene.a, scene.b)
@@ -126,10 +126,10 @@ def test_where_it_starts_along_the_ground_changes_nothing_else(data: Any) -> Non
     for name in (*ODD, *EVEN):
         if name != "x":
             assert np.array_equal(getattr(one, name), getattr(other, name)), name
-    # a rounding of every sum that x is made of: one an event, and few within an arc
+    # x is a sum with one rounding per event, and few within an arc
     sums = 4 + 4 * len(one.events)
     size = abs(away) + np.max(np.abs(one.x), initial=0.0)
-    subnormal = 5e-324 * max(1.0, scene.a, scene.b)  # of a length in units of the body
+    subnormal = 5e-324 * max(1.0, scene.a, scene.b)  # smallest length in units of the body
     assert np.all(np.abs(one.x + away - other.x) <= sums * (EPS * size + subnormal))
 
 
@@ -137,7 +137,7 @@ def test_where_it_starts_along_the_ground_changes_nothing_else(data: Any) -> Non
 
 
 def blur(scene: Scene, state: InitialState) -> float:
-    """What roundings of the numbers of a state make of its energy."""
+    """Change of the energy of a state by roundings of its numbers [J]."""
     lever = abs(scene.a - scene.b) + max(scene.a, scene.b)
     heights = state.z + abs(state.x) + lever * max(1.0, abs(state.theta))
     speeds = state.x_dot**2 + state.z_dot**2 + scene.gyration2 * state.omega**2
@@ -145,19 +145,19 @@ def blur(scene: Scene, state: InitialState) -> float:
 
 
 def surface_speed(scene: Scene, state: InitialState) -> float:
-    """What a slip is the difference of."""
+    """Sum of the two terms whose difference is the slip, without signs [m/s]."""
     return abs(state.x_dot) + abs(state.omega) * max(scene.a, scene.b)
 
 
 @given(st.data())
 def test_energy_never_grows_in_contact(data: Any) -> None:
-    """Through no event, and in no arc; the work of the slope is in the potential energy.
+    """Energy never grows through an event or in an arc; the potential energy includes the slope.
 
-    An event rounds each number of its state a few times, and a slip ends within rounding of the
-    speeds that it began with. An arc is known to rounding of the scales that it has passed: of the
-    energies at both ends and, of a flight, of its height between them. Bounces that settle take
-    place under the forces of their beginning: an error of the square of how long they last, beside
-    the time in which a body falls, turns by b/a, or a force turns it.
+    An event rounds each number of its state a few times, and a slip ends within rounding of its
+    initial speeds. An arc is known to rounding of its largest terms: the energies at both ends and,
+    in a flight, its height between them. Averaged bounces move under their initial forces: an error
+    of the square of their duration, relative to the time in which a body falls, turns by b/a, or a
+    force turns it.
     """
     scene = data.draw(scenes())
     span = data.draw(powers(-2, 1.5)) * clock(scene)
@@ -175,7 +175,7 @@ def test_energy_never_grows_in_contact(data: Any) -> None:
         lost = energy(scene, before) - energy(scene, start)
         sizes = (blur(scene, before) + blur(scene, start)) / EPS
         allowed = 64 * EPS * sizes
-        if before.mode is Mode.FLIGHT and each.kind is not EventKind.IMPACT:  # it settled
+        if before.mode is Mode.FLIGHT and each.kind is not EventKind.IMPACT:  # averaged bounces
             least, most = sorted((scene.a, scene.b))
             falls = math.sqrt(scene.gravity / least)
             turned = math.sqrt(scene.gravity * most / scene.gyration2)
@@ -197,21 +197,21 @@ def turned_round(at: Sample) -> dict[str, float]:
 
 @given(st.data())
 def test_a_motion_without_friction_goes_back_where_it_came_from(data: Any) -> None:
-    """e = 1 and mu = 0: turned round, it passes its events in the opposite order.
+    """A reversed motion with e = 1 and mu = 0 passes its events in the opposite order.
 
-    To how far the start moves when the motion is off by roundings, anywhere on its way.
+    The bound is the change of the start when the motion is off by roundings at any of its times.
     """
     scene = data.draw(scenes(friction=0.0, restitution=1.0, slope=0.0)).replace(impulse=None)
     span = data.draw(powers(-2, 0.7)) * clock(scene)
     times = np.linspace(0.0, span, 100)
     there = simulate(scene, times, model="contact", **ENOUGH)
     assume(there.t.size == times.size and len(there.events) <= 3)
-    # a slide that takes off comes down as an impact
+    # a slide that lifts off lands with an impact
     assume({each.kind for each in there.events} <= {EventKind.IMPACT})
     flying = there.at(span).mode is Mode.FLIGHT
     assume(flying == (scene.initial_state.mode is Mode.FLIGHT))
     length = max(scene.a, scene.b)
-    turning = length * float(np.max(np.abs(there.omega)))  # what x_dot is taken from, and slip
+    turning = length * float(np.max(np.abs(there.omega)))  # size of the terms of x_dot and slip
     names = tuple(turned_round(there.at(0.0)))
 
     def way_back(after: float) -> Callable[..., Floats]:
@@ -230,7 +230,7 @@ def test_a_motion_without_friction_goes_back_where_it_came_from(data: Any) -> No
     known = np.zeros(len(names))
     for share in (0.25, 0.5, 0.75, 1.0):
         at = there.at(share * span)
-        # turned round at a hit, or beside it and moved by roundings, it would move into the ground
+        # reversed at a hit, or near it and moved by roundings, it would move into the ground
         gap = at.z - geometry.support(at.theta, a=scene.a, b=scene.b)
         assume(not flying or gap > 1e-9 * length)
         speed = math.sqrt(scene.gravity * length) + abs(at.x_dot) + abs(at.z_dot) + turning
@@ -240,8 +240,8 @@ def test_a_motion_without_friction_goes_back_where_it_came_from(data: Any) -> No
         for name, size in sizes.items():
             errors[name] += ROUNDINGS * EPS * size
         known += spread(way_back(share * span), turned_round(at), errors)
-    assume(known[0] < 1e-3)  # at a tip the ends of what is known may lie lower than all between
-    grain = ROUNDINGS * EPS * max(1.0, abs(scene.theta), abs(at.theta))  # of any angle
+    assume(known[0] < 1e-3)  # at a tip the ends of the bound may lie lower than the angles between
+    grain = ROUNDINGS * EPS * max(1.0, abs(scene.theta), abs(at.theta))  # rounding of any angle
     own = grain * speed * np.array([1 / speed, 1 / length, span, span, 1, 1])
     start = np.array([getattr(there, name)[0] for name in names]) * [1, -1, 1, 1, -1, -1]
     off = np.abs(way_back(span)(**turned_round(at)) - start)
