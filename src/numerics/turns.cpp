@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "numerics/bernstein.hpp"
 #include "numerics/lu.hpp"
+#include "numerics/polynomial.hpp"
 
 namespace rolling_ellipse {
 namespace {

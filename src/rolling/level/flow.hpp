@@ -1,14 +1,33 @@
-// Exact rolling on level ground: the state at any time. Nothing is stepped; the cost of one time
-// does not depend on its distance from the start.
+// Exact rolling on level ground: its start and the state at any time. Nothing is stepped; the cost
+// of one time does not depend on its distance from the start.
 #pragma once
 
 #include <cmath>
 #include <string>
 
 #include "rolling/level/phase.hpp"
-#include "rolling/level/start.hpp"
+#include "scene/scene.hpp"
 
 namespace rolling_ellipse {
+
+// The height H = E/(m g) of the energy [m], and how far it is over the tip (H - L, negative in
+// libration) and over the flat position (H - S), by forms that do not cancel: physics (26).
+struct EnergyHeight {
+    double total;
+    double over_tip;
+    double over_flat;
+};
+
+struct RollingStart {
+    Body body;
+    double theta;
+    double omega;
+    FlatView view;
+    EnergyHeight height;
+    bool rests;  // in equilibrium for all times
+};
+
+RollingStart rolling_start(const Body& body, double theta, double omega);
 
 enum class MotionKind { rest, uniform, libration, rotation };
 

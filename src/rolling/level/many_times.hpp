@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "rolling/level/flow.hpp"
-#include "rolling/level/table.hpp"
+#include "rolling/level/kernel.hpp"
 
 namespace rolling_ellipse {
 

@@ -20,13 +20,13 @@
 // either end y is the v of physics (31).
 #pragma once
 
-#include "numerics/double_double.hpp"
+#include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
 
 // The constants of the integrand.
 template <class T>
-struct PhaseRate {
+struct PhaseIntegrand {
     T short_axis;     // S
     T c2;             // L^2 - S^2
     T energy_height;  // H
@@ -93,7 +93,7 @@ struct alignas(64) PhaseRates {
 // The time as a function of the phase.
 template <class T>
 struct PhaseTime {
-    PhaseRate<T> rate;
+    PhaseIntegrand<T> integrand;
     PhaseMap<T> map;
     TwoParts<T> quarter_turn;  // to the tip or turning point; infinite on the separatrix
     TwoParts<T> half_turn;     // in which the phase advances by pi
@@ -105,7 +105,7 @@ struct PhaseTime {
     T time[most_steps + 2];
 };
 
-// The constants of power series in time (rolling/level/power_series.hpp), with the long semi-axis
+// The constants of power series in time (rolling/level/motion.hpp), with the long semi-axis
 // as the unit of length and time in a unit of its own.
 struct SeriesConstants {
     double short_axis2;
