@@ -102,22 +102,7 @@ struct Bernstein {
     std::array<Tracked, Degree + 1> coefficients{};
 };
 
-namespace detail {
-
-// The matrix binomial(i, j)/binomial(degree, j) from powers to Bernstein coefficients, physics
-// (37).
-template <int Degree>
-constexpr auto bernstein_matrix() {
-    std::array<std::array<double, Degree + 1>, Degree + 1> rows{};
-    for (int i = 0; i <= Degree; ++i) {
-        rows[i][0] = 1.0;
-        for (int j = 0; j < i; ++j) {
-            rows[i][j + 1] = rows[i][j] * double(i - j) / double(Degree - j);
-        }
-    }
-    return rows;
-}
-
+// The binomial coefficients of a degree.
 template <int Degree>
 constexpr auto binomials() {
     std::array<double, Degree + 1> row{1.0};
@@ -125,11 +110,17 @@ constexpr auto binomials() {
     return row;
 }
 
-}  // namespace detail
-
 template <int N>
 Bernstein<N> bernstein(const Polynomial<N>& p) {
-    static constexpr auto matrix = detail::bernstein_matrix<N>();
+    // From powers to Bernstein coefficients: binomial(i, j)/binomial(N, j), physics (37).
+    static constexpr auto matrix = [] {
+        std::array<std::array<double, N + 1>, N + 1> rows{};
+        for (int i = 0; i <= N; ++i) {
+            rows[i][0] = 1.0;
+            for (int j = 0; j < i; ++j) rows[i][j + 1] = rows[i][j] * double(i - j) / double(N - j);
+        }
+        return rows;
+    }();
     Bernstein<N> result;
     for (int i = 0; i <= N; ++i) {
         for (int j = 0; j <= i; ++j) {
@@ -143,7 +134,7 @@ Bernstein<N> bernstein(const Polynomial<N>& p) {
 // The value at 0 <= x <= 1, by Horner's scheme in x/(1 - x) or its inverse, whichever is smaller.
 template <int N>
 double value(const Bernstein<N>& p, double x) {
-    static constexpr auto binomial = detail::binomials<N>();
+    static constexpr auto binomial = binomials<N>();
     const bool near_zero = x < 0.5;
     const double ratio = near_zero ? x / (1 - x) : (1 - x) / x;
     double sum = 0.0;

@@ -33,7 +33,7 @@ int key_of(const RollingStart& start, double t) {
     const double grade2 = integrand.d0 / (integrand.d1 * integrand.amplitude2 + integrand.d0);
     // The length of a quarter grows as this falls, to 0 on the separatrix.
     const double complement2 = square(integrand.kappa) * grade2;
-    if (!(complement2 > 1e-20)) return no_key;
+    if (!(complement2 > 1e-20 && integrand.kappa > largest_tail_kappa)) return no_key;
     return 2 * std::min(-std::ilogb(complement2), most_keys / 2 - 1) + integrand.rotates;
 }
 

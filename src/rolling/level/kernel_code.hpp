@@ -22,7 +22,7 @@ void rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
     }
 }
 
-// Bodies with times that are refused, or with motions that stay long at the tip, are left open.
+// Bodies with times that are refused are left open.
 void sample(const RollingStart* starts, const double* times, const std::uint32_t* places, int count,
             FlowSample* samples, bool* is_open) {
     PhaseMotion<Pack> motion;
@@ -36,11 +36,10 @@ void sample(const RollingStart* starts, const double* times, const std::uint32_t
         }
         set_motion(motion, start);
         const Mask<Pack> is_late = abs(t) > 1e15 * motion.phase.half_turn.high;
-        const Mask<Pack> left = is_late | motion.phase.map.has_tail;
-        const MotionSample<Pack> now = sample_at(motion, start, left ? Pack{} : t);
+        const MotionSample<Pack> now = sample_at(motion, start, is_late ? Pack{} : t);
         for (int lane = 0; lane < lanes && first + lane < count; ++lane) {
             samples[places[first + lane]] = {now.theta[lane], now.omega[lane], now.x[lane]};
-            is_open[first + lane] = left[lane] != 0;
+            is_open[first + lane] = is_late[lane] != 0;
         }
     }
 }

@@ -138,13 +138,12 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const TwoParts<T> whole_turns =
         quick_two_sum(whole.high, whole.low + 2 * turns * half_pi_exact.low);
     TwoParts<T> turned = whole_turns + gain.angle;
-    const auto creeps = (phase.half_turn.high > largest_finite) & (now.sin_phi > now.cos_phi);
-    if (any(creeps & rotates)) {  // to the tip
+    const auto is_endless = rotates & (phase.half_turn.high == infinity);
+    if (any(is_endless & (now.sin_phi > now.cos_phi))) {  // one body, which creeps to the tip
         const PhasePoint<T>& start = motion.start_phase;
         const T rest = angle_of(now.cos_phi, now.sin_phi) + angle_of(start.sin, start.cos);
-        const TwoParts<T> crept = two_sum(filled<T>(half_pi_exact.high), -rest);
-        turned.high = creeps ? crept.high : turned.high;
-        turned.low = creeps ? crept.low + half_pi_exact.low : turned.low;
+        turned = two_sum(filled<T>(half_pi_exact.high), -rest);
+        turned.low = turned.low + half_pi_exact.low;
     }
     const TwoParts<T> rolled =
         TwoParts<T>{heading * turned.high, heading * turned.low} + from.theta;

@@ -41,11 +41,13 @@ struct PhaseIntegrand {
 // The constants of the coordinate.
 template <class T>
 struct PhaseMap {
-    T quarter;         // Y; infinite on the separatrix
-    T step;            // of the trapezoidal rule that integrates over a quarter
-    T steps;           // number in a quarter, or up to the tail
-    Mask<T> has_tail;  // the quarter is longer than the steps, which end at the tip within rounding
-    T grade;           // g
+    T quarter;  // Y; infinite on the separatrix
+    T step;     // of the trapezoidal rule that integrates over a quarter
+    T steps;    // number in a quarter, or up to the tail
+    // The quarter is longer than the steps, which end at the tip within rounding. A body with a
+    // tail is computed alone.
+    Mask<T> has_tail;
+    T grade;  // g
     T kappa;
     T speed;        // dw/dy
     T sine_scale;   // C

@@ -14,6 +14,9 @@ namespace {
 // At this offset the tip is reached within rounding, and the square of sinh is still a double.
 constexpr double largest_offset = 300.0;
 
+// The largest kappa of a quarter with a tail is a little below this.
+constexpr double largest_tail_kappa = 5e-9;
+
 // Sets A and B as polynomials of c; the terms left out are below rounding for q <= 1/32.
 template <class T>
 void set_theta_functions(PhaseMap<T>& map, T q) {
@@ -53,8 +56,8 @@ void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     const T complement = min<T>(kappa * largest_grade, filled<T>(largest_complement));
     const T quarter = complement > 0 ? log<T>(4 / complement) : filled<T>(infinity);
     map.has_tail = complement < 2 * falling_in_tail * largest_grade;
-    T length = quarter;  // whole steps of it give a nome a little below that of k'
-    if (any(map.has_tail)) length = map.has_tail ? tail + log<T>(2 / largest_grade) : quarter;
+    // Whole steps of it give a nome a little below that of k'.
+    const T length = any(map.has_tail) ? tail + log<T>(2 / largest_grade) : quarter;
     map.steps = rounded_up<T>(length * steps_per_unit);
     map.step = map.has_tail ? filled<T>(1 / steps_per_unit) : quarter / map.steps;
     map.quarter = map.has_tail ? quarter : map.steps * map.step;

@@ -10,7 +10,6 @@
 
 #include <array>
 #include <iterator>
-#include <limits>
 
 #include "numerics/gauss_legendre.hpp"
 #include "rolling/level/rates.hpp"
@@ -25,7 +24,6 @@ inline void add(TwoParts<T>& sum, T term) {
     sum = {next.high, sum.low + next.low};
 }
 
-constexpr double largest_finite = std::numeric_limits<double>::max();
 constexpr double longest_panel = 6.0;
 constexpr int most_pairs = most_places / 2;
 
@@ -236,7 +234,7 @@ void integrate_quarter(PhaseTime<T>& phase) {
     if (any(map.has_tail)) {
         offsets[0] = T{};
         phase_rates(phase.integrand, map, filled<T>(1.0), offsets, 1, rates);
-        beyond = map.has_tail ? rates.time[0] : T{};
+        beyond = rates.time[0];
     }
     for (int first = 0; first <= most; first += most_places) {
         const int count = most - first < most_places ? most - first + 1 : most_places;
@@ -258,12 +256,8 @@ void integrate_quarter(PhaseTime<T>& phase) {
     phase.quarter_turn = quick_two_sum(whole.high, whole.low + sum.low * map.step);
     if (any(map.has_tail)) {
         const TwoParts<T> tail = two_product(map.quarter, beyond);
-        const TwoParts<T> all = (phase.quarter_turn + tail.high) + tail.low;
-        const auto is_endless = map.quarter > largest_finite;
-        const T high = is_endless ? filled<T>(infinity) : all.high;
-        const T low = is_endless ? T{} : all.low;
-        phase.quarter_turn.high = map.has_tail ? high : phase.quarter_turn.high;
-        phase.quarter_turn.low = map.has_tail ? low : phase.quarter_turn.low;
+        phase.quarter_turn = (phase.quarter_turn + tail.high) + tail.low;
+        if (any(map.quarter == infinity)) phase.quarter_turn = {map.quarter, T{}};
     }
     // The integrals of the cubics.
     phase.time[0] = T{};
