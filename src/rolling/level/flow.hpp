@@ -35,7 +35,7 @@ enum class MotionKind { rest, uniform, libration, rotation };
 struct RollingFlow : PhaseMotion<double> {
     MotionKind kind;
     RollingStart from;
-    double x;  // at the start [m]
+    double x;  // position of the centre at the start [m]
 };
 
 RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);

@@ -25,13 +25,13 @@ struct TableSeries {
 // A place of a table, and the motion there on the way up.
 struct TablePlace {
     double y;         // the coordinate of rolling/level/phase.hpp
-    double sin, cos;  // of the angle from the flat position
+    double sin, cos;  // sine and cosine of the angle from the flat position
     double quarters;  // from the flat position to the nearer one of it and the tip: 0 or 1
-    double angle;     // from there
+    double angle;     // angle from the position named by `quarters`
     double omega;
-    double time, path;  // since the place before
-    double radius;  // of the time interval in which the series is used, in units of its variable
-    double holds;   // 1 if the series has full double precision there, otherwise 0
+    double time, path;  // increments since the previous place
+    double radius;      // half the interval of the series, in units of its variable
+    double holds;       // 1 if the series has full double precision there, otherwise 0
 };
 
 // The series of an interval of times since the flat position.
@@ -46,7 +46,7 @@ struct FlowPiece {
 // A motion as the kernel reads it.
 struct FlowReader {
     const FlowPiece* pieces;
-    const double* ends;  // of the pieces, then infinities: 2 half - 1 numbers
+    const double* ends;  // ends of the pieces, then infinities: 2 half - 1 numbers
     int half;
     double last_end;
     double per_unit;  // variable of the series over time [1/s]
@@ -61,7 +61,7 @@ struct FlowReader {
     // The start, as quarters and an offset.
     double quarters;
     DoubleDouble angle;  // theta less the offset of the angle
-    double path;         // offset of the path
+    double path;         // path offset
     double quarter_path;
     double theta;
     double x;
@@ -79,7 +79,7 @@ struct FlowColumns {
 };
 
 struct Kernel {
-    const char* name;  // of the vector level
+    const char* name;  // name of the vector level
     // The rates of one motion at y = quarters Y + offset, |quarters| <= 1. The arrays have room for
     // a whole number of packs.
     void (*rates)(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,

@@ -138,9 +138,9 @@ static_assert(block % lanes == 0);
 
 struct alignas(64) Block {
     double turns[block];  // whole half turns
-    double time[block];   // since the nearest flat position, in two parts
+    double time[block];   // time since the nearest flat position, in two parts
     double low[block];
-    // Since there, or since the tip at this number of quarters from there.
+    // Angle and path since the nearest flat position, or since the tip `quarters` from it.
     double angle[block];
     double omega[block];
     double path[block];

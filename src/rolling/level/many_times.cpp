@@ -44,7 +44,7 @@ class TableMaker {
         body_ = series_constants(flow, unit_);
     }
 
-    // None where no series holds.
+    // No table where no series holds.
     std::optional<FlowTable> make() {
         // Spacings in the coordinate y, in which all singularities are pi/2 away from the motion.
         // The first one suffices for series of this order in nearly all motions.

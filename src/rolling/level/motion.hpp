@@ -15,7 +15,7 @@ namespace {
 template <class T>
 struct PhaseStart {
     T long_axis, short_axis, c2;
-    T sin, cos;  // of the angle from the flat position
+    T sin, cos;  // sine and cosine of the angle from the flat position
     T gyration2, gravity;
     T theta, omega;
     T total, over_tip, over_flat;  // heights of the energy

@@ -42,8 +42,8 @@ struct PhaseIntegrand {
 template <class T>
 struct PhaseMap {
     T quarter;  // Y; infinite on the separatrix
-    T step;     // of the trapezoidal rule that integrates over a quarter
-    T steps;    // number in a quarter, or up to the tail
+    T step;     // step of the trapezoidal rule for a quarter
+    T steps;    // number of steps in a quarter, or up to the tail
     // The quarter is longer than the steps, which end at the tip within rounding. A body with a
     // tail is computed alone.
     Mask<T> has_tail;
@@ -97,9 +97,9 @@ template <class T>
 struct PhaseTime {
     PhaseIntegrand<T> integrand;
     PhaseMap<T> map;
-    TwoParts<T> quarter_turn;  // to the tip or turning point; infinite on the separatrix
-    TwoParts<T> half_turn;     // in which the phase advances by pi
-    T quarter_path;            // of the centre; of a rotation
+    TwoParts<T> quarter_turn;  // time to the tip or turning point; infinite on the separatrix
+    TwoParts<T> half_turn;     // time in which the phase advances by pi
+    T quarter_path;            // path of the centre in a quarter of a rotation
     // For first guesses of the place at a time: dt/dy at the steps of the map and one step beyond
     // its ends, and the time since the flat by cubics through these.
     static constexpr int most_steps = 160;
@@ -121,10 +121,10 @@ struct SeriesConstants {
 template <class T>
 struct PhaseMotion {
     PhaseTime<T> phase;
-    T direction;                // of rotation; +1 for libration
+    T direction;                // direction of a rotation; +1 for libration
     T amplitude;                // sin phi_max of a libration; 1 for rotation
-    Mask<T> on_way_back;        // at the start of a libration: its phase is beyond +-pi/2
-    PhasePoint<T> start_phase;  // less half a turn if on the way back
+    Mask<T> on_way_back;        // a libration starts with its phase beyond +-pi/2
+    PhasePoint<T> start_phase;  // phase of the start, less half a turn on the way back
     PhasePlace<T> start_place;
 };
 

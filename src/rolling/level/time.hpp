@@ -277,7 +277,7 @@ void set_phase_time(PhaseTime<T>& phase, const PhaseIntegrand<T>& integrand) {
     phase.half_turn = {2 * phase.quarter_turn.high, 2 * phase.quarter_turn.low};
 }
 
-// The place after a time of at most a full swing, and the interval from the start to it.
+// The place after a time of at most a full swing; angle and path on the way to it.
 template <class T>
 struct PhaseMove {
     PhasePlace<T> to;
@@ -312,12 +312,11 @@ PhaseMove<T> move(const PhaseTime<T>& phase, const PhasePlace<T>& from, T time) 
         distance = is_last ? distance + step : after;
         if (!any(open)) break;
         const Integral<T> more = integral_between(phase, from.quarters, begin, from.offset + after);
-        sum.time = open ? sum.time + more.sum.time : sum.time;
+        sum.time = sum.time + more.sum.time;
         sum.angle = open ? sum.angle + more.sum.angle : sum.angle;
         sum.path = open ? sum.path + more.sum.path : sum.path;
         slope = more.end;
     }
-    sum.time = time;
     return {moved(phase.map, from, distance), sum};
 }
 
