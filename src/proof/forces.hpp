@@ -39,7 +39,6 @@ struct ShapePlace {
 };
 
 ShapePlace place_at(const Shape& shape, double sin2, double cos2);
-ShapePlace place_at(const Shape& shape, double h2, double sin2, double cos2);
 
 // The heights h = short_axis + width x, 0 <= x <= 1, that a body of a shape reaches.
 struct EnergyRange : Shape {

@@ -24,7 +24,7 @@ struct TableSeries {
 
 // A place of a table, and the motion there on the way up.
 struct TablePlace {
-    double y;         // the coordinate of rolling/level/phase.hpp
+    double y;         // the coordinate of rolling/level/flow.hpp
     double sin, cos;  // sine and cosine of the angle from the flat position
     double quarters;  // from the flat position to the nearer one of it and the tip: 0 or 1
     double angle;     // angle from the position named by `quarters`

@@ -41,7 +41,7 @@ inline void set_lane(PhaseStart<Pack>& start, int lane, const PhaseStart<double>
     __builtin_memcpy(&start, packs, sizeof start);
 }
 
-// The constants of the energy integral, physics (28, 29); see rolling/level/phase.hpp.
+// The constants of the energy integral, physics (28, 29); see rolling/level/flow.hpp.
 template <class T>
 inline PhaseIntegrand<T> phase_integrand(const PhaseStart<T>& at) {
     const auto rotates = (at.over_tip >= 0) & (at.omega != 0);

@@ -1,4 +1,4 @@
-// The coordinate y of rolling/level/phase.hpp, and the rates of time, angle and path in it. By the
+// The coordinate y of rolling/level/flow.hpp, and the rates of time, angle and path in it. By the
 // theta functions of the nome q (DLMF 20.2, 22.2), with c = cosh 2y,
 //     sc = C sinh(y) B(c)/A(c),   sc(Y - y) = 1/(k' sc(y)),
 //     dphase/dy = speed sqrt((g^2 cos^2 + sin^2) (cos^2 + kappa^2 sin^2)),
