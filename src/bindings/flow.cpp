@@ -5,7 +5,6 @@
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
 #include "rolling/level/kernel.hpp"
-#include "rolling/level/many_bodies.hpp"
 #include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 

@@ -1,7 +1,7 @@
 // Bounces that are too small and too short to resolve one by one, summed.
 #pragma once
 
-#include "numerics/double_double.hpp"
+#include "numerics/numbers.hpp"
 #include "scene/scene.hpp"
 #include "scene/settings.hpp"
 

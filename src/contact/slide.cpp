@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "geometry/half_turns.hpp"
-#include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
+#include "numerics/polynomial.hpp"
 
 namespace rolling_ellipse {
 namespace {

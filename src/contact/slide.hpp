@@ -8,7 +8,7 @@
 
 #include "contact/slide_series.hpp"
 #include "integrator/system.hpp"
-#include "numerics/double_double.hpp"
+#include "numerics/numbers.hpp"
 #include "scene/settings.hpp"
 
 namespace rolling_ellipse {

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "contact/sliding.hpp"
-#include "numerics/long_series.hpp"
+#include "numerics/series.hpp"
 
 namespace rolling_ellipse {
 

@@ -1,7 +1,7 @@
 // Angles as half turns and a remainder: the ellipse is the same after half a turn.
 #pragma once
 
-#include "numerics/double_double.hpp"
+#include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
 

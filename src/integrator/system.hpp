@@ -15,7 +15,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "numerics/double_double.hpp"
+#include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
 

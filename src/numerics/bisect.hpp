@@ -40,7 +40,7 @@ class RootBracket {
         const auto [low, high] = ends_;
         const double few = 4 * epsilon * std::max(std::abs(low), std::abs(high));
         if (secants_ < most_secants && high - low > 2 * few) {
-            const double place = secant();
+            const double place = (low * f_high_ - high * f_low_) / (f_high_ - f_low_);
             const bool halve = secants_++ % 4 == 3 || !(place >= low && place <= high);
             return std::clamp(halve ? 0.5 * (low + high) : place, low + few, high - few);
         }
@@ -66,10 +66,6 @@ class RootBracket {
     Bracket ends() const { return ends_; }
 
   private:
-    double secant() const {
-        return (ends_.low * f_high_ - ends_.high * f_low_) / (f_high_ - f_low_);
-    }
-
     Bracket ends_;
     double f_low_;
     double f_high_;

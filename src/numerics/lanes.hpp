@@ -9,7 +9,7 @@
 
 #include <type_traits>
 
-#include "numerics/double_double.hpp"
+#include "numerics/numbers.hpp"
 
 #if defined(__x86_64__)
 #include <immintrin.h>

@@ -1,12 +1,14 @@
-// Polynomials of a small degree fixed at compile time. Every coefficient carries a bound of its
-// rounding.
+// Polynomials of a small degree fixed at compile time, with a bound of the rounding of every
+// coefficient; on one interval, their proved signs and all roots.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <vector>
 
-#include "numerics/numbers.hpp"
+#include "numerics/bisect.hpp"
 
 namespace rolling_ellipse {
 
@@ -92,6 +94,182 @@ Polynomial<N - 1> derivative(const Polynomial<N>& p) {
     Polynomial<N - 1> result;
     for (int i = 1; i <= N; ++i) result.coefficients[i - 1] = tracked(i) * p.coefficients[i];
     return result;
+}
+
+// A polynomial by its Bernstein coefficients on [0, 1]. The least and the largest of them bound it.
+template <int Degree>
+struct Bernstein {
+    std::array<Tracked, Degree + 1> coefficients{};
+};
+
+// The binomial coefficients of a degree.
+template <int Degree>
+constexpr auto binomials() {
+    std::array<double, Degree + 1> row{1.0};
+    for (int i = 0; i < Degree; ++i) row[i + 1] = row[i] * (Degree - i) / (i + 1);
+    return row;
+}
+
+template <int N>
+Bernstein<N> bernstein(const Polynomial<N>& p) {
+    // From powers to Bernstein coefficients: binomial(i, j)/binomial(N, j), physics (37).
+    static constexpr auto matrix = [] {
+        std::array<std::array<double, N + 1>, N + 1> rows{};
+        for (int i = 0; i <= N; ++i) {
+            rows[i][0] = 1.0;
+            for (int j = 0; j < i; ++j) rows[i][j + 1] = rows[i][j] * double(i - j) / double(N - j);
+        }
+        return rows;
+    }();
+    Bernstein<N> result;
+    for (int i = 0; i <= N; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            result.coefficients[i] =
+                result.coefficients[i] + tracked(matrix[i][j]) * p.coefficients[j];
+        }
+    }
+    return result;
+}
+
+// The value at 0 <= x <= 1, by Horner's scheme in x/(1 - x) or its inverse, whichever is smaller.
+template <int N>
+double value(const Bernstein<N>& p, double x) {
+    static constexpr auto binomial = binomials<N>();
+    const bool near_zero = x < 0.5;
+    const double ratio = near_zero ? x / (1 - x) : (1 - x) / x;
+    double sum = 0.0;
+    double power = 1.0;
+    for (int i = 0; i <= N; ++i) {
+        const int j = near_zero ? N - i : i;
+        sum = sum * ratio + binomial[j] * p.coefficients[j].value;
+        power *= i < N ? std::max(x, 1 - x) : 1.0;
+    }
+    return sum * power;
+}
+
+// A polynomial on [0, at] and on [at, 1], by de Casteljau's subdivision.
+template <int N>
+struct Parts {
+    Bernstein<N> left;
+    Bernstein<N> right;
+};
+
+template <int N>
+Parts<N> divided(const Bernstein<N>& p, double at = 0.5) {
+    Parts<N> parts{{}, p};
+    auto& work = parts.right.coefficients;
+    for (int level = 0; level < N; ++level) {
+        parts.left.coefficients[level] = work[0];
+        for (int i = 0; i < N - level; ++i) {
+            work[i] = tracked(1 - at) * work[i] + tracked(at) * work[i + 1];
+        }
+    }
+    parts.left.coefficients[N] = work[0];
+    return parts;
+}
+
+namespace detail {
+
+// Number of bisections after which an interval of [0, 1] counts as a point.
+constexpr int deepest = 48;
+
+template <int N>
+bool all(const Bernstein<N>& p, Sign wanted) {
+    return std::all_of(p.coefficients.begin(), p.coefficients.end(),
+                       [wanted](Tracked c) { return sign(c) == wanted; });
+}
+
+template <int N>
+int sign_changes(const Bernstein<N>& p) {
+    int changes = 0;
+    double last = 0.0;
+    for (const Tracked c : p.coefficients) {
+        if (c.value == 0.0) continue;
+        if (last != 0.0 && (c.value > 0) != (last > 0)) ++changes;
+        last = c.value;
+    }
+    return changes;
+}
+
+// The root of a p that changes its sign once in (0, 1).
+template <int N>
+double single_root(const Bernstein<N>& p) {
+    const auto [low, high] = bisect_root(0.0, 1.0, [&](double x) { return value(p, x); });
+    return 0.5 * (low + high);
+}
+
+template <int N>
+void collect_roots(const Bernstein<N>& p, double start, double width, int depth,
+                   std::vector<double>& roots) {
+    const int changes = sign_changes(p);
+    if (changes == 0) return;
+    const double first = p.coefficients.front().value;
+    const double last = p.coefficients.back().value;
+    if (changes == 1 && first != 0.0 && last != 0.0) {
+        roots.push_back(start + width * single_root(p));
+        return;
+    }
+    if (depth == deepest || all(p, Sign::undecided)) {
+        roots.push_back(start + 0.5 * width);
+        return;
+    }
+    const Parts<N> parts = divided(p);
+    collect_roots(parts.left, start, width / 2, depth + 1, roots);
+    if (parts.right.coefficients.front().value == 0.0) roots.push_back(start + 0.5 * width);
+    collect_roots(parts.right, start + width / 2, width / 2, depth + 1, roots);
+}
+
+}  // namespace detail
+
+// The sign on [0, 1]: positive everywhere, negative somewhere (both proved), or undecided by
+// rounding.
+template <int N>
+Sign sign_on_unit_interval(const Bernstein<N>& p, int depth = 0) {
+    if (sign(p.coefficients.front()) == Sign::negative) return Sign::negative;
+    if (sign(p.coefficients.back()) == Sign::negative) return Sign::negative;
+    if (detail::all(p, Sign::positive)) return Sign::positive;
+    if (depth == detail::deepest || detail::all(p, Sign::undecided)) return Sign::undecided;
+    const Parts<N> parts = divided(p);
+    const Sign left = sign_on_unit_interval(parts.left, depth + 1);
+    if (left == Sign::negative) return left;
+    const Sign right = sign_on_unit_interval(parts.right, depth + 1);
+    return right == Sign::positive ? left : right;
+}
+
+// The first place in [0, 1] from which on p is provably negative. A value within rounding of zero
+// does not count as negative. The place is 0 if only such values come before negative ones.
+template <int N>
+std::optional<double> first_negative(const Bernstein<N>& p, int depth = 0) {
+    int changes = 0;
+    Sign last = Sign::undecided;
+    for (const Tracked c : p.coefficients) {
+        const Sign now = sign(c);
+        if (now == Sign::undecided || now == last) continue;
+        if (last == Sign::undecided && now == Sign::negative) return 0.0;
+        if (last != Sign::undecided) ++changes;
+        last = now;
+    }
+    if (changes == 0) return std::nullopt;
+    const Sign first = sign(p.coefficients.front());
+    if (changes == 1 && first == Sign::positive && last == Sign::negative) {
+        return detail::single_root(p);
+    }
+    if (depth == detail::deepest) return 0.0;
+    const Parts<N> parts = divided(p);
+    if (const auto left = first_negative(parts.left, depth + 1)) return 0.5 * *left;
+    const auto right = first_negative(parts.right, depth + 1);
+    return right ? std::optional(0.5 + 0.5 * *right) : std::nullopt;
+}
+
+// All places in [0, 1] where p changes its sign or may touch zero, ascending.
+template <int N>
+std::vector<double> roots_on_unit_interval(const Bernstein<N>& p) {
+    std::vector<double> roots;
+    if (p.coefficients.front().value == 0.0) roots.push_back(0.0);
+    detail::collect_roots(p, 0.0, 1.0, 0, roots);
+    if (p.coefficients.back().value == 0.0) roots.push_back(1.0);
+    std::sort(roots.begin(), roots.end());
+    return roots;
 }
 
 }  // namespace rolling_ellipse

@@ -5,8 +5,8 @@
 #include <initializer_list>
 #include <iterator>
 
-#include "numerics/double_double.hpp"
 #include "numerics/gauss_legendre.hpp"
+#include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
 

@@ -2,9 +2,13 @@
 // Experiment. Math. 14 (2005) 99), for doubles or several lanes.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <type_traits>
+
+#include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
 
@@ -59,6 +63,61 @@ double derivative(const std::array<double, Size>& series, double z) {
     double sum = 0.0;
     for (int k = int(Size) - 1; k > 0; --k) sum = sum * z + k * series[k];
     return sum;
+}
+
+// Two doubles in one register, where the processor has such; the bits are those of single doubles.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+
+inline Pair pair(double first, double second) { return Pair{first, second}; }
+
+// Power series of high order, which solve an arc in a few pieces. Their cost grows little faster
+// with the order than their radius, and each piece has a fixed cost besides.
+inline constexpr int long_order = 24;
+using LongSeries = std::array<double, long_order + 1>;
+
+// Two series whose products are computed at the same time.
+using TwoSeries = std::array<Pair, long_order + 1>;
+
+// The terms 1 .. k-1 of the coefficient k of a product: they need no coefficient k of a factor.
+template <class Coefficients>
+inline auto inner(const Coefficients& p, const Coefficients& q, int k) {
+    return terms(p, q, k, 1, k - 1);
+}
+
+// The terms p_0 q_k + p_k q_0 of the coefficient k of a product; p_0 q_0 for k = 0.
+template <class Coefficients>
+inline auto outer(const Coefficients& p, const Coefficients& q, int k) {
+    return k == 0 ? p[0] * q[0] : p[0] * q[k] + p[k] * q[0];
+}
+
+// The factors 1/(k + 1) that integrate the coefficient k of a rate.
+inline constexpr auto over_next = [] {
+    std::array<double, long_order + 1> found{};
+    for (int k = 0; k <= long_order; ++k) found[k] = 1.0 / (k + 1);
+    return found;
+}();
+
+// The radius at which the last terms of a series are a twentieth of an ulp of its size; the terms
+// left out are smaller by another fifth. Half an ulp would be too much, since it may have the same
+// sign in one step after another. Four terms count, as symmetry may hide three, each scaled to the
+// end of a series that falls by a fifth from term to term. Each step of the fixed-point iteration
+// divides the error of the logarithm by eight.
+inline double reach(const LongSeries& series) {
+    constexpr double rest = 1e-17;
+    constexpr double fall = 0.2;
+    const double last[] = {std::abs(series[long_order]), fall * std::abs(series[long_order - 1]),
+                           square(fall) * std::abs(series[long_order - 2]),
+                           fall * square(fall) * std::abs(series[long_order - 3])};
+    double r = 0.3;
+    for (int i = 0; i < 3; ++i) {
+        const double size = std::max(
+            {std::abs(series[0]), std::abs(series[1]) * r, std::abs(series[2]) * square(r)});
+        const double over = 1 / r;
+        const double ends = last[0] + (last[1] + (last[2] + last[3] * over) * over) * over;
+        if (!(ends > 0)) return infinity;
+        r = std::exp(std::log(rest * size / ends) * (1.0 / long_order));
+    }
+    return r;
 }
 
 }  // namespace rolling_ellipse

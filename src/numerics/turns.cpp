@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "numerics/bernstein.hpp"
 #include "numerics/lu.hpp"
+#include "numerics/polynomial.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -23,7 +23,7 @@ constexpr int compared = 4;
 
 // The polynomials binomial(degree, i) s^i (1-s)^(degree-i).
 Eigen::Matrix<double, degree + 1, 1> bernstein_basis(double s) {
-    constexpr auto binomial = detail::binomials<degree>();
+    constexpr auto binomial = binomials<degree>();
     Eigen::Matrix<double, degree + 1, 1> row;
     for (int i = 0; i <= degree; ++i) {
         row[i] = binomial[i];

@@ -21,7 +21,25 @@ Polynomial<11> needed_derivative(const ForcePolynomials& p) {
     return derivative(p.slope_square) * p.friction * p.normal + 2.0 * (p.slope_square * bracket);
 }
 
+ShapePlace place_at(const Shape& shape, double h2, double sin2, double cos2) {
+    const double b = shape.short_axis;
+    const double h = std::sqrt(h2);
+    const double dh2 = square(shape.c2) * sin2 * cos2 / h2;
+    const double ddh = shape.c2 * (b * cos2 - sin2) * (b * cos2 + sin2) / (h * h2);
+    const double kh = shape.gyration2 + h2;
+    return {h2, h, dh2, kh, ddh * kh - h * dh2};
+}
+
 }  // namespace
+
+Shape shape(const Body& body, const FlatView& view) {
+    const double unit = view.long_axis;
+    return {view.short_axis / unit, body.gyration2 / square(unit), view.c2 / square(unit)};
+}
+
+ShapePlace place_at(const Shape& shape, double sin2, double cos2) {
+    return place_at(shape, square(shape.short_axis) * cos2 + sin2, sin2, cos2);
+}
 
 EnergyRange energy_range(const RollingStart& start) {
     const EnergyHeight& height = start.height;

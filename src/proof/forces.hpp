@@ -10,11 +10,35 @@
 // circular body, e for a thin body near a turning point.
 #pragma once
 
-#include "numerics/bernstein.hpp"
+#include "numerics/polynomial.hpp"
 #include "proof/law.hpp"
-#include "rolling/level/start.hpp"
+#include "rolling/level/flow.hpp"
 
 namespace rolling_ellipse {
+
+// A body in units of its long semi-axis.
+struct Shape {
+    double short_axis;
+    double gyration2;
+    double c2;  // 1 - short_axis^2
+};
+
+Shape shape(const Body& body, const FlatView& view);
+
+// A place of a body in rolling, by the squares of the sine and cosine of its angle from the flat
+// position, with the parts of D = kh + h'^2 and of N = (kh + omega^2 normal_part)/D, physics (16,
+// 23).
+struct ShapePlace {
+    double h2;
+    double h;
+    double dh2;
+    double kh;  // k^2 + h^2
+    double normal_part;
+
+    double inertia() const { return kh + dh2; }
+};
+
+ShapePlace place_at(const Shape& shape, double sin2, double cos2);
 
 // The heights h = short_axis + width x, 0 <= x <= 1, that a body of a shape reaches.
 struct EnergyRange : Shape {

@@ -10,7 +10,7 @@
 
 #include "motions.hpp"
 #include "outcome/classify.hpp"
-#include "rolling/level/many_bodies.hpp"
+#include "rolling/level/kernel.hpp"
 #include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "motions.hpp"
-#include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
-#include "numerics/double_double.hpp"
 #include "numerics/lu.hpp"
+#include "numerics/numbers.hpp"
+#include "numerics/polynomial.hpp"
 #include "proof/law.hpp"
 #include "proof/watch.hpp"
 #include "rolling/level/kernel.hpp"
@@ -205,7 +205,7 @@ void every_vector_level_has_the_same_bits() {
     for (const double omega : {1.0, 3.2}) {  // libration and rotation
         const RollingFlow flow = rolling_flow(rolling_start(body, 0.2, omega));
         const FlowTable table = flow_table(flow).value();
-        const PhaseRate<double>& rate = flow.phase.rate;
+        const PhaseIntegrand<double>& rate = flow.phase.integrand;
         const PhaseMap<double>& map = flow.phase.map;
         std::vector<double> times;
         for (int i = 0; i < 4003; ++i)

@@ -23,7 +23,7 @@
 #include "outcome/blow.hpp"
 #include "outcome/classify.hpp"
 #include "outcome/thresholds.hpp"
-#include "rolling/level/many_bodies.hpp"
+#include "rolling/level/kernel.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;

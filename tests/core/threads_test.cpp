@@ -17,7 +17,7 @@
 #include "outcome/classify.hpp"
 #include "outcome/lift_off.hpp"
 #include "outcome/thresholds.hpp"
-#include "rolling/level/many_bodies.hpp"
+#include "rolling/level/kernel.hpp"
 #include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 

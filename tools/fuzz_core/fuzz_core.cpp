@@ -17,7 +17,7 @@
 #include "outcome/passages.hpp"
 #include "outcome/thresholds.hpp"
 #include "proof/law.hpp"
-#include "rolling/level/many_bodies.hpp"
+#include "rolling/level/kernel.hpp"
 #include "rolling/stepped/equation.hpp"
 #include "scene/impact.hpp"
 #include "simulate.hpp"

@@ -5,11 +5,19 @@
 #include <optional>
 
 #include "rolling/level/motion.hpp"
-#include "rolling/level/power_series.hpp"
 #include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {
+
+// The height of the energy, physics (26).
+EnergyHeight energy_height(const FlatView& at, const Body& body, double omega) {
+    const double h2 = square(at.short_axis) + at.c2 * square(at.sin);
+    const double h = std::sqrt(h2);
+    const double dh = at.c2 * at.sin * at.cos / h;
+    const double kinetic = (body.gyration2 + h2 + square(dh)) * square(omega) / (2 * body.gravity);
+    return {kinetic + h, kinetic - under_tip(at, h), kinetic + over_flat(at, h)};
+}
 
 // The radius at which the last terms of a series are half an ulp of its size. The terms left out
 // are smaller by another tenth.
@@ -46,6 +54,15 @@ std::optional<FlowSample> short_move(const RollingFlow& flow, double t) {
 
 }  // namespace
 
+RollingStart rolling_start(const Body& body, double theta, double omega) {
+    omega = zero_if_negligible(omega);
+    FlatView view = flat_view(body.axes(), theta);
+    // A body that starts on the tip moves down, with the same bits to either side.
+    if (view.cos == 0 && omega != 0) view.sin = -std::copysign(1.0, omega);
+    const bool rests = omega == 0 && is_equilibrium(geometry(body.axes(), theta));
+    return {body, theta, omega, view, energy_height(view, body, omega), rests};
+}
+
 RollingFlow rolling_flow(const RollingStart& from, double x) {
     RollingFlow flow;
     flow.kind = from.rests ? MotionKind::rest : MotionKind::uniform;
@@ -53,7 +70,7 @@ RollingFlow rolling_flow(const RollingStart& from, double x) {
     flow.x = x;
     if (from.rests || from.view.c2 == 0) return flow;
     set_motion(flow, phase_start(from));
-    flow.kind = flow.phase.rate.rotates ? MotionKind::rotation : MotionKind::libration;
+    flow.kind = flow.phase.integrand.rotates ? MotionKind::rotation : MotionKind::libration;
     // The steps of the map end 1e-9 of the path before the tip.
     if (flow.phase.map.has_tail) {
         flow.phase.quarter_path =
@@ -113,7 +130,7 @@ double time_of_passing(const RollingFlow& flow, double theta, double heading) {
         // amplitude^2 - sin^2 = cos^2 - kappa^2: the difference of the smaller numbers has more
         // digits.
         const double amplitude = flow.amplitude;
-        const double kappa = flow.phase.rate.kappa;
+        const double kappa = flow.phase.integrand.kappa;
         const double left = std::abs(sin) < cos ? (amplitude - sin) * (amplitude + sin)
                                                 : (cos - kappa) * (cos + kappa);
         sin = std::clamp(sin / amplitude, -1.0, 1.0);

@@ -1,14 +1,168 @@
-// Exact rolling on level ground: the state at any time. Nothing is stepped; the cost of one time
-// does not depend on its distance from the start.
+// Exact rolling on level ground: its start and the state at any time. Nothing is stepped; the cost
+// of one time does not depend on its distance from the start.
+//
+// A motion is known by its phase: the integrand of the time, the coordinate in which it is
+// integrated, and the integrals; of one body, T = double, or of as many bodies as a Pack has lanes.
+//
+// With L, S the long and short semi-axes, c^2 = L^2 - S^2, phi the angle from the flat position,
+// H = E/(m g) the height of the energy and D = (d0 + d1 sin^2 phi)/h^2, physics (28), the integral
+// of physics (27) becomes that of physics (29),
+//     dt/dphase = scale sqrt(D (H + h)) / sqrt(cos^2 phase + kappa^2 sin^2 phase),
+//     sin phi   = amplitude sin phase,
+// rotation (phase = phi) and libration (phase = u of sin phi = sin phi_max sin u) are one integral:
+//     rotation:  amplitude 1, scale^2 = 1/(2 g (H^2 - S^2)),   kappa^2 = (H^2 - L^2)/(H^2 - S^2)
+//     libration: amplitude^2 = (H^2 - S^2)/c^2, scale^2 = 1/(2 g c^2), kappa^2 = (L^2 - H^2)/c^2
+// No term is a difference that cancels, but for H - L itself.
+//
+// In the coordinate y no integrand has a peak, physics (61): neither at the flat of a thin body nor
+// at the tip of a motion near the separatrix.
+//     tan phase = g sc(w, k),   k' = kappa g,   w = theta_3(q)^2 y,   q = e^(-2 Y),
+// sc = sn/cn of Jacobi with the complementary modulus k'. The flat position is at y = 0, the tip or
+// turning point at y = Y, and all is symmetric about both. The integrand of the time is singular
+// where tan phase is imaginary, between g and 1/kappa: on the line Im y = pi/2 (DLMF 22.4). Near
+// either end y is the v of physics (31).
 #pragma once
 
 #include <cmath>
 #include <string>
 
-#include "rolling/level/phase.hpp"
-#include "rolling/level/start.hpp"
+#include "numerics/numbers.hpp"
+#include "scene/scene.hpp"
 
 namespace rolling_ellipse {
+
+// The height H = E/(m g) of the energy [m], its distance from the height of the tip (H - L,
+// negative in libration) and from that of the flat position (H - S), by forms that do not cancel:
+// physics (26).
+struct EnergyHeight {
+    double total;
+    double over_tip;
+    double over_flat;
+};
+
+struct RollingStart {
+    Body body;
+    double theta;
+    double omega;
+    FlatView view;
+    EnergyHeight height;
+    bool rests;  // in equilibrium for all times
+};
+
+RollingStart rolling_start(const Body& body, double theta, double omega);
+
+// The constants of the integrand.
+template <class T>
+struct PhaseIntegrand {
+    T short_axis;     // S
+    T c2;             // L^2 - S^2
+    T energy_height;  // H
+    T amplitude2;
+    T scale2;
+    T kappa;
+    T d0;
+    T d1;
+    Mask<T> rotates;
+};
+
+// The constants of the coordinate.
+template <class T>
+struct PhaseMap {
+    T quarter;  // Y; infinite on the separatrix
+    T step;     // step of the trapezoidal rule for a quarter
+    T steps;    // number of steps in a quarter, or up to the tail
+    // The quarter is longer than the steps, which end at the tip within rounding. A body with a
+    // tail is computed alone.
+    Mask<T> has_tail;
+    T grade;  // g
+    T kappa;
+    T speed;        // dw/dy
+    T sine_scale;   // C
+    T flat_scale2;  // (g C)^2
+    T tip_scale2;   // (kappa C)^2
+    T a[4];
+    T b[3];
+};
+
+// A point of the coordinate, y = quarters Y + offset, with the nearest quarter unless a function
+// says otherwise.
+template <class T>
+struct PhasePlace {
+    T quarters;
+    T offset;
+};
+
+// A phase, as its sine and cosine.
+template <class T>
+struct PhasePoint {
+    T sin;
+    T cos;
+};
+
+// Time [s], angle [rad] and path of the centre [m] along an interval of y, or their rates in y.
+template <class T>
+struct PhaseIncrement {
+    T time;
+    T angle;
+    T path;
+};
+
+// Rates at several places. The places of one body are computed side by side, one Pack of the widest
+// level at a time.
+inline constexpr int widest_pack = 8;
+inline constexpr int most_places = 48;  // nodes of a panel and its end
+
+template <class T>
+struct alignas(64) PhaseRates {
+    T time[most_places];
+    T angle[most_places];
+    T path[most_places];
+};
+
+// The time as a function of the phase.
+template <class T>
+struct PhaseTime {
+    PhaseIntegrand<T> integrand;
+    PhaseMap<T> map;
+    TwoParts<T> quarter_turn;  // time to the tip or turning point; infinite on the separatrix
+    TwoParts<T> half_turn;     // time in which the phase advances by pi
+    T quarter_path;            // path of the centre in a quarter of a rotation
+    // For first guesses of the place at a time: dt/dy at the steps of the map and one step beyond
+    // its ends, and the time since the flat by cubics through these.
+    static constexpr int most_steps = 160;
+    T slope[most_steps + 3];
+    T time[most_steps + 2];
+};
+
+// The constants of power series in time (rolling/level/motion.hpp), with the long semi-axis
+// as the unit of length and time in a unit of its own.
+struct SeriesConstants {
+    double short_axis2;
+    double c2;
+    double gravity;
+    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28)
+    double d1;
+};
+
+// A libration or rotation from its start on.
+template <class T>
+struct PhaseMotion {
+    PhaseTime<T> phase;
+    T direction;                // direction of a rotation; +1 for libration
+    T amplitude;                // sin phi_max of a libration; 1 for rotation
+    Mask<T> on_way_back;        // a libration starts with its phase beyond +-pi/2
+    PhasePoint<T> start_phase;  // phase of the start, less half a turn on the way back
+    PhasePlace<T> start_place;
+};
+
+// The state of a motion: angle [rad], angular velocity [rad/s], position of the centre [m].
+template <class T>
+struct MotionSample {
+    T theta;
+    T omega;
+    T x;
+};
+using FlowSample = MotionSample<double>;
 
 enum class MotionKind { rest, uniform, libration, rotation };
 
@@ -16,7 +170,7 @@ enum class MotionKind { rest, uniform, libration, rotation };
 struct RollingFlow : PhaseMotion<double> {
     MotionKind kind;
     RollingStart from;
-    double x;  // at the start [m]
+    double x;  // position of the centre at the start [m]
 };
 
 RollingFlow rolling_flow(const RollingStart& from, double x = 0.0);

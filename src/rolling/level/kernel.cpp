@@ -1,6 +1,43 @@
+#include "rolling/level/kernel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
 #include "rolling/level/kernel_code.hpp"
 
 namespace rolling_ellipse {
+namespace {
+
+constexpr std::size_t most_bodies = 512;  // of one kernel call
+
+FlowSample sample_alone(const RollingStart& start, double t) {
+    const RollingFlow flow = rolling_flow(start);
+    validate_time(t, longest_time(flow));
+    return sample(flow, t);
+}
+
+constexpr int most_keys = 144;
+constexpr int no_key = -1;
+
+// The key by which bodies are sorted, so that those side by side have as many steps in a quarter;
+// `no_key` for a body that the kernel cannot take.
+int key_of(const RollingStart& start, double t) {
+    const bool is_finite = std::abs(t) <= std::numeric_limits<double>::max();
+    if (start.rests || start.view.c2 == 0 || t == 0 || !is_finite) return no_key;
+    // A short move is the small difference of two times; only its power series keeps the digits.
+    if (may_be_short(start, t)) return no_key;
+    const PhaseIntegrand<double> integrand = phase_integrand(phase_start(start));
+    const double grade2 = integrand.d0 / (integrand.d1 * integrand.amplitude2 + integrand.d0);
+    // The length of a quarter grows as this falls, to 0 on the separatrix.
+    const double complement2 = square(integrand.kappa) * grade2;
+    if (!(complement2 > 1e-20 && integrand.kappa > largest_tail_kappa)) return no_key;
+    return 2 * std::min(-std::ilogb(complement2), most_keys / 2 - 1) + integrand.rotates;
+}
+
+}  // namespace
 
 const std::vector<Kernel>& kernels() {
     static const std::vector<Kernel> found = [] {
@@ -23,9 +60,41 @@ const std::vector<Kernel>& kernels() {
     return found;
 }
 
-const Kernel& kernel() {
-    static const Kernel best = kernels().back();
-    return best;
+const Kernel& kernel() { return kernels().back(); }
+
+void sample(const Kernel& kernel, const RollingStart* starts, const double* times, std::size_t n,
+            FlowSample* samples) {
+    if (!kernel.sample) {
+        for (std::size_t i = 0; i < n; ++i) samples[i] = sample_alone(starts[i], times[i]);
+        return;
+    }
+    for (std::size_t begin = 0; begin < n; begin += most_bodies) {
+        const int count = static_cast<int>(std::min(most_bodies, n - begin));
+        std::array<int, most_bodies> keys;
+        std::array<int, most_keys> ends{};
+        for (int k = 0; k < count; ++k) {
+            const std::size_t i = begin + k;
+            keys[k] = key_of(starts[i], times[i]);
+            if (keys[k] == no_key) {
+                samples[i] = sample_alone(starts[i], times[i]);
+            } else {
+                ++ends[keys[k]];
+            }
+        }
+        // Counting sort: `ends` become begins, and each moves on to its end.
+        int sorted = 0;
+        for (int& end : ends) sorted += std::exchange(end, sorted);
+        std::array<std::uint32_t, most_bodies> places;
+        for (int k = 0; k < count; ++k) {
+            if (keys[k] != no_key) places[ends[keys[k]]++] = static_cast<std::uint32_t>(begin + k);
+        }
+        std::array<bool, most_bodies> is_open;
+        kernel.sample(starts, times, places.data(), sorted, samples, is_open.data());
+        for (int k = 0; k < sorted; ++k) {
+            const std::uint32_t i = places[k];
+            if (is_open[k]) samples[i] = sample_alone(starts[i], times[i]);
+        }
+    }
 }
 
 }  // namespace rolling_ellipse

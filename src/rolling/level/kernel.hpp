@@ -1,31 +1,97 @@
-// The inner loops of exact rolling. The same code is compiled for several vector levels
-// (lanes_*.cpp) and gives the same bits at every level (numerics/lanes.hpp).
+// The inner loops of exact rolling: of many bodies, and of many times of one motion by a table. The
+// same code is compiled for several vector levels (lanes_*.cpp) and gives the same bits at every
+// level (numerics/lanes.hpp).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "rolling/level/phase.hpp"
-#include "rolling/level/start.hpp"
-#include "rolling/level/table.hpp"
+#include "numerics/series.hpp"
+#include "rolling/level/flow.hpp"
 
 namespace rolling_ellipse {
 
+inline constexpr int table_order = 14;
+inline constexpr int table_size = table_order + 1;
+inline constexpr int series_columns = 4;  // angle, omega, path; a row of a series fills a register
+
+// Power series in time of angle, angular velocity and path about a place. The last row is zero,
+// since rows are read in pairs.
+struct TableSeries {
+    alignas(64) double rows[table_size + 1][series_columns];
+};
+
+// A place of a table, and the motion there on the way up.
+struct TablePlace {
+    double y;         // the coordinate of rolling/level/flow.hpp
+    double sin, cos;  // sine and cosine of the angle from the flat position
+    double quarters;  // from the flat position to the nearer one of it and the tip: 0 or 1
+    double angle;     // angle from the position named by `quarters`
+    double omega;
+    double time, path;  // increments since the previous place
+    double radius;      // half the interval of the series, in units of its variable
+    double holds;       // 1 if the series has full double precision there, otherwise 0
+};
+
+// The series of an interval of times since the flat position.
+struct FlowPiece {
+    DoubleDouble centre;
+    double low;
+    double high;
+    double quarters;  // from the flat position to the origin of angle and path
+    TableSeries series;
+};
+
+// A motion as the kernel reads it.
+struct FlowReader {
+    const FlowPiece* pieces;
+    const double* ends;  // ends of the pieces, then infinities: 2 half - 1 numbers
+    int half;
+    double last_end;
+    double per_unit;  // variable of the series over time [1/s]
+    // The time of a half turn, and the time of the start since the flat position.
+    DoubleDouble half_turn;
+    double half_turns_per_time;
+    DoubleDouble start_time;
+    // Sign of the motion after an even number of half turns, and 1 if each half turn changes it.
+    double spin;
+    double alternates;
+    double quarters_per_half_turn;
+    // The start, as quarters and an offset.
+    double quarters;
+    DoubleDouble angle;  // theta less the offset of the angle
+    double path;         // path offset
+    double quarter_path;
+    double theta;
+    double x;
+    double start_radius;  // largest |t| of the series about the start [s]
+    TableSeries start;    // about t = 0, with angle and path since then
+};
+
+// Arrays of the samples of many times.
+struct FlowColumns {
+    double* theta;
+    double* omega;
+    double* x;
+
+    FlowColumns from(std::size_t begin) const { return {theta + begin, omega + begin, x + begin}; }
+};
+
 struct Kernel {
-    const char* name;  // of the vector level
+    const char* name;  // name of the vector level
     // The rates of one motion at y = quarters Y + offset, |quarters| <= 1. The arrays have room for
     // a whole number of packs.
-    void (*rates)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
-                  const double* offsets, int count, PhaseRates<double>& found);
+    void (*rates)(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
+                  double quarters, const double* offsets, int count, PhaseRates<double>& found);
     // The states of bodies, each at its own time: starts[p], times[p] and samples[p] for every p in
     // `places`. A body stays open if it has to be sampled alone. Null in the kernel that takes
     // bodies one by one.
     void (*sample)(const RollingStart* starts, const double* times, const std::uint32_t* places,
                    int count, FlowSample* samples, bool* is_open);
     // The motion at the coordinate of each place.
-    void (*states)(const PhaseRate<double>& rate, const PhaseMap<double>& map, double amplitude,
-                   TablePlace* places, int count);
+    void (*states)(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
+                   double amplitude, TablePlace* places, int count);
     // The series of the pieces about places, in units of time and length; the path starts at 0.
     void (*series)(const SeriesConstants& body, double time_unit, double length_unit,
                    TablePlace* places, int count, FlowPiece* pieces);
@@ -44,5 +110,11 @@ const std::vector<Kernel>& kernels();
 
 // The fastest kernel of this processor.
 const Kernel& kernel();
+
+// The states of n bodies, each at its own time, several side by side in the lanes of a vector
+// register. A body has the same bits as alone, at every vector level and beside any others. The
+// bodies are not validated; throws std::invalid_argument for a time that is out of range.
+void sample(const Kernel& kernel, const RollingStart* starts, const double* times, std::size_t n,
+            FlowSample* samples);
 
 }  // namespace rolling_ellipse

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "rolling/level/motion.hpp"
-#include "rolling/level/power_series.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -36,16 +35,16 @@ QuarterPosition quarter_position(const FlatView& body, double sin, double cos) {
 class TableMaker {
   public:
     explicit TableMaker(const RollingFlow& flow) : flow_(flow), kernel_(kernel()) {
-        const PhaseRate<double>& rate = flow.phase.rate;
+        const PhaseIntegrand<double>& integrand = flow.phase.integrand;
         rotates_ = flow.kind == MotionKind::rotation;
         length_ = flow.from.view.long_axis;
-        const double fastest =
-            (rotates_ ? 1.0 : std::sqrt(rate.amplitude2)) / shape_factor<double>(rate, 0.0);
+        const double fastest = (rotates_ ? 1.0 : std::sqrt(integrand.amplitude2)) /
+                               shape_factor<double>(integrand, 0.0);
         unit_ = std::min(0.5 / fastest, 0.5 * double(flow.phase.quarter_turn));
         body_ = series_constants(flow, unit_);
     }
 
-    // None where no series holds.
+    // No table where no series holds.
     std::optional<FlowTable> make() {
         // Spacings in the coordinate y, in which all singularities are pi/2 away from the motion.
         // The first one suffices for series of this order in nearly all motions.
@@ -91,7 +90,7 @@ class TableMaker {
     // way.
     bool expand() {
         const int n = static_cast<int>(count());
-        kernel_.states(flow_.phase.rate, flow_.phase.map, flow_.amplitude, places_.data(), n);
+        kernel_.states(flow_.phase.integrand, flow_.phase.map, flow_.amplitude, places_.data(), n);
         for (std::size_t i = 0; i < count(); ++i) {
             places_[i].radius = std::max(half_way_back(i), half_way_on(i)) / unit_;
         }
@@ -138,7 +137,7 @@ class TableMaker {
         const bool has_tip = places_[last].y == map.quarter;
         const PhasePlace<double> end{has_tip ? 1.0 : 0.0, has_tip ? 0.0 : places_[last].y};
         const MotionPoint<double> tip =
-            motion_point(flow_.phase.rate, flow_.amplitude, phase_point(map, end));
+            motion_point(flow_.phase.integrand, flow_.amplitude, phase_point(map, end));
         path(last) = quarter_position(flow_.from.view, tip.sin_phi, tip.cos_phi).path;
         for (std::size_t i = last; pieces[i - 1].quarters != 0; --i)
             path(i - 1) = path(i) - places_[i].path;
@@ -232,11 +231,10 @@ void FlowSampler::operator()(const double* times, std::size_t n, const FlowColum
 
 void FlowSampler::operator()(const double* times, std::size_t n, FlowSample* samples) const {
     std::vector<double> columns(3 * n);
-    double* const theta = columns.data();
-    double* const omega = theta + n;
-    double* const x = omega + n;
-    (*this)(times, n, FlowColumns{theta, omega, x});
-    for (std::size_t i = 0; i < n; ++i) samples[i] = {theta[i], omega[i], x[i]};
+    double* const first = columns.data();
+    const FlowColumns found{first, first + n, first + 2 * n};
+    (*this)(times, n, found);
+    for (std::size_t i = 0; i < n; ++i) samples[i] = {found.theta[i], found.omega[i], found.x[i]};
 }
 
 }  // namespace rolling_ellipse

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "rolling/level/flow.hpp"
-#include "rolling/level/table.hpp"
+#include "rolling/level/kernel.hpp"
 
 namespace rolling_ellipse {
 
@@ -34,7 +34,7 @@ struct FlowTable {
     FlowReader reader;
 };
 
-// None where no series holds.
+// No table where no series holds.
 std::optional<FlowTable> flow_table(const RollingFlow& flow);
 
 // Sampler of a motion, to which it refers, for an expected number of times. A few times need no

@@ -1,8 +1,11 @@
-// An exact rolling motion by its phase, from its start on: of one body, T = double, or of several
-// bodies side by side, with the same bits.
+// An exact rolling motion: by its phase, from its start on, and by power series in time about a
+// place of it. One body or place, T = double, has the same bits as several side by side.
 #pragma once
 
-#include "rolling/level/start.hpp"
+#include <array>
+
+#include "numerics/series.hpp"
+#include "rolling/level/flow.hpp"
 #include "rolling/level/time.hpp"
 
 namespace rolling_ellipse {
@@ -12,72 +15,70 @@ namespace {
 template <class T>
 struct PhaseStart {
     T long_axis, short_axis, c2;
-    T sin, cos;  // of the angle from the flat position
+    T sin, cos;  // sine and cosine of the angle from the flat position
     T gyration2, gravity;
     T theta, omega;
     T total, over_tip, over_flat;  // heights of the energy
 };
 
-template <class T>
-inline void set_lane(PhaseStart<T>& start, int lane, const RollingStart& from) {
-    set_lane(start.long_axis, lane, from.view.long_axis);
-    set_lane(start.short_axis, lane, from.view.short_axis);
-    set_lane(start.c2, lane, from.view.c2);
-    set_lane(start.sin, lane, from.view.sin);
-    set_lane(start.cos, lane, from.view.cos);
-    set_lane(start.gyration2, lane, from.body.gyration2);
-    set_lane(start.gravity, lane, from.body.gravity);
-    set_lane(start.theta, lane, from.theta);
-    set_lane(start.omega, lane, from.omega);
-    set_lane(start.total, lane, from.height.total);
-    set_lane(start.over_tip, lane, from.height.over_tip);
-    set_lane(start.over_flat, lane, from.height.over_flat);
-}
-
 inline PhaseStart<double> phase_start(const RollingStart& from) {
-    PhaseStart<double> start;
-    set_lane(start, 0, from);
-    return start;
+    const FlatView& view = from.view;
+    const EnergyHeight& height = from.height;
+    return {view.long_axis, view.short_axis,     view.c2,           view.sin,
+            view.cos,       from.body.gyration2, from.body.gravity, from.theta,
+            from.omega,     height.total,        height.over_tip,   height.over_flat};
 }
 
-// The constants of the energy integral, physics (28, 29); see rolling/level/phase.hpp.
+// Sets the start of one body in a lane.
+inline void set_lane(PhaseStart<Pack>& start, int lane, const PhaseStart<double>& from) {
+    constexpr int count = sizeof from / sizeof(double);
+    static_assert(sizeof start == count * sizeof(Pack));
+    double numbers[count];
+    Pack packs[count];
+    __builtin_memcpy(numbers, &from, sizeof from);
+    __builtin_memcpy(packs, &start, sizeof start);
+    for (int i = 0; i < count; ++i) set_lane(packs[i], lane, numbers[i]);
+    __builtin_memcpy(&start, packs, sizeof start);
+}
+
+// The constants of the energy integral, physics (28, 29); see rolling/level/flow.hpp.
 template <class T>
-inline PhaseRate<T> phase_rate(const PhaseStart<T>& at) {
+inline PhaseIntegrand<T> phase_integrand(const PhaseStart<T>& at) {
     const auto rotates = (at.over_tip >= 0) & (at.omega != 0);
     const T s2 = at.short_axis * at.short_axis;
     const T l2 = at.long_axis * at.long_axis;
     const T flat2 = at.over_flat * (at.total + at.short_axis);    // H^2 - S^2
     const T tip2 = abs(at.over_tip) * (at.total + at.long_axis);  // |H^2 - L^2|
     const T unit = rotates ? flat2 : at.c2;
-    PhaseRate<T> rate;
-    rate.short_axis = at.short_axis;
-    rate.c2 = at.c2;
-    rate.energy_height = at.total;
-    rate.amplitude2 = min<T>(flat2 / unit, filled<T>(1.0));
-    rate.scale2 = 1 / (2 * at.gravity * unit);
-    rate.kappa = min<T>(sqrt(tip2 / unit), filled<T>(1.0));
-    rate.d0 = s2 * (at.gyration2 + s2);
-    rate.d1 = at.c2 * (at.gyration2 + l2 + s2);
-    rate.rotates = rotates;
-    return rate;
+    PhaseIntegrand<T> integrand;
+    integrand.short_axis = at.short_axis;
+    integrand.c2 = at.c2;
+    integrand.energy_height = at.total;
+    integrand.amplitude2 = min<T>(flat2 / unit, filled<T>(1.0));
+    integrand.scale2 = 1 / (2 * at.gravity * unit);
+    integrand.kappa = min<T>(sqrt(tip2 / unit), filled<T>(1.0));
+    integrand.d0 = s2 * (at.gyration2 + s2);
+    integrand.d1 = at.c2 * (at.gyration2 + l2 + s2);
+    integrand.rotates = rotates;
+    return integrand;
 }
 
 // The factor scale sqrt(D (H + h)) at an angle phi with this sine.
 template <class C, class T>
-inline T shape_factor(const PhaseRate<C>& rate, T sin_phi) {
-    return sqrt(shape_factor2(rate, sin_phi * sin_phi));
+inline T shape_factor(const PhaseIntegrand<C>& integrand, T sin_phi) {
+    return sqrt(shape_factor2(integrand, sin_phi * sin_phi));
 }
 
 // Sets the motion of a start.
 template <class T>
 void set_motion(PhaseMotion<T>& motion, const PhaseStart<T>& at) {
-    set_phase_time(motion.phase, phase_rate(at));
-    const auto rotates = motion.phase.rate.rotates;
+    set_phase_time(motion.phase, phase_integrand(at));
+    const auto rotates = motion.phase.integrand.rotates;
     const T one = filled<T>(1.0);
     motion.direction = rotates ? copysign(one, at.omega) : one;
     // The start as a phase, times the amplitude; the cosine is negative on the way back.
     const T sin = motion.direction * at.sin;
-    const T cos = rotates ? at.cos : at.omega * shape_factor(motion.phase.rate, at.sin);
+    const T cos = rotates ? at.cos : at.omega * shape_factor(motion.phase.integrand, at.sin);
     motion.amplitude = sqrt(sin * sin + cos * cos);
     // A body at rest on the upper side is at its turning point, on the way back.
     const auto rests_beyond = (cos == 0) & (sin > 0) & negated(rotates);
@@ -96,27 +97,28 @@ struct MotionPoint {
 
 // The point of a motion at a phase, on the way up: physics (30), the energy integral at the point.
 template <class C, class T>
-inline MotionPoint<T> motion_point(const PhaseRate<C>& rate, C amplitude, const PhasePoint<T>& at) {
-    const T sin_phi = rate.rotates ? at.sin : amplitude * at.sin;
-    const T factor = shape_factor(rate, sin_phi);
-    const T across = rate.kappa * at.sin;
+inline MotionPoint<T> motion_point(const PhaseIntegrand<C>& integrand, C amplitude,
+                                   const PhasePoint<T>& at) {
+    const T sin_phi = integrand.rotates ? at.sin : amplitude * at.sin;
+    const T factor = shape_factor(integrand, sin_phi);
+    const T across = integrand.kappa * at.sin;
     const T root = sqrt(at.cos * at.cos + across * across);
-    return {sin_phi, rate.rotates ? at.cos : root,
-            (rate.rotates ? root : amplitude * at.cos) / factor};
+    return {sin_phi, integrand.rotates ? at.cos : root,
+            (integrand.rotates ? root : amplitude * at.cos) / factor};
 }
 
 // Sign of the motion at its start, for angles and for omega: +1 or -1.
 template <class T>
 inline T heading_of(const PhaseMotion<T>& motion) {
     const T libration = motion.on_way_back ? filled<T>(-1.0) : filled<T>(1.0);
-    return motion.phase.rate.rotates ? motion.direction : libration;
+    return motion.phase.integrand.rotates ? motion.direction : libration;
 }
 
 // The state at a time; x is the path since the start.
 template <class T>
 MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& from, T t) {
     const PhaseTime<T>& phase = motion.phase;
-    const auto rotates = phase.rate.rotates;
+    const auto rotates = phase.integrand.rotates;
     const T factor = rotates ? filled<T>(1.0) : filled<T>(2.0);
     // The time without whole turns, or swings.
     const TwoParts<T> turn = {factor * phase.half_turn.high, factor * phase.half_turn.low};
@@ -127,7 +129,7 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const auto [to, gain] = move(phase, motion.start_place, time);
     const T heading = heading_of(motion);
     const MotionPoint<T> now =
-        motion_point(phase.rate, motion.amplitude, phase_point(phase.map, to));
+        motion_point(phase.integrand, motion.amplitude, phase_point(phase.map, to));
 
     const T sin_phi = heading * now.sin_phi;
     const T swung = angle_of<T>(sin_phi * from.cos - now.cos_phi * from.sin,
@@ -136,13 +138,12 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const TwoParts<T> whole_turns =
         quick_two_sum(whole.high, whole.low + 2 * turns * half_pi_exact.low);
     TwoParts<T> turned = whole_turns + gain.angle;
-    const auto creeps = (phase.half_turn.high > largest_finite) & (now.sin_phi > now.cos_phi);
-    if (any(creeps & rotates)) {  // to the tip
+    const auto is_endless = rotates & (phase.half_turn.high == infinity);
+    if (any(is_endless & (now.sin_phi > now.cos_phi))) {  // one body, which creeps to the tip
         const PhasePoint<T>& start = motion.start_phase;
         const T rest = angle_of(now.cos_phi, now.sin_phi) + angle_of(start.sin, start.cos);
-        const TwoParts<T> crept = two_sum(filled<T>(half_pi_exact.high), -rest);
-        turned.high = creeps ? crept.high : turned.high;
-        turned.low = creeps ? crept.low + half_pi_exact.low : turned.low;
+        turned = two_sum(filled<T>(half_pi_exact.high), -rest);
+        turned.low = turned.low + half_pi_exact.low;
     }
     const TwoParts<T> rolled =
         TwoParts<T>{heading * turned.high, heading * turned.low} + from.theta;
@@ -165,6 +166,66 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
     const T rolled_path = sum.high + (sum.low + paths.low);
     return {rotates ? rolled.high + rolled.low : from.theta + swung, heading * now.omega,
             heading * (rotates ? rolled_path : path)};
+}
+
+template <class T, int order>
+struct MotionSeries {
+    std::array<T, order + 1> angle;
+    std::array<T, order + 1> omega;
+    std::array<T, order + 1> path;
+};
+
+// The constants of a motion, for time in this unit [s].
+inline SeriesConstants series_constants(const RollingFlow& flow, double time_unit) {
+    const PhaseIntegrand<double>& integrand = flow.phase.integrand;
+    const double length = flow.from.view.long_axis;
+    const double area = length * length;
+    return {integrand.short_axis / length * (integrand.short_axis / length), integrand.c2 / area,
+            flow.from.body.gravity * (time_unit * time_unit) / length, integrand.d0 / (area * area),
+            integrand.d1 / (area * area)};
+}
+
+// The series about the place with this sine and cosine of the angle from the flat position and this
+// angular velocity.
+// Physics (18) with D h^2 = d0 + d1 q, u = h^2, q and p the square of the sine and the product of
+// sine and cosine of the angle:
+//     omega' u (d0 + d1 q) = -c2 p (g u h + S^2 omega^2),   q' = 2 p omega,   p' = (1 - 2 q) omega
+template <int order, class T>
+inline MotionSeries<T, order> motion_series(const SeriesConstants& body, T sin, T cos, T omega) {
+    MotionSeries<T, order> motion;
+    std::array<T, order + 1> q, p, u, h, inertia, mass, push, turning;
+    auto& w = motion.omega;
+    T over_2h{}, over_mass{};
+    q[0] = sin * sin;
+    p[0] = sin * cos;
+    w[0] = omega;
+    motion.angle[0] = motion.path[0] = T{};
+#pragma GCC unroll 20
+    for (int k = 0; k < order; ++k) {
+        u[k] = body.c2 * q[k];
+        inertia[k] = body.d1 * q[k];
+        if (k == 0) {
+            u[0] += body.short_axis2;
+            inertia[0] += body.d0;
+            h[0] = sqrt(u[0]);
+            over_2h = 0.5 / h[0];
+            over_mass = 1 / (u[0] * inertia[0]);
+        } else {
+            h[k] = (u[k] - self_product(h, k, 1)) * over_2h;
+        }
+        mass[k] = product(u, inertia, k);
+        push[k] = body.gravity * product(u, h, k) + body.short_axis2 * self_product(w, k);
+        const T force = -body.c2 * product(p, push, k);
+        turning[k] = (force - terms(mass, turning, k, 1, k)) * over_mass;
+        const T qw = product(q, w, k);
+        const double next = 1.0 / (k + 1);
+        q[k + 1] = 2 * next * product(p, w, k);
+        p[k + 1] = next * (w[k] - 2 * qw);
+        w[k + 1] = next * turning[k];
+        motion.angle[k + 1] = next * w[k];
+        motion.path[k + 1] = next * product(h, w, k);
+    }
+    return motion;
 }
 
 }  // namespace

@@ -1,19 +1,133 @@
-// The rates of time, angle and path in the coordinate y of rolling/level/phase.hpp:
+// The coordinate y of rolling/level/flow.hpp, and the rates of time, angle and path in it. By the
+// theta functions of the nome q (DLMF 20.2, 22.2), with c = cosh 2y,
+//     sc = C sinh(y) B(c)/A(c),   sc(Y - y) = 1/(k' sc(y)),
 //     dphase/dy = speed sqrt((g^2 cos^2 + sin^2) (cos^2 + kappa^2 sin^2)),
 // whose last root cancels the root of the integrand. The path of the centre grows by h dphi.
 #pragma once
 
-#include "rolling/level/coordinate.hpp"
+#include "numerics/lanes.hpp"
 #include "rolling/level/kernel.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
+// At this offset the tip is reached within rounding, and the square of sinh is still a double.
+constexpr double largest_offset = 300.0;
+
+// The largest kappa of a quarter with a tail is a little below this.
+constexpr double largest_tail_kappa = 5e-9;
+
+// Sets A and B as polynomials of c; the terms left out are below rounding for q <= 1/32.
+template <class T>
+void set_theta_functions(PhaseMap<T>& map, T q) {
+    const T q2 = q * q;
+    const T q4 = q2 * q2;
+    const T q6 = q2 * q4;
+    const T q9 = q * (q4 * q4);
+    const T theta_3 = 1 + 2 * (q + q4 + q9);
+    map.speed = theta_3 * theta_3;
+    map.sine_scale = theta_3 / (1 + q2 + q6);
+    map.a[0] = 1 - 2 * q4;
+    map.a[1] = 6 * q9 - 2 * q;
+    map.a[2] = 4 * q4;
+    map.a[3] = -8 * q9;
+    map.b[0] = 1 - q2 - q6;
+    map.b[1] = 2 * (q6 - q2);
+    map.b[2] = 4 * q6;
+}
+
+// The ratio sc for x = sinh(y).
+template <class C, class T>
+inline T sine_ratio(const PhaseMap<C>& map, T x) {
+    const T c = 1 + 2 * (x * x);
+    const T a = map.a[0] + c * (map.a[1] + c * (map.a[2] + c * map.a[3]));
+    const T b = map.b[0] + c * (map.b[1] + c * map.b[2]);
+    return map.sine_scale * x * b / a;
+}
+
+// Sets the map for kappa and a g of at most the given one.
+template <class T>
+void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
+    constexpr double steps_per_unit = 4.0;
+    constexpr double largest_complement = 0.70710678118654752;  // q = 1/32
+    constexpr double tail = 20.0;                               // beyond log(2/largest_grade)
+    constexpr double falling_in_tail = 2.0611536224385579e-9;   // e^-tail
+    map.kappa = kappa;
+    const T complement = min<T>(kappa * largest_grade, filled<T>(largest_complement));
+    const T quarter = complement > 0 ? log<T>(4 / complement) : filled<T>(infinity);
+    map.has_tail = complement < 2 * falling_in_tail * largest_grade;
+    // Whole steps of it give a nome a little below that of k'.
+    const T length = any(map.has_tail) ? tail + log<T>(2 / largest_grade) : quarter;
+    map.steps = rounded_up<T>(length * steps_per_unit);
+    map.step = map.has_tail ? filled<T>(1 / steps_per_unit) : quarter / map.steps;
+    map.quarter = map.has_tail ? quarter : map.steps * map.step;
+    const T root_q = map.quarter < largest_offset ? hyperbolic(map.quarter).falling : T{};
+    set_theta_functions<T>(map, root_q * root_q);
+    const T sine_scale2 = map.sine_scale * map.sine_scale;
+    map.grade = map.has_tail ? largest_grade : 4 * root_q / (sine_scale2 * kappa);
+    map.flat_scale2 = map.grade * map.grade * sine_scale2;
+    map.tip_scale2 = kappa * kappa * sine_scale2;
+}
+
+// The place of a phase.
+template <class T>
+PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
+    constexpr double converged = 1e-8;
+    constexpr int most_steps = 10;
+    const T sin = abs(phase.sin);
+    const T cos = abs(phase.cos);
+    const auto at_tip = map.kappa * (sin * sin) > map.grade * (cos * cos);
+    const T ratio = (at_tip ? cos : sin) / (at_tip ? sin * map.kappa : cos * map.grade);
+    // sc(y) = ratio for x = sinh y: Newton's method, from the root with B = 1, A = A_0 - 2 q c.
+    const T complement = map.kappa * map.grade;
+    const T q2 = -map.a[1];
+    T x = 2 * ratio * (1 - q2) /
+          (map.sine_scale +
+           sqrt(map.sine_scale * map.sine_scale + 8 * q2 * (ratio * ratio) * (1 - q2)));
+    auto open = x > 0;
+    for (int i = 0; i < most_steps && any(open); ++i) {
+        const T sc = sine_ratio(map, x);
+        const T other = complement * sc;
+        const T root = sqrt((1 + sc * sc) * (1 + other * other) / (1 + x * x));
+        const T change = (ratio - sc) / (map.speed * root);
+        x = open ? x + change : x;
+        open = open & (abs(change) > converged * x);
+    }
+    const T offset = asinh(x);
+    const T side = copysign(filled<T>(1.0), phase.sin);
+    return {at_tip ? side : T{}, side * (at_tip ? -offset : offset)};
+}
+
+// Sine and cosine of the phase, each to full relative accuracy; `at` must use the nearest quarter.
+template <class C, class T>
+PhasePoint<T> phase_point(const PhaseMap<C>& map, const PhasePlace<T>& at) {
+    const auto at_tip = is_odd(at.quarters);
+    const T sinh = hyperbolic(min<T>(abs(at.offset), filled<T>(largest_offset))).sinh;
+    const T scale = at_tip ? filled<T>(map.kappa) : filled<T>(map.grade);
+    const T tan = scale * sine_ratio(map, copysign(sinh, at.offset));
+    const T cos = 1 / sqrt(1 + tan * tan);
+    const T sin = tan * cos;
+    const T half_turns = rounded_down<T>(0.5 * at.quarters);
+    const T sign = is_odd(half_turns) ? filled<T>(-1.0) : filled<T>(1.0);
+    return {sign * (at_tip ? cos : sin), sign * (at_tip ? -sin : cos)};
+}
+
+// The place at a distance from another one, with the nearest quarter.
+template <class T>
+PhasePlace<T> moved(const PhaseMap<T>& map, const PhasePlace<T>& from, T distance) {
+    const T offset = from.offset + distance;
+    const auto is_beyond = abs(offset) > 0.5 * map.quarter;
+    const T quarters = is_beyond ? nearest<T>(offset / map.quarter) : T{};
+    return {from.quarters + quarters,
+            is_beyond ? from.offset - quarters * map.quarter + distance : offset};
+}
+
 // scale^2 D (H + h), the square of the factor that depends on the shape: physics (28, 29).
 template <class C, class T>
-inline T shape_factor2(const PhaseRate<C>& rate, T sin2_phi) {
-    const T h2 = rate.short_axis * rate.short_axis + rate.c2 * sin2_phi;
-    return rate.scale2 * (rate.d0 + rate.d1 * sin2_phi) * (rate.energy_height + sqrt(h2)) / h2;
+inline T shape_factor2(const PhaseIntegrand<C>& integrand, T sin2_phi) {
+    const T h2 = integrand.short_axis * integrand.short_axis + integrand.c2 * sin2_phi;
+    return integrand.scale2 * (integrand.d0 + integrand.d1 * sin2_phi) *
+           (integrand.energy_height + sqrt(h2)) / h2;
 }
 
 // The rates at y = quarters Y + offset, |quarters| <= 1. The constants C are those of one motion
@@ -21,8 +135,8 @@ inline T shape_factor2(const PhaseRate<C>& rate, T sin2_phi) {
 // N/q, so that all factors share one quotient. Terms without the offset are computed once for all
 // places of a loop.
 template <class C, class T>
-inline PhaseIncrement<T> phase_rate_at(const PhaseRate<C>& rate, const PhaseMap<C>& map, C quarters,
-                                       T offset) {
+inline PhaseIncrement<T> phase_rate_at(const PhaseIntegrand<C>& integrand, const PhaseMap<C>& map,
+                                       C quarters, T offset) {
     constexpr double farthest = 150.0;  // e^(4 of it) is a double
     const C one = filled<C>(1.0);
     const C half_turn = 2 * map.quarter;
@@ -51,31 +165,33 @@ inline PhaseIncrement<T> phase_rate_at(const PhaseRate<C>& rate, const PhaseMap<
     const T sin2 = at_tip ? adjacent : opposite;
     const T cos2 = at_tip ? opposite : adjacent;
 
-    const T n = (rate.short_axis * rate.short_axis) * q + (rate.c2 * rate.amplitude2) * sin2;
-    const T inertia = rate.d0 * q + (rate.d1 * rate.amplitude2) * sin2;
+    const T n = (integrand.short_axis * integrand.short_axis) * q +
+                (integrand.c2 * integrand.amplitude2) * sin2;
+    const T inertia = integrand.d0 * q + (integrand.d1 * integrand.amplitude2) * sin2;
     const T graded = (map.grade * map.grade) * cos2 + sin2;
-    const T along = (rate.rotates ? one : rate.amplitude2) * cos2 +
-                    (rate.rotates ? rate.kappa * rate.kappa : C{}) * sin2;
+    const T along = (integrand.rotates ? one : integrand.amplitude2) * cos2 +
+                    (integrand.rotates ? integrand.kappa * integrand.kappa : C{}) * sin2;
     const T inverse = 1 / (q * n);
     const T per_q = n * inverse;
     const T h = sqrt(q * n) * per_q;
-    const C time_factor = map.speed * map.speed * rate.scale2;
-    const T time = sqrt((time_factor * inertia) * graded * ((rate.energy_height + h) * inverse));
+    const C time_factor = map.speed * map.speed * integrand.scale2;
+    const T time =
+        sqrt((time_factor * inertia) * graded * ((integrand.energy_height + h) * inverse));
     const T size = map.speed * sqrt(graded * along) * per_q;
     // The angle of a libration falls beyond its turning point.
     const T to_tip = quarters > 0 ? -offset : offset;
     const auto goes_on =
         quarters != 0 ? (to_tip > 0) & (to_tip < half_turn) : abs(to_tip) < map.quarter;
     const T swung = goes_on ? size : -size;
-    const T angle = rate.rotates ? size : swung;
+    const T angle = integrand.rotates ? size : swung;
     return {time, angle, h * angle};
 }
 
 // The rates of bodies side by side, at a few places of each.
-inline void phase_rates(const PhaseRate<Pack>& rate, const PhaseMap<Pack>& map, Pack quarters,
-                        const Pack* offsets, int count, PhaseRates<Pack>& found) {
+inline void phase_rates(const PhaseIntegrand<Pack>& integrand, const PhaseMap<Pack>& map,
+                        Pack quarters, const Pack* offsets, int count, PhaseRates<Pack>& found) {
     for (int i = 0; i < count; ++i) {
-        const PhaseIncrement<Pack> at = phase_rate_at(rate, map, quarters, offsets[i]);
+        const PhaseIncrement<Pack> at = phase_rate_at(integrand, map, quarters, offsets[i]);
         found.time[i] = at.time;
         found.angle[i] = at.angle;
         found.path[i] = at.path;
@@ -83,10 +199,10 @@ inline void phase_rates(const PhaseRate<Pack>& rate, const PhaseMap<Pack>& map, 
 }
 
 // The rates of one body at places side by side; the arrays have room for a Pack after the last.
-inline void phase_rates(const PhaseRate<double>& rate, const PhaseMap<double>& map, double quarters,
-                        double* offsets, int count, PhaseRates<double>& found) {
+inline void phase_rates(const PhaseIntegrand<double>& integrand, const PhaseMap<double>& map,
+                        double quarters, double* offsets, int count, PhaseRates<double>& found) {
     for (int i = count; i % widest_pack != 0; ++i) offsets[i] = offsets[count - 1];
-    kernel().rates(rate, map, quarters, offsets, count, found);
+    kernel().rates(integrand, map, quarters, offsets, count, found);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 
 #include <array>
 #include <iterator>
-#include <limits>
 
 #include "numerics/gauss_legendre.hpp"
 #include "rolling/level/rates.hpp"
@@ -25,7 +24,6 @@ inline void add(TwoParts<T>& sum, T term) {
     sum = {next.high, sum.low + next.low};
 }
 
-constexpr double largest_finite = std::numeric_limits<double>::max();
 constexpr double longest_panel = 6.0;
 constexpr int most_pairs = most_places / 2;
 
@@ -103,7 +101,7 @@ Integral<T> integral_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T
             offsets[2 * i + 1] = middle + half * pairs.nodes[i];
         }
         offsets[2 * count] = end;
-        phase_rates(phase.rate, phase.map, quarters, offsets, 2 * count + 1, rates);
+        phase_rates(phase.integrand, phase.map, quarters, offsets, 2 * count + 1, rates);
         for (int i = 0; i < count; ++i) {
             const T weight = is_inside ? pairs.weights[i] : T{};
             add<T>(time, weight * (rates.time[2 * i] + rates.time[2 * i + 1]));
@@ -114,11 +112,6 @@ Integral<T> integral_by_panels(const PhaseTime<T>& phase, T quarters, T begin, T
     return {{half * (time.high + time.low), half * (angle.high + angle.low),
              half * (path.high + path.low)},
             {rates.time[2 * count], rates.angle[2 * count], rates.path[2 * count]}};
-}
-
-template <class T>
-inline T end_of_steps(const PhaseMap<T>& map) {
-    return map.steps * map.step;
 }
 
 // The interval from one offset to another; bodies side by side have no tails.
@@ -133,7 +126,7 @@ inline Integral<double> integral_between(const PhaseTime<double>& phase, double 
                                          double begin, double end) {
     constexpr double long_interval = 12.0;
     const PhaseMap<double>& map = phase.map;
-    const double edge = 2 * end_of_steps(map);
+    const double edge = 2 * (map.steps * map.step);
     if (map.quarter <= edge || abs(end - begin) <= long_interval) {
         return integral_by_panels(phase, quarters, begin, end);
     }
@@ -179,7 +172,7 @@ inline Cubic<T> in_step(const PhaseTime<T>& phase, T i, T s) {
 template <class T>
 inline Cubic<T> rough_time(const PhaseTime<T>& phase, T y) {
     const PhaseMap<T>& map = phase.map;
-    const T end = end_of_steps(map);
+    const T end = map.steps * map.step;
     const T last = map.steps;
     const T steps = y / map.step;
     const auto is_beyond = y >= end;
@@ -206,7 +199,7 @@ inline T rough_place(const PhaseTime<T>& phase, T time) {
     const T s = (time - begin) / (end - begin);
     const Cubic<T> at = in_step<T>(phase, i, s);
     const T over = time - element(phase.time, last);
-    return over >= 0 ? end_of_steps(map) + over / element(phase.slope + 1, last)
+    return over >= 0 ? map.steps * map.step + over / element(phase.slope + 1, last)
                      : map.step * (i + s) + (time - begin - at.time) / at.slope;
 }
 
@@ -240,13 +233,13 @@ void integrate_quarter(PhaseTime<T>& phase) {
     T beyond{};  // dt/dy at the tip
     if (any(map.has_tail)) {
         offsets[0] = T{};
-        phase_rates(phase.rate, map, filled<T>(1.0), offsets, 1, rates);
-        beyond = map.has_tail ? rates.time[0] : T{};
+        phase_rates(phase.integrand, map, filled<T>(1.0), offsets, 1, rates);
+        beyond = rates.time[0];
     }
     for (int first = 0; first <= most; first += most_places) {
         const int count = most - first < most_places ? most - first + 1 : most_places;
         for (int i = 0; i < count; ++i) offsets[i] = min<T>(filled<T>(first + i), n) * map.step;
-        phase_rates(phase.rate, map, T{}, offsets, count, rates);
+        phase_rates(phase.integrand, map, T{}, offsets, count, rates);
         for (int i = first; i < first + count; ++i) {
             const auto is_end = i == 0 ? n > -1 : n == i;
             const T weight = is_end ? filled<T>(0.5) : n > i ? filled<T>(1.0) : T{};
@@ -263,9 +256,8 @@ void integrate_quarter(PhaseTime<T>& phase) {
     phase.quarter_turn = quick_two_sum(whole.high, whole.low + sum.low * map.step);
     if (any(map.has_tail)) {
         const TwoParts<T> tail = two_product(map.quarter, beyond);
-        const TwoParts<T> all = (phase.quarter_turn + tail.high) + tail.low;
-        phase.quarter_turn.high = map.has_tail ? all.high : phase.quarter_turn.high;
-        phase.quarter_turn.low = map.has_tail ? all.low : phase.quarter_turn.low;
+        phase.quarter_turn = (phase.quarter_turn + tail.high) + tail.low;
+        if (any(map.quarter == infinity)) phase.quarter_turn = {map.quarter, T{}};
     }
     // The integrals of the cubics.
     phase.time[0] = T{};
@@ -277,20 +269,15 @@ void integrate_quarter(PhaseTime<T>& phase) {
 
 // Sets the time as a function of the phase for these constants.
 template <class T>
-void set_phase_time(PhaseTime<T>& phase, const PhaseRate<T>& rate) {
-    phase.rate = rate;
-    set_phase_map<T>(phase.map, rate.kappa, sqrt(rate.d0 / (rate.d1 * rate.amplitude2 + rate.d0)));
+void set_phase_time(PhaseTime<T>& phase, const PhaseIntegrand<T>& integrand) {
+    phase.integrand = integrand;
+    set_phase_map<T>(phase.map, integrand.kappa,
+                     sqrt(integrand.d0 / (integrand.d1 * integrand.amplitude2 + integrand.d0)));
     integrate_quarter(phase);
-    const auto is_endless = phase.map.quarter > largest_finite;
-    if (any(is_endless)) {
-        const T high = phase.quarter_turn.high;
-        phase.quarter_turn.high = is_endless ? filled<T>(infinity) : high;
-        phase.quarter_turn.low = is_endless ? T{} : phase.quarter_turn.low;
-    }
     phase.half_turn = {2 * phase.quarter_turn.high, 2 * phase.quarter_turn.low};
 }
 
-// The place after a time of at most a full swing, and the interval from the start to it.
+// The place after a time of at most a full swing; angle and path on the way to it.
 template <class T>
 struct PhaseMove {
     PhasePlace<T> to;
@@ -325,14 +312,11 @@ PhaseMove<T> move(const PhaseTime<T>& phase, const PhasePlace<T>& from, T time) 
         distance = is_last ? distance + step : after;
         if (!any(open)) break;
         const Integral<T> more = integral_between(phase, from.quarters, begin, from.offset + after);
-        sum.time = open ? sum.time + more.sum.time : sum.time;
+        sum.time = sum.time + more.sum.time;
         sum.angle = open ? sum.angle + more.sum.angle : sum.angle;
         sum.path = open ? sum.path + more.sum.path : sum.path;
-        slope.time = open ? more.end.time : slope.time;
-        slope.angle = open ? more.end.angle : slope.angle;
-        slope.path = open ? more.end.path : slope.path;
+        slope = more.end;
     }
-    sum.time = time;
     return {moved(phase.map, from, distance), sum};
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "numerics/double_double.hpp"
+#include "numerics/numbers.hpp"
 #include "numerics/polynomial.hpp"
 #include "rolling/slope/series.hpp"
 #include "scene/scene.hpp"

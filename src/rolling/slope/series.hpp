@@ -1,7 +1,7 @@
 // Rolling on a slope as power series in time about a place of the motion.
 #pragma once
 
-#include "numerics/long_series.hpp"
+#include "numerics/series.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {

@@ -6,7 +6,7 @@
 
 #include "geometry/constraints.hpp"
 #include "integrator/system.hpp"
-#include "numerics/sine_cosine.hpp"
+#include "numerics/numbers.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numerics/sine_cosine.hpp"
+#include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
 
