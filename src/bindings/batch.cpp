@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "bindings/bindings.hpp"
-#include "bindings/samples.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "bindings/bindings.hpp"
-#include "bindings/samples.hpp"
 #include "rolling/level/kernel.hpp"
 #include "rolling/level/many_bodies.hpp"
 #include "rolling/level/many_times.hpp"

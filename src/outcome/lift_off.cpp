@@ -1,12 +1,10 @@
-#include "outcome/lift_off.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "contact/continuation.hpp"
 #include "contact/slide.hpp"
 #include "numerics/bisect.hpp"
+#include "outcome/thresholds.hpp"
 #include "proof/certificate.hpp"
 
 namespace rolling_ellipse {

@@ -1,11 +1,10 @@
-#include "outcome/stretches.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "outcome/passages.hpp"
 #include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
@@ -202,10 +201,8 @@ class Survey {
 }  // namespace
 
 void refuse_length(const Observable& of, const std::string& requirement, const std::string& got) {
-    constexpr const char* names[] = {"theta", "x", "z", "omega", "contact_x"};
-    const std::string name = of.quantity ? names[static_cast<int>(*of.quantity)] : "function";
-    throw std::invalid_argument(name + " must " + requirement + ", got " + got +
-                                ": simulate a shorter motion");
+    throw std::invalid_argument((of.quantity ? name(*of.quantity) : "function") + " must " +
+                                requirement + ", got " + got + ": simulate a shorter motion");
 }
 
 Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "scene/scene.hpp"
+#include "scene/settings.hpp"
 
 namespace rolling_ellipse {
 
@@ -26,5 +28,22 @@ Thresholds thresholds(const Body& body, double friction);
 
 // The roll-over speed alone, physics (44): it needs no search.
 double roll_over_speed(const Body& body);
+
+// Speeds |omega| when passing the flat position [rad/s]; the upper one may be infinite.
+struct SpeedRange {
+    double lower;
+    double upper;
+};
+
+struct LiftOff {
+    double speed = infinity;  // the least with which it leaves the ground
+    std::vector<SpeedRange> jam_speeds;
+};
+
+// Lift-off of a body between its first slip and the tip; below slip_speed it does not slip. Above
+// Painleve's friction it may jam instead of leaving the ground, and leave it again at higher
+// speeds. A scan finds those ranges, and bisection refines them to the last bit.
+LiftOff lift_off(const Body& body, double friction, double slip_speed, double painleve_friction,
+                 const Checkpoint& checkpoint);
 
 }  // namespace rolling_ellipse

@@ -12,8 +12,7 @@
 
 #include "bytes.hpp"
 #include "contact/continuation.hpp"
-#include "losses.hpp"
-#include "outcome/blow.hpp"
+#include "outcome/outcome.hpp"
 #include "outcome/passages.hpp"
 #include "outcome/thresholds.hpp"
 #include "proof/law.hpp"
