@@ -164,12 +164,6 @@ py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssiz
     refuse_shape(name, "(" + wanted + ", " + std::to_string(columns) + ")", array);
 }
 
-Argument argument(const char* name, const Array& array, py::ssize_t n) {
-    if (array.size() == 1) return {name, array.data(), 0};
-    require_length(name, array, n);
-    return {name, array.data(), 1};
-}
-
 std::string with_index(const std::string& message, py::ssize_t index, const Argument* arguments,
                        std::size_t count) {
     // The message begins with the name of one argument, or with those of two, "a/b".

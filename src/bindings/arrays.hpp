@@ -95,8 +95,6 @@ struct Argument {
     double operator[](py::ssize_t i) const { return data[i * stride]; }
 };
 
-Argument argument(const char* name, const Array& array, py::ssize_t n);
-
 // The message of a refusal with the index behind each argument that is an array: "a[3]/b must be
 // ...".
 std::string with_index(const std::string& message, py::ssize_t index, const Argument* arguments,
@@ -108,7 +106,11 @@ class Arguments {
   public:
     Arguments(const std::array<const char*, Count>& names, const std::array<Array, Count>& arrays,
               py::ssize_t n) {
-        for (std::size_t k = 0; k < Count; ++k) each_[k] = argument(names[k], arrays[k], n);
+        for (std::size_t k = 0; k < Count; ++k) {
+            const bool is_one = arrays[k].size() == 1;
+            if (!is_one) require_length(names[k], arrays[k], n);
+            each_[k] = {names[k], arrays[k].data(), is_one ? 0 : 1};
+        }
     }
 
     std::array<double, Count> operator[](py::ssize_t i) const {

@@ -37,11 +37,6 @@ void bind_enum(py::module_& m, const char* name, const char* base, const char* d
     bound.finalize();
 }
 
-inline constexpr Field<FlowSample> flow_fields[] = {
-    {"theta", &FlowSample::theta, unit::angle},
-    {"omega", &FlowSample::omega, unit::angular_velocity},
-    {"x", &FlowSample::x, unit::length}};
-
 // A named count.
 struct Figure {
     const char* name;
