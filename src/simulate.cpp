@@ -4,10 +4,8 @@
 
 #include "proof/slope.hpp"
 #include "proof/slope_end.hpp"
-#include "proof/watch.hpp"
 #include "reason.hpp"
 #include "scene/impact.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -94,12 +94,9 @@ py::tuple lift_off_interruptible(double a, double b, double gravity,
         const GilRelease release;
         found = lift_off(of, friction, slip_speed, painleve_friction, SignalWatch());
     }
-    py::tuple jams(found.jam_speeds.size());
-    for (std::size_t i = 0; i < jams.size(); ++i) {
-        const auto& [lower, upper] = found.jam_speeds[i];
-        jams[i] = py::make_tuple(lower, upper);
-    }
-    return py::make_tuple(found.speed, jams);
+    py::list jams;
+    for (const auto& [lower, upper] : found.jam_speeds) jams.append(py::make_tuple(lower, upper));
+    return py::make_tuple(found.speed, py::tuple(jams));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
     const auto row = [&](double theta, double x_dot, double z_dot, double omega, double a, double b,
                          double gyration2, double friction, double restitution) {
         Scene scene{};
-        scene.mass = scene.gravity = 1.0;  // which do not matter
+        scene.mass = scene.gravity = 1.0;  // any numbers: velocities do not depend on them
         scene.a = a;
         scene.b = b;
         scene.inertia = gyration2;
@@ -21,7 +21,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.restitution = restitution;
         scene.theta = theta;
         scene.omega = omega;
-        scene.z = above_ground(scene.axes());  // where it may move down
+        scene.z = above_ground(scene.axes());  // a height from which it may move down
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
         validate(scene.body());                // by its own names: k^2 is no inertia

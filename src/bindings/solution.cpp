@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <utility>
 
 #include "bindings/bindings.hpp"
 #include "outcome/passages.hpp"

@@ -3,7 +3,7 @@
 // only rises or only falls.
 #pragma once
 
-#include <cstddef>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>

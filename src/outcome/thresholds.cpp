@@ -170,7 +170,7 @@ struct EndOfSegment {
     Continuation next;
 };
 
-// The climb of the body from the flat position to the tip, for any speed.
+// The climb of a body from the flat position to the tip, for any speed.
 struct Climb {
     const Scene& scene;
     const Checkpoint& checkpoint;
@@ -183,8 +183,7 @@ struct Climb {
         // So many segments mean slides of no length: N and c vanish together, right at the tip.
         constexpr int most_segments = 64;
         checkpoint();
-        State state =
-            in_contact(geometry(scene.axes(), flat), flat, omega, 0.0, 0.0, Mode::rolling);
+        State state = on_ground(flat, omega, 0.0, Mode::rolling);
         Continuation next = continuation(scene, state);
         for (int i = 0; state.theta < tip; ++i) {
             if (next.mode == Mode::flight || i == most_segments) return Fate::leaves;
@@ -198,6 +197,10 @@ struct Climb {
         return next.mode == Mode::flight ? Fate::leaves : Fate::stays;
     }
 
+    State on_ground(double theta, double omega, double x, Mode mode) const {
+        return in_contact(geometry(scene.axes(), theta), theta, omega, x, 0.0, mode);
+    }
+
     // The ends of segments are empty if the body gets over the tip, or turns back.
     std::optional<EndOfSegment> end_of_rolling(const State& from) const {
         const RollingStart start = rolling_start(scene.body(), from.theta, from.omega);
@@ -205,8 +208,7 @@ struct Climb {
         if (end.validity != Validity::invalid) return {};
         const RollingFlow flow = rolling_flow(start);
         const FlowSample last = sample(flow, time_of_end(flow, end));
-        const State state = in_contact(geometry(scene.axes(), last.theta), last.theta, last.omega,
-                                       last.x, 0.0, Mode::rolling);
+        const State state = on_ground(last.theta, last.omega, last.x, Mode::rolling);
         return EndOfSegment{state, continuation(scene, state, false)};
     }
 
@@ -224,8 +226,7 @@ struct Climb {
             return EndOfSegment{state, {Mode::sliding, side, Painleve::no_motion}};
         }
         if (stop != SlideStop::slip_vanishes) return {};
-        state = in_contact(geometry(scene.axes(), state.theta), state.theta, state.omega, state.x,
-                           0.0, Mode::sliding);
+        state = on_ground(state.theta, state.omega, state.x, Mode::sliding);
         return EndOfSegment{state, continuation(scene, state)};
     }
 };
