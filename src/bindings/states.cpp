@@ -156,13 +156,12 @@ CoordinateState single_state(const Array& q, const Array& q_dot) {
 
 void bind_states(py::module_& m) {
     m.def("validate_length", validate_length, "name"_a, "value"_a);
-    const auto define_number = [&](const char* name, double Geometry::* number) {
-        define_geometry(m, name, [=](const Axes& e, double t) { return geometry(e, t).*number; });
-    };
-    define_number("support", &Geometry::h);
-    define_number("support_slope", &Geometry::dh);
-    define_number("support_curvature", &Geometry::ddh);
-    define_number("curvature_radius", &Geometry::rho);
+    define_geometry(m, "support", [](const Axes& e, double t) { return geometry(e, t).h; });
+    define_geometry(m, "support_slope", [](const Axes& e, double t) { return geometry(e, t).dh; });
+    define_geometry(m, "support_curvature",
+                    [](const Axes& e, double t) { return geometry(e, t).ddh; });
+    define_geometry(m, "curvature_radius",
+                    [](const Axes& e, double t) { return geometry(e, t).rho; });
     define_geometry(m, "contact_distance",
                     [](const Axes& e, double t) { return contact_distance(e, geometry(e, t)); });
     define_geometry(m, "contact_angle", contact_angle);
