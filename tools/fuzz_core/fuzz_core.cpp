@@ -128,11 +128,6 @@ Settings settings_from(Bytes& bytes, double t_end) {
     return settings;
 }
 
-bool is_finite(const State& state) {
-    return std::isfinite(state.theta) && std::isfinite(state.omega) && std::isfinite(state.x) &&
-           std::isfinite(state.z) && std::isfinite(state.x_dot) && std::isfinite(state.z_dot);
-}
-
 // Energy per mass and its error: rounded sums, and an angle known to one ulp.
 struct Energy {
     double value;
