@@ -1,7 +1,7 @@
-#include "losses.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "simulate.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "geometry/ellipse.hpp"
-
 namespace rolling_ellipse {
 namespace {
 
@@ -139,9 +137,8 @@ std::string reason(const Scene& scene, const ContactWatch& watch) {
 
 std::string reason(const Scene& scene, const InitialState& start, const Certificate& c) {
     std::string found = why_rolling(scene, start.state, c);
-    const std::string more[] = {slip_removal(start),
-                                why_it_rolls(first_continuation(scene, start.state))};
-    for (const std::string& each : more) {
+    const Continuation next = first_continuation(scene, start.state);
+    for (const std::string& each : {slip_removal(start), why_it_rolls(next)}) {
         if (!each.empty()) found += "; " + each;
     }
     return found;

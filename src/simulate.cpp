@@ -4,10 +4,8 @@
 
 #include "proof/slope.hpp"
 #include "proof/slope_end.hpp"
-#include "proof/watch.hpp"
 #include "reason.hpp"
 #include "scene/impact.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -148,7 +146,8 @@ Solution solution(Integration<Motion> found, const Settings& settings, double t_
 
 CertifiedScene certify(const Scene& scene) {
     Beginning from = beginning(scene);
-    CertifiedScene result{{{Validity::no_proof}}, {}};
+    CertifiedScene result{};
+    result.certificate.end = {Validity::no_proof};
     if (from.rolling) {
         result.certificate = certify_rolling(*from.rolling, scene.mass, scene.friction);
     } else if (from.on_slope) {

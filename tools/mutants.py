@@ -78,7 +78,7 @@ sys.meta_path = [finder for finder in sys.meta_path if "ScikitBuild" not in type
 """
 
 # Files written by programs, or of names only.
-LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "details.cpp", "build.cpp", "_core.pyi")
+LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "_core.pyi")
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,8 @@ namespace rolling_ellipse::bindings {
 
 namespace {
 
+std::atomic<unsigned long> main_thread;
+
 std::string shape_of(const Array& array) {
     std::string text = "(";
     for (py::ssize_t axis = 0; axis < array.ndim(); ++axis) {
@@ -25,6 +27,35 @@ std::string shape_of(const Array& array) {
 
 }  // namespace
 
+GilRelease::~GilRelease() {
+    try {
+        PyEval_RestoreThread(state_);
+    } catch (...) {  // pthread_exit, which must not be swallowed
+        for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+}
+
+SignalWatch::SignalWatch() : in_main_thread_(PyThread_get_thread_ident() == main_thread) {}
+
+void SignalWatch::operator()() {
+    if (!in_main_thread_) return;
+    constexpr std::chrono::milliseconds between_checks(50);
+    const Clock::time_point now = Clock::now();
+    if (now - last_check_ < between_checks) return;
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    last_check_ = Clock::now();
+}
+
+void watch_main_thread() {
+    const py::object found = py::module_::import("threading").attr("main_thread")();
+    main_thread = found.attr("ident").cast<unsigned long>();
+    const py::module_ os = py::module_::import("os");
+    if (!py::hasattr(os, "register_at_fork")) return;  // only Unix forks
+    const py::cpp_function forked([] { main_thread = PyThread_get_thread_ident(); });
+    os.attr("register_at_fork")(py::arg("after_in_child") = forked);
+}
+
 void run_each(py::ssize_t n, int workers, const Piece& body) {
     workers = static_cast<int>(std::min<py::ssize_t>(workers, n));
     if (workers == 0) return;
@@ -39,7 +70,7 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
     std::atomic<bool> stopped{false};
     std::mutex mutex;
     std::condition_variable ended;
-    int running = 0;
+    std::size_t idle = 0;  // threads without any more work
     const auto guarded = [&](int worker, const auto& action) {
         try {
             action();
@@ -67,16 +98,12 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
     const auto work = [&](int worker) {
         guarded(worker, [&] { take(worker, check_for_stop); });
         const std::lock_guard<std::mutex> lock(mutex);
-        --running;
+        ++idle;
         ended.notify_one();
     };
     std::vector<std::thread> threads;
     try {
-        for (int worker = 1; worker < workers; ++worker) {
-            threads.emplace_back(work, worker);
-            const std::lock_guard<std::mutex> lock(mutex);
-            ++running;
-        }
+        for (int worker = 1; worker < workers; ++worker) threads.emplace_back(work, worker);
     } catch (const std::exception&) {
         // The system has no room for one more thread: the others take its pieces.
     }
@@ -87,7 +114,8 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
             check_for_signals();
         });
         std::unique_lock<std::mutex> lock(mutex);  // the last pieces of others may be long
-        while (!ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return running == 0; })) {
+        while (!ended.wait_for(lock, std::chrono::milliseconds(50),
+                               [&] { return idle == threads.size(); })) {
             lock.unlock();
             check_for_signals();
             lock.lock();
@@ -126,23 +154,14 @@ void require_length(const std::string& name, const Array& array, py::ssize_t n) 
     refuse_shape(name, "(" + std::to_string(n) + ",)", array);
 }
 
-void require_matrix(const std::string& name, const Array& array, py::ssize_t rows,
-                    py::ssize_t columns) {
-    if (array.ndim() == 2 && array.shape(0) == rows && array.shape(1) == columns) return;
-    refuse_shape(name, "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")", array);
-}
-
-py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns) {
-    if (array.ndim() != 2 || array.shape(1) != columns) {
-        refuse_shape(name, "(n, " + std::to_string(columns) + ")", array);
+py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns,
+                           std::optional<py::ssize_t> rows) {
+    if (array.ndim() == 2 && array.shape(1) == columns &&
+        array.shape(0) == rows.value_or(array.shape(0))) {
+        return array.shape(0);
     }
-    return array.shape(0);
-}
-
-Argument argument(const char* name, const Array& array, py::ssize_t n) {
-    if (array.size() == 1) return {name, array.data(), 0};
-    require_length(name, array, n);
-    return {name, array.data(), 1};
+    const std::string wanted = rows ? std::to_string(*rows) : "n";
+    refuse_shape(name, "(" + wanted + ", " + std::to_string(columns) + ")", array);
 }
 
 std::string with_index(const std::string& message, py::ssize_t index, const Argument* arguments,

@@ -1,4 +1,4 @@
-// NumPy arrays in and out, and loops over them without the GIL.
+// NumPy arrays in and out; loops over them without the GIL, which Ctrl-C stops.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -7,13 +7,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
-
-#include "bindings/gil.hpp"
 
 namespace rolling_ellipse::bindings {
 
@@ -24,6 +24,38 @@ using namespace pybind11::literals;
 // record, part of a buffer) is copied on its way in.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
+
+// Releases the GIL for a scope. In a daemon thread the scope may end while Python shuts down. Then
+// CPython before 3.14 ends the thread by pthread_exit, which would unwind our frames and release
+// Python objects in them without the GIL. Our thread waits for the end of the process instead, as
+// in CPython 3.14.
+class GilRelease {
+  public:
+    GilRelease() : state_(PyEval_SaveThread()) {}
+    GilRelease(const GilRelease&) = delete;
+    GilRelease& operator=(const GilRelease&) = delete;
+    ~GilRelease();
+
+  private:
+    PyThreadState* state_;
+};
+
+// Checks for Ctrl-C at most every 50 ms, and throws it as Python's exception. More checks would be
+// slow: each takes the GIL, for which a busy Python thread makes it wait 5 ms. Python handles
+// signals in its main thread only: in any other thread nothing is checked.
+class SignalWatch {
+  public:
+    SignalWatch();
+    void operator()();
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    bool in_main_thread_;
+    Clock::time_point last_check_ = Clock::now();
+};
+
+// Finds Python's main thread, now and after each fork.
+void watch_main_thread();
 
 // Runs body(i, checkpoint) for each i of 0 .. n, without the GIL. Ctrl-C stops each thread at its
 // next checkpoint. Where the system cannot start as many threads as asked for, those that there are
@@ -48,13 +80,11 @@ py::array_t<Number> array_of(const std::vector<Number>& values) {
     return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-// Refuse an array of another shape: std::invalid_argument with its name.
+// Refuse an array of another shape: std::invalid_argument with its name. A matrix may have any
+// number of rows, which is returned, unless one is given.
 void require_length(const std::string& name, const Array& array, py::ssize_t n);
-void require_matrix(const std::string& name, const Array& array, py::ssize_t rows,
-                    py::ssize_t columns);
-
-// Refuses an array without so many columns; returns the number of its rows.
-py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns);
+py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssize_t columns,
+                           std::optional<py::ssize_t> rows = {});
 
 // A named argument: an array of n numbers, or one number for all.
 struct Argument {
@@ -64,8 +94,6 @@ struct Argument {
 
     double operator[](py::ssize_t i) const { return data[i * stride]; }
 };
-
-Argument argument(const char* name, const Array& array, py::ssize_t n);
 
 // The message of a refusal with the index behind each argument that is an array: "a[3]/b must be
 // ...".
@@ -78,7 +106,11 @@ class Arguments {
   public:
     Arguments(const std::array<const char*, Count>& names, const std::array<Array, Count>& arrays,
               py::ssize_t n) {
-        for (std::size_t k = 0; k < Count; ++k) each_[k] = argument(names[k], arrays[k], n);
+        for (std::size_t k = 0; k < Count; ++k) {
+            const bool is_one = arrays[k].size() == 1;
+            if (!is_one) require_length(names[k], arrays[k], n);
+            each_[k] = {names[k], arrays[k].data(), is_one ? 0 : 1};
+        }
     }
 
     std::array<double, Count> operator[](py::ssize_t i) const {
@@ -143,6 +175,14 @@ py::tuple computed(py::ssize_t n, const Function& function, int workers = 1) {
             return std::apply([](auto&... each) { return py::make_tuple(each.array...); }, results);
         },
         Row{});
+}
+
+// `computed` for a function of named arguments, each with n elements, or one.
+template <std::size_t Count, class Function>
+py::tuple computed_from(py::ssize_t n, const std::array<const char*, Count>& names,
+                        const std::array<Array, Count>& arrays, const Function& function) {
+    const Arguments<Count> of(names, arrays, n);
+    return computed(n, [&](py::ssize_t i) { return std::apply(function, of[i]); });
 }
 
 // The arrays of `computed` by names.

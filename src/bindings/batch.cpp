@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "bindings/bindings.hpp"
-#include "bindings/samples.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -142,7 +141,8 @@ py::dict columns() {
     return py::dict(
         "scenes"_a = names_of(scene_fields, impulse_fields), "codes"_a = names_of(codes_of({})),
         "numbers"_a = py::make_tuple("t_end", "valid_until"), "events"_a = event_columns(),
-        "rolling"_a = names_of(flow_fields), "contact"_a = names_of(state_fields, force_fields));
+        "rolling"_a = py::make_tuple("theta", "omega", "x"),
+        "contact"_a = names_of(state_fields, force_fields));
 }
 
 // The samples of all scenes one after the other, by their kind. A quantity is a row; coordinates

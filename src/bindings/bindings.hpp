@@ -5,9 +5,13 @@
 #include <pybind11/native_enum.h>
 #include <pybind11/stl.h>
 
+#include <array>
+#include <initializer_list>
 #include <string>
 
 #include "bindings/arrays.hpp"
+#include "contact/segments.hpp"
+#include "geometry/constraints.hpp"
 
 namespace rolling_ellipse::bindings {
 
@@ -23,14 +27,102 @@ py::class_<T> bind_class(py::module_& m, const char* name) {
     return bound;
 }
 
-void bind_geometry(py::module_& m);
+// Binds an enum by the names of its values, which count from 0.
+template <class Enum, class Names = std::initializer_list<const char*>>
+void bind_enum(py::module_& m, const char* name, const char* base, const char* doc,
+               const Names& names) {
+    py::native_enum<Enum> bound(m, name, base, doc);
+    int code = 0;
+    for (const char* each : names) bound.value(each, static_cast<Enum>(code++));
+    bound.finalize();
+}
+
+// A named count.
+struct Figure {
+    const char* name;
+    std::int64_t value;
+};
+
+// The counts of a solver.
+inline std::array<Figure, 4> stats_of(py::ssize_t segments, const StepCounts& counts) {
+    return {Figure{"segments", segments}, Figure{"steps", counts.steps},
+            Figure{"rejected_steps", counts.rejected}, Figure{"evaluations", counts.evaluations}};
+}
+
+// Calls an action with each field of some tables.
+template <class Action, class... Tables>
+void for_each(const Action& action, const Tables&... tables) {
+    const auto all = [&](const auto& table) {
+        for (const auto& field : table) action(field);
+    };
+    (all(tables), ...);
+}
+
+template <class... Tables>
+py::tuple names_of(const Tables&... tables) {
+    py::list names;
+    for_each([&](const auto& field) { names.append(field.name); }, tables...);
+    return names;
+}
+
+// The symbols of the units by the names of the fields.
+template <class... Tables>
+py::dict units_of(const Tables&... tables) {
+    py::dict units;
+    for_each([&](const auto& field) { units[field.name] = field.unit.symbol; }, tables...);
+    return units;
+}
+
+// The numbers of a start by the names of their fields.
+inline py::dict numbers_of(const InitialState& start) {
+    py::dict numbers;
+    for (const auto& field : state_fields) numbers[field.name] = start.state.*field.number;
+    for (const auto& field : start_fields) numbers[field.name] = start.*field.number;
+    return numbers;
+}
+
+// Reads the numbers of a struct from a row; returns the place behind them.
+template <class Struct, std::size_t N>
+const double* read(Struct& to, const Field<Struct> (&table)[N], const double* from) {
+    for (const Field<Struct>& field : table) to.*field.number = *from++;
+    return from;
+}
+
+// The state of q and q_dot, (1, 5); refuses other shapes.
+CoordinateState single_state(const Array& q, const Array& q_dot);
+
+// An event as a row: t, the code of its kind, and the states before and after, each with the code
+// of its mode.
+inline constexpr std::size_t event_numbers = 2 + 2 * (std::size(state_fields) + 1);
+using EventRow = std::array<double, event_numbers>;
+py::tuple event_columns();
+Array event_rows(const std::vector<Event>& events);
+Event event_of(const EventRow& row);
+
+// theta, omega, x of n samples.
+struct FlowArrays {
+    explicit FlowArrays(py::ssize_t n) : theta(n), omega(n), x(n) {}
+
+    FlowColumns columns() { return {theta.mutable_data(), omega.mutable_data(), x.mutable_data()}; }
+    py::tuple tuple() const { return py::make_tuple(theta, omega, x); }
+
+    Array theta, omega, x;
+};
+
+// Columns of contact samples: for each number of state_fields and force_fields, and for the modes.
+struct ContactColumns {
+    std::vector<double*> numbers;
+    std::int8_t* modes;
+
+    // Stores the samples begin .. end, which stand from `samples` on.
+    void store(const ContactSample* samples, py::ssize_t begin, py::ssize_t end) const;
+};
+
+void bind_states(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_certificate(py::module_& m);
 void bind_flow(py::module_& m);
-void bind_settings(py::module_& m);
 void bind_solution(py::module_& m);
 void bind_batch(py::module_& m);
-void bind_details(py::module_& m);
-void bind_tableaus(py::module_& m);
 
 }  // namespace rolling_ellipse::bindings

@@ -1,9 +1,7 @@
 #include <stdexcept>
 
 #include "bindings/bindings.hpp"
-#include "outcome/blow.hpp"
-#include "outcome/classify.hpp"
-#include "outcome/lift_off.hpp"
+#include "outcome/outcome.hpp"
 #include "outcome/thresholds.hpp"
 #include "scene/impact.hpp"
 #include "simulate.hpp"
@@ -96,33 +94,19 @@ py::tuple lift_off_interruptible(double a, double b, double gravity,
         const GilRelease release;
         found = lift_off(of, friction, slip_speed, painleve_friction, SignalWatch());
     }
-    py::tuple jams(found.jam_speeds.size());
-    for (std::size_t i = 0; i < jams.size(); ++i) {
-        const auto& [lower, upper] = found.jam_speeds[i];
-        jams[i] = py::make_tuple(lower, upper);
-    }
-    return py::make_tuple(found.speed, jams);
+    py::list jams;
+    for (const auto& [lower, upper] : found.jam_speeds) jams.append(py::make_tuple(lower, upper));
+    return py::make_tuple(found.speed, py::tuple(jams));
 }
 
 }  // namespace
 
 void bind_certificate(py::module_& m) {
-    py::native_enum<Validity>(m, "Validity", "enum.Enum", "Is rolling valid for the whole motion?")
-        .value("VALID", Validity::valid)
-        .value("INVALID", Validity::invalid)
-        .value("EDGE", Validity::edge)
-        .value("NO_PROOF", Validity::no_proof)
-        .finalize();
-    py::native_enum<Outcome>(m, "Outcome", "enum.IntEnum",
-                             "The first thing that happens to a rolling body.")
-        .value("RESTS", Outcome::rests)
-        .value("ROCKS", Outcome::rocks)
-        .value("ROLLS_OVER", Outcome::rolls_over)
-        .value("SLIPS", Outcome::slips)
-        .value("LOSES_CONTACT", Outcome::loses_contact)
-        .value("JAMS", Outcome::jams)
-        .value("EDGE", Outcome::edge)
-        .finalize();
+    bind_enum<Validity>(m, "Validity", "enum.Enum", "Is rolling valid for the whole motion?",
+                        {"VALID", "INVALID", "EDGE", "NO_PROOF"});
+    bind_enum<Outcome>(m, "Outcome", "enum.IntEnum",
+                       "The first thing that happens to a rolling body.",
+                       {"RESTS", "ROCKS", "ROLLS_OVER", "SLIPS", "LOSES_CONTACT", "JAMS", "EDGE"});
     m.def("classify_array", classify_array, "n"_a, "arguments"_a, "workers"_a);
     m.def("outcome_array", outcome_array, "scene"_a, "n"_a, "impulses"_a);
     m.def(

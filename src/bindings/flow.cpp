@@ -1,9 +1,7 @@
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "bindings/bindings.hpp"
-#include "bindings/samples.hpp"
 #include "rolling/level/kernel.hpp"
 #include "rolling/level/many_times.hpp"
 #include "simulate.hpp"

@@ -1,5 +1,7 @@
+#include <algorithm>
+
 #include "bindings/bindings.hpp"
-#include "bindings/fields.hpp"
+#include "multipliers/feedback.hpp"
 #include "reason.hpp"
 
 namespace rolling_ellipse::bindings {
@@ -8,13 +10,10 @@ namespace {
 // x_dot, z_dot, omega just after the collision of a touching body. The arguments are theta, x_dot,
 // z_dot, omega, a, b, gyration2, friction, restitution, each with n elements, or one.
 py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, Restitution law) {
-    const Arguments<9> of(
-        {"theta", "x_dot", "z_dot", "omega", "a", "b", "gyration2", "friction", "restitution"},
-        arguments, n);
-    return computed(n, [&](py::ssize_t i) {
+    const auto row = [&](double theta, double x_dot, double z_dot, double omega, double a, double b,
+                         double gyration2, double friction, double restitution) {
         Scene scene{};
-        scene.mass = scene.gravity = 1.0;  // which do not matter
-        const auto [theta, x_dot, z_dot, omega, a, b, gyration2, friction, restitution] = of[i];
+        scene.mass = scene.gravity = 1.0;  // any numbers: velocities do not depend on them
         scene.a = a;
         scene.b = b;
         scene.inertia = gyration2;
@@ -22,7 +21,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.restitution = restitution;
         scene.theta = theta;
         scene.omega = omega;
-        scene.z = above_ground(scene.axes());  // where it may move down
+        scene.z = above_ground(scene.axes());  // a height from which it may move down
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
         validate(scene.body());                // by its own names: k^2 is no inertia
@@ -31,7 +30,10 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         const double approach = gap_rate(before, geometry(scene.axes(), before.theta));
         const State after = collision(scene, before, approach, law).after;
         return std::tuple(after.x_dot, after.z_dot, after.omega);
-    });
+    };
+    return computed_from<9>(
+        n, {"theta", "x_dot", "z_dot", "omega", "a", "b", "gyration2", "friction", "restitution"},
+        arguments, row);
 }
 
 // The names of a table as interned Python strings, which dictionaries find by their address.
@@ -78,20 +80,32 @@ py::dict start_of(const Scene& scene) {
     return found;
 }
 
+// Reads a setting; a choice is given by its name.
+template <class Value>
+void take(py::handle given, Value& value) {
+    if constexpr (std::is_enum_v<Value>) {
+        const auto& known = names<Value>;
+        const auto at = std::find(known.begin(), known.end(), given.cast<std::string>());
+        value = static_cast<Value>(at - known.begin());
+    } else {
+        value = given.cast<Value>();
+    }
+}
+
+Settings settings_of(const py::dict& fields) {
+    Settings settings{};
+    std::apply([&](const auto&... each) { (take(fields[each.first], settings.*each.second), ...); },
+               settings_fields);
+    return settings;
+}
+
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    py::native_enum<Mode>(m, "Mode", "enum.IntEnum", "Mode of motion; one code per sample.")
-        .value("ROLLING", Mode::rolling)
-        .value("SLIDING", Mode::sliding)
-        .value("FLIGHT", Mode::flight)
-        .value("REST", Mode::rest)
-        .finalize();
-    py::native_enum<Painleve>(m, "Painleve", "enum.Enum", "Is there exactly one possible motion?")
-        .value("DETERMINED", Painleve::determined)
-        .value("NO_MOTION", Painleve::no_motion)
-        .value("TWO_MOTIONS", Painleve::two_motions)
-        .finalize();
+    bind_enum<Mode>(m, "Mode", "enum.IntEnum", "Mode of motion; one code per sample.",
+                    {"ROLLING", "SLIDING", "FLIGHT", "REST"});
+    bind_enum<Painleve>(m, "Painleve", "enum.Enum", "Is there exactly one possible motion?",
+                        {"DETERMINED", "NO_MOTION", "TWO_MOTIONS"});
     bind_class<Impulse>(m, "Impulse")
         .def(py::init([](double jx, double jz, double dx, double dz) {
                  const Impulse impulse{jx, jz, dx, dz};
@@ -102,15 +116,17 @@ void bind_scene(py::module_& m) {
     bind_class<Scene>(m, "Scene")
         .def(py::init(SceneMaker()), "numbers"_a, "impulse"_a, "reached"_a)
         .def_property_readonly("gyration2", [](const Scene& s) { return s.body().gyration2; });
-    py::native_enum<Restitution>(m, "Restitution", "enum.Enum", "Law of restitution.")
-        .value("STRONGE", Restitution::stronge)
-        .value("POISSON", Restitution::poisson)
-        .value("NEWTON", Restitution::newton)
-        .finalize();
+    bind_enum<Restitution>(m, "Restitution", "enum.Enum", "Law of restitution.",
+                           {"STRONGE", "POISSON", "NEWTON"});
     m.attr("FIELDS") =
         py::dict("Scene"_a = units_of(scene_fields), "Impulse"_a = units_of(impulse_fields),
                  "State"_a = units_of(state_fields),
                  "InitialState"_a = units_of(state_fields, start_fields));
+    m.attr("MODELS") = py::tuple(py::cast(names<Model>));
+    m.attr("METHODS") = py::tuple(py::cast(names<Method>));
+    m.attr("STABILIZATIONS") = py::tuple(py::cast(names<Stabilization>));
+    bind_class<Settings>(m, "Settings").def(py::init(&settings_of), "fields"_a);
+    m.def("feedback_growth", feedback_growth, "settings"_a);
     m.def("initial_state", start_of, "scene"_a);
     m.def("collide_arrays", collide_arrays, "n"_a, "arguments"_a, "law"_a);
 }

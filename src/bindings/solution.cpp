@@ -1,9 +1,6 @@
 #include <algorithm>
-#include <utility>
 
 #include "bindings/bindings.hpp"
-#include "bindings/samples.hpp"
-#include "losses.hpp"
 #include "outcome/passages.hpp"
 #include "scene/refuse.hpp"
 #include "simulate.hpp"
@@ -149,33 +146,65 @@ py::dict event_state(const Scene& scene, const EventRow& row, bool after) {
 
 }  // namespace
 
+py::tuple event_columns() {
+    py::list names;
+    names.append("t");
+    names.append("kind");
+    for (const char* when : {"_before", "_after"}) {
+        for (const auto& field : state_fields) names.append(std::string(field.name) + when);
+        names.append(std::string("mode") + when);
+    }
+    return names;
+}
+
+Array event_rows(const std::vector<Event>& events) {
+    Array table = matrix(events.size(), event_numbers);
+    double* to = table.mutable_data();
+    for (const Event& event : events) {
+        *to++ = event.t;
+        *to++ = static_cast<int>(event.kind);
+        for (const State* state : {&event.before, &event.after}) {
+            for (const auto& field : state_fields) *to++ = state->*field.number;
+            *to++ = static_cast<int>(state->mode);
+        }
+    }
+    return table;
+}
+
+Event event_of(const EventRow& row) {
+    Event event{row[0], static_cast<EventKind>(row[1]), {}, {}};
+    const double* from = row.data() + 2;
+    for (State* state : {&event.before, &event.after}) {
+        from = read(*state, state_fields, from);
+        state->mode = static_cast<Mode>(*from++);
+    }
+    return event;
+}
+
+void ContactColumns::store(const ContactSample* samples, py::ssize_t begin, py::ssize_t end) const {
+    auto column = numbers.begin();
+    const auto fill = [&](const auto& table, const auto& part) {
+        for (const auto& field : table) {
+            double* const values = *column++;
+            for (py::ssize_t i = begin; i < end; ++i) {
+                values[i] = samples[i - begin].*part.*field.number;
+            }
+        }
+    };
+    fill(state_fields, &ContactSample::state);
+    fill(force_fields, &ContactSample::force);
+    for (py::ssize_t i = begin; i < end; ++i) {
+        modes[i] = static_cast<std::int8_t>(samples[i - begin].state.mode);
+    }
+}
+
 void bind_solution(py::module_& m) {
-    py::native_enum<EventKind>(m, "EventKind", "enum.Enum", "Kind of an event.")
-        .value("SLIP", EventKind::slip)
-        .value("STICK", EventKind::stick)
-        .value("REVERSE", EventKind::reverse)
-        .value("LIFT_OFF", EventKind::lift_off)
-        .value("IMPACT", EventKind::impact)
-        .value("REST", EventKind::rest)
-        .value("JAM", EventKind::jam)
-        .finalize();
-    py::native_enum<Ending>(m, "Ending", "enum.Enum", "How a motion ended.")
-        .value("COMPLETED", Ending::completed)
-        .value("JAMMED", Ending::jammed)
-        .value("UNDETERMINED", Ending::undetermined)
-        .value("VALIDITY_LOST", Ending::validity_lost)
-        .value("MAX_EVENTS", Ending::max_events)
-        .value("MAX_STEPS", Ending::max_steps)
-        .value("STEP_TOO_SMALL", Ending::step_too_small)
-        .value("STEP_TOO_LARGE", Ending::step_too_large)
-        .finalize();
-    py::native_enum<Quantity>(m, "Quantity", "enum.Enum", "A quantity of a motion.")
-        .value("theta", Quantity::theta)
-        .value("x", Quantity::x)
-        .value("z", Quantity::z)
-        .value("omega", Quantity::omega)
-        .value("contact_x", Quantity::contact_x)
-        .finalize();
+    bind_enum<EventKind>(m, "EventKind", "enum.Enum", "Kind of an event.",
+                         {"SLIP", "STICK", "REVERSE", "LIFT_OFF", "IMPACT", "REST", "JAM"});
+    bind_enum<Ending>(m, "Ending", "enum.Enum", "How a motion ended.",
+                      {"COMPLETED", "MAX_STEPS", "STEP_TOO_SMALL", "STEP_TOO_LARGE", "MAX_EVENTS",
+                       "JAMMED", "UNDETERMINED", "VALIDITY_LOST"});
+    bind_enum<Quantity>(m, "Quantity", "enum.Enum", "A quantity of a motion.", names<Quantity>);
     bind_class<Losses>(m, "Losses")
         .def_readonly("energy", &Losses::energy)
         .def_readonly("constraints", &Losses::constraints)

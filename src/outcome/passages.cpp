@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "numerics/bisect.hpp"
 #include "scene/refuse.hpp"
@@ -19,18 +18,18 @@ struct Reading {
     bool is_last;  // of its stretch
 };
 
-class Search {
-  public:
-    Search(const Observable& of, int direction, std::vector<Stretch> stretches)
-        : of_(of), direction_(direction), stretches_(std::move(stretches)) {}
+struct Search {
+    const Observable& of;
+    int direction;
+    std::vector<Stretch> stretches;
 
     // The times at which the observable passes a value.
     std::vector<double> times_of(double value) const {
         std::vector<Reading> readings;
-        for (const Stretch& stretch : stretches_) add_readings(stretch, value, readings);
+        for (const Stretch& stretch : stretches) add_readings(stretch, value, readings);
         std::vector<double> times = passages_in(readings, value);
         std::sort(times.begin(), times.end());
-        for (const Stretch& stretch : stretches_) {
+        for (const Stretch& stretch : stretches) {
             if (stretch.period) repeat(stretch, value, times);
         }
         const auto is_same = [](double before, double t) {
@@ -41,23 +40,12 @@ class Search {
         return times;
     }
 
-    std::vector<std::string> unproved() const {
-        std::vector<std::string> found;
-        for (const Stretch& stretch : stretches_) {
-            if (stretch.proved) continue;
-            if (std::find(found.begin(), found.end(), stretch.where) != found.end()) continue;
-            found.push_back(stretch.where);
-        }
-        return found;
-    }
-
-  private:
     void add_readings(const Stretch& stretch, double value, std::vector<Reading>& readings) const {
         constexpr double roundings = 8;
         const std::vector<double>& values = stretch.values;
         double size = 0.0;
         for (const double each : values) size = std::max(size, std::abs(each));
-        const double rounding = roundings * epsilon * (size + std::abs(value) + of_.length);
+        const double rounding = roundings * epsilon * (size + std::abs(value) + of.length);
         const auto is_rounding = [&](double each) { return std::abs(each - value) <= rounding; };
         const bool is_kept = std::all_of(values.begin(), values.end(), is_rounding);
         const auto rise = [&](std::size_t i) {
@@ -71,7 +59,7 @@ class Search {
         }
     }
 
-    bool is_wanted(int sense) const { return direction_ == 0 || direction_ == sense; }
+    bool is_wanted(int sense) const { return direction == 0 || direction == sense; }
 
     // The times between readings at which the sign changes in the wanted sense, and those of zeros.
     std::vector<double> passages_in(const std::vector<Reading>& readings, double value) const {
@@ -115,7 +103,7 @@ class Search {
                 open.push_back(&crossing);
             }
             if (open.empty()) break;
-            const std::vector<double> values = of_.measure(times);
+            const std::vector<double> values = of.measure(times);
             for (std::size_t k = 0; k < open.size(); ++k) {
                 open[k]->bracket.take(times[k], open[k]->side * (values[k] - value));
             }
@@ -143,7 +131,7 @@ class Search {
         const std::vector<double> one(after(at[cut]), after(double(period + at[cut])));
         const double count = std::floor((at.back() - at[cut]) / period.high) - 1;
         if (double(one.size()) * count > most) {
-            refuse_length(of_, "pass its value no more than 1000000 times",
+            refuse_length(of, "pass its value no more than 1000000 times",
                           "about " + text(double(one.size()) * count) + " of them");
         }
         std::vector<double> again;
@@ -154,22 +142,21 @@ class Search {
         const auto rest = times.erase(after(at[cut]), after(double(period * count + at[cut])));
         times.insert(rest, again.begin(), again.end());
     }
-
-    const Observable& of_;
-    int direction_;
-    std::vector<Stretch> stretches_;
 };
 
 }  // namespace
 
 Passages passages(const Motion& motion, double last, const Observable& of,
                   const std::vector<double>& values, int direction, const Checkpoint& checkpoint) {
-    Passages found{std::vector<std::vector<double>>(values.size()), {}};
-    if (motion.segments.empty()) return found;
-    const Search search(of, direction, stretches(motion, last, of, checkpoint));
-    const auto times_of = [&](double value) { return search.times_of(value); };
-    std::transform(values.begin(), values.end(), found.times.begin(), times_of);
-    found.unproved = search.unproved();
+    if (motion.segments.empty()) return {std::vector<std::vector<double>>(values.size()), {}};
+    Passages found;
+    const Search search{of, direction, stretches(motion, last, of, checkpoint)};
+    for (const double value : values) found.times.push_back(search.times_of(value));
+    for (const Stretch& stretch : search.stretches) {
+        const auto& known = found.unproved;
+        if (stretch.proved || std::count(known.begin(), known.end(), stretch.where)) continue;
+        found.unproved.push_back(stretch.where);
+    }
     return found;
 }
 

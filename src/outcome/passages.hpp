@@ -1,13 +1,53 @@
-// The times at which an observable of a motion passes a value. They belong to the motion itself,
-// not to samples of it.
+// The times at which a quantity of a motion passes a value. They belong to the motion itself, not
+// to samples of it. They are searched between times from each of which to the next the quantity
+// only rises or only falls.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "outcome/stretches.hpp"
+#include "contact/segments.hpp"
+#include "numerics/turns.hpp"
+#include "scene/settings.hpp"
 
 namespace rolling_ellipse {
+
+enum class Quantity { theta, x, z, omega, contact_x };
+
+template <>
+inline constexpr std::array names<Quantity>{"theta", "x", "z", "omega", "contact_x"};
+
+// A quantity as a function of time, in SI units; or the caller's function of time.
+struct Observable {
+    std::optional<Quantity> quantity;  // absent for a function of the caller
+    Measure measure;
+    double length;  // [m] its rounding counts beside that of the values: paths are sums
+};
+
+// A quantity of a motion. Motion and checkpoint have to live as long.
+Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint);
+
+// One segment of a motion with the turning points of an observable.
+struct Stretch {
+    const char* where;           // a phrase for people: "while it rolls"
+    std::vector<double> times;   // [s], ascending; begin, turning points, end
+    std::vector<double> values;  // of the observable
+    bool proved = true;          // is the observable monotone from each time to the next?
+    // [s], of a motion that repeats itself often: `times` then cover the first two and the last two
+    // periods.
+    std::optional<DoubleDouble> period = {};
+};
+
+// The stretches of a motion up to a time [s]. Throws std::invalid_argument if the motion has too
+// many turns.
+std::vector<Stretch> stretches(const Motion& motion, double last, const Observable& of,
+                               const Checkpoint& checkpoint);
+
+// Throws std::invalid_argument: "<observable> must <requirement>, got <got>".
+[[noreturn]] void refuse_length(const Observable& of, const std::string& requirement,
+                                const std::string& got);
 
 struct Passages {
     std::vector<std::vector<double>> times;  // [s], ascending; for each value

@@ -1,11 +1,8 @@
-#include "outcome/stretches.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
-#include <utility>
 
+#include "outcome/passages.hpp"
 #include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
@@ -118,28 +115,26 @@ struct CourseOf {
 };
 
 // Finds the turning points of an observable, segment by segment.
-class Survey {
-  public:
-    Survey(const Motion& motion, const Observable& of, const Checkpoint& checkpoint)
-        : unit_(motion.units.time),
-          of_(of),
-          theta_(observable(motion, Quantity::theta, checkpoint)) {}
+struct Survey {
+    double unit;  // [s], of the times of a course
+    const Observable& of;
+    Observable theta;
+    double quarters = 0.0;  // quarter turns searched so far
 
     // The stretch of a segment, given its begin [units of the motion] and its first and last time
     // [s].
     Stretch stretch(const Course& course, double begin, double first, double last) {
         Stretch found{course.where, {first, last}, {}};
         for (const DoubleDouble& knot : course.knots) {
-            const double t = double(knot + begin) * unit_;
+            const double t = double(knot + begin) * unit;
             if (first < t && t < last) found.times.push_back(t);
         }
         sort_once(found.times);
         if (!course.monotone) add_turning_points(course, found);
-        found.values = of_.measure(found.times);
+        found.values = of.measure(found.times);
         return found;
     }
 
-  private:
     void add_turning_points(const Course& course, Stretch& found) {
         constexpr double parts_a_period = 8;
         std::vector<double>& times = found.times;
@@ -149,14 +144,14 @@ class Survey {
         }
         const double first = times.front();
         const double last = times.back();
-        const double period = double(*course.period) * unit_;
+        const double period = double(*course.period) * unit;
         const double periods = (last - first) / period;
-        if (!of_.quantity || periods < 5) {
+        if (!of.quantity || periods < 5) {
             count(4 * periods);
             found.proved = divide(times, std::ceil(parts_a_period * periods));
             return;
         }
-        found.period = *course.period * unit_;
+        found.period = *course.period * unit;
         times = {first, first + 2 * period};
         std::vector<double> ending{last - 2 * period, last};
         const bool begin_proved = divide(times, 2 * parts_a_period);
@@ -170,11 +165,11 @@ class Survey {
     // whether the observable is proved to be monotone between the times.
     bool divide(std::vector<double>& times, double least) {
         constexpr double parts_a_quarter = 4;
-        if (!of_.quantity) least = std::max(least, std::ceil(16.0 / double(times.size())));
+        if (!of.quantity) least = std::max(least, std::ceil(16.0 / double(times.size())));
         const std::vector<double> ends = times;
-        const std::vector<double> theta = theta_.measure(ends);
+        const std::vector<double> angles = theta.measure(ends);
         for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-            const double turned = std::abs(theta[i + 1] - theta[i]) / half_pi;
+            const double turned = std::abs(angles[i + 1] - angles[i]) / half_pi;
             count(turned);
             const double parts = least + std::floor(parts_a_quarter * turned);
             for (double k = 1; k < parts; ++k) {
@@ -182,30 +177,23 @@ class Survey {
             }
         }
         sort_once(times);
-        return add_turns(of_.measure, of_.length, times) && of_.quantity;
+        return add_turns(of.measure, of.length, times) && of.quantity;
     }
 
-    void count(double quarters) {
+    void count(double more) {
         constexpr double most = 100'000;
-        quarters_ += quarters;
-        if (!(quarters_ > most)) return;
-        refuse_length(of_, "be searched over at most 100000 quarter turns",
-                      "a motion of " + text(std::round(quarters_)));
+        quarters += more;
+        if (!(quarters > most)) return;
+        refuse_length(of, "be searched over at most 100000 quarter turns",
+                      "a motion of " + text(std::round(quarters)));
     }
-
-    double unit_;
-    const Observable& of_;
-    Observable theta_;
-    double quarters_ = 0.0;  // quarter turns searched so far
 };
 
 }  // namespace
 
 void refuse_length(const Observable& of, const std::string& requirement, const std::string& got) {
-    constexpr const char* names[] = {"theta", "x", "z", "omega", "contact_x"};
-    const std::string name = of.quantity ? names[static_cast<int>(*of.quantity)] : "function";
-    throw std::invalid_argument(name + " must " + requirement + ", got " + got +
-                                ": simulate a shorter motion");
+    throw std::invalid_argument((of.quantity ? name(*of.quantity) : "function") + " must " +
+                                requirement + ", got " + got + ": simulate a shorter motion");
 }
 
 Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint) {
@@ -229,7 +217,7 @@ Observable observable(const Motion& motion, Quantity quantity, const Checkpoint&
 std::vector<Stretch> stretches(const Motion& motion, double last, const Observable& of,
                                const Checkpoint& checkpoint) {
     const CourseOf course{of.quantity};
-    Survey survey(motion, of, checkpoint);
+    Survey survey{motion.units.time, of, observable(motion, Quantity::theta, checkpoint)};
     std::vector<Stretch> found;
     for (auto segment = motion.segments.begin(); segment != motion.segments.end(); ++segment) {
         const double first = segment->begin * motion.units.time;

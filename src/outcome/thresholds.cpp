@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/continuation.hpp"
+#include "contact/slide.hpp"
 #include "numerics/bisect.hpp"
-#include "proof/forces.hpp"
+#include "proof/certificate.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -138,6 +140,129 @@ Onset painleve(const Shape& shape) {
     return onset;
 }
 
+Scene level_scene(const Body& body, double friction) {
+    Scene scene{};
+    scene.a = body.a;
+    scene.b = body.b;
+    scene.mass = 1.0;
+    scene.gravity = body.gravity;
+    scene.inertia = body.gyration2;
+    scene.friction = friction;
+    return scene;
+}
+
+// Does a slide under infinite friction get to the tip? It has N = 0: its centre is in free fall,
+// and h'^2 omega^2 + 2 g h is constant, physics (52). Below 2 g L it turns back under the tip with
+// c > 0: from the flat to the tip h'' falls, so that c h'^2 = g h'^2 + h'' h'^2 omega^2 falls, too,
+// but to g h'^2 where omega vanishes.
+bool reaches_the_tip(const Scene& scene, const State& start) {
+    const double h = geometry(scene.axes(), start.theta).h;
+    const double to_tip = under_tip(flat_view(scene.axes(), start.theta), h);
+    return square(start.z_dot) >= 2 * scene.gravity * to_tip;
+}
+
+// Fate of a body that rolls over the flat position, before it passes the tip.
+enum class Fate { stays, leaves, jams };
+
+// The state at the end of a segment, and the motion that follows.
+struct EndOfSegment {
+    State state;
+    Continuation next;
+};
+
+// The climb of a body from the flat position to the tip, for any speed.
+struct Climb {
+    const Scene& scene;
+    const Checkpoint& checkpoint;
+    double flat = scene.a >= scene.b ? 0.0 : half_pi;  // theta
+    double tip = flat + half_pi;
+
+    // The climb alone decides: c vanishes only on the way up, where its rate is h''' omega^3,
+    // physics (53), since h'' falls from the flat to the tip.
+    Fate fate(double omega) const {
+        // So many segments mean slides of no length: N and c vanish together, right at the tip.
+        constexpr int most_segments = 64;
+        checkpoint();
+        State state = on_ground(flat, omega, 0.0, Mode::rolling);
+        Continuation next = continuation(scene, state);
+        for (int i = 0; state.theta < tip; ++i) {
+            if (next.mode == Mode::flight || i == most_segments) return Fate::leaves;
+            if (next.paradox != Painleve::determined) return Fate::jams;
+            const auto end =
+                next.mode == Mode::rolling ? end_of_rolling(state) : end_of_slide(state, next.side);
+            if (!end) return Fate::stays;
+            state = end->state;
+            next = end->next;
+        }
+        return next.mode == Mode::flight ? Fate::leaves : Fate::stays;
+    }
+
+    State on_ground(double theta, double omega, double x, Mode mode) const {
+        return in_contact(geometry(scene.axes(), theta), theta, omega, x, 0.0, mode);
+    }
+
+    // The ends of segments are empty if the body gets over the tip, or turns back.
+    std::optional<EndOfSegment> end_of_rolling(const State& from) const {
+        const RollingStart start = rolling_start(scene.body(), from.theta, from.omega);
+        const EndOfRolling end = rolling_ellipse::end_of_rolling(start, scene.friction);
+        if (end.validity != Validity::invalid) return {};
+        const RollingFlow flow = rolling_flow(start);
+        const FlowSample last = sample(flow, time_of_end(flow, end));
+        const State state = on_ground(last.theta, last.omega, last.x, Mode::rolling);
+        return EndOfSegment{state, continuation(scene, state, false)};
+    }
+
+    std::optional<EndOfSegment> end_of_slide(const State& from, double side) const {
+        constexpr double over_the_tip = 0.5;  // [rad], where c no longer falls
+        constexpr long most_pieces = 2000;
+        if (std::isinf(scene.friction) && !reaches_the_tip(scene, from)) return {};
+        Slide slide = slide_from(scene, from, side);
+        const SlideStop stop =
+            slide_on(slide, {infinity, most_pieces, tip + over_the_tip}, checkpoint);
+        State state = end_of(slide);
+        if (state.theta > tip + over_the_tip || state.omega < 0) return {};
+        if (stop == SlideStop::pressure_vanishes) return EndOfSegment{state, {Mode::flight}};
+        if (stop == SlideStop::jams) {
+            return EndOfSegment{state, {Mode::sliding, side, Painleve::no_motion}};
+        }
+        if (stop != SlideStop::slip_vanishes) return {};
+        state = on_ground(state.theta, state.omega, state.x, Mode::sliding);
+        return EndOfSegment{state, continuation(scene, state)};
+    }
+};
+
+// A speed below which the body cannot leave the ground: at lift-off omega^2 >= g/|h''| >= g L/c^2,
+// physics (53), with no more energy than at the start.
+double too_slow(const Body& body, const FlatView& at) {
+    const double flat_inertia = body.gyration2 + square(at.short_axis);
+    return std::sqrt(body.gravity * at.long_axis / at.c2 * body.gyration2 / flat_inertia);
+}
+
+// Without jams a body that leaves the ground does so at any higher speed: coarse steps, each by a
+// factor, find the least one. With jams the fates may alternate, up to 50 times the slip speed:
+// there gravity, 2500 times weaker in units of omega^2, no longer matters.
+LiftOff scanned(const Climb& climb, double low, bool may_jam) {
+    const double growth = may_jam ? 1.02 : 1.05;
+    const int most_growths = may_jam ? 198 : 200;
+    LiftOff found;
+    Fate before = Fate::stays;
+    double speed = low;
+    for (int i = 0; i <= most_growths; ++i) {
+        const double slower = speed;
+        if (i > 0) speed *= growth;
+        const Fate fate = climb.fate(speed);
+        if (fate == before) continue;
+        const auto is_changed = [&](double omega) { return climb.fate(omega) != before; };
+        const double change = i == 0 ? low : bisect(slower, speed, is_changed).high;
+        if (before == Fate::jams) found.jam_speeds.back().upper = change;
+        if (fate == Fate::jams) found.jam_speeds.push_back({change, infinity});
+        if (fate == Fate::leaves) found.speed = std::min(found.speed, change);
+        if (fate == Fate::leaves && !may_jam) break;
+        before = fate;
+    }
+    return found;
+}
+
 }  // namespace
 
 double roll_over_speed(const Body& body) {
@@ -158,9 +283,6 @@ Thresholds thresholds(const Body& body, double friction) {
     result.roll_over_speed = roll_over_speed(body);
     result.rocking_rate = std::sqrt(body.gravity * at.c2 / (at.short_axis * flat_inertia));
     result.tip_rate = std::sqrt(body.gravity * at.c2 / (at.long_axis * tip_inertia));
-    result.contact_loss_speed = infinity;
-    result.slip_speed = infinity;
-    result.painleve_friction = infinity;
     if (at.c2 == 0) return result;
 
     const auto flat_speed = [&](const Onset& onset) {  // physics (44)
@@ -183,6 +305,24 @@ Thresholds thresholds(const Body& body, double friction) {
     result.painleve_friction = jamming.value;
     result.painleve_angle = theta_of(jamming.angle);
     return result;
+}
+
+LiftOff lift_off(const Body& body, double friction, double slip_speed, double painleve_friction,
+                 const Checkpoint& checkpoint) {
+    const FlatView at = flat_view(body.axes(), 0.0);
+    if (at.c2 == 0) return {};
+    const Scene level = level_scene(body, friction);
+    const Units units = natural_units(level.body(), level.mass);
+    const Scene scene = in_units(level, units);
+    const double low = std::max(slip_speed, too_slow(body, at)) * units.time;
+    const bool may_jam = std::isfinite(friction) && friction > painleve_friction;
+    LiftOff found = scanned(Climb{scene, checkpoint}, low, may_jam);
+    found.speed /= units.time;
+    for (SpeedRange& jams : found.jam_speeds) {
+        jams.lower /= units.time;
+        jams.upper /= units.time;
+    }
+    return found;
 }
 
 }  // namespace rolling_ellipse

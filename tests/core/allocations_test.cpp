@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "motions.hpp"
-#include "outcome/classify.hpp"
+#include "outcome/outcome.hpp"
 #include "rolling/level/kernel.hpp"
 #include "rolling/level/many_times.hpp"
 #include "simulate.hpp"

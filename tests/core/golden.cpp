@@ -20,8 +20,7 @@
 #endif
 
 #include "motions.hpp"
-#include "outcome/blow.hpp"
-#include "outcome/classify.hpp"
+#include "outcome/outcome.hpp"
 #include "outcome/thresholds.hpp"
 #include "rolling/level/kernel.hpp"
 #include "simulate.hpp"

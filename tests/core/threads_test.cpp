@@ -13,9 +13,7 @@
 #include <vector>
 
 #include "motions.hpp"
-#include "outcome/blow.hpp"
-#include "outcome/classify.hpp"
-#include "outcome/lift_off.hpp"
+#include "outcome/outcome.hpp"
 #include "outcome/thresholds.hpp"
 #include "rolling/level/kernel.hpp"
 #include "rolling/level/many_times.hpp"

@@ -12,8 +12,7 @@
 
 #include "bytes.hpp"
 #include "contact/continuation.hpp"
-#include "losses.hpp"
-#include "outcome/blow.hpp"
+#include "outcome/outcome.hpp"
 #include "outcome/passages.hpp"
 #include "outcome/thresholds.hpp"
 #include "proof/law.hpp"
@@ -127,11 +126,6 @@ Settings settings_from(Bytes& bytes, double t_end) {
     settings.max_events = bytes.chance(16) ? bytes.choice(3) : 10;
     if (bytes.chance(32)) settings.rest_speed = bytes.power(-9, 0);
     return settings;
-}
-
-bool is_finite(const State& state) {
-    return std::isfinite(state.theta) && std::isfinite(state.omega) && std::isfinite(state.x) &&
-           std::isfinite(state.z) && std::isfinite(state.x_dot) && std::isfinite(state.z_dot);
 }
 
 // Energy per mass and its error: rounded sums, and an angle known to one ulp.

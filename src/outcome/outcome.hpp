@@ -1,10 +1,27 @@
-// Outcome of a blow, and its inverse: the blow, or the friction, for an outcome.
+// The first thing that happens to a body, after a blow or out of rolling, and the inverse: the
+// blow, or the friction, for an outcome.
 #pragma once
 
-#include "outcome/classify.hpp"
+#include <cstdint>
+
+#include "scene/scene.hpp"
 #include "scene/settings.hpp"
 
 namespace rolling_ellipse {
+
+enum class Outcome : std::int8_t {
+    rests,
+    rocks,          // it turns back before anything else happens
+    rolls_over,     // it passes the tip before anything else happens
+    slips,          // its contact slides
+    loses_contact,  // it leaves the ground, or is in the air
+    jams,           // not out of rolling, see outcome/outcome.cpp
+    edge,           // undecided within rounding
+};
+
+// The outcome for a body that rolls (or rests) on level ground with the given angle and angular
+// velocity, from signs of polynomials alone.
+Outcome classify(const Body& body, double friction, double theta, double omega);
 
 // The first thing that happens to a body after the blow of its scene. On level ground it is known
 // without integration. On a slope the rolling motion is followed until it turns back, passes the
