@@ -36,18 +36,18 @@ BODY = """
   </worldbody>
 </mujoco>
 """
-STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS  # time, positions, velocities
+STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS  # state vector of time, positions and velocities
 
 
 class Motion(NamedTuple):
-    """One entry a step; the potential energy is 0 at the origin."""
+    """The motion step by step; the potential energy is 0 at the origin."""
 
     times: Any
     theta: Any
     omega: Any
     x: Any
     z: Any
-    energy: Any  # [J]
+    energy: Any  # total energy [J]
 
 
 def model(scene: Scene, dt: float, contact: str = "default") -> Any:
@@ -84,6 +84,6 @@ def motion(scene: Scene, t_end: float, dt: float, contact: str = "default") -> M
 
 
 def energy_gain(scene: Scene, found: Motion) -> float:
-    """Relative change of the energy above lying flat at rest, on level ground."""
+    """Energy change / start energy above lying flat at rest, on level ground."""
     above = found.energy - scene.mass * scene.gravity * min(scene.a, scene.b)
     return float(above[-1] / above[0] - 1)

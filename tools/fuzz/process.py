@@ -19,20 +19,20 @@ from typing import NamedTuple
 from unittest import mock
 
 PATIENT = 8  # wall-clock seconds allowed for a second of processor time on a busy machine
-MEMORY = 4 * 2**30  # of the process [bytes]
+MEMORY = 4 * 2**30  # memory limit of the process [bytes]
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-# Lines of a report of death that name its cause.
+# Lines of a crash report that name its cause.
 CAUSES = re.compile(
     r"ERROR: AddressSanitizer|runtime error|Fatal|terminate|what\(\)|#[123] |SUMMARY|Error:"
 )
 
 
 class Finding(NamedTuple):
-    """Something that must not happen."""
+    """A broken promise, with the lines that lead to it."""
 
     kind: str
     what: str
-    lines: tuple[str, ...]  # up to the line at fault
+    lines: tuple[str, ...]  # lines of the case up to the line at fault
 
 
 def work(pipe: Connection, folder: Path, seconds: float, limit_memory: bool) -> None:
@@ -118,7 +118,7 @@ class Process:
 
 
 def _gist(complaints: str) -> str:
-    """The lines of a report of death that name its cause, or its last lines."""
+    """The lines of a crash report that name its cause, or its last lines."""
     lines = [line.strip() for line in complaints.splitlines() if line.strip()]
     causes = [line for line in lines if CAUSES.search(line)]
     return " | ".join(causes[:8] or lines[-3:])[:1500]
