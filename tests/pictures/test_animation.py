@@ -150,7 +150,7 @@ def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
         assert left < points[:, 0].min() and points[:, 0].max() < right
         assert bottom < 0 and points[:, 1].max() < top
         width, height = animation.figure.get_size_inches()
-        assert (right - left) / width == pytest.approx((top - bottom) / height, rel=0.02)  # 2 pixels
+        assert (right - left) / width == pytest.approx((top - bottom) / height, rel=0.02)  # 2 px
         views.add((left, right))
     assert len(views) == (len(frames(animation)) if follows else 1)
 
