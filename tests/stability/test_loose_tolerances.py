@@ -57,8 +57,7 @@ def test_energy_is_kept_by_construction_or_not(scene: str, name: str) -> None:
     found = run(scene, name)
     if kind(name) in ("exact", "contact", "projection+energy"):
         off = np.abs(found.motion.energy / found.motion.energy[0] - 1)
-        # a rotation's theta is 100: its last digit is 64 ulp, and the height of the centre has
-        # slope 1
+        # a rotation's theta is 100: its last digit is 64 ulp, and the height has slope 1
         assert np.max(off) <= 8 * 2.0**-52 * max(1, np.abs(found.motion.theta).max())
     else:
         assert found.energy.max() > (1e-5 if kind(name) == "ggl" else 1e-4)

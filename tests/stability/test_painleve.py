@@ -80,9 +80,8 @@ def test_a_law_of_force_goes_on_with_nonsense_and_the_product_jams(scene: Scene)
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_it_jams_above_the_critical_friction_and_not_below(distance: float, mirrored: bool) -> None:
-    """N = g/B, however large, holds below the critical friction, where B is a part `distance` of
-    Gnn at the critical angle; the slip of 5 m/s ends in proportion to B. Nearer than 1e-12 B itself
-    is a few ulp."""
+    """N = g/B, however large, holds below the critical friction: B is a part `distance` of Gnn at
+    the critical angle, and the slip of 5 m/s ends in proportion to B. Nearer B is a few ulp."""
     exact = float(critical()[0])
     angle = float(critical()[1])
     start = {"theta": math.pi - angle, "x_dot": -5.0} if mirrored else {}

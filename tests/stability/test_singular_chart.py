@@ -28,11 +28,10 @@ def slope(values: list[float], first: int = 3) -> float:
 
 def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
     """1/sin(2 psi) and tan^2 theta give the distance to the power -3, with the lost terms; a circle
-    gives 1/(a - b), with a numerator that changes its sign near a/b = 1.003. The next
-    order is the distance itself: 1e-3 where the fits begin, and some 30 times the distance of the
-    circle. With all terms the quotient is zero over zero: its value exists, and its rounding grows
-    like 1/distance (an ulp of psi = pi/2 is 2.2e-16/10^-k of the distance, and tan^2 theta has it
-    twice)."""
+    gives 1/(a - b), with a numerator that changes its sign near a/b = 1.003. The next order is the
+    distance itself: 1e-3 where the fits begin, and some 30 times the distance of the circle. With
+    all terms the value is zero over zero, but exists; its rounding grows like 1/distance (an ulp of
+    psi = pi/2 is 2.2e-16/10^-k of the distance, and tan^2 theta has it twice)."""
     at_tip = [third(TIP + 10.0**-k, 2.0, 1.0).printed for k in CLOSE]
     of_circle = [third(0.7, 1 + 10.0**-k, 1.0).printed for k in CLOSE]
     limit = third(TIP + 1e-5, 2.0, 1.0).complete
@@ -50,8 +49,7 @@ def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
 
 
 def test_the_tangent_does_not_get_over_the_tip() -> None:
-    """The printed tan makes the system singular at a quarter turn: the motion stops with a
-    message."""
+    """The printed tan is singular at a quarter turn: the motion stops there with a message."""
     q, q_dot = start(0.0, 3.2)
     how: dict[str, Any] = SHAPE | {"equations": "printed", "method": "rk4", "step": 0.02}
     times = np.linspace(0, 12, 121)
