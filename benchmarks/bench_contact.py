@@ -205,7 +205,7 @@ class SciPyMotion:
             path = x + s * (x_dot + 0.5 * along * s), z + s * (z_dot - 0.5 * down * s)
             return [theta + omega * s, omega + 0 * s, *path, x_dot + along * s, z_dot - down * s]
 
-        fall = z - 0.99 * min(self.scene.a, self.scene.b)  # surely on the ground
+        fall = z - 0.99 * min(self.scene.a, self.scene.b)  # surely touching
         sure = (z_dot + math.sqrt(z_dot**2 + 2 * down * fall)) / down
         times = np.geomspace(1e-4 * sure, sure, 200)
         y = at(times)

@@ -102,7 +102,8 @@ CHECK = "rl.simulate(rl.scenes.drop, 2.0).theta.tobytes().hex()"
 
 def delay(call: Callable[[], Any], after: float) -> float:
     """Time from Ctrl-C, sent at a moment of a call, to the end of the call [s]."""
-    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # as SIGINT does
+    # the alarm calls Python's handler of SIGINT
+    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)
     begin = time.perf_counter()
     signal.setitimer(signal.ITIMER_REAL, after)
     try:
@@ -137,7 +138,8 @@ class Notebook:
 
     def delay(self, code: str, after: float) -> float:
         """Time from the button "Interrupt" to the reply [s]."""
-        asked = self.client.execute(code, stop_on_error=False)  # keep later requests
+        # otherwise Jupyter drops the next request
+        asked = self.client.execute(code, stop_on_error=False)
         self.wait(self.client.get_iopub_msg, asked, "execute_input")
         time.sleep(after)
         begin = time.perf_counter()

@@ -132,7 +132,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     print(libraries)
     for library, reason in missing.items():
         print(f"missing: {library}: {reason}")
-    stamp = {"peers": libraries, "commit": commit()}  # before files are written
+    # the commit is read before this script changes any file
+    stamp = {"peers": libraries, "commit": commit()}
     races = {}
     for name in chosen.scenes:
         for half_turns in chosen.half_turns:

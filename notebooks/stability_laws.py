@@ -57,7 +57,7 @@ def spread(first: int, last: int, count: int = 25) -> NDArray[np.intp]:
 def growth(errors: Floats) -> float:
     """Exponent of the rms change of evenly sampled errors over 1 to all intervals.
 
-    The mean goes over runs and over all intervals of a length.
+    The mean is taken over runs and over all intervals of one length.
     """
     from_start = np.concatenate([np.zeros((*errors.shape[:-1], 1)), errors], axis=-1)
     lags = spread(1, errors.shape[-1])
@@ -178,7 +178,7 @@ STEP = 1 / 16  # step [s] of powers of two: the times of all steps are doubles
 class Rhythm(NamedTuple):
     """A rocking motion for which a number of half swings takes a number of steps.
 
-    Samples after each of these meet the bounded truncation error at one phase, and knots.
+    Samples after each of these are at knots, and at one phase of the bounded truncation error.
     """
 
     half_swings: int
@@ -293,7 +293,7 @@ def own_separatrix(**how: Any) -> float:
         scene = Scene(A, B, omega=speed * (1 + middle))
         theta = rl.simulate(scene, times, **({"model": "rolling"} | how)).theta
         left = np.flatnonzero((theta > 2.0) | ((theta < 0.5) & (times > 2)))
-        if theta[left[0] if left.size else -1] > math.pi / 2:  # or lingers to the end
+        if theta[left[0] if left.size else -1] > math.pi / 2:  # the body lingers to the end
             high = middle
         else:
             low = middle
@@ -466,7 +466,8 @@ def law_of_force(y: ArrayLike, mu: float, step: float = 1e-3, t_end: float = 0.4
 
 # ---------------------------------------------------------------------- m. steps too large
 
-OMEGA = math.sqrt(GRAVITY * (A * A - B * B) / (B * (GYRATION2 + B * B)))  # of small rocking [1/s]
+# angular frequency of small rocking [1/s]
+OMEGA = math.sqrt(GRAVITY * (A * A - B * B) / (B * (GYRATION2 + B * B)))
 SMALL = Scene(A, B, omega=1e-6 * OMEGA)
 
 

@@ -15,7 +15,7 @@ r is the radius of curvature. The ground pushes with N and F per mass:
     x'' = F + g sin alpha,   z'' = N - g cos alpha,   k^2 omega' = -h F - o N                    (2)
 
 Slip v = x' - h omega, and without pressure the gap z - h would open with -c, where
-c = g cos alpha + (r - h) omega^2. Modes, each until what it names is no longer positive:
+c = g cos alpha + (r - h) omega^2. A mode ends when one of its last-named margins reaches zero:
 
     rolling   v = 0: (k^2 + h^2 + o^2) omega' = h g sin alpha - o (g cos alpha + r omega^2), N and
               F by (2); mu N - F, mu N + F; N, where mu is infinite
@@ -23,9 +23,9 @@ c = g cos alpha + (r - h) omega^2. Modes, each until what it names is no longer 
               Its limit for infinite mu: N = 0, F = k^2 c / (h o), where s o < 0; s v, c
     flight    N = F = 0; z - h
 
-What begins without slip rolls if that needs no more friction than there is; else it slips to the
+A start without slip rolls if that needs no more friction than there is; else it slips to the
 side on which B > 0 and friction lets the slip grow. It flies if c < 0. With slip and B < 0 < c no
-motion goes on: a jam. Without friction slip has no side, and no event where it changes its sign.
+motion exists: a jam. Without friction slip has no side, and no event where it changes its sign.
 
 An impact adds up impulses per mass along and away from the ground by Coulomb's law, in pieces on
 which v and u = z' - o omega change linearly; it ends when the work done since u = 0 is e^2 times
@@ -39,7 +39,7 @@ The first event of a step is the first root of polynomials, found without sampli
 coefficients that do not change sign exclude a root, one change means exactly one, and otherwise
 the interval is halved. Where s v or z - h starts at zero those zeros are divided out: one where
 slip or rebound begins with a speed or a jump of the force, two where rolling turns to slip or a
-gap opens at once, three where a slide lifts off. So short slips are not taken for none.
+gap opens at once, three where a slide lifts off. This resolves the shortest slips.
 """
 
 import math
@@ -614,11 +614,11 @@ class Follower:
 
 
 def follow(scene: Scene, end: Any, road: Road, most_events: int = 100) -> Followed:
-    """The motion up to a time, in the precision of its road."""
+    """The motion up to a time, in the precision that `road` gives."""
     return Follower(scene, road).follow(mpfr(end), most_events)
 
 
-# ---------------------------------------------------------------- in doubles, to draw scenes with
+# ---------------------------------------------------------------- doubles for drawing scenes
 
 
 def support(a: float, b: float, theta: float) -> tuple[float, float, float]:

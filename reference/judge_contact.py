@@ -60,7 +60,7 @@ from contact_motion import (
 from gmpy2 import mpfr
 from series import ROUNDING, Road, log_uniform
 
-# One road computes the units, the next one the values, the one after it checks the values.
+# Precisions: one road computes the units, the next one the values, the third checks the values.
 ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
 CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
 CHECKED = 20  # the values of every 20th scene are checked by a third road

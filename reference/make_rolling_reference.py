@@ -12,7 +12,7 @@ the ground, k^2 = I/m independent of a and b:
     h = sqrt(a^2 sin^2 theta + b^2 cos^2 theta),  h' = dh/dtheta,  rho = a^2 b^2 / h^3
     E = D omega^2 / 2 + g h  conserved,  x = integral of h dtheta, 0 at the start               (2)
 
-First road (the table): the energy integral t = int sqrt(D / (2 (E - g h))) dtheta in 80 digits and
+Method 1 (the table): the energy integral t = int sqrt(D / (2 (E - g h))) dtheta in 80 digits and
 its inversion after whole half turns or half swings are taken out. Libration is written in u,
 sin phi = kappa sin u, phi counted from the flat position, so that turning points are ordinary
 points. The quadrature is Gauss-Legendre on panels that grow geometrically away from the two places
@@ -20,7 +20,7 @@ where the integrand has nearby complex singularities, the flat (thin ellipses) a
 separatrix). Every state in the table was computed twice, with different panels, node counts and
 working precision, and has to agree to `AGREEMENT`; the worst relative difference was 2.3e-58.
 
-Second road: Taylor series of another form of the equation, with no use of the energy, on up to four
+Method 2: Taylor series of another form of the equation, with no use of the energy, on up to four
 scenes of every kind that a few hundred steps can cross (`make_slope_reference.py --level`): all
 theta, omega and x of 75 scenes of 20 of the 22 kinds were equal within 1.9e-38 (a fast spin and 1e9
 half turns take too many steps).
@@ -29,7 +29,7 @@ Units. The effect of one rounding of every input on the answer y, plus two ulp o
 
     unit_y = 2.2e-16 (sum over p in (a, b, k^2, g, omega0) of |dy/dp| |p| + |dy/dtheta0|) + 2 ulp(y)
 
-by central differences of the first road. For one scene of each of 19 kinds, central differences of
+by central differences of method 1. For one scene of each of 19 kinds, central differences of
 a Taylor series agreed within 5e-7. Where unit_theta would exceed 1e-4 the time is cut: there the
 inputs do not fix the answer.
 """
@@ -73,7 +73,7 @@ class State(NamedTuple):
     x: Any
 
 
-# ---------------------------------------------------------------- first road: the energy integral
+# ---------------------------------------------------------------- the energy integral
 
 
 class Rule(NamedTuple):

@@ -101,7 +101,7 @@ def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
     repaired = the_one(folder, "*.whl")
     with zipfile.ZipFile(repaired) as archive:
         files = {each.filename for each in archive.infolist() if not each.is_dir()}
-    files = {name for name in files if not name.startswith("rolling_ellipse-")}  # not pip's files
+    files = {name for name in files if not name.startswith("rolling_ellipse-")}  # files of pip
     core = {name for name in files if Path(name).match("rolling_ellipse/_core.*.so")}
     known = {name.removeprefix("python/") for name in files_of_git() if name.startswith(PACKAGE)}
     require_same(repaired.name, files - core, known)

@@ -23,7 +23,8 @@ def available() -> tuple[list[Any], dict[str, str]]:
     found, missing = [], {}
     for module, library in MODULES.items():
         try:
-            with warnings.catch_warnings(action="ignore"):  # at import
+            # libraries warn about themselves while they load
+            with warnings.catch_warnings(action="ignore"):
                 found += importlib.import_module(f".{module}", __name__).peers()
         except ModuleNotFoundError as error:
             missing[library] = f"{error.name} is not installed"

@@ -39,7 +39,7 @@ def library() -> ctypes.CDLL:
     compiler = os.environ.get("CXX") or shutil.which("g++")
     if compiler is None:
         raise OSError("there is no g++")
-    target = output(compiler, *FLAGS, "-Q", "--help=target")  # for -march=native
+    target = output(compiler, *FLAGS, "-Q", "--help=target")  # resolves "native"
     text = SOURCE.read_text(encoding="utf-8") + output(compiler, "--version") + target
     key = hashlib.sha256((text + platform.machine()).encode()).hexdigest()[:16]
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rolling_ellipse"

@@ -171,7 +171,7 @@ def test_of_several_motions_each_has_a_row(jump: rl.Trajectory) -> None:
     assert legend_of(upper)[3:] == ["normal", "friction", "sliding", "flight"]
     rows = [[box[2:] for box in boxes_of(shade)] for shade in shades_of(shown.marks)]
     first, third = rows[0][0], rows[2][0]
-    assert rows == [[first], [first], [third]] * 2  # one row per motion
+    assert rows == [[first], [first], [third]] * 2  # a row for each motion
     assert 1 >= first[1] > first[0] > third[1] > third[0] > 0.8  # a gap for the second row
     assert first[0] - third[1] > third[1] - third[0]
     assert event_names(upper) == event_names(lower) == []

@@ -96,7 +96,7 @@ def test_films_follow_the_style() -> None:
         assert all(contrast(colour, paper) > 3 for colour in drawn), style
 
 
-# ---------------------------------------------------------------------------- what users may give
+# ---------------------------------------------------------------------------- arguments of users
 
 
 DRAWN = (

@@ -1,8 +1,8 @@
 """`certify` against brute force on ten thousand random scenes.
 
-The oracle (oracles/rolling.py) knows Newton's law, the energy and dense samples in long double,
-refined to 1e-16; the package proves signs of polynomials. Every error bound is what the oracle says
-double arithmetic may lose: 1e-12 of the terms, and what a few ulp of the energy do to them.
+The oracle (oracles/rolling.py) uses Newton's law, the energy and dense samples in long double,
+refined to 1e-16; the package proves signs of polynomials. Every error bound is the oracle's
+allowance for double arithmetic: 1e-12 of the terms, and the effect of a few ulp of the energy.
 """
 
 import math

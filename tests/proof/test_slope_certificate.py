@@ -1,7 +1,7 @@
 """The certificate on slopes, judged by dense scans along the angle and by its own extremes.
 
-A scan takes W = D omega^2/2 from the energy, half a turn after the other, with h integrated by
-Gauss-Legendre quadrature between its places: it shares no formula with the series of the package.
+A scan takes W = D omega^2/2 from the energy, one half turn after another, with h integrated by
+Gauss-Legendre quadrature between its angles: it shares no formula with the package's series.
 """
 
 import math
@@ -203,8 +203,7 @@ def test_a_swing_has_extremes_and_all_else_none() -> None:
 
 @pytest.mark.parametrize("friction", [0.3, 0.8, math.inf])
 def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
-    """The contact motion stops rolling at the certified angle; forced rolling is invalid from it
-    on.
+    """The contact motion stops rolling at the certified angle, and forced rolling is invalid then.
 
     Both follow the same exact motion up to a rounded time, and so to a rounded angle.
     """

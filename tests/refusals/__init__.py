@@ -1,8 +1,8 @@
 """Refusals: every wrong call of the package, in one table per module.
 
-**The next refusal goes into the table of its room**: a row is the name of the argument with which
-the message has to begin, and the call; `wrong` makes rows of one call with many wrong values. Where
-no argument is wrong (a package is missing), the row has the class of the exception instead.
+**A new refusal goes into the table of its module**: a row is the name of the argument with which
+the message must begin, and the call; `wrong` makes rows of one call with many wrong values. If no
+argument is wrong (a package is missing), the row has the class of the exception instead.
 `test_messages.py` makes the calls, checks the grammar of the messages, and compares the lines that
 raise with the sources; `test_numbers.py` has the rules that all numbers share.
 """

@@ -19,7 +19,7 @@ from oracles.report import BODY, SHAPE, Array
 from rolling_ellipse import report
 
 UNEVEN: dict[str, Any] = {"a": 2.0, "b": 0.7, "mass": 3.0, "gravity": 9.81}
-ANGLE = 0.7  # where the errata are evaluated
+ANGLE = 0.7  # angle at which the errata are evaluated [rad]
 
 
 class Exact:

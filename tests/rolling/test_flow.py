@@ -1,8 +1,8 @@
 """`flow` and `period` beyond the table of test_flow_reference.py: limits, shapes, arrays.
 
 The oracle is the energy integral in 40 digits of reference/make_rolling_reference.py, which shares
-nothing with the package. A unit is what one rounding of every input does to an answer, plus two
-units in its last place; LARGEST_ERROR of them is what test_flow_reference.py allows, too.
+nothing with the package. A unit is the effect of one rounding of every input on an answer, plus two
+ulp of the answer; test_flow_reference.py allows LARGEST_ERROR units, too.
 """
 
 import math

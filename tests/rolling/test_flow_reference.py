@@ -1,8 +1,8 @@
 """`flow` against exact rolling in 40 digits (reference/make_rolling_reference.py).
 
-The unit of every row is what one rounding of each input does to the answer, plus two units in the
-last place of the answer itself. A row asks for relative accuracy: a state reached in a microsecond
-from rest has a tiny omega and x, and their units are tiny too.
+The unit of every row is the effect of one rounding of each input on the answer, plus two ulp of
+the answer itself. A row demands relative accuracy: a state reached in a microsecond from rest has a
+tiny omega and x, and their units are tiny too.
 """
 
 import math
@@ -103,7 +103,7 @@ def test_flow_is_within_a_few_units(
 def test_a_few_ulp_of_an_input_are_seen(rows: list[Row], name: str) -> None:
     """A change of any single input by 16 ulp is noticed: the judge is sharp.
 
-    k^2 moves the motion least, its share of a unit is a fifth at best: 48 ulp there. Far start
+    k^2 changes the motion least, its share of a unit is a fifth at best: 48 ulp are needed. Far start
     angles are left out: their ulp is no small change.
     """
     ulps = 48 if name == "gyration2" else 16

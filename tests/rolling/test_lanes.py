@@ -1,6 +1,6 @@
 """`flow` of many scenes in the lanes of a vector has the bits of one scene at a time.
 
-What one scene is worth, test_flow_reference.py says in 40 digits.
+test_flow_reference.py judges the answers of one scene in 40 digits.
 """
 
 import math

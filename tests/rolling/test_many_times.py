@@ -1,7 +1,7 @@
 """`flow` at many times of one motion: answers of a table, for any order and number of times.
 
-Bits may depend on whether there are enough times for a table (40), and on nothing else: what
-test_flow_reference.py asks of 151 times in 40 digits then holds for any number of them.
+Bits may only depend on whether the times are enough for a table (40): the result of
+test_flow_reference.py for 151 times in 40 digits then holds for any number of them.
 """
 
 import math

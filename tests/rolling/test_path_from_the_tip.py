@@ -1,7 +1,7 @@
 """The path of the centre in motions that begin nearly at rest on the tip or beside it.
 
-Rolling, the centre moves by the integral of h dtheta. So x follows from the two angles alone, here
-by Legendre's elliptic integral in 30 digits, whatever the motion between them.
+The centre of a rolling body moves by the integral of h dtheta. So x follows from the two angles
+alone, here by Legendre's elliptic integral in 30 digits, for any motion between them.
 """
 
 import math

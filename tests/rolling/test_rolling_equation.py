@@ -1,6 +1,6 @@
 """The equation of rolling that the integrators solve, level and on a slope.
 
-Judged by Lagrange's equation with the kinetic energy D theta'^2/2 and the potential energy
+The judge is Lagrange's equation with the kinetic energy D theta'^2/2 and the potential energy
 V = g (h cos alpha - x sin alpha), x' = h, whose derivatives are numerical, in 40 digits:
     D theta'' + D' theta'^2/2 + V' = 0.
 """

@@ -165,8 +165,8 @@ def test_a_circle_rests_on_no_slope(slope: float) -> None:
 def assert_keeps_energy(found: rl.Trajectory) -> None:
     """Assert that E/m = D omega^2/2 + g (h cos(slope) - x sin(slope)) is constant, for b = 1.
 
-    Each of its terms has a few roundings, 16 in all; x and theta move h by theirs over the
-    radius of the tip, which a thin body has 1/ratio times in its length, and squared as h''.
+    Each term has a few roundings, 16 in all; roundings of x and theta change h by their size over
+    the radius of the tip, 1/ratio times the length of a thin body, and squared as h''.
     """
     axes = {"a": found.scene.a, "b": 1.0}
     size = found.kinetic_energy + np.abs(found.energy - found.kinetic_energy)

@@ -1,8 +1,8 @@
 """Rolling on a slope against 30 digits (reference/make_slope_reference.py).
 
-Every scene has three times and a unit for each value: what a relative change of 2.2e-16 of every
-input does to it. A method is judged by errors in these units, that is by the smallest change of
-the inputs that would explain its answer.
+Every scene has three times and a unit for each value: what a relative change of 2.2e-16 of each
+input does to the value. A method is judged by errors in these units: by the smallest change of the
+inputs that would explain its answer.
 """
 
 import math
@@ -18,7 +18,8 @@ from oracles import table
 from oracles.geometry import support
 
 PARAMETERS = {"a": "a", "b": "b", "mass": "mass", "inertia": "inertia", "gravity": "gravity"}
-PARAMETERS |= {"slope": "slope", "theta": "theta0", "omega": "omega0"}  # of Scene: of table
+# argument of Scene: column of the table
+PARAMETERS |= {"slope": "slope", "theta": "theta0", "omega": "omega0"}
 ANSWERS = ("theta", "omega", "x", "normal", "friction")
 ROUNDING = 2.2e-16  # change of the inputs in the definition of the units
 
@@ -73,7 +74,7 @@ MOTIONS = read_table()
 each_motion = pytest.mark.parametrize("motion", MOTIONS, ids=[one.name for one in MOTIONS])
 
 
-# ------------------------------------------------------------------------ what is compared
+# ------------------------------------------------------------------------ errors in units
 
 
 def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
@@ -83,7 +84,8 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
     shortly after a start at rest, where the inputs hardly matter to x.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rl.ValidityWarning)  # N may be < 0 on the way
+        # N may become negative during the motion
+        warnings.simplefilter("ignore", rl.ValidityWarning)
         found = rl.simulate(
             rl.Scene(**motion.parameters), motion.times, model="rolling", **settings
         )
@@ -93,7 +95,8 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
         [abs(table.difference(v, e)) for v, e in zip(*pair, strict=True)]
         for pair in zip(values, motion.answers, strict=True)
     ]
-    units = motion.units + np.spacing(np.abs(motion.values))  # and an ulp
+    # an ulp is added, since the nearest double is half an ulp off
+    units = motion.units + np.spacing(np.abs(motion.values))
     units[:, 2] += motion.longer * motion.units[:, 0]
     return np.array(differences) / units
 
@@ -101,7 +104,7 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
 def reach_of_series(motion: Motion) -> float:
     """Time R in which the fastest turning passes the nearest complex singularity [s].
 
-    In theta that lies where k^2 + h^2 + h'^2 = 0 beside a flat side; the energy bounds omega. A
+    The singularity in theta is at k^2 + h^2 + h'^2 = 0 beside a flat side; energy bounds omega. A
     step far below R resolves everything, even the flat side of a thin ellipse that flicks over it.
     """
     a, b, mass, inertia, gravity, slope, theta, omega = motion.parameters.values()
@@ -142,7 +145,7 @@ def test_table_keeps_the_energy_and_newtons_law(motion: Motion) -> None:
 
     They are rounded at 5e-30, an angle of 60 rad at 3e-28, and h'' of a thin ellipse changes a
     hundred times faster than an angle near its flat side, relatively: 1e-23 of the terms that are
-    added is above all that (found: 1.5e-27).
+    added is above all these errors (found: 1.5e-27).
     """
     with mpmath.workdps(50):
         a, b, mass, inertia, g, slope, theta0, omega0 = map(mpmath.mpf, motion.parameters.values())
@@ -191,9 +194,9 @@ def dop853_errors(motion: Motion) -> NDArray[np.float64]:
 def test_dop853_keeps_its_tolerance(motion: Motion) -> None:
     """dop853 errs by eight tolerances at most.
 
-    An unlucky method could collect one in each of up to 4400 steps. The controller keeps the
+    An unlucky method could add one tolerance in each of up to 4400 steps. The controller keeps the
     estimate at 0.9^8 = 0.4 of the tolerance, and the true local error is of a higher order than
-    the estimate: what collects was 1.6 tolerances at most, 0.04 in the median.
+    the estimate: the sum was 1.6 tolerances at most, 0.04 in the median.
     """
     assert dop853_errors(motion).max() < 8
 
@@ -203,7 +206,7 @@ def test_gauss_is_right_to_rounding(motion: Motion) -> None:
     """Gauss's method with steps of R/16 errs by 32 units at most.
 
     The error of a step is (4!)^4 / (9 (8!)^3) h^9 y^(9), with y^(9) = 9!/R^9 at most 2e-4 (h/R)^9
-    or 3e-15, near the singularity only: a few units. Rounding makes the rest, most where the flat
+    or 3e-15, near the singularity only: a few units. Rounding adds the rest, most where the flat
     side of a thin ellipse makes omega grow and shrink tenfold, and with it the relative error.
     Found: 15 at most, 0.7 in the median.
     """
@@ -216,7 +219,7 @@ def test_radau_errs_as_its_order_says() -> None:
 
     The error of a step is h^6 y^(6) / 7200, with y^(6) = 6!/r^6 at distance r of the singularity.
     Over all steps of a passage, where r^2 = R^2 + t^2, that sums up to 0.1 (h/R)^5 3 pi/8. The
-    singularity is a branch point, weaker than the pole that this takes it for: a thousandth was
+    singularity is a branch point, weaker than the pole assumed here: a thousandth of the sum was
     found at most. Scenes that take more than 20,000 such steps are left to Gauss's method.
     """
     checked = 0
@@ -233,8 +236,8 @@ def test_radau_errs_as_its_order_says() -> None:
 def test_a_small_change_of_an_input_is_seen(name: str) -> None:
     """A change of any single input by a millionth is noticed in every scene: the judge is sharp.
 
-    Eight tolerances are 8e-13 |theta| of all inputs together, and one alone has its share only: a
-    slope of a few milliradians hardly matters to a fast spin, and a millionth of it is 14 of them.
+    Eight tolerances are 8e-13 |theta| of all inputs together, and one input has only a share: a
+    slope of a few milliradians hardly matters to a fast spin: a millionth of it is 14 tolerances.
     """
     changed = 0
     for motion in MOTIONS:

@@ -1,7 +1,7 @@
 """Rocking in the well of a slope, from 1e-12 rad up to its rim and over up to 1e9 swings.
 
 The table (reference/make_well_reference.py) has the period, and the state at one time, of each
-scene, with a unit for each: what a relative change of 2.2e-16 of every input does to it.
+scene, with a unit for each number: its change by a relative change of 2.2e-16 of every input.
 """
 
 import math
@@ -35,7 +35,7 @@ class Equilibrium(NamedTuple):
 def equilibria(scene: rl.Scene) -> tuple[Equilibrium, Equilibrium]:
     """The stable equilibrium and the unstable one downhill of it, by the eccentric angle phi.
 
-    (3) of reference/make_slope_reference.py: sin 2 phi = 2 a b tan(slope)/c^2, and about it
+    By (3) of reference/make_slope_reference.py sin 2 phi = 2 a b tan(slope)/c^2, and about it
     J rate^2 = g w c^2 cos 2 phi cos(slope)/(a b).
     """
     long, short = max(scene.a, scene.b), min(scene.a, scene.b)
@@ -81,12 +81,13 @@ def test_rocking_is_right_to_a_few_roundings(row: dict[str, str]) -> None:
     """Rocking errs by eight units and two ulp of each answer.
 
     A half swing is a few series, each with a few roundings of its own in the time, the angle and
-    omega; the phase after any number of swings has those of the period. Found: 0.8 at most; with
-    gravity as a difference of two terms a third of the scenes was off by more than 8, up to 3e7.
+    omega; the phase after any number of swings has the period's roundings. Found: 0.8 at most; with
+    gravity as a difference of two terms a third of the scenes erred by more than 8, up to 3e7.
     """
     scene, t = scene_of(row), float(row["t"])
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rl.ValidityWarning)  # N may be < 0 on the way
+        # N may become negative during the motion
+        warnings.simplefilter("ignore", rl.ValidityWarning)
         state = rl.simulate(scene, [t], model="rolling")
     found = (rl.period(scene), state.theta[0], state.omega[0], state.x[0])
     for name, value in zip(ANSWERS, found, strict=True):
@@ -106,11 +107,11 @@ def test_next_to_the_rim_a_motion_comes_back_to_its_start(
 ) -> None:
     """A start that moves to the rim or away from it swings like a rest somewhat further in.
 
-    There the distance is d cosh(rate t) + share d sinh(rate t), whose least value is
-    d (1 - share^2)^(1/2); what is left out is its square, and theta is known to an ulp: so far the
-    period, 2 log(1/d)/rate and a constant, may differ. After it the body is where it was, but for
-    an ulp and for the rounding of the period. Crossing the well by series and coming back gave
-    periods that were 16 % off, and bodies that rolled out.
+    The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the least value
+    d (1 - share^2)^(1/2), up to its square and an ulp of theta: so far the period, 2 log(1/d)/rate
+    and a constant, may differ. After a period the body is at its start, up to an ulp and to the
+    rounding of the period. Crossing the well by series and coming back gave periods with errors of
+    16 %, and bodies that rolled out.
     """
     (lying, _), (upright, rate) = equilibria(scene)
     inside = math.copysign(distance, lying - upright)

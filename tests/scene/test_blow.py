@@ -1,6 +1,7 @@
 """The state just after an applied impulse, against the collision law followed along its path.
 
-It is that of `test_collision.py`, up to the end of the approach: what is applied does not bounce.
+The law is that of `test_collision.py`, up to the end of the approach: an applied impulse has no
+restitution.
 """
 
 import itertools
@@ -183,7 +184,7 @@ def test_unlimited_friction_takes_a_given_slip_at_once() -> None:
 def test_a_press_that_pulls_is_said_so() -> None:
     with pytest.warns(ValidityWarning, match=r"^F = -48\.0 N s pulls"):
         assert Impulse.press(-48.0, 1.5) == Impulse(0.0, 48.0, dx=1.5)
-    assert Impulse.press(0.0, 1.5).jz == Impulse.press(48.0, -1.5).dz == 0  # no warning
+    assert Impulse.press(0.0, 1.5).jz == Impulse.press(48.0, -1.5).dz == 0  # without a warning
 
 
 # shares of the farthest arm: 1 must meet the body despite roundings, 1 + 1e-6 must miss it

@@ -1,7 +1,7 @@
 """Baumgarte's feedback f'' + 2 alpha f' + beta^2 f = 0 (J. Baumgarte, Comput. Methods Appl. Mech.
 Eng. 1 (1972) 1): its effect, its cost, and the gains at which a step makes it unstable.
 
-A step of an explicit method makes R(h s) of what goes like e^(s t), so that the gains have a limit:
+A step of an explicit method multiplies an error e^(s t) by R(h s), so that the gains have a limit:
 for alpha = beta, f1 has the root -2 alpha, and 2 alpha h may reach the end of the real stability
 interval.
 """
@@ -100,7 +100,7 @@ def test_the_package_knows_the_stability_function() -> None:
         assert _core.feedback_growth(without.core) == 0.0
 
 
-# ------------------------------------------------------------------------------- its limit
+# ------------------------------------------------------------------------------- the limit of gains
 
 LIMITS = {"rk4": 2.785293563405282, "dopri5": 3.3065678926, "dop853": 6.3936515228}
 
@@ -136,7 +136,7 @@ def test_gains_have_a_limit(method: str, mix: tuple[float, float]) -> None:
     assert below < 1e-2 and above > 1.0
 
 
-# ----------------------------------------------------------------------------- its answer
+# ----------------------------------------------------------------------------- warnings of gains
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
@@ -173,7 +173,7 @@ def test_controlled_steps_find_the_limit_themselves() -> None:
     assert worst_residual(found) < 1e-6
 
 
-# ----------------------------------------------------------------------------- its price
+# ----------------------------------------------------------------------------- the price of gains
 
 
 def test_small_gains_hold_like_their_square_and_large_ones_spoil_the_phase() -> None:

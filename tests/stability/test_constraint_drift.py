@@ -35,7 +35,7 @@ def test_drift_grows_like_t_squared(scene: Scene, method: str, step: float, last
     assert abs(gap - 2) <= 0.05 and abs(position - 2) <= 0.05 and abs(velocity - 1) <= 0.05
 
 
-# ------------------------------------------------------------------- and what holds them
+# ------------------------------------------------------------------- methods that hold them
 
 HELD: dict[str, dict[str, Any]] = {
     "projection": kept_by("projection", method="rk4", step=2.0**-8),

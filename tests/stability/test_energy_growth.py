@@ -5,8 +5,8 @@ collocation neither drifts nor, with compensated sums and stages solved to the l
 its roundings: they walk at random, the energy as time^0.5, the phase as time^1.5 (E. Hairer,
 R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231).
 
-The motion rocks, so that theta stays small and doubles hold the energy to its last digits; of a
-rotation, whose theta grows, they do so only where the ellipse lies flat.
+The motion rocks, so that theta stays small and doubles hold the energy to its last digits. For a
+rotation, whose theta grows, they hold it only where the ellipse lies flat.
 """
 
 import math
@@ -45,7 +45,7 @@ def walks() -> Errors:
     return errors(QUICK, SAMPLES, gauss_runs(RUNS))
 
 
-# ------------------------------------------------------------------------ the ruler itself
+# ------------------------------------------------------------------------ the measurement itself
 
 
 @pytest.mark.parametrize(("drift", "expected"), [(0.0, 0.5), (1.0, 1.0)])
@@ -68,7 +68,7 @@ def test_energy_error_is_measured() -> None:
         assert energy_error(theta, omega, omega) == pytest.approx(other / lying - 1, abs=16 * EPS)
 
 
-# ------------------------------------------------------------------- what drifts, drifts
+# ------------------------------------------------------------------- methods that drift
 
 
 @pytest.mark.parametrize("name", DRIFTING)
@@ -131,8 +131,8 @@ def test_energy_of_gauss_walks() -> None:
 def test_phase_of_gauss_walks() -> None:
     """Delays are compared with their mean over all runs: truncation, which changes the period.
 
-    From 100 half swings on, where the walk of the energy rules that of the phase. In made walks the
-    exponent scatters by 0.1.
+    The fit begins at 100 half swings, where the walk of the energy dominates the phase. In made
+    walks the exponent scatters by 0.1.
     """
     late = spread(10, SAMPLES) - 1
     half_swings, delay = walks().half_swings[late], walks().delay[:, late]

@@ -1,8 +1,8 @@
 """Friction a hair above or below the need of rolling: the grip holds, or is lost for an instant.
 
-The need has a smooth maximum on the way up: with friction short by 10^-k it exceeds what there is
-for 10^(-k/2) of the way. What looks at samples, or at the ends of steps, does not see it from some
-k on; the certificate decides signs of polynomials and has nothing to miss.
+The need has a smooth maximum on the way up: it exceeds a friction that is short by 10^-k on
+10^(-k/2) of the path. Samples, or the ends of steps, do not show this from some k on; the
+certificate decides signs of polynomials and misses nothing.
 """
 
 import math
@@ -51,7 +51,7 @@ def friction(k: int, side: int) -> float:
         return float(need()[0] * (1 + side * mp.mpf(10) ** -k))
 
 
-# ------------------------------------------------------------------------- by samples
+# ------------------------------------------------------------------------- search by samples
 
 
 def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
@@ -67,7 +67,7 @@ def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
     assert abs(slope + 2) <= 0.05
 
 
-# ------------------------------------------------------------------------- by signs
+# ------------------------------------------------------------------------- search by signs
 
 
 @pytest.mark.parametrize("side", [1, -1])

@@ -1,7 +1,7 @@
 """Phase errors of methods from one half turn to 1e9.
 
-An error of the energy that grows like t costs the phase t^2; one that is kept costs it t; drifting
-constraints cost t^3. Whatever the law, a stepped motion takes as many steps as there is motion.
+An energy error that grows like t gives a phase error like t^2; a constant one gives t; drifting
+constraints give t^3. The number of steps of a stepped motion grows with its length in any case.
 """
 
 from typing import Any

@@ -1,8 +1,8 @@
 """Motions with a tolerance of 1e-2, as in the report: some leave their constraints, some keep them,
 some keep their energy.
 
-A tolerance bounds what a step loses, not what is kept: only what is kept by construction is kept
-whatever the tolerance.
+A tolerance bounds the error of a step, not of the motion: only a quantity that is kept by
+construction is kept at any tolerance.
 """
 
 from functools import cache

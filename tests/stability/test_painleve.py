@@ -1,7 +1,7 @@
 """Painleve's paradox: friction that presses the body into the ground faster than N pushes it out.
 
-While sliding N = c/B, B = Gnn - mu s Gnt. Beyond the critical friction B <= 0 somewhere: a law of
-force then gives an N that pulls, or is infinite, and goes on with it. The product ends there with a
+A slide has N = c/B, B = Gnn - mu s Gnt. Beyond the critical friction B <= 0 somewhere: a law of
+force then continues with an N that pulls or is infinite. The package ends the motion there, with a
 status whose sentence says why.
 """
 

@@ -1,8 +1,8 @@
 """Beside the separatrix a motion is decided by less than any error: methods roll over or return.
 
-omega = omega_R (1 +- 10^-k) from flat. The body lingers at the tip for ln(1/distance)/lambda; any
-error of the energy on the way there moves the speed at which a method thinks that it rolls over, so
-that each has a separatrix of its own, and is wrong for all throws between it and the true one.
+The body starts flat with omega = omega_R (1 +- 10^-k) and lingers at the tip for
+ln(1/distance)/lambda. An error of the energy on the way there shifts the separatrix of a method,
+and the method is wrong for all throws between its own separatrix and the true one.
 """
 
 import math
@@ -44,7 +44,7 @@ def test_these_decide_right_down_to_1e_minus_14(how: dict[str, Any], side: int) 
     assert first_wrong(side, **how) is None
 
 
-# ------------------------------------------------------------------------- the stepped ones
+# ------------------------------------------------------------------------- stepped motions
 
 
 @pytest.mark.parametrize("name", FAIL)

@@ -1,8 +1,8 @@
 """Places where the report's formulas divide by zero although the motion is regular.
 
-Its lambda3 (eq 39) divides by sin(2 psi) (a^2 - b^2), its fourth row has tan theta: infinite at
-every quarter turn, and for a circle everywhere. The linear system of the multipliers, the rows with
-cos^2 theta and the support function are regular there.
+The report's lambda3 (eq 39) divides by sin(2 psi) (a^2 - b^2), its fourth row has tan theta: both
+are infinite at every quarter turn, lambda3 of a circle everywhere. The linear system of the
+multipliers, the rows with cos^2 theta and the support function are regular there.
 """
 
 import math
@@ -23,7 +23,7 @@ def slope(values: list[float], first: int = 3) -> float:
     return exponent([10.0**-k for k in CLOSE if k >= first], values[first - CLOSE[0] :])
 
 
-# ------------------------------------------------------------------------- as printed
+# ------------------------------------------------------------------------- the printed formulas
 
 
 def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:

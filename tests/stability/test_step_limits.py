@@ -30,7 +30,7 @@ from stability_laws import (
     run,
 )
 
-# --------------------------------------------------------------------- what a step makes
+# --------------------------------------------------------------------- growth in a step
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
@@ -78,7 +78,7 @@ def test_dopri5_grows_by_little_for_long() -> None:
         assert by_a_hundredth[method] < 1.005 * LIMITS[method]
 
 
-# ---------------------------------------------------------------------- what has no limit
+# ---------------------------------------------------------------------- methods without a limit
 
 
 def test_radau_has_no_limit() -> None:
@@ -129,7 +129,7 @@ def test_the_energy_alone_bounds_the_steps_of_the_multipliers(name: str) -> None
         assert amplitude(y=beyond - 0.25, steps=300, **how)[-1] <= 1 + 1e-4
 
 
-# ---------------------------------------------------------------------------- its answer
+# ---------------------------------------------------------------------------- losses of the energy
 
 
 def lost(scene: Scene, found: Trajectory) -> tuple[float, float]:

@@ -1,8 +1,8 @@
 """More work beyond rounding makes no answer better: its errors stay there, or rise again.
 
-Sums that drop what they round make the error of a step method walk: n = T/h steps of independent
-roundings are worth sqrt n, so that it falls like h^p and then rises like h^(-1/2). With compensated
-sums, as all steps of this package have, it falls and stays.
+Plain sums lose their roundings, and the error of a step method walks at random: n = T/h steps add
+sqrt n roundings, so that the error falls like h^p and then rises like h^(-1/2). With compensated
+sums, as in all steps of this package, the error falls and stays.
 """
 
 import math
@@ -63,7 +63,7 @@ def test_plain_steps_get_worse_with_more_of_them() -> None:
     assert errors[-1] > 4 * errors[best]
 
 
-# ------------------------------------------------------------------ compensated ones stay
+# ------------------------------------------------------------------ compensated sums
 
 ORDERS = {"rk4": 4, "dopri5": 5, "radau": 5, "dop853": 8, "gauss": 8}
 COARSE = {"rk4": (4, 10), "dopri5": (5, 9), "radau": (4, 8), "dop853": (2, 4), "gauss": (2, 4)}

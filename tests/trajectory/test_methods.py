@@ -1,6 +1,6 @@
 """The methods bound to a motion from other modules behave as if written in its class.
 
-What they do is tested where they are; here it is that they are there, for people and for programs.
+Tests of their modules check their results; these check their presence for people and programs.
 """
 
 import ast

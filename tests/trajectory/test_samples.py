@@ -1,7 +1,7 @@
 """The samples of a Trajectory: every array by its definition, and the residuals of a million.
 
-Forces come from Newton's law, the geometry once more in long double. Multipliers are those of the
-linear system, which tests/multipliers puts to the test.
+The tests compute forces by Newton's law and the geometry in long double. tests/multipliers judges
+the multipliers.
 """
 
 import dataclasses
@@ -200,8 +200,8 @@ LONG_RUNS = {
 def test_residuals_of_a_million_samples(scene: Scene, t_end: float) -> None:
     """Residuals do not grow: 1e-14 of the size, and 2 ulp of theta times h' of the ground.
 
-    Velocities: that times omega; the rates of f2, f3 and f4 are differences of terms in psi_dot.
-    Energy: 16 ulp, and what 2 ulp of theta are.
+    Velocities: the same times omega; the rates of f2, f3 and f4 are differences of terms in
+    psi_dot. Energy: 16 ulp, and the effect of 2 ulp of theta.
     """
     trajectory = simulate(scene, np.linspace(0, t_end, 1_000_000))
     if t_end > 1e5:

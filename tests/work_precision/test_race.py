@@ -1,6 +1,6 @@
 """Runs of `work_precision`: contenders, measurements, refusals, runs that are left out.
 
-No test looks at how long something took: only at who was timed, and at errors that are known.
+No test depends on measured durations: only on the choice of timed runs, and on known errors.
 """
 
 import math
@@ -144,7 +144,7 @@ def test_a_peer_that_gives_the_end_alone_has_no_other_errors() -> None:
     assert all(math.isnan(errors[name]) for name in others)
 
 
-# -------------------------------------------------------------------------------- who runs
+# -------------------------------------------------------------------------------- runs of a race
 
 
 def test_every_rung_of_every_ladder_is_a_run() -> None:
@@ -389,13 +389,13 @@ def test_the_dearest_take_part_in_fewer_rounds(clock: Clock) -> None:
     begin = clock.now
     found = raced(*peers, methods=[], tolerances=[1e-3], max_seconds=12.0, rounds=10)
     told(calls)
-    cheap, dear, dearest = (count - 2 for count in calls.values())  # without two judged calls
+    cheap, dear, dearest = (count - 2 for count in calls.values())  # two calls were for judging
     assert cheap == 10 > dear > dearest > 1
     assert 11.0 < clock.now - begin <= 12.0 + 1e-3
     assert found.machine["rounds"] == "10"
 
 
-# ------------------------------------------------------------------------------ what is judged
+# ------------------------------------------------------------------------------ judged times
 
 
 def test_an_end_known_before_does_not_win() -> None:
