@@ -120,7 +120,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     options.add_argument(
         "--seconds", type=float, help="for each scene and span; 300, or 50 if quick"
     )
-    options.add_argument("--save", type=Path, help="folder for what was found, as JSON")
+    options.add_argument("--save", type=Path, help="folder for the results, as JSON")
     chosen = options.parse_args(arguments)
     seconds = chosen.seconds or (50.0 if chosen.quick else 300.0)
     how: dict[str, Any] = {"rounds": chosen.rounds, "max_seconds": seconds}

@@ -614,7 +614,7 @@ class Follower:
 
 
 def follow(scene: Scene, end: Any, road: Road, most_events: int = 100) -> Followed:
-    """The motion up to a time, in the precision that `road` gives."""
+    """The motion up to a time, in the precision `road`."""
     return Follower(scene, road).follow(mpfr(end), most_events)
 
 

@@ -60,11 +60,11 @@ from contact_motion import (
 from gmpy2 import mpfr
 from series import ROUNDING, Road, log_uniform
 
-# Precisions: one road computes the units, the next one the values, the third checks the values.
+# Precisions: the first computes the units, the next the values, the third checks the values.
 ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
 CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
-CHECKED = 20  # the values of every 20th scene are checked by a third road
-FARTHEST = 0.1  # most units between two roads; the finer road is then millions of times better
+CHECKED = 20  # the values of every 20th scene are checked in a third precision
+FARTHEST = 0.1  # most units between two precisions; the finer one is then millions of times better
 LEAST_UNIT = 1e-3 * ROUNDING  # least unit / size of a scene: some values are zero for all inputs
 RATE_STEP = 1e-8  # change of time / step in differences for rates
 UNIT_LIMIT = 1e-9  # largest unit / size of a scene; above it the inputs do not fix the answer
@@ -362,7 +362,7 @@ class Reference(NamedTuple):
     kinds: list[str]  # kinds of the events that the inputs fix
     times: list[Any]  # times of all events
     at_limit: str  # the input whose change changes the events, or ""
-    apart: float  # distance from a finer road, in units
+    apart: float  # distance from a finer precision, in units
 
 
 def natural(scene: Scene) -> tuple[float, float]:
@@ -395,7 +395,7 @@ def alike(what: str, *found: Answer) -> bool:
 
 
 def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
-    """Largest distance of the judged rows from the rows of another road, in units."""
+    """Largest distance of the judged rows from the rows of another precision, in units."""
     least = [LEAST_UNIT * size for size in sizes(case.scene)]
     shares = [
         apart / max(unit, smallest)
@@ -411,7 +411,7 @@ def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
 def reference(
     case: Case, times: list[float], end: float, long_times: list[float], check: bool, level: int = 0
 ) -> Reference:
-    """Events, samples and their units; a finer road computes them where this road is too coarse."""
+    """Events, samples and their units, in a finer precision where this one is too coarse."""
     road, finer = ROADS[level : level + 2]
     exact = answer(case, finer, times, end)
     base = answer(case, road, times, end)
@@ -1079,7 +1079,7 @@ def report(records: list[dict[str, Any]], limit: float) -> None:
     done = [one for one in records if one["verdict"] == "judged"]
     for word, which in (("in units", False), ("of values", True)):
         own = [one["apart"] for one in done if (one["number"] % CHECKED == 0) == which]
-        print(f"differences of two roads {word}: {max(own, default=0):.1e} units")
+        print(f"differences of two precisions {word}: {max(own, default=0):.1e} units")
     print(f"{sum(len(o['kinds']) for o in done)} events, {sum(o['rows'] for o in done)} rows")
     for title, key in (("family", lambda one: one["family"]), ("aspect", aspect), ("mu", mu)):
         print(f"\n{title:14} judged  worst units   > 8  by sol: worst  > 8   strict   > 8"

@@ -118,7 +118,7 @@ class Series(NamedTuple):
 
 
 class Rolling:
-    """One motion, followed forwards in the context of its road."""
+    """One motion, followed forwards in the context of its precision."""
 
     def __init__(self, scene: Scene, road: Road) -> None:
         self.road = road

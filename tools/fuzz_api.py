@@ -103,7 +103,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--calls", type=int, default=2000, help="cases to run (default 2000)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--code", default="", help="judge these lines instead of drawn ones")
-    parser.add_argument("--seconds-per-call", type=float, default=2.0, help="what is a hang")
+    parser.add_argument("--seconds-per-call", type=float, default=2.0, help="time limit of a line")
     parser.add_argument("--no-memory-limit", action="store_true", help="sanitizers need it")
     options = parser.parse_args(arguments)
     begin = time.monotonic()

@@ -282,7 +282,7 @@ def main() -> None:
     parser.add_argument("--only", help="PATH:LINE:NUMBER, the name of a mutant")
     parser.add_argument("--thorough", action="store_true")
     parser.add_argument("--processes", type=int, default=1, help="processes that share the tests")
-    parser.add_argument("--list", action="store_true", help="draw and print, no more")
+    parser.add_argument("--list", action="store_true", help="only draw and print")
     options = parser.parse_args()
     if options.only:
         path = ROOT / options.only.split(":")[0]
@@ -299,10 +299,10 @@ def main() -> None:
     workshop = Workshop(options.folder, options.processes)
     workshop.configure()
     if not workshop.build():
-        sys.exit("the sources as they are do not build")
+        sys.exit("the unchanged sources do not build")
     workshop.require_tested()
     if by := workshop.failing_program() or workshop.failing("-m", "quick"):
-        sys.exit(f"{by} fails with the sources as they are")
+        sys.exit(f"{by} fails with the unchanged sources")
     for i, mutant in enumerate(todo):
         if mutant.name in known and not options.only:
             continue
@@ -316,10 +316,10 @@ def main() -> None:
             print(f"    {mutant.was}\n    {mutant.now}", flush=True)
     fates = [fate for m in todo if (fate := known[m.name]["fate"]) != "build"]
     if not workshop.build():
-        sys.exit("the sources as they are do not build any more")
+        sys.exit("the unchanged sources do not build any more")
     for folder in sorted(set(fates) - {"programs", "quick", "all", "alive"}):
         if by := workshop.failing(f"tests/{folder}"):
-            sys.exit(f"{by} fails with the sources as they are")
+            sys.exit(f"{by} fails with the unchanged sources")
     print(f"{sum(fate != 'alive' for fate in fates)} of {len(fates)} noticed")
 
 

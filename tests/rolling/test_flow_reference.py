@@ -103,8 +103,8 @@ def test_flow_is_within_a_few_units(
 def test_a_few_ulp_of_an_input_are_seen(rows: list[Row], name: str) -> None:
     """A change of any single input by 16 ulp is noticed: the judge is sharp.
 
-    k^2 changes the motion least, its share of a unit is a fifth at best: 48 ulp are needed. Far start
-    angles are left out: their ulp is no small change.
+    k^2 changes the motion least, its share of a unit is a fifth at best: 48 ulp are needed. Far
+    start angles are left out: their ulp is no small change.
     """
     ulps = 48 if name == "gyration2" else 16
 
