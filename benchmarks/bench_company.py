@@ -1,4 +1,4 @@
-"""Long calls beside a busy Python thread.
+"""Slowdown of long calls beside a busy Python thread.
 
     python benchmarks/bench_company.py
 

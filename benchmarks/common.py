@@ -1,4 +1,4 @@
-"""Shared by the benchmarks: facts of the machine, interleaved timings, tables."""
+"""Facts of the machine, interleaved timings and tables for the benchmarks."""
 
 from __future__ import annotations
 

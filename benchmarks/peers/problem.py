@@ -28,7 +28,7 @@ class Problem(NamedTuple):
     """Body, start, end and tolerances of one run."""
 
     body: tuple[float, ...]  # B, A - B, AB, S [m^2, m^4], gamma, sigma [m/s^2], k^2 [m^2]
-    start: tuple[float, float, float]  # theta [rad], omega [rad/s], x [m]
+    start: tuple[float, float, float]  # initial theta [rad], omega [rad/s], x [m]
     t_end: float  # end of the run [s]
     rtol: float
     atol: float

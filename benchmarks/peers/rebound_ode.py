@@ -33,7 +33,7 @@ def field(solver: Any, name: str) -> Any:
 
 
 class ReboundRun(Integration):
-    """One simulation, set back to the start by every run."""
+    """A simulation that every run sets back to the start."""
 
     def __init__(self, given: Problem) -> None:
         self.counts, self.given = {}, given

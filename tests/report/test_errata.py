@@ -206,12 +206,12 @@ def test_printed_equations_of_motion_are_off_by_the_misprints() -> None:
     sine, cosine = math.sin(q[3] - q[2]), math.cos(q[3] - q[2])
     lever = q[4] * sine
     sec2 = 1 + math.tan(0.6) ** 2
-    # theta: -lambda2 r sin for the sign +, and -lambda4 a^2 sec^2 for the sign +
+    # row theta prints -lambda2 r sin and -lambda4 a^2 sec^2 with the wrong sign
     assert gap[2] == pytest.approx(-2 * lever * -2.0 - 2 * 0.7 * 4 * sec2, rel=1e-13)
-    # psi: lambda1 r cos for 0, -lambda2 r sin for +, +lambda3 ... for -
+    # row psi prints lambda1 r cos for 0, and -lambda2 r sin and +lambda3 ... with the wrong sign
     squeeze = 2 * 0.7 * (4 - 0.49) * math.sin(2 * q[3])
     assert gap[3] == pytest.approx(q[4] * cosine - 2 * lever * -2.0 + 2 * 0.5 * squeeze, rel=1e-13)
-    # r: lambda1 sin for 0
+    # row r prints lambda1 sin for 0
     assert gap[4] == pytest.approx(sine, rel=1e-13)
 
 

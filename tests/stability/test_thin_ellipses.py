@@ -1,4 +1,4 @@
-"""a/b from 1 to 1000: the radius of curvature varies by (a/b)^3 in a turn, and with it the rates.
+"""Ellipses with a/b from 1 to 1000: curvature radius and rates vary by (a/b)^3 in a turn.
 
 The body swings over its flat side in some b/a of a swing. Equal steps must be as small as that
 everywhere; controlled steps need only adapt to it, at a price that grows with the logarithm.

@@ -1,4 +1,4 @@
-"""The same motion at other times: `sol`, `scene_at`."""
+"""A motion at other times than its samples: `sol`, `scene_at`."""
 
 import dataclasses
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Runs the lines of a case and finds what must not happen."""
+"""Run the lines of a case and find broken promises, crashes and hangs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cases run in a process of their own, which may die or never return.
+"""A process of its own runs the cases, since a case may crash or never return.
 
 A timer limits the processor time of each line; its signal is handled as Ctrl-C is. A process that
 does not answer the signal is ended by faulthandler's watchdog.
@@ -99,7 +99,7 @@ class Process:
         return process
 
     def findings(self, lines: list[str]) -> list[Finding]:
-        """The findings in a case."""
+        """The findings in the lines of a case."""
         self._process = process = self._process or self._start()
         i = 0
         try:

@@ -87,20 +87,20 @@ class Draw:
         return self._draw(st.floats(low, high))
 
     def share(self) -> float:
-        """A number in [0, 1)."""
+        """Draw a number in [0, 1)."""
         return self._draw(st.floats(0, 1, exclude_max=True))
 
     def whole(self, low: int, high: int) -> int:
         return self._draw(st.integers(low, high))
 
     def power(self, low: float, high: float) -> float:
-        """A number between 10^low and 10^high; sometimes a pure power of ten."""
+        """Draw a number between 10^low and 10^high; sometimes a pure power of ten."""
         if self.chance(0.2):
             return 10.0 ** self.whole(math.ceil(low), math.floor(high))
         return float(10.0 ** self.between(low, high))
 
     def count(self, most: int) -> int:
-        """A whole number up to `most`, small ones as likely as large ones."""
+        """Draw a whole number up to `most`, small ones as likely as large ones."""
         return round(self.power(0, math.log10(most)))
 
     def beside(self, value: float) -> float:
@@ -110,7 +110,7 @@ class Draw:
         return value
 
     def extreme(self) -> str:
-        """An extreme number."""
+        """Draw an extreme number."""
         kind = self.whole(0, 3)
         if kind == 0:
             return repr(self.pick(1, 1, -1) * 2.0 ** self.whole(-1074, 1023))
@@ -119,7 +119,7 @@ class Draw:
         return self.pick(*EXTREMES)
 
     def hostile(self) -> str:
-        """A value that a caller might pass by mistake."""
+        """Draw a value that a caller might pass by mistake."""
         return self.extreme() if self.chance(0.5) else self.pick(*DRESSED, *WRONG, *WRONG)
 
     def mutated(self, arguments: dict[str, str]) -> dict[str, str]:
