@@ -244,7 +244,7 @@ def compared(truth: Found, other: Found) -> str:
 
 
 def compare(scene: Scene, t_end: float, rounds: int) -> None:
-    """Print the table of a scene; ratios are those of the least times to the first line."""
+    """Print the table of a scene; ratios relate the least times to the first line."""
     truth, notes = own_motion(scene, t_end), {}
     cases: dict[str, Callable[[], Run]] = {
         f"simulate, {SAMPLES} samples": lambda: own_motion(scene, t_end)[2],

@@ -789,7 +789,7 @@ Values = dict[str, Any]
 
 
 def with_axes(v: Values, a: float, b: float) -> None:
-    """The inputs with other semi-axes; the inertia keeps its share of that of a disc."""
+    """The inputs with other semi-axes; the inertia keeps its ratio to a disc's."""
     if v["inertia"] is not None:
         v["inertia"] *= (max(a, b) / max(v["a"], v["b"])) ** 2
     v["a"], v["b"] = a, b

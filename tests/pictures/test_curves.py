@@ -126,7 +126,7 @@ def test_nothing_overlaps_at_320_by_240(
 
 
 def tick_labels(ax: Axes) -> list[Text]:
-    """Labels of the ticks that are drawn: matplotlib keeps some beyond the limits as well."""
+    """Labels of the ticks that are drawn: matplotlib keeps some beyond the limits, too."""
     labels: list[Text] = []
     for axis in (ax.xaxis, ax.yaxis):
         low, high = sorted(axis.get_view_interval())

@@ -629,8 +629,8 @@ def test_no_proof_where_it_does_not_roll(scene: Scene) -> None:
 
 
 def test_the_state_after_the_blow_is_what_is_certified() -> None:
-    """The report's blow makes a rolling motion of 3.2 rad/s. The certificate must not be that of
-    rest or of the free body's 5.76 rad/s, which cannot roll on."""
+    """The certificate belongs to the 3.2 rad/s of rolling after the report's blow, not to rest or
+    to the free body's 5.76 rad/s, which cannot roll on."""
     struck = certify(Scene(2.0, 1.0, mass=10.0, impulse=Impulse.press(48.0, 1.5)))
     moving = certify(Scene(2.0, 1.0, mass=10.0, omega=3.2))
     assert struck.validity is Validity.VALID

@@ -154,8 +154,8 @@ def test_a_slope_in_degrees_is_asked_about(slope: float, asked: bool) -> None:
 
 @pytest.mark.parametrize("impulse", [None, Impulse()])
 def test_infinite_friction_holds_whatever_can_be_held(impulse: Impulse | None) -> None:
-    """A push of the flat side at 0.9 rad needs a pull of the ground, and the limit of slides
-    begins; with a friction of only 3, friction ends rolling."""
+    """A body turning at 0.9 rad with 3 rad/s needs a pull of the ground, and the limit of slides
+    begins; with a friction of 0.01 it is friction that cannot hold."""
     given: dict[str, Any] = {"theta": 0.9, "omega": 3.0, "impulse": impulse}
     limit = scene(**given).initial_state
     assert limit.mode is Mode.SLIDING

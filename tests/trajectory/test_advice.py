@@ -124,7 +124,7 @@ def test_what_is_lost_is_told_of_any_run_and_nothing_else() -> None:
         run = losses.drawn(seed)
         motion, said = losses.told(run)
         stopped = motion.status not in (rl.Status.COMPLETED, rl.Status.VALIDITY_LOST)
-        gains = any("does not bear the gains" in text for text in said)  # lost sooner or later
+        gains = any("does not bear the gains" in text for text in said)  # will be lost
         if stopped or gains or not 0 < motion.stats["steps"] <= 3000:
             continue
         found = losses.lost(run, motion)
