@@ -1,7 +1,7 @@
 """Time and bytes of many motions in files: python benchmarks/bench_batches.py
 
-Figures to plan a large run: time of one core and bytes for a motion, exact or with slips and jumps,
-and the rate of a pool of processes.
+The figures serve to plan a large run: time of one core and bytes for a motion, exact or with slips
+and jumps, and the rate of a pool of processes.
 """
 
 import argparse
@@ -18,16 +18,16 @@ from common import machine
 from rolling_ellipse import simulate_many
 
 ROUNDS = 3
-T_END = 3.0  # [s]
-STARTS = {  # friction and speeds [rad/s] that only rock or roll, and that slip and jump
+T_END = 3.0  # end of each motion [s]
+STARTS = {  # friction and spins [rad/s]: "exact" only rocks and rolls, "contact" slips and jumps
     "exact": (10.0, np.linspace(0.5, 3.0, 200_000)),
     "contact": (1.0, np.linspace(5.5, 6.5, 5_000)),
 }
-MORE = 101  # samples
+MORE = 101  # number of samples of the larger files
 
 
 def written(kind: str, samples: int = 1, workers: Any = 1) -> tuple[float, float]:
-    """Least time of a few calls [s] and bytes, for each motion."""
+    """Time of a motion, the least of a few calls [s], and bytes of a motion."""
     friction, speeds = STARTS[kind]
     if samples > 1:
         speeds = speeds[:: samples // 2]

@@ -1,9 +1,9 @@
-"""What single calls cost: the least of many interleaved rounds, and its ratio to the first line.
+"""Cost of single calls: the least of many interleaved rounds, and its ratio to the first line.
 
     python benchmarks/bench_calls.py [--rounds 50]
 
-The core's share is a line of its own; the difference is Python's. Imports are timed in new
-interpreters, the package's and NumPy's alone.
+The core's share has its own line; the difference to the whole call is Python's share. Imports of
+the package and of NumPy are timed in new interpreters.
 """
 
 import subprocess
@@ -35,7 +35,7 @@ def cases() -> dict[str, Case]:
     settings = DEFAULTS.core
     for kind, scene in {"rolling": ROLLING, "10 events": BOUNCING, "on a slope": DOWNHILL}.items():
         end, core = END, scene.core
-        if scene is not ROLLING:  # just after the last of so many events
+        if scene is not ROLLING:  # time just after the last of the first events
             end = simulate(scene, END).events[EVENTS - 1].t + 1e-6
             last = f"simulate, {kind}, its events"
             found[last] = Case(lambda s=scene, t=end: simulate(s, [t]).events)

@@ -1,9 +1,9 @@
-"""Long calls beside a busy Python thread.
+"""Slowdown of long calls beside a busy Python thread.
 
     python benchmarks/bench_company.py
 
-A call asks Python for signals every 50 ms; for that it waits 5 ms until the busy thread releases
-the GIL. It shares the processor with that thread, too: on one core the least possible ratio is 2.
+A call asks Python for signals every 50 ms, and then waits 5 ms until the busy thread releases the
+GIL. The call and the thread share the processor: on one core the least possible ratio is 2.
 """
 
 import threading

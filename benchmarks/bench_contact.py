@@ -1,10 +1,10 @@
-"""What a motion with impacts, slip and flight costs: python benchmarks/bench_contact.py
+"""Cost of motions with impacts, slip and flight: python benchmarks/bench_contact.py
 
 Each scene has about ten events. `simulate` is timed beside SciPy's solve_ivp (DOP853) with terminal
 events, started anew after each of them; both give the events, and theta, omega, x, z at the same
 1001 times. SciPy's flights are parabolas whose end brentq finds. Right-hand sides compiled by numba
-gain 15 % at most, since solve_ivp itself is Python. Before anything is timed the motions are
-compared: other events than the package's make a gap in the table. Every case is run in each of many
+gain 15 % at most, since solve_ivp itself is Python. Before the timing the motions are compared:
+events that differ from the package's leave a gap in the table. Every case is run in each of many
 rounds; compare ratios of one run.
 """
 
@@ -22,14 +22,14 @@ from scipy.optimize import brentq
 
 DROPPED: dict[str, Any] = {"z": 2.5, "theta": 0.3, "omega": 8.0, "restitution": 0.5}
 ON_A_SLOPE: dict[str, Any] = {"slope": 0.1, "omega": -2.0}
-SCENES = {  # with their end times
+SCENES = {  # scenes with their end times [s]
     "Jumps: slip, lift-off, impact, stick": (Scene(2.0, 1.0, friction=0.3, omega=7.0), 3.55),
     "Bounces with spin, e = 0.5": (Scene(2.0, 1.0, friction=0.3, **DROPPED), 2.255),
     "Rocking: slip, reverse, stick": (Scene(2.0, 1.0, friction=0.2, **ON_A_SLOPE), 8.4),
 }
-TOLERANCES = (1e-10, 1e-6)  # atol is a hundredth
-SAMPLES = 1001  # what simulate gives
-MOST_EVENTS = 100  # more than any of the scenes has
+TOLERANCES = (1e-10, 1e-6)  # values of rtol; atol is a hundredth of rtol
+SAMPLES = 1001  # number of samples in the package's output
+MOST_EVENTS = 100  # more events than any of the scenes has
 
 
 class Run(NamedTuple):
@@ -39,11 +39,11 @@ class Run(NamedTuple):
     steps: int
 
 
-Found = tuple[list[tuple[float, EventKind]], Any, Run]  # events; rows of theta, omega, x, z
+Found = tuple[list[tuple[float, EventKind]], Any, Run]  # events, theta to z, work
 
 
 def laws(scene: Scene) -> SimpleNamespace:
-    """Rates and ends of rolling and sliding; y is theta, omega, x, then the slip velocity."""
+    """Rates and ends of rolling and sliding; y holds theta, omega, x, then the slip velocity."""
     a2, b2, k2, mu = scene.a**2, scene.b**2, scene.gyration2, scene.friction
     along, down = (scene.gravity * part(scene.slope) for part in (math.sin, math.cos))
 
@@ -96,7 +96,8 @@ def laws(scene: Scene) -> SimpleNamespace:
 def collision(scene: Scene, h: float, dh: float, v: float, u: float) -> tuple[float, ...]:
     """Impulses per mass along and away from the ground; v and u afterwards, 0 where they end so.
 
-    In pieces: until slip or compression ends, or restitution has done e^2 of the latter's work.
+    A piece of the impact ends when slip or compression ends, or when restitution has done e^2 of
+    the work of compression.
     """
     k2, mu, e = scene.gyration2, scene.friction, scene.restitution
     gtt, gnt, gnn = 1 + h * h / k2, h * dh / k2, 1 + dh * dh / k2
@@ -132,7 +133,7 @@ class SciPyMotion:
         self.height = lambda theta: np.hypot(scene.a * np.sin(theta), scene.b * np.cos(theta))
 
     def __call__(self) -> Found:
-        """The whole motion."""
+        """Follow the whole motion."""
         at = self.scene.initial_state
         self.t, self.mode, self.side, self.v = 0.0, at.mode, 0.0, 0.0
         self.state = [at.theta, at.omega, at.x, at.z, at.x_dot, at.z_dot]
@@ -171,12 +172,12 @@ class SciPyMotion:
         return kind
 
     def touch(self, theta: float, omega: float, x: float, v: float, u: float) -> None:
-        """Stand on the ground with these velocities of the contact."""
+        """Put the body on the ground; v and u are the velocities of the contact."""
         h, dh, _ = self.laws.support(theta)
         self.state, self.v = [theta, omega, x, h, v + h * omega, u + dh * omega], v
 
     def go_on(self, may_roll: bool = True) -> None:
-        """Choose what a body on the ground does next."""
+        """Choose the next mode of a body on the ground."""
         theta, omega = self.state[:2]
         _, friction, margin = self.laws.grip(theta, omega)
         rolls = may_roll and self.v == 0 and margin >= 0
@@ -196,7 +197,7 @@ class SciPyMotion:
         return kind, arc.y[:, -1].tolist()
 
     def parabola(self) -> tuple[EventKind | None, list[float]]:
-        """A flight in closed form: the gap is positive at ever rarer times, then negative."""
+        """A flight in closed form; samples of the gap are positive, ever denser, then negative."""
         (theta, omega, x, z, x_dot, z_dot), begin = self.state, self.t
         along, down, height = self.laws.along, self.laws.down, self.laws.support
 
@@ -204,7 +205,7 @@ class SciPyMotion:
             path = x + s * (x_dot + 0.5 * along * s), z + s * (z_dot - 0.5 * down * s)
             return [theta + omega * s, omega + 0 * s, *path, x_dot + along * s, z_dot - down * s]
 
-        fall = z - 0.99 * min(self.scene.a, self.scene.b)  # it touches before
+        fall = z - 0.99 * min(self.scene.a, self.scene.b)  # surely touching
         sure = (z_dot + math.sqrt(z_dot**2 + 2 * down * fall)) / down
         times = np.geomspace(1e-4 * sure, sure, 200)
         y = at(times)
@@ -215,7 +216,7 @@ class SciPyMotion:
         return kind, at(lasts)
 
     def record(self, until: float, kind: EventKind | None, solution: Callable[..., Any]) -> None:
-        """Sample a segment; the state after an event belongs to the next one."""
+        """Sample a segment up to its end; the state after an event belongs to the next segment."""
         part = slice(*np.searchsorted(self.times, (self.t, until if kind else math.inf)))
         if part.start < part.stop:
             y = solution(self.times[part])
@@ -225,7 +226,7 @@ class SciPyMotion:
 
 
 def own_motion(scene: Scene, t: Any) -> Found:
-    """The package, asked for the same arrays."""
+    """The package's motion with the same arrays as the reference."""
     motion = simulate(scene, t)
     samples = motion.theta, motion.omega, motion.x, motion.z
     run = Run(motion.stats["evaluations"], motion.stats["steps"])
@@ -233,7 +234,7 @@ def own_motion(scene: Scene, t: Any) -> Found:
 
 
 def compared(truth: Found, other: Found) -> str:
-    """Largest differences of event times and of the end state; raise where events differ."""
+    """Largest differences of event times and of the end state; an error where events differ."""
     (times, kinds), (others, found) = (zip(*events, strict=True) for events, *_ in (truth, other))
     if kinds != found:
         raise ArithmeticError("other events: " + ", ".join(kind.name for kind in found[:12]))
@@ -243,7 +244,7 @@ def compared(truth: Found, other: Found) -> str:
 
 
 def compare(scene: Scene, t_end: float, rounds: int) -> None:
-    """The table of a scene; ratios are those of the least times to the first line."""
+    """Print the table of a scene; ratios relate the least times to the first line."""
     truth, notes = own_motion(scene, t_end), {}
     cases: dict[str, Callable[[], Run]] = {
         f"simulate, {SAMPLES} samples": lambda: own_motion(scene, t_end)[2],

@@ -1,4 +1,4 @@
-"""What exact rolling costs, as ratios within one run: python benchmarks/bench_flow.py
+"""Cost of exact rolling, as ratios within one run: python benchmarks/bench_flow.py
 
 Every case is timed once in each of many rounds, one after the other, and the least time is kept.
 Machines and their load differ: compare only ratios (to the first line of a table) of one run.
@@ -19,7 +19,7 @@ MANY = f"End state among {STATES} motions (set-up and one sample each)"
 
 
 def starts() -> dict[str, dict[str, Any]]:
-    """Start of every case."""
+    """The start of every case."""
     speed = thresholds(2.0, 1.0).roll_over_speed
     return {
         "R: ordinary rotation": R,
@@ -33,7 +33,7 @@ def starts() -> dict[str, dict[str, Any]]:
 
 
 def among_many(start: dict[str, Any], t: float) -> Case:
-    """End states of motions that differ in the last digits of omega, so that each is set up."""
+    """End states of motions whose omega differs in the last digits, so that each is set up anew."""
     omega = start["omega"] * (1 + np.arange(STATES) * 2.0**-50)
     columns = {name: np.full(STATES, value) for name, value in start.items()} | {"omega": omega}
     times = np.full(STATES, t)
@@ -53,14 +53,14 @@ def main() -> None:
         turns = HALF_TURNS + 1e9 * ("1e9" in name)
         t = end_time(Scene(**start), turns)
         one[name] = Case(lambda t=t, start=start: flow(t, **start))
-        # between the singular starts a relative change of omega by 1e-12 is no longer small
+        # near a singular start a relative change of omega by 1e-12 is no longer small
         if "separatrix" not in name:
             many[name] = among_many(start, t)
     source, target = np.ones((3, SAMPLES)), np.zeros((3, SAMPLES))
     of_many = {
         "R: 1e6 samples of 100 half turns": samples(100),
         "R: 1e6 samples of 1 half turn": samples(1),
-        # a bound for every method
+        # lower bound for every method
         "np.copyto of 3 doubles": Case(lambda: np.copyto(target, source), SAMPLES),
     }
     print_tables({ONE: one, MANY: many, "One sample of many": of_many}, rounds)

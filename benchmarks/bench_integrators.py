@@ -1,9 +1,9 @@
-"""What an evaluation and a step of integration cost: python benchmarks/bench_integrators.py
+"""Cost of an evaluation and of a step of integration: python benchmarks/bench_integrators.py
 
 The first table has the methods of the model "rolling"; the others compare fixed steps in one degree
 of freedom with those in five coordinates, with every stabilization of the method. Every case is run
 once in each of many rounds, one after the other. Machines differ and so does their load: compare
-the ratios of one run. What accuracy costs is the race of bench_peers.py.
+the ratios of one run. bench_peers.py measures the cost of accuracy.
 """
 
 import statistics
@@ -17,10 +17,10 @@ from rolling_ellipse._core import rolling_equation
 
 ROCKING = Scene(2.0, 1.0, inertia=1.25, theta=0.2, omega=1.0)
 TURNING = Scene(2.0, 1.0, theta=0.2, omega=3.2)
-HALF_SWINGS = 400.37  # so many that steps are all that a call costs
+HALF_SWINGS = 400.37  # span so long that the start of a call costs next to nothing
 STATES = 1_000_000
-STEPS = 4000  # some milliseconds: starting a simulation and one sample are a hundredth of it
-STEP = 2.0**-8  # [s]; 422 in half a turn
+STEPS = 4000  # a call takes milliseconds: its start and its one sample cost a hundredth of it
+STEP = 2.0**-8  # fixed step [s]; 422 steps in half a turn
 EXPLICIT = ("none", "baumgarte", "projection", "projection+energy")
 METHODS = {"rk4": EXPLICIT, "dopri5": EXPLICIT, "dop853": EXPLICIT, "radau": ("ggl",)}
 PAIR = {"rtol": 1e-8, "atol": 1e-10}
@@ -46,7 +46,7 @@ def rolling(how: dict[str, Any]) -> Counted:
 
 
 def equation() -> Counted:
-    """The equation and its Jacobian for many states, which do not wait for each other."""
+    """The equation and its Jacobian for many states that do not depend on each other."""
     theta, omega = np.random.default_rng(0).uniform(-1, 1, (2, STATES))
 
     def run() -> tuple[int, int]:

@@ -1,14 +1,14 @@
-"""How soon Ctrl-C ends long work: in single runs of every model, in batches, in a notebook.
+"""Delay of Ctrl-C in long work: in single runs of every model, in batches, in a notebook.
 
     python benchmarks/bench_interrupts.py [--tries 50] [--only WORDS] [--company]
 
 Each kind of work is started and interrupted many times, at moments spread over half a second. The
 table has the median, the 95th percentile and the longest time from the signal to the
-KeyboardInterrupt. A call afterwards must give the same bits as before. The exit code is 1 if it
-does not, or if a 95th percentile is more than 200 ms. With --company a Python thread holds the GIL
-as long as Python allows. In the notebook the traceback is one line: Jupyter takes longer to draw it
-with the source. The last line has that time and is not judged. The times need a machine without
-other load.
+KeyboardInterrupt. A call afterwards must give the same bits as before. The exit code is 1 if the
+bits differ, or if a 95th percentile is more than 200 ms. With --company a Python thread holds the
+GIL as long as Python allows. In the notebook the traceback is one line: Jupyter takes longer to
+draw the source. The last line has the time with the source and is not judged. The times need a
+machine without other load.
 """
 
 import argparse
@@ -33,7 +33,7 @@ from rolling_ellipse import (
     thresholds,
 )
 
-MOST = 0.2  # [s]
+MOST = 0.2  # largest delay allowed at the 95th percentile [s]
 ANGLES = np.linspace(0.1, 1.4, 200_000)
 LONG: dict[str, Any] = {"max_steps": 2**31 - 1, "max_events": 2**31 - 1}
 ROLLING: dict[str, Any] = {"model": "rolling", **LONG}
@@ -45,7 +45,7 @@ STEEP = Scene(2.0, 1.0, slope=0.3, omega=3.0, friction=0.4, restitution=0.5)
 
 
 def again(call: Callable[[], Any]) -> Callable[[], Any]:
-    """A short call, a thousand times."""
+    """Call a short function a thousand times."""
     return lambda: [call() for _ in range(1000)]
 
 
@@ -90,7 +90,7 @@ WORK: dict[str, Callable[[], Any]] = {
 TIMES = np.linspace(0.0, 500.0, 2_000_000)
 FORCES = np.linspace(1.0, 2.0, 20_000_000)
 LISTED = FORCES[::2].tolist()
-IN_NOTEBOOK = {  # the first line is Jupyter's own time
+IN_NOTEBOOK = {  # the first line measures Jupyter's own time
     "notebook, a loop of Python": "while True: pass",
     "notebook, rk4": "rl.simulate(rl.scenes.rolling, [1e5], model='rolling', method='rk4', "
     "step=1e-4, max_steps=2**31 - 1)",
@@ -102,7 +102,8 @@ CHECK = "rl.simulate(rl.scenes.drop, 2.0).theta.tobytes().hex()"
 
 def delay(call: Callable[[], Any], after: float) -> float:
     """Time from Ctrl-C, sent at a moment of a call, to the end of the call [s]."""
-    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)  # what SIGINT does
+    # the alarm calls Python's handler of SIGINT
+    usual = signal.signal(signal.SIGALRM, signal.default_int_handler)
     begin = time.perf_counter()
     signal.setitimer(signal.ITIMER_REAL, after)
     try:
@@ -131,13 +132,14 @@ class Notebook:
         self.client.execute(code, silent=True, reply=True, timeout=60)
 
     def value(self, code: str) -> str:
-        """The value of an expression, as text."""
+        """The value of an expression in the kernel, as text."""
         reply = self.client.execute("", user_expressions={"v": code}, reply=True, timeout=60)
         return str(reply["content"]["user_expressions"]["v"]["data"]["text/plain"])
 
     def delay(self, code: str, after: float) -> float:
-        """Time from the button Interrupt to the reply [s]."""
-        asked = self.client.execute(code, stop_on_error=False)  # or what comes next is dropped
+        """Time from the button "Interrupt" to the reply [s]."""
+        # otherwise Jupyter drops the next request
+        asked = self.client.execute(code, stop_on_error=False)
         self.wait(self.client.get_iopub_msg, asked, "execute_input")
         time.sleep(after)
         begin = time.perf_counter()
@@ -148,7 +150,7 @@ class Notebook:
         return found
 
     def wait(self, receive: Callable[..., dict[str, Any]], asked: str, kind: str) -> Any:
-        """Content of the message of a kind that answers a request."""
+        """Content of the first message of a kind that answers a request."""
         while True:
             message = receive(timeout=60)
             if message["msg_type"] == kind and message["parent_header"].get("msg_id") == asked:
@@ -160,7 +162,7 @@ class Notebook:
 
 
 def print_delays(name: str, delays: list[float]) -> bool:
-    """Print a line; whether the delays are short enough."""
+    """Print the delays; return whether they are short enough."""
     median, most, longest = 1e3 * np.percentile(delays, [50, 95, 100])
     print(f"{name:50} {median:7.0f} {most:7.0f} {longest:7.0f}", flush=True)
     return bool(most <= 1e3 * MOST)

@@ -4,7 +4,7 @@ Installed libraries take part (the extra "peers"; Boost.odeint needs g++ and its
 ones are named. All integrate theta, omega and x with compiled right-hand sides, from a ladder of
 tolerances or steps, in turns (`rolling_ellipse.work_precision`). The largest error at samples and
 at the end, against 40 digits, counts. The preparation of a new scene, with its compilation, is
-timed apart. Machines and their load differ: compare the ratios of one run.
+timed separately. Machines and their load differ: compare the ratios of one run.
 """
 
 import argparse
@@ -25,15 +25,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
 import make_rolling_reference as reference
 
 SCENES = {"R": Scene(2.0, 1.0, theta=0.2, omega=3.2), "L": Scene(2.0, 1.0, theta=0.2, omega=1.0)}
-HALF_TURNS = (1.37, 10.37, 100.37)  # away from symmetries, which would hide errors of the phase
+HALF_TURNS = (1.37, 10.37, 100.37)  # no symmetric states: they would hide errors of the phase
 METHODS = ("flow", "exact", "dop853", "dopri5", "rk4", "gauss")
 TOLERANCES = [10.0**-k for k in range(1, 16)]
 DECADES = [10.0**-k for k in range(2, 15, 2)]
-WIDTH = 11  # of a column
+WIDTH = 11  # width of a column in characters
 
 
 def in_40_digits(scene: Scene) -> Callable[[Any], Any]:
-    """theta, omega, x by an independent quadrature, the judge of all contenders."""
+    """theta, omega and x to 40 digits by an independent quadrature, the judge of all contenders."""
     with reference.mp.workdps(40):
         start = (scene.a, scene.b, scene.gyration2, scene.gravity, scene.theta, scene.omega)
         motion = reference.motion(reference.Scene(*start), reference.gauss_rule(28, 1.8))
@@ -50,7 +50,7 @@ def race(
     name: str, half_turns: float, found: Sequence[Any], *, rounds: int, max_seconds: float,
     tolerances: Sequence[float] = TOLERANCES,
 ) -> WorkPrecision:  # fmt: skip
-    """All contenders to so many half turns or half swings."""
+    """Race of all contenders over a number of half turns or half swings."""
     scene = SCENES[name]
     half_turn = period(scene) / 2
     return work_precision(
@@ -69,12 +69,12 @@ def commit() -> str:
 
 
 def microseconds(seconds: float) -> str:
-    """Three digits or more, never as a power of ten."""
+    """A time with at least three digits, never as a power of ten."""
     return f"{seconds * 1e6:.3g}" if seconds < 1e-3 else f"{seconds * 1e6:.0f}"
 
 
 def table(found: WorkPrecision) -> str:
-    """A row for each contender, a column for each error; then the ratio of the best."""
+    """A row for each contender and a column for each error; then the row of the best ratios."""
     least = {decade: found.least(decade) for decade in DECADES}
     lines = [f"{'[us], least; error <=':28}" + "".join(f"{d:{WIDTH}.0e}" for d in DECADES)]
     lines[0] += f"{'best error':>12}{'set-up [ms]':>13}"
@@ -99,7 +99,7 @@ def factors(found: WorkPrecision) -> str:
 
 
 def factor(found: WorkPrecision, decade: float) -> str:
-    """The best peer's time over the package's best; a star where not everybody was run."""
+    """The best peer's time over the package's best; a star if some contenders were not run."""
     others = {run.name for run in found.runs if "peer" in run.tags}
     least = found.least(decade)
     mine = min((time for name, time in least.items() if name not in others), default=math.inf)
@@ -111,7 +111,7 @@ def factor(found: WorkPrecision, decade: float) -> str:
 
 
 def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], WorkPrecision]:
-    """Race, print, and return what was found for every scene and span."""
+    """Race, print, and return the results of every scene and span."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--quick", action="store_true", help="one span, few settings and rounds")
     options.add_argument("--rounds", type=int, default=20, help="at least 20 for figures to keep")
@@ -120,7 +120,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     options.add_argument(
         "--seconds", type=float, help="for each scene and span; 300, or 50 if quick"
     )
-    options.add_argument("--save", type=Path, help="folder for what was found, as JSON")
+    options.add_argument("--save", type=Path, help="folder for the results, as JSON")
     chosen = options.parse_args(arguments)
     seconds = chosen.seconds or (50.0 if chosen.quick else 300.0)
     how: dict[str, Any] = {"rounds": chosen.rounds, "max_seconds": seconds}
@@ -132,7 +132,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, float], Work
     print(libraries)
     for library, reason in missing.items():
         print(f"missing: {library}: {reason}")
-    stamp = {"peers": libraries, "commit": commit()}  # before the first file is written
+    # the commit is read before this script changes any file
+    stamp = {"peers": libraries, "commit": commit()}
     races = {}
     for name in chosen.scenes:
         for half_turns in chosen.half_turns:

@@ -1,4 +1,4 @@
-"""Shared by the benchmarks: facts of the machine, interleaved timings, tables."""
+"""Facts of the machine, interleaved timings and tables for the benchmarks."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from rolling_ellipse import Scene, _core, period
 
-SHORTEST = 5e-3  # least time of a timing [s]: short calls are repeated
+SHORTEST = 5e-3  # shortest time of one timing [s]: shorter calls are repeated
 _LEVELS = {"avx512f": "AVX-512", "avx2": "AVX2", "avx": "AVX", "asimd": "NEON"}
 
 
 def machine() -> dict[str, str]:
-    """Return the processor and its widest vectors, the compiler of the core, versions, by name."""
+    """Facts by name: the processor, its widest vectors, the compiler of the core, versions."""
     text = ""
-    with suppress(OSError):  # not there but on Linux
+    with suppress(OSError):  # the file exists only on Linux
         text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
     lines = (line.partition(":") for line in text.partition("\n\n")[0].splitlines())
     facts = {name.strip(): value.strip() for name, _, value in lines}
@@ -42,7 +42,7 @@ def machine() -> dict[str, str]:
 
 
 def rounds_asked(about: str | None, default: int = 20) -> int:
-    """Read the number of rounds from the command line, and print what they run on."""
+    """Read the number of rounds from the command line, and print the facts of the machine."""
     options = argparse.ArgumentParser(description=about)
     least = f"at least {default} for figures to keep"
     options.add_argument("--rounds", type=int, default=default, help=least)
@@ -55,7 +55,7 @@ def rounds_asked(about: str | None, default: int = 20) -> int:
 
 
 def end_time(scene: Scene, half_turns: float) -> float:
-    """Time of so many half turns or half swings [s]."""
+    """Time of a number of half turns or half swings [s]."""
     return half_turns * period(scene) / 2
 
 
@@ -83,7 +83,7 @@ def interleaved(
 
 
 class Case(NamedTuple):
-    """A call, and the number of things that it does; times are given per thing."""
+    """A call, and the number of results it computes; times are given per result."""
 
     call: Callable[[], Any]
     count: int = 1

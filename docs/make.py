@@ -55,7 +55,7 @@ def run(*command: str | Path) -> None:
 
 
 def notebooks(quick: bool) -> None:
-    """Run each notebook in a folder of its own, and keep its outputs."""
+    """Run each notebook in a temporary folder, and keep its outputs."""
     os.environ["ROLLING_ELLIPSE_PEERS"] = str(BENCHMARKS)
     os.environ["ROLLING_ELLIPSE_SECONDS"] = "2" if quick else "60"
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
@@ -63,7 +63,7 @@ def notebooks(quick: bool) -> None:
         notebook = nbformat.read(path, 4)
         metadata = notebook.metadata.copy()
         with TemporaryDirectory() as folder:
-            for module in path.parent.glob("*.py"):  # which it imports from its own folder
+            for module in path.parent.glob("*.py"):  # notebooks import modules from their folder
                 shutil.copy(module, folder)
             resources = {"metadata": {"path": folder}}
             NotebookClient(notebook, None, resources=resources, timeout=None).execute()
@@ -85,7 +85,7 @@ STEPS: dict[str, Callable[[bool], None]] = {
 
 
 def quoted(page: str) -> str:
-    """Return a page with its marked parts made anew."""
+    """A page with its marked parts made anew."""
     for name, part in (("speed", speed()), ("batches", throughput())):
         begin, end = f"<!-- {name}: made by docs/make.py -->\n", f"<!-- end of {name} -->\n"
         before, _, rest = page.partition(begin)
@@ -97,7 +97,7 @@ def quoted(page: str) -> str:
 
 
 def speed() -> str:
-    """The leaders of the race that is drawn, and the peers beside the package in all races."""
+    """Text and table of the races: the leaders of one race, and the peers' ratios in all races."""
     import bench_peers
 
     rows = []
@@ -121,12 +121,12 @@ def speed() -> str:
 
 
 def half_turns(path: Path) -> float:
-    """Half turns of the motion in a file of a race."""
+    """Number of half turns in the name of a race's file."""
     return float(path.stem.rpartition("_")[2])
 
 
 def throughput() -> str:
-    """Figures to plan a large run, if they were measured."""
+    """Sentences with the figures for planning a large run, if they were measured."""
     path = HERE / "batches.json"
     if not path.exists():
         return ""

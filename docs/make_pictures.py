@@ -25,7 +25,7 @@ METHODS = {
     "gauss, 0.02 s": {"method": "gauss", "step": 0.02},
     "exact": {"method": "exact"},
 }
-DRIFTS = {  # stabilizations of the classical method in five coordinates, with their lines
+DRIFTS = {  # stabilizations of the classical method in five coordinates, with their line styles
     "none": (PLUM, "-"),
     "baumgarte": (ORANGE, "--"),
     "projection": (BLUE, "-."),
@@ -45,14 +45,14 @@ def main() -> None:
 
 
 def friction() -> None:
-    """The same blow on three floors: the film of several motions."""
+    """Film of three motions: the same blow on three floors."""
     motions = [rl.simulate(replace(rl.scenes.report, friction=mu), 4.0) for mu in (1.0, 0.1, 0.0)]
     labels = ["friction 1", "friction 0.1", "no friction"]
     rl.animate(motions, HERE / "friction.gif", labels=labels, fps=25, width=560)
 
 
 def methods() -> Figure:
-    """Errors of the energy over 200 s; the fixed steps end at the samples."""
+    """Energy errors of the methods over 200 s; the fixed steps end at the samples."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     t = np.linspace(0.0, 200.0, 501)
     motions = [
@@ -63,7 +63,7 @@ def methods() -> Figure:
 
 
 def speed() -> Figure:
-    """The package beside its peers, as they were raced."""
+    """Work-precision chart of the package and its peers, from the files of the races."""
     chart = rl.WorkPrecision.load(RACE).plot()
     figure = chart.ax.figure
     assert isinstance(figure, Figure)
@@ -95,7 +95,7 @@ def stability() -> Figure:
 
 
 def name_line(ax: Axes, x: np.ndarray, y: np.ndarray, name: str, colour: str) -> None:
-    """Write a name at the end of a line, with the power by which it grows, if it does."""
+    """Write a name at the end of a line, and the exponent of its growth if it grows."""
     late = x >= 20
     power = np.polyfit(np.log(x[late]), np.log(y[late]), 1)[0]
     grows = f" $t^{{{power:.2f}}}$" if y[-1] > 1e-9 and power > 0.5 else ""
@@ -118,7 +118,7 @@ def strobe() -> Figure:
 
 
 def frame() -> Figure:
-    """The axes, the angle, the contact and its forces, of one state of the body."""
+    """Drawing of one state of the body: axes, angle, contact and forces."""
     figure = Figure(figsize=(7, 3.0), layout="constrained")
     ax = figure.add_subplot()
     at = rl.simulate(rl.Scene(2.0, 1.0, theta=0.5, omega=1.0), 0.0)
@@ -155,13 +155,13 @@ def arrow(ax: Axes, start: tuple[float, float], end: tuple[float, float], colour
 
 
 def save(figure: Figure, name: str, source: Path | None = None) -> None:
-    """Write a picture, with the digest of the file that it shows."""
+    """Write a picture, with the digest of its source file."""
     facts = PngImagePlugin.PngInfo()
     if source is not None:
         facts.add_text("Source", hashlib.sha256(source.read_bytes()).hexdigest())
     picture = BytesIO()
     figure.savefig(picture, dpi=120)
-    colours = Image.open(picture).convert("RGB").quantize(128)  # a third of the bytes
+    colours = Image.open(picture).convert("RGB").quantize(128)  # a third of the size
     colours.save(HERE / name, optimize=True, pnginfo=facts)
 
 

@@ -1,4 +1,4 @@
-"""What notebook 07 measures, section by section; tests/stability asserts the laws that it follows.
+"""Measurements of notebook 07, section by section; tests/stability asserts their laws.
 
 A measurement is a short run, or a few, and gives numbers: it draws nothing and judges nothing.
 """
@@ -23,7 +23,7 @@ EXPLICIT = ("rk4", "dopri5", "dop853")
 
 
 def run(scene: Scene, times: ArrayLike, **how: Any) -> Trajectory:
-    """A simulation whatever comes of it, without the warnings of what is shown here."""
+    """A simulation with any outcome, without the warnings that the notebook is about."""
     with warnings.catch_warnings():
         for shown_here in (rl.StabilityWarning, rl.ValidityWarning):
             warnings.simplefilter("ignore", shown_here)
@@ -32,7 +32,7 @@ def run(scene: Scene, times: ArrayLike, **how: Any) -> Trajectory:
 
 
 def kept_by(stabilization: str, **how: Any) -> How:
-    """Settings of the five coordinates with their constraints."""
+    """Settings of the five coordinates with a stabilization of their constraints."""
     return {"model": "multipliers", "stabilization": stabilization} | how
 
 
@@ -45,19 +45,19 @@ def half_turn(scene: Scene) -> float:
 
 
 def exponent(x: ArrayLike, y: ArrayLike) -> float:
-    """p of |y| ~ x^p, by least squares of the logarithms."""
+    """Exponent p of |y| ~ x^p, by least squares of the logarithms."""
     return float(np.polyfit(np.log(x), np.log(np.abs(y)), 1)[0])
 
 
 def spread(first: int, last: int, count: int = 25) -> NDArray[np.intp]:
-    """Whole numbers, even in their logarithm."""
+    """Whole numbers with even spacing of their logarithms."""
     return np.unique(np.geomspace(first, last, count).astype(np.intp))
 
 
 def growth(errors: Floats) -> float:
-    """Exponent of the rms change of evenly sampled errors over 1 to all their intervals.
+    """Exponent of the rms change of evenly sampled errors over 1 to all intervals.
 
-    The mean goes over runs and over all intervals of a length.
+    The mean is taken over runs and over all intervals of one length.
     """
     from_start = np.concatenate([np.zeros((*errors.shape[:-1], 1)), errors], axis=-1)
     lags = spread(1, errors.shape[-1])
@@ -66,7 +66,7 @@ def growth(errors: Floats) -> float:
 
 
 def largest(holds: Callable[[float], bool], low: float, high: float, width: float = 1e-12) -> float:
-    """Up to where something holds that holds at low and not at high, by bisection."""
+    """Largest value at which a property holds that holds at low and not at high, by bisection."""
     assert holds(low) and not holds(high), (low, high)
     while high - low > width * high:
         middle = (low + high) / 2
@@ -76,8 +76,8 @@ def largest(holds: Callable[[float], bool], low: float, high: float, width: floa
 
 @cache
 def stability_polynomial(method: str) -> tuple[float, ...]:
-    """R(z) of an explicit method from its tableau, highest power first: a step makes R(h s) y of
-    y' = s y. Its coefficients are 1 and b A^k 1 (E. Hairer, G. Wanner, Solving Ordinary
+    """R(z) of an explicit method from its tableau, highest power first: a step multiplies the y of
+    y' = s y by R(h s). The coefficients are 1 and b A^k 1 (E. Hairer, G. Wanner, Solving Ordinary
     Differential Equations II, IV.2)."""
     tableau = _core.tableaus()[method]
     stages = tableau["stages"]
@@ -90,13 +90,13 @@ def stability_polynomial(method: str) -> tuple[float, ...]:
 
 
 def amplification(method: str, z: Any) -> Any:
-    """|R(z)|, of a number or an array."""
+    """|R(z)| of a number or an array z."""
     return np.abs(np.polyval(stability_polynomial(method), z))
 
 
 def interval(method: str, direction: complex) -> float:
-    """The z up to which |R(z direction)| <= 1: from 0 the first crossing, on a grid of 1e-3, then
-    by bisection. Within 1e-12 of 1 is 1: near 0 roundings decide."""
+    """The z up to which |R(z direction)| <= 1: the first crossing from 0, on a grid of 1e-3, then
+    by bisection. The bound is 1 + 1e-12, since roundings decide near 0."""
     grid = 1e-3 * np.arange(1, 20_000)
     first = int(np.flatnonzero(amplification(method, grid * direction) > 1 + 1e-12)[0])
     return largest(
@@ -112,8 +112,8 @@ ROUND = Scene(1.2, 1.0, theta=0.2, omega=4.0)
 
 
 def envelopes(scene: Scene, spans: Floats, knot: float, **how: Any) -> Floats:
-    """The largest |gap|, and by which positions and velocities miss the constraints at all, up to
-    so many half turns: at the multiples of `knot` in the last half turn of each, (3, spans)."""
+    """Largest |gap|, position and velocity residuals of the constraints for each span in half
+    turns, over the multiples of `knot` in the last half turn of the span: (3, spans)."""
     knots = half_turn(scene) / knot
     windows = [np.arange(math.ceil((n - 1) * knots), n * knots) for n in spans]
     held = run(scene, np.concatenate(windows) * knot, **how).constraint_residuals()
@@ -126,7 +126,7 @@ def envelopes(scene: Scene, spans: Floats, knot: float, **how: Any) -> Floats:
 def started_off(
     scene: Scene, rate: int, times: ArrayLike, epsilon: float, **how: Any
 ) -> Trajectory:
-    """A motion of the multipliers one of whose rates starts off by epsilon."""
+    """A motion of the multipliers whose given rate starts with an error of epsilon."""
     settings = rl.simulate(scene, 0.0, model="multipliers", **how).settings
     q, q_dot = rl.kinematics(scene.theta, scene.omega, a=scene.a, b=scene.b)
     start = (q, q_dot + epsilon * np.eye(5)[rate])
@@ -138,11 +138,11 @@ def started_off(
 
 FED_BACK = Scene(1.5, 1.0, theta=0.2, omega=4.0)
 SLOW = Scene(1.2, 1.0, theta=0.2, omega=1.0)
-GAINS = np.array([0.5, 1, 2, 5, 10, 20, 50, 100, 200])  # [1/s]
+GAINS = np.array([0.5, 1, 2, 5, 10, 20, 50, 100, 200])  # feedback gains [1/s]
 
 
 def fed_back(gain: float) -> tuple[float, float]:
-    """What positions [m, rad] and the phase [rad] miss after 100 half turns with equal gains."""
+    """Errors of position [m, rad] and phase [rad] after 100 half turns with equal gains."""
     end = 100 * half_turn(FED_BACK)
     how = kept_by("baumgarte", method="rk4", step=2.0**-9, baumgarte=(gain, gain))
     found = run(FED_BACK, np.linspace(0.1 * end, end, 200), **how)
@@ -151,7 +151,7 @@ def fed_back(gain: float) -> tuple[float, float]:
 
 
 def missed_with(gains: tuple[float, float], method: str, step: float = 2.0**-7) -> float:
-    """What 600 steps of a rocking motion miss the constraints by at worst; inf if given up."""
+    """Largest constraint error in 600 steps of a rocking motion; inf if the motion is given up."""
     how = kept_by("baumgarte", method=method, step=step, baumgarte=gains)
     found = run(SLOW, np.arange(601) * step, **how)
     held = found.constraint_residuals()
@@ -160,7 +160,7 @@ def missed_with(gains: tuple[float, float], method: str, step: float = 2.0**-7) 
 
 
 def reach(method: str, step: float = 2.0**-7) -> float:
-    """2 alpha h up to which runs with equal gains are not lost."""
+    """Largest 2 alpha h at which runs with equal gains are not lost."""
 
     def holds(reached: float) -> bool:
         gain = reached / (2 * step)
@@ -172,13 +172,13 @@ def reach(method: str, step: float = 2.0**-7) -> float:
 
 # ------------------------------------------------------------------------ d, e. energy, phase
 
-STEP = 1 / 16  # [s]; the times of all steps are doubles
+STEP = 1 / 16  # step [s] of powers of two: the times of all steps are doubles
 
 
 class Rhythm(NamedTuple):
-    """A rocking motion so many half swings of which take so many steps.
+    """A rocking motion for which a number of half swings takes a number of steps.
 
-    Samples after each of these meet the bounded truncation error at one phase, and knots.
+    Samples after each of these are at knots, and at one phase of the bounded truncation error.
     """
 
     half_swings: int
@@ -186,7 +186,7 @@ class Rhythm(NamedTuple):
 
     @property
     def half_swing(self) -> float:
-        """Its time [s]."""
+        """Duration of a half swing [s]."""
         return self.steps * STEP / self.half_swings
 
     @property
@@ -210,8 +210,8 @@ def _speed(half_swing: float) -> float:
 
 
 def energy_error(theta: ArrayLike, omega: ArrayLike, start: float) -> Floats:
-    """Relative to the energy at the start, flat with speed `start`; in long double, and above that
-    of lying flat, so that nothing cancels."""
+    """Energy error relative to the energy at the start, flat with speed `start`; in long double,
+    and above the energy of lying flat, so that nothing cancels."""
     theta, omega = np.asarray(theta, np.longdouble), np.asarray(omega, np.longdouble)
     sine2 = np.sin(theta) ** 2
     h = np.sqrt(B * B + (A * A - B * B) * sine2)
@@ -222,15 +222,15 @@ def energy_error(theta: ArrayLike, omega: ArrayLike, start: float) -> Floats:
 
 
 class Errors(NamedTuple):
-    """What runs have lost after so many half swings, flat at each of them."""
+    """Errors of several runs after numbers of half swings, at which the body is flat."""
 
     half_swings: Floats
-    energy: Floats  # (runs, samples), relative
-    delay: Floats  # (runs, samples) of the phase [s]
+    energy: Floats  # (runs, samples), relative error of the energy
+    delay: Floats  # (runs, samples), delay of the phase [s]
 
 
 def errors(rhythm: Rhythm, samples: int, runs: Sequence[How]) -> Errors:
-    """Of the motion of this rhythm, at so many samples."""
+    """Errors of runs over the motion of a rhythm, at a number of samples."""
     half_swings = np.arange(1.0, samples + 1) * rhythm.half_swings
     times, start = half_swings * rhythm.half_swing, rhythm.omega
     theta, omega, _ = rl.flow(times, a=A, b=B, theta=0.0, omega=start)
@@ -251,14 +251,14 @@ DRIFTING: dict[str, How] = {
 
 
 def gauss_runs(count: int) -> list[How]:
-    """Steps that differ by parts in 2^40: enough to make their roundings independent, and too
-    little to change anything else."""
+    """Steps that differ by parts in 2^40: enough for independent roundings, too little for any
+    other difference."""
     return [{"method": "gauss", "step": STEP * (1 + k * 2.0**-40)} for k in range(count)]
 
 
 # ---------------------------------------------------------------------------- f. separatrix
 
-# Those that keep the energy, and those that do not.
+# Methods that keep the energy, and methods that do not.
 DECIDE: dict[str, How] = {
     "exact": {},
     "contact": {"model": "contact"},
@@ -279,13 +279,13 @@ STRAY: dict[str, How] = {
 
 
 def rolls_over(omega: float, half: float, **how: Any) -> bool:
-    """What a method makes of a throw from flat: where it has the body when that is flat again."""
+    """Whether a method lets a body thrown from flat roll over, judged when it is flat again."""
     found = rl.simulate(Scene(A, B, omega=omega), [half], **({"model": "rolling"} | how))
     return bool(found.theta[0] > math.pi / 2)
 
 
 def own_separatrix(**how: Any) -> float:
-    """Where a method begins to roll over, as a part of omega_R, by bisection."""
+    """Relative distance from omega_R at which a method begins to roll over, by bisection."""
     times, speed = np.arange(0.0, 60.0, 0.25), rl.thresholds(A, B).roll_over_speed
     low, high = -0.2, 0.2
     for _ in range(60):
@@ -293,7 +293,7 @@ def own_separatrix(**how: Any) -> float:
         scene = Scene(A, B, omega=speed * (1 + middle))
         theta = rl.simulate(scene, times, **({"model": "rolling"} | how)).theta
         left = np.flatnonzero((theta > 2.0) | ((theta < 0.5) & (times > 2)))
-        if theta[left[0] if left.size else -1] > math.pi / 2:  # else it lingers to the end
+        if theta[left[0] if left.size else -1] > math.pi / 2:  # the body lingers to the end
             high = middle
         else:
             low = middle
@@ -312,8 +312,8 @@ def swing(ratio: float) -> Scene:
 
 
 def steps_needed(ratio: float, method: str) -> float:
-    """Fewest steps of one size in a swing, by factors of 2^(1/4), that err by less than 1e-6 rad,
-    as twice as many do."""
+    """Fewest equal steps in a swing, by factors of 2^(1/4), with an error below 1e-6 rad, if twice
+    as many steps have such an error too."""
     scene = swing(ratio)
     once = rl.period(scene)
 
@@ -328,7 +328,7 @@ def steps_needed(ratio: float, method: str) -> float:
 
 
 def steps_taken(ratio: float, **how: Any) -> int:
-    """All that are tried in a swing at rtol 1e-9."""
+    """Number of all steps tried in a swing at rtol 1e-9."""
     scene = swing(ratio)
     stats = run(scene, [rl.period(scene)], rtol=1e-9, atol=1e-11, **how).stats
     return int(stats["steps"] + stats["rejected_steps"])
@@ -336,15 +336,15 @@ def steps_taken(ratio: float, **how: Any) -> int:
 
 # ---------------------------------------------------------------------- h. singular formulas
 
-REPORT_MASS = 10.0  # [kg]
+REPORT_MASS = 10.0  # mass [kg]
 
 
 class Third(NamedTuple):
-    """lambda_3 on an exact state [N]."""
+    """lambda_3 on an exact state, by three formulas [N]."""
 
-    printed: float  # eq 39 of the report
-    complete: float  # the same with all the terms of its numerator
-    solved: float  # of the linear system of the four multipliers
+    printed: float  # by eq 39 of the report
+    complete: float  # by eq 39 with all the terms of its numerator
+    solved: float  # by the linear system of the four multipliers
 
 
 def third(theta: float, a: float, b: float) -> Third:
@@ -362,8 +362,8 @@ def third(theta: float, a: float, b: float) -> Third:
 # --------------------------------------------------------------------------- i. long spans
 
 SPUN = Scene(A, B, theta=0.2, omega=3.2)
-SPANS = np.unique(np.geomspace(20, 500, 8).round())  # half turns
-LAWS: dict[str, tuple[int, How]] = {  # the power of time in the phase that is lost, and how
+SPANS = np.unique(np.geomspace(20, 500, 8).round())  # spans in half turns
+LAWS: dict[str, tuple[int, How]] = {  # power of time in the phase error of a method
     "multipliers, none": (3, kept_by("none")),
     "rk4, 0.005 s": (2, {"method": "rk4", "step": 0.005}),
     "dop853, rtol 1e-10": (2, {"method": "dop853"}),
@@ -374,7 +374,7 @@ LAWS: dict[str, tuple[int, How]] = {  # the power of time in the phase that is l
 
 
 def phase_missed(spans: Floats, **how: Any) -> tuple[Floats, float]:
-    """How far theta is off after so many half turns [rad], and steps in a half turn."""
+    """Errors of theta after numbers of half turns [rad], and steps in a half turn."""
     times = spans * half_turn(SPUN)
     found = run(SPUN, times, **how)
     missed = np.abs(found.theta - rl.simulate(SPUN, times).theta)
@@ -387,8 +387,8 @@ GRAZING = Scene(A, B, omega=4.5)
 
 
 def shortfall(samples: int, places: ArrayLike) -> Floats:
-    """By which part the largest need of friction is missed by so many samples of a quarter turn,
-    for each place [samples] of the first one."""
+    """Relative error of the largest friction needed, taken from samples of a quarter turn, for each
+    place of the first sample [samples]."""
     apart = half_turn(GRAZING) / 2 / samples
     need = rl.certify(GRAZING).largest_friction_needed
     assert need is not None
@@ -403,7 +403,7 @@ def shortfall(samples: int, places: ArrayLike) -> Floats:
 
 
 def event_loop(v: float, e: float, events: int) -> tuple[int, float]:
-    """From parabola to parabola: the event from which on the clock stands still, and its time."""
+    """Loop over impacts: the event from which on the clock stands still, and its time."""
     clock, speed, stands = v / GRAVITY, v * e, 0
     for event in range(1, events):
         later = clock + 2 * speed / GRAVITY
@@ -413,7 +413,7 @@ def event_loop(v: float, e: float, events: int) -> tuple[int, float]:
 
 
 def sinking(v: float, e: float, step: float, t_end: float) -> tuple[Floats, Floats]:
-    """Times and heights of symplectic Euler steps, and -e times the speed where the body is in the
+    """Times and heights of symplectic Euler steps, with an impact wherever the body is in the
     ground and falls."""
     heights, z, u = [], v * v / (2 * GRAVITY), 0.0
     for _ in range(round(t_end / step)):
@@ -428,12 +428,12 @@ def sinking(v: float, e: float, step: float, t_end: float) -> tuple[Floats, Floa
 
 
 class Pressed(NamedTuple):
-    """Of a sliding body, by a law of force."""
+    """Normal force and response of a sliding body, by a law of force."""
 
     normal: Any  # N/m [m/s^2]
-    response: Any  # m B
+    response: Any  # m B, so that N/m = load / (m B)
     turn: Any  # omega_dot m/N [1/m]
-    side: Any  # of the slip, -1 or 1
+    side: Any  # sign of the slip, -1 or 1
 
 
 def pressed(theta: Any, omega: Any, x_dot: Any, mu: float) -> Pressed:
@@ -446,8 +446,8 @@ def pressed(theta: Any, omega: Any, x_dot: Any, mu: float) -> Pressed:
 
 
 def law_of_force(y: ArrayLike, mu: float, step: float = 1e-3, t_end: float = 0.4) -> Floats:
-    """t, N/m, omega and x_dot of classical steps from (theta, omega, x_dot), which ask no question,
-    while they give numbers: (steps, 4)."""
+    """Rows of t, N/m, omega and x_dot from (theta, omega, x_dot), by classical steps without a
+    check of B, until numbers overflow: (steps, 4)."""
 
     def rates(y: Floats) -> Floats:
         at = pressed(y[0], y[1], y[2], mu)
@@ -466,13 +466,14 @@ def law_of_force(y: ArrayLike, mu: float, step: float = 1e-3, t_end: float = 0.4
 
 # ---------------------------------------------------------------------- m. steps too large
 
-OMEGA = math.sqrt(GRAVITY * (A * A - B * B) / (B * (GYRATION2 + B * B)))  # of small rocking
+# angular frequency of small rocking [1/s]
+OMEGA = math.sqrt(GRAVITY * (A * A - B * B) / (B * (GYRATION2 + B * B)))
 SMALL = Scene(A, B, omega=1e-6 * OMEGA)
 
 
 def amplitude(method: str, y: float, steps: int, **how: Any) -> Floats:
-    """Of small rocking after each of so many steps of y/Omega, in units of that at the start; inf
-    at the end of a motion that was given up."""
+    """Amplitude of small rocking after each step of y/Omega, relative to the start; inf at the end
+    of a motion that was given up."""
     size = {} if method == "exact" else {"step": y / OMEGA}
     found = run(SMALL, np.arange(steps + 1) * (y / OMEGA), method=method, **size, **how)
     grown = np.hypot(found.theta, found.omega / OMEGA) / 1e-6
@@ -480,7 +481,7 @@ def amplitude(method: str, y: float, steps: int, **how: Any) -> Floats:
 
 
 def rocked_to(method: str) -> float:
-    """Omega h up to which 2000 steps make the amplitude no larger."""
+    """Largest Omega h at which 2000 steps do not increase the amplitude."""
     limit = interval(method, 1j)
     return largest(
         lambda y: bool(amplitude(method, y, 2000)[-1] <= 1), 0.8 * limit, 1.2 * limit, 1e-6
@@ -488,7 +489,7 @@ def rocked_to(method: str) -> float:
 
 
 def given_up_from(stages: int) -> float:
-    """Omega h from which on the stages of Gauss's method are not found in one of 300 steps."""
+    """Least Omega h at which the stages of Gauss's method are not found in one of 300 steps."""
     return largest(
         lambda y: math.isfinite(amplitude("gauss", y, 300, stages=stages)[-1]), 1.0, 20.0, 1e-3
     )
@@ -511,13 +512,13 @@ for _method in ("dop853", "dopri5"):
 
 
 class Loose(NamedTuple):
-    """A minute with a tolerance of 1e-2."""
+    """Losses of a motion of a minute with a tolerance of 1e-2."""
 
     motion: Trajectory
-    missed: Floats  # constraints at each sample, in long semi-axes and rad
-    energy: Floats  # changed at each sample, beside its largest size
-    phase: float  # largest of the last ten seconds [rad]: at one time two swings may meet
-    texts: list[str]  # of its warnings
+    missed: Floats  # constraint errors at each sample, in long semi-axes and rad
+    energy: Floats  # change of the energy at each sample / its largest size
+    phase: float  # largest error of the last ten seconds [rad]: at one time two swings may meet
+    texts: list[str]  # texts of the warnings
 
 
 def loose(scene: Scene, how: How) -> Loose:
@@ -533,9 +534,9 @@ def loose(scene: Scene, how: How) -> Loose:
 
 # ---------------------------------------------------------------------------- o. vain work
 
-SPAN = 2.0  # [s]; steps of powers of two end on it
+SPAN = 2.0  # span [s]; steps of powers of two end on it
 _random = np.random.default_rng(1)
-THETA, SPEED = _random.uniform(-0.1, 0.1, 100), _random.uniform(0.8, 1.2, 100)  # the starts
+THETA, SPEED = _random.uniform(-0.1, 0.1, 100), _random.uniform(0.8, 1.2, 100)  # starts of the runs
 
 
 def rms(errors: ArrayLike) -> float:
@@ -554,8 +555,8 @@ def _acceleration(theta: Any, omega: Any) -> Any:
 
 
 def plain(power: int, number: Any) -> float:
-    """Rms error of the angles after SPAN by the classical method as it stands in books, with steps
-    of 2^-power and all numbers in that precision."""
+    """Rms error of the angles after SPAN by the textbook form of the classical method, with steps
+    of 2^-power and numbers of the given type."""
     theta, omega = THETA.astype(number), SPEED.astype(number)
     start = {"theta": theta.astype(float), "omega": omega.astype(float)}
     truth, _, _ = rl.flow(SPAN, a=A, b=B, **start)

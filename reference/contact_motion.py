@@ -1,7 +1,7 @@
 """Rolling, sliding, flight and impacts, followed by Taylor series in any number of digits.
 
-make_contact_reference.py makes a table with it, judge_contact.py judges random scenes. gmpy2 only:
-no code and no formula of the package.
+make_contact_reference.py makes a table with this module, judge_contact.py judges random scenes. It
+needs only gmpy2 and shares no code and no formula with the package.
 
 Motion. x along the ground, z away from it, theta clockwise, g down a slope alpha; per mass, with
 k^2 = I/m. The point that touches is P(phi) = (a sin phi, -b cos phi) of the body. With
@@ -15,7 +15,7 @@ r is the radius of curvature. The ground pushes with N and F per mass:
     x'' = F + g sin alpha,   z'' = N - g cos alpha,   k^2 omega' = -h F - o N                    (2)
 
 Slip v = x' - h omega, and without pressure the gap z - h would open with -c, where
-c = g cos alpha + (r - h) omega^2. Modes, each until what it names is no longer positive:
+c = g cos alpha + (r - h) omega^2. A mode ends when one of its last-named margins reaches zero:
 
     rolling   v = 0: (k^2 + h^2 + o^2) omega' = h g sin alpha - o (g cos alpha + r omega^2), N and
               F by (2); mu N - F, mu N + F; N, where mu is infinite
@@ -23,9 +23,9 @@ c = g cos alpha + (r - h) omega^2. Modes, each until what it names is no longer 
               Its limit for infinite mu: N = 0, F = k^2 c / (h o), where s o < 0; s v, c
     flight    N = F = 0; z - h
 
-What begins without slip rolls if that needs no more friction than there is; else it slips to the
+A start without slip rolls if that needs no more friction than there is; else it slips to the
 side on which B > 0 and friction lets the slip grow. It flies if c < 0. With slip and B < 0 < c no
-motion goes on: a jam. Without friction slip has no side, and no event where it changes its sign.
+motion exists: a jam. Without friction slip has no side, and no event where it changes its sign.
 
 An impact adds up impulses per mass along and away from the ground by Coulomb's law, in pieces on
 which v and u = z' - o omega change linearly; it ends when the work done since u = 0 is e^2 times
@@ -39,7 +39,7 @@ The first event of a step is the first root of polynomials, found without sampli
 coefficients that do not change sign exclude a root, one change means exactly one, and otherwise
 the interval is halved. Where s v or z - h starts at zero those zeros are divided out: one where
 slip or rebound begins with a speed or a jump of the force, two where rolling turns to slip or a
-gap opens at once, three where a slide lifts off. So short slips are not taken for none.
+gap opens at once, three where a slide lifts off. This resolves the shortest slips.
 """
 
 import math
@@ -52,9 +52,9 @@ import gmpy2
 from gmpy2 import mpfr
 from series import Road, product, quotient, square_root, value
 
-MOST_STEPS = 3000  # of a motion
-REST_SPEED = 1e-6  # times sqrt(g min(a, b)): smaller rebounds are summed
-LEAST_REBOUND = 1e-3  # the same, of all other scenes
+MOST_STEPS = 3000  # most steps of one motion
+REST_SPEED = 1e-6  # rebound speed / sqrt(g min(a, b)); slower rebounds of a flat drop are summed
+LEAST_REBOUND = 1e-3  # least rebound speed / sqrt(g min(a, b)) in all other scenes
 
 
 class Undecided(Exception):
@@ -81,7 +81,7 @@ class Scene(NamedTuple):
 
 
 class Row(NamedTuple):
-    """An event and the state just after it, all mpfr but the kind."""
+    """The kind of an event and the mpfr values just after it."""
 
     kind: str
     t: Any
@@ -101,7 +101,7 @@ VALUES = Row._fields[1:]
 
 @cache
 def bernstein_weights(degree: int, precision: int) -> list[list[Any]]:
-    """C(j, i) / C(degree, i): Bernstein coefficient j from power i; working precision."""
+    """Bernstein coefficient j is the sum of power coefficients i times C(j, i) / C(degree, i)."""
     assert precision == gmpy2.get_context().precision
     return [
         [mpfr(math.comb(j, i)) / math.comb(degree, i) for i in range(j + 1)]
@@ -110,7 +110,7 @@ def bernstein_weights(degree: int, precision: int) -> list[list[Any]]:
 
 
 def halves(bernstein: list[Any]) -> tuple[list[Any], list[Any]]:
-    """Bernstein coefficients on both halves of the interval (de Casteljau)."""
+    """Bernstein coefficients on the left and the right half of the interval (de Casteljau)."""
     left, right = [bernstein[0]], [bernstein[-1]]
     while len(bernstein) > 1:
         bernstein = [(p + q) / 2 for p, q in pairwise(bernstein)]
@@ -148,7 +148,7 @@ def first_root(coefficients: list[Any], end: Any) -> Any:
 
 
 def bisected(coefficients: list[Any], low: Any, high: Any) -> Any:
-    """The only root in (low, high], where the polynomial falls through 0; Newton's method ends."""
+    """The only root in (low, high], where the polynomial falls through 0: halving, then Newton."""
     slopes = [i * one for i, one in enumerate(coefficients)][1:]
     for _ in range(20):
         middle = (low + high) / 2
@@ -165,7 +165,7 @@ def bisected(coefficients: list[Any], low: Any, high: Any) -> Any:
 
 
 class Touch(NamedTuple):
-    """A touching body, and its response to impulses per mass along and away from the ground."""
+    """Geometry of a touching body, and its response to impulses per mass along both axes."""
 
     h: Any
     o: Any
@@ -175,7 +175,7 @@ class Touch(NamedTuple):
 
 
 class Body:
-    """The constants of a motion, in the context of its precision."""
+    """The constants of a motion, in the precision of the current context."""
 
     def __init__(self, scene: Scene) -> None:
         self.a, self.b, self.mass, self.g = map(mpfr, scene[:4])
@@ -189,17 +189,17 @@ class Body:
         self.mu, self.e = mpfr(scene.friction), mpfr(scene.restitution)
 
     def phi(self, theta: Any) -> Any:
-        """phi of theta, the same number of turns."""
+        """phi of an angle theta, with as many whole turns as theta has."""
         sin, cos = gmpy2.sin_cos(theta)
         return gmpy2.atan2(self.a * sin, self.b * cos) + theta - gmpy2.atan2(sin, cos)
 
     def theta(self, phi: Any) -> Any:
-        """theta of phi, the same number of turns."""
+        """theta of an angle phi, with as many whole turns as phi has."""
         sin, cos = gmpy2.sin_cos(phi)
         return gmpy2.atan2(self.b * sin, self.a * cos) + phi - gmpy2.atan2(sin, cos)
 
     def touch(self, phi: Any) -> Touch:
-        """The body touching the ground at phi."""
+        """Geometry and response of the body touching the ground at phi."""
         sin, cos = gmpy2.sin_cos(phi)
         w = gmpy2.sqrt((self.a * cos) ** 2 + (self.b * sin) ** 2)
         h, o = self.ab / w, self.c2 * sin * cos / w
@@ -210,7 +210,7 @@ ROLLING, SLIDING, FLIGHT = "rolling", "sliding", "flight"
 
 
 class State(NamedTuple):
-    """The motion at one time; the centre moves as x and z do."""
+    """The motion at one time; x and z are the position of the centre."""
 
     phi: Any
     theta: Any
@@ -230,7 +230,7 @@ class Arc(NamedTuple):
 
 
 class Series(NamedTuple):
-    """Taylor coefficients in time; forces per mass, B = 1 on all arcs but slides."""
+    """Taylor coefficients in time; forces are per mass; B = 1 on arcs that do not slide."""
 
     phi: list[Any]
     theta: list[Any]
@@ -245,22 +245,22 @@ class Series(NamedTuple):
 
 
 def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
-    """Coefficients 0 to order of the state, and one fewer of the other columns."""
+    """Coefficients 0 to order of the state, and 0 to order - 1 of the other quantities."""
     phi, theta, omega, x, x_dot = ([one] for one in state[:5])
     sin, cos = ([each] for each in gmpy2.sin_cos(state.phi))
-    rate: list[Any] = []  # of phi
+    rate: list[Any] = []  # series of the rate of phi
     w2: list[Any] = []
     w: list[Any] = []
     h: list[Any] = []
     o: list[Any] = []
-    spin: list[Any] = []  # omega^2
-    bend: list[Any] = []  # h''
+    spin: list[Any] = []  # series of omega^2
+    bend: list[Any] = []  # series of h''
     c: list[Any] = []
-    load: list[Any] = []  # g cos alpha + (h + h'') omega^2
-    stiffness: list[Any] = []  # D when rolling, B when sliding, h o of unlimited friction
+    load: list[Any] = []  # series of g cos alpha + (h + h'') omega^2
+    stiffness: list[Any] = []  # series of D (roll), B (slide) or h o (unlimited friction)
     normal: list[Any] = []
     friction: list[Any] = []
-    spin_up: list[Any] = []  # of omega
+    spin_up: list[Any] = []  # series of the rate of omega
     a2, b2, k2, zero = body.a**2, body.b**2, body.k2, mpfr(0)
     pull = -body.mu * arc.side if gmpy2.is_finite(body.mu) else zero
     for n in range(order):
@@ -309,7 +309,7 @@ def motion(body: Body, state: State, arc: Arc, order: int) -> Series:
 
 
 def standing(body: Body, state: State, slip: Any) -> Arc | None:
-    """The next arc of a touching body whose gap rate is 0; None if it jams."""
+    """The next arc of a touching body whose gap rate is 0, or None if the body jams."""
     h, o, tangential, normal, coupling = body.touch(state.phi)
     spin = state.omega**2
     c = body.level + (body.ab**2 / h**3 - h) * spin
@@ -346,7 +346,7 @@ def standing(body: Body, state: State, slip: Any) -> Arc | None:
 
 
 class Hit(NamedTuple):
-    """Impulses per mass along and away from the ground, and slip and gap rate after them."""
+    """Impulses per mass along and away from the ground, and slip and gap rate after the hit."""
 
     along: Any
     away: Any
@@ -355,11 +355,11 @@ class Hit(NamedTuple):
 
 
 def collide(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
-    """Impulses of a collision with slip v and gap rate u < 0."""
+    """Impulses of a collision that starts with slip v and gap rate u < 0."""
     if gmpy2.is_finite(body.mu):
         return collide_with_friction(body, touch, v, u)
     tangential, normal, coupling = touch[2:]
-    stopped = u - v * coupling / tangential  # the gap rate when friction alone has ended the slip
+    stopped = u - v * coupling / tangential  # gap rate when friction alone has ended the slip
     if stopped <= 0:
         away = (1 + body.e) * -stopped / (normal - coupling**2 / tangential)
         along = -(v + coupling * away) / tangential
@@ -371,7 +371,7 @@ def collide(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
 
 
 def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
-    """Piece by piece: over the impulse p away from the ground, v and u change linearly."""
+    """Impulses of a collision with Coulomb friction, in pieces on which v and u are linear in p."""
     tangential, normal, coupling = touch[2:]
     along, away, work, compressing = mpfr(0), mpfr(0), mpfr(0), True
     while True:
@@ -386,7 +386,7 @@ def collide_with_friction(body: Body, touch: Touch, v: Any, u: Any) -> Hit:
         ends = []
         if v * v_rate < 0:
             ends.append((-v / v_rate, "slip"))
-        if not compressing:  # u p + u_rate p^2 / 2 = work, with u >= 0
+        if not compressing:  # the piece ends at u p + u_rate p^2 / 2 = work, with u >= 0
             assert u_rate > 0
             ends.append(((gmpy2.sqrt(u**2 + 2 * u_rate * work) - u) / u_rate, "end"))
         elif u_rate > 0:
@@ -448,11 +448,11 @@ class Follower:
             self.happens("jam")
 
     def first_arc(self, slip: Any) -> Arc | None:
-        """The first arc of a body on the ground; None if it jams."""
+        """The first arc of a body on the ground, or None if the body jams."""
         return standing(self.body, self.state, slip)
 
     def energy(self) -> Any:
-        """Per mass."""
+        """Energy of the body per mass."""
         s, body = self.state, self.body
         kinetic = (s.x_dot**2 + s.z_dot**2 + body.k2 * s.omega**2) / 2
         return kinetic + body.level * s.z - body.down * s.x
@@ -462,12 +462,12 @@ class Follower:
         self.rows.append(self.now(kind))
 
     def now(self, kind: str) -> Row:
-        """The state as a row."""
+        """The present state as a row of the given kind."""
         s = self.state
         return Row(kind, self.t, s.theta, s.omega, s.x, s.z, s.x_dot, s.z_dot)
 
     def follow(self, end: Any, most_events: int) -> Followed:
-        """Follow the motion to a time, or to a lost end before it."""
+        """Follow the motion to a time, or until it can no longer be followed."""
         while self.arc is not None and self.t < end and len(self.rows) < most_events:
             if self.lost is not None:
                 break
@@ -475,7 +475,7 @@ class Follower:
         return Followed(self.rows, self.now("state"), self.energy_error / self.size, self.lost)
 
     def step(self, end: Any) -> None:
-        """One series, up to its reach, the end or the first event."""
+        """Take one series up to the end of its step, the wanted end or the first event."""
         arc, body = self.arc, self.body
         assert arc is not None
         self.steps += 1
@@ -497,7 +497,7 @@ class Follower:
             self.change(what, arc, found, step)
 
     def reach(self, found: Series) -> Any:
-        """The step whose last terms are as small as the tolerance."""
+        """The step at which the last terms of the series are as small as the tolerance."""
         columns = (found.phi, found.omega, found.h, found.normal, found.friction)
         last = self.road.order - 1
         growth = max(
@@ -520,25 +520,25 @@ class Follower:
                 return []
             pairs = list(zip(normal, friction, strict=True))
             return [("slip", [mu * n + side * f for n, f in pairs]) for side in (1, -1)]
-        if mu == 0:  # slip has no side without friction
+        if mu == 0:  # without friction slip has no sign
             return [("lift_off", found.c)]
         slip = [arc.side * one for one in self.slip(found)]
         watched = [("stick", slip[arc.zeros :]), ("lift_off", found.c)]
         return [*watched, ("jam", found.stiffness)] if gmpy2.is_finite(mu) else watched
 
     def slip(self, found: Series) -> list[Any]:
-        """Coefficients of the slip."""
+        """Taylor coefficients of the slip."""
         orders = range(len(found.h))
         return [found.x_dot[n] - product(found.h[: n + 1], found.omega[: n + 1]) for n in orders]
 
     def heat(self, found: Series, step: Any) -> Any:
-        """The work of friction."""
+        """The work of friction in a step."""
         slip, force = self.slip(found), found.friction
         power = [product(force[: n + 1], slip[: n + 1]) for n in range(len(slip))]
         return step * value([one / (n + 1) for n, one in enumerate(power)], step)
 
     def move(self, found: Series, step: Any) -> None:
-        """Move the state within the reach of the series."""
+        """Move the state by a step that the series reaches."""
         assert self.arc is not None
         phi, theta, omega, x, x_dot = (value(column, step) for column in found[:5])
         if self.arc.mode == FLIGHT:
@@ -550,7 +550,7 @@ class Follower:
         self.state = State(phi, theta, omega, x, x_dot, z, z_dot)
 
     def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
-        """Change the arc at the root of a margin."""
+        """Change the arc at the root of the margin that ended it."""
         body, s = self.body, self.state
         if what == "impact":
             self.hit()
@@ -581,7 +581,7 @@ class Follower:
             raise Undecided("a jam on the way")
 
     def hit(self) -> None:
-        """An impact, and the arc after it."""
+        """Apply an impact, and choose the arc after it."""
         body, s = self.body, self.state
         touch = body.touch(s.phi)
         s = s._replace(z=touch.h)
@@ -614,15 +614,15 @@ class Follower:
 
 
 def follow(scene: Scene, end: Any, road: Road, most_events: int = 100) -> Followed:
-    """The motion up to a time, in the precision of its road."""
+    """The motion up to a time, in the precision `road`."""
     return Follower(scene, road).follow(mpfr(end), most_events)
 
 
-# ---------------------------------------------------------------- in doubles, to draw scenes with
+# ---------------------------------------------------------------- doubles for drawing scenes
 
 
 def support(a: float, b: float, theta: float) -> tuple[float, float, float]:
-    """h, h' and h''."""
+    """h, h' and h'' in doubles."""
     h = math.hypot(a * math.sin(theta), b * math.cos(theta))
     slope = (a - b) * (a + b) * math.sin(theta) * math.cos(theta) / h
     return h, slope, (a * b) ** 2 / h**3 - h

@@ -2,27 +2,27 @@
 
     python reference/judge_contact.py --scenes 2000 --seed 1 --workers 2 --file judged.jsonl
 
-Half an hour to an hour on two cores. A file that is there is gone on with; `--only 17` judges one
-scene of a seed and prints all of its values, `--family well` draws of one family, `--report` only
-tells what a file has. The end is what was judged, by family, shape and friction, and a
-reproduction of each scene above `--limit` units.
+A run takes half an hour to an hour on two cores and continues an existing file. `--only 17` judges
+one scene of a seed and prints all of its values, `--family well` draws from one family, `--report`
+only prints the findings in a file. The report counts the judged scenes by family, shape and
+friction, and reproduces each scene above `--limit` units.
 
 Scenes are drawn from the families below: aspects from 1e-3 to 1e3, friction from none to
-unlimited, inertia, mass, gravity and lengths over many powers of ten. Each is followed with 42
-digits until the inputs do not fix the answer any more, there were enough events, or a kind of event
-is undecided. Events, the states after them, and states at times between are compared with those of
-the package, asked in a table, alone, and by `sol` in any order.
+unlimited, inertia, mass, gravity and lengths over many powers of ten. Each scene is followed with
+42 digits until the inputs no longer fix the answer, the events are enough, or the kind of an event
+is undecided. Events, the states after them and states at times between are compared with the
+package's, which come from a table of times, from single times, and from `sol` in any order.
 
-Units. The error of a value is measured by the sum of what 2.2e-16 of each input does to it, each
-in a run of its own, two ulp of the value, and, at events, what two ulp of their time do. theta0
-counts as 2.2e-16 rad. After many turns z, x_dot and z_dot belong to the angle told, with what half
-an ulp of it does to them. The strict unit has 2.2e-16 of its distance from the nearest quarter turn
-instead, and no ulp of times: near a tip, or lying, a double is more than its ulp says.
+Units. The unit of a value is a sum: the effect of 2.2e-16 of each input, each in its own run, two
+ulp of the value and, at events, the effect of two ulp of the time. theta0 is changed by 2.2e-16
+rad. After many turns z, x_dot and z_dot belong to the reported angle, and the effect of half an ulp
+of this angle is added. The strict unit changes theta0 by 2.2e-16 of its distance from the nearest
+quarter turn and has no ulp of times: there a double resolves more than an ulp of the angle.
 
 Scenes whose events change with 2.2e-16 of an input are at a limit and are not judged from there on.
-Where the package comes to other events, the inputs are changed by up to 64 times 2.2e-16 at random,
-within which the package counts a start as being at a limit: if that leads to its events, the scene
-is at a limit as well; if not, it is a fault.
+Where the package finds other events, the inputs are changed at random by up to 64 times 2.2e-16:
+within this distance the package treats a start as being at a limit. If changed inputs lead to the
+package's events, the scene is at a limit as well; if not, the package has a fault.
 """
 
 import argparse
@@ -60,24 +60,24 @@ from contact_motion import (
 from gmpy2 import mpfr
 from series import ROUNDING, Road, log_uniform
 
-# One of them computes the units, the next the values; the one after that checks them.
+# Precisions: the first computes the units, the next the values, the third checks the values.
 ROADS = [Road(34, 23, 1e-23), Road(42, 30, 1e-31), Road(56, 42, 1e-42), Road(72, 54, 1e-54)]
 CHANGED_ROAD, EXACT_ROAD = ROADS[:2]
-CHECKED = 20  # every 20th scene has its values checked, too
-FARTHEST = 0.1  # units between two roads; the finer one is then millions of times better
-LEAST_UNIT = 1e-3 * ROUNDING  # of the size: some values are zero whatever the inputs are
-RATE_STEP = 1e-8  # of a step, for rates
-UNIT_LIMIT = 1e-9  # of the size of the scene; above it the inputs do not fix the answer
-KIND_LIMIT = 1e-4  # of its time; up to it the inputs fix the kind of an event
-MOST_STEPS = 260  # of the plan
-MOST_SECONDS = 60.0  # for one scene
-LEAST_REBOUND = 2e-5  # times sqrt(g min(a, b)): below, the package may sum bounces
-NEARBY = 12  # scenes beside one, to distinguish a limit from a fault
+CHECKED = 20  # the values of every 20th scene are checked in a third precision
+FARTHEST = 0.1  # most units between two precisions; the finer one is then millions of times better
+LEAST_UNIT = 1e-3 * ROUNDING  # least unit / size of a scene: some values are zero for all inputs
+RATE_STEP = 1e-8  # change of time / step in differences for rates
+UNIT_LIMIT = 1e-9  # largest unit / size of a scene; above it the inputs do not fix the answer
+KIND_LIMIT = 1e-4  # largest unit of a time / time; up to it the inputs fix the kind of an event
+MOST_STEPS = 260  # most steps of the motion that plans a scene
+MOST_SECONDS = 60.0  # processor time for one scene [s]
+LEAST_REBOUND = 2e-5  # rebound speed / sqrt(g min(a, b)); the package may sum slower bounces
+NEARBY = 12  # slightly changed scenes that distinguish a limit from a fault
 ROUTES = ("event", "table", "alone", "sol", "long")
 
 
 class Blow(NamedTuple):
-    """An impulse at t = 0: its components and where it acts, seen from the centre."""
+    """An impulse at t = 0: its components, and its point of action relative to the centre."""
 
     jx: Any
     jz: Any
@@ -91,9 +91,9 @@ class Case(NamedTuple):
     family: str
     scene: Scene
     blow: Blow | None = None
-    longest: float = 1.0  # [s]
+    longest: float = 1.0  # longest time span [s]
     most_events: int = 8
-    long_turns: float = 0.0  # swings or half turns to a late sample; 0: none
+    long_turns: float = 0.0  # swings or half turns up to a late sample; 0: no late sample
 
 
 # ---------------------------------------------------------------- the reference
@@ -106,9 +106,9 @@ class Judge(Follower):
 
     def __init__(self, case: Case, road: Road) -> None:
         self.blow = case.blow and Blow(*map(mpfr, case.blow))
-        # without loss bounces are never summed
+        # without loss of energy bounces are never summed
         self.least_rebound = 0.0 if case.scene.restitution == 1 else LEAST_REBOUND
-        self.rates: list[list[Any]] = []  # of what a row has, just before each event
+        self.rates: list[list[Any]] = []  # rates of the components of a row, just before each event
         a, b, gravity = case.scene.a, case.scene.b, case.scene.gravity
         self.natural_time = gmpy2.sqrt(max(mpfr(a), mpfr(b)) / mpfr(gravity))
         super().__init__(case.scene, road)
@@ -171,7 +171,7 @@ class Judge(Follower):
 
     def change(self, what: str, arc: Arc, found: Series, step: Any) -> None:
         """Record the rates of the state just before an event."""
-        now, row, short = self.state, self.now(what), mpfr(RATE_STEP) * step  # t stays
+        now, row, short = self.state, self.now(what), mpfr(RATE_STEP) * step  # t is not moved
         self.state, self.arc = self.started, arc
         self.move(found, step - short)
         rates = [(p - q) / short for p, q in zip(row[1:], self.now(what)[1:], strict=True)]
@@ -180,7 +180,7 @@ class Judge(Follower):
         self.rates += [rates] * (len(self.rows) - len(self.rates))
 
     def reach(self, found: Series) -> Any:
-        """The step whose last terms are as small as the tolerance beside the first three."""
+        """The step whose last terms are as small as the tolerance times the first three."""
         columns = (found.phi, found.omega, found.h, found.x_dot)
         last, tau = self.road.order - 1, self.natural_time
         growth = mpfr(0)
@@ -203,7 +203,7 @@ class Turning(Judge):
         self.fresh = self.state.omega == 0
 
     def watched(self, found: Series, arc: Arc) -> list[tuple[str, list[Any]]]:
-        """Watch also the sign of omega and the end of half a turn."""
+        """Margins of rolling, with the sign of omega and the end of half a turn."""
         omega = found.omega[1:] if self.fresh else found.omega
         side = 1 if omega[0] > 0 else -1
         self.fresh = False
@@ -249,17 +249,17 @@ class Sample(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """Rows of events and samples; samples that were not reached are None."""
+    """Rows of events and samples; a sample that was not reached is None."""
 
     events: list[Row]
     samples: list[Sample | None]
-    rates: list[list[Any]]  # of the events
-    stopped: Any  # where it could not be followed on, or None
+    rates: list[list[Any]]  # rates of the rows of the events
+    stopped: Any  # time at which the motion became undecided, or None
     why: str
 
 
 def answer(case: Case, road: Road, times: list[Any], end: Any, most_steps: int = 0) -> Answer:
-    """The motion up to an end."""
+    """Events and samples of the motion up to an end."""
     with road.context():
         samples: list[Sample | None] = [None] * len(times)
         try:
@@ -284,7 +284,7 @@ def answer(case: Case, road: Road, times: list[Any], end: Any, most_steps: int =
 
 
 def long_answer(case: Case, road: Road, times: list[float]) -> list[Row]:
-    """The state after many swings or half turns, by the period; of rolling for ever."""
+    """States after many swings or half turns, reduced by the period of a motion that only rolls."""
     with road.context():
         span, turn, way = Turning(case, road).period()
         rows = []
@@ -304,7 +304,7 @@ def long_answer(case: Case, road: Road, times: list[float]) -> list[Row]:
 
 
 def distance_from_quarter_turn(theta: float) -> Any:
-    """From the nearest multiple of pi/2; working precision."""
+    """Distance of an angle from the nearest multiple of pi/2, in working precision."""
     quarter = gmpy2.const_pi() / 2
     return abs(mpfr(theta) - gmpy2.rint(mpfr(theta) / quarter) * quarter)
 
@@ -325,7 +325,7 @@ def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
                 continue
             if old is None or not gmpy2.is_finite(mpfr(old)) or old == 0:
                 continue
-            # the mass enters k^2 = I/m as the inertia does
+            # k^2 = I/m changes with the mass as with the inertia
             both = name == "inertia" and scene.inertia is not None and case.blow is None
             yield name, 2 if both else 1, with_input(case, name, mpfr(old) * (1 + mpfr(ROUNDING)))
         for name in Blow._fields if case.blow else ():
@@ -337,48 +337,48 @@ def changed_cases(case: Case) -> Iterator[tuple[str, int, Case]]:
 
 
 def with_input(case: Case, name: str, value: Any) -> Case:
-    """One input changed."""
+    """The case with one input of its scene changed."""
     return case._replace(scene=case.scene._replace(**{name: value}))
 
 
 class Judged(NamedTuple):
     """A row of the reference with its units."""
 
-    what: str  # "event 3", "sample 0", "long 1"
+    what: str  # name of the row: "event 3", "sample 0", "long 1"
     row: Row
     unit: list[float]
     strict: list[float]
 
 
 def differences(new: Row, old: Row) -> list[float]:
-    """Sizes of the differences."""
+    """Sizes of the differences between two rows."""
     return [float(abs(p - q)) for p, q in zip(new[1:], old[1:], strict=True)]
 
 
 class Reference(NamedTuple):
-    """The answers that the inputs fix."""
+    """The rows and events that the inputs fix."""
 
     judged: list[Judged]
-    kinds: list[str]  # of the events that the inputs fix
-    times: list[Any]  # of all events
-    at_limit: str  # the input by which events change, or ""
-    apart: float  # from another road, in units
+    kinds: list[str]  # kinds of the events that the inputs fix
+    times: list[Any]  # times of all events
+    at_limit: str  # the input whose change changes the events, or ""
+    apart: float  # distance from a finer precision, in units
 
 
 def natural(scene: Scene) -> tuple[float, float]:
-    """Length and time of a scene's own size."""
+    """Length of the scene [m] and its natural time sqrt(length / g) [s]."""
     length = max(scene.a, scene.b)
     return length, math.sqrt(length / scene.gravity)
 
 
 def sizes(scene: Scene) -> list[float]:
-    """Sizes of the components, by which unfixed answers are recognised."""
+    """Natural sizes of the components of a row, to recognise answers that the inputs do not fix."""
     length, tau = natural(scene)
     return [tau, 1.0, 1 / tau, length, length, length / tau, length / tau]
 
 
 def rows_of(found: Answer, far: list[Row]) -> dict[str, Row]:
-    """All rows of an answer, by what they are."""
+    """All rows of an answer and of late samples, by the name of the row."""
     rows = {f"event {i}": row for i, row in enumerate(found.events)}
     rows |= {f"sample {i}": one.row for i, one in enumerate(found.samples) if one}
     return rows | {f"long {i}": row for i, row in enumerate(far)}
@@ -395,7 +395,7 @@ def alike(what: str, *found: Answer) -> bool:
 
 
 def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
-    """From the rows of another road, in units."""
+    """Largest distance of the judged rows from the rows of another precision, in units."""
     least = [LEAST_UNIT * size for size in sizes(case.scene)]
     shares = [
         apart / max(unit, smallest)
@@ -411,7 +411,7 @@ def distance(judged: list[Judged], case: Case, other: dict[str, Row]) -> float:
 def reference(
     case: Case, times: list[float], end: float, long_times: list[float], check: bool, level: int = 0
 ) -> Reference:
-    """Events, samples and their units; by a finer road if this one is too coarse."""
+    """Events, samples and their units, in a finer precision where this one is too coarse."""
     road, finer = ROADS[level : level + 2]
     exact = answer(case, finer, times, end)
     base = answer(case, road, times, end)
@@ -462,7 +462,7 @@ def reference(
     apart = distance(judged, case, bases)
     if apart > FARTHEST and level + 3 < len(ROADS):
         return reference(case, times, end, long_times, check, level + 1)
-    # what is still apart is left out
+    # rows that still differ are left out
     judged = [one for one in judged if distance([one], case, bases) <= FARTHEST]
     if check:
         finest = answer(case, ROADS[level + 2], times, end)
@@ -481,7 +481,7 @@ def reference(
 
 
 def in_words(case: Case) -> rl.Scene:
-    """The scene as the package has it."""
+    """The scene of a case as the package's `Scene`."""
     given = {name: value for name, value in case.scene._asdict().items() if value is not None}
     if case.blow:
         given["impulse"] = rl.Impulse(case.blow.jx, case.blow.jz, dx=case.blow.dx, dz=case.blow.dz)
@@ -489,22 +489,22 @@ def in_words(case: Case) -> rl.Scene:
 
 
 class Found(NamedTuple):
-    """The package's answers: by what was asked and by which route."""
+    """The package's answers, by the name of the row and the route to it."""
 
     kinds: list[str]
-    values: dict[tuple[str, str], list[float]]  # (what, route): t, theta, ...
+    values: dict[tuple[str, str], list[float]]  # (name of the row, route): t, theta, ...
     status: str
 
 
 def states(motion: rl.Trajectory, count: int) -> list[list[float]]:
-    """Samples as rows."""
+    """The samples of a motion as rows."""
     return [[float(getattr(motion, name)[i]) for name in VALUES] for i in range(count)]
 
 
 def found_by_package(
     case: Case, times: list[float], end: float, long_times: list[float], rng: random.Random
 ) -> Found:
-    """Events, and samples by every route."""
+    """The package's events, and its samples by every route."""
     scene = in_words(case)
     asked = sorted({*times, end})
     motion = rl.simulate(scene, asked, model="contact", raise_on_failure=False)
@@ -561,13 +561,13 @@ def plan(case: Case, rng: random.Random) -> tuple[list[float], float, str]:
 
 
 def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bool:
-    """Whether a scene changed by a few roundings has these events."""
+    """Whether a scene changed by a few roundings has these events in the package."""
     for most in (4, 64) * NEARBY:
         near = case
         v = case.scene._asdict()
         if v["x_dot"] is not None and v["z"] is None:
             rolls = support(v["a"], v["b"], v["theta"])[0] * v["omega"]
-            if abs(v["x_dot"] - rolls) < 1e-14 * abs(rolls):  # and is said to roll
+            if abs(v["x_dot"] - rolls) < 1e-14 * abs(rolls):  # a start taken as rolling
                 near = with_input(near, "x_dot", rng.choice([None, v["x_dot"]]))
         with CHANGED_ROAD.context():
             for name in ("a", "b", "gravity", "friction", "theta", "omega", "x_dot", "slope"):
@@ -583,16 +583,16 @@ def leads_to(case: Case, end: float, kinds: list[str], rng: random.Random) -> bo
 
 
 class TooSlow(Exception):
-    """The scene takes longer than `MOST_SECONDS`."""
+    """The judgement of a scene has taken longer than `MOST_SECONDS`."""
 
 
 def too_slow(*_: Any) -> None:
-    """Answer of the alarm."""
+    """Raise `TooSlow`; the handler of the alarm."""
     raise TooSlow
 
 
 def judge(task: tuple[int, int, str | None], tell: bool = False) -> dict[str, Any]:
-    """Judge one scene: the number of a seed, of one family or of any."""
+    """The record of one scene: the number of a seed, drawn from one family or from any."""
     seed, number, family = task
     rng = random.Random(f"{seed}-{number}")
     case = drawn(rng, family)
@@ -620,7 +620,7 @@ def judge(task: tuple[int, int, str | None], tell: bool = False) -> dict[str, An
 
 
 def first_wrong(known: Reference, found: Found, end: float) -> int | None:
-    """The first event that is of another kind, missing or invented."""
+    """Number of the first event of the package that is missing, invented or of another kind."""
     for i, kind in enumerate(known.kinds):
         if [kind] != found.kinds[i : i + 1]:
             return i
@@ -632,7 +632,7 @@ def first_wrong(known: Reference, found: Found, end: float) -> int | None:
 
 
 def of_the_angle(case: Case, values: list[float], name: str) -> float:
-    """Effect of half an ulp of the angle on a value of rolling at that angle."""
+    """Effect of half an ulp of the angle on a component of a rolling body at that angle."""
     row = dict(zip(VALUES, values, strict=True))
     _, slope, bend = support(case.scene.a, case.scene.b, row["theta"])
     rates = {"z": slope, "x_dot": slope * row["omega"], "z_dot": bend * row["omega"]}
@@ -640,8 +640,8 @@ def of_the_angle(case: Case, values: list[float], name: str) -> float:
 
 
 def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str, Any]:
-    """The verdict on a case."""
-    words = in_words(case)  # refuses what is no scene
+    """The verdict on a case, with the errors in units."""
+    words = in_words(case)  # the package refuses an invalid scene here
     record: dict[str, Any] = {"scene": repr(words)}
     times, end, why = plan(case, rng)
     long_times = []
@@ -695,7 +695,7 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
         if tell:
             print(one.what, [f"{float(v):.17g}" for v in one.row[1:]], one.unit)
     tops.sort(key=lambda top: -max(top[0], 1e-3 * top[1]))
-    firsts = {(top[3], top[4]): top for top in reversed(tops)}  # the worst of each
+    firsts = {(top[3], top[4]): top for top in reversed(tops)}  # worst by route and component
     record |= {"verdict": "judged", "rows": len(known.judged)}
     for key, by in (("by", loose), ("strict_by", strict)):
         record[key] = {name: round(value, 3) for name, value in by.items() if value > 1}
@@ -704,7 +704,7 @@ def judged(case: Case, rng: random.Random, check: bool, tell: bool) -> dict[str,
 
 
 def worst(record: dict[str, Any], key: str = "by", sol: bool = False) -> float:
-    """Most units by `sol`, or by any other route."""
+    """Most units of a record's errors by `sol`, or by all other routes."""
     found = [value for name, value in record[key].items() if name.startswith("sol") == sol]
     return max(found, default=0.0)
 
@@ -713,17 +713,17 @@ def worst(record: dict[str, Any], key: str = "by", sol: bool = False) -> float:
 
 
 def power(rng: random.Random, low: float, high: float) -> float:
-    """A power of ten between two."""
+    """A number whose logarithm is uniform between two powers of ten."""
     return math.exp(math.log(10) * rng.uniform(low, high))
 
 
 def sign(rng: random.Random) -> int:
-    """Either."""
+    """1 or -1 with equal chances."""
     return rng.choice([-1, 1])
 
 
 def drawn_axes(rng: random.Random) -> tuple[float, float]:
-    """Semi-axes: the longer between a millimetre and a kilometre, but mostly near a metre."""
+    """Semi-axes: the longer one between a millimetre and a kilometre, mostly near a metre."""
     longer = power(rng, -3, 3) if rng.random() < 0.2 else power(rng, -0.5, 0.5)
     what = rng.random()
     if what < 0.07:
@@ -739,7 +739,7 @@ def drawn_axes(rng: random.Random) -> tuple[float, float]:
 
 
 def drawn_friction(rng: random.Random) -> float:
-    """From none over tiny, common and large ones to unlimited."""
+    """Friction: none, tiny, common, large or unlimited."""
     what = rng.random()
     if what < 0.1:
         return 0.0
@@ -751,7 +751,7 @@ def drawn_friction(rng: random.Random) -> float:
 
 
 def drawn_slope(rng: random.Random) -> float:
-    """Level, gentle or steep, up or down."""
+    """Slope: level, gentle or steep, up or down."""
     what = rng.random()
     if what < 0.45:
         return 0.0
@@ -761,7 +761,7 @@ def drawn_slope(rng: random.Random) -> float:
 
 
 def drawn_body(rng: random.Random) -> dict[str, Any]:
-    """A body on its ground, not yet put anywhere."""
+    """Inputs of a body and its ground, without a start."""
     a, b = drawn_axes(rng)
     longer = max(a, b)
     mass = 1.0 if rng.random() < 0.4 else power(rng, -3, 3)
@@ -789,50 +789,50 @@ Values = dict[str, Any]
 
 
 def with_axes(v: Values, a: float, b: float) -> None:
-    """Of another shape, with an inertia of the same share."""
+    """The inputs with other semi-axes; the inertia keeps its ratio to a disc's."""
     if v["inertia"] is not None:
         v["inertia"] *= (max(a, b) / max(v["a"], v["b"])) ** 2
     v["a"], v["b"] = a, b
 
 
 def rate(v: Values) -> float:
-    """Of falling over."""
+    """Natural angular velocity of falling over [rad/s]."""
     return math.sqrt(v["gravity"] / max(v["a"], v["b"]))
 
 
 def speed(v: Values) -> float:
-    """Of falling as deep as the body is long."""
+    """Speed after falling as deep as the body is long [m/s]."""
     return math.sqrt(v["gravity"] * max(v["a"], v["b"]))
 
 
 def pose(rng: random.Random, v: Values) -> None:
-    """Any angle and spin."""
+    """Draw any angle and spin."""
     v["theta"] = rng.uniform(-math.pi, math.pi)
     v["omega"] = rate(v) * rng.uniform(-2.5, 2.5)
 
 
 def slide(rng: random.Random, v: Values) -> None:
-    """Sliding."""
+    """Draw a start that slides."""
     pose(rng, v)
     v["omega"] = rng.choice([v["omega"], v["omega"], 0.0])
     v["x_dot"] = speed(v) * rng.choice([rng.uniform(-2, 2), sign(rng) * power(rng, -8, 0)])
 
 
 def frictionless(rng: random.Random, v: Values) -> None:
-    """Sliding for long with next to no friction."""
+    """Draw a start that slides for long with next to no friction."""
     slide(rng, v)
     v["friction"] = rng.choice([0.0, power(rng, -20, -6)])
     v["omega"] = rate(v) * rng.uniform(-1, 1)
 
 
 def roll(rng: random.Random, v: Values) -> None:
-    """Rolling; it will slip."""
+    """Draw a start that rolls and will slip."""
     pose(rng, v)
     v["friction"] = rng.choice([v["friction"], rng.uniform(0.02, 1), math.inf])
 
 
 def short_slip(rng: random.Random, v: Values) -> None:
-    """Rolling that needs hardly more friction than there is."""
+    """Draw a start that rolls and needs slightly more friction than there is."""
     pose(rng, v)
     peak = peak_of_friction(Scene(**v))
     if peak > 1e-6:
@@ -840,7 +840,7 @@ def short_slip(rng: random.Random, v: Values) -> None:
 
 
 def toss(rng: random.Random, v: Values) -> None:
-    """In flight."""
+    """Draw a start in flight."""
     pose(rng, v)
     a, b = v["a"], v["b"]
     above = rng.choice([rng.uniform(0.02, 1.0) * min(a, b), max(a, b) * power(rng, -12, 0)])
@@ -849,19 +849,19 @@ def toss(rng: random.Random, v: Values) -> None:
 
 
 def drop(rng: random.Random, v: Values) -> None:
-    """Dropped at rest; low or high."""
+    """Draw a drop from rest, low or high."""
     toss(rng, v)
     v["omega"] = v["x_dot"] = v["z_dot"] = 0.0
 
 
 def blow(rng: random.Random, v: Values) -> None:
-    """Struck, rolling, lying, sliding or in flight; the blow is drawn with the case."""
+    """Draw a start that rolls, lies, slides or flies; the blow is drawn with the case."""
     rng.choice([roll, roll, slide, lying, toss])(rng, v)
 
 
 def tip(rng: random.Random, v: Values) -> None:
-    """On the tip with hardly any spin, at most the doubles beside it."""
-    if v["a"] == v["b"] or rng.random() < 0.6:  # which rolls on over its flat side
+    """Draw a start on the tip, at most a few doubles beside it, with hardly any spin."""
+    if v["a"] == v["b"] or rng.random() < 0.6:  # a body that rolls on over its flat side
         with_axes(v, v["b"] * rng.uniform(1.05, 3.0) ** sign(rng), v["b"])
     v["theta"] = rng.choice([-1, 1]) * math.pi / 2 if v["a"] > v["b"] else 0.0
     if rng.random() < 0.2:
@@ -872,14 +872,14 @@ def tip(rng: random.Random, v: Values) -> None:
 
 
 def beside_tip(rng: random.Random, v: Values) -> None:
-    """Falling over from beside the tip."""
+    """Draw a start that falls over from beside the tip."""
     tip(rng, v)
     v["theta"] += sign(rng) * power(rng, -13, -1)
     v["omega"] = rng.choice([0.0, v["omega"]])
 
 
 def lying(rng: random.Random, v: Values) -> None:
-    """Lying beside the flat position, at rest or nearly so."""
+    """Draw a start beside the flat position, at rest or nearly at rest."""
     if v["a"] == v["b"]:
         v["a"] *= 2
     v["theta"] = 0.0 if v["a"] > v["b"] else rng.choice([-1, 1]) * math.pi / 2
@@ -890,15 +890,15 @@ def lying(rng: random.Random, v: Values) -> None:
 
 
 def well(rng: random.Random, v: Values) -> None:
-    """Small rocking where a slope holds a body that is not round."""
+    """Draw small rocking where a slope holds a body that is not round."""
     a, b = drawn_axes(rng)
     while max(a, b) / min(a, b) < 1.01:
         a, b = drawn_axes(rng)
     with_axes(v, a, b)
     ratio = max(a, b) / min(a, b)
-    steepest = (ratio - 1 / ratio) / 2  # of h'/h
+    steepest = (ratio - 1 / ratio) / 2  # largest h'/h of the shape
     v["slope"] = sign(rng) * math.atan(steepest) * rng.uniform(0.05, 0.95)
-    # tan(slope) = h'/h has its stable root between the flat position and the steepest
+    # tan(slope) = h'/h has its stable root between the flat position and the steepest h'/h
     incline = abs(math.tan(v["slope"]))
     low, high = 0.0, math.atan2(min(a, b), max(a, b))
     for _ in range(100):
@@ -913,7 +913,7 @@ def well(rng: random.Random, v: Values) -> None:
 
 
 def light(rng: random.Random, v: Values) -> float:
-    """Turned to where a spin can take the weight off, and that spin."""
+    """Draw an angle at which a spin can take the weight off the ground, with about that spin."""
     if v["a"] == v["b"]:
         v["a"] *= 2
     for _ in range(1000):
@@ -925,7 +925,7 @@ def light(rng: random.Random, v: Values) -> float:
 
 
 def weightless(rng: random.Random, v: Values) -> None:
-    """On the ground, hardly pressed to it or hardly free of it."""
+    """Draw a start on the ground with hardly any pressure, or hardly free of the ground."""
     spin = light(rng, v) * sign(rng)
     v["omega"] = spin * (1 + sign(rng) * power(rng, -13, -0.5))
     if rng.random() < 0.3:
@@ -933,7 +933,7 @@ def weightless(rng: random.Random, v: Values) -> None:
 
 
 def skips(rng: random.Random, v: Values) -> None:
-    """Many low hops, without loss."""
+    """Draw many low hops without loss of energy."""
     v["restitution"] = 1.0
     if rng.random() < 0.5:
         weightless(rng, v)
@@ -948,7 +948,7 @@ def skips(rng: random.Random, v: Values) -> None:
 
 
 def limits(rng: random.Random, v: Values) -> None:
-    """Within a few roundings of a limit."""
+    """Draw a start within a few roundings of a limit between two kinds of motion."""
     off = 1 + rng.choice([0, 1, -1, 3, -3, 40, -40]) * 1.1e-16
     what = rng.choice(["weightless", "friction", "grip", "tip", "level"])
     if what == "weightless":
@@ -971,7 +971,7 @@ def limits(rng: random.Random, v: Values) -> None:
 
 
 def needed_friction(v: Values) -> float:
-    """|F|/N of rolling from rest on level ground."""
+    """Largest |F|/N of rolling from rest on level ground."""
     h, lever, _ = support(v["a"], v["b"], v["theta"])
     disc = (v["a"] ** 2 + v["b"] ** 2) / 4
     k2 = disc if v["inertia"] is None else v["inertia"] / v["mass"]
@@ -980,12 +980,12 @@ def needed_friction(v: Values) -> float:
 
 
 class Family(NamedTuple):
-    """How to draw its scenes, its share, how many events at most, and for how long."""
+    """The start of a family, its share of the scenes, its most events and its time spans."""
 
     draw: Callable[[random.Random, Values], None]
     share: float
     most_events: int = 8
-    spans: tuple[float, float] = (3.0, 12.0)  # natural times
+    spans: tuple[float, float] = (3.0, 12.0)  # least and greatest end in natural times
 
 
 FAMILIES = {
@@ -1007,11 +1007,11 @@ FAMILIES = {
 
 
 def drawn_blow(rng: random.Random, v: Values) -> Blow:
-    """At a point of the body, inwards."""
+    """A blow at a point of the body, directed inwards."""
     mass, fall = v["mass"], speed(v)
     size = mass * fall * power(rng, -3, 0.5)
     angle = rng.uniform(-math.pi, math.pi)
-    if rng.random() < 0.4:  # pressed down
+    if rng.random() < 0.4:  # a body that the ground presses
         reach = math.hypot(v["a"] * math.cos(v["theta"]), v["b"] * math.sin(v["theta"]))
         return Blow(0.0, -size, rng.uniform(-0.9, 0.9) * reach, 0.0)
     shorter = min(v["a"], v["b"])
@@ -1022,7 +1022,7 @@ def drawn_blow(rng: random.Random, v: Values) -> Blow:
 
 
 def drawn(rng: random.Random, name: str | None = None) -> Case:
-    """A case of a family."""
+    """A case of a family, or of a family drawn by its share."""
     shares = [family.share for family in FAMILIES.values()]
     name = name or rng.choices(list(FAMILIES), shares)[0]
     family = FAMILIES[name]
@@ -1031,7 +1031,7 @@ def drawn(rng: random.Random, name: str | None = None) -> Case:
     struck = drawn_blow(rng, v) if name == "blow" else None
     scene = Scene(**v)
     long_turns = 0.0
-    # 42 digits tell on which side of the tip's energy this is.
+    # 42 digits resolve on which side of the tip's energy this start is
     known = v["omega"] == 0 or abs(v["omega"]) > 1e-15 * rate(v)
     if name in ("well", "lying", "tip", "beside tip") and scene.friction != 0 and known:
         long_turns = power(rng, 1, 7)
@@ -1054,7 +1054,7 @@ def read(file: Path) -> list[dict[str, Any]]:
 
 
 def aspect(record: dict[str, Any]) -> str:
-    """The power of ten of a/b, or round."""
+    """The power of ten of a/b, or "round"."""
     a, b = record["inputs"]["a"], record["inputs"]["b"]
     if abs(a / b - 1) < 0.1:
         return "round"
@@ -1079,7 +1079,7 @@ def report(records: list[dict[str, Any]], limit: float) -> None:
     done = [one for one in records if one["verdict"] == "judged"]
     for word, which in (("in units", False), ("of values", True)):
         own = [one["apart"] for one in done if (one["number"] % CHECKED == 0) == which]
-        print(f"differences of two roads {word}: {max(own, default=0):.1e} units")
+        print(f"differences of two precisions {word}: {max(own, default=0):.1e} units")
     print(f"{sum(len(o['kinds']) for o in done)} events, {sum(o['rows'] for o in done)} rows")
     for title, key in (("family", lambda one: one["family"]), ("aspect", aspect), ("mu", mu)):
         print(f"\n{title:14} judged  worst units   > 8  by sol: worst  > 8   strict   > 8"

@@ -1,6 +1,6 @@
 """Make `contact_reference.csv`: rolling, sliding, flight and impacts, to 30 digits.
 
-The judge of the contact model. The motions are those of contact_motion.py.
+The table judges the contact model. contact_motion.py computes the motions.
 
     python make_contact_reference.py            makes and checks the table (15 minutes, one core)
 
@@ -9,16 +9,16 @@ agree to `AGREEMENT`, relative where it is above 1: the worst difference was 6.0
 less the work of friction and of the impacts has to stay what it was to `AGREEMENT` of its size:
 the worst sum of changes was 2.6e-51.
 
-Units. What a relative change of 2.2e-16 of each input (theta0: absolute) does to an answer y, the
-time of the event or the state just after it, which changes with that time too:
+Units. The effect of a relative change of 2.2e-16 of each input (theta0: absolute) on an answer y,
+the time of the event or the state just after it, which changes with this time too:
 
     unit_y = 2.2e-16 (sum over p of |dy/dp| |p| + |dy/dtheta0|)
 
 over p in (a, b, mass, I, g, alpha, mu, e, omega0, x0, z0, x_dot0, z_dot0), by one-sided
-differences of 1e-12 in 42 digits. Inputs that are zero, infinite or not given are left out, but I,
-and so is theta0 of a body dropped flat. A scene whose kinds of events change with that is not
-taken, and it ends before the first event of a unit above `UNIT_LIMIT`: there the inputs do not fix
-the answer.
+differences of 1e-12 in 42 digits. Inputs other than I that are zero, infinite or not given are left
+out, and theta0 of a body dropped flat too. A scene whose kinds of events change with an input is
+not taken. A scene ends before the first event with a unit above `UNIT_LIMIT`: from there on the
+inputs do not fix the answer.
 
 A scene has a row for each event and one, `state`, for its end. A jam is the end.
 """
@@ -51,7 +51,7 @@ MOST_EVENTS = 6
 
 
 def is_flat_drop(scene: Scene) -> bool:
-    """Dropped without spin and slip on its flat side: any angle would be another motion."""
+    """Whether a body drops on its flat side without spin and slip: no other angle moves like it."""
     moving = scene.theta or scene.omega or scene.x_dot or scene.slope
     return scene.z is not None and not moving
 
@@ -75,7 +75,7 @@ def units(scene: Scene, end: float) -> list[list[float]]:
             changed = [*again.rows, again.last]
             if [row.kind for row in rows] != [row.kind for row in changed]:
                 raise Undecided("events of another kind nearby")
-            # the mass enters k^2 = I/m as the inertia does
+            # k^2 = I/m changes with the mass as with the inertia
             times = 2 if name == "inertia" and scene.inertia is not None else 1
             for sums, new, was in zip(total, changed, rows, strict=True):
                 for i, (p, q) in enumerate(zip(new[1:], was[1:], strict=True)):
@@ -90,11 +90,11 @@ FRICTIONS = (0.0, 0.05, 0.2, 0.5, 1.0, math.inf)
 
 
 class Family(NamedTuple):
-    """How many scenes of a name, what is given, and the kinds that have to happen in this order."""
+    """Number of the scenes of a name, their given inputs, and the kinds required in this order."""
 
     name: str
     scenes: int
-    start: str  # air, slide or roll
+    start: str  # "air", "slide" or "roll"
     wanted: tuple[str, ...] = ()
     shape: str = "any"
     given: dict[str, Any] = {}  # noqa: RUF012
@@ -102,7 +102,7 @@ class Family(NamedTuple):
 
 
 def random_axes(rng: random.Random, shape: str) -> tuple[float, float]:
-    """Semi-axes: lying or standing."""
+    """Semi-axes of a lying or standing body."""
     longer = log_uniform(rng, 0.3, 3.0)
     if shape == "circle":
         return longer, longer
@@ -147,7 +147,7 @@ def random_scene(rng: random.Random, family: Family) -> Scene:
 
 
 def contains(kinds: list[str], wanted: tuple[str, ...]) -> bool:
-    """Whether they happen in this order."""
+    """Whether the wanted kinds happen in this order."""
     rest = iter(kinds)
     return all(kind in rest for kind in wanted)
 
@@ -213,7 +213,7 @@ EXPLICIT = [
 
 
 class Checked(NamedTuple):
-    """The lines of a scene, its kinds, and what its checks found."""
+    """The lines of a scene, its kinds of events, and the results of its checks."""
 
     lines: list[list[str]]
     kinds: list[str]
@@ -223,13 +223,13 @@ class Checked(NamedTuple):
 
 
 def cut(rows: list[Row], kept: int, stop: Any) -> float:
-    """A time between the last event to be kept and what comes next."""
+    """A time between the last event to be kept and the next event."""
     last = rows[kept - 1].t if kept else mpfr(0)
     return float(last + (stop - last) * 0.6)
 
 
 def planned(scene: Scene, longest: float, most_events: int) -> tuple[float, list[list[float]]]:
-    """An end up to which events are few and fixed by the inputs, and the units up to there."""
+    """The end of the few events that the inputs fix, and the units up to it."""
     with UNIT_ROAD.context():
         found = follow(scene, longest, UNIT_ROAD, most_events + 1)
         rows, end = found.rows, longest
@@ -256,13 +256,13 @@ def planned(scene: Scene, longest: float, most_events: int) -> tuple[float, list
 
 
 def difference(one: Row, other: Row) -> float:
-    """Largest difference, relative where the value is above 1."""
+    """Largest difference of two rows, relative where the value is above 1."""
     pairs = zip(one[1:], other[1:], strict=True)
     return max(float(abs(p - q) / max(abs(q), 1)) for p, q in pairs)
 
 
 def text(value: Any) -> str:
-    """An input as the table has it."""
+    """An input as text for the table."""
     return "" if value is None else repr(float(value))
 
 

@@ -1,6 +1,7 @@
 """Make `rolling_reference.csv`: exact rolling on level ground, to 40 digits.
 
-The judge of `rolling_ellipse.flow`: mpmath only, no code shared with the package.
+The table judges `rolling_ellipse.flow`. The script needs only mpmath and shares no code with the
+package.
 
     python make_rolling_reference.py            makes the table again (4 minutes, one core)
 
@@ -11,7 +12,7 @@ the ground, k^2 = I/m independent of a and b:
     h = sqrt(a^2 sin^2 theta + b^2 cos^2 theta),  h' = dh/dtheta,  rho = a^2 b^2 / h^3
     E = D omega^2 / 2 + g h  conserved,  x = integral of h dtheta, 0 at the start               (2)
 
-First road (the table): the energy integral t = int sqrt(D / (2 (E - g h))) dtheta in 80 digits and
+Method 1 (the table): the energy integral t = int sqrt(D / (2 (E - g h))) dtheta in 80 digits and
 its inversion after whole half turns or half swings are taken out. Libration is written in u,
 sin phi = kappa sin u, phi counted from the flat position, so that turning points are ordinary
 points. The quadrature is Gauss-Legendre on panels that grow geometrically away from the two places
@@ -19,18 +20,18 @@ where the integrand has nearby complex singularities, the flat (thin ellipses) a
 separatrix). Every state in the table was computed twice, with different panels, node counts and
 working precision, and has to agree to `AGREEMENT`; the worst relative difference was 2.3e-58.
 
-Second road: Taylor series of another form of the equation, with no use of the energy, on up to four
+Method 2: Taylor series of another form of the equation, with no use of the energy, on up to four
 scenes of every kind that a few hundred steps can cross (`make_slope_reference.py --level`): all
 theta, omega and x of 75 scenes of 20 of the 22 kinds were equal within 1.9e-38 (a fast spin and 1e9
 half turns take too many steps).
 
-Units. What one rounding of every input does to the answer y, plus two of the answer's own:
+Units. The effect of one rounding of every input on the answer y, plus two ulp of y:
 
     unit_y = 2.2e-16 (sum over p in (a, b, k^2, g, omega0) of |dy/dp| |p| + |dy/dtheta0|) + 2 ulp(y)
 
-by central differences of the first road; of one scene of each of 19 kinds those of a Taylor series
-were once compared: equal within 5e-7. Where unit_theta would exceed 1e-4 the time is
-cut: there the inputs do not fix the answer.
+by central differences of method 1. For one scene of each of 19 kinds, central differences of
+a Taylor series agreed within 5e-7. Where unit_theta would exceed 1e-4 the time is cut: there the
+inputs do not fix the answer.
 """
 
 import csv
@@ -72,7 +73,7 @@ class State(NamedTuple):
     x: Any
 
 
-# ---------------------------------------------------------------- first road: the energy integral
+# ---------------------------------------------------------------- the energy integral
 
 
 class Rule(NamedTuple):
@@ -114,10 +115,10 @@ class RollingEllipse:
         self.c2 = self.A2 - self.B2
         phi0 = self.theta0 - self.flat
         sin0, h0, d0 = self._geometry(phi0)
-        self.h_max = h0 + d0 * self.omega0**2 / (2 * self.g)  # E / g
-        # kappa^2 - sin^2 phi0 without cancellation, from E - g h0 = D omega0^2 / 2
+        self.h_max = h0 + d0 * self.omega0**2 / (2 * self.g)  # largest height: E / g
+        # lead = kappa^2 - sin^2 phi0 without cancellation, by E - g h0 = D omega0^2 / 2
         lead = d0 * self.omega0**2 * (self.h_max + h0) / (2 * self.g * self.c2)
-        self.kappa2, self.q2 = sin0**2 + lead, mp.cos(phi0) ** 2 - lead  # of sum 1
+        self.kappa2, self.q2 = sin0**2 + lead, mp.cos(phi0) ** 2 - lead  # kappa^2 + q^2 = 1
         self.rocks = self.q2 > 0
         self.direction = -1 if self.omega0 < 0 else 1
         self._build_quarter()
@@ -189,7 +190,7 @@ class RollingEllipse:
         return half * mp.fdot(self.rule.weights, times), half * mp.fdot(self.rule.weights, lengths)
 
     def _unfold(self, half_turns: int, sign: int, x: Any) -> Any:
-        """X(v) of v = half_turns pi + sign r from X(r) of the quarter."""
+        """X(v) of v = half_turns pi + sign r from X(r) on the quarter [0, pi/2]."""
         if self.rocks:
             return -sign * x if half_turns % 2 else sign * x
         return 2 * half_turns * self.quarter_x + sign * x
@@ -205,7 +206,8 @@ class RollingEllipse:
         return 2 * half_turns * self.quarter_time + sign * time, self._unfold(half_turns, sign, x)
 
     def _solve_quarter(self, time: Any) -> tuple[Any, Any]:
-        """v in [0, pi/2] reached at `time`, and X there: Newton kept inside its panel."""
+        """The v in [0, pi/2] reached at `time`, and X at v: Newton's method kept inside its
+        panel."""
         i = min(bisect_right([s[0] for s in self.sums], time), len(self.sums) - 1) - 1
         low, high = self.edges[i], self.edges[i + 1]
         width = high - low
@@ -221,7 +223,7 @@ class RollingEllipse:
         raise ArithmeticError("Newton's method did not settle")
 
     def phase(self, t: Any) -> Any:
-        """Time since the last passage of v = 0, in quarters."""
+        """Time since the last passage of v = 0, in units of a quarter's time."""
         signed = t if self.rocks else self.direction * t
         return (self.time0 + signed) / self.quarter_time
 
@@ -246,13 +248,13 @@ class RollingEllipse:
 
 
 class RollingCircle:
-    """a = b: uniform rotation."""
+    """The motion of a circle (a = b): uniform rotation."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = Scene(*map(mpf, scene))
 
     def phase(self, t: Any) -> Any:
-        """A circle has no symmetry time."""
+        """Always half a quarter: a circle has no symmetry time."""
         return mpf("0.5")
 
     def state(self, t: Any) -> State:
@@ -262,12 +264,12 @@ class RollingCircle:
 
 
 def motion(scene: Scene, rule: Rule) -> RollingEllipse | RollingCircle:
-    """The motion of a scene, ready for any time."""
+    """The motion of a scene; its state can be computed at any time."""
     return RollingCircle(scene) if scene.a == scene.b else RollingEllipse(scene, rule)
 
 
 def sensitivities(scene: Scene, rule: Rule) -> Callable[[Any], list[State]]:
-    """Make t -> list of dy, one for each input changed by ROUNDING (relative; theta0 absolute)."""
+    """Functions of t: the change of the state for each input changed by ROUNDING."""
     small = mpf("1e-24")
     pairs = []
     for name in Scene._fields:
@@ -286,7 +288,7 @@ def sensitivities(scene: Scene, rule: Rule) -> Callable[[Any], list[State]]:
 
 
 def units(changes: list[State], state: State) -> list[float]:
-    """unit_theta, unit_omega, unit_x."""
+    """unit_theta, unit_omega and unit_x of a state."""
     effects = [float(mp.fsum(map(abs, column))) for column in zip(*changes, strict=True)]
     return [e + 2 * math.ulp(float(y)) for e, y in zip(effects, state, strict=True)]
 
@@ -295,11 +297,11 @@ def units(changes: list[State], state: State) -> list[float]:
 
 
 class AboveEnergy(ValueError):
-    """The start lies above the wanted energy: draw again."""
+    """The height of the start lies above the wanted energy, and the start must be drawn again."""
 
 
 class Body(NamedTuple):
-    """Shape and gravity, with the sorted axes and the time scale at hand."""
+    """Shape and gravity of a body, with its sorted axes and its time scale."""
 
     a: float
     b: float
@@ -308,15 +310,15 @@ class Body(NamedTuple):
 
     @property
     def flat(self) -> float:
-        """The double nearest to the angle of rest."""
+        """The double nearest to the angle of the flat position."""
         return 0.0 if self.a >= self.b else math.pi / 2
 
     def height(self, theta: float) -> float:
-        """h in double precision: good enough to choose a scene by."""
+        """h in double precision, to choose a scene."""
         return math.hypot(self.a * math.sin(theta), self.b * math.cos(theta))
 
     def speed(self, theta: float, level: Any) -> float:
-        """omega that gives E = g * level."""
+        """omega of the energy E = g * level at an angle."""
         s, c = mp.sin(theta), mp.cos(theta)
         h2 = (self.a * s) ** 2 + (self.b * c) ** 2
         if level <= mp.sqrt(h2):
@@ -331,7 +333,7 @@ def log_uniform(rng: random.Random, low: float, high: float) -> float:
 
 
 def random_body(rng: random.Random, kind: str) -> Body:
-    """Size 0.01 to 100 m, a third with a < b, most a uniform disc, most on Earth."""
+    """A body of 0.01 to 100 m, a third with a < b, mostly a uniform disc and on Earth."""
     a = log_uniform(rng, 0.01, 100.0)
     ratio = log_uniform(rng, 1.001e-3, 0.999)
     if kind == "thin":
@@ -341,7 +343,7 @@ def random_body(rng: random.Random, kind: str) -> Body:
     elif kind.startswith("circle"):
         ratio = 1.0
     b = a * ratio
-    swap = kind != "flat_start" and rng.random() < 1 / 3  # pi/2 is no double: no exact flat
+    swap = kind != "flat_start" and rng.random() < 1 / 3  # flat at a < b is pi/2, no double
     a, b = (b, a) if swap else (a, b)
     size = a * a + b * b
     gyration2 = size / 4 if rng.random() < 0.65 else size * log_uniform(rng, 1e-3, 10.0)
@@ -376,7 +378,7 @@ def random_start(rng: random.Random, body: Body, kind: str) -> tuple[float, floa
 
 
 def energy_level(rng: random.Random, kind: str, height: float, high: float) -> Any:
-    """E / g: above or below the tip as the kind says, by chance where it says nothing."""
+    """E / g above or below the tip as the kind demands, otherwise by chance."""
     if kind.startswith("separatrix"):
         _, side, distance = kind.split("_")
         return high * (1 + mpf(distance) * (1 if side == "above" else -1))
@@ -395,26 +397,26 @@ KINDS = {
 
 
 def random_time(rng: random.Random, kind: str, scene: Scene, rule: Rule) -> float:
-    """Time wanted for a kind [s], before it is cut to UNIT_LIMIT."""
+    """Time for a kind [s], before it is cut to UNIT_LIMIT."""
     if kind == "many_half_turns":
         one = motion(scene, rule)
         assert isinstance(one, RollingEllipse)
         return float(2 * one.quarter_time) * rng.uniform(0.8e9, 1.2e9)
     if kind.startswith("short"):
         return rng.choice([1e-6, 1e-3])
-    if kind.endswith(("1e-9", "1e-12")):  # a few passages of the tip
+    if kind.endswith(("1e-9", "1e-12")):  # enough for a few passages of the tip
         return math.sqrt(max(scene.a, scene.b) / scene.gravity) * log_uniform(rng, 0.5, 200.0)
     return log_uniform(rng, 0.1, 1e6)
 
 
 def at_symmetry(one: RollingEllipse | RollingCircle, t: float) -> bool:
-    """Phase within a hundredth of a passage of the flat, the tip or a turning point."""
+    """A time whose phase is within a hundredth of the flat, the tip or a turning point."""
     phase = one.phase(mpf(t))
     return bool(abs(phase - mp.nint(phase)) < mpf("0.01"))
 
 
 def random_scene(rng: random.Random, kind: str) -> Scene:
-    """A scene of a kind; heights above the wanted energy are drawn again."""
+    """A scene of a kind, drawn again while its start lies above the wanted energy."""
     while True:
         body = random_body(rng, kind)
         try:
@@ -428,7 +430,7 @@ def random_scene(rng: random.Random, kind: str) -> Scene:
 
 
 def difference(one: State, other: State) -> Any:
-    """Largest relative difference of theta, omega, x."""
+    """Largest relative difference of theta, omega and x between two states."""
     return max(abs(p - q) / (abs(q) or 1) for p, q in zip(one, other, strict=True))
 
 

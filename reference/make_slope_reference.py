@@ -1,6 +1,7 @@
 """Make `slope_reference.csv`: rolling without slip on a slope, to 30 digits.
 
-The judge of the integrators: gmpy2 only, no code and no formula shared with the package.
+The table judges the integrators. The script needs only gmpy2 and shares no code and no formula with
+the package.
 
     python make_slope_reference.py              makes and checks the table (10 minutes, one core)
     python make_slope_reference.py --level      meets the table of level ground alone (2 minutes)
@@ -30,12 +31,12 @@ of the moving centre instead of (2), has to stay what it was to `AGREEMENT`: the
 2.9e-46. On level ground 75 scenes of `rolling_reference.csv`, which comes from the energy integral,
 are met within 1.9e-38.
 
-Units. What a relative change of 2.2e-16 of each input (theta0: absolute) does to an answer y:
+Units. The effect of a relative change of 2.2e-16 of each input (theta0: absolute) on an answer y:
 
     unit_y = 2.2e-16 (sum over p in (a, b, I, g, alpha, omega0) of |dy/dp| |p| + |dy/dtheta0|)
 
-by one-sided differences of 1e-10 in 32 digits; for one scene of each of 12 kinds central ones of
-1e-18 in 60 digits gave the same within 4e-7. Where unit_theta would exceed `UNIT_LIMIT`
+by one-sided differences of 1e-10 in 32 digits. For one scene of each of 12 kinds, central
+differences of 1e-18 in 60 digits agreed within 4e-7. Where unit_theta would exceed `UNIT_LIMIT`
 another scene is drawn: there the inputs do not fix the answer.
 """
 
@@ -97,7 +98,7 @@ UNIT_CHANGE = 1e-10
 
 
 class State(NamedTuple):
-    """phi [rad], its rate [rad/s] and the arc [m], o at the start."""
+    """phi [rad], its rate [rad/s] and the arc [m] since the start plus o at the start."""
 
     phi: Any
     rate: Any
@@ -105,7 +106,7 @@ class State(NamedTuple):
 
 
 class Series(NamedTuple):
-    """Taylor coefficients in time; sin and cos of phi, p = sin phi cos phi."""
+    """Taylor coefficients in time of the motion, sin phi, cos phi and p = sin phi cos phi."""
 
     phi: list[Any]
     rate: list[Any]
@@ -117,7 +118,7 @@ class Series(NamedTuple):
 
 
 class Rolling:
-    """One motion, to be followed forwards; lives in the context of its road."""
+    """One motion, followed forwards in the context of its precision."""
 
     def __init__(self, scene: Scene, road: Road) -> None:
         self.road = road
@@ -127,7 +128,7 @@ class Rolling:
         self.down, self.level = gmpy2.sin_cos(slope)
         sin, cos = gmpy2.sin_cos(theta0)
         whole_turns = theta0 - gmpy2.atan2(sin, cos)
-        phi = gmpy2.atan2(self.a * sin, self.b * cos) + whole_turns  # (1)
+        phi = gmpy2.atan2(self.a * sin, self.b * cos) + whole_turns  # phi of theta by (1)
         sin, cos = gmpy2.sin_cos(phi)
         w2 = (self.a * cos) ** 2 + (self.b * sin) ** 2
         self.time = mpfr(0)
@@ -135,17 +136,18 @@ class Rolling:
         self.state = State(phi, omega0 * w2 / self.ab, self.c2 * sin * cos / gmpy2.sqrt(w2))
 
     def series(self, order: int) -> Series:
-        """Coefficients 0 to order of the motion from the present state; p and w one fewer."""
+        """Coefficients 0 to order of the motion from the present state, 0 to order - 1 of p and
+        w."""
         phi, rate, arc = [self.state.phi], [self.state.rate], [self.state.arc]
         sin, cos = ([each] for each in gmpy2.sin_cos(self.state.phi))
         p: list[Any] = []
         w: list[Any] = []
         w2: list[Any] = []
-        moment: list[Any] = []  # J
-        spin: list[Any] = []  # phi'^2
-        ratio: list[Any] = []  # p phi'^2 / W
-        drive: list[Any] = []  # sin alpha - c^2 p cos alpha / (a b)
-        pull: list[Any] = []  # (g w drive - c^2 p phi'^2) / J
+        moment: list[Any] = []  # series of J
+        spin: list[Any] = []  # series of phi'^2
+        ratio: list[Any] = []  # series of p phi'^2 / W
+        drive: list[Any] = []  # series of sin alpha - c^2 p cos alpha / (a b)
+        pull: list[Any] = []  # series of (g w drive - c^2 p phi'^2) / J
         a2, b2 = self.a**2, self.b**2
         for n in range(order):
             first = n == 0
@@ -162,13 +164,13 @@ class Rolling:
             arc.append(product(w, rate) / (n + 1))
             sin_next, cos_next = product(cos, rate) / (n + 1), -product(sin, rate) / (n + 1)
             phi.append(rate[n] / (n + 1))
-            rate.append((pull[n] - 2 * self.c2 * ratio[n]) / (n + 1))  # (3)
+            rate.append((pull[n] - 2 * self.c2 * ratio[n]) / (n + 1))  # phi'' by (3)
             sin.append(sin_next)
             cos.append(cos_next)
         return Series(phi, rate, arc, sin, cos, p, w)
 
     def advance(self, t: float, most_steps: float = math.inf) -> bool:
-        """Go on to time t; False if that takes too many steps."""
+        """Continue the motion to time t; False if that takes too many steps."""
         steps = 0
         while self.time < t:
             if steps == most_steps:
@@ -181,7 +183,7 @@ class Rolling:
         return True
 
     def _reach(self, series: Series) -> Any:
-        """The step whose last terms are as small as the tolerance."""
+        """The step at which the last terms of the series are as small as the tolerance."""
         columns = series.phi, series.arc, series.sin, series.cos
         orders = self.road.order - 1, self.road.order
         growth = max(abs(column[n]) ** (mpfr(1) / n) for column in columns for n in orders)
@@ -189,11 +191,11 @@ class Rolling:
 
     @property
     def half_turns(self) -> float:
-        """Half turns made since the start, forwards or backwards."""
+        """Half turns since the start, forwards or backwards."""
         return abs(float(self.state.phi - self.start)) / math.pi
 
     def answer_and_energy(self) -> tuple[Answer, Any]:
-        """What the table holds, and E/m from the velocity of the centre."""
+        """The answer for the table, and E/m from the velocity of the centre."""
         series = self.series(3)
         x: list[Any] = []
         z: list[Any] = []
@@ -204,7 +206,7 @@ class Rolling:
             x.append(series.arc[n] - offset[n])
         sin, cos = series.sin[0], series.cos[0]
         whole_turns = self.state.phi - gmpy2.atan2(sin, cos)
-        theta = gmpy2.atan2(self.b * sin, self.a * cos) + whole_turns  # (1)
+        theta = gmpy2.atan2(self.b * sin, self.a * cos) + whole_turns  # theta of phi by (1)
         omega = self.ab * self.state.rate / series.w[0] ** 2
         normal = self.mass * (2 * z[2] + self.g * self.level)
         friction = self.mass * (2 * x[2] - self.g * self.down)
@@ -232,7 +234,7 @@ def units(scene: Scene, times: list[float]) -> list[list[float]]:
         for name in Scene._fields:
             old = mpfr(getattr(scene, name))
             change = UNIT_CHANGE if name == "theta0" else UNIT_CHANGE * old
-            if name == "mass" or change == 0:  # the mass enters k^2 as the inertia does
+            if name == "mass" or change == 0:  # k^2 changes with the mass as with the inertia
                 continue
             changed = scene._replace(**{name: old + change})
             for i, (answer, _) in enumerate(follow(changed, times, UNIT_ROAD)):
@@ -269,7 +271,7 @@ def random_axes(rng: random.Random, kind: str) -> tuple[float, float]:
 
 
 def random_inertia(rng: random.Random, kind: str, disc: float) -> float:
-    """Moment of inertia: the uniform disc's, much less or much more."""
+    """Moment of inertia: equal to a uniform disc's, much less or much more."""
     if kind == "light":
         return 0.01 * disc
     if kind == "heavy":
@@ -292,7 +294,7 @@ def random_slope(rng: random.Random, kind: str, a: float, b: float) -> float:
 
 
 def equilibria(a: float, b: float, slope: float) -> tuple[float, float]:
-    """theta of the dip and of the hill beside it, the equilibria of (3)."""
+    """theta of the stable equilibrium of (3) and of the unstable one beside it."""
     tilt = math.asin(2 * a * b * math.tan(slope) / abs(a * a - b * b)) / 2
     if a > b:
         dip, hill = tilt, math.copysign(math.pi / 2, tilt) - tilt
@@ -305,7 +307,7 @@ def equilibria(a: float, b: float, slope: float) -> tuple[float, float]:
 def random_start(
     rng: random.Random, kind: str, axes: tuple[float, float], slope: float, rate: float
 ) -> tuple[float, float]:
-    """theta0 and omega0; `rate` is one per natural time."""
+    """theta0 and omega0 of a kind; `rate` is one radian per natural time."""
     theta, sign = rng.uniform(-math.pi, math.pi), rng.choice([-1, 1])
     if kind in WITH_A_DIP:
         dip, hill = equilibria(*axes, slope)
@@ -324,7 +326,7 @@ def random_start(
 
 
 def natural_time(scene: Scene) -> float:
-    """The time scale of a scene [s]."""
+    """The natural time of a scene [s]."""
     return math.sqrt(max(scene.a, scene.b) / scene.gravity)
 
 
@@ -340,7 +342,7 @@ def random_scene(rng: random.Random, kind: str) -> Scene:
 
 
 def random_times(rng: random.Random, scene: Scene) -> list[float]:
-    """About 0.3, 2 and 10 natural times, fewer where that is more than `MOST_HALF_TURNS`."""
+    """Times of about 0.3, 2 and 10 natural times, less beyond `MOST_HALF_TURNS`."""
     natural = natural_time(scene) * rng.uniform(0.9, 1.1)
     with UNIT_ROAD.context():
         motion, last = Rolling(scene, UNIT_ROAD), 0.0
@@ -354,13 +356,13 @@ def random_times(rng: random.Random, scene: Scene) -> list[float]:
 
 
 def difference(one: Answer, other: Answer) -> float:
-    """Largest relative difference."""
+    """Largest relative difference of two answers."""
     pairs = zip(one, other, strict=True)
     return max(float(abs(p - q) / (abs(q) or 1)) for p, q in pairs)
 
 
 class Checked(NamedTuple):
-    """The lines of a scene, and what its checks found."""
+    """The lines of a scene, and the results of its checks."""
 
     lines: list[list[str]]
     disagreement: float
@@ -368,7 +370,7 @@ class Checked(NamedTuple):
 
 
 def make_scene(rng: random.Random, kind: str) -> Checked:
-    """The three lines of a new scene."""
+    """The three lines of a newly drawn scene."""
     while True:
         scene = random_scene(rng, kind)
         times = random_times(rng, scene)
@@ -391,7 +393,7 @@ def make_scene(rng: random.Random, kind: str) -> Checked:
 
 
 def made(seed: int) -> Iterator[list[str]]:
-    """The lines of all kinds."""
+    """The lines of the scenes of all kinds."""
     rng = random.Random(seed)
     began = time.perf_counter()
     for kind, count in KINDS.items():
@@ -404,7 +406,7 @@ def made(seed: int) -> Iterator[list[str]]:
 
 
 def verify_on_level_ground(most_steps: int = 350, per_kind: int = 4) -> None:
-    """Meet the table of the energy integral, which has 40 digits."""
+    """Compare with the 40-digit table of the energy integral."""
     done: Counter[str] = Counter()
     worst = 0.0
     with LEVEL_TABLE.open(newline="") as file, TABLE_ROAD.context():

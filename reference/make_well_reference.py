@@ -1,13 +1,14 @@
 """Make `well_reference.csv`: rocking about the lying equilibrium of a slope, to 30 digits.
 
-Amplitudes from 1e-12 rad up to the rim of the well, 1 to 1e9 swings, aspects 1e-3 to 1e3. gmpy2 and
-the Taylor series of `make_slope_reference.py`: no code and no formula of the package.
+Amplitudes reach from 1e-12 rad up to the rim of the well, with 1 to 1e9 swings and aspects of 1e-3
+to 1e3. The script needs gmpy2 and the Taylor series of `make_slope_reference.py`, and shares no
+code and no formula with the package.
 
     python make_well_reference.py              makes and checks the table (3 minutes, one core)
 
 Method. The series of `Rolling`, in steps of half their reach, are followed over one swing. A
 turning point is the root of the rate in a step, by Newton's method. The motion repeats itself after
-a period T, twice the time between two turning points: so the state at t is that at t - n T.
+a period T, twice the time between two turning points: the states at t and t - n T are equal.
 Every value was computed twice, in 80 digits and in 95, with series of order 60 and 72, and has to
 agree to `AGREEMENT`, relative to the largest value in the swing.
 
@@ -56,14 +57,14 @@ class Answer(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """A step of the motion: when it begins, how long it lasts, and its series."""
+    """A step of the motion: its start, its duration and its series."""
 
     begin: Any
     lasts: Any
     series: Series
 
     def state(self, t: Any) -> State:
-        """The state at a time of it."""
+        """The state at a time within the step."""
         return State(*(value(column, t - self.begin) for column in self.series[:3]))
 
 
@@ -85,7 +86,7 @@ class Swing(Rolling):
         self.width = max(abs(each.series.phi[0] - self.start) for each in self.stages)
 
     def go_on(self) -> Stage:
-        """One more stage, half as long as its series reaches: it has one turning point at most."""
+        """Take one more step of half the reach of its series: it has at most one turning point."""
         series = self.series(self.road.order)
         self.stages.append(Stage(self.time, self._reach(series) / 2, series))
         self.time += self.stages[-1].lasts
@@ -93,7 +94,7 @@ class Swing(Rolling):
         return self.stages[-1]
 
     def at(self, t: float) -> Answer:
-        """The answers at a time; the motion cannot go on from there."""
+        """The answers at a time; afterwards the motion cannot be continued."""
         rest = mpfr(t) - gmpy2.floor(t / self.period) * self.period
         while self.time < rest:
             self.go_on()
@@ -104,7 +105,7 @@ class Swing(Rolling):
 
 
 class NoSwing(Exception):
-    """The motion runs away, or takes too many steps."""
+    """The motion does not rock, or takes too many steps."""
 
 
 def root(coefficients: list[Any], last: Any) -> Any:
@@ -125,19 +126,19 @@ def root(coefficients: list[Any], last: Any) -> Any:
 
 
 def answers(scene: Scene, t: float, road: Road) -> Answer:
-    """The answers at a time."""
+    """The answers of a scene at a time."""
     with road.context():
         return Swing(scene, road).at(t)
 
 
 def units(scene: Scene, t: float) -> list[float]:
-    """What a rounding of every input does to each of the answers."""
+    """The effect of one rounding of every input on each answer."""
     known = answers(scene, t, UNIT_ROAD)
     with UNIT_ROAD.context():
         total = [mpfr(0)] * len(ANSWERS)
         for name in Scene._fields:
             old = mpfr(getattr(scene, name))
-            if name == "mass" or old == 0:  # the mass enters k^2 as the inertia does
+            if name == "mass" or old == 0:  # k^2 changes with the mass as with the inertia
                 continue
             changed = answers(scene._replace(**{name: old * (1 + mpfr(CHANGE))}), t, UNIT_ROAD)
             effects = (abs(new - was) for new, was in zip(changed, known, strict=True))
@@ -158,7 +159,8 @@ class Well(NamedTuple):
 
 
 def well(scene: Scene) -> Well:
-    """Where gravity has no moment, by (3): sin 2 phi = 2 a b tan alpha / c^2."""
+    """The well of a scene: gravity has no moment where sin 2 phi = 2 a b tan alpha / c^2, by
+    (3)."""
     a, b, mass, inertia, g, slope = map(mpfr, scene[:6])
     longer, shorter, side = max(a, b), min(a, b), 1 if slope > 0 else -1
     c2 = longer**2 - shorter**2
@@ -167,7 +169,7 @@ def well(scene: Scene) -> Well:
     sin, cos = gmpy2.sin_cos(twice / 2)
     lying = flat + side * gmpy2.atan2(shorter * sin, longer * cos)
     rim = flat + side * gmpy2.atan2(shorter * cos, longer * sin)
-    # (3) next to phi, where it says J delta'' = -g w c^2 cos 2 phi cos alpha / (a b) delta
+    # (3) linearised at phi: J delta'' = -g w c^2 cos 2 phi cos alpha / (a b) delta
     w2 = (longer * cos) ** 2 + (shorter * sin) ** 2
     moment = inertia / mass + a**2 + b**2 - w2
     stiffness = g * gmpy2.sqrt(w2) * c2 * gmpy2.cos(twice) * gmpy2.cos(slope) / (a * b)
@@ -192,7 +194,8 @@ def random_body(rng: random.Random) -> Scene:
 
 
 def random_start(rng: random.Random, body: Scene) -> Scene:
-    """At rest, or on the way, with an amplitude up to the rim; some are next to the rim."""
+    """A start at rest or moving, with an amplitude up to the rim; some starts are next to the
+    rim."""
     at = well(body)
     if rng.random() < 0.3:
         inside = (at.lying - at.rim) * log_uniform(rng, 1e-12, 0.1)
@@ -213,7 +216,7 @@ def random_start(rng: random.Random, body: Scene) -> Scene:
 
 
 def is_told_from_rest(scene: Scene) -> bool:
-    """Whether doubles tell it: from rest, far more than 8 ulp of h from h' = h tan alpha."""
+    """Whether doubles resolve the start from rest: well beyond 8 ulp of h from h' = h tan alpha."""
     short, at = min(scene.a, scene.b), well(scene)
     room = 32 * ROUNDING * short / (max(scene.a, scene.b) - short)
     far = min(abs(math.sin(scene.theta0 - each)) for each in (at.lying, at.rim))
@@ -221,7 +224,7 @@ def is_told_from_rest(scene: Scene) -> bool:
 
 
 class Line(NamedTuple):
-    """A scene, a time, the answers there, and their units."""
+    """A scene, a time, the answers at that time, and their units."""
 
     scene: Scene
     t: float
@@ -230,7 +233,7 @@ class Line(NamedTuple):
 
 
 def line(rng: random.Random) -> Line | None:
-    """A scene after 1 to 1e9 swings; nothing where it does not swing, or is not fixed."""
+    """A line after 1 to 1e9 swings, or None where the scene does not swing or is not fixed."""
     with UNIT_ROAD.context():
         scene = random_start(rng, random_body(rng))
         if not is_told_from_rest(scene):
@@ -244,7 +247,7 @@ def line(rng: random.Random) -> Line | None:
 
 
 def drawn(rng: random.Random) -> Iterator[Line]:
-    """Scenes of all kinds."""
+    """Lines of all kinds of scenes."""
     while True:
         with suppress(NoSwing):
             found = line(rng)
@@ -256,7 +259,7 @@ def drawn(rng: random.Random) -> Iterator[Line]:
 
 
 def made(seed: int) -> Iterator[list[str]]:
-    """The lines, each computed twice."""
+    """The lines of the table, each computed twice."""
     began, worst = time.perf_counter(), 0.0
     for scene, t, answer, unit in islice(drawn(random.Random(seed)), COUNT):
         other = answers(scene, t, CHECK_ROAD)

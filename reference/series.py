@@ -1,6 +1,6 @@
 """Taylor coefficients one after the other (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 
-Also: a random number with an even logarithm, and the writing of tables.
+The module also draws random numbers with a uniform logarithm and writes tables.
 """
 
 import csv
@@ -25,17 +25,18 @@ class Road(NamedTuple):
     tolerance: float
 
     def context(self) -> Any:
-        """The arithmetic to work in."""
+        """The gmpy2 context of the working digits."""
         return gmpy2.context(precision=math.ceil(self.digits * math.log2(10)))
 
 
 def product(p: list[Any], q: list[Any]) -> Any:
-    """The next coefficient of p q, from two lists of one length."""
+    """The next coefficient of the product p q, from two lists of equal length."""
     return sum(map(mul, p, reversed(q)))
 
 
 def quotient(p: Any, q: list[Any], known: list[Any]) -> Any:
-    """The next coefficient of y = p / q: p_n = sum q_j y_(n-j), y so far known."""
+    """The next coefficient of y = p / q: p_n = sum q_j y_(n-j), with `known` the coefficients of
+    y."""
     return (p - sum(map(mul, q[1:], reversed(known)))) / q[0]
 
 
@@ -47,7 +48,7 @@ def square_root(squared: Any, known: list[Any]) -> Any:
 
 
 def value(coefficients: list[Any], step: Any) -> Any:
-    """The sum of a Taylor series."""
+    """The sum of a Taylor series at a step."""
     total = mpfr(0)
     for coefficient in reversed(coefficients):
         total = total * step + coefficient
@@ -60,7 +61,7 @@ def log_uniform(rng: random.Random, low: float, high: float) -> float:
 
 
 def write_table(path: Path, columns: list[str], lines: Iterable[list[str]]) -> None:
-    """Write a table as CSV, line by line as they come."""
+    """Write a table as CSV; each line is written when it is computed."""
     with path.open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(columns)

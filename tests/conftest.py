@@ -7,12 +7,13 @@ import pytest
 
 pytest.register_assert_rewrite("oracles")
 
-# Tests send Ctrl-C, to children, too: what a shell runs aside would have it ignored.
+# Shells start background jobs with SIGINT ignored, but tests need it: they send Ctrl-C.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# neutral (the circle), a hair beside it (where a*a - b*b cancels), generic, standing up, thin both
-# ways up to the limits of the package, and sizes far from a metre (nothing may depend on the unit)
+# Shapes: a circle, a hair beside it (where a*a - b*b cancels), generic, standing, thin in both
+# positions up to the limits of the package, and sizes far from a metre (results scale with the
+# unit)
 SHAPES = {
     "circle": (1.0, 1.0),
     "circle+1e-8": (1.0 + 1e-8, 1.0),
@@ -26,8 +27,8 @@ SHAPES = {
     "kilometres": (1.1e3, 2.3e3),
 }
 
-# far from 0 by thousands of turns, beside and on (as near as a double gets) the multiples of pi/2,
-# where sin or cos nearly vanishes, and next to 0
+# Angles: thousands of turns away from 0; beside and on (as near as a double gets) the multiples of
+# pi/2, where sin or cos nearly vanishes; and next to 0
 QUARTER = math.pi / 2
 ANGLES = sorted(
     {
@@ -46,19 +47,19 @@ ANGLES = sorted(
 
 @pytest.fixture(params=list(SHAPES.values()), ids=list(SHAPES))
 def shape(request: pytest.FixtureRequest) -> tuple[float, float]:
-    """Semi-axes (a, b) [m]."""
+    """Semi-axes (a, b) of a body [m]."""
     semi_axes: tuple[float, float] = request.param
     return semi_axes
 
 
 @pytest.fixture
 def angles() -> list[float]:
-    """Rotations theta [rad] that have been trouble for somebody."""
+    """Rotations theta [rad] that are hard for some formula."""
     return ANGLES
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks what `pytest -m quick` runs."""
+    """Mark the tests that `pytest -m quick` runs."""
     from oracles.paths import TESTS
     from oracles.quick import QUICK
 

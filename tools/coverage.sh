@@ -16,7 +16,7 @@ python=${PYTHON:-python3}
 folder=$PWD/build/coverage
 # An inlined function would be counted at each call; without inlining it is counted once.
 once=-Dalways_inline=noinline
-# Only the project's sources: counting the lines of Eigen takes ten times as long.
+# The filter keeps the project's sources: counting the lines of Eigen takes ten times as long.
 here=-fprofile-filter-files=src/.*
 
 "$python" -m pip install --quiet --no-build-isolation --no-deps --upgrade \

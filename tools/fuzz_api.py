@@ -29,7 +29,7 @@ from math import inf, nan, nextafter, pi
 from pathlib import Path
 import matplotlib.pyplot as plt, numpy as np, rolling_ellipse as rl
 from fuzz import damage, promises  # with tools/ and tests/ in PYTHONPATH"""
-SLOW = ("deaf", "hang")  # not shortened: each try takes as long
+SLOW = ("deaf", "hang")  # findings that are not shortened: each try takes as long
 
 
 def signature(found: Finding) -> tuple[str, str, str]:
@@ -37,7 +37,7 @@ def signature(found: Finding) -> tuple[str, str, str]:
     what = re.sub(r"got .*", "", found.what, flags=re.DOTALL)
     what = re.sub(r"0x[0-9a-f]+|[-+]?\d[\d.e+-]*|'[^']*'", "#", what)
     does = re.sub(r"^\w+ = |\(.*", "", found.lines[-1], flags=re.DOTALL)
-    if "forged" in found.lines[-1]:  # many calls fail for the same damage
+    if "forged" in found.lines[-1]:  # one kind of damage makes many calls fail
         return found.kind, "forged", what.partition(":")[0]
     return found.kind, does, what[:120]
 
@@ -47,7 +47,7 @@ def show(found: Finding) -> str:
 
 
 class Failed(AssertionError):
-    """Something new was found."""
+    """A finding with a new signature."""
 
 
 class Hunt:
@@ -89,7 +89,7 @@ class Hunt:
 
         try:
             one()
-        except (Exception, KeyboardInterrupt):  # also of a case that does not fail again
+        except (Exception, KeyboardInterrupt):  # the same holds for a case that does not fail again
             if target is None:
                 raise
         if target is not None:
@@ -98,12 +98,12 @@ class Hunt:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command line; 0 if nothing was found."""
+    """Run the command line; the exit code is 0 if nothing was found."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--calls", type=int, default=2000, help="cases to run (default 2000)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--code", default="", help="judge these lines instead of drawn ones")
-    parser.add_argument("--seconds-per-call", type=float, default=2.0, help="what is a hang")
+    parser.add_argument("--seconds-per-call", type=float, default=2.0, help="time limit of a line")
     parser.add_argument("--no-memory-limit", action="store_true", help="sanitizers need it")
     options = parser.parse_args(arguments)
     begin = time.monotonic()

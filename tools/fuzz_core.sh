@@ -1,6 +1,6 @@
 #!/bin/sh
 # Build the core with clang's libFuzzer, AddressSanitizer and UndefinedBehaviorSanitizer, and search
-# for inputs that break it (tools/fuzz_core/fuzz_core.cpp says what must hold):
+# for inputs that break it (tools/fuzz_core/fuzz_core.cpp checks every answer):
 #
 #   tools/fuzz_core.sh                          (ten minutes)
 #   tools/fuzz_core.sh -max_total_time=3600     (an hour; all options are libFuzzer's)

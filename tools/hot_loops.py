@@ -1,12 +1,12 @@
 """Count the instructions of five standard jobs, and compare them with the counts on record.
 
     cmake --preset release && cmake --build --preset release
-    python tools/hot_loops.py build/release/hot_jobs             (1 where one is 5 % more)
-    python tools/hot_loops.py build/release/hot_jobs --write     (makes them the record)
+    python tools/hot_loops.py build/release/hot_jobs             (exit code 1: a count grew by 5 %)
+    python tools/hot_loops.py build/release/hot_jobs --write     (writes the record)
 
 Unlike times, instructions do not depend on the load of the machine. Valgrind counts them. It has no
-AVX-512, so the program uses AVX2. The counts belong to one compiler and one C library, which the
-record names; with others nothing is judged.
+AVX-512, so the program uses AVX2. The counts belong to the compiler and the C library that the
+record names; counts of others are not judged.
 """
 
 import argparse
@@ -31,7 +31,7 @@ SLACK = 0.05
 
 
 def instructions(program: Path, job: int) -> tuple[int, str]:
-    """Instructions of a job, and the vector level of the program."""
+    """Number of instructions of a job, and the vector level of the program."""
     with tempfile.TemporaryDirectory() as folder:
         command = [
             "valgrind", "--tool=callgrind", "--collect-atstart=no", "--toggle-collect=counted(*",
@@ -45,7 +45,7 @@ def instructions(program: Path, job: int) -> tuple[int, str]:
 
 
 def made_by(program: Path, level: str) -> dict[str, str]:
-    """The compiler by its signature, the C library, the machine and the vector level."""
+    """The compiler, the C library, the machine and the vector level of a program."""
     compilers = set(re.findall(rb"(?:GCC: |clang version )[^\0\n]{3,60}", program.read_bytes()))
     return {
         "compiler": ", ".join(sorted(each.decode("ascii", "replace") for each in compilers)),

@@ -1,8 +1,8 @@
 """Write src/integrator/collocation.hpp: Gauss and Radau IIA methods, rounded from 40 digits.
 
-Gauss with s stages has the nodes c of P_s(2c - 1), Radau IIA those of P_s - P_(s-1); the matrix a
-and the weights b integrate polynomials of degree s - 1 exactly (Hairer, Norsett, Wanner, Solving
-ODEs I, II.7).
+Gauss's method of s stages has its nodes c at the roots of P_s(2c - 1), Radau IIA at the roots of
+P_s - P_(s-1); the matrix a and the weights b integrate polynomials of degree s - 1 exactly (Hairer,
+Norsett, Wanner, Solving ODEs I, II.7).
 
 Run:  python tools/make_collocation.py > src/integrator/collocation.hpp    (needs mpmath)
 """
@@ -38,7 +38,7 @@ struct RadauCoefficients {"""
 
 
 def weights(c: list[mpf], end: mpf) -> matrix:
-    """Weights w of the nodes: sum of w_j p(c_j) is the integral of p from 0 to end."""
+    """Weights w of the nodes: the sum of w_j p(c_j) is the integral of p from 0 to end."""
     powers = range(len(c))
     moments = matrix([end ** (k + 1) / (k + 1) for k in powers])
     return lu_solve(matrix([[node**k for node in c] for k in powers]), moments)
@@ -104,8 +104,8 @@ def print_radau() -> None:
     a = butcher_matrix(c)
     values, vectors = eig(inverse(a))
     real = min(range(s), key=lambda k: abs(values[k].imag))
-    lower = min(range(s), key=lambda k: values[k].imag)  # alpha - i beta
-    # eigenvectors with last element 1
+    lower = min(range(s), key=lambda k: values[k].imag)  # the eigenvalue alpha - i beta
+    # eigenvectors are scaled to the last element 1
     first = [vectors[i, real].real / vectors[s - 1, real].real for i in range(s)]
     pair = [vectors[i, lower] / vectors[s - 1, lower] for i in range(s)]
     transform = matrix([[first[i], pair[i].real, pair[i].imag] for i in range(s)])

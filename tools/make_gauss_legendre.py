@@ -1,7 +1,7 @@
 """Write src/numerics/gauss_legendre.hpp: Gauss-Legendre nodes and weights, rounded from 40 digits.
 
-Rules made in double precision (numpy.polynomial.legendre.leggauss) carry weight errors of some
-1e-15, which is more than everything else in the quadrature; hence this table.
+Weights made in double precision (numpy.polynomial.legendre.leggauss) have errors of some 1e-15,
+more than all other errors of the quadrature; so this table is made in 40 digits.
 
 Run:  python tools/make_gauss_legendre.py > src/numerics/gauss_legendre.hpp    (needs mpmath)
 """
@@ -33,7 +33,7 @@ inline constexpr GaussRule gauss_rules[] = {{
 
 
 def legendre_and_slope(n: int, x: mpf) -> tuple[mpf, mpf]:
-    """Return P_n(x) and P_n'(x) by the three-term recurrence."""
+    """P_n(x) and P_n'(x) by the three-term recurrence."""
     before, value = mpf(1), x
     for k in range(2, n + 1):
         before, value = value, ((2 * k - 1) * x * value - (k - 1) * before) / k
@@ -41,7 +41,7 @@ def legendre_and_slope(n: int, x: mpf) -> tuple[mpf, mpf]:
 
 
 def half_rule(n: int) -> list[tuple[mpf, mpf]]:
-    """Return (node, weight) for the nodes >= 0, ascending."""
+    """Pairs (node, weight) for the nodes >= 0, ascending."""
     rule = []
     for k in range(n // 2 + 1, n + 1):
         if 2 * k == n + 1:

@@ -7,10 +7,10 @@
 copies the checkout to FOLDER, draws changes (signs, sines and cosines, factors, < and <=, indices,
 tolerances, and/or, min/max) from lines all over the sources, and for each builds the copy and runs
 the tests nearest to it, the programs of tests/core, and some tests of every folder, up to the first
-that fails. With --thorough the whole suite comes last. Mutants that nothing notices are listed; one
-that does not compile does not count. At the end the tests must pass without a mutant. Results are
-kept in FOLDER/SIDE.json; the same command goes on where it was stopped. Needs the requirements of
-the build and of the tests.
+that fails. With --thorough the whole suite is run last. Mutants that no test notices are listed;
+mutants that do not compile do not count. At the end the tests must pass without a mutant. Results
+are kept in FOLDER/SIDE.json; the same command continues where it was stopped. The script needs the
+requirements of the build and of the tests.
 """
 
 import argparse
@@ -29,7 +29,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 
-# Patterns and their replacements. Strings and comments are left alone.
+# Patterns and their replacements. Strings and comments are not changed.
 CHANGES = {
     "sign": [(r" \+ ", " - "), (r" - ", " + "), (r"([=(,] ?)-(?=[\w(])", r"\1"),
              (r" \+= ", " -= "), (r" -= ", " += ")],
@@ -47,8 +47,8 @@ CHANGES = {
     "tolerance": [(r"\b(\d+)e-(\d+)\b", r"\1e-3"), (r"\b(\d+) \* epsilon\b", r"1000000 * epsilon")],
 }  # fmt: skip
 
-# Folders of tests for a folder of sources, of which the innermost counts. Others have tests in a
-# folder of the same name.
+# Folders of tests for a folder of sources, of which the innermost counts. A folder that is not
+# listed has its tests in a folder of its name.
 NEAREST = {
     "bindings": ["refusals", "trajectory", "border", "batches"],
     "core": ["trajectory", "contact", "rolling"],
@@ -68,28 +68,28 @@ NEAREST = {
     "python": ["trajectory", "scene", "outcome", "refusals", "border", "batches"],
 }
 
-# Programs of tests/core that take seconds.
+# Programs of tests/core that take only seconds.
 PROGRAMS = ("core_test", "threads_test", "lanes_test", "golden")
 
-# An editable installation would be found before the copy.
+# Guard of the tests: an editable installation would be found before the copy.
 NOT_EDITABLE = """\
 import sys
 sys.meta_path = [finder for finder in sys.meta_path if "ScikitBuild" not in type(finder).__name__]
 """
 
-# Files written by programs, or of names only.
+# Files without mutants: written by programs, or only lists of names.
 LEFT_OUT = ("gauss_legendre.hpp", "collocation.hpp", "_core.pyi")
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A changed line."""
+    """A source line with one change."""
 
-    path: str  # of the source, in the project
-    line: int  # from 1 on
-    number: int  # of this change among those of the line
+    path: str  # path of the source in the project
+    line: int  # number of the line, from 1 on
+    number: int  # number of this change among the changes of the line
     kind: str  # key of CHANGES
-    was: str  # the line without its indent
+    was: str  # the old line without its indent
     now: str
 
     @property
@@ -98,7 +98,7 @@ class Mutant:
 
 
 def changes(line: str) -> Iterator[tuple[str, str]]:
-    """All changes of a line, by kind."""
+    """All changes of a line: the kind and the new line."""
     code = re.split(r"//|  # ", line)[0]
     for kind, rules in CHANGES.items():
         for pattern, replacement in rules:
@@ -123,7 +123,7 @@ def mutants_of(path: Path) -> Iterator[Mutant]:
 
 
 def drawn(side: str, count: int, seed: int) -> list[Mutant]:
-    """Mutants of all files in a mixed order, as many of each as the root of its total."""
+    """Mutants of all files in mixed order; each file's share is the root of its total."""
     folder, suffixes = ("src", (".cpp", ".hpp")) if side == "core" else ("python", (".py",))
     random_ = random.Random(seed)
     order = []
@@ -138,10 +138,10 @@ def drawn(side: str, count: int, seed: int) -> list[Mutant]:
 
 
 class Workshop:
-    """A copy of the project in which one mutant after the other is built and tested."""
+    """A copy of the project in which the mutants are built and tested one by one."""
 
     def __init__(self, folder: Path, processes: int):
-        self.took: dict[tuple[str, ...], float] = {}  # seconds of tests that passed
+        self.took: dict[tuple[str, ...], float] = {}  # duration of tests that passed [s]
         self.printed: dict[str, bytes] = {}  # output of PROGRAMS from the unchanged sources
         self.spread = ["-n", str(processes), "--dist", "loadfile"] if processes > 1 else []
         self.copy = folder / "copy"
@@ -179,7 +179,7 @@ class Workshop:
         return True
 
     def require_tested(self) -> None:
-        """The tests must import the copy."""
+        """End the script if the tests do not import the copy."""
         code = "import rolling_ellipse; print(rolling_ellipse.__file__)"
         command = [sys.executable, "-c", code]
         done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
@@ -187,7 +187,7 @@ class Workshop:
             sys.exit(f"another installation is found first: {done.stdout}{done.stderr}")
 
     def failing(self, *arguments: str) -> str:
-        """The first test that fails, if any; taking five times as long as usual is a failure."""
+        """The first test that fails or takes five times as long as usual, or ""."""
         usual = 60.0 if arguments else 1500.0
         seconds = 60 + 5 * self.took.get(arguments, usual)
         begin = time.monotonic()
@@ -202,14 +202,14 @@ class Workshop:
             return "one that takes too long"
         if done.returncode == 4:
             sys.exit(done.stderr)
-        if done.returncode not in (0, 5):  # 5: no such tests there
+        if done.returncode not in (0, 5):  # pytest's exit code 5: no test was selected
             named = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
             return named[1] if named else f"exit code {done.returncode}"
         self.took[arguments] = time.monotonic() - begin
         return ""
 
     def failing_program(self) -> str:
-        """The first of PROGRAMS that fails, or prints other bits than in the first call."""
+        """The first of PROGRAMS that fails or prints other bits than in the first call, or ""."""
         for name in PROGRAMS:
             if not (program := self.objects / name).exists():
                 continue
@@ -222,7 +222,7 @@ class Workshop:
         return ""
 
     def judged(self, mutant: Mutant, thorough: bool) -> tuple[str, str]:
-        """The stage that noticed it, "build" or "alive"; and the test."""
+        """The stage that noticed a mutant, or "build" or "alive"; and the failing test."""
         path = self.copy / mutant.path
         whole = path.read_text(encoding="utf-8")
         lines = whole.splitlines(keepends=True)
@@ -243,7 +243,7 @@ class Workshop:
 
 
 def renew(source: str, target: str) -> None:
-    """Copy a file that differs; so a mutant that was left behind is undone and built anew."""
+    """Copy a file if it differs, so that a mutant that was left behind is undone and built anew."""
     if not (os.path.exists(target) and filecmp.cmp(source, target, shallow=False)):
         shutil.copyfile(source, target)
 
@@ -259,7 +259,7 @@ def nearest(path: str) -> list[str]:
 
 
 def stages(path: str, thorough: bool) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Names of the stages of a mutant, with the arguments of pytest."""
+    """Stages that test a mutant, with the arguments of pytest."""
     for folder in nearest(path):
         yield folder, (f"tests/{folder}", "-m", "quick")
     if path.startswith("src"):
@@ -282,7 +282,7 @@ def main() -> None:
     parser.add_argument("--only", help="PATH:LINE:NUMBER, the name of a mutant")
     parser.add_argument("--thorough", action="store_true")
     parser.add_argument("--processes", type=int, default=1, help="processes that share the tests")
-    parser.add_argument("--list", action="store_true", help="draw and print, no more")
+    parser.add_argument("--list", action="store_true", help="only draw and print")
     options = parser.parse_args()
     if options.only:
         path = ROOT / options.only.split(":")[0]
@@ -299,10 +299,10 @@ def main() -> None:
     workshop = Workshop(options.folder, options.processes)
     workshop.configure()
     if not workshop.build():
-        sys.exit("the sources as they are do not build")
+        sys.exit("the unchanged sources do not build")
     workshop.require_tested()
     if by := workshop.failing_program() or workshop.failing("-m", "quick"):
-        sys.exit(f"{by} fails with the sources as they are")
+        sys.exit(f"{by} fails with the unchanged sources")
     for i, mutant in enumerate(todo):
         if mutant.name in known and not options.only:
             continue
@@ -316,10 +316,10 @@ def main() -> None:
             print(f"    {mutant.was}\n    {mutant.now}", flush=True)
     fates = [fate for m in todo if (fate := known[m.name]["fate"]) != "build"]
     if not workshop.build():
-        sys.exit("the sources as they are do not build any more")
+        sys.exit("the unchanged sources do not build any more")
     for folder in sorted(set(fates) - {"programs", "quick", "all", "alive"}):
         if by := workshop.failing(f"tests/{folder}"):
-            sys.exit(f"{by} fails with the sources as they are")
+            sys.exit(f"{by} fails with the unchanged sources")
     print(f"{sum(fate != 'alive' for fate in fates)} of {len(fates)} noticed")
 
 

@@ -19,11 +19,11 @@ ROOT = Path(__file__).resolve().parents[1]
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = SETTINGS["project"]
 
-# Types are written for the stubs of today's NumPy.
+# The test of types is left out: the types are written for the stubs of today's NumPy.
 TYPES = "tests/project/test_codebase.py::test_the_tools_accept_the_sources[mypy]"
 NO_TYPES = ("--deselect", TYPES)
 
-# Old versions warn of newer ones beside them.
+# Old versions warn of newer versions of their neighbours.
 NO_DEPRECATIONS = ("-Wignore::DeprecationWarning", "-Wignore::PendingDeprecationWarning")
 
 
@@ -39,7 +39,7 @@ def oldest_versions() -> list[str]:
     """Requirements to build, run and test the package, with their oldest versions."""
     extras = PROJECT["optional-dependencies"].values()
     groups = [SETTINGS["build-system"]["requires"], PROJECT["dependencies"], *extras]
-    own = f"{PROJECT['name']}["  # an extra that names another extra
+    own = f"{PROJECT['name']}["  # the extra names another extra of the package
     return [oldest(needed) for needed in chain(*groups) if not needed.startswith(own)]
 
 

@@ -1,15 +1,15 @@
 """Build tests/core/golden.cpp in many ways, and compare the bits that the programs print.
 
     python tools/same_bits.py FOLDER                 all builds whose compiler is on this machine
-    python tools/same_bits.py FOLDER --only clang    those with this word in their name
-    python tools/same_bits.py FOLDER --write         g++ -O3, and make tests/core/golden.txt of it
+    python tools/same_bits.py FOLDER --only clang    all builds with this word in their name
+    python tools/same_bits.py FOLDER --write         g++ -O3 only, writes tests/core/golden.txt
 
 The builds stay in FOLDER; with ccache a second run is quick. Builds for one target must agree to
 the last bit. Two other targets have C libraries with another rounding of sin and cos: aarch64,
 which has no lanes either (g++-aarch64-linux-gnu and qemu-user), and Windows
 (g++-mingw-w64-x86-64-posix and wine64). Builds for each of them must agree too, and differ from
-those for x86-64 Linux by no more than the bound of tests/oracles/golden.py. Otherwise the exit code
-is 1. libc++ comes from libc++-dev and libc++abi-dev.
+builds for x86-64 Linux by no more than the bound of tests/oracles/golden.py. Otherwise the exit
+code is 1. The packages libc++-dev and libc++abi-dev provide libc++.
 """
 
 import argparse
@@ -41,7 +41,7 @@ SETTINGS = {
 
 @dataclass(frozen=True)
 class Build:
-    """A compiler and its flags; `target` is a cross compiler, or empty for this machine."""
+    """A compiler and its flags; `target` is the target of a cross compiler, or empty."""
 
     compiler: str
     flags: str
@@ -55,7 +55,7 @@ class Build:
         return self.compiler if self.compiler in SETTINGS else ""
 
     def command(self, folder: Path) -> list[str]:
-        """The command that runs the program."""
+        """The command that runs the built program."""
         if self.target == ARM:
             qemu = shutil.which("qemu-aarch64") or shutil.which("qemu-aarch64-static")
             return [qemu or "qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", str(folder / "golden")]
@@ -69,12 +69,12 @@ BUILDS = (
     *(Build("clang++", flags) for flags in ("-O2", "-O0", "-O3 -march=native")),
     Build("clang++", "-O2 -stdlib=libc++"),
     *(Build(ARM, flags) for flags in ("-O3", "-O2", "-O0")),
-    *(Build(WINDOWS, flags) for flags in ("-O3", "-O2")),  # at -O0 its square root is misrounded
+    *(Build(WINDOWS, flags) for flags in ("-O3", "-O2")),  # -O0 misrounds square roots
 )
 
 
 def output(build: Build, folder: Path, jobs: int) -> str:
-    """Output of the program; the script ends if it cannot be built."""
+    """Output of the built program; the script ends if the build fails."""
     place = folder / build.name.replace(" ", "").replace("+", "p").replace("=", "-")
     eigen = [str(at) for part in sys.path if (at := Path(part, "cmeel.prefix")).is_dir()]
     launcher = shutil.which("ccache")
@@ -96,7 +96,7 @@ def output(build: Build, folder: Path, jobs: int) -> str:
 
 
 def compare(texts: dict[Build, str]) -> bool:
-    """Whether all builds agree; prints the differences."""
+    """Print the differences between builds; return whether all agree."""
     holds = True
     firsts: dict[str, Build] = {}
     for build, text in texts.items():

@@ -7,7 +7,7 @@
 #                                                              after it arguments of pytest)
 #   tools/sanitized_build.sh tools/fuzz_api.py --calls 5000 --seconds-per-call 20 --no-memory-limit
 #   tools/sanitized_build.sh -m pytest tests/contact/test_contact.py
-#   tools/sanitized_build.sh --threads --suite                 (all that runs in several threads)
+#   tools/sanitized_build.sh --threads --suite                 (tests that run several threads)
 #
 # Without --threads the address and undefined-behaviour sanitizers are used: a read out of bounds or
 # undefined arithmetic ends the process with a report, which the fuzzer counts as a crash. With
@@ -37,7 +37,7 @@ fi
 # it intercepts.
 preload="$(g++ -print-file-name=$runtime) $(g++ -print-file-name=libstdc++.so.6)"
 export PYTHONPATH="$folder/site${PYTHONPATH:+:$PYTHONPATH}"
-export PYTHONMALLOC=malloc # so that arrays of NumPy and bytes have their bounds
+export PYTHONMALLOC=malloc # gives NumPy arrays and bytes their own bounds
 if [ $runtime = libtsan.so ]; then
     export TSAN_OPTIONS="exitcode=66:die_after_fork=0${TSAN_OPTIONS:+:$TSAN_OPTIONS}"
 else
@@ -59,9 +59,9 @@ sys.exit(None if core.__file__.startswith('$folder/site') else f'not sanitized: 
 
 if [ "$1" = --suite ]; then
     shift
-    # Left out: tests with limited memory, since the runtimes reserve terabytes of addresses; the
-    # browser, whose processes would load the runtime; the fuzzer, which runs as above without its
-    # limit. The output of the runtimes is not captured.
+    # The suite leaves out tests with limited memory, since the runtimes reserve terabytes of
+    # addresses; the browser, whose processes would load the runtime; and the fuzzer, which runs as
+    # above without its limit. The output of the runtimes is not captured.
     set -- -m pytest -p no:cacheprovider --capture=sys "$@" \
         --deselect tests/border/test_border.py::test_threads_that_cannot_start_are_not_missed \
         --ignore tests/border/test_fuzz.py --ignore tests/player/test_browser.py

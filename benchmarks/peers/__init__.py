@@ -1,13 +1,13 @@
 """Other people's integrators on the rolling ellipse, one file for each library.
 
-`available()` loads those that are installed; nothing heavy is imported before.
+`available()` loads the installed libraries; nothing heavy is imported before.
 """
 
 import importlib
 import warnings
 from typing import Any
 
-MODULES = {  # with the library that each needs; Boost's headers and g++ are looked for by its own
+MODULES = {  # modules with the library that each needs; boost_odeint finds Boost and g++ itself
     "scipy_ivp": "scipy",
     "numba_pairs": "numbalsoda",
     "heyoka_taylor": "heyoka",
@@ -19,14 +19,15 @@ MODULES = {  # with the library that each needs; Boost's headers and g++ are loo
 
 
 def available() -> tuple[list[Any], dict[str, str]]:
-    """The installed peers; for each missing library the reason."""
+    """The installed peers, and the reason for each missing library."""
     found, missing = [], {}
     for module, library in MODULES.items():
         try:
-            with warnings.catch_warnings(action="ignore"):  # about themselves, while they load
+            # libraries warn about themselves while they load
+            with warnings.catch_warnings(action="ignore"):
                 found += importlib.import_module(f".{module}", __name__).peers()
         except ModuleNotFoundError as error:
             missing[library] = f"{error.name} is not installed"
-        except Exception as error:  # a broken installation raises whatever it likes
+        except Exception as error:  # a broken installation may raise any exception
             missing[library] = f"{type(error).__name__}: {error}"
     return found, missing

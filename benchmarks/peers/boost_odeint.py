@@ -26,7 +26,7 @@ Doubles = ctypes.POINTER(ctypes.c_double)
 
 
 def output(*command: str) -> str:
-    """Output of a compiler; OSError with its first error line if it fails."""
+    """Output of a compiler; an OSError with the first error line if it fails."""
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)
     if done.returncode:
         errors = [line for line in done.stderr.splitlines() if "error" in line]
@@ -35,11 +35,11 @@ def output(*command: str) -> str:
 
 
 def library() -> ctypes.CDLL:
-    """The compiled program, built where it is not in the cache."""
+    """The compiled program, built if it is not in the cache."""
     compiler = os.environ.get("CXX") or shutil.which("g++")
     if compiler is None:
         raise OSError("there is no g++")
-    target = output(compiler, *FLAGS, "-Q", "--help=target")  # what -march=native means here
+    target = output(compiler, *FLAGS, "-Q", "--help=target")  # resolves "native"
     text = SOURCE.read_text(encoding="utf-8") + output(compiler, "--version") + target
     key = hashlib.sha256((text + platform.machine()).encode()).hexdigest()[:16]
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rolling_ellipse"

@@ -38,7 +38,7 @@ class DiffraxRun(Integration):
         self.end = jnp.array([given.t_end])
         self.start, self.body = jnp.array(given.start), jnp.array(given.body)
         self.rtol = jnp.array(given.rtol)
-        self.integrate(self.end / 1e6, True)  # compiles
+        self.integrate(self.end / 1e6, True)  # a short run compiles the solver
 
     def integrate(self, times: Any, ends: bool) -> Any:
         found = _integrate(self.solver, ends, self.start, self.body, times, self.rtol)

@@ -9,11 +9,11 @@ import numpy as np
 
 from .problem import Integration, Peer, Problem, columns, finite, version
 
-MANY = 20_000  # samples, from which compiled dense output is faster than a grid
+MANY = 20_000  # number of samples from which compiled dense output is faster than a grid
 
 
 def equations(slope: bool) -> list[Any]:
-    """The system with as few products of series as possible; without a slope, level ground."""
+    """The system with few products of series; without a slope for level ground only."""
     theta, omega, x = heyoka.make_vars("theta", "omega", "x")
     b2, spread, a2b2, total, gamma, sigma = (heyoka.par[i] for i in range(6))
     s, c = heyoka.sin(theta), heyoka.cos(theta)
@@ -37,7 +37,7 @@ class HeyokaRun(Integration):
         self.counts, self.solver = {}, copy.copy(compiled(given.rtol, sigma != 0))
         self.start, self.t_end = np.array(given.start), given.t_end
         self.solver.pars[:] = given.body[: len(self.solver.pars)]
-        self.state = self.solver.state  # a view
+        self.state = self.solver.state  # the array is a view of the solver's state
 
     def begin(self) -> None:
         self.solver.time = 0.0
@@ -55,7 +55,8 @@ class HeyokaRun(Integration):
         return finite(*self.state.tolist())
 
     def sample(self, times: Any) -> Any:
-        """Dense output is compiled anew in every run, so it pays for many samples only."""
+        """Sample the motion; dense output is compiled anew in every run and needs many samples to
+        pay."""
         self.begin()
         grid = np.concatenate(([0.0], times[int(times[0] == 0) :]))
         if len(times) < MANY and np.all(np.diff(grid) > 0):

@@ -1,4 +1,4 @@
-"""The same body in MuJoCo, for notebook 07.
+"""The ellipse of a scene in MuJoCo, for notebook 07.
 
 The body is an ellipsoid on a plane, held in its plane by two slides and a hinge, with the mass and
 inertia of the scene. MuJoCo finds the contact of an ellipsoid and a plane exactly, so only its
@@ -36,18 +36,18 @@ BODY = """
   </worldbody>
 </mujoco>
 """
-STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS  # time, positions, velocities
+STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS  # state vector of time, positions and velocities
 
 
 class Motion(NamedTuple):
-    """One entry a step; the potential energy is 0 at the origin."""
+    """The motion step by step; the potential energy is 0 at the origin."""
 
     times: Any
     theta: Any
     omega: Any
     x: Any
     z: Any
-    energy: Any  # [J]
+    energy: Any  # total energy [J]
 
 
 def model(scene: Scene, dt: float, contact: str = "default") -> Any:
@@ -65,7 +65,7 @@ def model(scene: Scene, dt: float, contact: str = "default") -> Any:
 
 
 def motion(scene: Scene, t_end: float, dt: float, contact: str = "default") -> Motion:
-    """All steps of the motion from the scene's initial state."""
+    """The motion from a scene's initial state, step by step."""
     at = scene.initial_state
     if at.mode is not Mode.ROLLING:
         raise ValueError(f"the comparison is of rolling, and this scene starts {at.mode.name}")
@@ -84,6 +84,6 @@ def motion(scene: Scene, t_end: float, dt: float, contact: str = "default") -> M
 
 
 def energy_gain(scene: Scene, found: Motion) -> float:
-    """Relative change of the energy above lying flat at rest, on level ground."""
+    """Relative change of the energy above that of lying flat at rest, on level ground."""
     above = found.energy - scene.mass * scene.gravity * min(scene.a, scene.b)
     return float(above[-1] / above[0] - 1)

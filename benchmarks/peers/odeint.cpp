@@ -13,7 +13,7 @@ using Algebra = odeint::array_algebra;
 constexpr long most_steps = 1'000'000;
 
 struct Problem {
-    double b2, spread, a2b2, total, gamma, sigma, gyration2;  // as in problem.py
+    double b2, spread, a2b2, total, gamma, sigma, gyration2;  // Problem.body of problem.py
     double theta, omega, x;
     double t_end, rtol, atol, pace;
 };
@@ -42,14 +42,14 @@ struct Rates {
 
 struct Samples {
     const double* times;
-    double* states;  // three a row
+    double* states;  // theta, omega and x of each sample
     long count;
 
     void put(long i, const State& y) const { std::copy(y.begin(), y.end(), states + 3 * i); }
 };
 
-// Any controlled stepper, stopped at every sample. After a step that a stop has cut short, the step
-// size before it is tried again.
+// A controlled stepper that stops at every sample. After a step that a stop has cut short, the step
+// size before the stop is tried again.
 template <class Stepper>
 Answer stop_at(Stepper stepper, const Rates& rates, double step, const Samples& samples) {
     State y{rates.body.theta, rates.body.omega, rates.body.x};
@@ -75,7 +75,7 @@ Answer stop_at(Stepper stepper, const Rates& rates, double step, const Samples& 
     return done;
 }
 
-// Steppers with dense output: samples are read off the last step.
+// A stepper with dense output: samples are interpolated in the last step.
 template <class Stepper>
 Answer interpolate(Stepper stepper, const Rates& rates, double step, const Samples& samples) {
     State y{rates.body.theta, rates.body.omega, rates.body.x};

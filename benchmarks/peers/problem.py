@@ -21,22 +21,22 @@ import numpy as np
 from rolling_ellipse import Mode, Scene
 
 Rates = Callable[[Any, Any, Any], tuple[Any, Any]]
-MOST_STEPS = 1_000_000  # of one run
+MOST_STEPS = 1_000_000  # most steps of one run
 
 
 class Problem(NamedTuple):
-    """Body, start and end of one run, and its tolerances."""
+    """Body, start, end and tolerances of one run."""
 
     body: tuple[float, ...]  # B, A - B, AB, S [m^2, m^4], gamma, sigma [m/s^2], k^2 [m^2]
-    start: tuple[float, float, float]  # theta [rad], omega [rad/s], x [m]
-    t_end: float  # [s]
+    start: tuple[float, float, float]  # initial theta [rad], omega [rad/s], x [m]
+    t_end: float  # end of the run [s]
     rtol: float
     atol: float
     pace: float  # time scale of the motion [s]
 
 
 def problem(scene: Scene, t_end: float, setting: float) -> Problem:
-    """The numbers of a scene; ValueError if it does not roll."""
+    """The problem of a scene; a ValueError if the scene does not roll."""
     at = scene.initial_state
     if at.mode is not Mode.ROLLING:
         raise ValueError(f"peers integrate rolling only, and this scene starts {at.mode.name}")
@@ -54,7 +54,7 @@ def problem(scene: Scene, t_end: float, setting: float) -> Problem:
 
 
 def rates_with(sin: Any, cos: Any, sqrt: Any) -> Rates:
-    """theta'' and x' from theta, omega and the body, for the functions of some library."""
+    """Function that returns theta'' and x' from theta, omega and the body, with a library's sin."""
 
     def rates(theta: Any, omega: Any, body: Any) -> tuple[Any, Any]:
         s, c = sin(theta), cos(theta)
@@ -78,7 +78,7 @@ class Integration(ABC):
 
     @abstractmethod
     def __call__(self) -> tuple[float, float, float]:
-        """theta, omega, x at the end, integrated anew."""
+        """theta, omega and x at the end, integrated anew in each call."""
 
 
 @dataclass(frozen=True)
@@ -86,31 +86,31 @@ class Peer:
     """A contender of a race: an integrator of some library."""
 
     name: str
-    library: str  # with its version
-    run: Callable[[Problem], Integration]  # compiles and allocates
+    library: str  # library with its version
+    run: Callable[[Problem], Integration]  # compiles, allocates, and returns the prepared run
     least: float = 0.0  # smallest tolerance that the library takes
     tags: tuple[str, ...] = ("peer", "compiled")
 
     def prepare(self, scene: Scene, t_end: float, setting: float) -> Integration:
-        """Set up a new scene; ValueError if the peer cannot integrate it."""
+        """Prepare a run of a new scene; a ValueError if the peer cannot integrate it."""
         if setting < self.least:
             raise ValueError(f"{self.name} takes tolerances from {self.least:.1e}, got {setting}")
         return self.run(problem(scene, t_end, setting))
 
 
 def version(library: str) -> str:
-    """Name and version of what pip has installed."""
+    """Name and version of an installed library, by pip."""
     return f"{library} {metadata.version(library)}"
 
 
 def columns(states: Any) -> tuple[Any, Any, Any]:
-    """theta, omega, x, from states one a row."""
+    """theta, omega and x from an array with one state per row."""
     theta, omega, x = np.ascontiguousarray(np.asarray(states).T)
     return theta, omega, x
 
 
 def finite(theta: float, omega: float, x: float) -> tuple[float, float, float]:
-    """The state; RuntimeError if it is not finite."""
+    """The state theta, omega, x; a RuntimeError if it is not finite."""
     if not math.isfinite(theta + omega + x):
         raise RuntimeError(f"the state is not finite: {theta}, {omega}, {x}")
     return theta, omega, x

@@ -27,13 +27,13 @@ def _right_hand_side(ode: Any, dy: Any, y: Any, t: float) -> None:
 
 
 def field(solver: Any, name: str) -> Any:
-    """A number in the memory of the integrator; access by attribute would take 15 us."""
+    """A field in the memory of the integrator; access by attribute would take 15 us."""
     found = solver.callbacks.field_descriptor_list.field_descriptor_for_name(name)
     return REB_BINARYDATA_DTYPE[found.dtype].from_address(solver.state + found.offset)
 
 
 class ReboundRun(Integration):
-    """One simulation, set back to the start by every run."""
+    """A simulation that every run sets back to the start."""
 
     def __init__(self, given: Problem) -> None:
         self.counts, self.given = {}, given
@@ -65,7 +65,7 @@ class ReboundRun(Integration):
         return finite(y[0], y[1], y[2])
 
     def sample(self, times: Any) -> Any:
-        """It has no dense output: it stops at every time."""
+        """Sample the motion: REBOUND has no dense output and stops at every time."""
         y = self.begin()
         states = np.empty((len(times), 3))
         for row, t in zip(states, times, strict=True):

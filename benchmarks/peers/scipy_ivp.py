@@ -1,7 +1,7 @@
 """SciPy's solve_ivp, with the right-hand side compiled where numba is installed.
 
-solve_ivp takes no relative tolerance below 100 ulp of 1 and would warn. Smaller ones are raised to
-that here; the absolute tolerance follows the setting.
+solve_ivp takes no relative tolerance below 100 ulp of 1 and would warn. Smaller tolerances are
+raised to this bound; the absolute tolerance follows the setting.
 """
 
 from functools import partial
@@ -39,10 +39,10 @@ class ScipyRun(Integration):
         how = {"rtol": max(given.rtol, LEAST_RTOL), "atol": given.atol, "args": (body,)}
         start, span = np.array(given.start), (0.0, given.t_end)
         self.solve = partial(solve_ivp, right_hand_side, span, start, method, **how)
-        right_hand_side(0.0, start, body)  # compiles
+        right_hand_side(0.0, start, body)  # the first call compiles
 
     def integrate(self, times: Any = None) -> Any:
-        with np.errstate(all="ignore"):  # a failing run says so by its status
+        with np.errstate(all="ignore"):  # a failing run reports its failure by its status
             found = self.solve(t_eval=times)
         if not found.success:
             raise RuntimeError(found.message)
@@ -55,7 +55,7 @@ class ScipyRun(Integration):
         return finite(*self.integrate()[:, -1].tolist())
 
     def sample(self, times: Any) -> Any:
-        """solve_ivp takes no time twice."""
+        """Sample the motion; solve_ivp accepts no time twice."""
         once, back = np.unique(times, return_inverse=True)
         return columns(self.integrate(once).T[back])
 

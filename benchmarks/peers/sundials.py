@@ -21,12 +21,12 @@ from .problem import MOST_STEPS, RATES, Integration, Peer, Problem, columns, fin
 
 LEAST_RTOL = 1e-15
 _right_hand_side = numba.njit(right_hand_side)
-_FREE = 1e300  # absolute tolerance of a variable outside the error test
+_FREE = 1e300  # absolute tolerance that excludes a variable from the error test
 
 
 @numba.njit  # type: ignore[untyped-decorator]
 def _support(theta: float, body: Any) -> Any:
-    """h, h' and h''."""
+    """h, h' and h'' at theta."""
     s, c = math.sin(theta), math.cos(theta)
     u = body[0] + body[1] * s * s
     h = math.sqrt(u)
@@ -35,7 +35,7 @@ def _support(theta: float, body: Any) -> Any:
 
 @numba.njit  # type: ignore[untyped-decorator]
 def _residuals(t: float, y: Any, dy: Any, out: Any, body: Any) -> None:
-    """y = (x, z, theta, x', z', omega, N, F); body[6] is k^2."""
+    """Residuals for y = (x, z, theta, x', z', omega, N, F); body[6] is k^2."""
     h, slope, bend = _support(y[2], body)
     omega, normal, friction = y[5], y[6], y[7]
     turn = -(h * friction + slope * normal) / body[6]
@@ -49,7 +49,7 @@ def _residuals(t: float, y: Any, dy: Any, out: Any, body: Any) -> None:
 
 
 class CvodeRun(Integration):
-    order = (0, 1, 2)  # places of theta, omega and x in y
+    order = (0, 1, 2)  # positions of theta, omega and x in y
 
     def __init__(self, method: str, given: Problem) -> None:
         self.counts, self.t_end = {}, given.t_end
@@ -58,7 +58,7 @@ class CvodeRun(Integration):
         self.begin(CVODE(_right_hand_side, userdata=given.body, method=method, **how), given)
 
     def begin(self, solver: Any, given: Problem) -> None:
-        """A tiny first step, which compiles."""
+        """Take a tiny first step, which compiles the functions."""
         self.solver = solver
         solver.init_step(0.0, *self.initial)
         solver.step(given.pace * 1e-6)
@@ -71,7 +71,7 @@ class CvodeRun(Integration):
         return finite(*(y[i] for i in self.order))
 
     def sample(self, times: Any) -> Any:
-        """solve() takes rising times from that of the start, and more than two."""
+        """Sample the motion; solve() takes increasing times from the start on, more than two."""
         stops, back = np.unique(np.concatenate(([0.0], times, [self.t_end])), return_inverse=True)
         found = self.solver.solve(stops, *self.initial)
         self.settle(found)
@@ -95,7 +95,7 @@ class IdaRun(CvodeRun):
 
 
 def consistent(given: Problem) -> tuple[Any, Any]:
-    """All unknowns at the start, and their rates; IDA does not need those of the forces (0)."""
+    """All unknowns at the start and their rates; IDA ignores the rates of the forces (0)."""
     body, (theta, omega, x) = given.body, given.start
     h, slope, bend = _support(theta, body)
     turn, _ = RATES(theta, omega, body)

@@ -1,4 +1,4 @@
-"""Motions to draw; a picture drawn where it was told leaves pyplot alone."""
+"""Motions to draw; a picture drawn into given axes leaves pyplot alone."""
 
 import warnings
 from collections.abc import Callable, Iterator
@@ -32,7 +32,7 @@ def report() -> rl.Trajectory:
 
 @pytest.fixture
 def several(report: rl.Trajectory) -> list[rl.Trajectory]:
-    """Rolling, and two of its simulations in coordinates that go astray."""
+    """Rolling, and two simulations of it in coordinates, whose steps lose the constraints."""
     how: dict[str, Any] = {"model": "multipliers", "method": "rk4", "stabilization": "none"}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rl.StabilityWarning)
@@ -41,7 +41,7 @@ def several(report: rl.Trajectory) -> list[rl.Trajectory]:
 
 @pytest.fixture(autouse=True)
 def nothing_left_open(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """No picture shows itself; one drawn where it was told leaves pyplot alone."""
+    """No picture opens a window; a picture drawn into given axes leaves no pyplot figure."""
 
     def show(*_: object, **__: object) -> None:
         raise AssertionError("plt.show() was called")

@@ -43,7 +43,7 @@ def report() -> rl.Trajectory:
 
 @pytest.fixture
 def short(report: rl.Trajectory) -> RollingAnimation:
-    """Eleven frames, 0.4 s."""
+    """An animation of eleven frames, 0.4 s long."""
     return rl.animate(report, t_end=0.4, fps=25, width=160, dpi=50)
 
 
@@ -68,7 +68,7 @@ def test_frames_are_the_trajectory_in_true_time(trajectory: rl.Trajectory) -> No
         animation.draw(i)
         at = trajectory.sol(min(i * 0.5 / 20, 1.0))
         assert animation.t[i] == pytest.approx(i * 0.5 / 20, abs=1e-16)
-        # one time: other roundings than those of many
+        # a single time is rounded differently than many times
         assert centre_of(strip.body) == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
         assert strip.body.angle == pytest.approx(-math.degrees(at.theta[0]), rel=1e-14)
         place = np.asarray(strip.contact.get_data())[:, 0]
@@ -158,7 +158,7 @@ def test_the_camera_stands_still_for_three_turns_and_then_goes_along(
 def test_the_ground_is_ruled_where_the_body_is() -> None:
     animation = rl.animate(rl.simulate(rl.Scene(1.0, 1.0, omega=1e6), 9.0), fps=25, width=160)
     strip = only(animation)
-    for i in (0, 100, 200):  # 4e6 m on
+    for i in (0, 100, 200):  # about 4e6 m
         animation.draw(i)
         (left, right), _ = view_of(animation)
         ticks = np.array([tick[0, 0] for tick in strip.ruler.ticks.get_segments()])
@@ -174,7 +174,7 @@ def test_the_ground_is_ruled_where_the_body_is() -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("slope", [0.4, 1.2, -1.5])
 def test_a_slope_is_ruled_where_it_is_seen(slope: float) -> None:
-    """To the rims of the view; and figures are where matplotlib can draw them."""
+    """The ticks reach the rims of the view, and the labels stay where matplotlib can draw them."""
     scene = rl.Scene(2.0, 1.0, theta=0.3, omega=1.0, slope=slope)
     animation = rl.animate(rl.simulate(scene, 1.0, model="rolling"), fps=25, width=160)
     strip = only(animation)
@@ -212,8 +212,8 @@ def test_gif_shows_the_frames_in_order(short: RollingAnimation, tmp_path: Path) 
     for i, picture in enumerate(pictures):
         difference = [np.abs(picture - other).mean() for other in drawn]
         assert np.argmin(difference) == i
-        assert difference[i] < 2  # of 255: what the palette rounds away
-    # a thin line, not averaged out
+        assert difference[i] < 2  # rounding of the palette, of 255
+    # the thin line itself, not its average
     orange = 255 * np.array(to_rgb(only(short).centre_trace.get_color()))
     assert np.abs(pictures[-1] - orange).max(axis=2).min() < 20
 
@@ -232,7 +232,7 @@ def test_html_is_a_page_with_a_player(short: RollingAnimation, tmp_path: Path) -
     short.save(path)
     text = path.read_text(encoding="utf-8")
     assert text.startswith("<!DOCTYPE html>") and short._repr_html_() in text
-    assert list(tmp_path.iterdir()) == [path]  # nothing beside it
+    assert list(tmp_path.iterdir()) == [path]  # no other file beside it
     with pytest.raises(TypeError, match=r"^options must be none for an \.html .*, got bitrate"):
         short.save(path, bitrate=1)
 
@@ -298,10 +298,10 @@ MINUTE = rl.simulate(rl.scenes.report, 100.0)
 @pytest.mark.parametrize(
     ("options", "count", "last"),
     [
-        ({"t_end": 20.0, "fps": 25}, 501, 20.0),  # no more than a quarter of it was shown once
+        ({"t_end": 20.0, "fps": 25}, 501, 20.0),  # a request of less than a quarter of the motion
         ({"t_end": 20.0}, 1001, 20.0),
         ({"t_end": 60.0, "fps": 10}, 601, 60.0),
-        ({"fps": 10}, 501, 100.0),  # a minute is enough: twice as fast
+        ({"fps": 10}, 501, 100.0),  # longest film by default: a minute, so the speed is doubled
         ({"fps": 10, "speed": 1.0}, 1001, 100.0),
         ({"speed": 4.0, "fps": 25}, 626, 100.0),
         ({"t_end": 0.58, "fps": 50}, 30, 0.58),
@@ -325,7 +325,7 @@ def test_a_film_is_as_long_as_its_motion(
 
     path, seconds = tmp_path / f"roll{suffix}", 0.48 / speed
     if (suffix, fps) == (".gif", 60):
-        return  # is refused: hundredths of a second
+        return  # the format refuses it: times are hundredths of a second
     rl.animate(report, path, t_end=0.48, fps=fps, speed=speed, width=64, dpi=20)
     if suffix == ".html":
         data = carried(path.read_text(encoding="utf-8"))
@@ -334,9 +334,9 @@ def test_a_film_is_as_long_as_its_motion(
     if suffix == ".gif":
         found = sum(gif_frames(path.read_bytes())[1]) / 1000
     else:
-        count, found = imageio_ffmpeg.count_frames_and_secs(str(path))  # printed with two digits
+        count, found = imageio_ffmpeg.count_frames_and_secs(str(path))  # 2 digits
         assert count == 1 + round(seconds * fps)
-    # the last time that a frame has is shown for a frame, too
+    # the last frame is shown for the duration of a frame, too
     assert found - seconds == pytest.approx(1 / fps, abs=0.011 if suffix == ".mp4" else 1e-9)
 
 
@@ -369,13 +369,13 @@ def test_a_motion_of_eleven_days(tmp_path: Path) -> None:
     animation = rl.animate(rl.simulate(rl.scenes.rolling, 1e6), path)
     assert animation.clock.get_text() == "t = 0 s   speed × 20000"
     (strip,) = carried(path.read_text(encoding="utf-8"))["strips"]
-    assert strip["track"]["stepped"]  # half a million turns: no time between frames
+    assert strip["track"]["stepped"]  # half a million turns: samples exist at the frames only
     assert path.stat().st_size < 300_000
 
 
 def test_the_last_frame_never_leaves_the_trajectory() -> None:
     for k in range(1, 60):
-        end = k * 0.04  # may be an ulp below k / 25
+        end = k * 0.04  # the end may be an ulp below k / 25
         animation = rl.animate(rl.simulate(rl.scenes.report, end), fps=25, width=64)
         assert animation.t[-1] <= end and animation.t.size == k + 1
 
@@ -394,7 +394,7 @@ def test_nothing_is_written_and_nothing_left_open(
     monkeypatch.chdir(tmp_path)
     animation = report.animate()
     animation.draw(3)
-    del animation  # matplotlib would warn here, and a warning is an error
+    del animation  # matplotlib would warn here, and warnings are errors
     assert list(tmp_path.iterdir()) == []
     assert plt.get_fignums() == []
 
@@ -445,15 +445,15 @@ def test_a_window_shows_it_and_a_notebook_does_not_show_it_twice(
     assert len(plt.get_fignums()) == windows
     assert plt.fignum_exists(animation.figure.number) if windows else True
     plt.close("all")
-    rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=64, dpi=20)  # a file, no window
+    rl.animate(report, tmp_path / "roll.gif", t_end=0.1, width=64, dpi=20)  # a file opens no window
     with pytest.raises(ValueError, match="labels must be 1"):
         rl.animate(report, labels=["one", "two"])
     assert plt.get_fignums() == []
 
 
 def test_a_page_leaves_nothing_to_collect(report: rl.Trajectory, tmp_path: Path) -> None:
-    """Ctrl-C is lost where cycles are collected: what is only written has none."""
-    rl.animate(report, tmp_path / "roll.html")  # all is loaded
+    """A written film has no reference cycles: Ctrl-C is lost while they are collected."""
+    rl.animate(report, tmp_path / "roll.html")  # loads all modules
     gc.collect()
     gc.disable()
     try:
@@ -473,7 +473,7 @@ def pixels(film: RollingAnimation) -> Any:
 def test_a_film_that_was_written_as_a_page_is_drawn_when_asked_for(
     report: rl.Trajectory, tmp_path: Path
 ) -> None:
-    """With the pixels of one that was drawn at once, and as the same animation of matplotlib's."""
+    """Its pixels equal those of a film drawn at once, and matplotlib has the same animation."""
     page = rl.animate(report, tmp_path / "roll.html", width=200)
     drawn = rl.animate(report, width=200, fps=60)
     assert not hasattr(page, "no_such_name")
@@ -487,7 +487,7 @@ def test_a_film_that_was_written_as_a_page_is_drawn_when_asked_for(
 def test_a_page_whose_picture_fails_tries_again(
     report: rl.Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As after a Ctrl-C, which may come anywhere."""
+    """An interrupted drawing leaves no trace: Ctrl-C may come at any time."""
     film = rl.animate(report, tmp_path / "roll.html")
     with monkeypatch.context() as patched:
         patched.setattr(Figure, "add_axes", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))

@@ -1,4 +1,4 @@
-"""What all pictures of motions have in common, read back from their artists."""
+"""Common properties of all pictures of motions, read back from their artists."""
 
 import dataclasses
 import itertools
@@ -115,18 +115,18 @@ def test_nothing_overlaps_at_320_by_240(
     boxes = []
     for ax in axes:
         window = ax.get_window_extent()
-        # versions of matplotlib differ by a pixel in the height of letters, and so of what is left
+        # versions of matplotlib differ by a pixel in the height of letters and of the free space
         assert window.width > 160 and window.height > 85 / panels**2
         parts = [ax.xaxis.label, ax.yaxis.label, ax.get_legend(), *tick_labels(ax)]
         boxes += [window, *(part.get_window_extent() for part in parts if part is not None)]
-    for box in boxes:  # within half a pixel, to which the layout rounds
+    for box in boxes:  # the layout rounds to half a pixel
         assert min(box.x0, box.y0) > -0.5 and box.x1 < 320.5 and box.y1 < 240.5
     full = [box.padded(-0.5) for box in boxes if min(box.width, box.height) > 1]
     assert not any(one.overlaps(other) for one, other in itertools.combinations(full, 2))
 
 
 def tick_labels(ax: Axes) -> list[Text]:
-    """Those that are drawn: matplotlib keeps some beyond the limits as well."""
+    """Labels of the ticks that are drawn: matplotlib keeps some beyond the limits, too."""
     labels: list[Text] = []
     for axis in (ax.xaxis, ax.yaxis):
         low, high = sorted(axis.get_view_interval())
@@ -139,7 +139,7 @@ def test_motions_differ_in_lightness_and_dashes(report: rl.Trajectory) -> None:
     for count in range(2, 6):
         styles = Comparison([report] * count).styles
         for one, other in itertools.combinations(styles, 2):
-            # two greys 10 apart in L* of 100 are told apart at a glance
+            # two greys 10 of 100 apart in L* are distinguished at a glance
             assert abs(lightness(one.colour) - lightness(other.colour)) > 10
             assert one.dash != other.dash and one.marker != other.marker
     shades = [lightness(style.colour) for style in Comparison([report] * 12).styles]
@@ -147,7 +147,7 @@ def test_motions_differ_in_lightness_and_dashes(report: rl.Trajectory) -> None:
 
 
 def lightness(colour: str) -> float:
-    """CIE L* of a colour."""
+    """Lightness CIE L* of a colour."""
     return float(116 * np.cbrt(luminance(colour)) - 16)
 
 
@@ -210,7 +210,7 @@ ROLLING = rl.simulate(rl.scenes.rolling, 1.0)
 
 
 def motions(*scenes: rl.Scene) -> list[rl.Trajectory]:
-    """Trajectories of scenes; none is integrated, labels only read what was asked for."""
+    """Trajectories of scenes without integration: labels read only the request."""
     return [dataclasses.replace(ROLLING, scene=scene) for scene in scenes]
 
 

@@ -1,4 +1,4 @@
-"""A picture or film that fails leaves nothing behind; names of films, and who writes them."""
+"""A picture or film that fails leaves no file behind; names of films and their writers."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -26,7 +26,7 @@ CURVES = [
 ]  # fmt: skip
 SMALL: dict[str, Any] = {"t_end": 0.2, "width": 160, "dpi": 50}
 
-FRAMES = (".gif", ".mp4")  # written frame by frame; an .html is one string
+FRAMES = (".gif", ".mp4")  # formats written frame by frame; an .html file is one string
 
 
 @pytest.fixture(autouse=True)
@@ -63,7 +63,7 @@ def test_a_drawing_that_fails_closes_its_figure(draw: Any, monkeypatch: Any) -> 
 
 @pytest.mark.parametrize("units", [1, 512, 749])
 def test_a_motion_of_next_to_no_time(units: int) -> None:
-    """No even time is after its end, whose share in it is rounded up to a unit or two."""
+    """No frame is after the end, though the last frame's share of it is rounded up."""
     end = units * 5e-324
     assert rl.simulate(rl.scenes.rocking, end).t[-1] == end
     motion = rl.simulate(rl.scenes.rocking, [0.0, end])
@@ -79,7 +79,7 @@ def test_a_motion_of_next_to_no_time(units: int) -> None:
 
 def test_paths_that_cannot_be_written(tmp_path: Path, monkeypatch: Any) -> None:
     (tmp_path / "folder.gif").mkdir()
-    monkeypatch.setattr(rl.Trajectory, "sol", None)  # before any work
+    monkeypatch.setattr(rl.Trajectory, "sol", None)  # the path is checked before any work
     for name in ("", "roll\0.gif"):
         with pytest.raises(ValueError, match=r"^path must name a file, got"):
             rl.animate(MOTION, name)
@@ -136,7 +136,7 @@ def test_an_ffmpeg_that_fails(tmp_path: Path, monkeypatch: Any) -> None:
 
 
 def test_an_extra_without_a_program(monkeypatch: Any) -> None:
-    """imageio_ffmpeg has none for this machine, and says so by a RuntimeError."""
+    """imageio_ffmpeg raises a RuntimeError if it has no program for this machine."""
     imageio = pytest.importorskip("imageio_ffmpeg")
 
     def missing() -> str:
@@ -157,7 +157,7 @@ def test_writers_of_ones_own(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("draw", [rl.plot_strobe, rl.plot_paths, rl.plot, rl.animate])
 def test_a_body_too_far_away_to_be_seen_is_refused(draw: Any) -> None:
-    """At 7.8e23 m doubles are 1.3e8 m apart; at 1e12 m a tenth of a millimetre, enough to draw."""
+    """Doubles at 7.8e23 m are 1.3e8 m apart; at 1e12 m they are 0.1 mm apart, enough to draw."""
     with pytest.raises(ValueError, match=r"^trajectory must stay where .*, got a centre 7\.8"):
         draw(rl.simulate(rl.Scene(2.0, 1.0, theta=0.3, x=7.847959263208443e23), 1.0))
     assert not plt.get_fignums()

@@ -1,4 +1,4 @@
-"""Pictures show the motion itself, whatever samples there are, and say what they leave out."""
+"""Pictures show the motion itself for any samples, and name what they leave out."""
 
 import dataclasses
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from rolling_ellipse._pictures import sampling
 
 FULL_TURNS = 1000
 ROLLING = rl.simulate(rl.scenes.rolling, FULL_TURNS * rl.period(rl.scenes.rolling))
-WIDTH = 1.5 / 72  # of a line [inch]
+WIDTH = 1.5 / 72  # width of a line [inch]
 
 
 def few(scene: rl.Scene, end: float, **how: Any) -> rl.Trajectory:
@@ -35,7 +35,7 @@ MOTIONS: dict[str, rl.Trajectory] = {
 
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 def test_curves_of_three_samples_are_those_of_the_motion(motion: rl.Trajectory) -> None:
-    """Between the points of a curve the motion is no farther than a line is wide, or 0.3 %."""
+    """The motion between the points of a curve stays within the width of a line, or 0.3 %."""
     shown = rl.plot(motion, figure=Figure())
     for line, name in (
         (shown.theta, "theta"), (shown.omega, "omega"), (shown.height, "z"),
@@ -50,7 +50,7 @@ def test_curves_of_three_samples_are_those_of_the_motion(motion: rl.Trajectory) 
 
 
 def test_an_even_grid_of_as_many_points_would_miss_it() -> None:
-    """What the check above is worth: the spikes of a thin body between even samples."""
+    """An even grid of as many points misses the spikes of a thin body: the check above is sharp."""
     motion = MOTIONS["very thin"]
     values = data(rl.plot_forces(motion, ax=new_axes()).normal[0])[1]
     even = motion.sol(np.linspace(0.0, float(motion.t[-1]), 1001)).normal_force
@@ -71,18 +71,18 @@ def test_the_phase_curve_of_1000_turns_is_that_of_its_energy() -> None:
     off = np.abs(omega - expected)[keep] * inches(ax, 1)
     assert np.max(off) < 0.1 * WIDTH
     steps = np.hypot(np.diff(theta) * inches(ax, 0), np.diff(omega) * inches(ax, 1))
-    assert np.nanmax(steps) < 10 * WIDTH  # and the line between its points is the curve as well
+    assert np.nanmax(steps) < 10 * WIDTH  # the line between the points follows the curve as well
     assert ax.get_title(loc="left") == "one turn of 1\u202f000, all alike"
 
 
 def inches(ax: Any, axis: int) -> float:
-    """Length of a unit of an axis."""
+    """Length of a unit of an axis [inch]."""
     corners = ax.transData.transform([(0, 0), (1, 1)])
     return float(np.diff(corners[:, axis])[0] / ax.figure.dpi)
 
 
 def test_the_path_and_the_forces_of_1000_turns_are_no_straight_lines() -> None:
-    """At whole turns the samples of the trajectory are all alike."""
+    """The samples of the trajectory, at whole turns, are all equal."""
     assert np.ptp(ROLLING.z) < 1e-6
     x, z = data(rl.plot_paths(ROLLING, ax=new_axes()).centres[0])
     assert (z.min(), z.max()) == pytest.approx((1.0, 2.0), abs=1e-4) and x.max() < 35

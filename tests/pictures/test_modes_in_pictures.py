@@ -1,4 +1,4 @@
-"""Sliding, flight, rest and what joins them, read back from the pictures that show them."""
+"""Sliding, flight, rest and events, read back from the pictures that show them."""
 
 import itertools
 import math
@@ -17,10 +17,10 @@ from oracles.pictures import figure_of, legend_in, outline, support
 from rolling_ellipse._pictures import sampling
 
 SCENES = {
-    "jump": rl.scenes.jump,  # rolls, slides, flies, hits and rolls on
+    "jump": rl.scenes.jump,  # rolls, slides, flies, hits the ground and rolls again
     "slope": rl.scenes.slope,  # slips twice, jumps twice
     "slip": rl.scenes.slip,  # starts to slide
-    "bounce": rl.scenes.bounce,  # nothing but flight, in which ten impacts are
+    "bounce": rl.scenes.bounce,  # only flight, with ten impacts
     "backwards": rl.Scene(2.0, 1.0, omega=-5.2, friction=1.0),
     "settling": rl.Scene(2.0, 1.0, z=1.5, restitution=0.5, friction=0.5),  # many impacts, rest
 }
@@ -39,7 +39,7 @@ def jump() -> rl.Trajectory:
 
 
 def drawn(ax: Axes) -> Axes:
-    """The same, laid out."""
+    """The axes after the layout of their figure."""
     FigureCanvasAgg(figure_of(ax)).draw()
     return ax
 
@@ -66,7 +66,7 @@ def shades_of(marks: tuple[Any, ...]) -> list[Any]:
 
 
 def lines_of(marks: tuple[Any, ...]) -> list[list[float]]:
-    """Times of the dotted lines, motion by motion."""
+    """Times of the dotted lines of each motion."""
     found = [mark for mark in marks if type(mark).__name__ == "LineCollection"]
     return [[float(segment[0, 0]) for segment in mark.get_segments()] for mark in found]
 
@@ -106,10 +106,10 @@ def test_modes_are_told_apart_in_grey(jump: rl.Trajectory) -> None:
         *shades_of(rl.plot_energy(settling, ax=new_axes()).marks),
     ]
     hatches = {shade.get_hatch() for shade in shades}
-    assert len(shades) == 4 and len(hatches) == 3  # flight twice
+    assert len(shades) == 4 and len(hatches) == 3  # two flights
     for shade in shades:
         red, green, blue = to_rgb(shade.get_facecolor()[0])
-        assert red == green == blue > 0.85  # discreet
+        assert red == green == blue > 0.85  # a pale grey
 
 
 @pytest.mark.parametrize("picture", [rl.plot_energy, rl.plot_forces, rl.plot_constraints])
@@ -171,15 +171,15 @@ def test_of_several_motions_each_has_a_row(jump: rl.Trajectory) -> None:
     assert legend_of(upper)[3:] == ["normal", "friction", "sliding", "flight"]
     rows = [[box[2:] for box in boxes_of(shade)] for shade in shades_of(shown.marks)]
     first, third = rows[0][0], rows[2][0]
-    assert rows == [[first], [first], [third]] * 2  # slides and flies; slides
-    assert 1 >= first[1] > first[0] > third[1] > third[0] > 0.8  # with room for the second between
+    assert rows == [[first], [first], [third]] * 2  # a row for each motion
+    assert 1 >= first[1] > first[0] > third[1] > third[0] > 0.8  # a gap for the second row
     assert first[0] - third[1] > third[1] - third[0]
     assert event_names(upper) == event_names(lower) == []
     assert [len(times) for times in lines_of(shown.marks)] == [3, 1] * 2
 
 
 def test_what_rolls_has_no_shade() -> None:
-    for scene in (rl.scenes.report, rl.Scene(2.0, 1.0)):  # rolls; rests, by the rolling model
+    for scene in (rl.scenes.report, rl.Scene(2.0, 1.0)):  # a rolling and a resting body
         shown = rl.plot_forces(rl.simulate(scene, 2.0), ax=two_axes())
         assert shown.marks == () and legend_of(shown.axes[0]) == ["normal", "friction"]
 
@@ -194,9 +194,9 @@ def test_forces_are_zero_in_flight_and_at_the_limit_while_sliding(motion: rl.Tra
     assert np.all(normal[flying] == 0) and np.all(friction[flying] == 0)
     assert np.all(normal[~flying] >= 0)
     left = sum(event.kind is rl.EventKind.LIFT_OFF for event in motion.events)
-    assert np.count_nonzero(normal[~flying] == 0) <= left  # where it leaves the ground
+    assert np.count_nonzero(normal[~flying] == 0) <= left  # samples at lift-off
     limit = motion.scene.friction * normal[sliding]
-    assert np.abs(friction[sliding]) == pytest.approx(limit, rel=1e-14)  # one product, one quotient
+    assert np.abs(friction[sliding]) == pytest.approx(limit, rel=1e-14)  # a product and a quotient
     assert shown.axes[0].get_ylim()[1] > 0
 
 
@@ -214,7 +214,7 @@ def test_constraints_show_only_what_the_ground_holds(motion: rl.Trajectory) -> N
         assert np.array_equal(np.isnan(values[name]), flying | sliding)
     for name in ("f3", "f4", "df3/dt", "df4/dt"):
         assert np.all(np.isfinite(values[name]))
-    # what is held is held to rounding: some hundred of them
+    # each constraint is held to some hundred roundings
     assert max(float(np.nanmax(value, initial=0.0)) for value in values.values()) < 1e-13
 
 
@@ -281,7 +281,7 @@ def test_paths_mark_events_where_the_body_touches(motion: rl.Trajectory) -> None
     a, b = motion.scene.a, motion.scene.b
     for event in motion.events:
         state, name = event.state_after, event.kind.name.lower().replace("_", "-")
-        # the lowest point of the outline a cos(s), b sin(s) turned clockwise by theta
+        # lowest point of the outline (a cos s, b sin s) turned clockwise by theta
         s = math.atan2(-b * math.cos(state.theta), a * math.sin(state.theta))
         lead = a * math.cos(s) * math.cos(state.theta) + b * math.sin(s) * math.sin(state.theta)
         expected.setdefault(name, []).append(state.x + lead)
@@ -324,7 +324,7 @@ def test_every_frame_shows_what_the_body_does(motion: rl.Trajectory) -> None:
             )
             assert strip.slip.get_marker() == (">" if slip[i] > 0 else "<")
         shadow = np.asarray(strip.shadow.get_xdata())
-        if flies:  # as wide as the body: 4000 points miss its ends by 1e-6 of its size
+        if flies:  # width of the body: 4000 points miss its ends by 1e-6 of its size
             ends = [points[:, 0].min(), points[:, 0].max()]
             assert shadow == pytest.approx(ends, abs=4e-6)
         assert len(shadow) == (2 if flies else 0)
@@ -335,7 +335,7 @@ def test_every_frame_shows_what_the_body_does(motion: rl.Trajectory) -> None:
 
 
 def test_the_mark_of_a_slip_points_the_way_it_slides() -> None:
-    """Pushed forwards without turning, the contact slides forwards; spun on the spot, backwards."""
+    """A contact slides forwards under a pushed body, backwards under one spun on the spot."""
     pushed = rl.Scene(2.0, 1.0, x_dot=3.0, omega=0.0, friction=0.2)
     spun = rl.Scene(2.0, 1.0, x_dot=0.0, omega=2.0, friction=0.2)
     for scene, marker in ((pushed, ">"), (spun, "<")):
@@ -346,7 +346,7 @@ def test_the_mark_of_a_slip_points_the_way_it_slides() -> None:
 def test_the_mark_of_a_slip_lies_along_a_slope() -> None:
     sliding = rl.simulate(rl.Scene(2.0, 1.0, slope=0.5, x_dot=4.0, omega=0.0, friction=0.2), 0.1)
     (strip,) = rl.animate(sliding).strips
-    # matplotlib has no public way to its shape
+    # matplotlib has no public access to its shape
     marker = strip.slip._marker  # type: ignore[attr-defined]
     head, *base = marker.get_transform().transform(marker.get_path().vertices[:3])
     pointing = head - np.mean(base, axis=0)
@@ -355,7 +355,7 @@ def test_the_mark_of_a_slip_lies_along_a_slope() -> None:
 
 
 def test_grey_frames_tell_contact_slip_and_flight_apart(jump: rl.Trajectory) -> None:
-    """White, black and between: a fifth of the scale is told apart at a glance."""
+    """White, black and a grey between: a fifth of the scale is distinguished at a glance."""
     (strip,) = rl.animate(jump).strips
     rolling, sliding, shadow = (
         float(np.dot(to_rgb(colour), (0.21, 0.72, 0.07)))

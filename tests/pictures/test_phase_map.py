@@ -72,7 +72,7 @@ def energy_of(found: rl.Thresholds, speed: float) -> float:
 @pairs
 @pytest.mark.parametrize("swapped", [False, True], ids=["long axis a", "long axis b"])
 def test_cells_are_what_classify_says_at_their_middles(x: str, y: str, swapped: bool) -> None:
-    """Of single discs; and the same with their axes swapped, which start at a quarter turn."""
+    """Cells agree with `classify` of single discs, also with swapped axes from a quarter turn."""
     shown = phase_map(x, y, b=0.7, gravity=3.7)
     columns, rows = (middles_of(n, e) for n, e in zip((x, y), edges_of(shown), strict=True))
     codes = codes_of(shown)
@@ -112,7 +112,7 @@ def test_regions_are_told_apart_in_grey() -> None:
     regions = [o for o in rl.Outcome if o not in (rl.Outcome.RESTS, rl.Outcome.EDGE)]
     colours = [to_rgb(colour_of(shown, outcome)) for outcome in regions]
     greys = sorted(0.299 * r + 0.587 * g + 0.114 * b for r, g, b in colours)
-    reached = [grey for grey in greys if grey > 0.3]  # without JAMS, which never happens
+    reached = [grey for grey in greys if grey > 0.3]  # without JAMS, which no cell reaches
     assert len(reached) == 4 and np.min(np.diff(reached)) > 1 / 6
 
 
@@ -161,7 +161,7 @@ def test_curves_over_the_aspect() -> None:
     assert constant(at(shown, "separatrix")[1]) == 1
     contact, flight = at(shown, "contact loss"), at(shown, "lift-off")
     for i in range(3, contact[0].size, 9):
-        found = rl.thresholds(3 * contact[0][i], 3.0, gravity=1.6, friction=0.5)  # any scale
+        found = rl.thresholds(3 * contact[0][i], 3.0, gravity=1.6, friction=0.5)  # scale changed
         loss, lift_off = found.contact_loss_speed, found.lift_off_speed
         assert contact[1][i] == pytest.approx(energy_of(found, loss), rel=1e-9)
         assert flight[1][i] == pytest.approx(energy_of(found, known(lift_off)), rel=1e-9)
@@ -182,7 +182,7 @@ def test_speeds_over_the_friction() -> None:
 
 
 def test_colours_change_at_the_lines() -> None:
-    """Without limit of friction N = 0 ends rolling; the separatrix parts rocking and rolling."""
+    """Unlimited friction: rolling ends at N = 0; the separatrix divides rocking from rolling."""
     shown = phase_map(resolution=400)
     codes = codes_of(shown)
     aspects, energies = (

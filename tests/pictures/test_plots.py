@@ -21,7 +21,7 @@ from rolling_ellipse._pictures import ground as drawing
 from rolling_ellipse._pictures import sampling
 
 own_samples = pytest.mark.filterwarnings("ignore:the samples of a trajectory are not those")
-OVER_TIME: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {  # curves by the data they show
+OVER_TIME: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {  # curves by their data
     "forces": (
         lambda motion: rl.plot_forces(motion, ax=two_axes()),
         {"normal": "normal_force", "friction": "friction_force", "needed": "friction_needed"},
@@ -56,7 +56,7 @@ def test_curves_over_time_are_the_trajectory(name: str, trajectory: rl.Trajector
 
 
 def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
-    """The motion with residuals of the given size: f1 ... f4, df2 ... df4, gap, slip."""
+    """The motion with residuals of the given sizes in f1 ... f4, df2 ... df4, gap, slip."""
     found = motion.constraint_residuals()
     position, velocity = found.position.copy(), found.velocity.copy()
     gap, slip = found.gap.copy(), found.slip.copy()
@@ -66,7 +66,7 @@ def missing(motion: rl.Trajectory, **errors: float) -> rl.Trajectory:
     for name, error in errors.items():
         columns[name][:] = error
     residuals = rl.ConstraintResiduals(position, velocity, gap, slip)
-    other = dataclasses.replace(motion, theta=motion.theta + 1e-3)  # samples of its own
+    other = dataclasses.replace(motion, theta=motion.theta + 1e-3)  # other samples
     object.__setattr__(other, "constraint_residuals", lambda: residuals)
     return other
 
@@ -80,7 +80,7 @@ def test_constraints_have_a_line_each(trajectory: rl.Trajectory) -> None:
     ]
     for line in itertools.chain(*shown.lines):
         assert np.array_equal(data(line)[0], seen(trajectory, line).t)
-        # the motion is exact: a few hundred roundings, and 2/0.02 times as many for the thin body
+        # an exact motion has a few hundred roundings; the thin body has 2/0.02 times as many
         assert np.all(data(line)[1] < 1e-13)
 
 
@@ -127,7 +127,7 @@ def test_several_motions_show_the_error_of_their_energies(several: list[rl.Traje
     assert shown.total == shown.kinetic == shown.potential == ()
     assert shown.ax.get_yscale() == "log"
     for line, motion in zip(shown.error, several, strict=True):
-        # both energies are >= 0 on level ground from z = 0: the energy itself is the scale
+        # both energies are >= 0 on level ground from z = 0, so the energy itself is the scale
         energy = seen(motion, line).energy
         expected = np.abs(energy - energy[0]) / energy.max()
         assert data(line)[1] == pytest.approx(expected, rel=1e-12, abs=1e-15)
@@ -223,7 +223,7 @@ def test_paths_are_the_trajectory(trajectory: rl.Trajectory) -> None:
     tips = np.asarray(shown.tips[0].get_xydata())
     for i in range(0, trajectory.t.size, 100):
         end = drawing.body_patch(trajectory, i).get_patch_transform().transform((1.0, 0.0))
-        assert tips[i] == pytest.approx(end, rel=1e-13, abs=1e-12)  # theta passed through degrees
+        assert tips[i] == pytest.approx(end, rel=1e-13, abs=1e-12)  # rounding of theta in degrees
 
 
 def test_paths_of_several_motions_share_one_view(report: rl.Trajectory) -> None:
@@ -236,7 +236,7 @@ def test_paths_of_several_motions_share_one_view(report: rl.Trajectory) -> None:
         x, z = data(line)
         assert left < x.min() and x.max() < right and bottom < z.min() and z.max() < top
     window = shown.ax.get_window_extent()
-    # matplotlib leaves limits alone that are equal within 0.5 %
+    # matplotlib keeps limits that agree within 0.5 %
     assert window.width / (right - left) == pytest.approx(window.height / (top - bottom), rel=5e-3)
     earth = shown.ground.get_xy()
     assert earth[:, 0].min() < left and earth[:, 0].max() > right
@@ -247,7 +247,7 @@ def test_a_long_way_is_shown_over_three_turns(report: rl.Trajectory, span: int) 
     rolling = rl.simulate(rl.scenes.rolling, np.linspace(0.0, span, 20_001))
     ax = rl.plot_paths(rolling, ax=new_axes()).ax
     assert ax.get_title(loc="left") == f"the first 13.1 s of {span} s"
-    assert ax.get_xlim()[1] < 4 * 9.69  # turns of the perimeter
+    assert ax.get_xlim()[1] < 4 * 9.69  # perimeters
     assert rl.plot_paths(report, ax=new_axes()).ax.get_title(loc="left") == ""
 
 
@@ -277,11 +277,11 @@ def test_separatrix_is_between_rocking_and_rolling_over(a: float, b: float) -> N
     shown = rl.plot_phase(rl.simulate(rl.Scene(a, b, omega=1.0), 3.0), ax=new_axes())
     theta, omega = data(shown.separatrices[0])
     flat = 0.0 if a > b else math.pi / 2
-    # nearer to a tip, rounding of max(a, b) - h is no longer small against that difference
+    # nearer to a tip, the rounding of max(a, b) - h is no longer small against this difference
     ours = (np.abs(theta - flat) < 1.5) & (omega != 0)
     assert np.count_nonzero(ours) > 800
     theta, omega = theta[ours], omega[ours]
-    # from a millionth beside it the way to the tip takes some ln(1e6)/lambda = 8 s at most
+    # a motion a millionth beside the separatrix reaches the tip in some ln(1e6)/lambda = 8 s
     for factor, over in ((1 + 1e-6, True), (1 - 1e-6, False)):
         later, _, _ = rl.flow(30.0, a=a, b=b, theta=theta, omega=factor * omega)
         assert np.all((np.abs(later - flat) > math.pi / 2) == over)
@@ -303,7 +303,7 @@ def test_separatrix_keeps_the_spike_of_a_thin_body() -> None:
     _, omega = data(shown.separatrices[0])
     peak = rl.thresholds(1.0, 1e-3).roll_over_speed
     assert omega.max() == pytest.approx(peak, rel=1e-12)
-    # |d omega| <= peak per point of the curve: a tenth is no visible corner
+    # |d omega| <= peak per point of the curve: a tenth of the peak is no visible corner
     assert np.max(np.abs(np.diff(omega))) < 0.1 * peak
 
 
@@ -326,7 +326,7 @@ def test_one_separatrix_for_each_body(report: rl.Trajectory) -> None:
 def test_a_small_swing_fills_the_picture() -> None:
     ax = rl.plot_phase(rl.simulate(rl.Scene(2.0, 1.0, theta=0.01), 3.0), ax=new_axes()).ax
     assert 0.01 < ax.get_xlim()[1] < 0.012
-    assert legend_of(ax) == []  # the separatrix is far outside
+    assert legend_of(ax) == []  # the separatrix lies far outside
 
 
 @pytest.mark.parametrize("scene", [rl.scenes.rolling, ORDINARY_SCENES["standing"]])
@@ -341,11 +341,11 @@ def test_a_long_rotation_is_folded_into_half_a_turn(scene: rl.Scene, sign: float
     half_turns = np.floor((motion.theta - flat) / math.pi + 0.5)
     assert breaks.size == np.count_nonzero(np.diff(half_turns)) > 10
     assert np.array_equal(np.isnan(omega), np.isnan(theta))
-    # the line leaves at one side and comes back at the other, with the same speed
+    # the line leaves at one side and returns at the other with the same speed
     assert theta[breaks - 1] == pytest.approx(np.full(breaks.size, flat + sign * math.pi / 2))
     assert theta[breaks + 1] == pytest.approx(np.full(breaks.size, flat - sign * math.pi / 2))
     assert omega[breaks - 1] == pytest.approx(omega[breaks + 1], rel=1e-12)
-    # all else are the samples
+    # all other points are samples
     ours = np.setdiff1d(np.arange(theta.size), np.concatenate([breaks + i for i in (-1, 0, 1)]))
     assert np.array_equal(omega[ours], motion.omega)
     turned = (motion.theta - theta[ours]) / math.pi
@@ -382,7 +382,7 @@ def test_strobe_bodies_stand_on_the_ground_at_even_times(trajectory: rl.Trajecto
         assert centre_of(body) == (at.x[i], at.z[i])
         assert (body.width, body.height) == (2 * trajectory.scene.a, 2 * trajectory.scene.b)
         lowest_x, lowest_z = support(body)
-        # theta passes through degrees: 100 rad keep 1e-14 rad, times rho or size; x up to 10 m
+        # theta is converted to degrees: 100 rad keep 1e-14 rad, times rho or size; x is up to 10 m
         assert abs(lowest_z) <= 1e-12 * size
         rho = (trajectory.scene.a * trajectory.scene.b) ** 2 / at.z[i] ** 3
         assert abs(lowest_x - contact_x[i]) <= 1e-13 * (size + rho + abs(at.x[i]))
@@ -399,7 +399,7 @@ def test_strobe_hand_ends_on_the_outline_at_the_end_of_axis_a(trajectory: rl.Tra
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     for body, hand in zip(shown.bodies, shown.hands, strict=True):
         end = np.asarray(hand.get_xydata())[1]
-        # the unit circle's (1, 0), sent through the patch's own transform
+        # the unit circle's (1, 0) under the patch's own transform
         expected = body.get_patch_transform().transform((1.0, 0.0))
         assert np.allclose(np.asarray(hand.get_xydata())[0], centre_of(body), rtol=0, atol=0)
         assert np.allclose(end, expected, rtol=1e-13, atol=1e-12 * trajectory.scene.a)
@@ -424,7 +424,7 @@ def test_strobe_stops_a_long_roll_after_three_turns() -> None:
     trajectory = rl.simulate(rl.scenes.rolling, np.linspace(0.0, 1000.0, 100_001))
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     turned = math.radians(shown.bodies[0].angle - shown.bodies[-1].angle) / (2 * math.pi)
-    # 0.01 s between samples, at most 3.2 rad/s, interpolated: the second order is 1e-4 turns
+    # samples 0.01 s apart at <= 3.2 rad/s, interpolated: 2nd order errs by 1e-4 turns
     assert turned == pytest.approx(3.0, abs=1e-3)
     assert "the first 13.1 s of 1000 s" in shown.ax.get_title(loc="left")
 
@@ -433,7 +433,7 @@ def test_strobe_stops_rocking_after_one_swing() -> None:
     trajectory = rl.simulate(rl.scenes.rocking, 50.0)
     shown = rl.plot_strobe(trajectory, ax=new_axes())
     first, last = shown.bodies[0], shown.bodies[-1]
-    # released at rest: back after a period; the angle is stationary there (0.05 s squared)
+    # a body released at rest returns after a period; its angle is stationary there (0.05 s squared)
     assert last.angle == pytest.approx(first.angle, abs=0.05)
     assert shown.bodies[6].angle == pytest.approx(-first.angle, abs=0.05)
 
@@ -454,7 +454,7 @@ def test_strobe_view_holds_every_body_with_equal_scales(trajectory: rl.Trajector
         assert bottom < points[:, 1].min() and points[:, 1].max() < top
     window = shown.ax.get_window_extent()
     across, up = window.width / (right - left), window.height / (top - bottom)
-    # to a pixel of the whole width: the layout may move an edge by part of one afterwards
+    # tolerance of a pixel of the width: the layout may move an edge by part of a pixel afterwards
     assert across == pytest.approx(up, rel=1 / window.width)
 
 
@@ -534,7 +534,7 @@ def test_the_error_is_that_beside_the_exact_motion() -> None:
     shown = rl.plot_error([coarse, exact], ax=new_axes())
     t, error = np.asarray(shown.errors[0].get_data())
     theta, _, _ = rl.flow(t, a=2.0, b=1.0, theta=0.0, omega=3.2)
-    # what remains between two exact ways: some units of an angle of 10
+    # two exact methods differ by some ulp of an angle of 10 rad
     assert error == pytest.approx(np.abs(coarse.sol(t).theta - theta), abs=1e-14)
     assert 1e-7 < error.max() < 1e-2 and shown.ax.get_yscale() == "log"
     assert shown.ax.get_ylabel() == "error of θ [rad]"

@@ -21,8 +21,8 @@ def moved(seconds: float, *scenes: rl.Scene) -> list[rl.Trajectory]:
 SLOW, FAST = rl.scenes.rolling, rl.Scene(2.0, 1.0, omega=4.0)
 REPORT_AND_ROCKING = moved(6.0, rl.scenes.report, rl.scenes.rocking)
 STILL = [*REPORT_AND_ROCKING, *moved(6.0, rl.scenes.circle)]
-FOLLOWED = moved(14.0, SLOW, FAST)  # 51 m long, 20 m apart
-PARTED = moved(20.0, SLOW, FAST, rl.Scene(1.0, 1.0, omega=-2.0))  # 113 m apart
+FOLLOWED = moved(14.0, SLOW, FAST)  # paths of 51 m, ends 20 m apart
+PARTED = moved(20.0, SLOW, FAST, rl.Scene(1.0, 1.0, omega=-2.0))  # ends 113 m apart
 SIZES = moved(6.0, rl.scenes.thin, rl.Scene(0.2, 0.1, omega=15.0, x=3.0), rl.Scene(0.7, 1.9))
 COMPARISONS = {"still": STILL, "followed": FOLLOWED, "parted": PARTED, "sizes": SIZES}
 
@@ -34,7 +34,7 @@ def motions(request: pytest.FixtureRequest) -> list[rl.Trajectory]:
 
 
 def compared(motions: list[rl.Trajectory], width: int = 640) -> RollingAnimation:
-    """All of the motions in four frames a second."""
+    """An animation of all motions with four frames a second."""
     return rl.animate(motions, t_end=float(motions[0].t[-1]), fps=4, width=width)
 
 
@@ -51,7 +51,7 @@ def test_every_strip_shows_its_motion_at_the_time_of_the_clock(
         animation.draw(i)
         assert animation.clock.get_text() == f"t = {i / 4:.2f} s"
         for strip, motion in zip(animation.strips, motions, strict=True):
-            at = motion.sol(i / 4)  # one time: other roundings than those of many
+            at = motion.sol(i / 4)  # a single time is rounded differently than many times
             assert centre_of(strip.body) == pytest.approx((at.x[0], at.z[0]), rel=1e-14)
             assert strip.body.angle == pytest.approx(-math.degrees(at.theta[0]), rel=1e-14)
             assert (strip.body.width, strip.body.height) == (2 * motion.scene.a, 2 * motion.scene.b)
@@ -98,7 +98,7 @@ def test_the_strips_show_the_same_ground_unless_the_motions_part(
     for i in frames(animation):
         animation.draw(i)
         ends = [strip.ax.get_xlim() for strip in animation.strips]
-        assert (len(set(ends)) == 1) == (same_ground or i == 0)  # all start at x = 0
+        assert (len(set(ends)) == 1) == (same_ground or i == 0)  # all motions start at x = 0
         seen.add(ends[0])
     assert len(seen) == views
 

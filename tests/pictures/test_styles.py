@@ -1,4 +1,4 @@
-"""Pictures follow the style in force, and take what matplotlib's users expect to give."""
+"""Pictures follow the style in force and accept matplotlib's usual arguments."""
 
 import itertools
 from collections.abc import Callable, Iterator
@@ -28,7 +28,7 @@ def defaults() -> Iterator[None]:
 
 
 def contrast(one: Any, other: Any) -> float:
-    """Ratio of luminances, 1 to 21 (WCAG 2.1, relative luminance)."""
+    """Ratio of luminances from 1 to 21 (relative luminance of WCAG 2.1)."""
     levels = luminance(one), luminance(other)
     return (max(levels) + 0.05) / (min(levels) + 0.05)
 
@@ -96,7 +96,7 @@ def test_films_follow_the_style() -> None:
         assert all(contrast(colour, paper) > 3 for colour in drawn), style
 
 
-# ---------------------------------------------------------------------------- what users may give
+# ---------------------------------------------------------------------------- arguments of users
 
 
 DRAWN = (

@@ -1,4 +1,4 @@
-"""The work-precision chart: each run is where its numbers say, or on the rim with its reason."""
+"""The work-precision chart: a run stands at its numbers, or on the rim with its reason."""
 
 import math
 from dataclasses import replace
@@ -18,7 +18,7 @@ FOUND = work_precision(
     SCENE, [1.0, 3.0], rounds=2, samples=8, tolerances=[1e-2, 1e-6, 1e-10], steps=[0.4, 0.02],
     methods=["flow", "dop853", "rk4", "multipliers/rk4/none", "multipliers/radau/ggl"],
 )  # fmt: skip
-# no picture depends on how busy the machine is; NaN stays NaN
+# times of the methods: no picture depends on the load of the machine; NaN stays NaN
 TIMES = {"flow": 2e-6, "dop853": 2e-5, "rk4": 1e-5}
 FOUND = replace(
     FOUND,
@@ -113,7 +113,7 @@ def test_any_quantity_goes_on_either_axis(x: str, y: str) -> None:
     runs = [run for run in FOUND.of() if run.name == "dop853"]
     last = runs[-1].value(y)
     assert line[-1, 1] == (max(last, FOUND.reference.floor) if y == "final" else last)
-    if x in ("steps", "evaluations", "setting"):  # where nothing is kept on the rim
+    if x in ("steps", "evaluations", "setting"):  # axes without a rim
         assert line[-1, 0] == runs[-1].value(x)
     chart.ax.figure.canvas.draw()
 
@@ -136,7 +136,7 @@ def test_tags_choose() -> None:
 
 
 def test_who_was_not_run_is_named_with_an_arrow_and_is_no_failure() -> None:
-    """As are those of whom the end alone is judged, where samples are judged."""
+    """In a chart of errors at samples an arrow also names methods judged at the end only."""
     of = {name: [run for run in FOUND.of() if run.name == name] for name in FOUND.names}
     late = of["dop853"][1:] + of["rk4"]
     runs = [

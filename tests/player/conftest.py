@@ -12,8 +12,8 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
-    """A browser for one file of tests: its driver keeps an event loop running, which kernels of
-    notebooks, in other files, would not share.
+    """A browser for one file of tests: the event loop of its driver would disturb the kernels of
+    notebooks in other files.
     """
     if CHROMIUM is None:
         pytest.skip("there is no chromium (apt-get install chromium)")
@@ -26,7 +26,7 @@ def chromium() -> Iterator[Any]:
 
 @pytest.fixture
 def opened(chromium: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
-    """Open HTML as a file; at the end nothing was asked of a network, or complained of."""
+    """Open HTML as a file; no page may ask for a network address or report an error."""
     contexts: list[Any] = []
     complaints: list[str] = []
 
@@ -43,7 +43,7 @@ def opened(chromium: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
             page.on("request", lambda request: complaints.append(request.url)
                     if not request.url.startswith(("file:", "data:")) else None)  # fmt: skip
         page.goto(path.as_uri())
-        if options.get("java_script_enabled", True):  # pages unzip what they carry, and go on then
+        if options.get("java_script_enabled", True):  # pages unzip their data before they start
             page.wait_for_function(
                 "[...document.querySelectorAll('.rolling-ellipse')].every((host) => host.player)"
             )

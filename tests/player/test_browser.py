@@ -1,4 +1,4 @@
-"""The player and the explorer in a real browser: what they draw, and what they answer to."""
+"""The player and the explorer in a real browser: their drawings and their reactions."""
 
 import base64
 import io
@@ -37,7 +37,7 @@ def film(*scenes: rl.Scene, seconds: float = 4.0, **options: Any) -> str:
 
 
 def told(page: Page, words: str) -> Any:
-    """What the player of the first film says, once it has drawn."""
+    """The value of a function of the first film's player, after the next drawing."""
     return page.evaluate(
         f"new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() =>"
         f" done(({words})({HOST}.player)))))"
@@ -45,14 +45,14 @@ def told(page: Page, words: str) -> Any:
 
 
 def drawn(page: Page) -> np.ndarray:
-    """The pixels of the canvas, (height, width, 3)."""
+    """Pixels of the canvas, (height, width, 3)."""
     data = told(page, "player => player.canvas.toDataURL()").partition(",")[2]
     with Image.open(io.BytesIO(base64.b64decode(data))) as picture:
         return np.asarray(picture.convert("RGB"), float)
 
 
 def expected_centre(page: Page, motion: rl.Trajectory, t: float) -> tuple[float, float]:
-    """Where the window of a camera that stands still has the exact centre [pixels]."""
+    """Pixel position of the exact centre in the window of a fixed camera."""
     (left, right, _, top), width = told(
         page, "player => [player.film.strips[0].window, player.box.clientWidth]"
     )
@@ -68,9 +68,9 @@ def expected_centre(page: Page, motion: rl.Trajectory, t: float) -> tuple[float,
 
 
 def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
-    """The middle of the body's edge: of the ink met from either side of a place, in many ways.
+    """Centre of the body: mean position of its edge, seen from a nearby point in many directions.
 
-    What else is drawn on the edge, the tip and the contact, is met in few of the directions.
+    The tip and the contact are drawn on the edge too, but lie in few of the directions.
     """
     picture, ink = drawn(page), LIGHT["ink"]
     reach = told(page, "p => 1.05 * p.views[0].scale * Math.max(p.film.strips[0].a, "
@@ -84,7 +84,7 @@ def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
         if None not in ends:
             offsets.append((ends[0] - ends[1]) / 2)  # type: ignore[operator]
             directions.append(way)
-    # each offset is the component of the centre's along its direction, roughly: by least squares
+    # an offset is about the component of the centre's offset along its direction: least squares
     # without the worst tenth
     offsets_, ways = np.array(offsets), np.array(directions)
     for _ in range(3):
@@ -99,7 +99,7 @@ def seen_centre(page: Page, near: tuple[float, float]) -> tuple[float, float]:
 def edge_distance(
     dark: np.ndarray, near: tuple[float, float], way: np.ndarray, reach: float
 ) -> float | None:
-    """How far the outermost dark pixel within reach is, along a direction."""
+    """Distance of the outermost dark pixel along a direction within reach."""
     steps = np.arange(0.0, reach, 0.5)
     columns, rows = (near[i] + steps * way[i] - 0.5 for i in (0, 1))
     columns, rows = np.round(columns).astype(int), np.round(rows).astype(int)
@@ -253,14 +253,14 @@ def test_without_scripts_a_picture_stays(opened: Opened) -> None:
     assert "ellipse" in image.get_attribute("alt")
     picture = np.asarray(Image.open(io.BytesIO(image.screenshot())).convert("RGB"), float)
     orange = np.array([int(LIGHT["orange"][i : i + 2], 16) for i in (1, 3, 5)])
-    assert (np.abs(picture - orange).sum(axis=2) < 30).sum() > 100  # the path of the centre
+    assert (np.abs(picture - orange).sum(axis=2) < 30).sum() > 100  # path of the centre
 
 
 # ----------------------------------------------------------------------------------- explorer
 
 
 def hand(page: Page) -> tuple[float, float]:
-    """Where the hand is on the page [pixels]."""
+    """Position of the hand on the page [pixels]."""
     x, y = told(
         page,
         "player => { const box = player.canvas.getBoundingClientRect();"
@@ -300,7 +300,7 @@ def test_a_drag_moves_the_blow_and_shows_what_it_does(opened: Opened, name: str)
         scale = told(page, "player => player.views[0].scale")
         at = motion.sol(t)
         missed = math.dist((body["x"], body["z"]), (float(at.x[0]), float(at.z[0])))
-        assert missed * scale < 1  # a pixel
+        assert missed * scale < 1  # one pixel
         turned = abs(body["theta"] - float(at.theta[0])) * max(scene.a, scene.b)
         assert turned * scale < 1
 
@@ -310,7 +310,7 @@ def test_the_blow_follows_the_pointer_to_the_nearest_that_was_computed(opened: O
     page = opened(document("", explorer._repr_html_()), reduced_motion="reduce")
     scale = told(page, "player => player.views[0].scale")
     d = blow(page)[0]
-    drag(page, (-scale, 0.0), steps=4)  # a metre
+    drag(page, (-scale, 0.0), steps=4)  # one metre
     page.mouse.up()
     nearest = explorer.distances[np.argmin(np.abs(explorer.distances - (d - 1.0)))]
     assert blow(page)[0] == pytest.approx(nearest, abs=1e-12)
@@ -320,7 +320,7 @@ def test_map_sliders_and_words_go_with_the_blow(opened: Opened) -> None:
     page = opened(document("", rl.explore(rl.scenes.report)._repr_html_()))
     box = page.locator(".map canvas").bounding_box()
     page.mouse.click(box["x"] + 52 + 3, box["y"] + 10 + 3)  # the corner: far left, strongest
-    page.wait_for_function(f"{HOST}.player.t > 0.1")  # let go, it plays
+    page.wait_for_function(f"{HOST}.player.t > 0.1")  # it plays after the release
     explorer = rl.explore(rl.scenes.report)
     assert blow(page) == (explorer.distances[0], explorer.strengths[-1])
     assert page.locator(".said").inner_text().startswith("First it slips.")
@@ -346,7 +346,7 @@ def test_an_exported_notebook_without_a_kernel_still_drags(opened: Opened) -> No
     shown = nbformat.v4.new_output("display_data", {"text/html": film})
     cell = nbformat.v4.new_code_cell("explore(scene)", outputs=[output, shown], execution_count=1)
     html, _ = exporters.HTMLExporter().from_notebook_node(nbformat.v4.new_notebook(cells=[cell]))
-    page = opened(html, strict=False, viewport={"width": 1000, "height": 1400})  # asks for MathJax
+    page = opened(html, strict=False, viewport={"width": 1000, "height": 1400})  # MathJax needed
     page.wait_for_function("document.querySelectorAll('[data-ready]').length === 2")
     before = blow(page)
     drag(page, (-60, 20), steps=4)

@@ -1,4 +1,4 @@
-"""The table of blows: what it holds is what simulate makes of them."""
+"""The table of blows agrees with the motions of `simulate`."""
 
 import itertools
 import math

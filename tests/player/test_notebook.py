@@ -1,4 +1,4 @@
-"""What a kernel hands to a notebook: one output for each film, whatever pyplot would add."""
+"""A kernel gives a notebook one output for each film, with or without pyplot's own output."""
 
 import nbclient
 import nbformat

@@ -1,4 +1,4 @@
-"""What the player is given, unpacked again: as near to the motion as it says."""
+"""The player's data, unpacked: as near to the motion as their tolerance promises."""
 
 import base64
 import json
@@ -26,7 +26,7 @@ SCENES = {
     "flat limit": rl.Scene(1.0, 1e-3, theta=0.3, omega=2.0),
     "kilometres": rl.Scene(2.3e3, 1.1e3, omega=0.04, x=-500.0),
 }
-NOWHERE = np.array([0.0])  # frames that are not needed
+NOWHERE = np.array([0.0])  # frames without a use here
 
 
 def unpacked(column: dict[str, Any]) -> np.ndarray:
@@ -35,7 +35,7 @@ def unpacked(column: dict[str, Any]) -> np.ndarray:
 
 
 def read_back(found: dict[str, Any], times: np.ndarray) -> dict[str, np.ndarray]:
-    """The cubics of Hermite at some times, by their divided differences."""
+    """Hermite cubics at some times, by their divided differences."""
     known = {name: unpacked(column) for name, column in found["columns"].items()}
     t, values = known["t"], {}
     i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, t.size - 2)
@@ -58,12 +58,12 @@ def test_between_the_samples_the_motion_is_as_near_as_promised(name: str) -> Non
     found = track(motion, end, tolerance, NOWHERE)
     assert not found["stepped"]
     times = np.random.default_rng(1).uniform(0.0, end, 4000)
-    # an impact keeps its place in time to the rounding of t: nothing is said within that
+    # an impact keeps its time up to the rounding of t: within it no error is bounded
     near = 4 * tolerance / max(1e-9, float(np.max(np.hypot(motion.x_dot, motion.z_dot))))
     for event in motion.events:
         times = times[np.abs(times - event.t) > near]
     at, drawn = motion.sol(np.sort(times)), read_back(found, np.sort(times))
-    # cubic and packing of x, z, theta, t and the rates: each takes up to the tolerance once
+    # tolerance once for the cubic and once for the packing of x, z, theta, t and of the rates
     for column, unit in (("x", 1.0), ("z", 1.0), ("theta", size)):
         missed = np.max(np.abs(drawn[column] - getattr(at, column))) * unit
         assert missed <= 4 * tolerance, column
@@ -77,13 +77,13 @@ def test_an_impact_stays_a_jump() -> None:
     after = int(np.searchsorted(times, impact.t))
     assert times[after] == impact.t and times[after - 1] == np.nextafter(impact.t, 0)
     at = motion.sol(times[[after - 1, after]])
-    # sqrt(2 g · 1 m) down; then it rolls on, much slower
+    # the fall ends at sqrt(2 g · 1 m); afterwards the body rolls on, much slower
     assert at.z_dot[0] == pytest.approx(-math.sqrt(2 * 9.81), rel=1e-9)
     assert abs(at.z_dot[1]) < 0.5 * abs(at.z_dot[0])
 
 
 def test_a_motion_whose_period_divides_the_samples_is_still_seen() -> None:
-    """At 17 or 34 even times it always stands at the same angle, modulo half turns."""
+    """The motion stands at the same angle, modulo half turns, at 17 or 34 evenly spaced times."""
     turn = rl.period(rl.scenes.rolling)
     motion = rl.simulate(rl.scenes.rolling, 34 * turn)
     found = track(motion, motion.t_end, 1e-3, NOWHERE)
@@ -107,7 +107,7 @@ def test_too_fast_a_motion_is_shown_frame_by_frame() -> None:
 )
 def test_packing_keeps_to_its_error(values: list[float], error: float) -> None:
     column = packed(np.array(values), error)
-    # "error" of the numbers, and two roundings of a double on the way back
+    # "error" of the numbers, and two roundings of a double in unpacking
     allowed = error + 4e-16 * np.max(np.abs(values))
     assert np.max(np.abs(unpacked(column) - values)) <= allowed
     assert column == json.loads(json.dumps(column))
@@ -116,7 +116,7 @@ def test_packing_keeps_to_its_error(values: list[float], error: float) -> None:
 def test_packing_takes_few_bytes_where_that_is_enough() -> None:
     values = np.linspace(-3.0, 5.0, 100)
     sizes = [len(packed(values, error)["data"]) for error in (1e-3, 1e-6, 0.0)]
-    assert sizes == [268, 536, 1068]  # two, four and eight bytes of three quarters each
+    assert sizes == [268, 536, 1068]  # two, four and eight bytes a value, times 4/3 for base64
 
 
 def test_columns_of_several_motions_follow_each_other() -> None:
@@ -149,8 +149,8 @@ def test_the_page_asks_for_nothing_else() -> None:
 @pytest.mark.parametrize(
     ("scene", "seconds"),
     [
-        (rl.scenes.report, 0.0),  # one sample
-        (rl.Scene(2.0, 1.0), 5.0),  # at rest
+        (rl.scenes.report, 0.0),  # a single sample
+        (rl.Scene(2.0, 1.0), 5.0),  # a body at rest
         (rl.scenes.rolling, 2e9),  # 1e9 turns
         (rl.Scene(1.0, 1e-3, theta=0.3, omega=20.0), 3.0),
         (rl.Scene(1e-3, 1.0, omega=20.0, friction=0.3), 1.0),
@@ -171,7 +171,7 @@ def test_films_at_the_limits(scene: rl.Scene, seconds: float) -> None:
 
 
 def test_labels_of_any_letters() -> None:
-    """The picture is well-formed XML, whose text knows no "]]>"."""
+    """The picture is well-formed XML, in which no text contains "]]>"."""
     labels = ["<b>&]]>", "a\u2028ä"]
     motion = rl.simulate(rl.scenes.report, 1.0)
     html = rl.animate([motion, motion], labels=labels, width=64)._repr_html_()

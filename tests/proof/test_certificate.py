@@ -1,8 +1,8 @@
 """`certify` against brute force on ten thousand random scenes.
 
-The oracle (oracles/rolling.py) knows Newton's law, the energy and dense samples in long double,
-refined to 1e-16; the package proves signs of polynomials. Every error bound is what the oracle says
-double arithmetic may lose: 1e-12 of the terms, and what a few ulp of the energy do to them.
+The oracle (oracles/rolling.py) uses Newton's law, the energy and dense samples in long double,
+refined to 1e-16; the package proves signs of polynomials. Every error bound is the oracle's
+allowance for double arithmetic: 1e-12 of the terms, and the effect of a few ulp of the energy.
 """
 
 import math
@@ -19,7 +19,7 @@ from oracles.rolling import Motion
 from rolling_ellipse import EventKind, Impulse, Scene, Validity, certify, simulate
 
 SCENES, CHUNK = 10_000, 500
-EDGE_MARGIN = 1e-5  # nearer to a threshold, relative, EDGE may be said
+EDGE_MARGIN = 1e-5  # relative distance from a threshold within which EDGE is allowed
 Floats = NDArray[np.float64]
 
 
@@ -39,7 +39,7 @@ class Sample(NamedTuple):
     omega: Floats
 
     def motion(self, rows: Any = slice(None)) -> Motion:
-        """What rolls, from the very doubles the package is given."""
+        """The rolling motions of the scenes, from exactly the doubles that the package is given."""
         a, b, mass, gravity, inertia, _, theta, omega = (field[rows] for field in self)
         gyration2 = gyration2_of(a, b, mass, inertia)
         return oracles.rolling.motion(a, b, gyration2, gravity, theta, omega)
@@ -57,8 +57,8 @@ def gyration2_of(a: Floats, b: Floats, mass: Floats, inertia: Floats) -> Long:
 
 
 def random_bodies(count: int, rng: np.random.Generator) -> tuple[Floats, ...]:
-    """a, b, mass, gravity, inertia: a/b over six decades, half of them of ordinary shape, a tenth
-    nearly circular; half discs, the others from nearly a point mass to a hoop."""
+    """Columns a, b, mass, gravity, inertia: a/b over six decades, half of ordinary shape, a tenth
+    nearly circular; half of the inertias are discs', the others nearly a point's to a hoop's."""
     thin, ordinary = rng.uniform(-2.999, 2.999, count), rng.uniform(-1.1, 1.1, count)
     ratio = 10 ** np.where(rng.random(count) < 0.5, thin, ordinary)
     circular = 1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-8, -1, count)
@@ -72,7 +72,7 @@ def random_bodies(count: int, rng: np.random.Generator) -> tuple[Floats, ...]:
 
 def random_lifts(still: Motion, loss: Long, rng: np.random.Generator) -> Long:
     """E/m above lying flat: swings of all sizes, rotations up to and beyond the loss of contact,
-    and crowds about the separatrix (to 1e-12) and about the loss of contact (to 1e-9)."""
+    and clusters at the separatrix (to 1e-12) and at the loss of contact (to 1e-9)."""
     count = still.a.size
     barrier = still.gravity * np.abs(still.a - still.b)
     side = rng.choice([-1, 1], count)
@@ -89,7 +89,7 @@ def random_lifts(still: Motion, loss: Long, rng: np.random.Generator) -> Long:
 
 
 def random_states(moving: Motion, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """theta and omega somewhere on each motion, up to 300 turns away; some at rest for a moment."""
+    """theta and omega at a random place of each motion, up to 300 turns away; a tenth at rest."""
     count = moving.a.size
     on = oracles.rolling.chart(moving)
     sine, cosine = on.sides(on.top * rng.uniform(0, 1, count))
@@ -107,7 +107,7 @@ def random_states(moving: Motion, rng: np.random.Generator) -> tuple[Floats, Flo
 
 
 def random_frictions(needed: Long, rng: np.random.Generator) -> Floats:
-    """inf, 0, anything from ice to rubber, and close to what is needed (to 1e-9) where that is."""
+    """Unlimited or no friction, values from ice to rubber, and values near the needed (1e-9)."""
     count = needed.size
     near = needed * (1 + rng.choice([-1, 1], count) * 10 ** rng.uniform(-9, -1, count))
     anything = 10 ** rng.uniform(np.log10(0.05), np.log10(2.0), count)
@@ -117,7 +117,7 @@ def random_frictions(needed: Long, rng: np.random.Generator) -> Floats:
 
 
 def random_sample(count: int, seed: int) -> tuple[Sample, oracles.rolling.Extremes]:
-    """Scenes, and the extremes of their motions, on which friction has no influence."""
+    """Random scenes and the extremes of their motions, which do not depend on friction."""
     rng = np.random.default_rng(seed)
     a, b, mass, gravity, inertia = random_bodies(count, rng)
     gyration2 = gyration2_of(a, b, mass, inertia)
@@ -130,7 +130,7 @@ def random_sample(count: int, seed: int) -> tuple[Sample, oracles.rolling.Extrem
 
 
 class Judged(NamedTuple):
-    """What the package said, and the truth, per mass."""
+    """The package's certificates of a sample, and the true extremes, per mass."""
 
     sample: Sample
     validity: NDArray[np.object_]
@@ -142,7 +142,7 @@ class Judged(NamedTuple):
     truth: oracles.rolling.Extremes
 
     def margins(self) -> tuple[Long, Long]:
-        """By how much N > 0 and |F| <= mu N hold where they are worst, in the oracle's errors."""
+        """Least margins of N > 0 and |F| <= mu N, in the oracle's errors."""
         moving, friction, truth = self.sample.motion(), self.sample.friction, self.truth
         there = oracles.rolling.forces(moving, *oracles.rolling.chart(moving).sides(truth.needed_v))
         limited = np.isfinite(friction)
@@ -153,7 +153,7 @@ class Judged(NamedTuple):
         return truth.normal / truth.normal_error, np.where(limited, grip, np.inf)
 
     def distance(self) -> Long:
-        """Relative, to the nearer threshold: of the friction to the needed, or of N/(m g) to 0."""
+        """Relative distance to the nearer threshold: of friction, or of N/(m g) to 0."""
         friction, needed = self.sample.friction, self.truth.needed
         known = np.isfinite(friction) & np.isfinite(needed) & (needed > 0)
         off = np.abs(np.where(known, friction, np.inf) / np.where(known, needed, 1) - 1)
@@ -161,7 +161,7 @@ class Judged(NamedTuple):
 
 
 def column(found: list[Any], name: str) -> Floats:
-    """None, what a Certificate without a number says, as nan."""
+    """A number of each certificate as a column; nan stands for None."""
     values = [getattr(one, name) for one in found]
     return np.array([math.nan if value is None else value for value in values])
 
@@ -183,20 +183,20 @@ def judge(count: int, seed: int) -> Judged:
 
 @pytest.fixture(scope="module")
 def judged() -> list[Judged]:
-    """In chunks: 500 scenes x 300 samples of long double are 2.4 MB per intermediate array."""
+    """All scenes in chunks: 500 scenes x 300 samples of long double are 2.4 MB per array."""
     return [judge(CHUNK, seed) for seed in range(SCENES // CHUNK)]
 
 
 def at_rest(sample: Sample) -> NDArray[np.bool_]:
-    """Stays for ever by decree: omega = 0 and h' within 8 ulp of the size of the body."""
+    """Whether the package counts a start as rest: omega = 0 and h' within 8 ulp of the size."""
     _, slope, *_ = oracles.geometry.outline(sample.a, sample.b, *reduced_start(sample))
     resting: NDArray[np.bool_] = slope <= 8 * EPS * np.maximum(sample.a, sample.b)
     return (sample.omega == 0) & resting
 
 
 def starts_rolling(chunk: Judged) -> NDArray[np.bool_]:
-    """False where the package may refuse to look at the motion: without friction contact is
-    sliding, and a body that is thrown off at once (free gap acceleration >= 0) is in flight."""
+    """Whether a start surely rolls: without friction the contact slides, and a body thrown off at
+    once (free gap acceleration >= 0) flies."""
     sample = chunk.sample
     *_, curvature = oracles.geometry.outline(sample.a, sample.b, *reduced_start(sample))
     thrown = sample.gravity + curvature * np.asarray(sample.omega, np.longdouble) ** 2 <= 0
@@ -211,7 +211,7 @@ def reduced_start(sample: Sample) -> tuple[Long, Long]:
 
 
 def test_oracle_forces_against_differentiated_energy() -> None:
-    """Long double with Newton's law against 40 digits that differentiate h and omega^2(theta)."""
+    """Newton's law in long double agrees with 40-digit derivatives of h and omega^2(theta)."""
     mp.mp.dps = DIGITS
     sample, _ = random_sample(60, 99)
     moving = sample.motion()
@@ -245,7 +245,7 @@ def test_oracle_extremes_do_not_depend_on_the_sampling() -> None:
 
 
 def test_the_random_scenes_meet_every_case(judged: list[Judged]) -> None:
-    """A suite that never visits the interesting cases proves nothing."""
+    """The random scenes contain every case, so that the tests of verdicts prove something."""
     samples = [chunk.sample for chunk in judged]
     needed = np.concatenate([chunk.truth.needed for chunk in judged])
     friction = np.concatenate([sample.friction for sample in samples])
@@ -269,8 +269,8 @@ def test_the_random_scenes_meet_every_case(judged: list[Judged]) -> None:
 
 
 def test_no_false_verdict(judged: list[Judged]) -> None:
-    """VALID and INVALID are claims of proof; EDGE is for what rounding cannot tell: only within
-    EDGE_MARGIN of a threshold, and rarely."""
+    """VALID and INVALID are never wrong; EDGE, for cases that rounding leaves open, occurs only
+    within EDGE_MARGIN of a threshold, and rarely."""
     edges = 0
     for chunk in judged:
         contact, grip = chunk.margins()
@@ -280,7 +280,7 @@ def test_no_false_verdict(judged: list[Judged]) -> None:
             chunk.validity == verdict
             for verdict in (Validity.VALID, Validity.INVALID, Validity.EDGE, Validity.NO_PROOF)
         )
-        # 0.1 errors: the truth is known to 1e-16, the inputs the package forms (k^2) to 1e-16 too
+        # 0.1 errors: the truth and the inputs that the package forms (k^2) are known to 1e-16
         false = (valid & (margin < -0.1) & ~at_rest(chunk.sample)) | (invalid & (margin > 0.1))
         assert not false.any(), [chunk.sample.scene(int(row)) for row in np.flatnonzero(false)[:3]]
         vague = edge & (chunk.distance() > EDGE_MARGIN)
@@ -300,13 +300,13 @@ def test_smallest_normal_force(judged: list[Judged]) -> None:
         assert np.all((angle >= 0) & (angle <= math.pi / 2))
         sides = oracles.geometry.reduced(angle, chunk.sample.a[known], chunk.sample.b[known])
         there = oracles.rolling.forces(chunk.sample.motion(known), *sides)
-        # an extreme is flat, or the angle's own ulp moves it: 1e-6 of the terms allows both
+        # an extreme is flat, or an ulp of its angle moves it: 1e-6 of the terms allows both
         slack = 1e6 * there.normal_error
         assert np.all(np.abs(there.normal - chunk.truth.normal[known]) <= slack)
 
 
 def test_largest_friction_needed(judged: list[Judged]) -> None:
-    """|F/N| inherits the errors of both forces, divided by N; where N reaches 0 it is inf."""
+    """|F/N| has the errors of both forces, divided by N; it is inf where N reaches 0."""
     for chunk in judged:
         known = chunk.validity != Validity.NO_PROOF
         contact = chunk.truth.normal / chunk.truth.normal_error
@@ -318,7 +318,7 @@ def test_largest_friction_needed(judged: list[Judged]) -> None:
         assert np.all((angle >= 0) & (angle <= math.pi / 2))
         sides = oracles.geometry.reduced(angle, chunk.sample.a[kept], chunk.sample.b[kept])
         there = oracles.rolling.forces(chunk.sample.motion(kept), *sides)
-        sturdy = contact[kept] > 1e4  # else the peak is narrower than the angle can say
+        sturdy = contact[kept] > 1e4  # a narrower peak is below the resolution of the angle
         ratio = np.abs(there.friction / there.normal)
         near = np.abs(ratio - chunk.truth.needed[kept]) <= 1e6 * chunk.truth.needed_error[kept]
         assert np.all(near | ~sturdy)
@@ -332,18 +332,18 @@ def test_ends_at_is_given_for_what_ends(judged: list[Judged]) -> None:
 
 
 class Road(NamedTuple):
-    """The angles a motion goes through from its start, once through everything it reaches:
-    signed reduced angle phi (theta = base + phi), forwards, one leg or, in a swing, two."""
+    """All angles that a motion passes from its start, each once: signed reduced angle phi (theta =
+    base + phi), forwards, in one leg or, for a swing, in two."""
 
     base: np.longdouble
     start: np.longdouble
     direction: int
-    turn: np.longdouble  # the largest |phi|, or inf
+    turn: np.longdouble  # largest |phi|, or inf
     legs: list[Long]
 
 
 def road(moving: Motion, theta: float, omega: float) -> Road:
-    """`moving` has one entry, in arrays of length 1."""
+    """The angles passed by `moving`, one motion in arrays of length 1."""
     standing = bool(moving.a[0] < moving.b[0])
     offset = np.longdouble(theta) - (PI / 2 if standing else 0)
     half_turns = np.round(offset / PI)
@@ -358,7 +358,7 @@ def road(moving: Motion, theta: float, omega: float) -> Road:
     every = np.concatenate([-quarter[::-1], quarter])
     if not swings:
         every = np.concatenate([every - PI, every, every + PI])
-    every = every * direction  # from here on forwards is up
+    every = every * direction  # ascending in the direction of motion
     begin = start * direction
     if swings:
         return Road(base, start, direction, turn, [every[every >= begin], every[::-1]])
@@ -366,7 +366,7 @@ def road(moving: Motion, theta: float, omega: float) -> Road:
 
 
 def slack(moving: Motion, friction: float, phi: Long) -> Long:
-    """How far the rolling law is from breaking, in the errors of double arithmetic."""
+    """Margin of the rolling law at angles, in the errors of double arithmetic."""
     found = oracles.rolling.forces(moving, np.abs(np.sin(phi)), np.abs(np.cos(phi)))
     contact = found.normal / found.normal_error
     if math.isinf(friction):
@@ -378,15 +378,15 @@ def slack(moving: Motion, friction: float, phi: Long) -> Long:
 def assert_ends_there(
     moving: Motion, friction: float, theta: float, omega: float, ends: float
 ) -> None:
-    """The law holds everywhere before `ends` and breaks there."""
+    """Assert that the law holds everywhere before `ends` and breaks there."""
     way = road(moving, theta, omega)
     if slack(moving, friction, np.array([way.start]))[0] < -1:
         assert ends == theta
         return
-    end = (np.longdouble(ends) - way.base) * way.direction  # forwards is up
+    end = (np.longdouble(ends) - way.base) * way.direction  # ascending forwards
     begin = way.start * way.direction
     waist = float(oracles.rolling.chart(moving).waist[0])
-    # as an angle, rounding is an ulp of it; as a root, 1e-8 of the narrowest feature there
+    # tolerance: the rounding of the angle, and 1e-8 of the narrowest feature for a root
     near = 8 * np.spacing(max(abs(ends), abs(theta))) + 1e-8 * max(abs(float(end)), waist)
     assert abs(end) <= way.turn + near
     leg = 0 if end >= begin - near else 1
@@ -402,8 +402,8 @@ def assert_ends_there(
 
 
 def test_ends_at_is_the_first_end(judged: list[Judged]) -> None:
-    """Scenes that clearly break (by 1e-4 of the forces: there the law is crossed, not grazed),
-    each on a road of 1200 points per quarter turn."""
+    """`ends_at` is the first angle where the law breaks, for scenes that break it by 1e-4 of the
+    forces (the law is crossed, not grazed), on 1200 points per quarter turn."""
     checked = 0
     for chunk in judged:
         contact, grip = chunk.margins()
@@ -423,8 +423,8 @@ def test_ends_at_is_the_first_end(judged: list[Judged]) -> None:
 
 
 def test_ends_at_beside_the_tip_with_little_weight() -> None:
-    """N is 2.6e-9 of the weight on the tip and the start 3.7e-9 rad beside it, too far for this
-    friction already: h cannot tell the two apart, the angle can."""
+    """N is 2.6e-9 of the weight on the tip. The start, 3.7e-9 rad beside the tip, already needs
+    more friction than there is: the angle resolves this distance, h does not."""
     scene = Scene(
         2.239752036298014,
         2.87251997990579,
@@ -438,7 +438,7 @@ def test_ends_at_beside_the_tip_with_little_weight() -> None:
 
 
 def grip(scene: Scene, gyration2: Any, theta: Any) -> Any:
-    """mu N - |F| per mass where the motion is at `theta`, to 40 digits."""
+    """mu N - |F| per mass of the motion at an angle `theta`, to 40 digits."""
     a, b, gravity = scene.a, scene.b, scene.gravity
     h, slope, _ = oracles.geometry.height_slopes(mp.mpf(scene.theta), a, b)
     energy = (gyration2 + h**2 + slope**2) * mp.mpf(scene.omega) ** 2 / 2 + gravity * h
@@ -465,14 +465,14 @@ def grip(scene: Scene, gyration2: Any, theta: Any) -> Any:
 def test_next_to_no_friction_will_do_where_none_is_needed(
     a: float, b: float, theta: float, side: int, friction: float
 ) -> None:
-    """Flat, on the tip, and in between where F vanishes: for a way that is as short as the friction
-    is small, and far below what the squared law can tell from a double root."""
+    """Rolling starts flat, on the tip or where F vanishes, and ends after an angle of the order of
+    the friction, far below the resolution of a double root of the squared law."""
     with mp.workdps(DIGITS):
         gyration2 = (mp.mpf(a) ** 2 + mp.mpf(b) ** 2) / 4
         h, slope, _ = oracles.geometry.height_slopes(mp.mpf(theta), a, b)
         omega = mp.mpf(side)
         if theta not in (0.0, math.pi / 2):
-            # F = h theta'' + h' omega^2 with theta'' = -h' (g + rho omega^2)/D
+            # omega of F = h theta'' + h' omega^2 = 0 with theta'' = -h' (g + rho omega^2)/D
             radius = (a * b) ** 2 / h**3
             omega = side * mp.sqrt(h / (gyration2 + h**2 + slope**2 - h * radius))
         scene = Scene(a, b, gravity=1.0, friction=friction, theta=theta, omega=float(omega))
@@ -481,8 +481,8 @@ def test_next_to_no_friction_will_do_where_none_is_needed(
         assert found.ends_at is not None
         way = side * (mp.mpf(found.ends_at) - theta)
         assert way < 1e3 * friction
-        # at most half a turn, an angle is counted in doubles, as theta is: from the start where
-        # that is 0; 1e-12 of the forces, as the oracle allows double arithmetic
+        # an angle of at most half a turn is resolved to an ulp, relative to the start if that is 0;
+        # the forces to 1e-12, the oracle's allowance for double arithmetic
         near = (4 * EPS * math.pi if theta else 0) + 1e-12 * abs(way)
         for share in (0, 0.01, 0.5, 1):
             assert grip(scene, gyration2, theta + side * share * max(way - near, 0)) > 0
@@ -495,11 +495,11 @@ def test_next_to_no_friction_will_do_where_none_is_needed(
 def test_a_fall_from_beside_the_tip_ends_where_the_law_does(
     b: float, speed: float, beside: float
 ) -> None:
-    """It falls at once, or turns back first, or goes over the tip: the end of rolling, and the
-    state of the event there, are right in units of their distance from the tip."""
+    """A body that falls, turns back first or crosses the tip stops rolling at the right angle and
+    state, with errors measured relative to the distance from the tip."""
     with mp.workdps(DIGITS):
         gyration2 = (1 + mp.mpf(b) ** 2) / 4
-        rate = math.sqrt((b * b - 1) / b / (gyration2 + b * b))  # of falling
+        rate = math.sqrt((b * b - 1) / b / (gyration2 + b * b))  # rate of falling
         friction = 1e3 * beside * (b * b - 1) / b**2
         scene = Scene(
             1.0, b, gravity=1.0, friction=friction, theta=beside, omega=speed * rate * beside
@@ -517,7 +517,7 @@ def test_a_fall_from_beside_the_tip_ends_where_the_law_does(
 
 @pytest.mark.parametrize("shift", [1e-3, -1e-3])
 def test_a_wrong_end_is_noticed(shift: float) -> None:
-    """The tester tested: grip is lost at 0.2488 rad here, and nowhere near."""
+    """The judge rejects wrong ends: grip is lost at 0.2488 rad here, and nowhere near."""
     scene = Scene(2.0, 1.0, friction=0.2, omega=2.0)
     moving = oracles.rolling.motion(
         *(np.array([value]) for value in (2.0, 1.0, 1.25, 9.81, 0.0, 2.0))
@@ -530,7 +530,7 @@ def test_a_wrong_end_is_noticed(shift: float) -> None:
 
 
 def test_a_hairs_breadth_from_the_threshold() -> None:
-    """Friction 1e-13, 1e-14, 1e-15 beside what is needed: EDGE, or the truth."""
+    """Friction 1e-13, 1e-14 or 1e-15 from the needed one gives EDGE, or the true verdict."""
     said_edge = 0
     for seed in range(3):
         sample, truth = random_sample(100, 1000 + seed)
@@ -553,14 +553,14 @@ def test_a_hairs_breadth_from_the_threshold() -> None:
 def test_a_circle_rolls_for_ever(friction: float, omega: float) -> None:
     found = certify(Scene(1.5, 1.5, mass=2.0, omega=omega, friction=friction))
     assert found.validity is Validity.VALID and found.ends_at is None
-    # N = m g exactly, but omega^2 (rho - h) may leave the rounding of rho - h = 0
+    # N = m g exactly, but omega^2 (rho - h) may contain the rounding of rho - h = 0
     rounding = 8 * EPS * (9.81 + 1.5 * omega**2)
     assert found.smallest_normal_force == pytest.approx(2 * 9.81, abs=2 * rounding)
     assert found.largest_friction_needed == pytest.approx(0.0, abs=rounding / 9.81)
 
 
 def test_a_circle_needs_next_to_no_friction() -> None:
-    """But without any its contact slides, from the start on."""
+    """A circle rolls with any friction; without friction its contact slides from the start."""
     scene = Scene(1.5, 1.5, omega=2.0, theta=0.7, friction=1e-300)
     assert certify(scene).validity is Validity.VALID
     slides = certify(scene.replace(friction=0.0))
@@ -577,8 +577,8 @@ EQUILIBRIA = [
 
 @pytest.mark.parametrize(("a", "b", "theta"), EQUILIBRIA)
 def test_at_rest_in_equilibrium(a: float, b: float, theta: float) -> None:
-    """It stays there for ever, as next to no friction is needed: conservative is allowed, wrong is
-    not. Lying flat the numbers are those of rest."""
+    """A body at rest stays there for ever, since next to no friction is needed: NO_PROOF is
+    allowed, INVALID is not. The forces of a body lying flat are exact."""
     scene = Scene(a, b, mass=3.0, theta=theta)
     for friction in (math.inf, 0.8):
         found = certify(scene.replace(friction=friction))
@@ -629,8 +629,8 @@ def test_no_proof_where_it_does_not_roll(scene: Scene) -> None:
 
 
 def test_the_state_after_the_blow_is_what_is_certified() -> None:
-    """The report's blow makes 3.2 rad/s of rolling; it must not be certified at rest, nor at the
-    free body's 5.76, which rolling could not keep."""
+    """The certificate belongs to the 3.2 rad/s of rolling after the report's blow, not to rest or
+    to the free body's 5.76 rad/s, which cannot roll on."""
     struck = certify(Scene(2.0, 1.0, mass=10.0, impulse=Impulse.press(48.0, 1.5)))
     moving = certify(Scene(2.0, 1.0, mass=10.0, omega=3.2))
     assert struck.validity is Validity.VALID

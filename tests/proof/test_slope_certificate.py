@@ -1,7 +1,7 @@
-"""The certificate on slopes, judged by dense scans along the angle and by what it says of itself.
+"""The certificate on slopes, judged by dense scans along the angle and by its own extremes.
 
-A scan takes W = D omega^2/2 from the energy, half a turn after the other, with h integrated by
-Gauss-Legendre quadrature between its places: it shares no formula with the series of the package.
+A scan takes W = D omega^2/2 from the energy, one half turn after another, with h integrated by
+Gauss-Legendre quadrature between its angles: it shares no formula with the package's series.
 """
 
 import math
@@ -15,28 +15,28 @@ from oracles.numbers import EPS
 from rolling_ellipse import Scene, Validity, certify
 
 GRAVITY = 9.81
-PLACES = 3000  # a half turn, beside those next to flat sides and tips
+PLACES = 3000  # angles of a scan in a half turn, besides those near flat sides and tips
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
 Floats = NDArray[np.float64]
 
 
 class Scan(NamedTuple):
-    """What is left of the law along the motion, of the size of its terms, and what it comes to."""
+    """Least margin of the law along a motion, relative to its terms, and the end of the scan."""
 
     ends: str  # "broken", "turned back" for good, or "open" after many half turns
-    between: tuple[float, float]  # angles, of the first place where it is broken and that before
+    between: tuple[float, float]  # last angle before the law breaks, and first angle after
     least: float
 
 
 def outline(angle: Floats, a: float, b: float) -> tuple[Floats, Floats, Floats]:
-    """h, h' and the radius of curvature."""
+    """h, h' and the radius of curvature at an angle."""
     s, c = np.sin(angle), np.cos(angle)
     h = np.hypot(a * s, b * c)
     return h, (a - b) * (a + b) * s * c / h, (a * b) ** 2 / h**3
 
 
 def half_turn(start: float, direction: float, thinness: float) -> Floats:
-    """Places on the way, denser where a thin body lies flat or stands upright."""
+    """Angles of a half turn, denser where a thin body lies flat or stands upright."""
     even = start + direction * np.pi * np.linspace(0, 1, PLACES + 1)
     low, high = min(even[0], even[-1]), max(even[0], even[-1])
     axes = np.arange(math.floor(low / (np.pi / 2)), math.ceil(high / (np.pi / 2)) + 1) * np.pi / 2
@@ -47,7 +47,7 @@ def half_turn(start: float, direction: float, thinness: float) -> Floats:
 
 
 def scan(scene: Scene, most: int = 30) -> Scan:
-    """Forwards in time."""
+    """Scan a motion forwards in time."""
     a, b, k2, mu = scene.a, scene.b, scene.gyration2, scene.friction
     into, along = GRAVITY * math.cos(scene.slope), GRAVITY * math.sin(scene.slope)
     angle, least = scene.theta, math.inf
@@ -87,7 +87,7 @@ def scan(scene: Scene, most: int = 30) -> Scan:
 
 
 def random_scene(rng: np.random.Generator) -> Scene:
-    """Thin to nearly round, both ways up, all slopes, at rest and fast."""
+    """A random scene: thin to nearly round, lying or standing, on all slopes, at rest to fast."""
     ratio = math.exp(rng.uniform(math.log(0.02), 0)) if rng.random() < 0.8 else 0.99
     a, b = (1.0, ratio) if rng.random() < 0.5 else (ratio, 1.0)
     inertia = (a * a + b * b) / 4 * (1 if rng.random() < 0.6 else math.exp(rng.uniform(-3, 2)))
@@ -106,10 +106,10 @@ def random_scene(rng: np.random.Generator) -> Scene:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_no_verdict_is_false(seed: int) -> None:
-    """60 scenes a seed: VALID where the scan finds nothing, and where it does, the angle.
+    """In 60 scenes per seed VALID is right, and INVALID names the angle of the scan.
 
-    A scan misses what is narrower than its places, 1e-3 rad, and so less deep than 1e-5 of the
-    forces, which change within that much by their own size at most 0.01 rad off.
+    A scan misses violations narrower than the distance of its angles, 1e-3 rad. They are less deep
+    than 1e-5 of the forces: these need 0.01 rad or more to change by their own size.
     """
     rng = np.random.default_rng(seed)
     met = {"broken": 0, "turned back": 0}
@@ -135,10 +135,10 @@ def test_no_verdict_is_false(seed: int) -> None:
 
 @pytest.mark.parametrize("direction", [1, -1])
 def test_a_nearly_round_body_rolls_far(direction: int) -> None:
-    """Half turns that are not followed: the last one by the minimum over the angle.
+    """The last half turn of a long roll agrees with the minimum of a bound over the angle.
 
     Downhill the law holds in half turn n as long as W + n w stays below W_plus at every angle,
-    both linear forces put in; so rolling ends in the half turn after the least (W_plus - W)/w.
+    a bound from the forces, linear in W; so rolling ends in the half turn after min (W_plus - W)/w.
     """
     scene = Scene(1.0, 1 - 1e-5, slope=0.05, omega=3.0 * direction, friction=0.5)
     a, b, k2 = scene.a, scene.b, scene.gyration2
@@ -148,7 +148,7 @@ def test_a_nearly_round_body_rolls_far(direction: int) -> None:
     inertia = k2 + h**2 + dh**2
     path = rl.geometry.centre_path(angle, a=a, b=b)
     w = (k2 + h[0] ** 2) * 4.5 + along * path - into * (h - h[0])
-    rest = (h * along - dh * into) / inertia  # theta'' for omega = 0, and what omega^2 adds
+    rest = (h * along - dh * into) / inertia  # theta'' at omega = 0, and its coefficient of omega^2
     more = -dh * rho / inertia
     limits = []
     for side in (1, -1):
@@ -163,14 +163,14 @@ def test_a_nearly_round_body_rolls_far(direction: int) -> None:
     assert last > 1e4
     assert math.floor(found.ends_at / math.pi) in (last, last - 1)
     share = found.ends_at / math.pi - math.floor(found.ends_at / math.pi)
-    # where it ends the limit is met: between two of the places
+    # the limit is met at the end, between two of the angles
     there = np.interp(share * math.pi, angle, half_turns)
     assert there == pytest.approx(math.floor(found.ends_at / math.pi), abs=0.5)
 
 
 def test_constant_forces() -> None:
-    """A circle needs tan(slope) k^2/(k^2 + a^2) = tan(slope)/3 of a disc, a body at rest
-    tan(slope): a hair more holds, a hair less does not, and rounding is told."""
+    """Needed friction is tan(slope) k^2/(k^2 + a^2) = tan(slope)/3 of a disc, tan(slope) at rest:
+    VALID just above, INVALID just below, EDGE at it."""
     incline = math.tan(0.2)
     tangent = 2 * incline / (3.0 + math.sqrt(9.0 - 16.0 * incline**2))
     circle = Scene(1.0, 1.0, slope=0.2, omega=1.0)
@@ -188,7 +188,7 @@ def test_a_swing_has_extremes_and_all_else_none() -> None:
     found = certify(scene)
     motion = rl.simulate(scene, np.linspace(0, rl.period(scene), 20001))
     assert found.validity is Validity.VALID and motion.method == "exact"
-    # 20001 samples are within 1e-7 of the extremes, which are flat there
+    # extremes are stationary: 20001 samples are within 1e-7 of them
     needed = motion.friction_needed
     assert found.smallest_normal_force == pytest.approx(motion.normal_force.min(), rel=1e-7)
     assert found.largest_friction_needed == pytest.approx(needed.max(), rel=1e-6)
@@ -203,9 +203,9 @@ def test_a_swing_has_extremes_and_all_else_none() -> None:
 
 @pytest.mark.parametrize("friction", [0.3, 0.8, math.inf])
 def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
-    """The contact motion leaves rolling at that angle, and the forced one is not valid from there.
+    """The contact motion stops rolling at the certified angle, and forced rolling is invalid then.
 
-    Both are the same exact motion up to its time, which has a rounding: so has the angle.
+    Both follow the same exact motion up to a rounded time, and so to a rounded angle.
     """
     scene = Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=-2.5, friction=friction)
     found = certify(scene)
@@ -220,7 +220,7 @@ def test_rolling_ends_where_the_certificate_says(friction: float) -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.parametrize("roundness", [2.0**-8, 2.0**-20, 2.0**-30, 2.0**-38])
 def test_nearly_round_on_a_steep_slope(roundness: float) -> None:
-    """Rolling ends where N = m (g cos(alpha) + z'') of the motion itself is zero, not before."""
+    """Rolling ends where N = m (g cos(alpha) + z'') of the motion itself vanishes, not before."""
     rng = np.random.default_rng(int(1 / roundness) % 1000)
     ended = 0
     for _ in range(120):
@@ -236,7 +236,7 @@ def test_nearly_round_on_a_steep_slope(roundness: float) -> None:
         found = motion.sol(np.linspace(0.0, end, 1001))
         force = found.normal_force / scene.mass
         size = GRAVITY * math.cos(slope) + 2 * roundness * np.max(found.omega**2)
-        # theta'' is of gravity, and h' of the roundness, to some roundings each
+        # some roundings of theta'', of the size of gravity, and of h', of the size of the roundness
         rounding = 64 * EPS * (size + roundness * GRAVITY) * (1 + np.abs(found.theta).max())
         assert np.all(force >= -rounding) and abs(force[-1]) <= rounding
     assert ended >= 10

@@ -1,8 +1,8 @@
-"""Refusals: every wrong question to the package, in one table a room.
+"""Refusals: every wrong call of the package, in one table per module.
 
-**The next refusal goes into the table of its room**: a row is the name of the argument with which
-the message has to begin, and the call; `wrong` makes rows of one call with many wrong values. Where
-no argument is wrong (a package is missing), the row has the class of the exception instead.
+**A new refusal goes into the table of its module**: a row is the name of the argument with which
+the message must begin, and the call; `wrong` makes rows of one call with many wrong values. If no
+argument is wrong (a package is missing), the row has the class of the exception instead.
 `test_messages.py` makes the calls, checks the grammar of the messages, and compares the lines that
 raise with the sources; `test_numbers.py` has the rules that all numbers share.
 """
@@ -21,7 +21,7 @@ Row = tuple[str | type[Exception], Callable[[Path], Any]]
 INF, NAN = math.inf, math.nan
 NOT_FINITE = [INF, -INF, NAN]
 NOT_POSITIVE = [0.0, -0.0, -1.0, *NOT_FINITE]
-#: Wrong values for every argument; `but` leaves out those that an argument takes.
+# : Wrong values for every argument; `but` removes the values that an argument accepts.
 ANYTHING: list[Any] = [
     "a", "", b"a", 42, 1.5, -1, NAN, INF, 10**400, 2j, [], [1, 2], {}, object(), len, np.array([]),
     np.array([1.0, 2.0]), np.array("x"), np.array([None, 1.0]), np.ma.masked, Figure,
@@ -30,12 +30,12 @@ ANYTHING: list[Any] = [
 
 
 def but(*taken: Any) -> list[Any]:
-    """ANYTHING without what is taken."""
+    """ANYTHING without the accepted values."""
     return [value for value in ANYTHING if repr(value) not in map(repr, taken)]
 
 
 def wrong(call: Callable[..., Any], usual: dict[str, Any], **values: Any) -> Iterator[Row]:
-    """Rows of a call: each argument with one wrong value after the other."""
+    """Rows of a call: each argument takes one wrong value after the other."""
 
     def later(given: dict[str, Any]) -> Callable[[Path], Any]:
         return lambda _: call(**given)

@@ -1,4 +1,4 @@
-"""Refusals of what is asked: scenes, impulses, times and settings."""
+"""Refusals of scenes, impulses, times and settings."""
 
 import math
 from collections.abc import Callable

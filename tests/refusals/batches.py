@@ -28,7 +28,7 @@ def many(scenes: Any, **options: Any) -> Callable[[Path], Any]:
 
 
 class Pool(ThreadPoolExecutor):
-    """Workers of another process are not needed to be refused by one."""
+    """Threads instead of processes: refusals need no worker in another process."""
 
 
 class Broken(ThreadPoolExecutor):
@@ -52,13 +52,13 @@ def again(folder: Path, t: Any = TIMES, omega: float = 1.0, **options: Any) -> N
 
 
 def more(folder: Path) -> None:
-    """A scene behind a chunk that was full."""
+    """Add a scene after a full chunk."""
     path = made(folder, [SCENE] * 16)
     rl.simulate_many([SCENE] * 17, TIMES, out=path)
 
 
 def mixed(folder: Path) -> None:
-    """A chunk of another request."""
+    """Add a chunk of another request."""
     path = made(folder)
     shutil.copy(next(path.glob("0*.npz")), path / f"{7:08d}-{'0' * 16}-{'0' * 16}.npz")
     rl.simulate_many(MANY, TIMES, out=path)
@@ -87,7 +87,7 @@ def spoilt(change: Callable[[Path], Any], scenes: Any = MANY) -> Callable[[Path]
 
 
 def forged(name: str = "0*.npz", **changes: Callable[[Any], Any]) -> Row:
-    """Other arrays in the one chunk, or in another file; None takes one away."""
+    """Replace arrays in the one chunk, or in another file; None removes an array."""
 
     def change(path: Path) -> None:
         file = next(path.glob(name))
@@ -102,7 +102,7 @@ def forged(name: str = "0*.npz", **changes: Callable[[Any], Any]) -> Row:
 
 
 def put(place: Any, value: float) -> Callable[[Any], Any]:
-    """Another number at a place of an array."""
+    """Replace the number at a place of an array."""
 
     def change(values: Any) -> Any:
         values[place] = value
@@ -124,7 +124,7 @@ def another_digest(path: Path) -> None:
 
 
 def renamed(folder: Path) -> Any:
-    """Scenes that nobody could have had, under their right name."""
+    """Store a scene that cannot exist in a chunk with the right name."""
     path = made(folder)
     file = next(path.glob("0*.npz"))
     with np.load(file) as data:
@@ -140,7 +140,7 @@ def renamed(folder: Path) -> Any:
 
 
 REFUSALS: list[Row] = [
-    # asked
+    # requests
     *(("scenes", many(asked)) for asked in (
         1, scenes.rocking, np.array("1"), {}, {"a": 1.0}, {"a": 1, "b": 1, "omga": 2})),
     *(("scenes" + place, many({"a": 1.0, "b": 1.0, **asked})) for place, asked in (

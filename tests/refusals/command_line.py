@@ -11,7 +11,7 @@ from refusals import Row
 
 
 def told(*arguments: str) -> Callable[[Path], Any]:
-    """What the command line says in one line before it ends."""
+    """The command line's one-line error of a call."""
     return lambda _: _motion(motion_parser().parse_args(joined(list(arguments))))
 
 

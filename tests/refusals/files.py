@@ -1,4 +1,4 @@
-"""Refusals of files that are damaged, or not ours."""
+"""Refusals of files that are damaged or foreign."""
 
 import io
 import math
@@ -35,7 +35,7 @@ def reads(content: bytes) -> Callable[[Path], Any]:
 
 
 def changed(motion: rl.Trajectory, change: Change) -> Callable[[Path], Any]:
-    """A file in which something was changed: in what it holds as JSON, or in its arrays."""
+    """Load a file whose JSON or arrays were changed."""
 
     def call(folder: Path) -> Any:
         motion.save(folder / "saved.npz")
@@ -47,7 +47,7 @@ def changed(motion: rl.Trajectory, change: Change) -> Callable[[Path], Any]:
 
 
 def facts(motion: rl.Trajectory = CONTACT, **given: Any) -> Iterator[Row]:
-    """One fact after the other with other values; names in parts are joined by two underscores."""
+    """Rows that replace one fact of the JSON each; double underscores join the parts of a name."""
 
     def put(name: str, value: Any) -> Change:
         *road, last = (int(key) if key.isdigit() else key for key in name.split("__"))
@@ -96,7 +96,7 @@ def header(shape: str, dtype: str = "<f8", version: bytes = b"\x01\x00") -> byte
     return b"\x93NUMPY" + version + len(said).to_bytes(2, "little") + said
 
 
-#: More than there is, or less, too deep, objects, another version, a pickle.
+# : Headers too long or short, too deep, of objects, of another version, and a pickle.
 HEADERS = [
     *map(header, ("(1000000000000,)", "(13,)", "(-12, -1)", f"({'1, ' * 70}12)", "'all'",
                   "(" * 500 + "12" + ",)" * 500, "-" * 7000 + "1")),

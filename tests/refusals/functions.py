@@ -1,4 +1,4 @@
-"""Refusals of numbers and arrays, and of the functions that are asked of scenes."""
+"""Refusals of numbers and arrays, and of functions of scenes."""
 
 from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal
@@ -26,7 +26,7 @@ HIT: dict[str, Any] = {
     "theta": 0.3, "x_dot": 0.0, "z_dot": -1.0, "omega": 0.0, "friction": 0.3, "restitution": 0.5,
     **AXES,
 }  # fmt: skip
-#: Four columns of what is measured before an impact, three after.
+# : Four columns measured before an impact.
 BEFORE: Any = np.array([[0.0], [0.0], [-1.0], [0.0]])
 AFTER: Any = np.zeros((3, 1))
 UPWARDS: Any = -BEFORE
@@ -85,7 +85,7 @@ REFUSALS: list[Row] = [
            q=[[1.0], *WITH_WRONG, np.ma.masked_equal(Q, Q[2]), *map(np.zeros, (0, 4, 6))],
            q_dot=[*WITH_WRONG, *(np.zeros((3, length)) for length in (0, 4, 6, 10))],
            a=NOT_POSITIVE, b=NOT_POSITIVE),
-    # questions to scenes
+    # functions of a scene
     *wrong(rl.certify, {}, scene=[None, 1, "report", (2.0, 1.0), [1.0] * 10**5, "x" * 10**5]),
     *wrong(rl.period, {}, scene=[None, 1, AIR, scenes.slope]),
     *wrong(rl.outcome, {"scene": ROLLING}, impulse=[1, Impulse.press(1.0, [0.0, 5.0])]),

@@ -33,11 +33,11 @@ CURVES: list[Any] = [
     rl.plot_paths, rl.plot_phase, rl.plot_forces, rl.plot_energy, rl.plot_constraints,
     rl.plot_error,
 ]  # fmt: skip
-PAIRS = (rl.plot_forces, rl.plot_constraints)  # in two axes
+PAIRS = (rl.plot_forces, rl.plot_constraints)  # pictures with two axes
 
 
 class Lying:
-    """It says that it is an array, and is none."""
+    """An object that claims to be an array and is none."""
 
     def __array__(self, *_: Any, **__: Any) -> Any:
         return "no array"
@@ -59,7 +59,7 @@ def film_that_fails(folder: Path) -> None:
 
 
 def film_that_is_stopped(folder: Path) -> None:
-    """An exception in a frame is not covered by the failure of the program that it leaves."""
+    """Interrupt a film by an exception in a frame, which the writer's own failure must not hide."""
     program = folder / "ffmpeg"
     program.write_text("#!/bin/sh\ncat > /dev/null\nexit 1\n")
     program.chmod(0o755)
@@ -86,7 +86,7 @@ def folder_called_gif(folder: Path) -> None:
 
 
 def long_film(folder: Path) -> None:
-    """Of more frames than a player has samples, and a motion that needs more."""
+    """Request a film of more frames than a player has samples."""
     turning = rl.simulate(Scene(2.0, 1.0, omega=3.2), [0.0, 20_000.0])
     rl.animate(turning, folder / "roll.html", speed=20.0, fps=50.0, **FILM)
 
@@ -162,7 +162,7 @@ REFUSALS: list[Row] = [
     # players
     ("t_end", long_film),
     *wrong(rl.explore, {}, scene=[None, 42, "report", scenes, MOTION]),
-    *wrong(rl.explore, {"scene": scenes.report},  # up to 40 sqrt(2 m / 9.81 m/s^2) = 18.06 s
+    *wrong(rl.explore, {"scene": scenes.report},  # spans up to 40 sqrt(2 m / 9.81 m/s^2) = 18.06 s
            t_end=[0.0, -1.0, NAN, INF, 18.1, 1e9, "1", [1.0], object()]),
     ("scene", lambda _: rl.explore(scenes.report.replace(x=1e30))),
     ("path", lambda folder: rl.explore(scenes.report).to_html(folder / "a.gif")),

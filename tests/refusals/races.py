@@ -34,7 +34,7 @@ def result(ask: Callable[[WorkPrecision], Any]) -> Callable[[Path], Any]:
 
 
 def raced(change: Callable[[Any], Any]) -> Callable[[Path], Any]:
-    """A file of a race in which something was changed."""
+    """Load a file of a race that was changed."""
 
     def call(folder: Path) -> Any:
         path = folder / "race.json"
@@ -52,7 +52,7 @@ def of_run(**facts: Any) -> Callable[[Path], Any]:
 
 
 REFUSALS: list[Row] = [
-    # asked
+    # requests
     *(("methods", race(methods=methods))
       for methods in (1, [1], ["x"], [], ["exact", "exact"])),
     ("name of a method", race(methods=[{"model": "rolling", "name": 1}])),

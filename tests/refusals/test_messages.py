@@ -1,6 +1,6 @@
-"""Every refusal is provoked, names its argument and shows the value; none is out of reach.
+"""Every refusal is provoked, names its argument and shows the value; none is unreachable.
 
-The sources show that none is missing: every `raise` of the package must be on the way of some
+The sources show that none is missing: every `raise` of the package must be in the traceback of some
 exception, and every text of the core in some message. Refusals that no call can reach are listed
 here, each with its reason.
 """
@@ -40,14 +40,14 @@ UNREACHABLE: dict[str, str] = {
     "there is no integrator for the method '": "settings refuse such a method before",
     "t must be empty, for the motion ended before it began: ": "no slide is known that is too quick"
     " for its first piece since angles below 1e-100 are none to endless friction",
-    # the reason of a run in a race that has no answer
+    # reason of a run that has no answer, kept in the race
     "flow must be given a scene that rolls": "a reason",
     "raise Stopped(": "a reason",
     "it returned theta, omega, x": "a reason",
 }
 
 
-#: Beginnings of the last part of a message: the value, or the trouble with it.
+# : Beginnings of the last part of a message: the value, or its fault.
 ENDS = ("got ", ", but ", ": ", " be given", " without a blow")
 
 
@@ -60,7 +60,7 @@ class Provoked(NamedTuple):
 
 
 def chain(error: BaseException | None) -> Iterator[BaseException]:
-    """An exception with its causes."""
+    """The exception followed by its causes."""
     while error is not None:
         yield error
         error = error.__cause__ or error.__context__
@@ -143,7 +143,7 @@ def test_no_raise_of_the_package_is_out_of_reach(all_provoked: list[Provoked]) -
                 continue
             if not any(text.find(known) >= 0 for known in UNREACHABLE):
                 missed.append(f"{name}:{first}: {' '.join(text.split())}")
-    assert total > 150  # fewer: they are no longer recognised
+    assert total > 150  # fewer means that the patterns miss some
     assert missed == [], "\n".join([f"{len(missed)} of {total}", *missed])
 
 
@@ -169,7 +169,7 @@ def test_no_text_of_the_core_is_out_of_reach(all_provoked: list[Provoked]) -> No
             total += 1
             if text not in said and text not in UNREACHABLE:
                 missed.append(f"{path.relative_to(ROOT)}: {text}")
-    assert total > 50  # fewer: they are no longer recognised
+    assert total > 50  # fewer means that the patterns miss some
     assert missed == [], "\n".join([f"{len(missed)} of {total}", *missed])
 
 

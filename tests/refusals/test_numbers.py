@@ -1,4 +1,4 @@
-"""Rules of all arguments that are numbers: other values are refused by name, without a warning."""
+"""Rules for all numerical arguments: other values are refused by name, without a warning."""
 
 from collections import deque
 from collections.abc import Callable
@@ -28,7 +28,7 @@ OPTIONAL = ("z", "inertia", "gyration2", "x", "x_dot", "z_dot")
 
 Door = Callable[[Any], Any]
 
-#: Calls with one argument that is one number, by its name.
+# : Calls whose tested argument must be one number, by its name.
 SCALAR_DOORS: list[tuple[str, Door]] = [
     *((name, lambda v, name=name: rl.Scene(**{**AXES, name: v})) for name in SCENE_NUMBERS),
     *((name, lambda v, name=name: rl.thresholds(**{**AXES, name: v}))
@@ -50,7 +50,7 @@ SCALAR_DOORS: list[tuple[str, Door]] = [
     ("d", lambda v: report.struck_speed(48.0, v, **AXES, mass=10.0)),
 ]  # fmt: skip
 
-#: Calls with one argument that is a number or an array.
+# : Calls whose tested argument is a number or an array.
 ARRAY_DOORS: list[tuple[str, Door]] = [
     *((name, lambda v, name=name: rl.Impulse(**{name: v})) for name in ("jx", "jz", "dx", "dz")),
     *((name, lambda v, name=name: rl.Impulse.press(**{"F": 48.0, "d": 1.0, name: v}))
@@ -142,7 +142,7 @@ def test_masked_entries(name: str, door: Door) -> None:
 
 @names(SCALAR_DOORS + ARRAY_DOORS)
 def test_what_has_units(name: str, door: Door) -> None:
-    """Units are never converted or taken off: plain numbers in SI units are required."""
+    """Units are never converted or removed: plain numbers in SI units are required."""
     for value in quantities(2.0):
         refused(TypeError, name, "plain numbers in SI units", door, value)
 
@@ -222,8 +222,8 @@ def test_numbers_of_every_kind() -> None:
 def test_what_is_converted_in_pieces_is_what_is_converted_at_once(
     value: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In pieces of 16 numbers instead of 131072. No call of NumPy takes more of a list, so that
-    Ctrl-C works in between."""
+    """Pieces of 16 numbers give the result of pieces of 131072. No call of NumPy takes more of a
+    list than a piece, so that Ctrl-C works in between."""
 
     def found() -> Any:
         try:

@@ -1,4 +1,4 @@
-"""Refusals of a trajectory: what it is made of, and what it is asked."""
+"""Refusals of a trajectory: wrong parts of it, and wrong arguments of its methods."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -10,7 +10,7 @@ import rolling_ellipse as rl
 from oracles.report import Q_DOT, SHAPE, Array, Q, off_by
 from rolling_ellipse import report
 
-OWN_Q, OWN_RATES = np.array([0.0, 1, 0, 0, 1]), np.array([0, 1, 1, 1.5, 0])  # of the report's run
+OWN_Q, OWN_RATES = np.array([0.0, 1, 0, 0, 1]), np.array([0, 1, 1, 1.5, 0])  # the report's start
 
 OWN_VIOLATIONS = "f1 = -1 m/s; rate of f2 = 1 m/s; rate of f4 = -2.5 rad/s"
 FIXED = {"rk4": 0.01, "radau": 0.01}  # steps [s]
@@ -28,7 +28,7 @@ def corrected(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
 
 
 def as_given(q: Array, q_dot: Array, t: Any, **options: Any) -> rl.Trajectory:
-    """Whatever is said of the start and of the ground it leaves."""
+    """The motion from a start as given, without warnings of the start and of the ground."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", report.InconsistentStartWarning)
         warnings.simplefilter("ignore", rl.ValidityWarning)
@@ -47,8 +47,8 @@ def test_corrected_refuses_and_names_every_violation(options: dict[str, Any]) ->
 
 
 def test_corrected_projects_the_reports_own_start() -> None:
-    """Flat on the ground already, so only rates change: omega = k^2 / (k^2 + h^2) = 1.25 / 2.25 of
-    the 1 rad/s (x_dot = 0, and z_dot finds h' = 0), psi_dot = (a/b)^2 omega there."""
+    """The report's start touches the ground, so only rates change: omega = k^2 / (k^2 + h^2) = 1.25
+    / 2.25 of 1 rad/s (x_dot = 0, and z_dot acts on h' = 0), psi_dot = (a/b)^2 omega there."""
     motion = corrected(OWN_Q, OWN_RATES, [0.0, 1.0], consistent="project", mass=3.0)
     assert np.array_equal(motion.q[0], OWN_Q)
     assert motion.q_dot[0] == pytest.approx([5 / 9, 0, 5 / 9, 20 / 9, 0], rel=1e-14, abs=1e-15)
@@ -56,19 +56,19 @@ def test_corrected_projects_the_reports_own_start() -> None:
 
 
 def test_corrected_projects_to_the_nearest_state() -> None:
-    """Among all angles, then among all rates there, none is nearer in the kinetic metric."""
+    """Of all angles, and then of all rates at the angle, none is nearer in the kinetic metric."""
     q, q_dot = np.array([0.3, 1.5, 0.4, 5.0, 3.0]), np.array([1.0, 0.5, 2.0, 7.0, -3.0])
     motion = corrected(q, q_dot, [0.0], consistent="project", mass=3.0)
     there, rates = motion.q[0], motion.q_dot[0]
 
     def distance2(change: Array) -> Array:
-        """Twice the kinetic energy of (x, z, theta) over the mass; psi and r have none."""
+        """Twice the kinetic energy of a change of (x, z, theta) / mass; psi and r have no mass."""
         found: Array = change[..., :3] ** 2 @ [1, 1, 1.25]
         return found
 
     angles = 0.4 + np.linspace(-np.pi, np.pi, 20_001)
     places, _ = rl.kinematics(angles, 0.0, **SHAPE)
-    places[:, 0] = 0.3  # x is free: it stays
+    places[:, 0] = 0.3  # x is free: it is not changed
     costs = distance2(places - q)
     assert distance2(there - q) <= costs.min() and there[0] == 0.3
     assert there[2] == pytest.approx(angles[costs.argmin()], abs=angles[1] - angles[0])
@@ -90,7 +90,7 @@ def test_corrected_projects_to_the_nearest_state() -> None:
 def test_how_far_off_psi_and_r_are_moves_no_body_that_is_projected(
     stabilization: str, which: int, off: float
 ) -> None:
-    """They have no mass; as a circle's equations of motion do not depend on them, it rolls on."""
+    """psi and r have no mass and no place in a circle's equations of motion: it rolls on."""
     q, q_dot = rl.kinematics(0.3, 0.2, a=1.5, b=1.5)
     given = np.where(np.arange(5) == which, q + off, q)
     motion = as_given(given, q_dot, [0.01, 0.02], a=1.5, b=1.5, stabilization=stabilization)
@@ -111,7 +111,7 @@ def test_corrected_runs_the_reports_own_start_as_given_and_says_so() -> None:
     assert said.keys() == {report.InconsistentStartWarning, rl.ValidityWarning}
     assert {warning.filename for warning in caught} == {__file__}
     assert np.array_equal(motion.q[0], OWN_Q) and np.array_equal(motion.q_dot[0], OWN_RATES)
-    # index 1 keeps the rates of f1 ... f4: 1e-8 a step, some 100 of them, in rates of some 10
+    # index 1 keeps the rates of f1 ... f4: 1e-8 a step, some 100 steps, in rates of some 10
     held = motion.constraint_residuals()
     law = np.outer(motion.t, [1.0, 0.0, -2.5])
     assert np.allclose(held.position, law, rtol=0, atol=1e-5)
@@ -119,9 +119,9 @@ def test_corrected_runs_the_reports_own_start_as_given_and_says_so() -> None:
     assert np.max(np.abs(held.gap)) > 1
 
 
-LAWS = {  # of the gap after (gap, rate of it) = (0, 1) or (1, 0)
+LAWS = {  # gap over time from (gap, its rate) = (0, 1) or (0.1, 0)
     "none": lambda t, gap, rate: gap + rate * t,
-    # s^2 + 20 s + 100 = 0: both roots -10
+    # s^2 + 20 s + 100 = 0 has the double root -10
     "baumgarte": lambda t, gap, rate: (gap + (rate + 10 * gap) * t) * np.exp(-10 * t),
     "projection": lambda t, gap, rate: 0 * t,
     "projection+energy": lambda t, gap, rate: 0 * t,
@@ -134,21 +134,21 @@ LAWS = {  # of the gap after (gap, rate of it) = (0, 1) or (1, 0)
 def test_what_becomes_of_an_inconsistent_start(
     stabilization: str, law: Any, gap: float, rate: float
 ) -> None:
-    """Lifted off the ground, or thrown: without stabilization the gap grows for ever."""
+    """A body lifted or thrown off the ground: without stabilization the gap persists or grows."""
     shift = np.eye(5)[1]
     options = {"step": 0.01} if stabilization == "ggl" else {}
     times = np.linspace(0.02, 1, 50)
     motion = as_given(
         Q + gap * shift, Q_DOT + rate * shift, times, stabilization=stabilization, **options
     )
-    # 1e-8 a step as above; less for what is projected to the last digit
+    # 1e-8 a step as above; projected coordinates keep their last digit
     bound = 1e-5 if stabilization in ("none", "baumgarte") else 1e-14
     assert np.allclose(motion.constraint_residuals().gap, law(times, gap, rate), atol=bound, rtol=0)
 
 
 @pytest.mark.parametrize(("method", "stabilization"), WAYS)
 def test_corrected_follows_the_exact_motion(method: Any, stabilization: Any) -> None:
-    """The same bits as the model "multipliers" from the scene, and what the equations mean."""
+    """Bits agree with the model "multipliers" from the scene; the motion with exact rolling."""
     times = np.linspace(0, 3, 31)
     step = FIXED.get(method)
     scene = rl.Scene(2.0, 1.0, mass=10.0, theta=0.2, omega=2.0, x=float(Q[0]))
@@ -164,7 +164,7 @@ def test_corrected_follows_the_exact_motion(method: Any, stabilization: Any) -> 
     for name in ("q", "q_dot", "multipliers"):
         assert np.array_equal(getattr(motion, name), getattr(same, name))
     exact = rl.simulate(scene, times, model="rolling")
-    # pairs: 1e-11 a step, some 500 of them, in states up to 10. Fixed steps: for 3 s the next term
+    # pairs: 1e-11 a step, some 500 steps, in states up to 10. Fixed steps: over 3 s the next term
     # of the Taylor series of a motion that turns by up to 5 rad/s, with its third harmonic
     order = 4 if method == "rk4" else 5
     bound = 5e-8

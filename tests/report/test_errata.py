@@ -19,11 +19,11 @@ from oracles.report import BODY, SHAPE, Array
 from rolling_ellipse import report
 
 UNEVEN: dict[str, Any] = {"a": 2.0, "b": 0.7, "mass": 3.0, "gravity": 9.81}
-ANGLE = 0.7  # where the errata are evaluated
+ANGLE = 0.7  # angle at which the errata are evaluated [rad]
 
 
 class Exact:
-    """The errata's exact motion (theta = 0.2, omega = 3.2 rad/s) where it passes an angle."""
+    """The errata's exact motion (theta = 0.2, omega = 3.2 rad/s) as it passes an angle."""
 
     def __init__(self, theta: float, a: float = 2.0, b: float = 1.0) -> None:
         def inertia(at: Support) -> float:
@@ -35,7 +35,7 @@ class Exact:
         self.rho = self.h + curvature
         self.omega = math.sqrt(2 * (energy - 9.81 * self.h) / inertia(here))
         self.alpha = -self.slope * (9.81 + self.rho * self.omega**2) / inertia(here)
-        self.normal = 9.81 + self.slope * self.alpha + curvature * self.omega**2  # over m
+        self.normal = 9.81 + self.slope * self.alpha + curvature * self.omega**2  # normal force / m
         # rates of psi = theta + atan2(h', h) and r = hypot(h, h')
         r2 = self.h**2 + self.slope**2
         self.psi_dot = self.omega * (1 + (curvature * self.h - self.slope**2) / r2)
@@ -54,46 +54,46 @@ def numbers(where: str) -> report.Comparison:
 
 
 def close(value: float) -> Any:
-    """Within 100 ulp: some ten operations in either form, none of which cancels tenfold."""
+    """A value within 100 ulp: some ten operations in either form, none of which cancels tenfold."""
     return pytest.approx(value, rel=100 * EPS, abs=0)
 
 
 def zero(scale: float) -> Any:
-    """Rounding of terms of a size, as `close`."""
+    """A value of zero within the rounding of terms of size `scale`, as in `close`."""
     return pytest.approx(0, abs=100 * EPS * scale)
 
 
 # --------------------------------------------------------------------------------------- the errata
 
 
-# Of each row what it prints, what is right, and the size of the terms of which that is the rest.
+# Each row of the errata: printed value, right value, and size of the terms that cancel to it.
 ROWS: dict[str, Callable[[Exact], tuple[float, float, float]]] = {
-    # the velocity of the geometric contact: x_dot + d/dt h' = (h + h'') omega = rho omega
+    # velocity of the geometric contact: x_dot + d/dt h' = (h + h'') omega = rho omega
     "eqs 9, 10, f1": lambda at: (at.rho * at.omega, 0, at.h * at.omega),
-    # r sin (psi_dot - theta_dot) goes out of the right row, twice as much stays in the printed one
+    # r sin (psi_dot - theta_dot) cancels in the right row; the printed one keeps twice of it
     "eq 32, df2, row 2": lambda at: (
         -2 * at.slope * (at.psi_dot - at.omega), 0, at.slope * at.psi_dot,
     ),
-    # the exponent is lost
+    # an exponent is missing
     "eq 32, df3": lambda at: (
         2 * at.polar * at.r_dot - 6 * math.sin(at.psi) ** 2 * at.psi_dot,
         0,
         2 * at.polar**1.5 * at.r_dot,
     ),
-    # the sign
+    # a sign is wrong
     "eq 35, code a44": lambda at: (
         8 * (math.tan(ANGLE) ** 2 + 1) * at.omega, 0, 4 * (math.tan(ANGLE) ** 2 + 1) * at.omega,
     ),
-    # the sign of the moment of N about the contact: lambda3 a b c^2 sin 2psi = N h'
+    # sign of the moment of N about the contact: lambda3 a b c^2 sin 2psi = N h'
     "eq 37": lambda at: (10 * at.normal * at.slope, -10 * at.normal * at.slope, 0),
-    # no derivative of eq 10
+    # the printed row is no derivative of eq 10
     "eq 38, f1 and f2": lambda at: (
         at.slope * at.omega - at.r_dot * math.sin(at.psi - ANGLE) - at.psi_dot * at.slope
         + at.omega * at.h,
         0,
         at.h * at.omega,
     ),
-    # gravity upside down
+    # gravity has the wrong sign
     "eq 39, λ2": lambda at: (10 * at.normal - 2 * 98.1, 10 * at.normal, 0),
 }  # fmt: skip
 
@@ -114,7 +114,7 @@ def test_rates_beyond_the_doubles_are_infinite() -> None:
 
 
 def test_f1_frozen_means_no_advance() -> None:
-    """With f1 = 0 the body spins over the spot: x + h' stays while theta makes its way."""
+    """With f1 = 0 the body spins on the spot: x + h' stays constant while theta grows."""
     q, _ = rl.kinematics(0.2, 2.0, **SHAPE)
     rates = report.consistent_rates(q, 2.0, printed=("f1",), **SHAPE)
     motion = report.simulate(q, rates, 0.5, equations="printed", printed=("f1",), **SHAPE)
@@ -126,7 +126,7 @@ def test_f1_frozen_means_no_advance() -> None:
 def test_the_cases_are_wrong_in_the_third_quadrant() -> None:
     found, at = numbers("section 2.2, cases 1 and 2"), Exact(4.0)
     assert found.printed == close(-at.slope) and found.right == close(at.slope)
-    # and right where they were looked at; on the arctan's branches f2 has a sign of its own
+    # f2 has a sign of its own on the arctan's branches
     for theta, sign in ((0.7, 1), (2.0, 1), (4.0, -1), (5.5, 1)):
         lead = float(report.case_lead(theta, **SHAPE))
         assert lead == pytest.approx(sign * Exact(theta).slope, rel=1e-14)
@@ -135,7 +135,7 @@ def test_the_cases_are_wrong_in_the_third_quadrant() -> None:
 
 
 def test_eq_38_has_another_f1_than_eq_10() -> None:
-    """Which is rho omega; while f3 and f4 are right."""
+    """The printed f1 is rho omega too large; f3 and f4 are right."""
     at = Exact(ANGLE)
     q, q_dot = rl.kinematics(ANGLE, at.omega, **SHAPE)
     printed = report.eq_38(q, q_dot, **SHAPE)
@@ -148,7 +148,7 @@ def test_eq_38_has_another_f1_than_eq_10() -> None:
 def test_lambda3_divides_by_zero() -> None:
     found = numbers("eq 39, λ3")
     at = Exact(math.pi / 2 - 1e-3)
-    # sin 2psi has lost 3 digits there; the right one none
+    # sin 2psi has lost 3 digits there; the right formula loses none
     cosine = math.cos(at.psi - (math.pi / 2 - 1e-3))
     assert found.right == close(10 * at.normal * cosine / (2 * at.polar**1.5))
     assert found.printed > 1e6 * found.right
@@ -156,7 +156,7 @@ def test_lambda3_divides_by_zero() -> None:
     for body, theta in ((BODY, 0.0), (circle, 0.3)):
         q, q_dot = rl.kinematics(theta, flat.omega, a=body["a"], b=1.0)
         q_ddot = np.zeros(5)
-        with np.errstate(invalid="raise"):  # the division is its own business
+        with np.errstate(invalid="raise"):  # the caller's settings must not matter to the division
             assert math.isinf(report.eq_39(q, q_ddot, **body)[2])
             assert math.isinf(report.eq_41(q, q_ddot, **body))
         assert math.isfinite(report.multipliers(q, q_ddot, **body)[2])
@@ -166,7 +166,7 @@ def test_lambda3_divides_by_zero() -> None:
 def test_lambda4_is_off_by_b_squared() -> None:
     found = numbers("eq 39, λ4")
     assert found.printed == close(found.right / 0.8**2)
-    # what follows from eq 35 with df4's sign and lambda1, lambda2 of eq 39
+    # consequence of eq 35 with df4's sign, and of lambda1 and lambda2 of eq 39
     q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
     q_ddot = np.array([0.3, -0.8, 1.1, 0.0, 0.0])
     one, two, _, _ = report.eq_39(q, q_ddot, **UNEVEN)
@@ -176,7 +176,7 @@ def test_lambda4_is_off_by_b_squared() -> None:
 
 
 def test_f_lost_terms() -> None:
-    """What eq 40 has too much or too little, against all the terms in eq 42."""
+    """The difference of eq 40 from all the terms of eq 42 is its lost terms."""
     found = numbers("eqs 40, 42")
     assert abs(found.gap) > abs(found.right)
     q, _ = rl.kinematics(0.6, 1.0, a=2.0, b=0.7)
@@ -196,7 +196,7 @@ def test_f_lost_terms() -> None:
 
 
 def test_printed_equations_of_motion_are_off_by_the_misprints() -> None:
-    """x, z and r agree; theta and psi are off by df2, f1 and the signs of lambda3 and lambda4."""
+    """x, z and r agree; theta and psi differ by df2, f1 and the signs of lambda3 and lambda4."""
     q, _ = rl.kinematics(0.6, 1.3, a=2.0, b=0.7)
     q_ddot, forces = np.array([0.3, -0.8, 1.1, 0.2, 0.1]), np.array([1.0, -2.0, 0.5, 0.7])
     printed = report.eqs_33_to_37(q, q_ddot, forces, **UNEVEN)
@@ -206,12 +206,12 @@ def test_printed_equations_of_motion_are_off_by_the_misprints() -> None:
     sine, cosine = math.sin(q[3] - q[2]), math.cos(q[3] - q[2])
     lever = q[4] * sine
     sec2 = 1 + math.tan(0.6) ** 2
-    # theta: -lambda2 r sin for +, and -lambda4 a^2 sec^2 for +
+    # row theta prints -lambda2 r sin and -lambda4 a^2 sec^2 with the wrong sign
     assert gap[2] == pytest.approx(-2 * lever * -2.0 - 2 * 0.7 * 4 * sec2, rel=1e-13)
-    # psi: lambda1 r cos for 0, -lambda2 r sin for +, +lambda3 ... for -
+    # row psi prints lambda1 r cos for 0, and -lambda2 r sin and +lambda3 ... with the wrong sign
     squeeze = 2 * 0.7 * (4 - 0.49) * math.sin(2 * q[3])
     assert gap[3] == pytest.approx(q[4] * cosine - 2 * lever * -2.0 + 2 * 0.5 * squeeze, rel=1e-13)
-    # r: lambda1 sin for 0
+    # row r prints lambda1 sin for 0
     assert gap[4] == pytest.approx(sine, rel=1e-13)
 
 
@@ -224,7 +224,7 @@ def test_appendix_b_has_another_radius() -> None:
     found, at = numbers("appendix B"), Exact(ANGLE)
     assert found.right == close(math.hypot(at.h, at.slope))
     assert found.gap < -0.5
-    assert float(report.appendix_b_radius(0.0, **SHAPE)) == close(0.5)  # b/a, not b
+    assert float(report.appendix_b_radius(0.0, **SHAPE)) == close(0.5)  # b/a instead of b
     q, _ = rl.kinematics(ANGLE, 1.0, **SHAPE)
     printed, right = report.appendix_b_r_x(q, **SHAPE), report.contact_x(q, **SHAPE)
     assert right - q[0] == close(at.slope)
@@ -255,7 +255,7 @@ def test_back_substitution_sees_nothing() -> None:
 
 
 def test_a_broken_solution_is_seen_by_back_substitution() -> None:
-    """The test itself works: it reports what the solution is changed by."""
+    """Back substitution notices a solution that was changed."""
     q, q_dot = rl.kinematics(0.2, 2.0, **SHAPE)
     motion = report.simulate(q, q_dot, [0.1], equations="printed", printed=(), **SHAPE)
     assert isinstance(motion, report.PrintedMotion)
@@ -278,7 +278,7 @@ def test_figure_13_rolls_over_too_early() -> None:
     assert found.printed == 1 and found.right == close(math.sqrt(2 * 9.81 / 2.25))
     slow, fast = (rl.simulate(rl.Scene(2.0, 1.0, omega=w), 5.0) for w in (1.0, 3.0))
     assert np.max(np.abs(slow.theta)) < 0.3 and fast.theta[-1] > math.pi
-    # fastest when flat (theta = 0, pi), slowest when tall
+    # a body turns fastest when flat (theta = 0, pi), slowest when tall
     flat, tall = np.argmax(fast.omega), np.argmin(fast.omega)
     assert abs(math.sin(fast.theta[flat])) < 0.02 and abs(math.cos(fast.theta[tall])) < 0.02
 
@@ -315,7 +315,7 @@ def test_right_equations_hold_on_an_exact_motion() -> None:
     forces = report.multipliers(motion.q, q_ddot, **UNEVEN)
     left = report.equations_of_motion(motion.q, q_ddot, forces, **UNEVEN)
     matrix = report.constraint_matrix(motion.q, printed=("tan",), **shape)
-    # 100 ulp of the largest terms: of row 4 with the tangent, lambda4 times a^4 tan^2/b^2
+    # 100 ulp of the largest terms: lambda4 a^4 tan^2/b^2 in row 4, with the tangent
     scale = 100 + np.max(np.abs(matrix[:, 3]), axis=1) * np.abs(forces[:, 3])
     assert np.all(np.abs(left) <= 100 * EPS * scale[:, None] + 1e-12)
     assert np.max(np.abs(report.eqs_33_to_37(motion.q, q_ddot, forces, **UNEVEN))) > 1
@@ -325,7 +325,7 @@ def test_right_equations_hold_on_an_exact_motion() -> None:
 
 
 def test_multipliers_are_those_of_the_package() -> None:
-    """F, N, and lambda3 of rows that are 2 (...)^(3/2) times the gradient of f3; lambda4 = 0."""
+    """F, N, lambda3 of rows equal to 2 (...)^(3/2) times grad f3, and lambda4 = 0 are found."""
     motion = trajectory()
     forces = report.multipliers(motion.q, accelerations(motion), **UNEVEN)
     polar = (0.7 * np.sin(motion.psi)) ** 2 + (2.0 * np.cos(motion.psi)) ** 2
@@ -337,7 +337,7 @@ def test_multipliers_are_those_of_the_package() -> None:
 
 
 def test_right_rows_are_the_gradients_of_f1_to_f4() -> None:
-    """At any state, also off the constraints: row times rates = scale times `constraints`."""
+    """Rows times rates equal scale times `constraints`, at any state, also off the constraints."""
     generator = np.random.default_rng(5)
     q, q_dot = generator.uniform(-2, 2, (2, 200, 5))
     velocity = rl.constraints(q, q_dot, a=2.0, b=0.7).velocity
@@ -354,7 +354,7 @@ def test_printed_f1_to_f4_on_an_exact_motion() -> None:
     assert np.max(np.abs(report.f3(motion.q, **shape))) < 1e-14
     turns = report.f4(motion.q, **shape) / math.pi
     assert np.allclose(turns, np.round(turns), atol=1e-14) and np.ptp(np.round(turns)) >= 2
-    # case 1 is case 2 with the contact on the other side
+    # case 1 equals case 2 with the contact on the other side
     q, q_dot = motion.q, motion.q_dot
     one, two = (report.f1(q, q_dot, case=case) for case in ("1", "2"))
     assert np.allclose((one + two) / 2, q_dot[:, 0], rtol=1e-14)
@@ -397,7 +397,7 @@ def test_eq_42_has_all_the_terms_that_eq_40_lost() -> None:
     q_ddot = np.array([0.3, -0.8, 1.1, 0.2, 0.1])
     complete = float(report.complete_f(q, q_ddot, **UNEVEN))
     assert f_of_eq_42(q, q_ddot, **UNEVEN) == pytest.approx(complete, rel=1e-12)
-    # eq 41 with it is eq 36 with the multipliers put in
+    # eq 41 with this bracket equals eq 36 with the multipliers inserted
     one, two, _, _ = report.eq_39(q, q_ddot, **UNEVEN)
     third = complete / (4 * (2.0 * 0.7) ** 3 * math.sin(2 * q[3]) * (4 - 0.49))
     eq_36 = report.eqs_33_to_37(q, q_ddot, [one, two, third, 0.0], **UNEVEN)[4]
@@ -417,7 +417,7 @@ def test_eq_42_has_all_the_terms_that_eq_40_lost() -> None:
     [(report.complete_f, 6, True), (report.eq_40, 6, False), (report.eq_42, 9, False)],
 )
 def test_dimensions(function: Any, power: int, agrees: bool) -> None:
-    """In millimetres and grams the same state must give 1000^power times 1000 the number.
+    """The same state in millimetres and grams gives 1000^power times 1000 the number.
 
     F is kg m^6/s^2, F1 = 2 (...)^(3/2) F is m^3 more.
     """

@@ -1,4 +1,4 @@
-"""The equations as printed: the motion they give, the starts they take, what they refuse."""
+"""The equations as printed: their motion, their consistent starts, their refusals."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from rolling_ellipse import report
 
 # ----------------------------------------------------------------------------------- the simulation
 
-GAPS = [  # the rows as printed, and the gap 0.25 s after theta = 0.2, theta_dot = 2 rad/s [m]
+GAPS = [  # rows as printed, and the gap 0.25 s after theta = 0.2, theta_dot = 2 rad/s [m]
     (("f1", "df2"), -0.305),
     (("df2",), 0.052),
     (("f1", "df2", "a44"), -0.093),
@@ -31,17 +31,17 @@ def run(q: ArrayLike, q_dot: ArrayLike, t: Any, **options: Any) -> report.Printe
 @pytest.mark.parametrize(("printed", "gap"), GAPS)
 @pytest.mark.parametrize("mass", [1.0, 10.0])
 def test_wrong_equations_lift_it_off(printed: tuple[str, ...], gap: float, mass: float) -> None:
-    """(a) wrong equations, a start that they allow, tight tolerance: not the method's fault."""
+    """Cause (a): wrong equations lift the body off, from their own start, at any tolerance."""
     q, q_dot = start(0.2, 2.0, printed)
     loose, tight = (
         run(q, q_dot, [0.25], printed=printed, mass=mass, rtol=rtol, atol=rtol)
         for rtol in (1e-8, 1e-11)
     )
     told(printed, tight.gap)
-    assert tight.gap[0] == pytest.approx(gap, abs=5e-4)  # three decimals are given
+    assert tight.gap[0] == pytest.approx(gap, abs=5e-4)  # the gap is given with three decimals
     assert abs(loose.gap[0] - tight.gap[0]) < 1e-6
     assert tight.start.violations == ()
-    # constraint forces do no work on rates that their own rows allow, so the energy sees nothing
+    # constraint forces do no work on rates that their own rows allow: the energy is constant
     kinetic = mass * (q_dot[0] ** 2 + q_dot[1] ** 2 + 1.25 * q_dot[2] ** 2) / 2
     assert tight.energy[0] == pytest.approx(kinetic + mass * 9.81 * q[1], rel=1e-8)
     assert np.array_equal(tight.constraint_residuals().gap, tight.gap)
@@ -52,7 +52,7 @@ def test_right_rows_give_the_exact_motion() -> None:
     times = np.linspace(0, 3, 31)
     motion = run(q, q_dot, times, printed=(), rtol=1e-11, atol=1e-11)
     exact = rl.simulate(rl.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), times)
-    # 1e-11 a step, some 500 of them, growing with the square of time for index 1
+    # 1e-11 a step, some 500 steps, growing with the square of time for index 1
     assert np.max(np.abs(motion.q - exact.q)) < 1e-8
     assert np.max(np.abs(motion.q_dot - exact.q_dot)) < 1e-8
     assert np.max(np.abs(motion.multipliers[:, :2] - exact.multipliers[:, :2])) < 1e-6
@@ -60,7 +60,7 @@ def test_right_rows_give_the_exact_motion() -> None:
 
 
 def test_an_inconsistent_start_lifts_it_off() -> None:
-    """(b) right equations from z_dot one too large: f2 = t, since its second derivative is 0."""
+    """Cause (b): from z_dot one too large, right equations give f2 = t with f2'' = 0."""
     q, q_dot = start(0.2, 2.0)
     q_dot[1] += 1.0
     times = np.linspace(0, 1, 11)
@@ -74,12 +74,12 @@ def test_an_inconsistent_start_lifts_it_off() -> None:
 
 
 def test_large_steps_lift_it_off() -> None:
-    """(c) right equations, consistent start, RK4: 0.84 m and +40 % after 60 s, by the step."""
+    """Cause (c): right equations with large RK4 steps give 0.84 m and +40 % after 60 s."""
     q, q_dot = start(0.0, 3.2)
     coarse = run(q, q_dot, [0, 60], printed=(), method="rk4", step=0.02)
     assert coarse.gap[1] == pytest.approx(0.84, abs=5e-3)
     assert coarse.energy[1] / coarse.energy[0] - 1 == pytest.approx(0.40, abs=5e-3)
-    # it goes away with the step, as the wrong equations and the wrong start do not: order 4
+    # smaller steps reduce the error, unlike causes (a) and (b): order 4
     errors = [
         abs(run(q, q_dot, [0, 6], printed=(), method="rk4", step=step).gap[1])
         for step in (0.02, 0.01, 0.005)
@@ -89,13 +89,13 @@ def test_large_steps_lift_it_off() -> None:
 
 
 def test_samples_do_not_steer() -> None:
-    """The steps are the method's own; between them the pair's dense output of order 4."""
+    """Samples do not change the steps; between steps the pair has dense output of order 4."""
     q, q_dot = start(0.2, 2.0)
     few = run(q, q_dot, [0.5, 1.0], printed=())
     many = run(q, q_dot, np.linspace(0, 1, 101), printed=())
     assert np.array_equal(few.q, many.q[[50, 100]])
     exact = rl.simulate(rl.Scene(2.0, 1.0, theta=0.2, omega=2.0, x=q[0]), many.t)
-    # rtol is 1e-8; an order less between the steps
+    # rtol is 1e-8; dense output has one order less than the steps
     assert np.max(np.abs(many.q - exact.q)) < 1e-6
     assert run(q, q_dot, 0.1, printed=()).t.size == 1001
 
@@ -129,7 +129,7 @@ def test_exact_starts_are_consistent_and_others_are_not(
         motion = report.simulate(q, q_dot, 0.0, **options)
         assert isinstance(motion, report.PrintedMotion)
         assert motion.start.violations == ()
-        for i in range(1, 5):  # a part in 1e9 (of a radian and a metre at least) is seen
+        for i in range(1, 5):  # an error of 1e-9 (rad or m at least) is noticed
             moved = q.copy()
             moved[i] += 1e-9 * max(1.0, abs(q[i]))
             with pytest.raises(ValueError, match="must meet the constraints"):
@@ -141,7 +141,7 @@ def test_exact_starts_are_consistent_and_others_are_not(
 
 
 def test_the_reports_own_start_is_refused_by_name() -> None:
-    """z_dot = 1 m/s while lying flat, no x_dot, psi_dot that does not fit."""
+    """The report starts flat with z_dot = 1 m/s, no x_dot and a psi_dot that does not fit."""
     q, q_dot = [0, 1, 0, 0, 1], [0, 1, 1, 1.5, 0]
     violated = r"f1 = -1 m/s; rate of f2 = 1 m/s; rate of f4 = -2.5 rad/s$"
     with pytest.raises(ValueError, match=violated):
@@ -162,7 +162,7 @@ def test_motion_says_what_it_is() -> None:
 
 
 def test_as_many_states_everywhere() -> None:
-    """Leading axes broadcast, or are refused with all shapes."""
+    """Leading axes of states broadcast, or a refusal names all shapes."""
     two, three, one = (np.stack([Q] * n) for n in (2, 3, 1))
     four = np.zeros((3, 4))
     said = r"^arguments must broadcast together, got shapes q \(2, 5\), "

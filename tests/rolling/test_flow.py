@@ -1,8 +1,8 @@
 """`flow` and `period` beyond the table of test_flow_reference.py: limits, shapes, arrays.
 
 The oracle is the energy integral in 40 digits of reference/make_rolling_reference.py, which shares
-nothing with the package. A unit is what one rounding of every input does to an answer, plus two
-units in its last place; LARGEST_ERROR of them is what test_flow_reference.py allows, too.
+nothing with the package. A unit is the effect of one rounding of every input on an answer, plus two
+ulp of the answer; test_flow_reference.py allows LARGEST_ERROR units, too.
 """
 
 import math
@@ -54,12 +54,12 @@ def rule(count: int) -> reference.Rule:
 
 
 def exact_period(motion: Motion, count: int = 28) -> Any:
-    """Four quarters of the energy integral."""
+    """Period of a motion: four quarters of the energy integral."""
     return 4 * reference.RollingEllipse(reference.Scene(*motion), rule(count)).quarter_time
 
 
 def period_unit(motion: Motion) -> float:
-    """One rounding of each input by central differences, and two ulp; few digits do."""
+    """Effect of one rounding of each input, by central differences in few digits, plus two ulp."""
     small, total = mp.mpf("1e-18"), mp.mpf(0)
     for i, value in enumerate(motion):
         change = small * (abs(mp.mpf(value)) if PARAMETERS[i] != "theta" else 1)
@@ -75,7 +75,7 @@ def period_unit(motion: Motion) -> float:
 
 @each_motion
 def test_the_oracle_has_thirty_digits(motion: Motion) -> None:
-    """Two rules of different order: the error of the coarser one is far above the other's."""
+    """Two rules of different order agree: the coarser one's error is far above the finer one's."""
     coarse, fine = exact_period(motion), exact_period(motion, 40)
     assert abs(coarse - fine) <= mp.mpf("1e-30") * fine
 
@@ -91,7 +91,7 @@ def test_period_against_the_energy_integral(motion: Motion) -> None:
 
 
 def test_the_unit_of_the_period_is_sharp() -> None:
-    """16 ulp of the speed are seen: the bound is not wide."""
+    """A change of the speed by 16 ulp is noticed: the bound is not wide."""
     motion = MOTIONS["rotation"]
     changed = (*motion[:5], motion[5] * (1 + 16 * EPS))
     off = float(abs(exact_period(changed) - exact_period(motion))) / period_unit(motion)
@@ -110,7 +110,7 @@ def test_period_of_rest_and_of_a_circle() -> None:
 @pytest.mark.parametrize("radius", [1.0, 0.37, 1e-3, 250.0])
 @pytest.mark.parametrize("theta", [0.0, 0.7, -3.0, 1e4])
 def test_a_circle_turns_uniformly(radius: float, theta: float) -> None:
-    """Two roundings at most, each half an ulp of its result: one ulp of the larger."""
+    """An angle has two roundings at most, each half an ulp of its result: one ulp of the larger."""
     for omega in (2.0, -0.3, 1e5):
         for t in (1e-9, 0.1, 7.7, -3.3, 1e6):
             angle, speed, x = flow(t, a=radius, b=radius, theta=theta, omega=omega)
@@ -125,15 +125,15 @@ def test_a_circle_turns_uniformly(radius: float, theta: float) -> None:
     ("theta", "omega"), [(0.3, 2.0), (0.3, -1e-3), (1.0, 1e-6), (0.2, 0.0), (1.5, 0.0)]
 )
 def test_a_hair_beside_the_circle_nothing_is_lost(theta: float, omega: float) -> None:
-    """a - b = 1e-8 is an exact difference of the given numbers: the roundings of a and b, which
-    would alone be worth 1e-8 in the slow motions, are not granted."""
+    """The unit contains no roundings of a and b, which alone would change the slow motions by 1e-8:
+    a - b = 1e-8 is an exact difference of the given numbers."""
     a, b = 1.0 + 1e-8, 1.0
     scene = reference.Scene(a, b, (a * a + b * b) / 4, 9.81, theta, omega)
     exactly = reference.motion(scene, rule(28))
     changes = reference.sensitivities(scene, rule(20))
     for t in (0.1, 3.0, 5e4):
         exact = exactly.state(mp.mpf(t))
-        granted = changes(mp.mpf(t))[2:]  # without those of a and b, the first two
+        granted = changes(mp.mpf(t))[2:]  # without the effects of a and b, the first two inputs
         unit = reference.units(granted, exact)
         found = flow(t, a=a, b=b, theta=theta, omega=omega)
         off = [float(abs(f - e)) / u for f, e, u in zip(found, exact, unit, strict=True)]
@@ -147,8 +147,8 @@ def test_a_hair_beside_the_circle_nothing_is_lost(theta: float, omega: float) ->
 @pytest.mark.parametrize("shape", [(2.0, 1.0), (0.7, 1.9), (1.0, 1e-3)])
 @pytest.mark.parametrize("quarter", [0, 1, 2, -1, -3, 5])
 def test_rest_stays_at_the_flat_and_on_the_tip(shape: tuple[float, float], quarter: int) -> None:
-    """Where the double next to the quarter turn is an equilibrium: |h'| within 8 ulp of h. Lying
-    on pi or 5 pi/2 it may miss that: it then rocks by the rounding of the angle."""
+    """Rest lasts for ever where the double next to the quarter turn is an equilibrium: |h'| within
+    8 ulp of h. At pi or 5 pi/2 it may be none: the body rocks by the rounding of the angle."""
     theta = quarter * math.pi / 2
     a, b = shape
     slope = geometry.support_slope(theta, a=a, b=b)
@@ -163,7 +163,7 @@ def test_rest_stays_at_the_flat_and_on_the_tip(shape: tuple[float, float], quart
 
 
 def test_beside_the_tip_it_falls() -> None:
-    """The other side of rest: a millionth off the tip is no equilibrium."""
+    """A body released a millionth beside its tip falls: the place is no equilibrium."""
     side = 1e-6
     left = flow(12.0, a=2.0, b=1.0, theta=math.pi / 2 - side, omega=0.0)
     right = flow(12.0, a=2.0, b=1.0, theta=math.pi / 2 + side, omega=0.0)
@@ -172,9 +172,9 @@ def test_beside_the_tip_it_falls() -> None:
 
 @pytest.mark.parametrize("rounder", [1e-3, 1e-6, 1e-9])
 def test_a_nearly_round_body_beside_its_tip_falls_as_well(rounder: float) -> None:
-    """Its h' is below a rounding of h, but the angle tells it from the tip: omega is
-    beside lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), to the square of how far
-    it is off, and the roundings of the angle and of the exponent."""
+    """h' is below a rounding of h, but the angle resolves the distance to the tip: omega is
+    distance * lambda sinh(lambda t), lambda^2 = g (a^2 - b^2)/(a (k^2 + a^2)), up to the square of
+    the distance and the roundings of the angle and of the exponent."""
     a, b, beside = 1.0 + rounder, 1.0, 2.0**-30
     with mp.workdps(40):
         off = mp.mpf(math.pi / 2 + beside) - mp.pi / 2
@@ -187,8 +187,8 @@ def test_a_nearly_round_body_beside_its_tip_falls_as_well(rounder: float) -> Non
 
 
 def separatrix_speeds(a: float, b: float, theta: float) -> list[float]:
-    """Doubles whose energy is that of the tip for the package: around the roll-over speed, those
-    that neither return nor pass in a million seconds (the nearest others take 50 s)."""
+    """Doubles near the roll-over speed whose energy is the tip's for the package: they neither
+    return nor pass in a million seconds (the nearest others take 50 s)."""
     speed = thresholds(a, b).roll_over_speed
     around = [speed + k * math.ulp(speed) for k in range(-6, 7)]
     resting = math.pi / 2 if a > b else math.pi
@@ -205,12 +205,12 @@ def test_on_the_separatrix_it_creeps_to_the_tip_and_never_passes(direction: int)
     for speed in speeds:
         theta, omega, x = flow(times, a=2.0, b=1.0, theta=0.0, omega=direction * speed)
         theta, omega, x = direction * theta, direction * omega, direction * x
-        # the double math.pi/2 lies below pi/2: to reach it is not to pass
+        # the double math.pi/2 lies below pi/2: reaching it is not passing
         assert np.all(np.diff(theta) >= 0) and theta[-1] <= math.pi / 2
         assert np.all(np.diff(omega) <= 0) and omega[-1] >= 0
-        # x is a sum of a path and an angle that each may waver by an ulp
+        # x is the sum of a path and of an angle, each with an error of up to an ulp
         assert np.all(np.diff(x) >= -2 * math.ulp(path)) and x[-1] <= path + 2 * math.ulp(path)
-        # close to the tip the distance decays at the tip rate; the rest is of second order in it
+        # near the tip the distance decays at the tip rate, up to terms of second order
         near = np.flatnonzero((math.pi / 2 - theta < 1e-3) & (math.pi / 2 - theta > 1e-5))
         rates = np.diff(np.log(math.pi / 2 - theta[near])) / np.diff(times[near])
         rate = thresholds(2.0, 1.0).tip_rate
@@ -218,7 +218,7 @@ def test_on_the_separatrix_it_creeps_to_the_tip_and_never_passes(direction: int)
 
 
 def test_on_the_separatrix_the_period_is_infinite() -> None:
-    """As documented for what never comes back."""
+    """A motion that never returns has an infinite period."""
     for speed in separatrix_speeds(2.0, 1.0, 0.0):
         assert period(Scene(2.0, 1.0, omega=speed)) == math.inf
 
@@ -238,7 +238,7 @@ def test_scalars_in_floats_out() -> None:
 
 
 def test_broadcasting() -> None:
-    """Every element of the broadcast shape is the scalar call with its arguments."""
+    """Each element of a broadcast call equals the scalar call with its arguments."""
     t, omega = np.array([0.0, 0.3, 2.0, 9.0]), np.array([[1.0], [3.2], [-4.0]])
     b, gravity = np.array([[[1.0]], [[2.0]], [[0.01]]]), [9.81, 1.62, 3.7, 9.81]
     found = flow(t, a=2.0, b=b, theta=0.3, omega=omega, gravity=gravity)
@@ -283,11 +283,11 @@ def test_inputs_are_not_modified() -> None:
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_ctrl_c_stops_a_long_call(workers: int) -> None:
-    """A call of many seconds, interrupted after 0.3 s, must not run to its end: the answer to
-    Ctrl-C is KeyboardInterrupt, not a wait. The full time is scaled from a part of the same call,
-    so the machine's speed and load cancel; a quarter of it is hundreds of chunks."""
+    """A call of many seconds, interrupted after 0.3 s, ends early with a KeyboardInterrupt. The
+    full time is scaled from a part of the same call, so that speed and load of the machine cancel;
+    a quarter of it is hundreds of chunks."""
     n, part = 3_000_000, 30_000
-    angles = np.linspace(0.1, 0.4, n)  # each another motion, the dearest kind
+    angles = np.linspace(0.1, 0.4, n)  # a motion each: most expensive
     start: dict[str, Any] = {"a": 2.0, "b": 1.0, "omega": 3.2, "workers": workers}
 
     def seconds(count: int) -> float:

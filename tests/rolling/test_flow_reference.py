@@ -1,8 +1,8 @@
 """`flow` against exact rolling in 40 digits (reference/make_rolling_reference.py).
 
-The unit of every row is what one rounding of each input does to the answer, plus two units in the
-last place of the answer itself. A row asks for relative accuracy: a state reached in a microsecond
-from rest has a tiny omega and x, and their units are tiny too.
+The unit of every row is the effect of one rounding of each input on the answer, plus two ulp of
+the answer itself. A row demands relative accuracy: a state reached in a microsecond from rest has a
+tiny omega and x, and their units are tiny too.
 """
 
 import math
@@ -17,7 +17,7 @@ from oracles.margins import told
 from rolling_ellipse import flow
 
 INPUTS = {"a": "a", "b": "b", "gyration2": "gyration2", "gravity": "gravity"}
-INPUTS |= {"theta": "theta0", "omega": "omega0", "t": "t"}  # argument of flow: column
+INPUTS |= {"theta": "theta0", "omega": "omega0", "t": "t"}  # argument of flow: column of the table
 ANSWERS = ("theta", "omega", "x")
 Answer = tuple[float, float, float]
 
@@ -46,13 +46,13 @@ def rows() -> list[Row]:
 
 
 def one_by_one(rows: list[Row]) -> Iterator[Answer]:
-    """Scalar calls."""
+    """Answers of scalar calls."""
     for row in rows:
         yield flow(**row.arguments)
 
 
 def all_at_once(rows: list[Row]) -> Iterator[Answer]:
-    """One call with an array for every argument."""
+    """Answers of one call with an array for every argument."""
     columns: dict[str, Any] = {
         name: np.array([row.arguments[name] for row in rows]) for name in INPUTS
     }
@@ -60,7 +60,7 @@ def all_at_once(rows: list[Row]) -> Iterator[Answer]:
 
 
 def among_many(rows: list[Row]) -> Iterator[Answer]:
-    """One call for each scene, with many times of its motion on both sides of its own."""
+    """Answers of one call per scene, with many times on both sides of its own time."""
     for row in rows:
         t = row.arguments["t"]
         times = np.append(np.linspace(-0.1 * t, 1.07 * t, 150), t)
@@ -77,7 +77,7 @@ def error(value: float, exact: str, unit: float) -> float:
 def errors(
     rows: list[Row], call: Callable[[list[Row]], Iterator[Answer]], rounding: float = 0.0
 ) -> np.ndarray:
-    """Errors in units (n, 3) of theta, omega, x; that of x is larger by a rounding of max(a, b)."""
+    """Errors in units (n, 3) of theta, omega, x; the unit of x includes a rounding of max(a, b)."""
     found = []
     for row, values in zip(rows, call(rows), strict=True):
         of_x = row.units[2] + rounding * max(row.arguments["a"], row.arguments["b"])
@@ -92,25 +92,25 @@ def errors(
 def test_flow_is_within_a_few_units(
     rows: list[Row], call: Callable[[list[Row]], Iterator[Answer]], rounding: float
 ) -> None:
-    """Many times of one motion give x with the rounding of a length like the body's."""
+    """flow errs by a few units; x of many times has the rounding of a length like the body's."""
     found = errors(rows, call, rounding)
     worst = max(range(len(rows)), key=lambda i: np.nan_to_num(found[i], nan=math.inf).max())
     told(f"median {np.median(found, axis=0)}, worst {found[worst]} units, of {rows[worst]}")
-    assert np.all(found <= LARGEST_ERROR), rows[worst]  # catches nan
+    assert np.all(found <= LARGEST_ERROR), rows[worst]  # the comparison is also false for nan
 
 
 @pytest.mark.parametrize("name", INPUTS)
 def test_a_few_ulp_of_an_input_are_seen(rows: list[Row], name: str) -> None:
-    """The judge is sharp: it notices a change of any single input by 16 ulp.
+    """A change of any single input by 16 ulp is noticed: the judge is sharp.
 
-    k^2 moves the motion least, its share of a unit is a fifth at best: 48 ulp there. Far start
-    angles are left out: their ulp is no small change.
+    k^2 changes the motion least, its share of a unit is a fifth at best: 48 ulp are needed. Far
+    start angles are left out: their ulp is no small change.
     """
     ulps = 48 if name == "gyration2" else 16
 
     def changed(row: Row) -> Row:
         value = row.arguments[name]
-        if value == 0:  # its ulp is no speed that the package takes
+        if value == 0:  # an ulp of 0 is no speed that the package accepts
             return row
         return row._replace(arguments={**row.arguments, name: value + ulps * math.ulp(value)})
 
@@ -120,7 +120,7 @@ def test_a_few_ulp_of_an_input_are_seen(rows: list[Row], name: str) -> None:
 
 
 def test_table_covers_what_it_promises(rows: list[Row]) -> None:
-    """Both orders of the axes, both directions, far angles, short and very long spans."""
+    """The table has both orders of the axes, both directions, far angles, short and long spans."""
     arguments = [row.arguments for row in rows]
     assert len(rows) >= 240
     assert sum(one["a"] < one["b"] for one in arguments) >= len(rows) // 4
@@ -129,5 +129,5 @@ def test_table_covers_what_it_promises(rows: list[Row]) -> None:
     assert min(one["t"] for one in arguments) <= 1e-6
     turned = [abs(float(r.answers[0]) - r.arguments["theta"]) / math.pi for r in rows]
     assert sum(half_turns > 1e8 for half_turns in turned) >= 6
-    # beyond this a reference says nothing: the scene itself does not fix the answer
+    # beyond this unit the inputs of a scene do not fix its answer
     assert max(row.units[0] for row in rows) <= 1e-4

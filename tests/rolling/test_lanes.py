@@ -1,6 +1,6 @@
-"""`flow` of many scenes, side by side in the lanes of a vector: the bits of one scene at a time.
+"""`flow` of many scenes in the lanes of a vector has the bits of one scene at a time.
 
-What one scene is worth, test_flow_reference.py says in 40 digits.
+test_flow_reference.py judges the answers of one scene in 40 digits.
 """
 
 import math
@@ -18,14 +18,14 @@ each_level = pytest.mark.parametrize("level", LANES or [ONE_BY_ONE])
 
 
 def states(level: str, motions: Columns, workers: int = 1) -> np.ndarray:
-    """theta, omega, x (3, n) of `flow` at a level."""
+    """theta, omega, x (3, n) of `flow` at a vector level."""
     names = ("t", "a", "b", "theta", "omega", "gravity", "gyration2")
     columns = [np.ascontiguousarray(motions[name], dtype=float) for name in names]
     return np.array(_core.flow_array(max(map(len, columns)), columns, workers, level))
 
 
 def scenes(count: int, seed: int, *, ratio: float, half_turns: float) -> Columns:
-    """Random bodies of aspect ratios up to `ratio`, and times up to about so many half turns."""
+    """Random bodies of aspects up to `ratio`, and times up to about so many half turns."""
     rng = np.random.default_rng(seed)
     long_axis = 10 ** rng.uniform(-1, 1, count)
     short_axis = long_axis * 10 ** -rng.uniform(0, math.log10(ratio), count)
@@ -47,7 +47,7 @@ def scenes(count: int, seed: int, *, ratio: float, half_turns: float) -> Columns
 
 
 def same(found: np.ndarray, expected: np.ndarray) -> bool:
-    return found.tobytes() == expected.tobytes()  # -0.0 is not 0.0
+    return found.tobytes() == expected.tobytes()  # a comparison of bytes, since -0.0 is not 0.0
 
 
 @each_level
@@ -59,7 +59,7 @@ def same(found: np.ndarray, expected: np.ndarray) -> bool:
 def test_a_scene_among_many_has_the_bits_that_it_has_alone(
     level: str, ratio: float, half_turns: float
 ) -> None:
-    """With any number of workers."""
+    """The bits agree for any number of workers."""
     motions = scenes(2000, 1, ratio=ratio, half_turns=half_turns)
     alone = states(ONE_BY_ONE, motions)
     for workers in (1, 2):
@@ -77,7 +77,7 @@ def test_what_flow_gives_are_the_bits_of_single_calls() -> None:
 
 @each_level
 def test_neighbours_do_not_change_a_bit(level: str) -> None:
-    """In any order, and any part of the lanes filled."""
+    """The bits agree in any order of scenes, and with any part of the lanes filled."""
     motions = scenes(3000, 3, ratio=1e3, half_turns=1e3)
     found = states(level, motions)
     order = np.random.default_rng(3).permutation(3000)
@@ -115,11 +115,11 @@ EXTREMES: dict[str, Callable[[], Columns]] = {
         "gyration2": 10.0 ** np.arange(-58, 58, 4), "gravity": 10.0 ** np.arange(-29, 29, 2),
         "omega": 3.0, "t": 0.2,
     },
-    # the way from 45 degrees to the tip of a thin body is 2.4 times that to its flat position
+    # a thin body takes 2.4 times as long from 45 degrees to its tip as to its flat position
     "from beside 45 degrees past the flat": lambda: {
         "b": 0.02, "theta": -0.79, "omega": 3.0, "t": np.linspace(0.15, 0.35, 41),
     },
-    # omega changes by less than the rounding of the time since the flat position does to it
+    # the rounding of the time since the flat position changes omega more than the motion does
     "thin, beside the flat, soon after": lambda: {
         "a": 1.0, "b": 2.86e-3, "gyration2": 7.73e-6, "theta": -1.776e-4, "omega": 3.68,
         "t": np.geomspace(1e-9, 1e-6, 61),
@@ -162,7 +162,7 @@ WRONG = {
 @pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_number_is_told_by_name_and_place(level: str, workers: int, name: str) -> None:
-    """The first of them, also where later chunks, or later steps of this one, have more."""
+    """The first wrong number is named, even if later chunks or later steps contain more of them."""
     motions = scenes(3000, 5, ratio=10.0, half_turns=10.0)
     wrong, message = WRONG[name]
     motions[name][[700, 2900]] = wrong

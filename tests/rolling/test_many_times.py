@@ -1,7 +1,7 @@
-"""`flow` at many times of one motion: read off a table, whatever their order and number.
+"""`flow` at many times of one motion: answers of a table, for any order and number of times.
 
-Bits may depend on whether there are enough times for a table (40), and on nothing else: what
-test_flow_reference.py asks of 151 times in 40 digits then holds for any number of them.
+Bits may only depend on whether the times are enough for a table (40): the result of
+test_flow_reference.py for 151 times in 40 digits then holds for any number of them.
 """
 
 import math
@@ -36,7 +36,7 @@ each_motion = pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 
 
 def swing(motion: tuple[float, ...]) -> float:
-    """About the time of a half turn or swing: from the speed, or that of a rocking plate."""
+    """Approximate time of a half turn or swing: from the speed, or from a rocking plate's."""
     a, b, gyration2, gravity, _, omega = motion
     low, high = min(a, b), max(a, b)
     rocking = math.sqrt(gravity * (high**2 - low**2) / (low * (gyration2 + low**2)))
@@ -44,7 +44,7 @@ def swing(motion: tuple[float, ...]) -> float:
 
 
 def times_of(motion: tuple[float, ...]) -> np.ndarray:
-    """On both sides of the start, from an instant to what a double knows of a time."""
+    """Times on both sides of the start, from an instant to the last that doubles resolve."""
     spans = swing(motion) * np.array([1e-6, 0.1, 1.0, 30.0, 1e9, 1e14])
     return np.concatenate([span * np.linspace(-0.3, 1.0, 411) for span in spans])
 
@@ -55,7 +55,7 @@ def same(one: Any, other: Any) -> bool:
 
 @each_motion
 def test_bits_depend_on_the_time_alone(motion: tuple[float, ...]) -> None:
-    """Not on the order, the neighbours, the chunk or the worker."""
+    """The bits do not depend on the order, the neighbours, the chunk or the worker."""
     times, start = times_of(motion), arguments(motion)
     found = flow(times, **start)
     generator = np.random.default_rng(5)
@@ -71,7 +71,7 @@ def test_bits_depend_on_the_time_alone(motion: tuple[float, ...]) -> None:
 
 @each_motion
 def test_many_times_are_the_single_ones(motion: tuple[float, ...]) -> None:
-    """Both have their errors; x has the rounding of a length like the body's."""
+    """Both answers may err by the unit; x has the rounding of a length like the body's."""
     start = arguments(motion)
     times = times_of(motion)
     found = np.array(flow(times, **start))[:, ::137]
@@ -89,19 +89,19 @@ def test_many_times_are_the_single_ones(motion: tuple[float, ...]) -> None:
 
 @pytest.mark.parametrize("count", [0, 1, 2, 39, 40, 41, 1023, 1025])
 def test_any_number_of_times(count: int) -> None:
-    """Around the 40 that are worth a table and the 1024 that are a chunk."""
+    """Counts around the 40 times that start a table and the 1024 times of a chunk are correct."""
     start = arguments(MOTIONS["rotation"])
     times = np.linspace(0.0, 3.0, count)
     found = flow(times, **start)
     assert [values.shape for values in found] == [(count,)] * 3
     for values, several in zip(found, flow(np.append(times, np.ones(40)), **start), strict=True):
-        # a few ulp of what the motion is worth: three radians, radians a second and metres
+        # a few ulp of three radians, radians a second or metres, the size of the motion
         assert np.all(np.abs(values - several[:count]) <= 32 * math.ulp(10.0))
 
 
 @pytest.mark.parametrize(("theta", "omega"), [(1.0, 0.0), (0.6, 0.0), (1.2, 0.9), (0.2, -2.0)])
 def test_a_mirror_image_has_the_same_bits(theta: float, omega: float) -> None:
-    """Also where the series about the start ends and those of the table begin."""
+    """Mirrored motions agree also where the start's series ends and the table's series begin."""
     body = {"a": 0.375, "b": 1.0, "gravity": 1.0, "gyration2": 0.28515625}
     times = np.linspace(0.0, 4.0, 3001)
     one, other = (flow(times, theta=s * theta, omega=s * omega, **body) for s in (1, -1))
@@ -113,13 +113,13 @@ def test_a_mirror_image_has_the_same_bits(theta: float, omega: float) -> None:
 def test_a_wrong_time_is_named_by_its_place(place: int, bad: float) -> None:
     times = np.linspace(0.0, 3.0, 2003)
     times[place] = bad
-    times[place + 1 :: 700] = math.nan  # the first one is named
+    times[place + 1 :: 700] = math.nan  # the message names the first wrong time
     with pytest.raises(ValueError, match=rf"^t\[{place}\] must be .* got {bad}".replace("+", ".")):
         flow(times, **arguments(MOTIONS["libration"]))
 
 
 def test_memory_is_that_of_the_answer() -> None:
-    """Of a million times no copy is made; a tenth is more than any table."""
+    """A million times are not copied; a tenth of the answer is more than any table."""
     times, start = np.linspace(0.0, 100.0, 1_000_000), arguments(MOTIONS["rotation"])
     tracemalloc.start()
     try:

@@ -1,7 +1,7 @@
-"""The path of the centre in motions that begin on the tip, or beside it, next to rest.
+"""The path of the centre in motions that begin nearly at rest on the tip or beside it.
 
-Rolling, the centre moves by the integral of h dtheta. So x follows from the two angles alone, here
-by Legendre's elliptic integral in 30 digits, whatever the motion between them.
+The centre of a rolling body moves by the integral of h dtheta. So x follows from the two angles
+alone, here by Legendre's elliptic integral in 30 digits, for any motion between them.
 """
 
 import math
@@ -21,7 +21,7 @@ State = tuple[float, ...]  # theta, omega, x
 
 
 def path(theta: float, a: float, b: float) -> mp.mpf:
-    """The integral of h from 0: the arc length a E(phi | 1 - b^2/a^2) less h'."""
+    """Integral of h from 0 to theta: the arc length a E(phi | 1 - b^2/a^2) less h'."""
     with mp.workdps(30):
         half_turns = mp.nint(mp.mpf(theta) / mp.pi)
         rest = mp.mpf(theta) - half_turns * mp.pi
@@ -33,7 +33,7 @@ def path(theta: float, a: float, b: float) -> mp.mpf:
 
 
 def excess(start: Start, t: float, state: State) -> float:
-    """The error of x over what roundings of theta and time, and four units of x, allow."""
+    """Error of x / the effect of roundings of theta and time, and four ulp of x."""
     a, b, theta0, _ = start
     theta, omega, x = state
     with mp.workdps(30):
@@ -44,7 +44,7 @@ def excess(start: Start, t: float, state: State) -> float:
 
 
 def starts(count: int) -> Iterator[Start]:
-    """Either axis the longer one; on the tip or beside it; 1e-300 to 1 rad/s either way."""
+    """Starts with either axis longer, on the tip or beside it, at 1e-300 to 1 rad/s either way."""
     rng = random.Random(30)
     for i in range(count):
         a = 10 ** rng.uniform(-1, 1)
@@ -56,11 +56,11 @@ def starts(count: int) -> Iterator[Start]:
 
 
 def times_past_a_tip(start: Start, rng: random.Random) -> list[float]:
-    """In the first two turns or swings, behind the first fall from the tip."""
+    """Times in the first two turns or swings after the first fall from the tip."""
     a, b, theta, omega = start
     body = Scene(a, b)
     long_axis, short_axis = max(a, b), min(a, b)
-    # The fall from the tip grows at this rate, from 1e-300 to 1.
+    # Rate at which a fall from the tip grows, from 1e-300 to 1.
     inertia = long_axis * (body.gyration2 + long_axis**2)
     rate = math.sqrt(9.81 * (long_axis - short_axis) * (long_axis + short_axis) / inertia)
     gone = math.log(1 / min(abs(omega) / rate + abs(math.cos(theta)) * (a > b) + 1e-300, 0.5))

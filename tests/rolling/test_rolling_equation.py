@@ -1,6 +1,6 @@
 """The equation of rolling that the integrators solve, level and on a slope.
 
-Judged by Lagrange's equation with the kinetic energy D theta'^2/2 and the potential energy
+The judge is Lagrange's equation with the kinetic energy D theta'^2/2 and the potential energy
 V = g (h cos alpha - x sin alpha), x' = h, whose derivatives are numerical, in 40 digits:
     D theta'' + D' theta'^2/2 + V' = 0.
 """
@@ -18,13 +18,13 @@ from rolling_ellipse import Scene, _core
 
 SLOPES = (0.0, 0.1, -0.7, 1.4)
 SPEEDS = (0.0, 1e-8, -1.3, 40.0)
-# about where the nearest quarter turn changes, and where quarter turns are no longer counted
+# angles where the nearest quarter turn changes, and where quarter turns are no longer counted
 ANGLES = (0.0, 1e-8, 0.3, math.pi / 4, math.nextafter(math.pi / 4, 1), 1.2, math.pi / 2, 2.0, -0.9)
 FAR_ANGLES = (333.3, -99_999.9, 100_000.1, 3e15)
 
 
 class Motion(NamedTuple):
-    """theta'', its derivatives by theta and by omega."""
+    """theta'' and its derivatives by theta and by omega."""
 
     acceleration: Any
     by_theta: Any
@@ -32,7 +32,7 @@ class Motion(NamedTuple):
 
 
 def inertia(theta: Any, scene: Scene) -> Any:
-    """D = k^2 + |GC|^2, the contact C being the lowest point of the outline."""
+    """D = k^2 + |GC|^2, with the contact C at the lowest point of the outline."""
     a, b = mp.mpf(scene.a), mp.mpf(scene.b)
     lowest = mp.atan2(-b * mp.cos(theta), a * mp.sin(theta))
     right, up = oracles.geometry.boundary_point(lowest, theta, a, b)
@@ -40,7 +40,7 @@ def inertia(theta: Any, scene: Scene) -> Any:
 
 
 def lagrange(scene: Scene, theta: float, omega: float) -> tuple[Motion, Motion]:
-    """The motion, and for each number the sizes of the terms that are added up for it."""
+    """theta'' and its derivatives, and for each number the sizes of the terms of its sum."""
     with mp.workdps(2 * DIGITS):
         speed2 = mp.mpf(omega) ** 2
         weight, pull = (mp.mpf(scene.gravity) * f(mp.mpf(scene.slope)) for f in (mp.cos, mp.sin))
@@ -50,7 +50,7 @@ def lagrange(scene: Scene, theta: float, omega: float) -> tuple[Motion, Motion]:
         by_theta = -(d2 * speed2 / 2 + weight * h2 - pull * h1 + acceleration * d1) / d
         exact = Motion(acceleration, by_theta, -d1 * omega / d)
 
-        # numerical derivatives of what is even in theta are not 0 at 0
+        # numerical derivatives of even functions of theta are not 0 at 0
         grain = mp.mpf(10) ** -24
         h1, d1, rho = abs(h1) + grain * h, abs(d1) + grain * d, h + h2
         size = (d1 * speed2 / 2 + weight * h1 + abs(pull) * h) / d
@@ -62,7 +62,7 @@ def lagrange(scene: Scene, theta: float, omega: float) -> tuple[Motion, Motion]:
 
 @pytest.mark.parametrize("slope", SLOPES)
 def test_acceleration_and_its_derivatives(shape: tuple[float, float], slope: float) -> None:
-    """8 ulp of the terms that are added up: some ten roundings, sin and cos among them."""
+    """8 ulp of the terms of a sum are allowed: some ten roundings, sin and cos among them."""
     scene = Scene(*shape, gravity=3.7, slope=slope)
     unit = math.sqrt(scene.gravity / max(shape))
     for theta in (*ANGLES, *FAR_ANGLES):
@@ -93,9 +93,9 @@ def test_a_wrong_equation_is_seen() -> None:
 
 
 def test_derivatives_are_those_of_the_acceleration(shape: tuple[float, float]) -> None:
-    """Central differences of the function itself. They miss the derivative by the third one times
-    d^2/6, some (rho/b)^2 d^2 of the sizes since b/a is the finest scale of the outline, and by
-    the rounding over d."""
+    """Central differences of theta'' agree with its derivatives. They err by the third derivative
+    times d^2/6, some (rho/b)^2 d^2 of the sizes since b/a is the finest scale of the outline, and
+    by the rounding over d."""
     scene = Scene(*shape, slope=0.2)
     theta = np.array([0.3, 1.2, 2.0, -0.9])
     omega = np.array([1.0, -2.0, 0.5, 3.0]) * math.sqrt(scene.gravity / max(shape))

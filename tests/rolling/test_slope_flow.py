@@ -19,7 +19,7 @@ DIGITS = 20
 
 
 def rolled(scene: rl.Scene, times: Any) -> Any:
-    """The exact rolling motion, whether or not the ground could hold it."""
+    """The exact rolling motion, even if the ground could not hold it."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rl.ValidityWarning)
         return rl.simulate(scene, times, model="rolling", method="exact")
@@ -42,7 +42,7 @@ class Energy:
         return self.k2 + at.h**2 + at.slope**2
 
     def path(self, angle: Any) -> Any:
-        """The integral of h from 0: b E(angle | 1 - a^2/b^2)."""
+        """Integral of h from 0 to an angle: b E(angle | 1 - a^2/b^2)."""
         return self.b * mp.ellipe(angle, 1 - (self.a / self.b) ** 2)
 
     def at(self, angle: Any) -> Any:
@@ -54,7 +54,7 @@ class Energy:
         return self.along * self.path(mp.pi)
 
     def time_of(self, half_turns: Any) -> Any:
-        """Of so many half turns downhill: Hurwitz zeta functions over one."""
+        """Time of half turns downhill: integral of Hurwitz zeta functions over one half turn."""
         gain = self.gain()
 
         def rate(angle: Any) -> Any:
@@ -76,10 +76,10 @@ DOWNHILL = {
 @pytest.mark.parametrize("name", DOWNHILL)
 @pytest.mark.parametrize("half_turns", [40, 1000, 10**6, 10**9])
 def test_many_half_turns_downhill(name: str, half_turns: int) -> None:
-    """After the time of n of them the body stands as it did, by n w richer.
+    """After n half turns the body stands as at the start, and its W has grown by n w.
 
-    The time of the simulation is rounded, half an ulp, and the quadrature has a few roundings of
-    its own, as if the inputs were changed by as much: 8 of them (found: 3 at most).
+    The time of the simulation is rounded by half an ulp, and the quadrature has a few roundings, as
+    if the inputs were changed by 8 roundings (found: 3 at most).
     """
     scene = DOWNHILL[name]
     with mp.workdps(DIGITS):
@@ -95,7 +95,7 @@ def test_many_half_turns_downhill(name: str, half_turns: int) -> None:
         expected += speed * off
         allowed = 8 * EPS * (float(speed) * t + float(expected))
         assert abs(float(found.theta[0] - expected)) < allowed
-        # omega depends on the place: theta'' times what the time may be off
+        # omega depends on the angle: theta'' times the rounding of the time
         bend = max(scene.a, scene.b) / min(scene.a, scene.b)
         assert abs(float(found.omega[0] / speed - 1)) < 8 * EPS * bend * float(speed) * t
 
@@ -103,12 +103,12 @@ def test_many_half_turns_downhill(name: str, half_turns: int) -> None:
 @pytest.mark.parametrize("slope", [1e-3, 1e-2, 0.05])
 @pytest.mark.parametrize("ratio", [0.9, 0.3, 1e-2])
 def test_a_climb_runs_back_the_way_it_came(slope: float, ratio: float) -> None:
-    """Uphill and back: mirrored in time the motion is the same, from any of its states.
+    """A motion mirrored in time is the same motion, uphill and back, from any of its states.
 
-    The state at t, turned round, is at the start after as long, turned round. Three roads are
-    followed there: the sum uphill, the series over the top, the sum downhill. What is rounded in
-    the state in between is a change of energy, and moves the end by the time since over the time
-    scale of half a turn: 64 roundings of the way.
+    The reversed state at t reaches the reversed start after another t, by three methods: the sum
+    uphill, the series over the top, the sum downhill. A rounding of the state in between changes
+    the energy, and moves the end by the time since then over the time scale of half a turn: 64
+    roundings of the path.
     """
     scene = rl.Scene(1.0, ratio, slope=slope, theta=0.4, omega=-8.0)
     whole = rolled(scene, [0.0, 2e4])
@@ -125,10 +125,10 @@ def test_a_climb_runs_back_the_way_it_came(slope: float, ratio: float) -> None:
 @pytest.mark.parametrize("omega", [-8.0, 8.0], ids=["up", "down"])
 @pytest.mark.parametrize("way", [1e-5, 0.1])
 def test_a_short_way_keeps_its_digits(way: float, omega: float) -> None:
-    """Up a long climb as well as down: theta and x by the energy integral.
+    """theta and x of a short path agree with the energy integral, up a long climb and down.
 
-    A few roundings of the path, and of the geometry at the start: 4 of them (found: 0.7 at most;
-    counted from half a turn further up, x was 1e-16 m off).
+    Allowed are 4 roundings of the path and of the geometry at the start (found: 0.7 at most; a path
+    counted from half a turn further up had an error of 1e-16 m).
     """
     scene = rl.Scene(1.0, 0.5, slope=1e-3, theta=0.4, omega=omega)
     with mp.workdps(25):
@@ -148,8 +148,8 @@ def test_a_short_way_keeps_its_digits(way: float, omega: float) -> None:
 
 @pytest.mark.parametrize("slope", [1e-12, 1e-20, -1e-200])
 def test_a_circle_rests_on_no_slope(slope: float) -> None:
-    """Its contact is never right below its centre, however near: it rolls from rest, if friction
-    holds a third of the pull, and slides otherwise."""
+    """A circle's contact is never right below its centre: it rolls from rest if friction holds a
+    third of the pull, and slides otherwise."""
     needed = abs(slope) / 3
     scene = rl.Scene(1.0, 1.0, slope=slope, friction=needed * (1 + 1e-9))
     less = scene.replace(friction=needed * (1 - 1e-9))
@@ -163,17 +163,17 @@ def test_a_circle_rests_on_no_slope(slope: float) -> None:
 
 
 def assert_keeps_energy(found: rl.Trajectory) -> None:
-    """E/m = D omega^2/2 + g (h cos(slope) - x sin(slope)), of a body whose b is 1.
+    """Assert that E/m = D omega^2/2 + g (h cos(slope) - x sin(slope)) is constant, for b = 1.
 
-    Each of its terms has a few roundings, 16 in all; x and theta move h by theirs over the
-    radius of the tip, which a thin body has 1/ratio times in its length, and squared as h''.
+    Each term has a few roundings, 16 in all; roundings of x and theta change h by their size over
+    the radius of the tip, 1/ratio times the length of a thin body, and squared as h''.
     """
     axes = {"a": found.scene.a, "b": 1.0}
     size = found.kinetic_energy + np.abs(found.energy - found.kinetic_energy)
     h = rl.geometry.support(found.theta, **axes)
     h1 = rl.geometry.support_slope(found.theta, **axes)
     h2 = rl.geometry.support_curvature(found.theta, **axes)
-    change = np.abs(h2 - h) + np.abs(h1)  # of the terms with an angle
+    change = np.abs(h2 - h) + np.abs(h1)  # change of the terms with the angle
     turned = EPS * (1 + np.abs(found.theta)) * (9.81 + np.abs(found.omega) ** 2 * change) * change
     assert np.all(np.abs(found.energy - found.energy[0]) < 16 * (EPS * size.max() + turned))
 
@@ -181,7 +181,7 @@ def assert_keeps_energy(found: rl.Trajectory) -> None:
 @pytest.mark.parametrize("ratio", [1e-3, 1 - 1e-12, 1e3])
 @pytest.mark.parametrize("slope", [1e-300, 1e-9, -0.5, 1.5])
 def test_all_shapes_keep_their_energy(ratio: float, slope: float) -> None:
-    """Over nine decades of time."""
+    """The energy is constant over nine decades of time."""
     scene = rl.Scene(ratio, 1.0, slope=slope, theta=0.7, omega=0.4)
     assert_keeps_energy(rolled(scene, np.concatenate([[0.0], np.logspace(-2, 4, 60)])))
 
@@ -190,7 +190,7 @@ def test_all_shapes_keep_their_energy(ratio: float, slope: float) -> None:
 @pytest.mark.parametrize("slope", [1e-8, 1e-4, -0.02, 0.3])
 @pytest.mark.parametrize("half_turns", [30, 1000, 1e6, 1e9])
 def test_a_climb_is_known_up_to_its_top(ratio: float, slope: float, half_turns: float) -> None:
-    """On all of its way up and down: near the top a half turn takes much longer than before."""
+    """The energy is constant up and down a climb: half turns near the top take longest."""
     height = half_turns * math.pi * max(ratio, 1.0) * math.sin(abs(slope)) + abs(1 - ratio)
     speed = math.sqrt(9.81 * height / rl.Scene(ratio, 1.0).gyration2)
     scene = rl.Scene(ratio, 1.0, slope=slope, omega=-math.copysign(speed, slope))
@@ -201,10 +201,10 @@ def test_a_climb_is_known_up_to_its_top(ratio: float, slope: float, half_turns: 
     assert_keeps_energy(found)
 
 
-@pytest.mark.parametrize("omega", [-5.0, 3.0, -150.0])  # the last climbs some 2000 half turns
+@pytest.mark.parametrize("omega", [-5.0, 3.0, -150.0])  # the last start climbs some 2000 half turns
 @pytest.mark.parametrize("begin, end", [(0.0, 40.0), (20.0, 20.5), (1000.0, 9e4)])
 def test_samples_do_not_depend_on_each_other(omega: float, begin: float, end: float) -> None:
-    """The same bits for a time alone as among many, before and behind it: of one half turn too."""
+    """A time has the same bits alone and among others before and after it, in one half turn too."""
     scene = rl.Scene(2.0, 1.0, slope=0.1, theta=0.2, omega=omega)
     times = np.linspace(begin, end, 200)[1:]
     motion = rolled(scene, times)
@@ -216,7 +216,7 @@ def test_samples_do_not_depend_on_each_other(omega: float, begin: float, end: fl
 
 
 def test_a_circle_that_is_driven_by_less_than_doubles_tell_rests() -> None:
-    """Its acceleration, in its own units, is less than half of the smallest of them."""
+    """The acceleration, in the circle's own units, is less than half of the smallest double."""
     scene = rl.Scene(1.6e-23, 1.6e-23, slope=5e-324, theta=0.3)
     motion = rl.simulate(scene, [0.0, 1e300])
     assert motion.theta.tolist() == [0.3, 0.3] and motion.omega.tolist() == [0.0, 0.0]
@@ -236,19 +236,19 @@ def test_what_does_not_repeat_itself_has_no_period() -> None:
 
 
 def lying(slope: float) -> float:
-    """The angle of the 2:1 ellipse in equilibrium: h' = h tan(slope)."""
+    """The stable angle of the 2:1 ellipse in equilibrium: h' = h tan(slope)."""
     return math.atan(equilibrium_tangent(slope))
 
 
 def equilibrium_tangent(slope: float) -> float:
-    """tan(theta) from (a^2 tan^2 + b^2) tan(slope) = (a^2 - b^2) tan, the smaller root."""
+    """tan(theta), the smaller root of (a^2 tan^2 + b^2) tan(slope) = (a^2 - b^2) tan."""
     incline = math.tan(slope)
     return 2 * incline / (3.0 + math.sqrt(9.0 - 16.0 * incline**2))
 
 
 def test_a_body_that_is_nearly_a_circle_climbs_on_no_rounding() -> None:
-    """Its tip is higher by one ulp, its speed is next to none: it is driven by gravity times h',
-    of at most b - a, over the inertia about the contact, of at least a^2."""
+    """A body whose tip is higher by one ulp and which hardly moves is driven by gravity times h',
+    at most b - a, over the inertia about the contact, at least a^2."""
     a, b, t = 7.374404490252059, 7.37440449025206, 2.5
     scene = rl.Scene(a, b, theta=0.3, omega=-5.6e-51, friction=0.02, slope=5e-324)
     moved = abs(rl.simulate(scene, t).theta[-1] - 0.3)
@@ -272,8 +272,8 @@ def test_a_body_that_is_nearly_a_circle_climbs_on_no_rounding() -> None:
     ids=["tall", "flat"],
 )
 def test_a_body_that_is_nearly_a_circle_has_a_certificate(scene: rl.Scene) -> None:
-    """All that drives it is the roundings of its height: its motion is one piece all the same,
-    and its omega changes by no more than gravity and all of its height differences give."""
+    """Roundings of the height alone drive the body: its motion is a single piece all the same, and
+    omega changes by no more than gravity and all of its height differences give."""
     t = 0.1 / abs(scene.omega)
     motion = rl.simulate(scene, t, model="rolling")
     fall = 2 * scene.gravity * abs(scene.a - scene.b) / min(scene.a, scene.b) ** 2

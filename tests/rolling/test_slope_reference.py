@@ -1,8 +1,8 @@
 """Rolling on a slope against 30 digits (reference/make_slope_reference.py).
 
-Every scene has three times and a unit for each value: what a relative change of 2.2e-16 of every
-input does to it. A method is judged by errors in these units, that is by the smallest change of
-the inputs that would explain its answer.
+Every scene has three times and a unit for each value: what a relative change of 2.2e-16 of each
+input does to the value. A method is judged by errors in these units: by the smallest change of the
+inputs that would explain its answer.
 """
 
 import math
@@ -18,9 +18,10 @@ from oracles import table
 from oracles.geometry import support
 
 PARAMETERS = {"a": "a", "b": "b", "mass": "mass", "inertia": "inertia", "gravity": "gravity"}
-PARAMETERS |= {"slope": "slope", "theta": "theta0", "omega": "omega0"}  # of Scene: column
+# argument of Scene: column of the table
+PARAMETERS |= {"slope": "slope", "theta": "theta0", "omega": "omega0"}
 ANSWERS = ("theta", "omega", "x", "normal", "friction")
-ROUNDING = 2.2e-16  # the change of the inputs that the units stand for
+ROUNDING = 2.2e-16  # change of the inputs in the definition of the units
 
 
 class Motion(NamedTuple):
@@ -49,7 +50,7 @@ class Motion(NamedTuple):
 
     @property
     def half_turns(self) -> float:
-        """Half turns made at the last time, back and forth not counted."""
+        """Half turns from the start to the last time, without those back and forth."""
         return abs(float(self.values[-1, 0]) - self.parameters["theta"]) / math.pi
 
 
@@ -73,7 +74,7 @@ MOTIONS = read_table()
 each_motion = pytest.mark.parametrize("motion", MOTIONS, ids=[one.name for one in MOTIONS])
 
 
-# ------------------------------------------------------------------------ what is compared
+# ------------------------------------------------------------------------ errors in units
 
 
 def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
@@ -83,7 +84,8 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
     shortly after a start at rest, where the inputs hardly matter to x.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rl.ValidityWarning)  # on the way N may become negative
+        # N may become negative during the motion
+        warnings.simplefilter("ignore", rl.ValidityWarning)
         found = rl.simulate(
             rl.Scene(**motion.parameters), motion.times, model="rolling", **settings
         )
@@ -93,7 +95,8 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
         [abs(table.difference(v, e)) for v, e in zip(*pair, strict=True)]
         for pair in zip(values, motion.answers, strict=True)
     ]
-    units = motion.units + np.spacing(np.abs(motion.values))  # no double is nearer than that
+    # an ulp is added, since the nearest double is half an ulp off
+    units = motion.units + np.spacing(np.abs(motion.values))
     units[:, 2] += motion.longer * motion.units[:, 0]
     return np.array(differences) / units
 
@@ -101,14 +104,14 @@ def errors(motion: Motion, **settings: Any) -> NDArray[np.float64]:
 def reach_of_series(motion: Motion) -> float:
     """Time R in which the fastest turning passes the nearest complex singularity [s].
 
-    In theta that lies where k^2 + h^2 + h'^2 = 0 beside a flat side; the energy bounds omega. A
+    The singularity in theta is at k^2 + h^2 + h'^2 = 0 beside a flat side; energy bounds omega. A
     step far below R resolves everything, even the flat side of a thin ellipse that flicks over it.
     """
     a, b, mass, inertia, gravity, slope, theta, omega = motion.parameters.values()
     k2, low, high = inertia / mass, min(a, b), max(a, b)
     height, offset, _ = support(theta, a, b)
     moment = k2 + height**2 + offset**2
-    # between the samples the centre is not lower than one of them by more than the body's size
+    # between samples the centre is lower than at a sample by at most the body's size
     path = np.abs(motion.values[:, 2]).max() + high
     drop = (height - low) * math.cos(slope) + path * abs(math.sin(slope))
     fastest = math.sqrt((moment * omega**2 + 2 * gravity * drop) / (k2 + low**2))
@@ -120,7 +123,7 @@ def reach_of_series(motion: Motion) -> float:
 
 
 def test_table_covers_what_it_promises() -> None:
-    """Thin ellipses both ways up, circles, all slopes, few and many half turns."""
+    """The table has thin ellipses both ways up, circles, all slopes, few and many half turns."""
     columns = {name: np.array([one.parameters[name] for one in MOTIONS]) for name in PARAMETERS}
     ratio, slope = columns["a"] / columns["b"], columns["slope"]
     assert len(MOTIONS) >= 60
@@ -132,17 +135,17 @@ def test_table_covers_what_it_promises() -> None:
     assert set(columns["gravity"]) == {1.62, 9.81}
     assert (columns["omega"] == 0).sum() >= 15
     assert 25 < max(one.half_turns for one in MOTIONS) < 30
-    # beyond this a reference says nothing: the scene itself does not fix the answer
+    # beyond this unit the inputs of a scene do not fix its answer
     assert max(one.units[:, 0].max() for one in MOTIONS) <= 1e-10
 
 
 @each_motion
 def test_table_keeps_the_energy_and_newtons_law(motion: Motion) -> None:
-    """The table's numbers, made in a coordinate of their own, put into the support function.
+    """The table's numbers, computed in phi, satisfy the laws in the support function of theta.
 
     They are rounded at 5e-30, an angle of 60 rad at 3e-28, and h'' of a thin ellipse changes a
     hundred times faster than an angle near its flat side, relatively: 1e-23 of the terms that are
-    added is above all that (found: 1.5e-27).
+    added is above all these errors (found: 1.5e-27).
     """
     with mpmath.workdps(50):
         a, b, mass, inertia, g, slope, theta0, omega0 = map(mpmath.mpf, motion.parameters.values())
@@ -170,7 +173,7 @@ def test_table_keeps_the_energy_and_newtons_law(motion: Motion) -> None:
 
 @each_motion
 def test_exact_is_right_to_a_few_roundings(motion: Motion) -> None:
-    """Four units, for theta, omega and x; the forces follow from the first two.
+    """theta, omega and x err by four units; the forces follow from theta and omega.
 
     A state is some hundred series, each with a rounding of its own, of which the energy keeps the
     angular velocity; the sum over half turns has a few roundings of its time. Found: 1.1 at most,
@@ -180,7 +183,7 @@ def test_exact_is_right_to_a_few_roundings(motion: Motion) -> None:
 
 
 def dop853_errors(motion: Motion) -> NDArray[np.float64]:
-    """Errors (3, 5) as changes of the inputs, in tolerances: rtol |theta| is what is allowed."""
+    """Errors (3, 5) as changes of the inputs, in tolerances: rtol |theta| is allowed."""
     rtol = 1e-13
     found = errors(motion, method="dop853", rtol=rtol, atol=1e-15)
     tolerances: NDArray[np.float64] = found * ROUNDING / (rtol * motion.farthest)
@@ -189,21 +192,21 @@ def dop853_errors(motion: Motion) -> NDArray[np.float64]:
 
 @each_motion
 def test_dop853_keeps_its_tolerance(motion: Motion) -> None:
-    """Eight tolerances.
+    """dop853 errs by eight tolerances at most.
 
-    An unlucky method could collect one in each of up to 4400 steps. The controller keeps the
+    An unlucky method could add one tolerance in each of up to 4400 steps. The controller keeps the
     estimate at 0.9^8 = 0.4 of the tolerance, and the true local error is of a higher order than
-    the estimate: what collects was 1.6 tolerances at most, 0.04 in the median.
+    the estimate: the sum was 1.6 tolerances at most, 0.04 in the median.
     """
     assert dop853_errors(motion).max() < 8
 
 
 @each_motion
 def test_gauss_is_right_to_rounding(motion: Motion) -> None:
-    """32 units, with steps of R/16.
+    """Gauss's method with steps of R/16 errs by 32 units at most.
 
     The error of a step is (4!)^4 / (9 (8!)^3) h^9 y^(9), with y^(9) = 9!/R^9 at most 2e-4 (h/R)^9
-    or 3e-15, near the singularity only: a few units. Rounding makes the rest, most where the flat
+    or 3e-15, near the singularity only: a few units. Rounding adds the rest, most where the flat
     side of a thin ellipse makes omega grow and shrink tenfold, and with it the relative error.
     Found: 15 at most, 0.7 in the median.
     """
@@ -212,11 +215,11 @@ def test_gauss_is_right_to_rounding(motion: Motion) -> None:
 
 
 def test_radau_errs_as_its_order_says() -> None:
-    """A hundredth of 0.12 (h/R)^5 for every passage of the flat side, with steps of R/8.
+    """Radau with steps of R/8 errs by 0.0012 (h/R)^5 per passage of the flat side.
 
     The error of a step is h^6 y^(6) / 7200, with y^(6) = 6!/r^6 at distance r of the singularity.
     Over all steps of a passage, where r^2 = R^2 + t^2, that sums up to 0.1 (h/R)^5 3 pi/8. The
-    singularity is a branch point, weaker than the pole that this takes it for: a thousandth was
+    singularity is a branch point, weaker than the pole assumed here: a thousandth of the sum was
     found at most. Scenes that take more than 20,000 such steps are left to Gauss's method.
     """
     checked = 0
@@ -231,10 +234,10 @@ def test_radau_errs_as_its_order_says() -> None:
 
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_a_small_change_of_an_input_is_seen(name: str) -> None:
-    """The judge is sharp: a millionth of any single input is noticed in every scene.
+    """A change of any single input by a millionth is noticed in every scene: the judge is sharp.
 
-    Eight tolerances are 8e-13 |theta| of all inputs together, and one alone has its share only: a
-    slope of a few milliradians hardly matters to a fast spin, and a millionth of it is 14 of them.
+    Eight tolerances are 8e-13 |theta| of all inputs together, and one input has only a share: a
+    slope of a few milliradians hardly matters to a fast spin: a millionth of it is 14 tolerances.
     """
     changed = 0
     for motion in MOTIONS:

@@ -1,7 +1,7 @@
 """Rocking in the well of a slope, from 1e-12 rad up to its rim and over up to 1e9 swings.
 
 The table (reference/make_well_reference.py) has the period, and the state at one time, of each
-scene, with a unit for each: what a relative change of 2.2e-16 of every input does to it.
+scene, with a unit for each number: its change by a relative change of 2.2e-16 of every input.
 """
 
 import math
@@ -15,7 +15,7 @@ from oracles import table
 from oracles.numbers import EPS
 
 PARAMETERS = {name: name for name in ("a", "b", "mass", "inertia", "gravity", "slope")}
-PARAMETERS |= {"theta": "theta0", "omega": "omega0"}  # of Scene: column
+PARAMETERS |= {"theta": "theta0", "omega": "omega0"}  # argument of Scene: column of the table
 ANSWERS = ("period", "theta", "omega", "x")
 ROWS = table.rows("well_reference")
 
@@ -26,16 +26,16 @@ def scene_of(row: dict[str, str]) -> rl.Scene:
 
 
 class Equilibrium(NamedTuple):
-    """theta, and the rate [1/s] of small motion about it: as sine and cosine, or as exp."""
+    """theta of an equilibrium and the rate [1/s] of small motion: oscillation or growth."""
 
     theta: float
     rate: float
 
 
 def equilibria(scene: rl.Scene) -> tuple[Equilibrium, Equilibrium]:
-    """The stable and the unstable one downhill of it, by the eccentric angle phi.
+    """The stable equilibrium and the unstable one downhill of it, by the eccentric angle phi.
 
-    (3) of reference/make_slope_reference.py: sin 2 phi = 2 a b tan(slope)/c^2, and about it
+    By (3) of reference/make_slope_reference.py sin 2 phi = 2 a b tan(slope)/c^2, and about it
     J rate^2 = g w c^2 cos 2 phi cos(slope)/(a b).
     """
     long, short = max(scene.a, scene.b), min(scene.a, scene.b)
@@ -54,14 +54,14 @@ def equilibria(scene: rl.Scene) -> tuple[Equilibrium, Equilibrium]:
 
 
 def amplitude(row: dict[str, str]) -> float:
-    """At least so much: the start's distance from the equilibrium, and what its omega turns."""
+    """Lower bound of the amplitude: the larger of the start's distance and its omega's swing."""
     scene = scene_of(row)
     away = math.remainder(scene.theta - equilibria(scene)[0].theta, math.pi)
     return max(abs(away), abs(scene.omega) * float(row["period"]) / (2 * math.pi))
 
 
 def test_table_covers_what_it_promises() -> None:
-    """Amplitudes and swings over their whole range, thin bodies by both names of their axes."""
+    """The table has the full range of amplitudes and swings, and thin bodies in both positions."""
     scenes = [scene_of(row) for row in ROWS]
     amplitudes = np.array([amplitude(row) for row in ROWS])
     swings = np.array([float(row["t"]) / float(row["period"]) for row in ROWS])
@@ -78,15 +78,16 @@ def test_table_covers_what_it_promises() -> None:
 
 @pytest.mark.parametrize("row", ROWS, ids=[str(i) for i in range(len(ROWS))])
 def test_rocking_is_right_to_a_few_roundings(row: dict[str, str]) -> None:
-    """Eight units, and two ulp of each answer.
+    """Rocking errs by eight units and two ulp of each answer.
 
     A half swing is a few series, each with a few roundings of its own in the time, the angle and
-    omega; the phase after any number of swings has those of the period. Found: 0.8 at most; with
-    gravity as a difference of two terms a third of the scenes was off by more than 8, up to 3e7.
+    omega; the phase after any number of swings has the period's roundings. Found: 0.8 at most; with
+    gravity as a difference of two terms a third of the scenes erred by more than 8, up to 3e7.
     """
     scene, t = scene_of(row), float(row["t"])
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", rl.ValidityWarning)  # on the way N may become negative
+        # N may become negative during the motion
+        warnings.simplefilter("ignore", rl.ValidityWarning)
         state = rl.simulate(scene, [t], model="rolling")
     found = (rl.period(scene), state.theta[0], state.omega[0], state.x[0])
     for name, value in zip(ANSWERS, found, strict=True):
@@ -104,13 +105,13 @@ def test_rocking_is_right_to_a_few_roundings(row: dict[str, str]) -> None:
 def test_next_to_the_rim_a_motion_comes_back_to_its_start(
     scene: rl.Scene, distance: float, share: float
 ) -> None:
-    """Moving there, to the rim or away from it, it swings as from rest somewhat further in.
+    """A start that moves to the rim or away from it swings like a rest somewhat further in.
 
-    There the distance is d cosh(rate t) + share d sinh(rate t), whose least value is
-    d (1 - share^2)^(1/2); what is left out is its square, and theta is known to an ulp: so far the
-    period, 2 log(1/d)/rate and a constant, may differ. After it the body is where it was, but for
-    an ulp and for the rounding of the period. Crossing the well by series and coming back gave
-    periods that were 16 % off, and bodies that rolled out.
+    The distance from the rim is d cosh(rate t) + share d sinh(rate t), with the least value
+    d (1 - share^2)^(1/2), up to its square and an ulp of theta: so far the period, 2 log(1/d)/rate
+    and a constant, may differ. After a period the body is at its start, up to an ulp and to the
+    rounding of the period. Crossing the well by series and coming back gave periods with errors of
+    16 %, and bodies that rolled out.
     """
     (lying, _), (upright, rate) = equilibria(scene)
     inside = math.copysign(distance, lying - upright)
@@ -126,7 +127,7 @@ def test_next_to_the_rim_a_motion_comes_back_to_its_start(
 
 
 def test_many_times_of_small_rocking_are_those_of_each() -> None:
-    """In a table, alone and in contact the same bits; it turns round every half period."""
+    """Bits agree in a table, alone and in contact; the body turns round every half period."""
     scene = rl.Scene(2.0, 1.0, slope=0.2, friction=0.5)
     scene = scene.replace(theta=equilibria(scene)[0].theta + 1e-9)
     half = rl.period(scene) / 2

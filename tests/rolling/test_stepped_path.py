@@ -1,5 +1,5 @@
-"""Where stepped rolling puts the centre: x is the integral of the height over the angle, at the
-steps and between them, against Legendre's elliptic integral in 40 digits."""
+"""The centre in stepped rolling: x is the integral of the height over the angle, at the steps and
+between them, judged by Legendre's elliptic integral in 40 digits."""
 
 from typing import Literal
 
@@ -12,14 +12,14 @@ from rolling_ellipse import Scene
 
 pytestmark = pytest.mark.filterwarnings("ignore:rolling is valid until")
 
-# flat, upright, a circle and the thinnest there are; both ways, several half turns
+# bodies flat, upright, round and of the thinnest shape; both directions, several half turns
 SCENES = {
     "flat": Scene(2.0, 1.0, theta=0.2, omega=3.2, x=0.3),
     "upright": Scene(0.7, 1.9, theta=1.2, omega=-4.0),
     "rocking": Scene(2.0, 1.0, theta=0.5),
     "circle": Scene(1.0, 1.0, omega=-2.0),
     "nearly a circle": Scene(1.0, 1.0 - 1e-8, omega=2.0),
-    "many turns on": Scene(2.0, 1.0, theta=3e5, omega=3.2),  # beyond what series are kept for
+    "many turns on": Scene(2.0, 1.0, theta=3e5, omega=3.2),  # an angle beyond the stored series
     "many turns back": Scene(0.7, 1.9, theta=-3e5, omega=-4.0),
     "thinnest": Scene(1.0, 1e-3, theta=0.3),
     "thinnest, upright": Scene(1e-3, 1.0, theta=0.1, omega=9.0),
@@ -27,7 +27,7 @@ SCENES = {
 
 
 def path(scene: Scene, theta: float) -> mp.mpf:
-    """Integral of h = b sqrt(1 - m sin^2), m = 1 - a^2/b^2, from 0."""
+    """Integral of h = b sqrt(1 - m sin^2), m = 1 - a^2/b^2, from 0 to theta."""
     with mp.workdps(DIGITS):
         a, b = mp.mpf(scene.a), mp.mpf(scene.b)
         return b * mp.ellipe(mp.mpf(theta), 1 - (a / b) ** 2)
@@ -36,8 +36,8 @@ def path(scene: Scene, theta: float) -> mp.mpf:
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 @pytest.mark.parametrize("method", ["dop853", "dopri5"])
 def test_x_is_the_path_of_the_angle(scene: Scene, method: Literal["dop853", "dopri5"]) -> None:
-    """A few roundings of the path, which is counted from places up to half a radian away, and of
-    the angle, of which theta has half a place."""
+    """x errs by a few roundings of the path, whose reference points are up to half a radian away,
+    and of the angle, which is rounded to half an ulp."""
     motion = rl.simulate(
         scene, np.linspace(0.0, 6.0, 97), model="rolling", method=method, rtol=1e-6
     )

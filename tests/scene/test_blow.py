@@ -1,6 +1,7 @@
 """The state just after an applied impulse, against the collision law followed along its path.
 
-It is that of `test_collision.py`, up to the end of the approach: what is applied does not bounce.
+The law is that of `test_collision.py`, up to the end of the approach: an applied impulse has no
+restitution.
 """
 
 import itertools
@@ -22,7 +23,7 @@ FRICTIONS = [0.0, 0.05, 0.2, 0.6, 1.0, 5.0, math.inf]
 
 
 def free_contact(scene: Scene, impulse: Impulse) -> tuple[Response, mp.mpf]:
-    """After Newton's and Euler's laws for the applied impulse alone; also the free omega."""
+    """The contact after the applied impulse alone, by Newton's and Euler's laws; and its omega."""
     h, slope, _ = oracles.geometry.height_slopes(scene.theta, scene.a, scene.b)
     mass, inertia = mp.mpf(scene.mass), mp.mpf(scene.gyration2) * mp.mpf(scene.mass)
     jx, jz, dx, dz = (mp.mpf(value) for value in (impulse.jx, impulse.jz, impulse.dx, impulse.dz))
@@ -38,7 +39,7 @@ def free_contact(scene: Scene, impulse: Impulse) -> tuple[Response, mp.mpf]:
 
 
 def random_scenes(count: int, seed: int = 5) -> list[Scene]:
-    """Rolling or resting bodies of many shapes, struck at any point of them, any way."""
+    """Rolling or resting bodies of many shapes, struck at any of their points in any direction."""
     rng = np.random.default_rng(seed)
     scenes = []
     for friction in itertools.islice(itertools.cycle(FRICTIONS), count):
@@ -78,7 +79,7 @@ RANDOM = random_scenes(210)
 
 @pytest.mark.parametrize("scene", RANDOM, ids=range(len(RANDOM)))
 def test_collision_law(scene: Scene) -> None:
-    """For mu = inf the limit of large mu (its error goes like 1/mu), else to rounding."""
+    """The reaction agrees to rounding; for mu = inf with the limit of large mu (error ~ 1/mu)."""
     assert scene.impulse is not None
     contact, free_omega = free_contact(scene, scene.impulse)
     unlimited = math.isinf(scene.friction)
@@ -98,7 +99,7 @@ def test_collision_law(scene: Scene) -> None:
 
 
 def scene_stiffness(contact: Response) -> mp.mpf:
-    """How much solving for the reaction magnifies a rounding of the contact's response."""
+    """Factor by which solving for the reaction magnifies a rounding of the contact's response."""
     determinant = contact.normal * contact.tangential - contact.coupling**2
     return (contact.normal + contact.tangential) ** 2 / determinant
 
@@ -119,7 +120,7 @@ def test_the_velocities_take_the_momentum_and_the_mode_follows(scene: Scene) -> 
     assert linear_x == pytest.approx(impulse.jx + found.reaction_x, abs=small)
     assert linear_z == pytest.approx(impulse.jz + found.reaction_z, abs=small)
     assert found.reaction_z >= 0
-    # the mode is what the velocities say
+    # the mode follows from the velocities
     assert found.theta == scene.theta and found.x == scene.x
     leaves = found.z_dot - slope * found.omega > small / MASS or thrown_off(scene, found.omega)
     assert leaves == (found.mode == Mode.FLIGHT)
@@ -130,7 +131,7 @@ def test_the_velocities_take_the_momentum_and_the_mode_follows(scene: Scene) -> 
 
 
 def thrown_off(scene: Scene, omega: float) -> bool:
-    """The free body's gap opens at once: g + h'' omega^2 < 0."""
+    """Whether the free body's gap opens at once: g + h'' omega^2 < 0."""
     *_, curvature = oracles.geometry.height_slopes(scene.theta, scene.a, scene.b)
     return bool(scene.gravity + curvature * omega**2 < 0)
 
@@ -157,7 +158,7 @@ def test_the_report_scene_rolls_off_with_3_2_not_5_76() -> None:
 
 @pytest.mark.parametrize("push", [2.0, -2.0])
 def test_a_horizontal_push_with_unlimited_friction_rolls(push: float) -> None:
-    """Lambda_z = 0 and mu = inf: inf * 0 must not be computed. At G, lying flat:
+    """The product inf * 0 of mu = inf and Lambda_z = 0 is not formed. For a push at G, lying flat:
     m (k^2 + b^2) omega = J b."""
     found = Scene(2.0, 1.0, mass=1.0, impulse=Impulse(push, 0.0)).initial_state
     assert found.mode == Mode.ROLLING
@@ -169,24 +170,24 @@ def test_a_horizontal_push_with_unlimited_friction_rolls(push: float) -> None:
 
 
 def test_unlimited_friction_takes_a_given_slip_at_once() -> None:
-    """Lying flat h' = 0: D omega = h x_dot, by the impulse m (h omega - x_dot) alone."""
+    """The impulse m (h omega - x_dot) alone gives D omega = h x_dot, lying flat with h' = 0."""
     found = Scene(2.0, 1.0, mass=2.0, x_dot=4.5).initial_state
     assert found.mode == Mode.ROLLING
     assert found.omega == pytest.approx(1.0 * 4.5 / 2.25, rel=4 * EPS)
     assert found.x_dot == found.omega * 1.0
     assert found.reaction_x == pytest.approx(2 * (2.0 - 4.5), rel=8 * EPS)
     assert found.reaction_z == 0
-    # m x_dot^2/2 less m D omega^2/2
+    # m x_dot^2/2 - m D omega^2/2
     assert found.energy_lost == pytest.approx(20.25 - 9.0, rel=8 * EPS)
 
 
 def test_a_press_that_pulls_is_said_so() -> None:
     with pytest.warns(ValidityWarning, match=r"^F = -48\.0 N s pulls"):
         assert Impulse.press(-48.0, 1.5) == Impulse(0.0, 48.0, dx=1.5)
-    assert Impulse.press(0.0, 1.5).jz == Impulse.press(48.0, -1.5).dz == 0  # and these are not
+    assert Impulse.press(0.0, 1.5).jz == Impulse.press(48.0, -1.5).dz == 0  # without a warning
 
 
-# a rounding of the point, or of the angle that it was computed from, and a millionth beyond
+# shares of the farthest arm: 1 must meet the body despite roundings, 1 + 1e-6 must miss it
 MARGINS = ((1 - 1e-6, True), (1.0, True), (1 + 1e-6, False))
 
 
@@ -196,9 +197,9 @@ MARGINS = ((1 - 1e-6, True), (1.0, True), (1 + 1e-6, False))
 def test_a_blow_beside_the_body_is_refused(
     axes: tuple[float, float], theta: float, share: float, meets: bool
 ) -> None:
-    """The line of action through an end of the body as seen along the blow: by brute force, the
-    farthest of the points of the boundary. They are 3.1e-4 apart in the angle t of (a cos t,
-    b sin t), over which the extent goes as a cosine: short by (1.6e-4)^2/2 = 1.2e-8 at most."""
+    """The line of action goes through an end of the body as seen along the blow: by brute force,
+    the farthest of points of the boundary. They are 3.1e-4 apart in the angle t of (a cos t, b sin
+    t), and the extent is a cosine of t: short by (1.6e-4)^2/2 = 1.2e-8 at most."""
     a, b = axes
     rim = np.linspace(0.0, 2 * math.pi, 20_001)
     u, v = a * np.cos(rim), b * np.sin(rim)
@@ -210,7 +211,7 @@ def test_a_blow_beside_the_body_is_refused(
         for size in (
             1e-3 * max(axes),
             -1e3 * max(axes),
-        ):  # either way along the line, and anywhere on it
+        ):  # in both directions, at any point of the line
             blow = Impulse(size * jx, size * jz, dx=dx + 0.7 * a * jx, dz=dz + 0.7 * a * jz)
             if meets:
                 assert Scene(a, b, theta=theta, impulse=blow).impulse == blow
@@ -221,7 +222,7 @@ def test_a_blow_beside_the_body_is_refused(
 
 def test_no_blow_is_nowhere() -> None:
     assert Scene(2.0, 1.0, impulse=Impulse(dx=5.0)).initial_state.omega == 0
-    for size in (5e-324, 1e50):  # of whatever size, it has a line
+    for size in (5e-324, 1e50):  # a blow of any size has a line
         with pytest.raises(ValueError, match=r"at most 2\.0 \[m\] from its centre .*, got 5\.0$"):
             Scene(2.0, 1.0, impulse=Impulse(0.0, size, dx=5.0))
 

@@ -1,4 +1,4 @@
-"""Collisions with restitution: the law followed along its impulse path, and what it may never do.
+"""Collisions with restitution: the law followed along its impulse path, and its invariants.
 
 The path is followed by straight pieces; tests/impacts follows it in small pushes without cases.
 """
@@ -30,7 +30,7 @@ class Hit(NamedTuple):
 
 
 def hits(count: int, seed: int, bounces: int = 100, **given: Any) -> list[Hit]:
-    """Impacts of bodies that bounce about."""
+    """Impacts of bouncing bodies."""
     found: list[Hit] = []
     for scene in random_scenes(10 * count, seed, **given):
         motion = simulate(scene, 60.0, model="contact", max_events=bounces, raise_on_failure=False)
@@ -41,7 +41,7 @@ def hits(count: int, seed: int, bounces: int = 100, **given: Any) -> list[Hit]:
 
 
 def impulses(hit: Hit) -> tuple[float, float]:
-    """What the ground gave, by Newton's law for the centre."""
+    """Impulse of the ground on the body, by Newton's law for the centre."""
     before, after = hit.event.state_before, hit.event.state_after
     mass = hit.scene.mass
     return mass * (after.x_dot - before.x_dot), mass * (after.z_dot - before.z_dot)
@@ -49,7 +49,7 @@ def impulses(hit: Hit) -> tuple[float, float]:
 
 @pytest.fixture(scope="module")
 def limited() -> list[Hit]:
-    """With finite friction, of any size."""
+    """Impacts with finite friction of any size."""
     return [hit for hit in hits(1200, 3) if math.isfinite(hit.scene.friction)]
 
 
@@ -57,10 +57,10 @@ def limited() -> list[Hit]:
 
 
 def test_impacts_follow_the_path(limited: list[Hit]) -> None:
-    """Some hundred roundings, magnified by solving for the reaction. The speeds carry roundings of
-    the size of the body's velocity, and e > 0 a square root of the work: absolute, in the scale of
-    the impulse that stops the velocity. The angle is told with a rounding of itself, of thousands
-    of radians after many turns."""
+    """Some hundred roundings are allowed, magnified by solving for the reaction. The speeds have
+    roundings of the size of the body's velocity, and e > 0 takes a square root of the work: errors
+    are absolute, in the scale of the impulse that stops the velocity. The angle, thousands of
+    radians after many turns, is rounded too."""
     assert len(limited) > 800
     for hit in limited:
         before, state = hit.before, hit.event.state_before
@@ -101,7 +101,7 @@ class Blow(NamedTuple):
 
 
 def velocities_after(hit: Blow) -> list[mp.mpf]:
-    """x_dot, z_dot and omega, in the precision in force."""
+    """x_dot, z_dot and omega after the impact, in the current precision."""
     hit = Blow(*map(mp.mpf, hit))
     at = support(hit.theta, hit.a, hit.b)
     along, across = reaction_by_pieces(
@@ -120,8 +120,8 @@ def velocities_after(hit: Blow) -> list[mp.mpf]:
 
 
 def test_light_bodies_that_turn_fast_keep_the_digits_of_their_impact() -> None:
-    """Against the pieces in 40 digits, in what 2.2e-16 of each number makes of the answer and two
-    units in its last place. omega h is up to 1e4 times as fast as the centre."""
+    """Velocities agree with the pieces in 40 digits, in units of the effect of 2.2e-16 of each
+    number and two ulp of the answer. omega h is up to 1e4 times the centre's speed."""
     rng = np.random.default_rng(30)
     worst, seen = 0.0, 0
     change = mp.mpf("1e-20")
@@ -157,7 +157,7 @@ def test_light_bodies_that_turn_fast_keep_the_digits_of_their_impact() -> None:
 
 
 def test_no_impact_gains_energy() -> None:
-    """1e5 impacts. Three velocities are rounded, squared and summed: 8 roundings."""
+    """1e5 impacts gain no energy. Three velocities are rounded, squared and summed: 8 roundings."""
     worst = max(
         (kinetic_energy(hit.scene, hit.event.state_after) / before - 1)
         for hit in hits(100_000, 5, bounces=300)
@@ -171,7 +171,7 @@ def test_no_impact_gains_energy() -> None:
 
 
 def one_hit(**given: Any) -> Hit:
-    """The first impact of the 2:1 disc that comes down on 0.5 rad."""
+    """The first impact of the 2:1 disc that falls at an angle of 0.5 rad."""
     h = float(support(0.5, 2.0, 1.0).h)
     values = {"theta": 0.5, "z": h + 0.3, "x_dot": 0.0, "omega": 0.0} | given
     scene = Scene(2.0, 1.0, mass=1.7, **values)
@@ -191,9 +191,9 @@ def test_without_slip_it_sticks_where_friction_is_enough(friction: float, e: flo
 
 
 def test_unlimited_friction_by_its_three_formulas() -> None:
-    """u1 = u - v Gnt/Gtt without slip; stuck, stuck without pressure, or friction
-    alone. Their terms are of the size of the velocities and the response, and h' is that of another
-    place by an ulp of theta."""
+    """Three cases of u1 = u - v Gnt/Gtt, the gap rate without slip: stuck, stuck without pressure,
+    or friction alone. The terms are of the size of the velocities and the response, and the angle
+    of h' has an error of an ulp."""
     met = [0, 0, 0]
     for hit in hits(600, 11, friction=math.inf):
         v, u, tangential, normal, coupling = hit.before
@@ -229,8 +229,8 @@ def test_the_reaction_of_an_event_is_what_the_centre_gains() -> None:
 
 
 def test_the_energy_lost_is_the_work_of_the_reaction() -> None:
-    """The impulse times the mean velocity of the contact, which rounding knows beside the kinetic
-    energy."""
+    """The energy lost is the impulse times the mean velocity of the contact, up to roundings of the
+    kinetic energy."""
     lossless = 0
     for hit in hits(300, 19):
         along, away = impulses(hit)

@@ -1,4 +1,4 @@
-"""What a motion reaches may be more than can be typed: it is gone on from, saved and read."""
+"""A motion may reach states beyond the limits of input: they can be continued, saved and read."""
 
 import copy
 import math
@@ -13,7 +13,7 @@ import rolling_ellipse as rl
 from rolling_ellipse import Impulse, Scene
 
 EPS = 2.0**-52
-MOST = 1e12  # energies and heights beside m g max(a, b) and max(a, b)
+MOST = 1e12  # limit of energy / (m g max(a, b)) and of height / max(a, b)
 DOWNHILL = Scene(2.0, 1.0, slope=0.1, omega=3.0)
 LEVEL = Scene(2.0, 1.0, omega=3.2)
 FORCED = pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
@@ -32,7 +32,7 @@ def rolled(scene: Scene, t: float) -> rl.Trajectory:
 def test_a_state_after_very_many_half_turns_is_gone_on_from(
     scene: Scene, t: float, tmp_path: Path
 ) -> None:
-    """On, from a file, by a table of scenes and into a folder: the same bits."""
+    """Bits agree from the state itself, a file, a table of scenes and a folder."""
     motion = rolled(scene, t)
     assert motion.theta[-1] > 0.99e14 * math.pi
     reached = motion.scene_at(motion.t_end)
@@ -40,7 +40,7 @@ def test_a_state_after_very_many_half_turns_is_gone_on_from(
     times = np.linspace(0.0, 1e-7, 5)
     on = rl.simulate(reached, times, model="rolling")
     assert on.theta[0] == reached.theta and np.all(np.isfinite(on.x))
-    # theta itself is a double: steps of it are of its ulp
+    # theta is a double: its changes are whole ulp
     turned = reached.omega * times[-1]
     assert abs(on.theta[-1] - on.theta[0] - turned) <= np.spacing(reached.theta) + 0.01 * turned
     for same in (pickle.loads(pickle.dumps(reached)), copy.deepcopy(reached)):
@@ -51,7 +51,7 @@ def test_a_state_after_very_many_half_turns_is_gone_on_from(
         assert again == each and again.scene_at(each.t_end) == each.scene_at(each.t_end)
     asked: dict[str, Any] = {"model": "rolling"}
     assert rl.simulate_many([reached], times, **asked) == [on]
-    for _ in range(2):  # the second finds the folder complete
+    for _ in range(2):  # the second call finds the folder complete
         rl.simulate_many([reached], times, out=tmp_path / "many", **asked)
     assert list(rl.load_many(tmp_path / "many")) == [on]
 
@@ -74,7 +74,7 @@ def body(a: float, b: float, gravity: float) -> dict[str, Any]:
 
 
 def omega(scene: dict[str, Any]) -> float:
-    """omega^2 (k^2 + L^2) = 1e12 g L."""
+    """Largest omega of a scene: omega^2 (k^2 + L^2) = 1e12 g L."""
     length = max(scene["a"], scene["b"])
     gyration2 = (scene["a"] ** 2 + scene["b"] ** 2) / 4
     return math.sqrt(MOST * scene["gravity"] * length / (gyration2 + length**2))
@@ -100,7 +100,7 @@ LIMITS: dict[str, Callable[[dict[str, Any]], float]] = {
 )
 @pytest.mark.parametrize("name", LIMITS)
 def test_what_is_typed_goes_up_to_its_limit(name: str, of: dict[str, Any]) -> None:
-    """64 roundings below it is taken, as much above it is refused by its name."""
+    """A value 64 roundings below its limit is accepted; as far above it is refused by name."""
     limit = LIMITS[name](of)
     above: dict[str, Any] = {"z": height(of) / 2} if name == "z_dot" else {}
     of = {**of, **above}
@@ -110,7 +110,7 @@ def test_what_is_typed_goes_up_to_its_limit(name: str, of: dict[str, Any]) -> No
 
 
 def test_a_blow_brings_no_more_than_is_typed() -> None:
-    """J^2/2m = 1e12 m g L through the centre, of a body at rest."""
+    """The largest impulse through the centre of a body at rest has J^2/2m = 1e12 m g L."""
     scene = Scene(2.0, 1.0, mass=3.0)
     most = 3.0 * math.sqrt(2 * MOST * 9.81 * 2.0)
     scene.replace(impulse=Impulse(0.0, -most * (1 - 64 * EPS)))

@@ -1,4 +1,4 @@
-"""What counts as touching, rolling, resting; Scene and Impulse as values."""
+"""Touching, rolling and resting starts; Scene and Impulse as values."""
 
 import dataclasses
 import math
@@ -117,7 +117,7 @@ def test_scene_equality_and_hash() -> None:
 
 @pytest.mark.parametrize("name", ["initial_state", "core", "gyration2"])
 def test_what_a_scene_keeps_beside_its_numbers_does_not_matter(name: str) -> None:
-    """Nor does the sign of zero, as it does not for numbers; what is left out is not what it means.
+    """The sign of zero does not matter, as for numbers; an omitted value differs from its default.
 
     A hash that does not go with `==` would lose scenes in sets.
     """
@@ -136,7 +136,7 @@ def test_replace() -> None:
 
 
 def test_replace_refuses_what_no_longer_goes_together() -> None:
-    """A height for one angle or shape is under the ground for another; a blow may miss."""
+    """A height for one angle or shape is below the ground for another; a blow may miss the body."""
     touching = scene(z=1.0)
     struck = scene(impulse=Impulse.press(48.0, 1.5))
     assert touching.replace(a=3.0).initial_state.z == 1.0
@@ -154,8 +154,8 @@ def test_a_slope_in_degrees_is_asked_about(slope: float, asked: bool) -> None:
 
 @pytest.mark.parametrize("impulse", [None, Impulse()])
 def test_infinite_friction_holds_whatever_can_be_held(impulse: Impulse | None) -> None:
-    """Flat side forwards at 0.9 rad the ground would have to pull, and the limit of slides begins;
-    with as little friction as 3 it is friction that ends rolling."""
+    """A body turning at 0.9 rad with 3 rad/s needs a pull of the ground, and the limit of slides
+    begins; with a friction of 0.01 it is friction that cannot hold."""
     given: dict[str, Any] = {"theta": 0.9, "omega": 3.0, "impulse": impulse}
     limit = scene(**given).initial_state
     assert limit.mode is Mode.SLIDING
@@ -165,13 +165,13 @@ def test_infinite_friction_holds_whatever_can_be_held(impulse: Impulse | None) -
 
 
 def test_gyration2() -> None:
-    assert scene().gyration2 == 1.25  # uniform disc, report eq 12
+    assert scene().gyration2 == 1.25  # a uniform disc, eq 12 of the report
     assert scene(mass=4.0).gyration2 == 1.25
     assert scene(mass=4.0, inertia=2.0).gyration2 == 0.5
 
 
 def test_what_is_taken_as_inertia_is_taken_as_gyration2() -> None:
-    """At the ends of the range, where the last bit of either decides."""
+    """Both limits agree at the ends of the range, where the last bit decides."""
     random = np.random.default_rng(9)
     taken = 0
     for axis, mass, off in zip(
@@ -200,7 +200,7 @@ def ulps_above(value: float, count: int) -> float:
 
 @pytest.mark.parametrize("theta", ANGLES)
 def test_missing_values_are_those_of_rolling(theta: float) -> None:
-    """h and the products h omega, h' omega: 2 ulp and 9 ulp with the errors of the geometry."""
+    """h errs by 2 ulp, the products h omega and h' omega by 9 ulp with the geometry's errors."""
     found = scene(theta=theta, omega=1.3).initial_state
     h, slope = (f(theta, a=2.0, b=1.0) for f in (geometry.support, geometry.support_slope))
     assert found.z == pytest.approx(h, rel=2 * 2.0**-52)
@@ -269,7 +269,7 @@ def test_a_given_slip_is_sliding(theta: float) -> None:
     ],
 )
 def test_rest_is_equilibrium(theta: float, mode: Mode) -> None:
-    """|h'| within 8 ulp: the nearest doubles to the first multiples of pi/2."""
+    """Rest needs |h'| within 8 ulp: the nearest doubles to the first multiples of pi/2."""
     assert scene(theta=theta).initial_state.mode == mode
     assert scene(theta=theta, omega=1e-9).initial_state.mode != Mode.REST
 

@@ -1,7 +1,7 @@
 """Baumgarte's feedback f'' + 2 alpha f' + beta^2 f = 0 (J. Baumgarte, Comput. Methods Appl. Mech.
-Eng. 1 (1972) 1): what it holds, what it costs, and the gains at which a step turns it about.
+Eng. 1 (1972) 1): its effect, its cost, and the gains at which a step makes it unstable.
 
-A step of an explicit method makes R(h s) of what goes like e^(s t), so that the gains have a limit:
+A step of an explicit method multiplies an error e^(s t) by R(h s), so that the gains have a limit:
 for alpha = beta, f1 has the root -2 alpha, and 2 alpha h may reach the end of the real stability
 interval.
 """
@@ -36,7 +36,7 @@ from stability_laws import (
 
 
 def growth(method: str, alpha: float, beta: float, step: float) -> float:
-    """Largest factor a step puts on what is missed: roots of s^2 + 2 alpha s + beta^2 for the
+    """Largest factor of a step on constraint errors: roots of s^2 + 2 alpha s + beta^2 for the
     positions, -2 alpha for f1."""
     roots = np.array([*np.roots([1, 2 * alpha, beta**2]), -2 * alpha])
     return float(amplification(method, step * roots).max())
@@ -47,10 +47,10 @@ def growth(method: str, alpha: float, beta: float, step: float) -> float:
 
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_feedback_on_a_circle_is_the_stability_function(method: str) -> None:
-    """There the constraints are linear in what is put off, and each step multiplies f1 by
-    R(-2 alpha h) and (f2, f2') by R of their matrix. 1e-6 is put off: 100 ulp of the coordinates
-    are 2e-14, times what the steps make of them (and 1/h for a rate); with gains below and above
-    the limit."""
+    """The constraints of a circle are linear in the errors: each step multiplies f1 by R(-2 alpha
+    h) and (f2, f2') by R of their matrix. From an error of 1e-6, 100 ulp of the coordinates are
+    2e-14, times the growth in the steps (and 1/h for a rate); gains are below and above the
+    limit."""
     step, steps = 0.01, 10
     scene = Scene(1.0, 1.0, omega=2.0)
     q, q_dot = rl.kinematics(0.0, 2.0, a=1.0, b=1.0)
@@ -76,9 +76,9 @@ def test_feedback_on_a_circle_is_the_stability_function(method: str) -> None:
 
 
 def test_the_package_knows_the_stability_function() -> None:
-    """Its own factor of a step, with complex arithmetic on the stages, and this suite's, with the
-    polynomial and numpy's roots: 1e-7 of the largest of their terms (12 stages, and double roots
-    that numpy finds to half the digits only)."""
+    """The package's factor of a step (complex arithmetic on the stages) agrees with this suite's
+    (polynomial and numpy's roots) to 1e-7 of the largest of their terms: 12 stages, and double
+    roots that numpy finds to half the digits only."""
     random = np.random.default_rng(4)
     worst = 0.0
     for method in EXPLICIT:
@@ -100,16 +100,16 @@ def test_the_package_knows_the_stability_function() -> None:
         assert _core.feedback_growth(without.core) == 0.0
 
 
-# ------------------------------------------------------------------------------- its limit
+# ------------------------------------------------------------------------------- the limit of gains
 
 LIMITS = {"rk4": 2.785293563405282, "dopri5": 3.3065678926, "dop853": 6.3936515228}
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_the_limit_of_equal_gains(method: str) -> None:
-    """2 alpha h at which runs are lost, by bisection, beside the end of the stability interval:
-    1 %. On the ellipse 600 steps have to bring 1e-6 to 1 (2.3 % a step, where R' is 2 or more), and
-    the constraints change as it turns."""
+    """Runs are lost at the end of the stability interval of 2 alpha h, by bisection: within 1 %. On
+    the ellipse 600 steps must raise 1e-6 to 1 (2.3 % a step, where R' is 2 or more), and the
+    constraints change as it turns."""
     limit = interval(method, -1)
     assert limit == pytest.approx(LIMITS[method], rel=1e-9)
     found = reach(method)
@@ -120,8 +120,8 @@ def test_the_limit_of_equal_gains(method: str) -> None:
 @pytest.mark.parametrize("method", EXPLICIT)
 @pytest.mark.parametrize("mix", [(1.0, 0.5), (0.2, 1.0), (1.0, 3.0)])
 def test_gains_have_a_limit(method: str, mix: tuple[float, float]) -> None:
-    """Gains grow in a fixed proportion until a step multiplies what is missed by more than 1: 5 %
-    below the limit residuals stay small for 600 steps, 5 % above the motion is lost."""
+    """Gains grow in a fixed proportion until a step multiplies constraint errors by more than 1: 5
+    % below the limit residuals stay small for 600 steps, 5 % above the motion is lost."""
     limit = largest(
         lambda gain: growth(method, mix[0] * gain, mix[1] * gain, 2.0**-7) <= 1 + 1e-12,
         1.0,
@@ -136,14 +136,14 @@ def test_gains_have_a_limit(method: str, mix: tuple[float, float]) -> None:
     assert below < 1e-2 and above > 1.0
 
 
-# ----------------------------------------------------------------------------- its answer
+# ----------------------------------------------------------------------------- warnings of gains
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
 @pytest.mark.parametrize("gains", [(10.0, 10.0), (40.0, 5.0), (3.0, 30.0)])
 def test_too_large_gains_are_told(method: str, gains: tuple[float, float]) -> None:
-    """Above the limit a warning says the largest step, which is stable where 1.01 of it is not;
-    taken, it warns of the gains no more. (It is rounded down to 1e-6 s, less than 1e-4 of it.)"""
+    """Above the limit a warning names the largest step: it is stable and 1.01 of it is not. A run
+    with it warns of no gains. (The step is rounded down to 1e-6 s, less than 1e-4 of it.)"""
     limit = largest(lambda step: growth(method, *gains, step) <= 1 + 1e-12, 1e-3, 10.0, 1e-9)
     how = kept_by("baumgarte", method=method, baumgarte=gains, raise_on_failure=False)
     with pytest.warns(rl.StabilityWarning, match="does not bear the gains") as caught:
@@ -155,7 +155,7 @@ def test_too_large_gains_are_told(method: str, gains: tuple[float, float]) -> No
     assert growth(method, *gains, suggested) <= 1 + 1e-12
     assert growth(method, *gains, 1.01 * suggested) > 1
     assert suggested == pytest.approx(limit, rel=1e-4)
-    # Steps so large may miss the constraints in between, of which another sentence warns.
+    # Steps of this size may miss the constraints in between; another sentence warns of that.
     with warnings.catch_warnings(record=True) as then:
         warnings.simplefilter("always", rl.StabilityWarning)
         simulate(SLOW, [2 * suggested], step=suggested, **how)
@@ -163,8 +163,8 @@ def test_too_large_gains_are_told(method: str, gains: tuple[float, float]) -> No
 
 
 def test_controlled_steps_find_the_limit_themselves() -> None:
-    """Gains of 200 1/s with dop853 at its default tolerances: steps stay near the limit (at most
-    twice it, on the mean, for errors tell only after the step), nothing is lost, nothing told."""
+    """Gains of 200 1/s with dop853 at its default tolerances keep steps near the limit (at most
+    twice it on average, since errors are known only after a step), without a loss or a warning."""
     how = kept_by("baumgarte", method="dop853", baumgarte=(200.0, 200.0))
     found = simulate(SLOW, [2.0], **how)
     mean = 2.0 / found.stats["steps"]
@@ -173,17 +173,17 @@ def test_controlled_steps_find_the_limit_themselves() -> None:
     assert worst_residual(found) < 1e-6
 
 
-# ----------------------------------------------------------------------------- its price
+# ----------------------------------------------------------------------------- the price of gains
 
 
 def test_small_gains_hold_like_their_square_and_large_ones_spoil_the_phase() -> None:
-    """Truncation pushes the constraints by d on average, which alone makes d t^2/2 and with
-    feedback d/beta^2: the same d to 15 % (it also varies within a turn, which shows more the less
-    of the mean is left), and slope -2 up to gains of 2.
+    """Truncation pushes the constraints by d on average: errors are d t^2/2 without feedback, and
+    d/beta^2 with it. Both give the same d to 15 % (d also varies within a turn, which matters more
+    the smaller the mean), and the slope is -2 up to gains of 2.
 
-    The feedback's own truncation grows with a power of gain times step: residuals have their
-    least between gains of 5 and 10 and rise again, like the gain or faster; the phase, which no
-    gain from 1 to 10 makes any better (a factor of 2), becomes ten times worse."""
+    The feedback's own truncation grows with a power of gain times step: residuals are smallest
+    between gains of 5 and 10 and rise again, like the gain or faster; the phase error, equal
+    within a factor of 2 for gains from 1 to 10, becomes ten times larger."""
     residuals, phases = np.transpose([fed_back(float(gain)) for gain in GAINS])
     end = 100 * half_turn(FED_BACK)
     free = run(FED_BACK, [end], **kept_by("none", method="rk4", step=2.0**-9))

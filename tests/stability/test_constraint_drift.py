@@ -1,4 +1,4 @@
-"""Constraints that are only differentiated drift, by what each step truncates, like t^2.
+"""Constraints that are only differentiated drift like t^2 by the truncation of each step.
 Projection and the index-2 system hold them at any time.
 """
 
@@ -23,10 +23,10 @@ DRIFTS = {
 
 @pytest.mark.parametrize(("scene", "method", "step", "last"), DRIFTS.values(), ids=DRIFTS)
 def test_drift_grows_like_t_squared(scene: Scene, method: str, step: float, last: int) -> None:
-    """Each step leaves the constraints by its truncation error, in position and in velocity, and
-    the equations keep second rates 0: velocities are missed like t, positions like t^2. Slopes
-    from 10 half turns on, while the gap stays below 1e-2; steps are powers of two, so that knots
-    are met exactly."""
+    """A step leaves the constraints by its truncation error in position and velocity, and the
+    equations keep second rates 0: errors grow like t in velocity and like t^2 in position. Slopes
+    are taken from 10 half turns on, while the gap stays below 1e-2; steps are powers of two, so
+    that knots are met exactly."""
     spans = np.unique(np.geomspace(10, last, 10).round())
     found = envelopes(scene, spans, step, **kept_by("none", method=method, step=step))
     gap, position, velocity = (exponent(spans, missed) for missed in found)
@@ -35,7 +35,7 @@ def test_drift_grows_like_t_squared(scene: Scene, method: str, step: float, last
     assert abs(gap - 2) <= 0.05 and abs(position - 2) <= 0.05 and abs(velocity - 1) <= 0.05
 
 
-# ------------------------------------------------------------------- and what holds them
+# ------------------------------------------------------------------- methods that hold them
 
 HELD: dict[str, dict[str, Any]] = {
     "projection": kept_by("projection", method="rk4", step=2.0**-8),
@@ -46,9 +46,9 @@ HELD: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("how", HELD.values(), ids=HELD)
 def test_projection_and_index_2_hold_the_constraints_as_long(how: dict[str, Any]) -> None:
-    """From 1 to 1000 half turns, where the first motion above has left the ground by 1e-4: 16 ulp
-    of theta as the constraints feel it, times the rates for velocities; nothing that grows beyond
-    the last digit of theta."""
+    """Constraints hold from 1 to 1000 half turns, where the first motion above has left the ground
+    by 1e-4: within 16 ulp of theta in the constraints, times the rates for velocities. No error
+    grows beyond the last digit of theta."""
     spans = np.unique(np.geomspace(1, 1000, 40).round())
     found = run(ROUND, spans * half_turn(ROUND), **how)
     held = found.constraint_residuals()

@@ -1,7 +1,7 @@
 """Infinitely many bounces in a finite time (Zeno): a body dropped flat, e = 0.5.
 
-Bounce n takes 2 v e^n/g, all of them v/g (1 + e)/(1 - e). A loop over events never gets past that
-time, steps of one size sink into the ground; the product sums the rest of the series.
+Bounce n takes 2 v e^n/g, all of them v/g (1 + e)/(1 - e). A loop over events never passes that
+time, and equal steps sink into the ground; the package sums the rest of the series.
 """
 
 import math
@@ -17,17 +17,17 @@ from rolling_ellipse import EventKind, Scene, simulate
 from stability_laws import GRAVITY, B, event_loop, exponent, sinking
 
 SPEED, E = 1.7, 0.5
-UNIT = math.sqrt(GRAVITY * B)  # speeds of rest are told as parts of it [m/s]
+UNIT = math.sqrt(GRAVITY * B)  # unit of the speeds of rest [m/s]
 
 
 def dropped(theta: float = 0.0, **given: Any) -> Scene:
-    """At rest, so high that it hits the ground with SPEED (flat; tilted, about so)."""
+    """A body at rest that hits the ground with SPEED (if flat; if tilted, with about SPEED)."""
     height = float(support(theta, 2.0, B).h) + SPEED**2 / (2 * GRAVITY)
     return Scene(2.0, B, theta=theta, z=height, friction=0.3, restitution=E, **given)
 
 
 def end_of_all(scene: Scene) -> float:
-    """v/g (1 + e)/(1 - e), with v from the height that the double z is [s]."""
+    """Time of the last bounce [s]: v/g (1 + e)/(1 - e), with v from the height of the double z."""
     assert scene.z is not None
     with mp.workdps(DIGITS):
         v = mp.sqrt(2 * mp.mpf(GRAVITY) * (mp.mpf(scene.z) - B))
@@ -35,8 +35,8 @@ def end_of_all(scene: Scene) -> float:
 
 
 def test_a_loop_over_events_never_gets_past_the_last_bounce() -> None:
-    """Parabola, collision, parabola ...: from the bounce on that takes less than half an ulp of the
-    clock, n = log2(4 v/(g ulp)) = 53, time stands still, whatever number of events is allowed."""
+    """In a loop of parabolas and collisions time stands still from the bounce on that takes less
+    than half an ulp of the clock, n = log2(4 v/(g ulp)) = 53, for any number of events."""
     end = end_of_all(dropped())
     stood, t = event_loop(SPEED, E, 2000)
     told(f"after 2000 events t = {t!r} of {end!r} s; stands still from event {stood} on")
@@ -46,8 +46,8 @@ def test_a_loop_over_events_never_gets_past_the_last_bounce() -> None:
 
 @pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-4])
 def test_steps_of_one_size_sink_into_the_ground(step: float) -> None:
-    """Speed and place by Euler's symplectic steps, and -e times the speed where the body is in the
-    ground and falls: the speed comes to e g h/(1 + e), and it sinks by g h/(1 + e) a second."""
+    """Symplectic Euler steps turn the speed to -e times it where the body is in the ground and
+    falls: the speed tends to e g h/(1 + e), and the body sinks by g h/(1 + e) a second."""
     t, z = sinking(SPEED, E, step, 6.0)
     half = t.size // 2
     rate = (z[half] - z[-1]) / (t[-1] - t[half])
@@ -57,11 +57,11 @@ def test_steps_of_one_size_sink_into_the_ground(step: float) -> None:
 
 @pytest.mark.parametrize("theta", [0.1, 0.3])
 def test_a_tilted_body_errs_by_the_square_of_the_speed_of_rest(theta: float) -> None:
-    """Its bounces turn it, so that those that are summed are not alike: they last as long as the
-    speed is large, and meanwhile the body turns by as much: slope 2. Bounces are whole, which
-    scatters the errors by e^-2 at most: six speeds a decade over four decades, so 0.1 of a slope.
-    And they are of the order of the square of rest_speed/sqrt(g b), as `simulate` says: no more
-    than 10 of it, as errors grow while the body goes on for three seconds, ten natural times."""
+    """Bounces turn a tilted body, so that the summed ones differ: they last in proportion to the
+    speed of rest, and the body turns in proportion to it meanwhile: slope 2. Whole bounces scatter
+    the errors by e^-2 at most: six speeds a decade over four decades, so 0.1 of a slope. The errors
+    are of the order of the square of rest_speed/sqrt(g b), as `simulate` says: at most 10 times it,
+    as they grow during the next three seconds, ten natural times."""
     speeds = np.geomspace(1e-2, 1e-6, 25)
     scene = dropped(theta)
     exact = simulate(scene, [3.0], rest_speed=1e-10 * UNIT)

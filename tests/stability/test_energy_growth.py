@@ -1,12 +1,12 @@
-"""How the errors of energy and phase grow over thousands of half swings, as they do in theory.
+"""Errors of energy and phase grow over thousands of half swings as theory says.
 
 A method that drifts changes the energy in proportion to time and the phase by its square. Gauss
 collocation neither drifts nor, with compensated sums and stages solved to the last bit, adds up
 its roundings: they walk at random, the energy as time^0.5, the phase as time^1.5 (E. Hairer,
 R. I. McLachlan, A. Razakarivony, BIT Numer. Math. 48 (2008) 231).
 
-The motion rocks, so that theta stays small and doubles hold the energy to its last digits; of a
-rotation, whose theta grows, they do so only where the ellipse lies flat.
+The motion rocks, so that theta stays small and doubles hold the energy to its last digits. For a
+rotation, whose theta grows, they hold it only where the ellipse lies flat.
 """
 
 import math
@@ -45,19 +45,19 @@ def walks() -> Errors:
     return errors(QUICK, SAMPLES, gauss_runs(RUNS))
 
 
-# ------------------------------------------------------------------------ the ruler itself
+# ------------------------------------------------------------------------ the measurement itself
 
 
 @pytest.mark.parametrize(("drift", "expected"), [(0.0, 0.5), (1.0, 1.0)])
 def test_growth_is_measured(drift: float, expected: float) -> None:
-    """On made walks; of a walk the exponent scatters by 0.04 from seed to seed."""
+    """Exponents of made walks are right; they scatter by 0.04 from seed to seed."""
     steps = np.random.default_rng(1).choice([-1.0, 1.0], (RUNS, SAMPLES))
     assert growth(np.cumsum(steps + drift, axis=1)) == pytest.approx(expected, abs=0.1)
 
 
 def test_energy_error_is_measured() -> None:
-    """One part in 1e9 of omega is two in the kinetic energy; at any angle it is that of the
-    package, which is good to some ulp of a sum of four products."""
+    """A part of 1e-9 of omega is 2e-9 of the kinetic energy; at any angle the energy is the
+    package's, which has some ulp of a sum of four products."""
     omega = QUICK.omega
     kinetic = (GYRATION2 + B * B) * omega**2 / 2
     found = energy_error(np.zeros(1), np.array([omega * (1 + 1e-9)]), omega)
@@ -68,13 +68,13 @@ def test_energy_error_is_measured() -> None:
         assert energy_error(theta, omega, omega) == pytest.approx(other / lying - 1, abs=16 * EPS)
 
 
-# ------------------------------------------------------------------- what drifts, drifts
+# ------------------------------------------------------------------- methods that drift
 
 
 @pytest.mark.parametrize("name", DRIFTING)
 def test_what_drifts_drifts(name: str) -> None:
-    """Energy in proportion to time over three decades, the phase by its square over the last one:
-    before, the truncation of the period, which is in proportion to time, is not yet small."""
+    """Energy errors grow like time over three decades, phase errors like its square over the last
+    decade: before, the truncation of the period, in proportion to time, is not yet small."""
     drifting = errors(QUICK, SAMPLES, [DRIFTING[name]])
     energy = growth(drifting.energy)
     late = spread(SAMPLES // 10, SAMPLES) - 1
@@ -90,9 +90,8 @@ def test_what_drifts_drifts(name: str) -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 @pytest.mark.parametrize(("name", "power"), [("none", 2), ("gains of 10", 1), ("projection", 1)])
 def test_constraints_alone_do_not_keep_the_energy(name: str, power: int) -> None:
-    """The motion along them is still integrated by an explicit method, which loses energy in
-    proportion to time, over three decades; where they are not kept, the body also leaves the height
-    that goes with its speed, like t^2."""
+    """An explicit method along the constraints loses energy in proportion to time, over three
+    decades; without them, the body also leaves the height that belongs to its speed, like t^2."""
     start = simulate(FED_BACK, 0.0).energy[0]
     lost = np.abs(kept(name).energy / start - 1)
     slope = exponent(SPANS, lost)
@@ -102,7 +101,7 @@ def test_constraints_alone_do_not_keep_the_energy(name: str, power: int) -> None
 
 
 def test_projection_with_the_energy_loses_none() -> None:
-    """At any time of 1000 half turns: 8 ulp, it is a sum of four products."""
+    """The energy of 1000 half turns is constant within 8 ulp: it is a sum of four products."""
     start = simulate(FED_BACK, 0.0).energy[0]
     found = kept("projection+energy")
     times = np.random.default_rng(5).uniform(0, found.t_end, 1000)
@@ -115,8 +114,8 @@ def test_projection_with_the_energy_loses_none() -> None:
 
 
 def test_energy_of_gauss_walks() -> None:
-    """One step errs by no more than an ulp of its largest change of omega; the errors walk. They do
-    not drift: the mean of the runs stays within what their scatter makes of them (5 sigma)."""
+    """A step errs by at most an ulp of its largest change of omega, and the errors walk at random
+    without a drift: the mean of the runs stays within its own scatter (5 sigma)."""
     energy = walks().energy
     slope, last = growth(energy), energy[:, -1]
     told(f"gauss: energy {rms(last):.2e} after 4000 half swings, slope {slope:.3f}")
@@ -130,10 +129,10 @@ def test_energy_of_gauss_walks() -> None:
 
 
 def test_phase_of_gauss_walks() -> None:
-    """Seen beside the delay that all runs share: truncation, which changes the period.
+    """Delays are compared with their mean over all runs: truncation, which changes the period.
 
-    From 100 half swings on, where the walk of the energy rules that of the phase. In made walks the
-    exponent scatters by 0.1.
+    The fit begins at 100 half swings, where the walk of the energy dominates the phase. In made
+    walks the exponent scatters by 0.1.
     """
     late = spread(10, SAMPLES) - 1
     half_swings, delay = walks().half_swings[late], walks().delay[:, late]

@@ -1,8 +1,8 @@
-"""Friction a hair's breadth beside what rolling needs: the grip is lost for an instant, or not.
+"""Friction a hair above or below the need of rolling: the grip holds, or is lost for an instant.
 
-The need has a smooth maximum on the way up: with friction short by 10^-k it exceeds what there is
-for 10^(-k/2) of the way. What looks at samples, or at the ends of steps, does not see it from some
-k on; the certificate decides signs of polynomials and has nothing to miss.
+The need has a smooth maximum on the way up: it exceeds a friction that is short by 10^-k on
+10^(-k/2) of the path. Samples, or the ends of steps, do not show this from some k on; the
+certificate decides signs of polynomials and misses nothing.
 """
 
 import math
@@ -20,8 +20,8 @@ from stability_laws import GRAVITY, GYRATION2, A, B, exponent, rms, shortfall
 from stability_laws import GRAZING as SCENE
 
 OMEGA = SCENE.omega
-DISTANCES = range(1, 16)  # k
-# The margins of the polynomial of degree 10 allow for some 1e-12 of its terms.
+DISTANCES = range(1, 16)  # exponents k of the distances 10^-k
+# Distances that are decided: margins of the polynomial of degree 10 allow 1e-12 of its terms.
 DECIDED = range(1, 12)
 
 
@@ -39,24 +39,24 @@ def ratio(theta: Any) -> Any:
 
 @cache
 def need() -> tuple[Any, Any]:
-    """The largest, and where: the zero of its derivative, in 40 digits."""
+    """The largest |F|/N and its angle, by the zero of the derivative, in 40 digits."""
     with mp.workdps(DIGITS):
         where = mp.findroot(lambda y: mp.diff(ratio, y), mp.mpf("0.85"))
         return ratio(where), where
 
 
 def friction(k: int, side: int) -> float:
-    """What is needed, times 1 + side 10^-k."""
+    """The friction needed, times 1 + side 10^-k."""
     with mp.workdps(DIGITS):
         return float(need()[0] * (1 + side * mp.mpf(10) ** -k))
 
 
-# ------------------------------------------------------------------------- by samples
+# ------------------------------------------------------------------------- search by samples
 
 
 def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
-    """A maximum is flat: slope -2, within what the rms of 64 draws scatters, a tenth of itself,
-    over two decades: 0.05. So a grid finds what is short by more than that, and no less."""
+    """A maximum is flat: slope -2, up to the scatter of the rms of 64 draws, a tenth of it, over
+    two decades: 0.05. So a grid finds a lack of friction only above this shortfall."""
     counts = [30, 100, 300, 1000, 3000]
     places = np.random.default_rng(0).uniform(0, 1, 64)
     short = [rms(shortfall(count, places)) for count in counts]
@@ -67,13 +67,13 @@ def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
     assert abs(slope + 2) <= 0.05
 
 
-# ------------------------------------------------------------------------- by signs
+# ------------------------------------------------------------------------- search by signs
 
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_the_certificate_misses_nothing_down_to_1e_minus_11(side: int) -> None:
-    """Right on both sides as far as double arithmetic can tell, and EDGE, never wrong, beyond;
-    `classify` likewise, for the same polynomial."""
+    """Verdicts are right on both sides as far as double arithmetic resolves, and EDGE or right
+    beyond; `classify` agrees, since it uses the same polynomial."""
     verdicts = []
     for k in DISTANCES:
         mu = friction(k, side)
@@ -93,10 +93,10 @@ def test_the_certificate_misses_nothing_down_to_1e_minus_11(side: int) -> None:
 
 @pytest.mark.parametrize("slope", [0.0, 1e-300], ids=["by the certificate", "by the event finder"])
 def test_the_motion_slips_where_it_is_short_and_nowhere_else(slope: float) -> None:
-    """On level ground the certificate gives the angle; on a slope, however little of one, an event
-    of the stepped motion, which looks for the minima of mu N - |F| and not for a change of sign.
-    The angle is where the need first exceeds mu, 10^(-k/2) before the maximum: known to some ulp
-    of the need over its slope there, 1e-15 10^(k/2), and on a slope to the error of the steps."""
+    """On level ground the certificate gives the angle; on the slightest slope an event of the
+    stepped motion, which searches for the minima of mu N - |F|, not for a change of sign. The angle
+    is where the need first exceeds mu, 10^(-k/2) before the maximum: known to some ulp of the need
+    over its slope there, 1e-15 10^(k/2), and on a slope to the error of the steps."""
     maximum = need()[1]
     for k in DECIDED:
         for side in (1, -1):

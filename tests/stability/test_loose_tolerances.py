@@ -1,8 +1,8 @@
-"""A tolerance of 1e-2, as the report used: what leaves its constraints, what stays on them, what
-keeps its energy.
+"""Motions with a tolerance of 1e-2, as in the report: some leave their constraints, some keep them,
+some keep their energy.
 
-A tolerance bounds what a step loses, not what is kept: only what is kept by construction is kept
-whatever the tolerance.
+A tolerance bounds the error of a step, not of the motion: only a quantity that is kept by
+construction is kept at any tolerance.
 """
 
 from functools import cache
@@ -36,9 +36,9 @@ def kind(name: str) -> str:
 
 @each_run
 def test_constraints_are_kept_by_construction_or_not(scene: str, name: str) -> None:
-    """Left free they are missed by half a semi-axis or more: 100 steps of errors of 1e-2, and drift
-    adds them up like t^2. Feedback leaves what some steps miss, at least the tolerance over ten,
-    at most a semi-axis. All else is at 16 ulp of theta, at samples between steps, too."""
+    """Free constraints err by half a semi-axis or more: 100 steps with errors of 1e-2, and drift
+    like t^2. Feedback leaves the errors of some steps, between a tenth of the tolerance and a
+    semi-axis. All other methods hold 16 ulp of theta, also at samples between steps."""
     found = run(scene, name)
     if kind(name) == "none":
         assert found.missed.max() > 0.5
@@ -51,13 +51,13 @@ def test_constraints_are_kept_by_construction_or_not(scene: str, name: str) -> N
 
 @each_run
 def test_energy_is_kept_by_construction_or_not(scene: str, name: str) -> None:
-    """By the exact motion (4 ulp: a sum of squares of rounded rates) and by projection with the
-    energy (8); all else loses more than a tenth of a thousandth, or 1e-5 where Radau's steps are a
+    """The exact motion keeps the energy (4 ulp: a sum of squares of rounded rates), and projection
+    with the energy (8 ulp); all other methods lose more than 1e-4, or 1e-5 with Radau's steps of a
     thirtieth of a swing."""
     found = run(scene, name)
     if kind(name) in ("exact", "contact", "projection+energy"):
         off = np.abs(found.motion.energy / found.motion.energy[0] - 1)
-        # a rotation's theta is 100: its last digit is 64 ulp, of which the ground has the slope 1
+        # a rotation's theta is 100: its last digit is 64 ulp, and the height has slope 1
         assert np.max(off) <= 8 * 2.0**-52 * max(1, np.abs(found.motion.theta).max())
     else:
         assert found.energy.max() > (1e-5 if kind(name) == "ggl" else 1e-4)
@@ -66,8 +66,8 @@ def test_energy_is_kept_by_construction_or_not(scene: str, name: str) -> None:
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("name", ["dopri5, projection", "dopri5"])
 def test_constraints_do_not_make_a_motion_right(scene: str, name: str) -> None:
-    """On its constraints to the last digit, by projection or as rolling, dopri5 loses more
-    than twice the tolerance of its energy and a tenth of a radian; that is what the tolerance is
-    for. How much hangs on which steps are refused, that is after a minute on the last bits."""
+    """dopri5 loses more than twice the tolerance of its energy and a tenth of a radian, although
+    projection or rolling holds its constraints to the last digit. The losses depend on the steps
+    that are rejected, and so, after a minute, on the last bits."""
     found = run(scene, name)
     assert found.missed.max() < 1e-13 and found.energy.max() > 2 * RTOL and found.phase > 0.1

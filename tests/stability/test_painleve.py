@@ -1,7 +1,7 @@
 """Painleve's paradox: friction that presses the body into the ground faster than N pushes it out.
 
-While sliding N = c/B, B = Gnn - mu s Gnt. Beyond the critical friction B <= 0 somewhere: a law of
-force then gives an N that pulls, or is infinite, and goes on with it. The product ends there with a
+A slide has N = c/B, B = Gnn - mu s Gnt. Beyond the critical friction B <= 0 somewhere: a law of
+force then continues with an N that pulls or is infinite. The package ends the motion there, with a
 status whose sentence says why.
 """
 
@@ -19,11 +19,11 @@ from oracles.numbers import DIGITS, EPS
 from rolling_ellipse import EventKind, Mode, Scene, Status, simulate
 from stability_laws import GRAVITY, GYRATION2, A, B, law_of_force
 
-CRITICAL = 1.352698667647026  # to its last digit
+CRITICAL = 1.352698667647026  # critical friction, to its last digit
 
 
 def critical() -> tuple[Any, Any]:
-    """The least (k^2 + h'^2)/(h |h'|), and where, in 40 digits."""
+    """The least (k^2 + h'^2)/(h |h'|) and its angle, in 40 digits."""
 
     def ratio(theta: Any) -> Any:
         at = support(theta, mp.mpf(A), mp.mpf(B))
@@ -35,7 +35,7 @@ def critical() -> tuple[Any, Any]:
 
 
 def sliding(friction: float, **given: Any) -> Scene:
-    """Forwards at the critical angle, without spin."""
+    """A body that slides forwards at the critical angle without spin."""
     return Scene(A, B, friction=friction, **({"theta": float(critical()[1]), "x_dot": 5.0} | given))
 
 
@@ -47,14 +47,14 @@ BEYOND = [sliding(3.0, theta=0.9), sliding(3.0, theta=0.3), sliding(1.5), slidin
 @pytest.mark.parametrize("scene", BEYOND, ids=["3 at 0.9", "3 at 0.3", "1.5", "1.36"])
 def test_a_law_of_force_goes_on_with_nonsense_and_the_product_jams(scene: Scene) -> None:
     """N is negative from the first instant, though gravity presses (c = g): the ground pulls, the
-    slip grows, and the body soon moves with more than twice the energy there is, most to the point
-    of no number, with steps of either size. The product ends at that instant, with a sentence and
+    slip grows, and the body soon moves with more than twice its energy, mostly until numbers
+    overflow, with steps of either size. The package ends at that instant, with a sentence and
     finite numbers."""
     start = scene.initial_state
     state, mu = (start.theta, start.omega, start.x_dot), scene.friction
     at = support(start.theta, A, B)
     response = 1 + (at.slope**2 - mu * at.h * at.slope) / GYRATION2
-    there_is = start.x_dot**2 + 2 * GRAVITY * (A - B)  # twice, per mass, lying flat
+    there_is = start.x_dot**2 + 2 * GRAVITY * (A - B)  # twice the energy per mass, lying flat
     for step in (1e-3, 1e-4):
         t, normal, omega, x_dot = law_of_force(state, mu, step).T
         assert response < 0 and normal[0] == pytest.approx(GRAVITY / response, rel=8 * EPS)
@@ -80,8 +80,8 @@ def test_a_law_of_force_goes_on_with_nonsense_and_the_product_jams(scene: Scene)
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_it_jams_above_the_critical_friction_and_not_below(distance: float, mirrored: bool) -> None:
-    """At the critical angle, where B is a part `distance` of Gnn: below it N = g/B, however large,
-    and the slip of 5 m/s ends in proportion to B. Nearer than 1e-12 B itself is a few ulp."""
+    """N = g/B, however large, holds below the critical friction: B is a part `distance` of Gnn at
+    the critical angle, and the slip of 5 m/s ends in proportion to B. Nearer B is a few ulp."""
     exact = float(critical()[0])
     angle = float(critical()[1])
     start = {"theta": math.pi - angle, "x_dot": -5.0} if mirrored else {}
@@ -92,12 +92,12 @@ def test_it_jams_above_the_critical_friction_and_not_below(distance: float, mirr
     response = (1 + at.slope**2 / GYRATION2) * distance
     told(f"{distance:g}: N/m = {below.normal_force[0]:.4e}, g/B = {GRAVITY / response:.4e}")
     assert below.status is Status.COMPLETED
-    # B is a difference of ones, off by an ulp or two of them
+    # B is a difference of ones, with an error of an ulp or two of them
     assert below.normal_force[0] == pytest.approx(GRAVITY / response, rel=4 * EPS / distance)
     stick = below.events[0]
     assert stick.kind is EventKind.STICK
-    # theta nearly stands meanwhile: slip and omega change as mu Gtt - Gnt to mu h - h', and
-    # B d omega/dt = (mu h - h')(g + h'' omega^2)/k^2 with h'' < 0
+    # theta hardly changes meanwhile: slip and omega change as mu Gtt - Gnt to mu h - h', and B d
+    # omega/dt = (mu h - h')(g + h'' omega^2)/k^2 with h'' < 0
     spin = (exact * at.h - at.slope) / GYRATION2
     grip = exact * (1 + at.h**2 / GYRATION2) - at.h * at.slope / GYRATION2
     bend = math.sqrt(-at.curvature / GRAVITY)
@@ -111,9 +111,9 @@ def test_it_jams_above_the_critical_friction_and_not_below(distance: float, mirr
 
 @pytest.mark.parametrize("distance", [1e-13, 3e-14, 1e-14, 3e-15])
 def test_a_slide_that_starts_with_next_to_no_response_ends_at_once(distance: float) -> None:
-    """B of a few ulp: N makes the impulse that ends the slip before the body turns, whether it
-    stands, turns towards a smaller B or a larger one. So it rolls from then on, as it does with ten
-    times as much B; how fast follows from the impulse alone."""
+    """With B of a few ulp the impulse of N ends the slip before the body turns, whether it stands,
+    turns towards a smaller B or a larger one. It rolls from then on, as with ten times as much B;
+    its speed follows from the impulse alone."""
     exact, where = critical()
     at = support(float(where), A, B)
     spin = (float(exact) * at.h - at.slope) / GYRATION2
@@ -125,7 +125,7 @@ def test_a_slide_that_starts_with_next_to_no_response_ends_at_once(distance: flo
         found = simulate(scene, 0.1)
         stick = found.events[0]
         assert found.status is Status.COMPLETED and stick.kind is EventKind.STICK, omega
-        # N/m is g/B at least a third of the way; some 4 ulp of B = 1 - ... may be missing of it
+        # N/m is g/B for at least a third of the time; some 4 ulp of B = 1 - ... may be missing
         longest = slip / grip * (response + 4 * EPS) / (GRAVITY / 3)
         assert 0 <= stick.t <= longest, omega
         turned = stick.state_after.omega - omega
@@ -134,8 +134,8 @@ def test_a_slide_that_starts_with_next_to_no_response_ends_at_once(distance: flo
 
 
 def test_nothing_jams_below_the_critical_friction() -> None:
-    """300 random starts of the 2:1 disc, every kind, on level ground and slopes, at 1 - 1e-9 of it;
-    and with three times as much some do, so that the starts are such as could."""
+    """None of 300 random starts of the 2:1 disc, of every kind, level and on slopes, jams at 1 -
+    1e-9 of the critical friction; some do at three times it, so that the starts could jam."""
     jammed = {}
     for friction in (CRITICAL * (1 - 1e-9), 3 * CRITICAL):
         count = 0

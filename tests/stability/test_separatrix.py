@@ -1,8 +1,8 @@
-"""Beside the separatrix a motion is decided by less than any error: who rolls over, who comes back?
+"""Beside the separatrix a motion is decided by less than any error: methods roll over or return.
 
-omega = omega_R (1 +- 10^-k) from flat. The body lingers at the tip for ln(1/distance)/lambda; any
-error of the energy on the way there moves the speed at which a method thinks that it rolls over, so
-that each has a separatrix of its own, and is wrong for all throws between it and the true one.
+The body starts flat with omega = omega_R (1 +- 10^-k) and lingers at the tip for
+ln(1/distance)/lambda. An error of the energy on the way there shifts the separatrix of a method,
+and the method is wrong for all throws between its own separatrix and the true one.
 """
 
 import math
@@ -15,10 +15,10 @@ from oracles.numbers import EPS
 from oracles.separatrix import A, B, throw
 from stability_laws import DECIDE, STRAY, exponent, kept_by, own_separatrix, rolls_over
 
-DISTANCES = range(2, 15)  # k
+DISTANCES = range(2, 15)  # exponents k of the distances 10^-k
 SIDES = (1, -1)
 
-# What one rounding of every input does to the distance: d ln(omega/omega_R) of omega, g, a, b, k^2
+# Effect of one rounding of every input on the distance: d ln(omega/omega_R) of omega, g, a, b, k^2
 UNIT = (1 + 1 / 2 + A / (2 * (A - B)) + B / (2 * (A - B)) + B * B / 2.25 + 1.25 / 4.5) * EPS
 
 FAIL: dict[str, dict[str, Any]] = STRAY | {
@@ -28,7 +28,7 @@ FAIL: dict[str, dict[str, Any]] = STRAY | {
 
 
 def first_wrong(side: int, **how: Any) -> int | None:
-    """The k from which on a method is no longer always right."""
+    """The first k at which a method may be wrong."""
     throws = ((k, throw(k, side)) for k in DISTANCES)
     wrong = (k for k, it in throws if rolls_over(it.omega, it.half, **how) != it.rolls_over)
     return next(wrong, None)
@@ -40,18 +40,18 @@ def first_wrong(side: int, **how: Any) -> int | None:
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("how", [*DECIDE.values(), {"model": "auto"}], ids=[*DECIDE, "auto"])
 def test_these_decide_right_down_to_1e_minus_14(how: dict[str, Any], side: int) -> None:
-    """45 ulp of omega beside the separatrix; with its energy the stepped motion keeps the side."""
+    """Exact motions decide right to 45 ulp of omega; stepped motions with their energy, too."""
     assert first_wrong(side, **how) is None
 
 
-# ------------------------------------------------------------------------- the stepped ones
+# ------------------------------------------------------------------------- stepped motions
 
 
 @pytest.mark.parametrize("name", FAIL)
 def test_every_stepped_method_decides_wrong_from_some_k_on(name: str) -> None:
-    """It is wrong between its own separatrix and the true one, on the side on which its own one is;
-    10^-k is nearer from k = -log10(distance) on. A shift of rounding size is itself not known
-    better than to a unit. (ggl is too slow for a bisection.)"""
+    """A method is wrong between its own separatrix and the true one, from k = -log10(distance) on,
+    on the side of its own one. A shift of rounding size is known to a unit only. (ggl is too slow
+    for a bisection.)"""
     above, below = (first_wrong(side, **FAIL[name]) for side in SIDES)
     assert (above is None) != (below is None)
     if "ggl" not in name:
@@ -63,7 +63,7 @@ def test_every_stepped_method_decides_wrong_from_some_k_on(name: str) -> None:
 
 
 def test_the_separatrix_of_rk4_is_off_by_its_order() -> None:
-    """Steps of 0.02, 0.01 and 0.005 s: the energy lost on the way up is of fourth order."""
+    """Steps of 0.02, 0.01 and 0.005 s lose energy on the way up like the step's fourth power."""
     steps = [0.02, 0.01, 0.005]
     shifts = [own_separatrix(method="rk4", step=step) for step in steps]
     slope = exponent(steps, shifts)
@@ -73,9 +73,9 @@ def test_the_separatrix_of_rk4_is_off_by_its_order() -> None:
 
 @pytest.mark.parametrize("name", ["dop853", "dopri5"])
 def test_the_separatrix_of_the_pairs_is_off_by_their_tolerance(name: str) -> None:
-    """The step goes with rtol^(1/p), the error with its power p: slope 1 over seven decades. The
-    sizes are sums of errors of either sign, which scatter by half a decade; over 8 points whose
-    spread is 2.3 decades that is 0.08 of a slope, and twice that is allowed."""
+    """The step follows rtol^(1/p), the error its power p: slope 1 over seven decades. The distances
+    are sums of errors of either sign, which scatter by half a decade; over 8 points whose spread is
+    2.3 decades that is 0.08 of a slope, and twice that is allowed."""
     tolerances = 10.0 ** -np.arange(5, 13)
     shifts = [own_separatrix(method=name, rtol=rtol, atol=rtol / 100) for rtol in tolerances]
     slope = exponent(tolerances, shifts)

@@ -1,8 +1,8 @@
-"""Where the report's formulas divide by zero and the motion has nothing to be afraid of.
+"""Places where the report's formulas divide by zero although the motion is regular.
 
-Its lambda3 (eq 39) divides by sin(2 psi) (a^2 - b^2), its fourth row has tan theta: infinite at
-every quarter turn, and for a circle everywhere. The linear system of the multipliers, the rows with
-cos^2 theta and the support function are regular there.
+The report's lambda3 (eq 39) divides by sin(2 psi) (a^2 - b^2), its fourth row has tan theta: both
+are infinite at every quarter turn, lambda3 of a circle everywhere. The linear system of the
+multipliers, the rows with cos^2 theta and the support function are regular there.
 """
 
 import math
@@ -15,23 +15,23 @@ from rolling_ellipse import report
 from stability_laws import exponent, third
 
 TIP = math.pi / 2
-CLOSE = range(1, 9)  # k: 10^-k rad, or parts, beside the singular place
+CLOSE = range(1, 9)  # exponents k of the distances 10^-k, in rad or as parts
 
 
 def slope(values: list[float], first: int = 3) -> float:
-    """Of ln |value| against ln of the distance, from k = first on."""
+    """Slope of ln |value| against ln of the distance, from k = first on."""
     return exponent([10.0**-k for k in CLOSE if k >= first], values[first - CLOSE[0] :])
 
 
-# ------------------------------------------------------------------------- as printed
+# ------------------------------------------------------------------------- the printed formulas
 
 
 def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
-    """1/sin(2 psi) and tan^2 theta: the distance to the power -3, lost terms and all. For a circle
-    1/(a - b), and a numerator that happens to change its sign near a/b = 1.003. The next order is
-    the distance itself: 1e-3 where the fits begin, and some 30 times the distance of the circle.
-    With all terms it is zero over zero: the value exists, its rounding grows like 1/distance (an
-    ulp of psi = pi/2 is of the distance 2.2e-16/10^-k, and tan^2 theta has it twice)."""
+    """1/sin(2 psi) and tan^2 theta give the distance to the power -3, with the lost terms; a circle
+    gives 1/(a - b), with a numerator that changes its sign near a/b = 1.003. The next order is the
+    distance itself: 1e-3 where the fits begin, and some 30 times the distance of the circle. With
+    all terms the value is zero over zero, but exists; its rounding grows like 1/distance (an ulp of
+    psi = pi/2 is 2.2e-16/10^-k of the distance, and tan^2 theta has it twice)."""
     at_tip = [third(TIP + 10.0**-k, 2.0, 1.0).printed for k in CLOSE]
     of_circle = [third(0.7, 1 + 10.0**-k, 1.0).printed for k in CLOSE]
     limit = third(TIP + 1e-5, 2.0, 1.0).complete
@@ -49,7 +49,7 @@ def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
 
 
 def test_the_tangent_does_not_get_over_the_tip() -> None:
-    """With tan as printed the system is singular at a quarter turn: it stops, and says when."""
+    """The printed tan is singular at a quarter turn: the motion stops there with a message."""
     q, q_dot = start(0.0, 3.2)
     how: dict[str, Any] = SHAPE | {"equations": "printed", "method": "rk4", "step": 0.02}
     times = np.linspace(0, 12, 121)

@@ -1,4 +1,4 @@
-"""Explicit steps that are too large: where small rocking grows, by runs and by theory.
+"""Explicit steps that are too large: growth of small rocking in runs agrees with theory.
 
 Small rocking is theta'' = -Omega^2 theta with Omega^2 = g (a^2 - b^2)/(b (k^2 + b^2)), and a step
 turns (theta, omega/Omega) by the angle and scales it by the size of R(i y), y = Omega h: it is
@@ -30,13 +30,13 @@ from stability_laws import (
     run,
 )
 
-# --------------------------------------------------------------------- what a step makes
+# --------------------------------------------------------------------- growth in a step
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_a_step_makes_what_the_stability_function_says(method: str) -> None:
-    """The amplitude after 200 steps is |R(i y)|^200 to 1e-8, for y from 0.2 up to where that is
-    10 (1e-5 rad: what is not linear is 1e-10 a step), but where it is below 1e-100."""
+    """The amplitude after 200 steps is |R(i y)|^200 to 1e-8, for y from 0.2 up to where this power
+    is 10 (1e-5 rad: the nonlinear part is 1e-10 a step), except where it is below 1e-100."""
     worst = 0.0
     for y in np.linspace(0.2, 6.5, 64):
         factor = amplification(method, 1j * y)
@@ -48,14 +48,14 @@ def test_a_step_makes_what_the_stability_function_says(method: str) -> None:
     assert worst <= 1e-8
 
 
-# the end of the interval in which |R(i y)| <= 1, from its polynomial
+# ends of the intervals in which |R(i y)| <= 1, from the polynomials
 LIMITS = {"rk4": math.sqrt(8), "dopri5": 0.997189, "dop853": 5.960360}
 
 
 @pytest.mark.parametrize("method", EXPLICIT)
 def test_the_limit_of_small_rocking(method: str) -> None:
-    """By bisection on runs: 2000 steps make the amplitude no larger. The classical method's limit
-    is sqrt 8. Both to 1e-4 (2000 steps add up to 1 %, or 0.1 % for dopri5, 1e-4 off the limit)."""
+    """By bisection on runs, 2000 steps do not increase the amplitude up to the limit, sqrt 8 for
+    the classical method, to 1e-4 (2000 steps add up to 1 %, or 0.1 % for dopri5, 1e-4 off it)."""
     limit = interval(method, 1j)
     assert limit == pytest.approx(LIMITS[method], rel=1e-5)
     found = rocked_to(method)
@@ -64,8 +64,8 @@ def test_the_limit_of_small_rocking(method: str) -> None:
 
 
 def test_dopri5_grows_by_little_for_long() -> None:
-    """Beyond its interval dopri5 makes too much by 1.4e-6 a step at y = 1, by 0.3 % at 1.5 and by
-    3 % at 2: a hundredth is reached at 1.73. The others have left theirs by that within 0.5 %."""
+    """dopri5 beyond its interval grows by 1.4e-6 a step at y = 1, by 0.3 % at 1.5 and by 3 % at 2,
+    by a hundredth at 1.73. The other methods reach a hundredth within 0.5 % of their limits."""
     for y, much in ((1.0, 1.389e-6), (1.5, 3.018e-3), (2.0, 3.185e-2)):
         assert amplification("dopri5", 1j * y) - 1 == pytest.approx(much, rel=1e-3)
     by_a_hundredth = {
@@ -78,11 +78,11 @@ def test_dopri5_grows_by_little_for_long() -> None:
         assert by_a_hundredth[method] < 1.005 * LIMITS[method]
 
 
-# ---------------------------------------------------------------------- what has no limit
+# ---------------------------------------------------------------------- methods without a limit
 
 
 def test_radau_has_no_limit() -> None:
-    """It is L-stable: no amplitude grows, up to steps of 16 swings, and large steps end it."""
+    """Radau is L-stable: no amplitude grows, up to steps of 16 swings; large steps damp it."""
     for y in (0.1, 0.5, 1.0, 2.0, 5.0, 20.0, 100.0):
         found = amplitude("radau", y, 300)
         told(f"y = {y}: largest {found.max():.15f}, last {found[-1]:.1e}")
@@ -92,12 +92,12 @@ def test_radau_has_no_limit() -> None:
 
 @pytest.mark.parametrize("stages", [2, 3, 4])
 def test_gauss_loses_nothing_up_to_where_its_stages_are_not_found(stages: int) -> None:
-    """|R(i y)| = 1 for every y. But the stages come from an iteration that multiplies errors by y
+    """|R(i y)| = 1 for every y, but the stages come from an iteration that multiplies errors by y
     times the spectral radius of the matrix A, one over the nearest pole of R, which is the Pade
-    approximant of e^z: it cannot converge beyond, and ends the motion with STEP_TOO_LARGE. Up to
-    half of that the amplitude stays, by 1e-9; a motion that is given up is at the amplitude it had;
-    and in between, where iterations all but stand still, what is taken for solved is so to 1e-11 of
-    an angle of 1, a hundred thousandth of this amplitude, in each of 300 steps."""
+    approximant of e^z: beyond the pole it cannot converge, and the motion ends with STEP_TOO_LARGE.
+    Up to half of it the amplitude is constant to 1e-9; a motion that is given up keeps its
+    amplitude. In between iterations hardly converge, and a stage is accepted with 1e-11 of an angle
+    of 1, a hundred thousandth of this amplitude, in each of 300 steps."""
     denominator = [
         (-1) ** k * math.comb(stages, k) * math.factorial(2 * stages - k)
         for k in range(stages, -1, -1)
@@ -105,7 +105,7 @@ def test_gauss_loses_nothing_up_to_where_its_stages_are_not_found(stages: int) -
     pole = float(np.abs(np.roots(denominator)).min())
     for share in (0.1, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0):
         found = amplitude("gauss", share * pole, 300, stages=stages)
-        found = found if share <= 0.5 else found[:-1]  # of a motion given up the last is inf
+        found = found if share <= 0.5 else found[:-1]  # the last value of a motion given up is inf
         assert np.max(np.abs(found - 1)) <= (1e-9 if share <= 0.5 else 2e-2), share
     end = given_up_from(stages)
     told(f"{stages} stages: given up from y = {end:.2f}, nearest pole {pole:.2f}")
@@ -116,10 +116,9 @@ def test_gauss_loses_nothing_up_to_where_its_stages_are_not_found(stages: int) -
 
 @pytest.mark.parametrize("name", STABILIZATIONS)
 def test_the_energy_alone_bounds_the_steps_of_the_multipliers(name: str) -> None:
-    """rk4 of the five coordinates: without feedback its limit is that of rolling, sqrt 8, which 3
-    is beyond; feedback of 10/s is lost before; with the energy 300 steps of any size up to 10 keep
-    the amplitude, which 1e-12 of the energy, the last digits of what it is beside, allow to err by
-    a thousandth."""
+    """rk4 in five coordinates without feedback has the limit of rolling, sqrt 8, below the 3 here;
+    feedback of 10/s is lost before. With the energy 300 steps of any size up to 10 keep the
+    amplitude to a thousandth, the effect of 1e-12 of the energy, its last digits."""
     how = kept_by(name, method="rk4")
     if name == "projection+energy":
         for y in (0.75, 3.0, 10.0):
@@ -130,12 +129,12 @@ def test_the_energy_alone_bounds_the_steps_of_the_multipliers(name: str) -> None
         assert amplitude(y=beyond - 0.25, steps=300, **how)[-1] <= 1 + 1e-4
 
 
-# ---------------------------------------------------------------------------- its answer
+# ---------------------------------------------------------------------------- losses of the energy
 
 
 def lost(scene: Scene, found: Trajectory) -> tuple[float, float]:
-    """Change of the energy at the end and the largest, beside the largest energy, from formulas of
-    this suite's own."""
+    """Change of the energy at the end and the largest change, relative to the largest energy, by
+    formulas of this suite."""
     h2 = (A * np.sin(found.theta)) ** 2 + (B * np.cos(found.theta)) ** 2
     size = GYRATION2 + A * A + B * B - (A * B) ** 2 / h2
     energy = size * found.omega**2 / 2 + GRAVITY * np.sqrt(h2)

@@ -1,7 +1,7 @@
-"""a/b from 1 to 1000: the radius of curvature varies by (a/b)^3 in a turn, and with it the rates.
+"""Ellipses with a/b from 1 to 1000: curvature radius and rates vary by (a/b)^3 in a turn.
 
-The body swings over its flat side in some b/a of a swing. Steps of one size must be as small as
-that everywhere; controlled steps need only find it, at a price that grows with the logarithm.
+The body swings over its flat side in some b/a of a swing. Equal steps must be as small as that
+everywhere; controlled steps need only adapt to it, at a price that grows with the logarithm.
 """
 
 from typing import Any
@@ -18,8 +18,8 @@ CONTROLLED: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("how", CONTROLLED.values(), ids=CONTROLLED)
 def test_controlled_steps_grow_with_the_logarithm_only(how: dict[str, Any]) -> None:
-    """Each decade of a/b adds as many steps or fewer: towards the flat the motion is its own
-    image, so that a factor in a/b adds a number of steps. As a power, a/b to less than 0.2."""
+    """Each decade of a/b adds as many steps or fewer: near the flat position the motion is similar
+    to itself, so that a factor in a/b adds a number of steps. As a power: a/b to less than 0.2."""
     counts = [steps_taken(ratio, **how) for ratio in RATIOS]
     told(", ".join(f"{r:g}: {n}" for r, n in zip(RATIOS, counts, strict=True)))
     ten, hundred, thousand = (counts[RATIOS.index(ratio)] for ratio in (10, 100, 1000))
@@ -32,7 +32,7 @@ def test_controlled_steps_grow_with_the_logarithm_only(how: dict[str, Any]) -> N
 
 @pytest.mark.parametrize("name", STABILIZATIONS)
 def test_five_coordinates_cost_less_than_the_root_of_a_over_b(name: str) -> None:
-    """r and psi turn over the flat side by themselves, which their tolerances see as well."""
+    """r and psi turn fast over the flat side, and take part in the control of the error."""
     power = exponent(RATIOS[2:], [steps_taken(ratio, **kept_by(name)) for ratio in RATIOS[2:]])
     told(f"{name}: as a power {power:.3f}")
     assert power < 0.5
@@ -40,9 +40,9 @@ def test_five_coordinates_cost_less_than_the_root_of_a_over_b(name: str) -> None
 
 @pytest.mark.parametrize(("method", "last"), [("rk4", 6), ("gauss", 6), ("radau", 5)])
 def test_steps_of_one_size_grow_like_a_over_b(method: str, last: int) -> None:
-    """The passage is b/a of the swing, and the step a part of it: slope 1, but for terms of the
-    next order, 1/10 at a/b = 10, and the factors of 2^(1/4), which at both ends of a fit over a
-    factor of 30 are 0.05 each."""
+    """The passage of the flat side is b/a of the swing, and the step a part of it: slope 1, except
+    for terms of the next order, 1/10 at a/b = 10, and the factors of 2^(1/4), which at both ends of
+    a fit over a factor of 30 are 0.05 each."""
     counts = [steps_needed(ratio, method) for ratio in RATIOS[2:last]]
     slope = exponent(RATIOS[2:last], counts)
     told(f"{method}: {', '.join(f'{count:.0f}' for count in counts)}: slope {slope:.3f} (1)")

@@ -1,8 +1,8 @@
-"""More work that makes an answer no better: errors that reach rounding stay there, or rise again.
+"""More work beyond rounding makes no answer better: its errors stay there, or rise again.
 
-Sums that drop what they round make the error of a step method walk: n = T/h steps of independent
-roundings are worth sqrt n, so that it falls like h^p and then rises like h^(-1/2). With compensated
-sums, as all steps of this package have, it falls and stays.
+Plain sums lose their roundings, and the error of a step method walks at random: n = T/h steps add
+sqrt n roundings, so that the error falls like h^p and then rises like h^(-1/2). With compensated
+sums, as in all steps of this package, the error falls and stays.
 """
 
 import math
@@ -46,10 +46,10 @@ def known() -> np.ndarray:
 
 
 def test_plain_steps_get_worse_with_more_of_them() -> None:
-    """Rms over a hundred starts: slope 4 in double precision, and in single precision, where few
-    steps show it, the same to 2^-5 s, the least error at 2^-6 s, and from there slope -1/2 (0.12: a
-    tenth of each rms is the scatter of a hundred starts, over 2^4 in steps): 2^-12 s costs 64
-    times as much for an error many times as large."""
+    """Rms errors of a hundred starts have slope 4 in double precision; in single precision, where
+    few steps show it, slope 4 to 2^-5 s, the least error at 2^-6 s, and then slope -1/2 (0.12: a
+    tenth of each rms is the scatter of a hundred starts, over 2^4 in steps): 2^-12 s costs 64 times
+    as much for an error many times as large."""
     powers, finer = np.arange(4, 13), np.arange(5, 10)
     errors = np.array([plain(int(k), np.float32) for k in powers])
     falls = exponent(2.0**-finer, [plain(int(k), np.float64) for k in finer])
@@ -63,7 +63,7 @@ def test_plain_steps_get_worse_with_more_of_them() -> None:
     assert errors[-1] > 4 * errors[best]
 
 
-# ------------------------------------------------------------------ compensated ones stay
+# ------------------------------------------------------------------ compensated sums
 
 ORDERS = {"rk4": 4, "dopri5": 5, "radau": 5, "dop853": 8, "gauss": 8}
 COARSE = {"rk4": (4, 10), "dopri5": (5, 9), "radau": (4, 8), "dop853": (2, 4), "gauss": (2, 4)}
@@ -72,8 +72,8 @@ FINE = {"rk4": (14, 18), "dopri5": (11, 17), "radau": (11, 15), "dop853": (8, 16
 
 @pytest.mark.parametrize("method", ORDERS)
 def test_the_package_gets_no_worse(method: str) -> None:
-    """Its order down to rounding, and then, with up to a hundred thousand steps: no slope (0.15:
-    eight starts), and an error of 4 ulp of the largest angle, 0.4 rad, that was ever summed."""
+    """A method follows its order down to rounding, and then has no slope with up to a hundred
+    thousand steps (0.15: eight starts), and an error of 4 ulp of the largest angle, 0.4 rad."""
 
     def errors(first: int, end: int) -> tuple[np.ndarray, list[float]]:
         steps = 2.0 ** -np.arange(first, end)
@@ -84,15 +84,14 @@ def test_the_package_gets_no_worse(method: str) -> None:
     slope, rest = exponent(coarse, falling), exponent(fine, staying)
     told(f"{method}: slope {slope:.2f}, then {rest:+.3f}; {staying[0]:.1e} to {staying[-1]:.1e}")
     assert slope == pytest.approx(ORDERS[method], abs=0.5)
-    last_bit = 2 * math.ulp(0.1)  # of most of the angles: there is no slope left to see
+    last_bit = 2 * math.ulp(0.1)  # an ulp of most of the angles: below it no slope is visible
     assert abs(rest) <= 0.15 or max(staying) <= last_bit
     assert max(staying) <= 4 * EPS * 0.4
 
 
 @pytest.mark.parametrize("name", STABILIZATIONS)
 def test_constraints_cost_digits_but_no_more_with_more_steps(name: str) -> None:
-    """dop853 in five coordinates, which are solved for at every stage: 16 ulp of the largest
-    angle."""
+    """dop853 in five coordinates solves for them at every stage: 16 ulp of the largest angle."""
     for power in (8, 10):
         found, _ = ends(**kept_by(name, method="dop853", step=2.0**-power))
         assert rms(found - known()) <= 16 * EPS * 0.4
@@ -108,10 +107,10 @@ ASKED: dict[str, tuple[range, range, float]] = {
 
 @pytest.mark.parametrize("method", ASKED)
 def test_tolerances_below_rounding_buy_nothing(method: Any) -> None:
-    """Down to rounding the error is as evaluations to the power of minus the order (a third of it
-    either way: steps come and go with the tolerance); below, each digit asked for costs a
-    fifth more or half as much again, and the error stays within 16 ulp of the angle, some 32 rad
-    after ten half turns."""
+    """Down to rounding the error is evaluations to the power of minus the order (a third of it
+    either way: steps change with the tolerance); below, each digit requested costs a fifth more or
+    half as much again, and the error stays within 16 ulp of the angle, some 32 rad after ten half
+    turns."""
     falling, asked, order = ASKED[method]
     end = 10.37 * period(SPUN) / 2
     truth = simulate(SPUN, [end]).theta[0]

@@ -1,4 +1,4 @@
-"""A motion that most tests of this folder look at."""
+"""A motion that most tests of this folder use."""
 
 import pytest
 import rolling_ellipse as rl

@@ -1,4 +1,4 @@
-"""A StabilityWarning comes where a motion has lost what it keeps, says by how much; only there."""
+"""A StabilityWarning comes exactly where a motion has lost what it must keep, and says how much."""
 
 import math
 import warnings
@@ -18,7 +18,7 @@ DRIFTING: dict[str, Any] = {"model": "multipliers", "method": "rk4", "stabilizat
 
 
 def advice(scene: Scene, t: Any, **how: Any) -> tuple[rl.Trajectory, list[str]]:
-    """A motion and what was said of its stability."""
+    """A motion and the texts of its StabilityWarnings."""
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         motion = simulate(scene, t, **how)
@@ -26,7 +26,7 @@ def advice(scene: Scene, t: Any, **how: Any) -> tuple[rl.Trajectory, list[str]]:
 
 
 def lost(motion: rl.Trajectory) -> _core.Losses:
-    """What a stepped motion has lost, shown."""
+    """Losses of a stepped motion, also printed."""
     found = motion._solution.losses()
     assert found is not None
     told(found.energy, found.constraints, found.projected)
@@ -34,8 +34,8 @@ def lost(motion: rl.Trajectory) -> _core.Losses:
 
 
 def eight_steps(scene: Scene, t_end: float, **how: Any) -> tuple[rl.Trajectory, Any]:
-    """A motion of eight steps, all of which are looked at, and its samples there: at the ends of
-    steps and in the middle of the last one."""
+    """A motion of eight steps, all of which are checked for losses, and its samples at the checks:
+    at the ends of steps and in the middle of the last step."""
     step = t_end / 8
     motion, _ = advice(scene, [t_end], step=step, **how)
     return motion, motion.sol([*(step * np.arange(8)), 7.5 * step, t_end])
@@ -45,8 +45,8 @@ def eight_steps(scene: Scene, t_end: float, **how: Any) -> tuple[rl.Trajectory, 
 @pytest.mark.parametrize("how", [{"model": "rolling", "method": "rk4"}, DRIFTING])
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 def test_losses_are_what_the_samples_say(how: dict[str, Any], slope: float) -> None:
-    """From the energies and constraints of the trajectory, which take another road: equal to some
-    roundings of the terms of the energy, beside the largest of them."""
+    """Losses agree with the energies and constraints of the trajectory, which are computed
+    differently, to some roundings of the largest term of the energy."""
     scene = Scene(2.0, 1.0, mass=3.0, theta=0.2, omega=3.2, slope=slope)
     motion, seen = eight_steps(scene, 2.0, **how)
     found = lost(motion)
@@ -59,7 +59,7 @@ def test_losses_are_what_the_samples_say(how: dict[str, Any], slope: float) -> N
 
 
 def test_the_constraints_lost_are_the_worst_of_three() -> None:
-    """f2, f3 and f4 are each the worst once."""
+    """Each of f2, f3 and f4 is the largest error in one of the motions."""
     worst = set()
     for b, omega, t in ((0.9, 3.0, 1.5), (0.3, 1.0, 0.15), (0.3, 1.0, 0.4)):
         motion, seen = eight_steps(Scene(1.0, b, theta=0.2, omega=omega), t, **DRIFTING)
@@ -84,8 +84,8 @@ def test_the_constraints_lost_are_the_worst_of_three() -> None:
 )
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 def test_nothing_of_it_depends_on_where_x_is_0(how: dict[str, Any]) -> None:
-    """Neither the motion but for its x, bit by bit, nor what it loses, nor what is said of that;
-    there is nothing to know of x beyond the last place of its beginning."""
+    """The origin of x changes neither the motion except x, nor its losses and warnings, bit by bit;
+    x is known to an ulp of its start at best."""
     scene = Scene(2.0, 1.0, slope=0.3, theta=0.3, omega=3.5)
     here, said = advice(scene, [1.0, 3.0], **how)
     expected = lost(here)
@@ -101,7 +101,7 @@ def test_nothing_of_it_depends_on_where_x_is_0(how: dict[str, Any]) -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.StabilityWarning")
 def test_the_energy_error_shown_is_the_same_wherever_x_is_0() -> None:
-    """But for the last place of x, times m g sin(slope), of both samples, beside the scale."""
+    """Energy errors depend on the origin of x only by an ulp of x times m g sin(slope) / scale."""
     scene = Scene(2.0, 1.0, mass=3.0, slope=0.3, theta=0.3, omega=3.5)
     times = np.linspace(0, 6, 101)
     how: dict[str, Any] = {"model": "rolling", "method": "rk4", "step": 0.1}
@@ -117,14 +117,14 @@ def test_the_energy_error_shown_is_the_same_wherever_x_is_0() -> None:
 
 
 def test_what_is_lost_is_told_of_any_run_and_nothing_else() -> None:
-    """Not all steps are looked at: a loss that comes and goes may be seen a little short of where
-    it is largest, so that only three times the limit must be told."""
+    """Only some steps are checked for losses: a loss that comes and goes may be seen below its
+    maximum, so that a warning is certain only above three times the limit."""
     seen = {True: 0, False: 0}
     for seed in range(70):
         run = losses.drawn(seed)
         motion, said = losses.told(run)
         stopped = motion.status not in (rl.Status.COMPLETED, rl.Status.VALIDITY_LOST)
-        gains = any("does not bear the gains" in text for text in said)  # lost sooner or later
+        gains = any("does not bear the gains" in text for text in said)  # will be lost
         if stopped or gains or not 0 < motion.stats["steps"] <= 3000:
             continue
         found = losses.lost(run, motion)
@@ -135,8 +135,8 @@ def test_what_is_lost_is_told_of_any_run_and_nothing_else() -> None:
 
 
 def test_a_projection_hides_no_step_that_is_too_large() -> None:
-    """Energy and constraints are kept at the ends of steps, and the motion is lost: its angle goes
-    to -22 rad and beyond 60, where the true one never turns back and comes to 38.4."""
+    """Energy and constraints hold at the ends of steps, but the motion is lost: its angle goes to
+    -22 rad and beyond 60, where the true one never turns back and reaches 38.4."""
     scene = Scene(2.0, 1.0, theta=0.2, omega=3.2)
     how: dict[str, Any] = {"model": "multipliers", "stabilization": "projection+energy"}
     motion, (said,) = advice(scene, np.arange(0, 20.1, 0.2), method="rk4", step=0.2, **how)
@@ -149,7 +149,7 @@ def test_a_projection_hides_no_step_that_is_too_large() -> None:
 
 
 def test_it_comes_with_the_loss_and_not_before() -> None:
-    """Finer and finer steps, up to which the constraints or the energy are lost."""
+    """Steps from fine to coarse, at some of which the constraints or the energy are lost."""
     for how, quantity, least in (
         (DRIFTING, "constraints", 1e-3),
         ({"model": "rolling", "method": "rk4"}, "energy", 1e-2),
@@ -197,7 +197,7 @@ def test_what_is_fine_is_not_warned_of(how: dict[str, Any]) -> None:
 
 
 def test_loose_tolerances_are_taken_at_their_word() -> None:
-    """Up to ten times rtol of the energy are no surprise to who has asked for it; more is."""
+    """Energy losses up to ten times a requested rtol give no warning; larger ones do."""
     motion, said = advice(SCENE, 3.0, model="rolling", method="dop853", rtol=5e-3)
     assert 1e-2 < lost(motion).energy < 5e-2 and said == []
     with pytest.warns(StabilityWarning, match="take smaller rtol and atol"):
@@ -212,7 +212,7 @@ def test_it_points_to_the_call() -> None:
 
 
 def test_what_has_no_constraints_is_not_told_of_them() -> None:
-    """However far a rolling motion has gone astray: its coordinates follow from theta."""
+    """The coordinates of a rolling motion follow from theta, so they lose no constraints."""
     motion, (said,) = advice(
         Scene(2.0, 1.0, theta=0.1), 300.0, model="rolling", method="rk4", step=2.0,
         raise_on_failure=False,

@@ -1,4 +1,4 @@
-"""Two motions are equal if the same was asked for and the same came of it, bit by bit."""
+"""Motions are equal if their requests and their results are equal, bit by bit."""
 
 import copy
 import dataclasses
@@ -23,7 +23,7 @@ def test_the_same_again(make: Callable[[], Trajectory], tmp_path: Path) -> None:
     again = [make(), rl.load(tmp_path / "motion.npz"), pickle.loads(pickle.dumps(motion))]
     again += [copy.copy(motion), copy.deepcopy(motion), motion]
     if motion.t.size:
-        _ = motion.energy, motion.q  # what it keeps does not matter
+        _ = motion.energy, motion.q  # values that a motion caches do not matter
         again.append(motion.sol(motion.t))
     times = np.random.default_rng(1).uniform(0, motion.t_end, 200)
     for other in again:
@@ -77,7 +77,7 @@ def test_what_is_no_motion_is_not_equal(thing: Any) -> None:
 
 
 def test_methods_that_agree_are_not_equal() -> None:
-    """Nor is a part of it: what was asked for differs."""
+    """Equal results of other requests are not equal; nor is a part of a motion."""
     exact = MOTIONS["rolling"]()
     assert exact != simulate(rl.scenes.report, TIMES, method="exact")
     assert exact != simulate(rl.scenes.report, TIMES[:-1])

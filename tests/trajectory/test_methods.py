@@ -1,6 +1,6 @@
-"""The methods that are bound to a motion from other modules: as if they were written in its class.
+"""The methods bound to a motion from other modules behave as if written in its class.
 
-What they do is tested where they are; here it is that they are there, for people and for programs.
+Tests of their modules check their results; these check their presence for people and programs.
 """
 
 import ast
@@ -24,7 +24,7 @@ MODULES = {Trajectory: trajectory, events.Events: events}
 
 
 def declared(kind: type) -> Iterator[str]:
-    """The names in the part of a class that is for type checkers."""
+    """The names in the part of a class that only type checkers read."""
     source = Path(MODULES[kind].__file__ or "").read_text(encoding="utf-8")
     (body,) = (
         each.body
@@ -47,7 +47,7 @@ def test_type_checkers_know_them_all(kind: type) -> None:
 
 @pytest.mark.parametrize("name", NAMES[Trajectory])
 def test_each_is_a_method_of_its_name(name: str) -> None:
-    """So that help, Jupyter and pickles of bound methods know it by the name it is called by."""
+    """help, Jupyter and pickles of bound methods find each method by the name of its calls."""
     method, motion = getattr(Trajectory, name), rl.simulate(rl.scenes.drop, 1.0)
     assert name in dir(motion) and inspect.isroutine(method) and method.__name__ == name
     assert inspect.getdoc(method) or name.startswith("_")

@@ -1,7 +1,7 @@
 """The samples of a Trajectory: every array by its definition, and the residuals of a million.
 
-Forces come from Newton's law, the geometry once more in long double. Multipliers are those of the
-linear system, which tests/multipliers puts to the test.
+The tests compute forces by Newton's law and the geometry in long double. tests/multipliers judges
+the multipliers.
 """
 
 import dataclasses
@@ -25,7 +25,7 @@ class Outline(NamedTuple):
     h: Long
     slope: Long
     curvature: Long
-    lead: Long  # psi - theta, continuous
+    lead: Long  # psi - theta, a continuous angle
     lead_rate: Long  # d lead / d theta
 
 
@@ -40,7 +40,7 @@ def outline(trajectory: Trajectory) -> Outline:
 
 
 def close(actual: np.ndarray, exact: Long, terms: Long, ulps: float) -> None:
-    """`ulps` units of 2^-52 of the terms that were added, at every sample."""
+    """Assert errors within `ulps` units of 2^-52 of the added terms, at every sample."""
     off = np.abs(actual.astype(np.longdouble) - exact)
     worst = float(np.max(off / np.where(terms > 0, terms, np.inf))) / EPS if off.size else 0.0
     assert np.all(off <= ulps * EPS * terms), f"{worst:.3g} ulp"
@@ -77,12 +77,12 @@ def test_arrays_are_what_they_promise(motion: Trajectory) -> None:
 
 
 def test_positions_and_velocities(motion: Trajectory) -> None:
-    """A handful of roundings each: h, h', psi and r from theta, the rates from them and omega."""
+    """h, h', psi and r from theta, and the rates from them and omega, have a few roundings."""
     e, omega = outline(motion), motion.omega.astype(np.longdouble)
     close(motion.z, e.h, e.h, 4)
     r, grain_of_psi = np.hypot(e.h, e.slope), np.abs(motion.psi) + 8 * np.abs(e.lead)
     close(motion.psi, motion.theta + e.lead, grain_of_psi, 1)
-    # r may follow the psi that is handed out (so that f3 is 0): dr/dpsi = r tan(psi - theta)
+    # r may follow the rounded psi (so that f3 is 0): dr/dpsi = r tan(psi - theta)
     close(motion.r, r, 8 * r + r * np.abs(e.slope) / e.h * grain_of_psi, 1)
     close(motion.x_dot, e.h * omega, np.abs(e.h * omega), 8)
     close(motion.z_dot, e.slope * omega, np.abs(e.slope * omega), 16)
@@ -93,8 +93,8 @@ def test_positions_and_velocities(motion: Trajectory) -> None:
 
 
 def test_the_contact_rolls_off_the_outline(motion: Trajectory) -> None:
-    """The way of the contact is the arc length between the angles; 16 ulp, and an ulp of theta
-    times the radius of curvature, which is large where a thin body lies flat."""
+    """The contact moves by the arc length between the angles; allowed are 16 ulp, and an ulp of
+    theta times the radius of curvature, which is large where a thin body lies flat."""
     a, b = motion.scene.a, motion.scene.b
     arc = rl.geometry.arc_length(motion.theta, a=a, b=b)
     way = motion.contact_x - motion.contact_x[0]
@@ -132,9 +132,9 @@ def test_rates_are_derivatives_in_slides_and_flights(mode: Mode, name: str) -> N
 
 
 def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
-    """Central differences D(d) of `sol` at times d and 2 d away. D(d) misses the rate by c d^2 +
-    O(d^4), so D(2 d) - D(d) = 3 c d^2 is three times that; and by the grain of the values over d:
-    16 ulp of their size, and a few ulp of theta through their slope in theta."""
+    """Assert a rate by central differences D(d) of `sol` at times d and 2 d away. D(d) misses the
+    rate by c d^2 + O(d^4), so D(2 d) - D(d) = 3 c d^2 is three times that; and by the rounding of
+    the values over d: 16 ulp of their size, and a few ulp of theta times their slope."""
     scene = motion.scene
     step = 1e-4 * min(scene.a, scene.b) / max(scene.a, scene.b)
     times = motion.t[5:-5:7]
@@ -143,7 +143,7 @@ def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
     rate = getattr(at[0], DERIVATIVES[name] or "")
     near = (values[1] - values[-1]) / (2 * step)
     far = (values[2] - values[-2]) / (4 * step)
-    # a rate of change per theta: that per time over omega, but where the body turns back
+    # rate of change per theta: the rate per time over omega, except where the body turns back
     fast = np.abs(at[0].omega) > 1e-2
     per_theta = np.where(fast, np.abs(rate / np.where(fast, at[0].omega, 1.0)), 0.0)
     theta_grain = 2 * np.spacing(np.maximum(np.abs(at[0].theta), 1.0))
@@ -151,12 +151,12 @@ def its_rate_is_its_derivative(motion: Trajectory, name: str) -> None:
     noise = (16 * EPS * largest + per_theta * theta_grain) / step
     off, allowed = np.abs(near - rate)[fast], (np.abs(far - near) + noise)[fast]
     assert np.all(off <= allowed)
-    # and the bound means something
+    # the bound is sharp
     assert np.median(allowed) <= 1e-5 * np.max(np.abs(rate)) + 1e-9 * largest
 
 
 def test_newton_and_euler(motion: Trajectory) -> None:
-    """Forces from the accelerations, and the torque balance, which no one put in."""
+    """Accelerations give the forces, and satisfy the torque balance, which no code uses."""
     scene, e = motion.scene, outline(motion)
     mass, weight = scene.mass, scene.mass * scene.gravity
     inertia = scene.mass * scene.gyration2
@@ -164,7 +164,7 @@ def test_newton_and_euler(motion: Trajectory) -> None:
     close(motion.friction_force, mass * motion.x_ddot, mass * np.abs(motion.x_ddot), 4)
     close(motion.normal_force, mass * motion.z_ddot + weight, lift + weight, 4)
     turning = -e.h * motion.friction_force - e.slope * motion.normal_force
-    # both forces are sums h omega_dot + h' omega^2, h' omega_dot + h'' omega^2
+    # forces are the sums h omega_dot + h' omega^2 and h' omega_dot + h'' omega^2
     omega2, omega_dot = motion.omega**2, np.abs(motion.omega_dot)
     push = mass * (e.h * omega_dot + np.abs(e.slope) * omega2)
     lever = mass * (np.abs(e.slope) * omega_dot + np.abs(e.curvature) * omega2) + weight
@@ -198,10 +198,10 @@ LONG_RUNS = {
 
 @pytest.mark.parametrize(("scene", "t_end"), LONG_RUNS.values(), ids=LONG_RUNS)
 def test_residuals_of_a_million_samples(scene: Scene, t_end: float) -> None:
-    """Nothing grows: 1e-14 of the size, and 2 ulp of theta, which the ground feels through h'.
+    """Residuals do not grow: 1e-14 of the size, and 2 ulp of theta times h' of the ground.
 
-    Velocities: that times omega; the rates of f2, f3 and f4 are differences of terms in psi_dot.
-    Energy: 16 ulp, and what 2 ulp of theta are.
+    Velocities: the same times omega; the rates of f2, f3 and f4 are differences of terms in
+    psi_dot. Energy: 16 ulp, and the effect of 2 ulp of theta.
     """
     trajectory = simulate(scene, np.linspace(0, t_end, 1_000_000))
     if t_end > 1e5:
@@ -211,9 +211,9 @@ def test_residuals_of_a_million_samples(scene: Scene, t_end: float) -> None:
     residuals = trajectory.constraint_residuals()
     speed = np.abs(trajectory.omega)
     rate = speed + np.abs(trajectory.psi_dot)
-    lever = np.abs(trajectory.contact_x - trajectory.x)  # |h'|
-    # |dE/dtheta| at constant omega is |I_dot omega / 2 + m g h'|, and rolling conserves E:
-    # it is the moment of inertia about the contact times |omega_dot|
+    lever = np.abs(trajectory.contact_x - trajectory.x)  # lever |h'|
+    # |dE/dtheta| at constant omega is |I_dot omega / 2 + m g h'|. Rolling conserves E, so this
+    # equals the moment of inertia about the contact times |omega_dot|
     inertia = scene.mass * (scene.gyration2 + trajectory.z**2 + lever**2)
     by_theta = inertia * np.abs(trajectory.omega_dot)
     start = trajectory.energy[0]
@@ -239,7 +239,7 @@ def test_residuals_of_a_million_samples(scene: Scene, t_end: float) -> None:
 
 @pytest.mark.parametrize("column", ["z", "theta", "psi", "r"])
 def test_residuals_see_a_millimetre(report: Trajectory, column: str) -> None:
-    """A change of 1e-3 in a stored array is reported as some 1e-3, by f2 ... f4."""
+    """A change of 1e-3 in a stored array is reported as some 1e-3 by f2 ... f4."""
     q = report.q.copy()
     q[:, ["x", "z", "theta", "psi", "r"].index(column)] += 1e-3
     residuals = rl.constraints(q, report.q_dot, a=2.0, b=1.0)

@@ -1,4 +1,4 @@
-"""The same motion at other times: `sol`, `scene_at`."""
+"""A motion at other times than its samples: `sol`, `scene_at`."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -25,7 +25,7 @@ STEPPED: list[dict[str, Any]] = [
 
 
 def every_law() -> Iterator[Trajectory]:
-    """Slides, flights, bounces, rest and rolling; exact rolling on slopes; methods with steps."""
+    """Motions by every law: slides, flights, bounces, rest, rolling; on slopes; with steps."""
     for slope, seed in [(0.0, 5), (0.3, 6)]:
         for scene in random_scenes(30, seed, slope=slope):
             yield simulate(scene, 5.0, model="contact", raise_on_failure=False)
@@ -36,19 +36,19 @@ def every_law() -> Iterator[Trajectory]:
 
 
 def columns(motion: Trajectory) -> list[np.ndarray]:
-    """Every array that is sampled."""
+    """Every sampled array of a motion."""
     found = [motion.t, motion.theta, motion.omega, motion.x]
     return [*found, *(motion.contact or ()), *(motion.coordinates or ())]
 
 
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 def test_the_order_of_times_changes_no_bit() -> None:
-    """Reversed, shuffled and repeated times, many of them (in tables), and few (none in tables)."""
+    """Reversed, shuffled and repeated times keep the bits, many (by tables) and few (without)."""
     rng = np.random.default_rng(30)
-    few = 39  # of 40 times and more a table of exact rolling is made, within 8 units of one alone
+    few = 39  # 40 times and more use a table of exact rolling, within 8 units of a single time
     looked_at = 0
     for motion in every_law():
-        if motion.t.size == 0:  # jams at once
+        if motion.t.size == 0:  # a motion that jams at once has no samples
             continue
         looked_at += 1
         times = rng.uniform(0.0, motion.t_end, 120)
@@ -71,7 +71,7 @@ def test_the_order_of_times_changes_no_bit() -> None:
 
 @pytest.mark.parametrize("name", ["report", "rocking", "standing", "circle"])
 def test_scene_at_goes_on(name: str) -> None:
-    """The same motion from the state at 1.7 s: to what that state's rounding becomes."""
+    """The scene at 1.7 s continues the same motion, up to the effect of its rounding."""
     scene, t1, t2 = SCENES[name], 1.7, 4.0
     whole = simulate(scene, t2)
     later = whole.scene_at(t1)
@@ -90,7 +90,7 @@ def test_scene_at_goes_on(name: str) -> None:
 
 
 def test_scene_at_takes_another_impulse() -> None:
-    """physics: m D (omega+ - omega-) = Jx (h + dz) + Jz (h' - dx)."""
+    """Another impulse changes omega: m D (omega+ - omega-) = Jx (h + dz) + Jz (h' - dx)."""
     whole = simulate(rl.scenes.report, 6.0)
     later = whole.scene_at(2.0)
     again = dataclasses.replace(later, impulse=Impulse(2.0, -30.0, dx=0.3, dz=-0.1))

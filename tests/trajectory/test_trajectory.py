@@ -1,4 +1,4 @@
-"""`simulate` and its Trajectory: sample times, how it ends, what it is made of."""
+"""`simulate` and its Trajectory: sample times, ends, and parts."""
 
 import dataclasses
 import math
@@ -49,7 +49,7 @@ def test_the_given_times_are_left_alone() -> None:
     assert trajectory.t[1] == 0.25
 
 
-# -------------------------------------------------------------------------------------- how it ends
+# -------------------------------------------------------------------------------------- the end
 
 
 @each_scene
@@ -80,8 +80,8 @@ ENDING = {
 
 @pytest.mark.parametrize("scene", ENDING.values(), ids=ENDING)
 def test_rolling_that_ends(scene: Scene) -> None:
-    """At valid_until the law that ends it holds: |F| = friction N, or N = 0; before it the ground
-    can hold the motion. 1e-9 of the weight: time and angle are good to some 1e-15, and the forces
+    """At valid_until a law ends rolling: |F| = friction N, or N = 0; before it the ground can hold
+    the motion. Allowed is 1e-9 of the weight: time and angle are good to some 1e-15, and the forces
     change by at most some hundred weights a second."""
     with pytest.warns(ValidityWarning, match="rolling is valid until t = "):
         trajectory = simulate(scene, 10.0, model="rolling")
@@ -112,7 +112,7 @@ def test_rolling_that_ends(scene: Scene) -> None:
 
 @pytest.mark.parametrize("scene", ENDING.values(), ids=ENDING)
 def test_a_span_that_stops_before_the_end_is_completed(scene: Scene) -> None:
-    """No warning (they are errors here), and the same end."""
+    """No warning (it would be an error here) comes, and the motion ends the same."""
     with pytest.warns(ValidityWarning):
         whole = simulate(scene, 10.0, model="rolling")
     short = simulate(scene, 0.99 * whole.valid_until, model="rolling")
@@ -138,7 +138,7 @@ def test_rest(theta: float) -> None:
     for name in ("omega", "x_dot", "z_dot", "psi_dot", "r_dot", "turns"):
         assert np.all(getattr(trajectory, name) == 0)
     assert trajectory.theta[0] == theta and trajectory.x[0] == 4.0
-    # on the tip theta is the double nearest to it: forces of that rounding remain
+    # theta on the tip is the nearest double: forces of this rounding remain
     assert np.all(np.abs(trajectory.normal_force - 3 * 9.81) <= 8 * EPS * 30)
     assert np.all(np.abs(trajectory.friction_force) <= 8 * EPS * 30)
 
@@ -154,7 +154,7 @@ def test_what_does_not_roll_is_followed_all_the_same(name: str) -> None:
 
 
 def test_a_motion_may_end_before_the_first_sample() -> None:
-    """It jams at t = 0; the samples asked for come later."""
+    """A motion that jams at t = 0 has none of the later samples requested."""
     scene = Scene(2.0, 1.0, theta=0.9, omega=0.0, x_dot=5.0, friction=3.0)
     trajectory = simulate(scene, [0.5, 1.0])
     assert trajectory.status is Status.JAMMED and trajectory.t_end == 0
@@ -176,7 +176,7 @@ def test_repr(report: Trajectory) -> None:
     assert len(text) < 120
 
 
-# ------------------------------------------------------------------------------- what it is made of
+# ------------------------------------------------------------------------------- the parts
 
 
 def five_samples() -> Trajectory:
@@ -195,7 +195,7 @@ def test_any_numbers_become_float64() -> None:
 
 
 def test_the_arrays_of_others_are_left_alone() -> None:
-    """Neither locked nor shared, also where they came as read-only views of what can change."""
+    """Arrays of others are neither locked nor shared, nor are read-only views of such arrays."""
     mine, mode = np.arange(5.0), np.full(5, 2, np.int8)
     view = mine[:]
     view.flags.writeable = False
@@ -213,7 +213,7 @@ def test_the_arrays_of_others_are_left_alone() -> None:
         assert mine.flags.writeable and mode.flags.writeable
     again = dataclasses.replace(made)
     assert again.x is made.x and again.contact is not None and made.contact is not None
-    assert again.contact.z is made.contact.z  # what nobody can write to need not be copied
+    assert again.contact.z is made.contact.z  # an array that nobody can write to need not be copied
 
 
 @pytest.mark.parametrize("model", ["rolling", "multipliers", "contact"])
@@ -229,7 +229,7 @@ def test_nothing_can_be_written_to(model: Any) -> None:
 
 
 def test_the_default_settings_are_made_once() -> None:
-    """Whatever is given by name is checked, also where it equals the default."""
+    """A setting given by name is checked even where it equals the default."""
     scene = Scene(2.0, 1.0, omega=3.2)
     motion = simulate(scene, [1.0])
     assert motion.settings is simulate(scene, [2.0]).settings
@@ -246,7 +246,7 @@ def test_reason_and_stats_are_found_when_asked_for() -> None:
 
 
 def test_names_of_any_kind_of_text_become_plain() -> None:
-    """As a pickle would hold the kind, which who reads it need not have."""
+    """A name of a text type becomes plain, since a reader of its pickle may not have the type."""
 
     class Mine(str):
         def __reduce__(self) -> Any:

@@ -29,8 +29,8 @@ def every_time(
 
 
 def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Floats:
-    """How far the quantity may be from its value at a time found: what it changes by in 8 ulp of
-    the time, and twice the 8 ulp to which touches are told."""
+    """Allowed error of the quantity at the times found: its change in 8 ulp of the time, and twice
+    the 8 ulp to which touches are resolved."""
     near = np.maximum(times, 1e-3)
     aside = np.clip(np.stack([times - 1e-6 * near, times + 1e-6 * near]), 0, motion.t_end)
     before, after = (getattr(motion.sol(t), name) for t in aside)
@@ -40,7 +40,7 @@ def allowed(motion: Trajectory, name: str, value: float, times: Floats) -> Float
 
 
 def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float]) -> int:
-    """None missed, none invented beside dense samples; returns how many there are."""
+    """Assert that no time is missed or invented beside dense samples; return their number."""
     tables = [every_time(motion, name, values, direction) for direction in (0, 1, -1)]
     for value, found, rising, falling in zip(values, *tables, strict=True):
         assert np.all(np.diff(found) > 0) and np.all((found >= 0) & (found <= motion.t_end))
@@ -50,7 +50,7 @@ def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float])
         times, sign = dense.t[clear], np.sign(less[clear])
         rises, falls = (np.searchsorted(t, times, side="right") for t in (rising, falling))
         assert np.array_equal(np.diff(rises) - np.diff(falls), np.diff(sign) / 2), (name, value)
-        for t in np.concatenate([rising, falling]):  # those 4 ulp apart are one
+        for t in np.concatenate([rising, falling]):  # times 4 ulp apart are one
             assert np.abs(found - t).min() <= 8 * EPS * t
         jumps = np.isin(found, times_of_events(motion)) if name == "omega" else np.zeros(found.size)
         smooth = found[~jumps.astype(bool)]
@@ -61,8 +61,8 @@ def check(motion: Trajectory, dense: Trajectory, name: str, values: list[float])
 
 @pytest.mark.parametrize("first", range(1000, 1200, 20))
 def test_tables_of_values_beside_brute_force(first: int) -> None:
-    """Two hundred motions of all kinds, all quantities: seven values at a time, those that the
-    samples begin, end and turn with among them."""
+    """Tables of seven values, with the first, last and extreme samples among them, are found in two
+    hundred motions of all kinds for all quantities."""
     passages = 0
     for seed in range(first, first + 20):
         rng = np.random.default_rng(seed)
@@ -78,17 +78,17 @@ def test_tables_of_values_beside_brute_force(first: int) -> None:
             noise = 16 * EPS * (np.abs(seen).max() + max(motion.scene.a, motion.scene.b))
             if (
                 seen.size > 1 and abs(seen[-1] - seen[-2]) > noise
-            ):  # not kept: it ends with its last value
+            ):  # a change at the end: the last value is passed there
                 assert all_times(motion, name, float(seen[-1]))[-1] >= motion.t_end * (1 - 8 * EPS)
-    assert passages > 1000  # about 2000 in each twenty
+    assert passages > 1000  # every twenty seeds have about 2000
 
 
 # --------------------------------------------------------------------------------- known motions
 
 
 def test_rocking_by_its_period() -> None:
-    """From rest at 0.5 rad: at rest every half period, upright a quarter later; the lowest point of
-    the centre, z = b, is only touched. Times of 1e5 s are known to their own rounding."""
+    """A body released at 0.5 rad rests every half period and is upright a quarter period later; the
+    lowest point of the centre, z = b, is a touch. Times of 1e5 s are known to their rounding."""
     motion = simulate(rl.scenes.rocking, 1e5)
     period = rl.period(motion.scene)
     stops, flat = np.arange(0, 1e5, period / 2), np.arange(period / 4, 1e5, period / 2)
@@ -106,8 +106,8 @@ def test_rocking_by_its_period() -> None:
 
 
 def test_turns_of_the_reports_ellipse() -> None:
-    """3.2 rad/s from flat: upright a quarter of the period after the start, once a half turn. The
-    contact has then gone a quarter of the perimeter, the centre as far, both of known lengths."""
+    """From flat with 3.2 rad/s the body stands upright a quarter period after the start and once
+    per half turn. The contact and the centre then have moved by known parts of the perimeter."""
     motion = simulate(rl.scenes.report, 30.0)
     half = rl.period(motion.scene) / 2
     tips = np.arange(half / 2, 30.0, half)
@@ -122,7 +122,7 @@ def test_turns_of_the_reports_ellipse() -> None:
 
 
 def test_far_away_and_too_often() -> None:
-    """1e9 half turns: one angle is one time, found in no time; a height is too many of them."""
+    """In 1e9 half turns one angle is quickly found at one time; a height is passed too often."""
     motion = simulate(rl.scenes.rolling, [0.0, 1e9])
     angle = 4e8 * math.pi
     (t,) = motion.when(theta=angle)
@@ -152,9 +152,9 @@ def test_what_is_kept_counts_where_it_begins() -> None:
 
 
 def test_a_turning_point_at_the_start_comes_again() -> None:
-    """Pushed from where it lies in the well of a slope, so gently that its inertia about the
-    contact stays the same to rounding, a body is fastest there: each period after the start, and
-    between two passages of 1e-9 less, sqrt(8e-9)/(2 pi) = 1.4e-5 of a period apart."""
+    """A body pushed from its equilibrium in the well of a slope, so gently that its inertia is
+    constant to rounding, is fastest there: each period after the start, and between two passages of
+    1e-9 less, sqrt(8e-9)/(2 pi) = 1.4e-5 of a period apart."""
     low, high, incline = 0.0, math.pi / 4, math.tan(0.1)
     for _ in range(60):
         middle = 0.5 * (low + high)
@@ -167,7 +167,7 @@ def test_a_turning_point_at_the_start_comes_again() -> None:
     fastest = motion.when(omega=1e-8)
     assert fastest == pytest.approx(again, abs=1e-7 * rl.period(scene))
     pairs = motion.when(omega=1e-8 * (1 - 1e-9))
-    assert pairs.size == 41  # the start has the second one of its pair
+    assert pairs.size == 41  # the start has only the second passage of its pair
     assert np.all(np.diff(pairs[1:].reshape(-1, 2)) < 1.5e-5 * rl.period(scene))
     assert np.array_equal(motion.when(omega=[1e-8, 0.06])[0], fastest)
 
@@ -175,12 +175,12 @@ def test_a_turning_point_at_the_start_comes_again() -> None:
 @pytest.mark.filterwarnings("ignore::rolling_ellipse.ValidityWarning")
 @pytest.mark.filterwarnings("error::rolling_ellipse.CompletenessWarning")
 def test_far_down_a_slope() -> None:
-    """It comes by the place of its start once more, and never again; all heights are too many."""
+    """A body passes its start once more, and never again; heights are passed too often."""
     motion = simulate(Scene(2.0, 1.0, slope=0.1, omega=-8.0), [0.0, 1e6], model="rolling")
     start, again = motion.when(theta=0.0)
     assert start == 0 and motion.when(x=0.0) == pytest.approx([0.0, again], rel=1e-12)
     before, after = motion.sol([0.5 * again, again]).omega
-    assert abs(before) < 1 and after == pytest.approx(8.0, rel=1e-12)  # that energy again
+    assert abs(before) < 1 and after == pytest.approx(8.0, rel=1e-12)  # the energy of the start
     angle = 0.5 * motion.theta[-1]
     (t,) = motion.when(theta=angle)
     assert abs(motion.at(t).theta - angle) <= 8 * EPS * angle
@@ -190,7 +190,7 @@ def test_far_down_a_slope() -> None:
 
 
 def test_steps_that_are_too_long_are_not_looked_at_for_ever() -> None:
-    """The last step of what stopped goes over millions of quarter turns."""
+    """The last step of a motion that stopped spans millions of quarter turns."""
     thin = Scene(0.002832888141846167, 1.0, theta=math.pi / 2, gravity=1e-19, inertia=1e-5)
     with pytest.raises(rl.IntegrationError) as stopped:
         simulate(thin, 1.7e10, model="rolling", method="rk4", step=1.15e9)
@@ -199,7 +199,7 @@ def test_steps_that_are_too_long_are_not_looked_at_for_ever() -> None:
 
 
 def test_touches_between_two_looks_of_a_function() -> None:
-    """(theta - 1)^2, less 1e-9 and less nothing: two zeros 6e-5 rad apart, and one."""
+    """The function (theta - 1)^2 - 1e-9 has two zeros 6e-5 rad apart, (theta - 1)^2 has one."""
     motion = simulate(rl.scenes.report, 1.0)
     (once,) = motion.when(theta=1.0)
     with pytest.warns(CompletenessWarning, match=r"function passes .* while it rolls"):
@@ -213,7 +213,7 @@ def test_touches_between_two_looks_of_a_function() -> None:
 
 
 def test_a_function_of_any_size_is_looked_at() -> None:
-    """Another warning would be an error: products of its changes leave the doubles."""
+    """The search gives no other warning (an error here), though products of changes overflow."""
     motion = simulate(Scene(1.7, 1.0, theta=math.pi / 2, friction=0.0), [1e299, 1e300])
     with pytest.warns(CompletenessWarning, match="while it rests"):
         (half,) = motion.when(function=lambda at: at.t - 5e299)
@@ -246,7 +246,7 @@ def test_a_motion_that_stopped_early() -> None:
 
 @pytest.mark.parametrize("name", ["report", "slope", "jump", "bounce"])
 def test_one_state_is_a_row_of_the_samples(name: str) -> None:
-    """In plain floats: the same bits as `sol` has."""
+    """The state has plain floats with the bits of `sol`."""
     motion = simulate(getattr(rl.scenes, name), 3.0)
     for t in (0.0, 1.234, 3.0):
         found, row = motion.at(t), motion.sol(t)

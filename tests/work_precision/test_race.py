@@ -1,6 +1,6 @@
-"""Runs of `work_precision`: who is in it, what is measured, what is refused, what is left out.
+"""Runs of `work_precision`: contenders, measurements, refusals, runs that are left out.
 
-No test looks at how long something took: only at who was timed, and at errors that are known.
+No test depends on measured durations: only on the choice of timed runs, and on known errors.
 """
 
 import math
@@ -24,7 +24,7 @@ def as_computed(t: Any, theta: Any, omega: Any, x: Any) -> Any:
 
 
 class Peer:
-    """Exact rolling, off by what it is told to be, with samples changed by a function, or none."""
+    """Exact rolling with an error `off`; samples are changed by a function, or missing."""
 
     tags = ("exact", "toy")
 
@@ -35,7 +35,7 @@ class Peer:
         self.prepared: list[float] = []
 
     def begin(self, setting: float) -> Callable[[str], None]:
-        """Return what is called before an end or samples."""
+        """Return a function to be called before an end or samples."""
         self.prepared.append(setting)
         return lambda what: None
 
@@ -65,7 +65,7 @@ def raced(*peers: Any, **how: Any) -> WorkPrecision:
 
 
 def only(found: WorkPrecision, name: str) -> Any:
-    """The first run of that name."""
+    """The first run with the name."""
     return next(run for run in found.runs if run.name == name)
 
 
@@ -74,7 +74,7 @@ def only(found: WorkPrecision, name: str) -> Any:
 
 @pytest.mark.parametrize("off", [1e-3, 1e-7])
 def test_an_error_is_seen_as_large_as_it_is(off: float) -> None:
-    """Of theta, by the same at all times: so far off at the end, in the mean, and at worst."""
+    """A constant error of theta is measured at the end, in the mean and at worst."""
     errors = only(raced(Peer(off=off)), "toy").errors
     for name in ("largest", "final", "l2", "linf"):
         assert errors[name] == pytest.approx(off, rel=1e-6)
@@ -82,7 +82,7 @@ def test_an_error_is_seen_as_large_as_it_is(off: float) -> None:
 
 
 def test_each_component_counts_in_its_own_unit() -> None:
-    """omega beside the fastest of the motion, x beside the long axis."""
+    """omega is judged relative to the motion's fastest, x relative to the long semi-axis."""
     exact = simulate(ROTATION, np.linspace(0, END, 4001))
 
     def reference(t: Any) -> tuple[Any, ...]:
@@ -100,7 +100,7 @@ def test_each_component_counts_in_its_own_unit() -> None:
 
 
 def test_a_reference_may_have_more_digits_than_doubles() -> None:
-    """Objects that subtract, as those of mpmath or decimal do."""
+    """A reference may consist of objects that can be subtracted, as those of mpmath or decimal."""
     import mpmath
 
     def reference(t: Any) -> Any:
@@ -124,7 +124,7 @@ def test_finer_settings_err_less(method: str) -> None:
 
 
 def test_the_constraints_of_what_drifts_are_missed() -> None:
-    """And those of what is projected are not."""
+    """Drifting coordinates miss the constraints; projected ones do not."""
     found = work_precision(
         ROTATION, 4.0, methods=["multipliers/rk4/none", "multipliers/rk4/projection"],
         steps=[0.05], rounds=1,
@@ -144,7 +144,7 @@ def test_a_peer_that_gives_the_end_alone_has_no_other_errors() -> None:
     assert all(math.isnan(errors[name]) for name in others)
 
 
-# -------------------------------------------------------------------------------- who runs
+# -------------------------------------------------------------------------------- runs of a race
 
 
 def test_every_rung_of_every_ladder_is_a_run() -> None:
@@ -192,7 +192,7 @@ def test_what_suits_the_scene_runs_without_being_named(scene: Scene, first: str)
 
 
 def test_a_model_that_is_too_poor_has_no_answer() -> None:
-    """Exact rolling where the body slips: its motion is not a slow one, it is none."""
+    """Exact rolling has no answer, rather than a slow one, where the body slips."""
     scene = SUITABLE["slips"][0]
     exact = only(work_precision(scene, 1.0, **QUICK), "exact")
     assert exact.status == "VALIDITY_LOST" and "rolling is valid until" in exact.reason
@@ -211,7 +211,7 @@ def test_mappings_say_anything_that_simulate_takes() -> None:
 
 
 class Broken:
-    """Fails in one way or another."""
+    """A contender that raises a given error, or returns NaN."""
 
     def __init__(self, name: str, error: Exception | None) -> None:
         self.name, self.error = name, error
@@ -252,7 +252,7 @@ def test_what_stops_has_its_status_and_sentence() -> None:
 
 
 class Clock:
-    """A clock of its own, which goes on by 1 us a look and by what is spent."""
+    """A clock that advances by 1 us per reading and by the time spent."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -270,7 +270,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 class Timed(Peer):
-    """Exact but for its setting; spends time on a clock when prepared, first called and called."""
+    """Exact rolling with error = setting; spends time in preparing, in first calls and in calls."""
 
     def __init__(
         self, name: str, clock: Clock, *, once: float = 0.0, always: float = 0.0,
@@ -304,7 +304,7 @@ SET_UPS = {
 
 @pytest.mark.parametrize("how", SET_UPS.values(), ids=SET_UPS)
 def test_set_up_leaves_nothing_out(how: dict[str, float], clock: Clock) -> None:
-    """4 s of it, and 2 s for all runs: each run of 1 us is made, and the set-up is told apart."""
+    """A set-up of 4 s does not count in the 2 s for all runs: each run of 1 us is made."""
     found = raced(Timed("late", clock, **how), tolerances=LADDER, max_seconds=2.0)
     late = [run for run in found.runs if run.name == "late"]
     assert [run.status for run in late] == ["COMPLETED"] * len(LADDER)
@@ -315,8 +315,8 @@ def test_set_up_leaves_nothing_out(how: dict[str, float], clock: Clock) -> None:
 
 
 def test_time_that_is_short_leaves_out_the_dearest_and_says_so(clock: Clock) -> None:
-    """A call takes 10, 100, 1000 ms, …, and a run is four of them: of 0.6 x 1.5 s two runs leave
-    0.46 s, and the third is taken to need 0.4 s x 10^(1/4)."""
+    """A call takes 10, 100, 1000 ms, …, and a run is four calls: of 0.6 x 1.5 s two runs leave 0.46
+    s, and the third is expected to need 0.4 s x 10^(1/4)."""
     slow = Timed("slow", clock, call=1e-6, power=1.0)
     found = raced(slow, tolerances=[10.0**-k for k in range(4, 11)], max_seconds=1.5, rounds=3)
     states = [(run.status, run.reason) for run in found.runs if run.name == "slow"]
@@ -329,8 +329,8 @@ def test_time_that_is_short_leaves_out_the_dearest_and_says_so(clock: Clock) -> 
 
 
 def test_each_of_many_has_its_share(clock: Clock) -> None:
-    """The first one and the last one of 30 that cost the same are run equally far, whoever
-    stands before them; what cheap ones do not need is left to the dear ones."""
+    """The first and the last of 30 contenders of equal cost get equally many runs, whoever runs
+    before them; expensive ones get the time that cheap ones leave."""
     dear = [Timed(f"dear {i}", clock, call=1e-3, power=0.25) for i in range(30)]
     cheap = [Timed(f"cheap {i}", clock) for i in range(3)]
     found = raced(*dear, *cheap, tolerances=LADDER, max_seconds=30.0, methods=[])
@@ -347,7 +347,7 @@ def test_each_of_many_has_its_share(clock: Clock) -> None:
 
 
 def test_one_that_takes_all_the_time_takes_nothing_from_the_others(clock: Clock) -> None:
-    """Its first call is longer than the race; the others have a third of the time each."""
+    """One contender's first call outlasts the race; the others have a third of the time each."""
     hog = Timed("hog", clock, call=100.0)
     others = [Timed(f"way {i}", clock, call=1e-2) for i in range(2)]
     found = raced(hog, *others, tolerances=LADDER, max_seconds=10.0, methods=[], rounds=5)
@@ -358,7 +358,7 @@ def test_one_that_takes_all_the_time_takes_nothing_from_the_others(clock: Clock)
 
 
 def test_everybody_runs_at_the_coarsest_setting(clock: Clock) -> None:
-    """However little time there is, and to every end."""
+    """The coarsest setting runs for every end, however little time there is."""
     peers = [Timed(f"way {i}", clock, call=1.0) for i in range(5)]
     found = work_precision(
         ROTATION, [1.0, 2.0], peers=peers, methods=[], tolerances=[1e-2, 1e-3], rounds=2,
@@ -371,7 +371,7 @@ def test_everybody_runs_at_the_coarsest_setting(clock: Clock) -> None:
 
 
 def test_the_dearest_take_part_in_fewer_rounds(clock: Clock) -> None:
-    """Of 10 rounds the cheap ones have all; the dear ones have fewer, and share the time."""
+    """Cheap contenders have all of 10 rounds; expensive ones have fewer, and share the time."""
     calls = dict.fromkeys(("cheap", "dear", "dearest"), 0)
 
     class Counted(Timed):
@@ -389,17 +389,17 @@ def test_the_dearest_take_part_in_fewer_rounds(clock: Clock) -> None:
     begin = clock.now
     found = raced(*peers, methods=[], tolerances=[1e-3], max_seconds=12.0, rounds=10)
     told(calls)
-    cheap, dear, dearest = (count - 2 for count in calls.values())  # two were judged
+    cheap, dear, dearest = (count - 2 for count in calls.values())  # two calls were for judging
     assert cheap == 10 > dear > dearest > 1
     assert 11.0 < clock.now - begin <= 12.0 + 1e-3
     assert found.machine["rounds"] == "10"
 
 
-# ------------------------------------------------------------------------------ what is judged
+# ------------------------------------------------------------------------------ judged times
 
 
 def test_an_end_known_before_does_not_win() -> None:
-    """Rubbish at the samples is its error; samples that are no numbers are no answer."""
+    """Wrong samples count as their error; samples that are NaN are no answer."""
     rubbish = Peer("rubbish", samples=lambda t, *_: (0 * t + 32, 0 * t, 0 * t))
     nothing = Peer("nothing", samples=lambda t, *_: (t * math.nan, 0 * t, 0 * t))
     found = raced(rubbish, nothing)
@@ -413,7 +413,7 @@ def test_an_end_known_before_does_not_win() -> None:
 
 
 def test_a_lucky_end_counts_as_the_rest_of_the_motion() -> None:
-    """1e-3 off on the way and right at the end: it reaches 1e-3, not 1e-13."""
+    """A motion with an error of 1e-3, but right at the end, reaches 1e-3, not 1e-13."""
 
     found = raced(Peer("lucky", samples=lambda t, theta, *rest: (theta + 1e-3 * (t < END), *rest)))
     assert only(found, "lucky").errors.final <= 1e-15
@@ -431,7 +431,7 @@ def test_the_verdict_says_what_was_judged() -> None:
 
 
 def test_names_are_looked_at_before_the_motion() -> None:
-    """Which may take long."""
+    """Wrong names are refused before the motion is computed, which may take long."""
 
     def known(_: Any) -> Any:
         raise AssertionError("the motion was computed first")
@@ -441,7 +441,7 @@ def test_names_are_looked_at_before_the_motion() -> None:
 
 
 def test_an_end_that_the_motion_does_not_reach_is_refused() -> None:
-    """A slide that jams: there is nothing to judge by."""
+    """A slide that jams has no end to judge."""
     jams = Scene(2.0, 1.0, theta=0.9, x_dot=5.0, friction=3.0)
     assert simulate(jams, 1.0).status is rl.Status.JAMMED
     with pytest.raises(ValueError, match=r"t_end must be a time that the motion reaches, got 1\.0"):

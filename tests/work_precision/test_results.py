@@ -1,4 +1,4 @@
-"""Answers of a WorkPrecision, against tables made by hand of runs made by hand."""
+"""Answers of a WorkPrecision, judged by hand-made tables of hand-made runs."""
 
 import json
 import math
@@ -48,9 +48,9 @@ def test_best_is_the_fastest_of_those_that_are_good_enough() -> None:
     assert FOUND.best(1e-2) is RUNS[2] and FOUND.best(1e-3) is RUNS[2]
     assert FOUND.best(9.9e-4) is RUNS[0] and FOUND.best(1e-8) is RUNS[0]
     assert FOUND.best() is RUNS[0]
-    assert FOUND.best(1e-13) is None  # the reference cannot tell
-    assert FOUND.best(9.9e-4, x="final") is RUNS[2]  # half the error at the end
-    assert FOUND.best(1e-2, y="evaluations") is RUNS[0]  # all take 100: the first
+    assert FOUND.best(1e-13) is None  # below the floor of the reference
+    assert FOUND.best(9.9e-4, x="final") is RUNS[2]  # its error at the end is half of its largest
+    assert FOUND.best(1e-2, y="evaluations") is RUNS[0]  # all take 100, so the first one counts
 
 
 def test_least_is_the_table() -> None:
@@ -80,7 +80,7 @@ def test_a_notebook_shows_the_least_of_each_way() -> None:
 
 
 def test_the_verdict_gives_no_number_for_what_nobody_has_computed() -> None:
-    """A given reference may outlast the package's motion: neither figure is known then."""
+    """The verdict names neither figure where a given reference outlasts the package's motion."""
     unknown = replace(FOUND.references[0], floor=0.0, attainable=float("nan"))
     said = replace(FOUND, references=(unknown,)).verdict().splitlines()[0]
     assert said == ("To t = 2 s, judged by exact rolling, at the sample times and the end:")
@@ -122,7 +122,7 @@ CUT = replace(
 
 
 def test_who_was_not_run_is_not_beaten() -> None:
-    """Nor has it come no nearer, nor reached nothing: nobody knows."""
+    """A method that was not run is not said to have come no nearer, or to have reached nothing."""
     assert CUT.not_run(1e-2) == ("rough", "lost", "never")
     assert CUT.not_run(1e-5) == ("rough", "lost", "never")
     assert CUT.not_run(1e-6) == ("late", "rough", "lost", "never")
@@ -145,7 +145,7 @@ def test_who_was_not_run_is_not_beaten() -> None:
 
 
 def test_where_all_were_run_one_is_unbeaten() -> None:
-    """Of the ways that are cut, one that has reached an error counts there."""
+    """A method that was cut counts at the errors that it has reached."""
     found = replace(FOUND, runs=(*RUNS, *CUT.runs[9:12]))
     decades = [10.0**-k for k in range(2, 15)]
     assert found.unbeaten() == {"fast": tuple(decades[:2]), "sure": tuple(decades[2:4])}
@@ -155,7 +155,7 @@ def test_where_all_were_run_one_is_unbeaten() -> None:
 
 
 def test_the_verdict_of_a_race_agrees_with_its_rows() -> None:
-    """Names and factors of the sentences, made again from the runs."""
+    """Names and factors of the sentences agree with the runs."""
     scene = Scene(2.0, 1.0, theta=0.2, omega=1.0)
     found = rl.work_precision(
         scene, 3.0, methods=["flow", "dop853", "rk4"], rounds=2, tolerances=[1e-3, 1e-7]
@@ -204,10 +204,10 @@ def test_a_file_gives_back_what_was_saved(tmp_path: Path) -> None:
     def none(literal: str) -> float:
         raise AssertionError(literal)
 
-    json.loads(path.read_text(encoding="utf-8"), parse_constant=none)  # plain JSON: no NaN
+    json.loads(path.read_text(encoding="utf-8"), parse_constant=none)  # plain JSON has no NaN
 
 
-# What somebody may have done to the text of a file: roads to a value, and others in its place.
+# Damage to the text of a file: paths to a value, and other values in its place.
 DAMAGED: list[tuple[str, Any]] = [
     ("schema", 1), ("runs", []), ("runs", {}), ("references", []), ("references.0.floor", -1.0),
     *(("runs.0.time", wrong) for wrong in ("soon", 1, "1.0")), ("runs.0.steps", -1),

@@ -1,4 +1,4 @@
-"""What `work_precision` holds to be attainable, against units from 80 digits."""
+"""The error that `work_precision` calls attainable, judged by units from 80 digits."""
 
 import math
 from typing import Any
@@ -22,8 +22,8 @@ def scene_of(row: dict[str, str]) -> tuple[Scene, float]:
 
 
 def test_attainable_is_what_the_inputs_carry() -> None:
-    """The table's units of theta, omega and x are the same sums over the inputs; the largest of the
-    three, by differences that err by a few per cent."""
+    """The attainable error is the largest of the table's units of theta, omega and x: the same sums
+    over the inputs, by differences that err by a few per cent."""
     ratios = []
     for row in ROWS[::3]:
         scene, t = scene_of(row)
@@ -40,7 +40,7 @@ def test_attainable_is_what_the_inputs_carry() -> None:
 
 
 def test_flow_is_within_the_floor_of_40_digits() -> None:
-    """An independent truth: what the floor promises holds, and is not 0."""
+    """flow stays within the floor beside an independent 40-digit truth, and the floor is not 0."""
     for row in ROWS[::20]:
         scene, t = scene_of(row)
         if certify(scene).validity is not Validity.VALID:
@@ -65,7 +65,7 @@ def test_flow_is_within_the_floor_of_40_digits() -> None:
 
 
 def test_a_body_at_rest_may_be_raced_for_longer_than_it_could_swing() -> None:
-    """A little beside its equilibrium it would swing, and swings are known for 1e15 times only."""
+    """A body at rest needs no period; one slightly off would swing, at most for 1e15 swings."""
     found = Judge(Scene(2.0, 1.0, friction=1.0), 1e206, 4, None).reference
     assert found.name == "exact rolling" and math.isfinite(found.attainable)
 
@@ -73,7 +73,7 @@ def test_a_body_at_rest_may_be_raced_for_longer_than_it_could_swing() -> None:
 def test_near_the_separatrix_less_is_attainable() -> None:
     """Near the tip differences grow as e^(lambda t), and a half turn takes ln(1/d)/lambda and a
     little, at a part d from the speed that just rolls over: 0.9 of it costs d^-0.9."""
-    speed = math.sqrt(2 * 9.81 / 2.25)  # of uniform discs, 2:1, physics (44)
+    speed = math.sqrt(2 * 9.81 / 2.25)  # roll-over speed of uniform discs, 2:1, physics (44)
     found = []
     for k in (3, 6, 9, 12):
         scene = Scene(2.0, 1.0, omega=speed * (1 + 10.0**-k))
@@ -84,7 +84,7 @@ def test_near_the_separatrix_less_is_attainable() -> None:
 
 
 def test_in_the_middle_less_may_be_attainable_than_at_the_end() -> None:
-    """Beside derivatives in 40 digits at the same times, by a quadrature of another kind."""
+    """The attainable error agrees with 40-digit derivatives at its times, by another quadrature."""
     scene = Scene(2.0, 1.0, omega=math.sqrt(2 * 9.81 / 2.25) * (1 + 1e-9))
     t_end = 0.72 * period(scene)
     judge = Judge(scene, t_end, 12, None)
@@ -98,7 +98,7 @@ def test_in_the_middle_less_may_be_attainable_than_at_the_end() -> None:
             return np.array([motion.state(mpf(t)) for t in judge.times[1:].tolist()]).T
 
         exact = states(0, 0.0)
-        sizes = np.array([1.0, scene.omega, scene.a])[:, None]  # which is fastest at the start
+        sizes = np.array([1.0, scene.omega, scene.a])[:, None]  # omega is largest at the start
         carried = sum(abs(states(i, 1e-20) - exact) / 1e-20 for i in range(6)).astype(float) / sizes
     known = np.max(2.2e-16 * carried + 2 * np.spacing(np.abs(exact.astype(float))) / sizes, axis=0)
     told(judge.reference, known.max() / known[-1])

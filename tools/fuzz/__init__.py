@@ -3,4 +3,5 @@
 import sys
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "tests"))  # for the strategies of oracles
+# the strategies use tests/oracles
+sys.path.append(str(Path(__file__).resolve().parents[2] / "tests"))

@@ -75,7 +75,7 @@ def _vector(entries: int) -> Ask:
 
 
 def _state(place: int) -> Ask:
-    """A state on the constraints, or any."""
+    """A state on the constraints, or any state."""
 
     def asked(draw: Draw, of: Body) -> object:
         if draw.chance(0.3):
@@ -109,7 +109,7 @@ OTHERS: dict[str, Ask] = {
     "printed": _one("()", "rl.report.CODE", "rl.report.MATRIX", "rl.report.EQ_32", "('tan', 'f1')"),
     "complete": _one("True", "False"), "case": _one("'1'", "'2'", "'as_it_is'"),
     "impulse": lambda d, of: d.pick("None", scenes.impulse(d, of)),
-    # the report's motion
+    # options of the report's motion
     "equations": _one("'corrected'", "'printed'"), "method": _one("'dopri5'", "'rk4'", "'dop853'"),
     "consistent": _one("'refuse'", "'project'", "'as_given'"),
     "stabilization": _one("'none'", "'baumgarte'", "'projection'"), "baumgarte": _one((1.0, 1.0)),
@@ -140,7 +140,7 @@ def arguments(draw: Draw, of: Body, name: str) -> dict[str, str]:
 
 
 def any_function(draw: Draw, of: Body) -> list[str]:
-    """One call of a public function, and the text of its answer."""
+    """One call of a public function and a text of its answer."""
     asked = (*["rl.flow"] * 6, *["rl.classify", "rl.certify", "rl.period", "rl.blow_to"] * 3)
     name = draw.pick(*asked, *["rl.outcome", "rl.thresholds", "rl.impacts.collide"] * 2, *PLAIN)
     line = f"found = {call(name, **arguments(draw, of, name))}"
@@ -184,7 +184,7 @@ QUANTITY = "trajectory.{quantity}"
 FORGED = ("forged.{quantity}",) * 3
 SAME = "promises.same(trajectory, other)"
 
-#: Questions about a motion, with their weights; the names in braces are drawn by `filled`.
+# : Questions about a motion, with their weights; `filled` draws the names in braces.
 QUESTIONS: tuple[tuple[int, tuple[str, ...]], ...] = (
     (20, (QUANTITY, QUANTITY, QUANTITY)),
     (4, ("(repr(trajectory), hash(trajectory), trajectory._repr_html_())",
@@ -224,7 +224,7 @@ WEIGHTED = tuple(lines for weight, lines in QUESTIONS for _ in range(weight))
 
 
 def filled(draw: Draw, of: Body, line: str) -> str:
-    """A line with a drawn text in the place of each name in braces."""
+    """A line whose names in braces are replaced by drawn texts."""
 
     def picture() -> str:
         name = draw.pick(*(name for name in PICTURES if name != "rl.plot_phase_map"))
@@ -320,7 +320,7 @@ _KINDS = tuple(kind for kind, weight in CASES.items() for _ in range(weight))
 
 @st.composite
 def cases(draw: st.DrawFn) -> list[str]:
-    """The lines of one case."""
+    """Draw the lines of one case."""
     choices = Draw(draw)
     kind = choices.pick(*_KINDS)
     return kind(choices, scenes.body(choices))

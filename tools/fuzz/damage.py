@@ -1,6 +1,6 @@
 """Damage to files of the package; a place is given as a share of the whole.
 
-Single kinds of broken archives are in `tests/refusals/files.py`.
+`tests/refusals/files.py` has the single kinds of broken archives.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from oracles.files import put_together, taken_apart
 
 
 def flip(path: str, share: float, mask: int) -> None:
-    """Turn bits of one byte over."""
+    """Flip bits of one byte."""
     data = bytearray(Path(path).read_bytes())
     data[int(share * len(data))] ^= mask
     Path(path).write_bytes(data)
 
 
 def member(path: str, name: str, values: Any) -> None:
-    """Put other values into one array, or leave it out (None)."""
+    """Replace the values of one array, or remove the array (None)."""
     about, arrays = taken_apart(Path(path).read_bytes())
     arrays.pop(name, None)
     new = {} if values is None else {name: values}
@@ -28,7 +28,7 @@ def member(path: str, name: str, values: Any) -> None:
 
 
 def fact(path: str, share: float, value: Any) -> None:
-    """Put another value somewhere into the JSON, however deep."""
+    """Replace a value in the JSON at any depth."""
     about, arrays = taken_apart(Path(path).read_bytes())
     places = list(_places(about))
     holder, key = places[int(share * len(places))]
@@ -37,7 +37,7 @@ def fact(path: str, share: float, value: Any) -> None:
 
 
 def _places(found: Any) -> Iterator[tuple[Any, Any]]:
-    """Holders and keys of all values in JSON, those of the outermost object first."""
+    """Containers and keys of all values in JSON, the outermost object first."""
     keys = range(len(found)) if isinstance(found, list) else list(found)
     yield from ((found, key) for key in keys)
     for key in keys:

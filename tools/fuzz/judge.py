@@ -1,4 +1,4 @@
-"""Runs the lines of a case and finds what must not happen."""
+"""Run the lines of a case and find broken promises, crashes and hangs."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ OWN_WARNINGS = (
     "ValidityWarning", "InconsistentStartWarning", "StabilityWarning", "CompletenessWarning",
 )  # fmt: skip
 _FIELDS = {field.name for kind in (rl.Scene, rl.Impulse) for field in fields(kind)}
-# Words of a message that stand for several arguments.
+# Words of messages about several arguments at once.
 _TOGETHER = ("arguments must broadcast", "missing 1 required", "unsupported pickle",
              "cannot pickle")  # fmt: skip
 _NOT_FINITE = re.compile(
     r"\bnan\b|\binf\b|NaN|longdouble|\bma\b|1e400|10\*\*400|NaT|e\+?30\d\b|e\+?29\d\b"
 )
-GRACE = 0.5  # within which Ctrl-C must end a call [s]
+GRACE = 0.5  # time within which Ctrl-C must end a call [s]
 _LINE = re.compile(r"(?:(\w+) = )?(.*)", re.DOTALL)
 # Factors of the time limit: pictures, whole batches and 1e6 steps take longer than other lines.
 _PATIENCE = {
@@ -63,7 +63,7 @@ NAMES: dict[str, Any] = {
 
 
 class Case:
-    """The values of one case after the lines that ran."""
+    """The values of one case after the lines that have run."""
 
     def __init__(self) -> None:
         self._values = dict(NAMES)
@@ -106,7 +106,7 @@ class Case:
         if isinstance(error, ValueError | TypeError):
             names = self._argument_names(code)
             if forged:
-                names |= {"q", "q_dot"}  # made of forged arrays
+                names |= {"q", "q_dot"}  # arguments made of forged arrays
             if "trajectories" in names:
                 names.add("trajectory")
             if not any(map(str(error).__contains__, _TOGETHER)) and not _names_one(error, names):

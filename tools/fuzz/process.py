@@ -1,4 +1,4 @@
-"""Cases run in a process of their own, which may die or never return.
+"""A process of its own runs the cases, since a case may crash or never return.
 
 A timer limits the processor time of each line; its signal is handled as Ctrl-C is. A process that
 does not answer the signal is ended by faulthandler's watchdog.
@@ -19,20 +19,20 @@ from typing import NamedTuple
 from unittest import mock
 
 PATIENT = 8  # wall-clock seconds allowed for a second of processor time on a busy machine
-MEMORY = 4 * 2**30  # of the process [bytes]
+MEMORY = 4 * 2**30  # memory limit of the process [bytes]
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-# Lines of a report of death that name its cause.
+# Lines of a crash report that name its cause.
 CAUSES = re.compile(
     r"ERROR: AddressSanitizer|runtime error|Fatal|terminate|what\(\)|#[123] |SUMMARY|Error:"
 )
 
 
 class Finding(NamedTuple):
-    """Something that must not happen."""
+    """A broken promise, with the lines that lead to it."""
 
     kind: str
     what: str
-    lines: tuple[str, ...]  # up to the line at fault
+    lines: tuple[str, ...]  # lines of the case up to the line at fault
 
 
 def work(pipe: Connection, folder: Path, seconds: float, limit_memory: bool) -> None:
@@ -99,7 +99,7 @@ class Process:
         return process
 
     def findings(self, lines: list[str]) -> list[Finding]:
-        """The findings in a case."""
+        """The findings in the lines of a case."""
         self._process = process = self._process or self._start()
         i = 0
         try:
@@ -118,7 +118,7 @@ class Process:
 
 
 def _gist(complaints: str) -> str:
-    """The lines of a report of death that name its cause, or its last lines."""
+    """The lines of a crash report that name its cause, or its last lines."""
     lines = [line.strip() for line in complaints.splitlines() if line.strip()]
     causes = [line for line in lines if CAUSES.search(line)]
     return " | ".join(causes[:8] or lines[-3:])[:1500]

@@ -23,7 +23,7 @@ _ULPS = 256
 
 
 class Broken(Exception):
-    """A broken promise: its kind, and a sentence."""
+    """A broken promise: its kind, and a sentence about it."""
 
 
 def of_result(value: Any, finite: bool) -> Finds:
@@ -44,7 +44,7 @@ def of_trajectory(found: rl.Trajectory) -> Finds:
         values = getattr(found, name)
         if values.shape != t.shape or values.flags.writeable:
             yield "broken", f"{name} has not one entry for each of t, or can be written to"
-        # A step that is too large may overflow before its end; the status says so.
+        # A step that is too large may overflow before its end; its status is STEP_TOO_LARGE.
         if name != "mode" and found.status is not rl.Status.STEP_TOO_LARGE:
             if np.isnan(values).any():
                 yield "nan", f"NaN in {name}"
@@ -78,8 +78,8 @@ def energy_growth(found: rl.Trajectory) -> float:
 def _blur(found: rl.Trajectory) -> float:
     """Relative error of the energy by rounded angles and by a given `rest_speed`.
 
-    D changes by 1.6 a/b of itself in a radian, h by a/2b; forces of infinite friction depend on the
-    distance to a tip; bounces below rest_speed are summed, with an error of at most 1/100.
+    The relative change in a radian is 1.6 a/b for D, a/2b for h; forces of infinite friction depend
+    on the distance to a tip; bounces below rest_speed are summed, with an error of at most 1/100.
     """
     scene, theta = found.scene, found.theta
     ulp = np.spacing(np.abs(theta).max())
@@ -96,7 +96,7 @@ def _blur(found: rl.Trajectory) -> float:
 def same_mode(state: Any, trajectory: rl.Trajectory) -> None:
     """Compare `initial_state` with the first sample."""
     modes = [rl.Mode(code) for code in trajectory.mode[:1]]
-    if trajectory.events and trajectory.events[0].t == 0:  # the first mode lasts no time
+    if trajectory.events and trajectory.events[0].t == 0:  # the first mode has no duration
         modes = [trajectory.events[0].state_before.mode]
     if modes and state.mode is not modes[0]:
         raise Broken("mode", f"initial_state has {state.mode.name}, a sample {modes[0].name}")
@@ -127,7 +127,7 @@ def same_in_any_order(one: rl.Trajectory, other: rl.Trajectory, order: Any) -> N
 
 
 def same(one: Any, other: Any) -> None:
-    """Compare copies, or motions read back, with the originals."""
+    """Compare copies, or motions read from files, with the originals."""
     if _comparable(one) != _comparable(other):
         raise Broken("copy", "it is not the same")
 
@@ -139,7 +139,7 @@ def _comparable(thing: Any) -> Any:
 
 
 def _nan_in(value: Any, path: str = "the result") -> str | None:
-    """Path to a NaN in a result."""
+    """Path to a NaN in a result, or None without a NaN."""
     if isinstance(value, float | np.floating):
         return path if math.isnan(value) else None
     if isinstance(value, np.ndarray):

@@ -14,7 +14,7 @@ from .values import Draw, call
 STEPPED = ("dop853", "dopri5", "rk4", "gauss", "radau")
 STABILIZATIONS = ("projection", "none", "baumgarte", "projection+energy")
 
-# Model, method, stabilization.
+# Model, method and stabilization of motions.
 MANNERS: tuple[tuple[str, str, str], ...] = (
     *[("auto", "auto", "")] * 10,
     *[("contact", "auto", "")] * 10,
@@ -39,7 +39,7 @@ POWERS = {
 class Body:
     """The numbers of a drawn scene, with the scales that make other numbers ordinary for it."""
 
-    values: dict[str, Any]  # of the scene, without the impulse
+    values: dict[str, Any]  # numbers of the scene, without the impulse
     blow: dict[str, float]
 
     @property
@@ -48,7 +48,7 @@ class Body:
 
     @property
     def clock(self) -> float:
-        """Time of falling over [s]."""
+        """Natural time of falling over [s]."""
         return math.sqrt(self.length / self.values["gravity"])
 
 
@@ -63,7 +63,7 @@ def body(draw: Draw) -> Body:
 
 
 def in_other_units(values: dict[str, Any], units: tuple[float, ...]) -> dict[str, Any]:
-    """Numbers of the same motion, scaled from units of length, time and mass of another size."""
+    """Numbers of the same motion in other units of length, time and mass."""
     scales = {
         name: math.prod(unit**power for unit, power in zip(units, powers, strict=True))
         for name, powers in POWERS.items()
@@ -76,7 +76,7 @@ def angle(draw: Draw, _: Body) -> float:
 
 
 def speed(draw: Draw, of: Body) -> float:
-    """Angular velocity [rad/s]."""
+    """Draw an angular velocity [rad/s]."""
     size = draw.pick(0.0, draw.between(0, 4), draw.power(-20, 6), draw.power(-300, 0))
     return draw.pick(1, -1) * size / of.clock
 
@@ -90,7 +90,7 @@ def friction(draw: Draw, _: Body) -> float:
 
 
 def impulse(draw: Draw, of: Body) -> str:
-    """A blow; of size one for a body of 1 kg, and mostly within it."""
+    """Draw an impulse: 1 N s for a body of 1 kg, and mostly within the body."""
     strength = 3 * of.length / of.clock
     reach = draw.pick(0.7 * min(of.values["a"], of.values["b"]), of.length)
     values = [repr(size * draw.between(-1, 1)) for size in (strength, strength, reach, reach)]
@@ -100,7 +100,7 @@ def impulse(draw: Draw, of: Body) -> str:
 
 
 def scene(draw: Draw, of: Body, mutate: float = 0.0) -> str:
-    """The scene of a body; with that probability one or two of its arguments are hostile."""
+    """Scene of a body; with probability `mutate` one or two of its arguments are hostile."""
     if draw.chance(0.1):
         return f"rl.scenes.{draw.pick(*rl.scenes.__all__)}"
     arguments = {name: repr(value) for name, value in of.values.items()}
@@ -111,9 +111,9 @@ def scene(draw: Draw, of: Body, mutate: float = 0.0) -> str:
 
 
 def times(draw: Draw, of: Body) -> tuple[str, float]:
-    """Source text of sample times, and the last of them."""
+    """Source text of sample times, and the last of these times."""
     last = of.clock * draw.pick(draw.between(0, 12), draw.between(0, 12), draw.power(-3, 2))
-    if draw.chance(0.08):  # long climbs of slopes, many half turns
+    if draw.chance(0.08):  # times for long climbs of slopes and for many half turns
         last = of.clock * draw.power(1, 8)
     if draw.chance(0.12):
         last = draw.pick(0.0, 5e-324, 1e300, draw.power(-320, 300), draw.power(-6, 6) * of.clock)
@@ -129,7 +129,7 @@ def times(draw: Draw, of: Body) -> tuple[str, float]:
 
 
 def settings(draw: Draw, last: float) -> dict[str, str]:
-    """Options of `simulate`: work that is bounded, and mostly of use to the method."""
+    """Options of `simulate` that bound its work and mostly suit the method."""
     model, method, stabilization = draw.pick(*MANNERS)
     found: dict[str, object] = {}
     if model != "auto" or draw.chance(0.1):

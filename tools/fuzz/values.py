@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 T = TypeVar("T")
 
-# Limits of doubles, of the package and of integers, and neighbours of some.
+# Limits of doubles, of the package and of integers, and neighbours of some limits.
 EXTREMES = (
     "0", "0.0", "-0.0", "nan", "-nan", "inf", "-inf", "5e-324", "-5e-324",
     "2.2250738585072014e-308", "2.225073858507201e-308", "1.7976931348623157e308",
@@ -24,7 +24,7 @@ EXTREMES = (
     "nextafter(1.5, 2)", "nextafter(1, 0)", "nextafter(1, 2)", "1e50", "1e22", "1e6", "1e-6",
 )  # fmt: skip
 
-# Numbers of other types: to be taken as the number, or refused by name.
+# Numbers of other types: the package takes them as numbers, or refuses them by name.
 DRESSED = (
     "True", "np.bool_(True)", "np.float16(1.5)", "np.float32(1.5)", "np.int8(1)",
     "np.uint64(2**64 - 1)", "np.longdouble(1) / 3", "Fraction(1, 3)", "Decimal('0.5')",
@@ -32,7 +32,7 @@ DRESSED = (
     "type('Mine', (float,), {})(2.0)", "type('Whole', (), {'__index__': lambda self: 3})()",
 )  # fmt: skip
 
-# Values that are no number, or not one number.
+# Values that are no number, or more than one number.
 WRONG = (
     "None", "'1'", "'nan'", "''", "b'1'", "bytearray(b'1')", "1j", "complex(1, 0)",
     "np.complex64(1)", "np.complex128(2)", "np.array([1 + 2j, 3])", "np.ma.masked",
@@ -54,7 +54,7 @@ WRONG = (
 
 SHAPES = ((), (), (), (1,), (3,), (7,), (0,), (2, 3), (2, 1), (1, 1), (2, 0), (40,))
 
-# Ways to make an array of the given numbers.
+# Source texts that make an array of the given numbers.
 MAKES = (
     *["np.array({0})"] * 8, *["{0}"] * 3, "tuple({0})", "np.array({0}, dtype='>f8')",
     "np.repeat({0}, 2)[::2]", "np.array({0}[::-1])[::-1]", "np.array({0}, dtype=np.longdouble)",
@@ -63,7 +63,7 @@ MAKES = (
     "np.array([(1, v) for v in {0}], dtype='i1,f8')['f1']",
 )  # fmt: skip
 
-# Arguments that bound the work: they get no large numbers.
+# Arguments that bound the work and so get no large numbers.
 WORK = ("max_steps", "max_events", "count", "max_frames", "width", "dpi")
 
 
@@ -87,30 +87,30 @@ class Draw:
         return self._draw(st.floats(low, high))
 
     def share(self) -> float:
-        """A number in [0, 1)."""
+        """Draw a number in [0, 1)."""
         return self._draw(st.floats(0, 1, exclude_max=True))
 
     def whole(self, low: int, high: int) -> int:
         return self._draw(st.integers(low, high))
 
     def power(self, low: float, high: float) -> float:
-        """A number between 10^low and 10^high; sometimes a pure power of ten."""
+        """Draw a number between 10^low and 10^high; sometimes a pure power of ten."""
         if self.chance(0.2):
             return 10.0 ** self.whole(math.ceil(low), math.floor(high))
         return float(10.0 ** self.between(low, high))
 
     def count(self, most: int) -> int:
-        """A whole number up to `most`, small ones as likely as large ones."""
+        """Draw a whole number up to `most`, small ones as likely as large ones."""
         return round(self.power(0, math.log10(most)))
 
     def beside(self, value: float) -> float:
-        """The value, or a double a few places away from it."""
+        """The value, or a double a few ulp away from it."""
         for _ in range(self.pick(0, 0, 1, 1, 2, 7)):
             value = math.nextafter(value, self.pick(-math.inf, math.inf))
         return value
 
     def extreme(self) -> str:
-        """An extreme number."""
+        """Draw an extreme number."""
         kind = self.whole(0, 3)
         if kind == 0:
             return repr(self.pick(1, 1, -1) * 2.0 ** self.whole(-1074, 1023))
@@ -119,11 +119,11 @@ class Draw:
         return self.pick(*EXTREMES)
 
     def hostile(self) -> str:
-        """A value that a caller might pass by mistake."""
+        """Draw a value that a caller might pass by mistake."""
         return self.extreme() if self.chance(0.5) else self.pick(*DRESSED, *WRONG, *WRONG)
 
     def mutated(self, arguments: dict[str, str]) -> dict[str, str]:
-        """The arguments of a call; none, one or two of them are hostile."""
+        """The arguments of a call; up to two of them are hostile."""
         found = dict(arguments)
         for _ in range(self.pick(*[0] * 20, *[1] * 4, 2) if found else 0):
             name = self.pick(*found)
@@ -131,11 +131,11 @@ class Draw:
         return found
 
     def odd(self, name: str) -> str:
-        """A hostile value of an argument."""
+        """A hostile value for an argument."""
         return self.pick("0", "-1", "nan", *WRONG) if name in WORK else self.hostile()
 
     def array(self, values: Sequence[float], shape: tuple[int, ...] | None = None) -> str:
-        """An array-like of the numbers."""
+        """Source text of an array-like of the numbers."""
         if shape is not None and len(shape) != 1:
             return f"np.array({list(values)}).reshape({shape})"
         if all(abs(v) < 1e9 for v in values) and self.chance(0.05):

@@ -1,5 +1,5 @@
-// Numbers from the bytes of a fuzzer: ordinary ones, extremes, and arbitrary bits. After the last
-// byte all bytes are zero.
+// Numbers drawn from the bytes of a fuzzer: ordinary numbers, extremes, and arbitrary bits. After
+// the last byte all bytes are zero.
 #pragma once
 
 #include <cmath>
@@ -37,7 +37,7 @@ class Bytes {
 
     double sign() { return chance(128) ? -1.0 : 1.0; }
 
-    // Arbitrary bits, half of the time one of a few extremes.
+    // A double of arbitrary bits, half of the time one of a few extremes.
     double any() {
         using limits = std::numeric_limits<double>;
         static constexpr double extremes[] = {

@@ -1,6 +1,6 @@
 // The core with arbitrary numbers, for libFuzzer: tools/fuzz_core.sh builds and runs it.
 //
-// For every input must hold: wrong numbers are refused by a std::invalid_argument that names the
+// Every input must satisfy: wrong numbers are refused by a std::invalid_argument that names the
 // argument, and nothing else is thrown; every answer is finite, has a status that fits, and gains
 // no energy.
 
@@ -26,9 +26,9 @@ using fuzz_core::Bytes;
 
 namespace {
 
-Scene scene;  // made from the input
+Scene scene;  // the scene drawn from the input
 
-// The scene as a call of Python.
+// Prints the scene as a call of Python.
 void print_scene() {
     std::fprintf(stderr, "Scene(");
     for (const SceneField& field : scene_fields) {
@@ -43,7 +43,7 @@ void print_scene() {
     std::fprintf(stderr, ")\n");
 }
 
-// Aborts on a failure; libFuzzer keeps the input.
+// Aborts if a condition fails; libFuzzer keeps the input.
 void check(bool holds, const char* what, int line) {
     if (holds) return;
     std::fprintf(stderr, "line %d: %s\n", line, what);
@@ -52,7 +52,7 @@ void check(bool holds, const char* what, int line) {
 }
 #define CHECK(...) check((__VA_ARGS__), #__VA_ARGS__, __LINE__)
 
-struct Interrupted {};  // thrown as by Ctrl-C
+struct Interrupted {};  // thrown by a checkpoint, as by Ctrl-C
 
 // A checkpoint that interrupts long work as Ctrl-C does.
 Checkpoint patience(int looks) {
@@ -61,7 +61,7 @@ Checkpoint patience(int looks) {
     };
 }
 
-// Makes the body weightless, or gives it the friction that rolling needs, to rounding.
+// Makes the body weightless, or gives it exactly the friction that rolling needs, up to rounding.
 void put_at_its_limit(Scene& scene, Bytes& bytes) {
     const Geometry at = geometry(scene.axes(), scene.theta);
     const double beside = 1 + 0.5 * epsilon * (bytes.choice(7) - 3);
@@ -84,7 +84,7 @@ Scene scene_from(Bytes& bytes) {
     scene.inertia = bytes.chance(128) ? scene.mass * uniform_disc_gyration2(scene.a, scene.b)
                                       : scene.mass * longer * longer * bytes.power(-6, 0);
     if (bytes.chance(128)) {
-        const bool gentle = bytes.chance(96);  // for long climbs and slow changes
+        const bool gentle = bytes.chance(96);  // a choice for long climbs and slow changes
         scene.slope = gentle ? bytes.sign() * bytes.power(-9, 0) : bytes.between(-1.5, 1.5);
     }
     scene.friction = bytes.chance(64) ? infinity : bytes.power(-3, 2);
@@ -168,7 +168,7 @@ void check_start(const Scene& scene) {
     CHECK(std::abs(next.side) <= 1);
 }
 
-// Collisions of a body with the ground at any speed and slip.
+// Checks collisions of a body with the ground at any speed and slip.
 void check_collision(const Scene& scene, Bytes& bytes) {
     const Geometry at = geometry(scene.axes(), scene.theta);
     const double speed = std::max(scene.a, scene.b) / unit_of_time(scene);
@@ -266,7 +266,7 @@ void check_simulation(const Scene& scene, Bytes& bytes) {
     if (bytes.chance(16)) CHECK(!reason(scene, solution).empty());
 }
 
-// The report's coordinates, on the constraints or off them.
+// Checks the report's coordinates, on the constraints or off them.
 void check_coordinates(const Scene& scene, Bytes& bytes) {
     CoordinateState start = kinematics(scene.axes(), scene.theta, scene.omega);
     for (int i = 0; i < 5; ++i) {
@@ -286,7 +286,7 @@ void check_coordinates(const Scene& scene, Bytes& bytes) {
     check_samples(scene, solution, t_end, false);
 }
 
-// Rolling at any time: one state, the same state in lanes, and a table of many times.
+// Checks rolling at any time: one state, the same state in lanes, and a table of many times.
 void check_flow(const Scene& scene, Bytes& bytes) {
     const Body body = scene.body();
     const double t = bytes.sign() * unit_of_time(scene) * bytes.power(-6, 9);
