@@ -6,8 +6,6 @@
 #include <optional>
 
 #include "contact/continuation.hpp"
-#include "contact/settling.hpp"
-#include "geometry/half_turns.hpp"
 #include "proof/certificate.hpp"
 #include "proof/law.hpp"
 #include "proof/slope_end.hpp"
@@ -43,7 +41,7 @@ class ContactRun {
 
     Integration<Motion> run() {
         const double x_dot = state_.x_dot;
-        state_ = recounted(state_, {state_.theta, 0.0}).state;
+        recount(state_, {state_.theta, 0.0});
         if (scene_.friction == 0) state_.x_dot = x_dot;  // which nothing but gravity changes
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
@@ -73,15 +71,12 @@ class ContactRun {
         return angle.rest;
     }
 
-    // A state with its angle counted so, and all digits of that.
-    struct Recounted {
-        State state;
-        DoubleDouble angle;
-    };
-    Recounted recounted(const State& state, const DoubleDouble& theta) {
+    // Goes on from a state with its angle counted from a quarter turn; returns the angle.
+    DoubleDouble recount(const State& state, const DoubleDouble& theta) {
         const Axes before = axes();
         const DoubleDouble angle = count_from_quarter(theta);
-        return {with_angle(before, state, axes(), angle.high), angle};
+        state_ = with_angle(before, state, axes(), angle.high);
+        return angle;
     }
 
     void follow() {
@@ -181,12 +176,9 @@ class ContactRun {
         if (stop == SlideStop::no_progress) return give_up(Ending::step_too_small, lasts);
         if (stop == SlideStop::time_is_over) return finish();
         if (!advance(lasts)) return;
-        const Recounted here = recounted(last, theta);
-        state_ = here.state;
-        end_slide(stop, here.state);
-        if (next_.mode != Mode::sliding) return;
-        end.angle = here.angle;
-        sliding_on_ = end;
+        end.angle = recount(last, theta);
+        end_slide(stop, State(state_));
+        if (next_.mode == Mode::sliding) sliding_on_ = end;
     }
 
     void end_slide(SlideStop stop, const State& before) {
@@ -246,10 +238,10 @@ class ContactRun {
     }
 
     void settle(const Bounce& first) {
-        const Settled found = settled(scene_, state_, first);
-        add_segment(Settling{axes(), found.lasts, state_, found.state});
-        if (!advance(found.lasts)) return;
-        state_ = recounted(found.state, found.angle).state;
+        const Settling bounces = settling(scene_, state_, first);
+        add_segment(bounces);
+        if (!advance(bounces.lasts)) return;
+        recount(bounces.end, bounces.angle);
         go_on_by_forces(EventKind::slip);
     }
 
@@ -288,13 +280,12 @@ class ContactRun {
 
     // Goes on to the end of the segment just added; false if the motion is over before.
     bool advance(double lasts) {
-        const bool is_over = t_ + lasts > t_end_;
-        if (is_over) {
+        if (t_ + lasts > t_end_) {
             finish();
-        } else {
-            t_ += lasts;
+            return false;
         }
-        return !is_over;
+        t_ += lasts;
+        return true;
     }
 
     void finish() {

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "contact/sliding.hpp"
-#include "geometry/half_turns.hpp"
 #include "proof/law.hpp"
 #include "rolling/stepped/equation.hpp"
 
@@ -91,6 +90,17 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     const bool needs_force = next.mode == Mode::rolling && scene.slope != 0;
     next.grazes = std::isinf(scene.friction) && !needs_force;
     return next;
+}
+
+State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta) {
+    const Geometry before = geometry(axes, state.theta);
+    const Geometry after = geometry(new_axes, theta);
+    const double omega = state.omega;
+    state.theta = theta;
+    if (state.z == before.h) state.z = after.h;
+    if (state.x_dot == before.h * omega) state.x_dot = after.h * omega;
+    if (state.z_dot == before.dh * omega) state.z_dot = after.dh * omega;
+    return state;
 }
 
 Continuation first_continuation(const Scene& scene, const State& start, bool may_roll) {

@@ -30,14 +30,6 @@ struct Event {
 // The state just after an event, and the impulse of the ground at an impact.
 InitialState start_after(const Scene& scene, const Event& event);
 
-// Bounces too small to resolve one by one, replaced by their averaged motion.
-struct Settling {
-    Axes axes;
-    double lasts;
-    State start;
-    State end;
-};
-
 // A body that stays as it is: at rest, or at the instant from which no motion goes on, where no
 // force of the ground is right.
 struct Standing {

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/half_turns.hpp"
 #include "numerics/bernstein.hpp"
 #include "numerics/bisect.hpp"
 

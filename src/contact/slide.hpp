@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "contact/slide_series.hpp"
+#include "contact/sliding.hpp"
 #include "integrator/system.hpp"
 #include "numerics/double_double.hpp"
 #include "scene/settings.hpp"
