@@ -3,7 +3,6 @@
 // Here and everywhere, "physics (4)" is formula (4) of notebooks/02_physics.ipynb.
 #pragma once
 
-#include "contact/contact.hpp"
 #include "proof/certificate.hpp"
 #include "solution.hpp"
 

@@ -124,8 +124,7 @@ class Curvature {
         const FlatView view = flat_view(flight.axes, flight.start.theta);
         const double root =
             positive_root(flight.gravity.into / square(omega), view.short_axis * view.long_axis);
-        if (omega == 0 || !(root < view.long_axis)) return;
-        switching_ = true;
+        if (omega == 0 || !(root < view.long_axis)) return;  // concave for all times
         const double turned = flight.start.omega > 0 ? view.sin : -view.sin;
         const double phi = std::atan2(turned, view.cos);  // grows with time
         const double tip_side = std::sqrt((root - view.short_axis) * (root + view.short_axis));
@@ -143,7 +142,7 @@ class Curvature {
         bool convex;
     };
 
-    Interval first() const { return {0.0, switching_ ? first_end_ : infinity, convex_}; }
+    Interval first() const { return {0.0, first_end_, convex_}; }
 
     // The time in the middle of a convex interval, at which the tip is below.
     double tip_time(const Interval& interval) const { return interval.end - convex_time_ / 2; }
@@ -179,7 +178,6 @@ class Curvature {
         }
     }
 
-    bool switching_ = false;
     bool convex_ = false;
     double first_end_ = infinity;
     double concave_time_ = infinity;

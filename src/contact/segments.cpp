@@ -50,7 +50,7 @@ void sample(const Settling& settling, const double* times, std::size_t n, Contac
 }
 
 void sample(const Standing& standing, const double*, std::size_t n, ContactSample* samples) {
-    std::fill_n(samples, n, standing.sample);
+    std::fill_n(samples, n, standing);
 }
 
 // Conversions of samples; of a multiplier model the force is among its unknowns.

@@ -131,8 +131,6 @@ inline bool is_odd(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
 struct QuarterView {
     double quarters;
     DoubleDouble rest;
-
-    bool is_odd() const { return rolling_ellipse::is_odd(quarters); }
 };
 
 inline QuarterView quarter_view(const DoubleDouble& angle) {
