@@ -56,12 +56,11 @@ Proof prove(const Scene& scene, Beginning& from) {
     return {end_of_rolling(met), end ? end->time : infinity};
 }
 
-// Is the motion computed by the contact model, which proves arcs on slopes one by one, up to the
-// last time only?
+// Is the motion computed by the contact model, which proves arcs one by one, up to the last time
+// only?
 bool is_proved_by_arcs(const Scene& scene, const Beginning& from, const Settings& asked) {
-    if (!from.on_slope) return false;
     if (asked.model == Model::contact) return true;
-    return asked.model == Model::automatic && asked.method == Method::automatic &&
+    return from.on_slope && asked.model == Model::automatic && asked.method == Method::automatic &&
            !may_hold_for_ever(scene, from.initial.state);
 }
 
@@ -117,12 +116,11 @@ Integration<Motion> as_motion(const Scene& scene, Integration<Law> found) {
             found.counts};
 }
 
-Integration<Motion> solve(const Scene& scene, const Beginning& from, const EndOfRolling& end,
-                          const Settings& settings, double t_end, const Checkpoint& checkpoint) {
+Integration<Motion> solve(const Scene& scene, const Beginning& from, const Settings& settings,
+                          double t_end, const Checkpoint& checkpoint) {
     const State& start = from.initial.state;
     if (settings.model == Model::contact) {
-        return integrate_contact(scene, start, from.initial.gap_rate, end, settings, t_end,
-                                 checkpoint);
+        return integrate_contact(scene, from.initial, settings, t_end, checkpoint);
     }
     if (!rolls(start)) {
         throw std::invalid_argument("model '" + name(settings.model) +
@@ -171,8 +169,7 @@ Solution simulate(const Scene& scene, const Settings& asked, double t_end,
     Beginning from = beginning(scene);
     const Proof proof = is_proved_by_arcs(scene, from, asked) ? Proof{} : prove(scene, from);
     const Settings settings = chosen(asked, proof.end.validity);
-    Solution found =
-        solution(solve(scene, from, proof.end, settings, t_end, checkpoint), settings, t_end);
+    Solution found = solution(solve(scene, from, settings, t_end, checkpoint), settings, t_end);
     if (settings.model != Model::contact) judge_by_proof(from, proof, t_end, found);
     return found;
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "contact/contact.hpp"
+#include "contact/segments.hpp"
 #include "proof/certificate.hpp"
 #include "proof/watch.hpp"
 

@@ -1,17 +1,13 @@
-#include "contact/contact.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "contact/continuation.hpp"
-#include "contact/settling.hpp"
-#include "geometry/half_turns.hpp"
+#include "contact/segments.hpp"
 #include "proof/certificate.hpp"
 #include "proof/law.hpp"
 #include "proof/slope_end.hpp"
-#include "scene/impact.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -27,23 +23,21 @@ EventKind kind_of(Mode next, EventKind sliding) {
 // settings and events are not.
 class ContactRun {
   public:
-    ContactRun(const Scene& scene, const State& start, double gap_rate,
-               const EndOfRolling& end_of_rolling, const Settings& settings, double t_end,
-               const Checkpoint& checkpoint)
+    ContactRun(const Scene& scene, const InitialState& start, const Settings& settings,
+               double t_end, const Checkpoint& checkpoint)
         : units_(natural_units(scene.body(), scene.mass)),
           scene_(in_units(scene, units_)),
           settings_(settings),
           t_end_(std::min(t_end / units_.time, std::numeric_limits<double>::max())),
           checkpoint_(checkpoint),
-          state_(in_units(start, units_)),
-          gap_rate_(gap_rate / units_.speed()),
-          first_end_(end_of_rolling),
+          state_(in_units(start.state, units_)),
+          gap_rate_(start.gap_rate / units_.speed()),
           rest_speed_(rest_speed(scene_, units_, settings)),
           motion_{units_, scene_, {}, {}} {}
 
     Integration<Motion> run() {
         const double x_dot = state_.x_dot;
-        state_ = recounted(state_, {state_.theta, 0.0}).state;
+        recount(state_, {state_.theta, 0.0});
         if (scene_.friction == 0) state_.x_dot = x_dot;  // which nothing but gravity changes
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
@@ -66,22 +60,19 @@ class ContactRun {
         }
         const QuarterView angle = quarter_view(theta);
         turned_ = turned_ + half_pi_exact * angle.quarters + angle.rest.low;
-        if (angle.is_odd()) {
+        if (is_odd(angle.quarters)) {
             std::swap(scene_.a, scene_.b);
             axes_exchanged_ = !axes_exchanged_;
         }
         return angle.rest;
     }
 
-    // A state with its angle counted so, and all digits of that.
-    struct Recounted {
-        State state;
-        DoubleDouble angle;
-    };
-    Recounted recounted(const State& state, const DoubleDouble& theta) {
+    // Goes on from a state with its angle counted from a quarter turn; returns the angle.
+    DoubleDouble recount(const State& state, const DoubleDouble& theta) {
         const Axes before = axes();
         const DoubleDouble angle = count_from_quarter(theta);
-        return {with_angle(before, state, axes(), angle.high), angle};
+        state_ = with_angle(before, state, axes(), angle.high);
+        return angle;
     }
 
     void follow() {
@@ -101,36 +92,28 @@ class ContactRun {
     }
 
     void rest() {
-        add_segment(Standing{{state_, rolling_force(scene_, state_.theta, state_.omega)}});
+        add_segment(Standing{state_, rolling_force(scene_, state_.theta, state_.omega)});
         finish();
     }
 
     bool is_stuck() const { return next_.paradox != Painleve::determined; }
 
     void stop_stuck() {
-        add_segment(Standing{{state_, {0.0, 0.0}}});
+        add_segment(Standing{state_, {0.0, 0.0}});
         ending_ = next_.paradox == Painleve::no_motion ? Ending::jammed : Ending::undetermined;
     }
 
     void roll_on_level_ground() {
         const RollingStart start = rolling_start(scene_.body(), state_.theta, state_.omega);
-        RollingFlow flow = rolling_flow(start, state_.x);
-        const EndOfRolling end = end_of_this_rolling(start);
-        roll(std::move(flow),
-             end.validity == Validity::invalid ? time_of_end(flow, end) : infinity);
-    }
-
-    EndOfRolling end_of_this_rolling(const RollingStart& start) const {
-        const bool is_first = motion_.segments.empty() && turned_.high == 0;
         const double friction = friction_to_roll();
         const bool at_limit = friction != scene_.friction;
-        if (is_first && !at_limit) return first_end_;
         EndOfRolling end = end_of_rolling(start, friction);
         // The added friction may turn the body by less than a rounding of its angle.
         if (at_limit && end.angle && std::abs(*end.angle - start.theta) < epsilon) {
             end.angle = start.theta + end.heading * epsilon;
         }
-        return end;
+        const RollingFlow flow = rolling_flow(start, state_.x);
+        roll(flow, end.validity == Validity::invalid ? time_of_end(flow, end) : infinity);
     }
 
     void roll_on_slope() {
@@ -162,12 +145,11 @@ class ContactRun {
         const auto [end, omega, x] = sample(*kept, lasts);
         const double theta = count_from_quarter({end, 0.0}).high;
         state_ = in_contact(geometry(axes(), theta), theta, omega, x, 0.0, Mode::rolling);
-        go_on_by_forces(EventKind::slip, false);
+        go_on_by_forces(false);
     }
 
     void slide() {
-        Slide slide = slide_from(scene_, state_, next_.side);
-        if (sliding_on_) go_on_from(*sliding_on_, slide);
+        Slide slide = slide_from(scene_, state_, next_.side, sliding_on_);
         sliding_on_.reset();
         const long steps_left = settings_.max_steps - counts_.steps;
         const SlideStop stop = slide_on(slide, {t_end_ - t_, steps_left}, checkpoint_);
@@ -181,12 +163,9 @@ class ContactRun {
         if (stop == SlideStop::no_progress) return give_up(Ending::step_too_small, lasts);
         if (stop == SlideStop::time_is_over) return finish();
         if (!advance(lasts)) return;
-        const Recounted here = recounted(last, theta);
-        state_ = here.state;
-        end_slide(stop, here.state);
-        if (next_.mode != Mode::sliding) return;
-        end.angle = here.angle;
-        sliding_on_ = end;
+        end.angle = recount(last, theta);
+        end_slide(stop, State(state_));
+        if (next_.mode == Mode::sliding) sliding_on_ = end;
     }
 
     void end_slide(SlideStop stop, const State& before) {
@@ -246,16 +225,16 @@ class ContactRun {
     }
 
     void settle(const Bounce& first) {
-        const Settled found = settled(scene_, state_, first);
-        add_segment(Settling{axes(), found.lasts, state_, found.state});
-        if (!advance(found.lasts)) return;
-        state_ = recounted(found.state, found.angle).state;
-        go_on_by_forces(EventKind::slip);
+        const Settling bounces = settling(scene_, state_, first);
+        add_segment(bounces);
+        if (!advance(bounces.lasts)) return;
+        recount(bounces.end, bounces.angle);
+        go_on_by_forces(true);
     }
 
-    void go_on_by_forces(EventKind sliding, bool may_roll = true) {
+    void go_on_by_forces(bool may_roll) {
         const Continuation next = continuation(scene_, state_, may_roll);
-        go_on_with(next, kind_of(next.mode, sliding), State(state_));
+        go_on_with(next, kind_of(next.mode, EventKind::slip), State(state_));
     }
 
     void go_on_with(const Continuation& next, EventKind kind, const State& before,
@@ -288,13 +267,12 @@ class ContactRun {
 
     // Goes on to the end of the segment just added; false if the motion is over before.
     bool advance(double lasts) {
-        const bool is_over = t_ + lasts > t_end_;
-        if (is_over) {
+        if (t_ + lasts > t_end_) {
             finish();
-        } else {
-            t_ += lasts;
+            return false;
         }
-        return !is_over;
+        t_ += lasts;
+        return true;
     }
 
     void finish() {
@@ -315,7 +293,6 @@ class ContactRun {
     const Checkpoint& checkpoint_;
     State state_;
     double gap_rate_;
-    const EndOfRolling first_end_;
     const double rest_speed_;
     Motion motion_;
     std::optional<SlidePoint> sliding_on_;  // the end of a slide that another one follows
@@ -329,11 +306,10 @@ class ContactRun {
 
 }  // namespace
 
-Integration<Motion> integrate_contact(const Scene& scene, const State& start, double gap_rate,
-                                      const EndOfRolling& end_of_rolling, const Settings& settings,
-                                      double t_end, const Checkpoint& checkpoint) {
-    Integration<Motion> found =
-        ContactRun(scene, start, gap_rate, end_of_rolling, settings, t_end, checkpoint).run();
+Integration<Motion> integrate_contact(const Scene& scene, const InitialState& start,
+                                      const Settings& settings, double t_end,
+                                      const Checkpoint& checkpoint) {
+    Integration<Motion> found = ContactRun(scene, start, settings, t_end, checkpoint).run();
     if (found.ending == Ending::completed) found.followed_until = t_end;
     return found;
 }

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "contact/sliding.hpp"
-#include "geometry/half_turns.hpp"
 #include "proof/law.hpp"
 #include "rolling/stepped/equation.hpp"
 
@@ -19,27 +18,17 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
     return state.omega == 0 && is_equilibrium(at, incline) && std::abs(incline) <= scene.friction;
 }
 
-// Whether a body with c = 0 within rounding, physics (53), leaves the ground: h'' is least on the
-// tip, so that c falls on the way up to it and grows behind it.
-bool takes_off(const Geometry& at, double omega) {
-    return at.dh * omega > 0 && !is_equilibrium(at);
-}
-
-// The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52).
-Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side) {
+// The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52). Only if
+// it slips already can a slide with N = c/B > 0, c < 0, be a second motion beside flight: without
+// slip, the N and F of rolling rule out that slip starts to the side of this slide. A body may be
+// put there, but no motion leads there: a slide ends before, where c or B vanishes, and an impact
+// with B < 0 goes on until the slip stops.
+Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side,
+                            bool slips = false) {
     const auto [c, b] = response(sliding_body(scene, side), at, omega);
+    if (slips && c < 0 && b < 0) return {Mode::sliding, side, Painleve::two_motions};
     if (c <= 0) return {Mode::flight};
     return {Mode::sliding, side, b <= 0 ? Painleve::no_motion : Painleve::determined};
-}
-
-// The continuation of a slip. Only then can a slide with N = c/B > 0, c < 0, be a second motion
-// beside flight: without slip, the N and F of rolling rule out that slip starts to the side of this
-// slide. A body may be put there, but no motion leads there: a slide ends before, where c or B
-// vanishes, and an impact with B < 0 goes on until the slip stops.
-Continuation sliding(const Scene& scene, const Geometry& at, double omega, double side) {
-    const auto [c, b] = response(sliding_body(scene, side), at, omega);
-    if (c < 0 && b < 0) return {Mode::sliding, side, Painleve::two_motions};
-    return slide_or_leave(scene, at, omega, side);
 }
 
 // The start of a slip, where rolling is not possible, to the side to which the contact accelerates.
@@ -64,7 +53,7 @@ Continuation continuation_at(const Scene& scene, const State& state, const Geome
         const bool stays = slip == 0 && scene.slope == 0 && rests(scene, state, at);
         return stays ? Continuation{Mode::rest} : slide_or_leave(scene, at, state.omega, 0.0);
     }
-    if (slip != 0) return sliding(scene, at, state.omega, side_of(slip));
+    if (slip != 0) return slide_or_leave(scene, at, state.omega, side_of(slip), true);
     if (rests(scene, state, at)) return {Mode::rest};
     const ContactForce force = rolling_force(scene, state.theta, state.omega);
     const bool held = law_margin(force, scene.friction) >= 0 || at_the_limit(force, scene.friction);
@@ -83,7 +72,8 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     const double slip = slip_velocity(state, at);
     const bool weightless = is_weightless(at, scene.ground_gravity().into, state.omega);
     if (!weightless) return continuation_at(scene, state, at, slip, may_roll);
-    if (takes_off(at, state.omega)) return {Mode::flight};
+    // h'' is least on the tip, so that c falls on the way up to it and grows behind it.
+    if (at.dh * state.omega > 0 && !is_equilibrium(at)) return {Mode::flight};
     State later = state;
     later.theta += std::copysign(turn_of_grazing, state.omega);
     Continuation next =
@@ -93,6 +83,17 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     return next;
 }
 
+State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta) {
+    const Geometry before = geometry(axes, state.theta);
+    const Geometry after = geometry(new_axes, theta);
+    const double omega = state.omega;
+    state.theta = theta;
+    if (state.z == before.h) state.z = after.h;
+    if (state.x_dot == before.h * omega) state.x_dot = after.h * omega;
+    if (state.z_dot == before.dh * omega) state.z_dot = after.dh * omega;
+    return state;
+}
+
 Continuation first_continuation(const Scene& scene, const State& start, bool may_roll) {
     if (start.mode == Mode::flight) return {Mode::flight};
     const Units units = natural_units(scene.body(), scene.mass);
@@ -100,7 +101,7 @@ Continuation first_continuation(const Scene& scene, const State& start, bool may
     const State state = in_units(start, units);
     const QuarterView angle = quarter_view({resolved(state.theta), 0.0});
     Scene seen = body;
-    if (angle.is_odd()) std::swap(seen.a, seen.b);
+    if (is_odd(angle.quarters)) std::swap(seen.a, seen.b);
     return continuation(seen, with_angle(body.axes(), state, seen.axes(), angle.rest.high),
                         may_roll);
 }

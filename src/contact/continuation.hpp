@@ -28,6 +28,9 @@ inline constexpr double turn_of_grazing = 0x1p-22;  // [rad]
 // rolling.
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true);
 
+// The same state by other axes, and the angle that belongs to them. Contact and no slip remain so.
+State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta);
+
 // The mode in which a body goes on from its start, which may be in the air.
 Continuation first_continuation(const Scene& scene, const State& start, bool may_roll = true);
 

@@ -5,9 +5,15 @@
 #include <optional>
 
 #include "numerics/bisect.hpp"
+#include "scene/impact.hpp"
+#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {
+
+// The largest ratio of a rebound to the last one with which bounces are summed: at most 1e5 of
+// them.
+constexpr double largest_ratio = 0.9999;
 
 // sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, as series in which nothing cancels.
 struct BeyondSmall {
@@ -64,9 +70,6 @@ class Gap {
         return (flight_.gap_rate - fallen) - rise->slope * flight_.start.omega;
     }
 
-    // Whether the flight starts on the ground without a velocity away from it.
-    bool leaves_slowly() const { return value(0.0) <= 0 && rate(0.0) <= 0; }
-
     // The time at which the centre falls to a height, the start's at most if it starts to fall.
     double falls_to(double height) const {
         const double drop = flight_.start.z - height;
@@ -121,8 +124,7 @@ class Curvature {
         const FlatView view = flat_view(flight.axes, flight.start.theta);
         const double root =
             positive_root(flight.gravity.into / square(omega), view.short_axis * view.long_axis);
-        if (omega == 0 || !(root < view.long_axis)) return;
-        switching_ = true;
+        if (omega == 0 || !(root < view.long_axis)) return;  // concave for all times
         const double turned = flight.start.omega > 0 ? view.sin : -view.sin;
         const double phi = std::atan2(turned, view.cos);  // grows with time
         const double tip_side = std::sqrt((root - view.short_axis) * (root + view.short_axis));
@@ -140,7 +142,7 @@ class Curvature {
         bool convex;
     };
 
-    Interval first() const { return {0.0, switching_ ? first_end_ : infinity, convex_}; }
+    Interval first() const { return {0.0, first_end_, convex_}; }
 
     // The time in the middle of a convex interval, at which the tip is below.
     double tip_time(const Interval& interval) const { return interval.end - convex_time_ / 2; }
@@ -176,15 +178,16 @@ class Curvature {
         }
     }
 
-    bool switching_ = false;
     bool convex_ = false;
     double first_end_ = infinity;
     double concave_time_ = infinity;
     double convex_time_ = infinity;
 };
 
-double first_touch(const Flight& flight, const Gap& gap, bool leaves_slowly) {
+double first_touch(const Flight& flight, const Gap& gap) {
     const Curvature curvature(flight);
+    // Whether the flight starts on the ground without a velocity away from it.
+    const bool leaves_slowly = gap.value(0.0) <= 0 && gap.rate(0.0) <= 0;
     // A higher centre is no contact, however h is rounded.
     const double tall = std::max(flight.axes.a, flight.axes.b) * (1 + equal_ulps * epsilon);
     // The time of a contact at the latest, however h is rounded.
@@ -246,8 +249,76 @@ State state_at(const Flight& flight, double t) {
 
 Landing touch_down(const Flight& flight) {
     const Gap gap(flight);
-    const double after = first_touch(flight, gap, gap.leaves_slowly());
+    const double after = first_touch(flight, gap);
     return {after, gap.rate_after_small_turn(after)};
+}
+
+double speed_of_fall(const Scene& scene) {
+    return std::sqrt(scene.gravity * std::min(scene.a, scene.b));
+}
+
+double rest_speed(const Scene& scene, const Units& units, const Settings& settings) {
+    constexpr double small = 1e-6;
+    // Relative error of c and h', which are constant while bounces are summed.
+    constexpr double large = 1e-2;
+    const double unit = speed_of_fall(scene);
+    if (!settings.rest_speed) return small * unit;
+    const double speed = *settings.rest_speed / units.speed();
+    if (speed > large * unit) {
+        refuse("rest_speed",
+               "at most " + text(large * unit * units.speed()) +
+                   " [m/s], a hundredth of sqrt(g min(a, b))",
+               *settings.rest_speed);
+    }
+    return speed;
+}
+
+// The bounces are summed under one c and h'. The relative error is the square of their duration by
+// the time in which the body falls, or turns by b/a; it must stay below the rest speed by the speed
+// of a fall.
+bool settles(const Scene& scene, double omega, const Bounce& first, double rest_speed) {
+    const auto [rebound, ratio, c] = first;
+    if (rebound > rest_speed || c <= 0 || !(ratio < largest_ratio)) return false;
+    const auto [least, most] = std::minmax(scene.a, scene.b);
+    const double rate = std::max(std::sqrt(scene.gravity / least), std::abs(omega) * most / least);
+    const double longest = std::sqrt(rest_speed / speed_of_fall(scene));
+    return 2 * rebound * rate <= longest * c * (1 - ratio);
+}
+
+// Infinitely many bounces that shrink by a ratio take a finite time, physics (57). Such small ones
+// take place at one angle, under the c of their beginning.
+Settling settling(const Scene& scene, const State& start, const Bounce& first) {
+    constexpr double negligible_share = 1e-12;  // of the first rebound: smaller ones add no digit
+    const Geometry at = geometry(scene.axes(), start.theta);
+    const GroundGravity gravity = scene.ground_gravity();
+    State moving = start;
+    double lasts = 0.0;
+    double turned = 0.0;
+    double moved = 0.0;
+    double speed = first.rebound;
+    while (speed > negligible_share * first.rebound) {
+        const double hop = 2 * speed / first.c;
+        const double gained = (gravity.along - at.dh * square(moving.omega)) * hop;  // slip
+        // The centre moves with the slip and (h + h' turned) omega.
+        const double velocity = moving.x_dot + at.dh * turned * moving.omega;
+        moved += (velocity + 0.5 * gravity.along * hop) * hop;
+        lasts += hop;
+        turned += moving.omega * hop;
+        moving.x_dot += gained;
+        moving.z_dot = at.dh * moving.omega - speed;
+        const auto [after, next] = collision(scene, moving, -speed);
+        moving = after;
+        if (!(next < largest_ratio * speed)) break;
+        speed = std::max(next, 0.0);
+    }
+    const DoubleDouble angle = two_sum(start.theta, turned);
+    const double theta = angle.high;
+    const double slip = slip_velocity(moving, at);
+    const bool is_rounding = std::abs(slip) <= equal_ulps * epsilon * std::abs(moving.x_dot);
+    const State end =
+        in_contact(geometry(scene.axes(), theta), theta, zero_if_negligible(moving.omega),
+                   start.x + moved, is_rounding ? 0.0 : slip, Mode::flight);
+    return {scene.axes(), lasts, start, end, angle};
 }
 
 }  // namespace rolling_ellipse

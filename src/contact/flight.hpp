@@ -1,11 +1,11 @@
-// Flight, exact: the centre on a parabola, the angular velocity constant; and its end, physics
-// (55).
+// Flight, exact: the centre on a parabola, the angular velocity constant; its end, physics (55);
+// and bounces that are too small and too short to resolve one by one, summed.
 #pragma once
 
 #include <optional>
 
-#include "geometry/ellipse.hpp"
 #include "scene/scene.hpp"
+#include "scene/settings.hpp"
 
 namespace rolling_ellipse {
 
@@ -27,5 +27,33 @@ struct Landing {
     std::optional<double> gap_rate;
 };
 Landing touch_down(const Flight& flight);
+
+// The speed sqrt(g b) of a fall by half the short semi-axis b.
+double speed_of_fall(const Scene& scene);
+
+// The speed, in the given units, below which bounces may be summed. Throws std::invalid_argument if
+// the speed in the settings is too large.
+double rest_speed(const Scene& scene, const Units& units, const Settings& settings);
+
+// The speed of a rebound, its ratio to that of the approach, and c after it.
+struct Bounce {
+    double rebound;
+    double ratio;
+    double c;
+};
+
+// Whether a bounce is the first of those that are summed.
+bool settles(const Scene& scene, double omega, const Bounce& first, double rest_speed);
+
+// Bounces too small to resolve one by one, replaced by their averaged motion.
+struct Settling {
+    Axes axes;
+    double lasts;
+    State start;
+    State end;
+    DoubleDouble angle;  // theta of the end, with all digits
+};
+
+Settling settling(const Scene& scene, const State& start, const Bounce& first);
 
 }  // namespace rolling_ellipse

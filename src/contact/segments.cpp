@@ -29,7 +29,7 @@ void sample(const Flight& flight, const double* times, std::size_t n, ContactSam
 // Velocities change evenly. A coordinate is the integral of its rate, and the rest of its change
 // comes evenly, too.
 void sample(const Settling& settling, const double* times, std::size_t n, ContactSample* samples) {
-    const auto& [axes, lasts, start, end] = settling;
+    const auto& [axes, lasts, start, end, angle] = settling;
     for (std::size_t i = 0; i < n; ++i) {
         const double share = times[i] / lasts;
         const auto between = [share](double from, double to) { return from + share * (to - from); };
@@ -50,7 +50,7 @@ void sample(const Settling& settling, const double* times, std::size_t n, Contac
 }
 
 void sample(const Standing& standing, const double*, std::size_t n, ContactSample* samples) {
-    std::fill_n(samples, n, standing.sample);
+    std::fill_n(samples, n, standing);
 }
 
 // Conversions of samples; of a multiplier model the force is among its unknowns.
@@ -102,32 +102,29 @@ void evaluate(const Scene& scene, const Law& law, const double* times, std::size
     }
 }
 
-ContactSample in_si(const ContactSample& sample, const Units& units) {
+double whole_angle(const DoubleDouble& turned, double theta) {
+    return turned.high == 0 ? theta : static_cast<double>(turned + theta);
+}
+
+// Samples in SI units, with their whole angles.
+
+void complete(FlowSample& sample, const Units& units, const DoubleDouble& turned) {
+    sample = {whole_angle(turned, sample.theta), sample.omega / units.time,
+              sample.x * units.length};
+}
+
+void complete(ContactSample& sample, const Units& units, const DoubleDouble& turned) {
     const double force = units.of(unit::force);
-    return {in_si(sample.state, units),
-            {sample.force.normal * force, sample.force.friction * force}};
+    sample = {in_si(sample.state, units),
+              {sample.force.normal * force, sample.force.friction * force}};
+    sample.state.theta = whole_angle(turned, sample.state.theta);
 }
 
-FlowSample in_si(const FlowSample& sample, const Units& units) {
-    return {sample.theta, sample.omega / units.time, sample.x * units.length};
-}
-
-CoordinateState in_si(const CoordinateState& state, const Units& units) {
+void complete(CoordinateState& state, const Units& units, const DoubleDouble& turned) {
     const Coordinates lengths{units.length, units.length, 1.0, 1.0, units.length};
-    return {state.q.cwiseProduct(lengths), state.q_dot.cwiseProduct(lengths) / units.time};
-}
-
-void turn(FlowSample& sample, const DoubleDouble& by) {
-    sample.theta = static_cast<double>(by + sample.theta);
-}
-
-void turn(ContactSample& sample, const DoubleDouble& by) {
-    sample.state.theta = static_cast<double>(by + sample.state.theta);
-}
-
-void turn(CoordinateState& state, const DoubleDouble& by) {
+    state = {state.q.cwiseProduct(lengths), state.q_dot.cwiseProduct(lengths) / units.time};
     for (const int angle : {coordinate::theta, coordinate::psi}) {
-        state.q[angle] = static_cast<double>(by + state.q[angle]);
+        state.q[angle] = whole_angle(turned, state.q[angle]);
     }
 }
 
@@ -188,11 +185,8 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
             },
             segment.law);
         const std::size_t last = i + since.size();
-        if (segment.turned.high != 0) {
-            for (std::size_t j = i; j < last; ++j) turn(samples[j], segment.turned);
-        }
-        if (units.are_si()) i = last;
-        for (; i < last; ++i) samples[i] = in_si(samples[i], units);
+        if (units.are_si() && segment.turned.high == 0) i = last;
+        for (; i < last; ++i) complete(samples[i], units, segment.turned);
     }
 }
 

@@ -30,19 +30,9 @@ struct Event {
 // The state just after an event, and the impulse of the ground at an impact.
 InitialState start_after(const Scene& scene, const Event& event);
 
-// Bounces too small to resolve one by one, replaced by their averaged motion.
-struct Settling {
-    Axes axes;
-    double lasts;
-    State start;
-    State end;
-};
-
 // A body that stays as it is: at rest, or at the instant from which no motion goes on, where no
 // force of the ground is right.
-struct Standing {
-    ContactSample sample;
-};
+using Standing = ContactSample;
 
 // A law of some kB, kept outside of the list, in which every bounce would take as much.
 template <class Law>
@@ -75,6 +65,12 @@ template <class Law>
 const Law& itself(const Apart<Law>& law) {
     return *law;
 }
+
+// The motion of a body with everything that its contact does: it rolls, slides, flies, hits the
+// ground and comes to rest, each on a segment of its own, joined by events (contact.cpp).
+Integration<Motion> integrate_contact(const Scene& scene, const InitialState& start,
+                                      const Settings& settings, double t_end,
+                                      const Checkpoint& checkpoint);
 
 // A motion in SI units by one law.
 Motion single(const Scene& scene, decltype(Segment::law) law);

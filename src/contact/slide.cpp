@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <optional>
 #include <utility>
 
-#include "geometry/half_turns.hpp"
 #include "numerics/bisect.hpp"
 #include "numerics/polynomial.hpp"
 
@@ -303,12 +301,13 @@ double clock_at(const SlidePiece& piece, double time) {
 
 }  // namespace
 
-Slide slide_from(const Scene& scene, const State& start, double side) {
+Slide slide_from(const Scene& scene, const State& start, double side,
+                 const std::optional<SlidePoint>& end_of_other) {
     const Axes axes = scene.axes();
     const double slip = slip_velocity(start, geometry(axes, start.theta));
     const QuarterView angle = quarter_view({start.theta, 0.0});
     Scene seen = scene;
-    if (angle.is_odd()) std::swap(seen.a, seen.b);
+    if (is_odd(angle.quarters)) std::swap(seen.a, seen.b);
     constexpr std::size_t usual_pieces = 16;
     const SlidingBody body = sliding_body(seen, side);
     const double energy = energy_of(body, angle.rest, start.omega);
@@ -320,16 +319,16 @@ Slide slide_from(const Scene& scene, const State& start, double side) {
         {angle.rest, {start.omega, 0.0}, {slip, 0.0}, {start.x_dot, 0.0}, {}, {}, {energy, 0.0}},
         {}};
     slide.pieces.reserve(usual_pieces);
+    if (end_of_other) {
+        const double rest = end_of_other->angle.low;
+        slide.last.angle = slide.last.angle + rest;
+        slide.theta_base = slide.theta_base + -rest;
+        slide.last.omega = end_of_other->omega;
+        slide.last.x_dot = end_of_other->x_dot;
+        slide.last.energy = end_of_other->energy;
+        slide.last.slip = {0.0, 0.0};
+    }
     return slide;
-}
-
-void go_on_from(const SlidePoint& end, Slide& slide) {
-    slide.last.angle = slide.last.angle + end.angle.low;
-    slide.theta_base = slide.theta_base + -end.angle.low;
-    slide.last.omega = end.omega;
-    slide.last.x_dot = end.x_dot;
-    slide.last.energy = end.energy;
-    slide.last.slip = {0.0, 0.0};
 }
 
 SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& checkpoint) {

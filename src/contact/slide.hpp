@@ -4,9 +4,10 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
-#include "contact/slide_series.hpp"
+#include "contact/sliding.hpp"
 #include "integrator/system.hpp"
 #include "numerics/numbers.hpp"
 #include "scene/settings.hpp"
@@ -46,12 +47,10 @@ struct Slide {
     std::vector<SlidePiece> pieces;
 };
 
-// The start of sliding, with the slip to the given side (0: without friction there is none).
-Slide slide_from(const Scene& scene, const State& start, double side);
-
-// Starts the slide at the end of another one, with all digits that the states have rounded away,
-// and no slip.
-void go_on_from(const SlidePoint& end, Slide& slide);
+// The start of sliding, with the slip to the given side (0: without friction there is none). At the
+// end of another slide it has no slip, and all digits that the states have rounded away.
+Slide slide_from(const Scene& scene, const State& start, double side,
+                 const std::optional<SlidePoint>& end_of_other = {});
 
 struct SlideBounds {
     double t_end = infinity;

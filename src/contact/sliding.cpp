@@ -81,4 +81,106 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
             least < infinity ? least : 0.0};
 }
 
+// The derivatives of u = h^2, p = h h' and q = p' by the angle are 2 p, q and -4 p.
+SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, SlideClock clock) {
+    const auto [sin, cos, omega, slip_velocity, x_velocity] = centre;
+    const auto [a, b] = body.axes;
+    const double c2 = (a - b) * (a + b);
+    const double k2 = body.gyration2;
+    const double nu = body.normal_share;
+    const double phi = body.friction_share;
+    const bool slowed = clock == SlideClock::slowed;
+
+    SlideSeries slide;
+    auto& [motion, slip, rolled, pressure, response, u, work] = slide;
+    auto& [angle, w, x_dot, path, time] = motion;
+    // Two factors side by side, for two products at once.
+    TwoSeries p_q, spread;   // p angle', q angle'
+    TwoSeries w_u;           // omega^2, u^2
+    TwoSeries h_bend, h_w2;  // h^2, (a b - u)(a b + u) omega^2
+    TwoSeries p_u, lever_h;  // p L, u h
+    TwoSeries u_h, v_v;      // u V, h V
+    TwoSeries c_w;           // with lever_h: L C, h omega
+    TwoSeries loads, gains;  // (u V) omega', (h V) impulse'
+    TwoSeries rate_c, w_h;   // dt/dtau omega, C h
+    LongSeries h, rate, impulse, pull;
+    w[0] = omega;
+    angle[0] = path[0] = time[0] = impulse[0] = work[0] = 0.0;
+    p_q[0] = pair(c2 * sin * cos, c2 * ((cos - sin) * (cos + sin)));
+    const double u0 = square(a * sin) + square(b * cos);
+    u[0] = u0;
+    // (a b - u)(a b + u) by factors: nothing cancels for thin bodies, nor for circles.
+    const double bend0 = (a - b) * (b * square(cos) - a * square(sin)) * (a * b + u0);
+    const double h0 = std::sqrt(u0);
+    const double over_2h0 = 0.5 / h0;
+    const double per_clock = 1 / (k2 * u0 * u0);
+    Pair over_loads{};
+
+    for (int k = 0; k <= long_order; ++k) {
+        const Pair known_spread = inner(p_q, spread, k);
+        const Pair known_squares = self_product(w_u, k, 1);
+        const Pair known_bends = inner(h_bend, h_w2, k);
+        const Pair known_weights = inner(p_u, lever_h, k);
+        const Pair known_loads = inner(u_h, v_v, k);
+        const Pair known_torques = inner(lever_h, c_w, k);
+
+        h[k] = k == 0 ? h0 : (u[k] - known_bends[0]) * over_2h0;
+        const double p = p_q[k][0];
+        const double lever = nu * p + phi * u[k];
+        w_u[k] = pair(w[k], u[k]);
+        const Pair squares = k == 0 ? w_u[0] * w_u[0] : known_squares + 2 * (w_u[0] * w_u[k]);
+        h_bend[k] = pair(h[k], k == 0 ? bend0 : -squares[1]);
+        h_w2[k] = pair(h[k], squares[0]);
+        p_u[k] = pair(p, u[k]);
+        lever_h[k] = pair(lever, h[k]);
+        u_h[k] = pair(u[k], h[k]);
+
+        const Pair bends = known_bends + outer(h_bend, h_w2, k);
+        const Pair weights = known_weights + outer(p_u, lever_h, k);
+        response[k] = nu * k2 * u[k] + weights[0];
+        v_v[k] = pair(response[k], response[k]);
+        pressure[k] = body.gravity.into * weights[1] + bends[1];
+        c_w[k] = pair(pressure[k], w[k]);
+        const Pair torques = known_torques + outer(lever_h, c_w, k);
+        rolled[k] = torques[1];
+        loads[k] = known_loads + outer(u_h, v_v, k);
+
+        Pair gain = pair(-torques[0], phi * k2 * pressure[k]);
+        if (slowed) {
+            rate[k] = per_clock * loads[k][0];
+            rate_c[k] = pair(rate[k], pressure[k]);
+            w_h[k] = pair(w[k], h[k]);
+            const Pair slow = inner(rate_c, w_h, k) + outer(rate_c, w_h, k);
+            gain = pair(per_clock * gain[0], per_clock * phi * k2 * slow[1]);
+            spread[k] = pair(slow[0], slow[0]);
+        } else {
+            if (k == 0) over_loads = pair(1 / loads[0][0], 1 / loads[0][1]);
+            if (k > 0) gain = gain - inner(loads, gains, k) - loads[k] * gains[0];
+            gain = gain * over_loads;
+            gains[k] = gain;
+            spread[k] = pair(w[k], w[k]);
+        }
+        pull[k] = gain[1];
+        x_dot[k] = k == 0 ? x_velocity : impulse[k] + body.gravity.along * time[k];
+        slip[k] = k == 0 ? slip_velocity : x_dot[k] - rolled[k];
+        if (k == long_order) break;
+        const Pair turns =
+            (known_spread + outer(p_q, spread, k)) * pair(over_next[k], over_next[k]);
+        u[k + 1] = 2 * turns[0];
+        p_q[k + 1] = pair(turns[1], -4 * turns[0]);
+        angle[k + 1] = spread[k][0] * over_next[k];
+        w[k + 1] = gain[0] * over_next[k];
+        impulse[k + 1] = gain[1] * over_next[k];
+        work[k + 1] = -(inner(pull, rolled, k) + outer(pull, rolled, k)) * over_next[k];
+        if (slowed) {
+            path[k + 1] = (inner(rate, x_dot, k) + outer(rate, x_dot, k)) * over_next[k];
+            time[k + 1] = rate[k] * over_next[k];
+        } else {
+            path[k + 1] = x_dot[k] * over_next[k];
+            time[k + 1] = k == 0 ? 1.0 : 0.0;
+        }
+    }
+    return slide;
+}
+
 }  // namespace rolling_ellipse

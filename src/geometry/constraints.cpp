@@ -20,57 +20,49 @@ double lowest_depth(const Axes& axes, double theta) {
 }  // namespace
 
 ConstraintMatrix constraint_matrix(const Axes& axes, const Coordinates& q) {
-    const double psi = q[coordinate::psi];
-    const double theta = q[coordinate::theta];
-    const double r = q[coordinate::r];
-    const double s = std::sin(psi - theta);
-    const double c = std::cos(psi - theta);
+    using namespace coordinate;
+    const double s = std::sin(q[psi] - q[theta]);
+    const double c = std::cos(q[psi] - q[theta]);
     ConstraintMatrix matrix;
     // clang-format off
     // physics (14); columns: x, z, theta, psi, r
     matrix <<
-        1, 0, -r * c, 0, 0,
-        0, 1, -r * s, r * s, -c,
-        0, 0, 0, -polar_radius_derivative(axes, psi), 1,
-        0, 0, -contact_angle_rate(axes, geometry(axes, theta)), 1, 0;
+        1, 0, -q[r] * c, 0, 0,
+        0, 1, -q[r] * s, q[r] * s, -c,
+        0, 0, 0, -polar_radius(axes, q[psi]).derivative, 1,
+        0, 0, -contact_angle_rate(axes, geometry(axes, q[theta])), 1, 0;
     // clang-format on
     return matrix;
 }
 
 Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const Coordinates& q_dot) {
-    const double theta = q[coordinate::theta];
-    const double psi = q[coordinate::psi];
-    const double r = q[coordinate::r];
-    const double s = std::sin(psi - theta);
-    const double c = std::cos(psi - theta);
-    const double omega = q_dot[coordinate::theta];
-    const double psi_dot = q_dot[coordinate::psi];
-    const double r_dot = q_dot[coordinate::r];
+    using namespace coordinate;
+    const double s = std::sin(q[psi] - q[theta]);
+    const double c = std::cos(q[psi] - q[theta]);
+    const double omega = q_dot[theta];
+    const double psi_dot = q_dot[psi];
     const double turn = psi_dot - omega;
     // physics (15)
-    return {(r * s * turn - r_dot * c) * omega, 2 * r_dot * s * turn + r * c * turn * turn,
-            -polar_radius_second(axes, psi) * psi_dot * psi_dot,
-            -contact_angle_second(axes, geometry(axes, theta)) * omega * omega};
+    return {(q[r] * s * turn - q_dot[r] * c) * omega,
+            2 * q_dot[r] * s * turn + q[r] * c * turn * turn,
+            -polar_radius(axes, q[psi]).second * psi_dot * psi_dot,
+            -contact_angle_second(axes, geometry(axes, q[theta])) * omega * omega};
 }
 
 Eigen::Vector3d position_residuals(const Axes& axes, const Coordinates& q) {
-    const double theta = q[coordinate::theta];
-    const double psi = q[coordinate::psi];
-    const double r = q[coordinate::r];
+    using namespace coordinate;
+    const double offset = q[psi] - q[theta];
     // physics (13)
-    return {q[coordinate::z] - r * std::cos(psi - theta), r - polar_radius(axes, psi),
-            (psi - theta) - contact_angle_offset(geometry(axes, theta))};
+    return {q[z] - q[r] * std::cos(offset), q[r] - polar_radius(axes, q[psi]).value,
+            offset - contact_angle_offset(geometry(axes, q[theta]))};
 }
 
 ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Coordinates& q_dot) {
-    ConstraintResiduals result;
-    result.position = position_residuals(axes, q);
-    result.velocity = constraint_matrix(axes, q) * q_dot;
-    const double depth = lowest_depth(axes, q[coordinate::theta]);
-    result.gap = q[coordinate::z] - depth;
-    // v + omega x d for the clockwise omega, x_dot + omega d_z: physics (12).
-    result.slip = q_dot[coordinate::x] - q_dot[coordinate::theta] * depth;
-    return result;
+    using namespace coordinate;
+    const double depth = lowest_depth(axes, q[theta]);
+    // Slip is v + omega x d for the clockwise omega, x_dot + omega d_z: physics (12).
+    return {position_residuals(axes, q), constraint_matrix(axes, q) * q_dot, q[z] - depth,
+            q_dot[x] - q_dot[theta] * depth};
 }
 
 CoordinateState kinematics(const Axes& axes, double theta, double omega) {
@@ -78,11 +70,11 @@ CoordinateState kinematics(const Axes& axes, double theta, double omega) {
     const double psi = contact_angle(axes, theta);
     const double psi_dot = contact_angle_rate(axes, at) * omega;
     // r from psi as it is rounded: then f3 is zero to rounding, and f2 is flat in psi.
+    const PolarRadius r = polar_radius(axes, psi);
     CoordinateState state;
-    state.q << centre_path(axes, theta), at.h, theta, psi, polar_radius(axes, psi);
+    state.q << centre_path(axes, theta), at.h, theta, psi, r.value;
     // physics (12)
-    state.q_dot << at.h * omega, at.dh * omega, omega, psi_dot,
-        polar_radius_derivative(axes, psi) * psi_dot;
+    state.q_dot << at.h * omega, at.dh * omega, omega, psi_dot, r.derivative * psi_dot;
     return state;
 }
 

@@ -173,30 +173,6 @@ double contact_distance(const Axes& axes, const Geometry& at) {
     return root_of_squares(axes.a * axes.a * at.sin, axes.b * axes.b * at.cos) / at.h;
 }
 
-// physics (7)
-double polar_radius(const Axes& axes, double psi) {
-    const double s = axes.b * std::sin(psi);
-    const double c = axes.a * std::cos(psi);
-    return axes.a * axes.b / std::sqrt(s * s + c * c);
-}
-
-// R = a b w^(-1/2), w = b^2 sin^2 + a^2 cos^2, so R' = R^3 (a^2 - b^2) sin cos/(a b)^2;
-// physics (8), with R'' below.
-double polar_radius_derivative(const Axes& axes, double psi) {
-    const double radius = polar_radius(axes, psi);
-    const double scale = radius / (axes.a * axes.b);
-    return radius * scale * scale * (axes.a - axes.b) * (axes.a + axes.b) * std::sin(psi) *
-           std::cos(psi);
-}
-
-double polar_radius_second(const Axes& axes, double psi) {
-    const double radius = polar_radius(axes, psi);
-    const double slope = polar_radius_derivative(axes, psi);
-    const double scale = radius / (axes.a * axes.b);
-    return 3 * slope * slope / radius +
-           radius * scale * scale * (axes.a - axes.b) * (axes.a + axes.b) * std::cos(2 * psi);
-}
-
 double centre_path(const Axes& axes, double theta) { return unwrapped_path(axes, theta).centre; }
 
 double arc_length(const Axes& axes, double theta) { return unwrapped_path(axes, theta).contact; }

@@ -85,10 +85,25 @@ double contact_angle_second(const Axes& axes, const Geometry& at);
 // Distance r of the contact from the centre [m], r^2 = h^2 + h'^2.
 double contact_distance(const Axes& axes, const Geometry& at);
 
-// Radius of the ellipse in the body direction psi (report eq 6, physics (7)), and its derivatives.
-double polar_radius(const Axes& axes, double psi);
-double polar_radius_derivative(const Axes& axes, double psi);
-double polar_radius_second(const Axes& axes, double psi);
+// Radius R of the ellipse in the body direction psi (report eq 6, physics (7)), and its first two
+// derivatives: R = a b w^(-1/2), w = b^2 sin^2 + a^2 cos^2, so R' = R^3 (a^2 - b^2) sin cos/(a
+// b)^2, physics (8).
+struct PolarRadius {
+    double value;
+    double derivative;
+    double second;
+};
+
+inline PolarRadius polar_radius(const Axes& axes, double psi) {
+    const auto [a, b] = axes;
+    const double s = std::sin(psi);
+    const double c = std::cos(psi);
+    const double radius = a * b / std::sqrt(square(b * s) + square(a * c));
+    const double scale = radius / (a * b);
+    const double gain = radius * scale * scale * (a - b) * (a + b);
+    const double derivative = gain * s * c;
+    return {radius, derivative, 3 * derivative * derivative / radius + gain * std::cos(2 * psi)};
+}
 
 // The path of the centre in rolling from 0 to theta [m], the integral of h: physics (9).
 double centre_path(const Axes& axes, double theta);
@@ -100,5 +115,45 @@ double arc_length(const Axes& axes, double theta);
 // (long axis parallel to the ground) or from the tip (short axis parallel to the ground).
 double path_from_flat(double long_axis, double short_axis, double s, double c);
 double path_from_tip(double long_axis, double short_axis, double s, double c);
+
+// Angles as half turns and a remainder: the ellipse is the same after half a turn.
+inline constexpr DoubleDouble half_turn = {2 * half_pi_exact.high, 2 * half_pi_exact.low};
+
+// An angle of at most half a turn as it is; a larger one without full turns.
+inline double within_a_turn(double angle) {
+    return std::abs(angle) > pi ? std::atan2(std::sin(angle), std::cos(angle)) : angle;
+}
+
+inline bool is_odd(double quarters) { return std::fmod(quarters, 2.0) != 0.0; }
+
+// An angle as quarter turns and a remainder: the angle from the nearest flat position or tip, where
+// it has the most digits.
+struct QuarterView {
+    double quarters;
+    DoubleDouble rest;
+};
+
+inline QuarterView quarter_view(const DoubleDouble& angle) {
+    const double quarters = std::nearbyint(angle.high / half_pi);
+    if (quarters == 0) return {quarters, angle};  // mostly
+    return {quarters, angle - half_pi_exact * quarters};
+}
+
+// An angle whose sums with others still resolve a part of a turn: unchanged up to 1e15, where a
+// double resolves 0.1 rad, and without full turns beyond.
+inline double resolved(double angle) {
+    constexpr double largest = 1e15;
+    return std::abs(angle) > largest ? within_a_turn(angle) : angle;
+}
+
+// Takes the half turns off angle + carry if it exceeds one; returns their number.
+inline double take_half_turns_off(double& angle, double& carry) {
+    if (!(std::abs(angle) > pi)) return 0.0;
+    const double over = std::nearbyint(angle / pi);
+    const DoubleDouble rest = DoubleDouble{angle, carry} - half_turn * over;
+    angle = rest.high;
+    carry = rest.low;
+    return over;
+}
 
 }  // namespace rolling_ellipse

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "geometry/half_turns.hpp"
 #include "integrator/radau.hpp"
 #include "integrator/runge_kutta.hpp"
 #include "rolling/stepped/steps.hpp"

@@ -36,8 +36,11 @@ std::string text(double value) {
 }
 
 void refuse(std::string_view name, const std::string& requirement, double value) {
-    throw std::invalid_argument(std::string(name) + " must be " + requirement + ", got " +
-                                text(value));
+    refuse(name, requirement, text(value));
+}
+
+void refuse(std::string_view name, const std::string& requirement, const std::string& value) {
+    throw std::invalid_argument(std::string(name) + " must be " + requirement + ", got " + value);
 }
 
 std::string in_brackets(const Unit& unit) { return std::string(" [") + unit.symbol + "]"; }

@@ -14,6 +14,8 @@ std::string text(double value);
 // Throws std::invalid_argument, which Python shows as ValueError: "name must be requirement, got
 // value".
 [[noreturn]] void refuse(std::string_view name, const std::string& requirement, double value);
+[[noreturn]] void refuse(std::string_view name, const std::string& requirement,
+                         const std::string& value);
 
 // A unit as messages have it: " [m]".
 std::string in_brackets(const Unit& unit);

@@ -4,14 +4,11 @@
 #include <stdexcept>
 
 #include "scene/refuse.hpp"
-#include "scene/scene.hpp"
 
 namespace rolling_ellipse {
 namespace {
 
-bool needs_step(Method method) {
-    return method == Method::rk4 || method == Method::gauss || method == Method::radau;
-}
+std::string quoted(const std::string& name) { return "'" + name + "'"; }
 
 void require_tolerance(const std::string& name, double value) {
     if (!(value >= 0 && std::isfinite(value))) {
@@ -20,22 +17,20 @@ void require_tolerance(const std::string& name, double value) {
 }
 
 void require_count(const std::string& name, long count) {
-    if (count < 1) {
-        throw std::invalid_argument(name + " must be at least 1, got " + std::to_string(count));
-    }
+    if (count < 1) refuse(name, "at least 1", std::to_string(count));
 }
 
 void validate_step(const Settings& settings, double t_end) {
     constexpr double smallest_step_ulps = 10;  // of the last time, as with error control
     const Method method = settings.method;
+    const std::string for_method = " for method " + quoted(name(method));
     if (!settings.step) {
-        if (!needs_step(method)) return;
-        throw std::invalid_argument("step must be given [s] for method '" + name(method) +
-                                    "', got None");
+        if (method != Method::rk4 && method != Method::gauss && method != Method::radau) return;
+        refuse("step", "given [s]" + for_method, "None");
     }
     const double step = *settings.step;
     if (method == Method::automatic || method == Method::exact) {
-        refuse("step", "None for method '" + name(method) + "', which takes no fixed steps", step);
+        refuse("step", "None" + for_method + ", which takes no fixed steps", step);
     }
     if (!(step > 0 && std::isfinite(step))) refuse("step", "a positive finite time [s]", step);
     if (step > t_end && t_end > 0) {
@@ -51,53 +46,42 @@ void validate_step(const Settings& settings, double t_end) {
 // Each model has its methods, and each of these its stabilizations.
 void validate_method(const Settings& settings) {
     const Method method = settings.method;
-    const Stabilization stabilization = settings.stabilization;
-    const std::string came = ", got '" + name(stabilization) + "'";
+    const std::string asked = quoted(name(method));
+    const std::string stabilization = quoted(name(settings.stabilization));
     if (settings.model == Model::contact && method != Method::automatic) {
-        throw std::invalid_argument("method must be 'auto' for model 'contact', got '" +
-                                    name(method) + "'");
+        refuse("method", "'auto' for model 'contact'", asked);
     }
     if (settings.model != Model::multipliers) {
-        if (stabilization == Stabilization::projection) return;
-        throw std::invalid_argument(
-            "stabilization must be left alone for model '" + name(settings.model) +
-            "', which has no constraints to drift from ('multipliers' has)" + came);
+        if (settings.stabilization == Stabilization::projection) return;
+        refuse("stabilization",
+               "left alone for model " + quoted(name(settings.model)) +
+                   ", which has no constraints to drift from ('multipliers' has)",
+               stabilization);
     }
     if (method == Method::exact || method == Method::gauss) {
-        throw std::invalid_argument(
-            "method must be one of 'dop853', 'dopri5', 'rk4', 'radau' for model 'multipliers', "
-            "got '" +
-            name(method) + "'");
+        refuse("method", "one of 'dop853', 'dopri5', 'rk4', 'radau' for model 'multipliers'",
+               asked);
     }
-    if ((method == Method::radau) != (stabilization == Stabilization::ggl)) {
-        throw std::invalid_argument(
-            (method == Method::radau ? "stabilization must be 'ggl' for method 'radau'"
-                                     : "stabilization must not be 'ggl', which only method 'radau' "
-                                       "can solve, for method '" +
-                                           name(method) + "'") +
-            came);
+    const bool is_index_2 = settings.stabilization == Stabilization::ggl;
+    if (method == Method::radau && !is_index_2) {
+        refuse("stabilization", "'ggl' for method 'radau'", stabilization);
     }
-}
-
-void validate_baumgarte(const Settings& settings) {
-    constexpr double largest_gain = 1e50;  // its square times a residual is still a force
-    for (const double gain : settings.baumgarte) {
-        if (!(gain >= 0 && gain <= largest_gain)) {
-            refuse("baumgarte", "two finite gains of at least 0 and at most 1e50 [1/s]", gain);
-        }
+    if (method != Method::radau && is_index_2) {
+        throw std::invalid_argument(
+            "stabilization must not be 'ggl', which only method 'radau' can solve, for method " +
+            asked + ", got 'ggl'");
     }
 }
 
 void validate_stages(const Settings& settings) {
     if (!settings.stages) return;
-    const std::string came = ", got " + std::to_string(*settings.stages);
+    const std::string stages = std::to_string(*settings.stages);
     if (settings.method != Method::gauss) {
-        throw std::invalid_argument("stages must be None for method '" + name(settings.method) +
-                                    "' ('gauss' has 2, 3 or 4)" + came);
+        refuse("stages",
+               "None for method " + quoted(name(settings.method)) + " ('gauss' has 2, 3 or 4)",
+               stages);
     }
-    if (*settings.stages < 2 || *settings.stages > 4) {
-        throw std::invalid_argument("stages must be 2, 3 or 4" + came);
-    }
+    if (*settings.stages < 2 || *settings.stages > 4) refuse("stages", "2, 3 or 4", stages);
 }
 
 }  // namespace
@@ -113,7 +97,12 @@ void validate(const Settings& settings, double t_end) {
         throw std::invalid_argument("rtol and atol must not both be 0, got 0.0 and 0.0");
     }
     validate_method(settings);
-    validate_baumgarte(settings);
+    constexpr double largest_gain = 1e50;  // its square times a residual is still a force
+    for (const double gain : settings.baumgarte) {
+        if (!(gain >= 0 && gain <= largest_gain)) {
+            refuse("baumgarte", "two finite gains of at least 0 and at most 1e50 [1/s]", gain);
+        }
+    }
     validate_step(settings, t_end);
     validate_stages(settings);
     require_count("max_steps", settings.max_steps);

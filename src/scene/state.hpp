@@ -1,7 +1,11 @@
 // The state of a body on or over the ground, and the force of the ground on it.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 
 #include "geometry/ellipse.hpp"
 #include "scene/field.hpp"
@@ -25,7 +29,10 @@ inline constexpr Field<State> state_fields[] = {
     {"x", &State::x, unit::length},        {"z", &State::z, unit::length},
     {"x_dot", &State::x_dot, unit::speed}, {"z_dot", &State::z_dot, unit::speed}};
 
-bool is_finite(const State& state);
+inline bool is_finite(const State& state) {
+    return std::all_of(std::begin(state_fields), std::end(state_fields),
+                       [&](const auto& field) { return std::isfinite(state.*field.number); });
+}
 
 // Whether the contact has no slip.
 inline bool rolls(const State& state) {
@@ -53,19 +60,22 @@ inline double zero_if_negligible(double value) {
 }
 
 // Whether two numbers are equal within the rounding of a few operations.
-bool nearly_equal(double value, double target);
+inline bool nearly_equal(double value, double target) {
+    const double ulp =
+        std::max(epsilon * std::abs(target), std::numeric_limits<double>::denorm_min());
+    return std::abs(value - target) <= equal_ulps * ulp;
+}
 
 // Velocity along the ground of the material point at the contact.
-double slip_velocity(const State& state, const Geometry& at);
-
-// The slip velocity, or 0 if it is within the rounding of the centre's velocity.
-double slip_beyond_rounding(const State& state, const Geometry& at);
-
-// The same state by other axes, and the angle that belongs to them. Contact and no slip remain so.
-State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta);
+inline double slip_velocity(const State& state, const Geometry& at) {
+    return state.x_dot - at.h * state.omega;
+}
 
 // The state of a body that stays in contact.
-State in_contact(const Geometry& at, double theta, double omega, double x, double slip, Mode mode);
+inline State in_contact(const Geometry& at, double theta, double omega, double x, double slip,
+                        Mode mode) {
+    return {theta, omega, x, at.h, slip + at.h * omega, at.dh * omega, mode};
+}
 
 // The acceleration c into the ground that the lowest point has without a contact force: gravity
 // into the ground and h'' omega^2, physics (43, 53).

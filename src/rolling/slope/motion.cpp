@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/half_turns.hpp"
 #include "numerics/bisect.hpp"
 
 namespace rolling_ellipse {

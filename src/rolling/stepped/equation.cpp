@@ -63,8 +63,8 @@ SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, dou
     const double psi_dot = contact_angle_rate(axes, at) * omega;
     const double psi_ddot =
         contact_angle_rate(axes, at) * omega_dot + contact_angle_second(axes, at) * omega * omega;
-    return {psi_ddot, polar_radius_derivative(axes, psi) * psi_ddot +
-                          polar_radius_second(axes, psi) * psi_dot * psi_dot};
+    const PolarRadius r = polar_radius(axes, psi);
+    return {psi_ddot, r.derivative * psi_ddot + r.second * psi_dot * psi_dot};
 }
 
 RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "geometry/half_turns.hpp"
 #include "integrator/gauss.hpp"
 #include "integrator/radau.hpp"
 #include "integrator/runge_kutta.hpp"
