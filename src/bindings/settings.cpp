@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bindings/bindings.hpp"
-#include "multipliers/feedback.hpp"
+#include "multipliers/steps.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {

@@ -10,7 +10,7 @@
 #include "geometry/half_turns.hpp"
 #include "proof/certificate.hpp"
 #include "proof/law.hpp"
-#include "proof/slope_end.hpp"
+#include "proof/slope.hpp"
 #include "scene/impact.hpp"
 
 namespace rolling_ellipse {

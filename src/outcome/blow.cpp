@@ -7,7 +7,6 @@
 #include "integrator/system.hpp"
 #include "proof/certificate.hpp"
 #include "proof/slope.hpp"
-#include "proof/slope_end.hpp"
 #include "scene/impact.hpp"
 #include "scene/refuse.hpp"
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rolling/slope/runs/reader.hpp"
-
 namespace rolling_ellipse {
 namespace {
 

@@ -1,8 +1,8 @@
-#include "rolling/slope/runs/reader.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "rolling/slope/run.hpp"
 
 namespace rolling_ellipse {
 namespace {
