@@ -3,7 +3,7 @@
 
 #include "bindings/bindings.hpp"
 #include "bindings/samples.hpp"
-#include "rolling/stepped/equation.hpp"
+#include "multipliers/equations.hpp"
 #include "solution.hpp"
 
 namespace rolling_ellipse::bindings {

@@ -213,9 +213,9 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
             integrator, steps, {settings.rtol, settings.atol}, settings.max_steps, t_end,
             [&](auto& point) { return adjust(motion, point); },
             [](auto& point) { return reduce(point); }, checkpoint);
-        result.counts = integrator.counts();
+        result.counts = integrator.counts;
         result.counts.steps = static_cast<long>(steps.knots.size()) - 1;
-        if (result.ending != Ending::completed) result.followed_until = steps.knots.back().t;
+        result.followed_until = steps.knots.back().t;
     });
     return result;
 }

@@ -77,17 +77,14 @@ SlopePlace place_in_pieces(const std::vector<SlopePiece>& pieces, DoubleDouble t
 
 // The motion between the first turning point and the mirrored start is the motion before, reversed.
 SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
-    if (!flow.turnings.empty()) {
-        const DoubleDouble turning = flow.turnings.front();
-        const DoubleDouble mirrored = turning * 2.0 - time;
-        const bool is_later = double(mirrored - turning) < 0;
-        if (is_later && double(mirrored - first_of_pieces(flow).time) > 0) {
-            SlopePlace place = place_in_pieces(flow.pieces, mirrored);
-            place.omega = -place.omega;
-            return place;
-        }
-    }
-    return place_in_pieces(flow.pieces, time);
+    if (flow.turnings.empty()) return place_in_pieces(flow.pieces, time);
+    const DoubleDouble turning = flow.turnings.front();
+    const DoubleDouble mirrored = turning * 2.0 - time;
+    const bool is_mirrored =
+        double(mirrored - turning) < 0 && double(mirrored - first_of_pieces(flow).time) > 0;
+    SlopePlace place = place_in_pieces(flow.pieces, is_mirrored ? mirrored : time);
+    if (is_mirrored) place.omega = -place.omega;
+    return place;
 }
 
 // The begin of the next piece: the end of the last one. After a turning point it is the reversed

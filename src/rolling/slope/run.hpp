@@ -20,6 +20,7 @@ namespace rolling_ellipse {
 // Gauss rule of a part of a panel, where the integrand is the polynomial through its nodes.
 inline constexpr int part_order = 16;
 inline const GaussRule& part_rule() { return gauss_rule(part_order); }
+using PartArray = std::array<double, part_order>;  // numbers at its nodes
 
 // Nodes of Gauss rules: weight times sqrt(D/2), and W in the first half turn.
 struct RunNodes {
@@ -103,8 +104,6 @@ class RunReader {
     SlopePlace operator()(DoubleDouble time);
 
   private:
-    using PartArray = std::array<double, part_order>;
-
     void move_to(DoubleDouble since);
     void set_half_turn(double half_turns);
     double node_time(const RunNodes& nodes, std::size_t i) const;

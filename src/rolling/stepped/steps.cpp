@@ -185,10 +185,10 @@ Integration<SteppedRolling> integrate_rolling(const Scene& scene, const State& s
     with_integrator(motion, [&](auto integrator) {
         result.ending = integrate(integrator, motion.steps, {settings.rtol, settings.atol},
                                   settings.max_steps, t_end, keep, reduce, checkpoint);
-        result.counts = integrator.counts();
+        result.counts = integrator.counts;
     });
     result.counts.steps = static_cast<long>(motion.steps.knots.size()) - 1;
-    if (result.ending != Ending::completed) result.followed_until = motion.steps.knots.back().t;
+    result.followed_until = motion.steps.knots.back().t;
     return result;
 }
 
