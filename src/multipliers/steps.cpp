@@ -141,10 +141,9 @@ bool projects(const SteppedMultipliers& motion) {
 
 // Project a state by the stabilization in force; returns the largest residual before.
 double project(const SteppedMultipliers& motion, CoordinateState& state) {
-    if (motion.settings.stabilization == Stabilization::projection_energy) {
-        return motion.body.project(state, motion.specific_energy);
-    }
-    return motion.body.project(state);
+    const bool by_energy = motion.settings.stabilization == Stabilization::projection_energy;
+    return by_energy ? motion.body.project(state, motion.specific_energy)
+                     : motion.body.project(state);
 }
 
 template <int N>

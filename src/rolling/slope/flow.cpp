@@ -30,10 +30,6 @@ bool climbs_for_ever(const SlopeFlow& flow) {
     return flow.climb && flow.climb->half_turns == most_half_turns && !flow.pieces.empty();
 }
 
-bool is_followed(const SlopeFlow& flow) {
-    return flow.kind == MotionKind::libration || flow.run || climbs_for_ever(flow);
-}
-
 // Time at which the pieces end.
 double known_until(const SlopeFlow& flow) {
     return flow.pieces.empty() ? 0.0 : flow.pieces.back().end();
@@ -168,8 +164,7 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
 }
 
 bool grow(SlopeFlow& flow) {
-    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return false;
-    if (is_followed(flow)) return false;
+    if (flow.kind != MotionKind::rotation || flow.run || climbs_for_ever(flow)) return false;
     const SlopePlace from = flow.pieces.empty() ? begin(flow) : next_place(flow);
     if (!flow.downhill && from.omega > 0) {
         const Geometry here = geometry(flow.body, from);
