@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "proof/slope.hpp"
-#include "proof/slope_end.hpp"
 #include "reason.hpp"
 #include "scene/impact.hpp"
 

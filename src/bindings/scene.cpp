@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "bindings/bindings.hpp"
-#include "multipliers/feedback.hpp"
+#include "multipliers/steps.hpp"
 #include "reason.hpp"
 
 namespace rolling_ellipse::bindings {

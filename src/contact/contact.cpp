@@ -7,7 +7,7 @@
 #include "contact/segments.hpp"
 #include "proof/certificate.hpp"
 #include "proof/law.hpp"
-#include "proof/slope_end.hpp"
+#include "proof/slope.hpp"
 
 namespace rolling_ellipse {
 namespace {

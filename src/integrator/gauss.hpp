@@ -18,7 +18,7 @@ class Gauss {
 
     explicit Gauss(const System& system) : f_(system) {}
 
-    const StepCounts& counts() const { return counts_; }
+    StepCounts counts;
 
     // One step; false if it is so large that the stages do not converge.
     bool advance(Point<N>& point, double h) {
@@ -36,7 +36,7 @@ class Gauss {
             for (int j = 0; j < S; ++j) {
                 increments_[j] = hb[j] * f_(point.t + Coefficients::c[j] * h, stages[j]);
             }
-            counts_.evaluations += S;
+            counts.evaluations += S;
             StageVectors<N, S> changes;
             for (int j = 0; j < S; ++j) {
                 const Vector<N> stage = point.y + (point.carry + combination(Coefficients::mu[j]));
@@ -79,7 +79,6 @@ class Gauss {
     }
 
     const System& f_;
-    StepCounts counts_;
     StageVectors<N, S> increments_;
     double last_step_ = 0.0;  // size of the step that filled `increments_`
 };

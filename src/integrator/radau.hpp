@@ -20,7 +20,7 @@ class Radau {
 
     explicit Radau(const System& system) : f_(system) {}
 
-    const StepCounts& counts() const { return counts_; }
+    StepCounts counts;
 
     // One step; false if it is so large that the stages do not converge.
     bool advance(Point<N>& point, double h) {
@@ -50,7 +50,7 @@ class Radau {
             for (int j = 0; j < 3; ++j) {
                 slopes[j] = f_(point.t + C::c[j] * h, point.y + (point.carry + z[j]));
             }
-            counts_.evaluations += 3;
+            counts.evaluations += 3;
             const StageVectors<N, 3> g = transformed(C::inverse_transform, slopes);
             const Vector<N> real_change = real.solve(g[0] - C::gamma * mass.cwiseProduct(w[0]));
             ComplexVector residual;
@@ -92,7 +92,6 @@ class Radau {
     }
 
     const System& f_;
-    StepCounts counts_;
 };
 
 }  // namespace rolling_ellipse

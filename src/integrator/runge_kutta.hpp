@@ -46,7 +46,8 @@ class ExplicitMethod {
 
     explicit ExplicitMethod(const System& system) : f_(system) {}
 
-    const StepCounts& counts() const { return counts_; }
+    StepCounts counts;
+    Dense last_dense;  // of the last step of controlled error, if keeps_dense
 
     // One step of the given size; always true.
     bool advance(Point<N>& point, double h) {
@@ -57,13 +58,9 @@ class ExplicitMethod {
 
     // The dense output of the step of size h from a point.
     Dense dense_output(const Point<N>& from, double h) {
-        evaluate<0, Tableau::stages + 1>(from, h);
-        evaluate<Tableau::stages + 1, all_stages>(from, h);
+        evaluate<0, all_stages>(from, h);
         return dense_of_stages(h);
     }
-
-    // The dense output of the last step of controlled error, if keeps_dense.
-    const Dense& last_dense() const { return last_dense_; }
 
     // Steps of controlled error up to t_end; `visit(point)` is called with each new point and may
     // change it. The elementary controller of HNW II.4 with SciPy's limits on the step's growth.
@@ -91,7 +88,7 @@ class ExplicitMethod {
                 const double factor = safety * std::pow(error, -0.5 / Tableau::order);
                 if (error < 1) {
                     evaluate<error_stages, Tableau::stages + 1>(point, h);
-                    if constexpr (keeps_dense) last_dense_ = dense_of_stages(h);
+                    if constexpr (keeps_dense) last_dense = dense_of_stages(h);
                     point = next;
                     point.t = t;
                     h *= std::min(growth_limit, factor);
@@ -99,7 +96,7 @@ class ExplicitMethod {
                 }
                 h *= std::max(most_shrinking, factor);  // the limit if the error is NaN
                 growth_limit = 1.0;
-                ++counts_.rejected;
+                ++counts.rejected;
             }
             const AfterStep next = visit(point);
             if (!(point.t < t_end)) return Ending::completed;
@@ -148,7 +145,7 @@ class ExplicitMethod {
             }
         }
         k_[Stage] = f_(from.t + Tableau::c[Stage] * h, from.y + change);
-        ++counts_.evaluations;
+        ++counts.evaluations;
     }
 
     template <int First, int End>
@@ -210,7 +207,7 @@ class ExplicitMethod {
         double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
         if (!(h0 > 0.0 && h0 < span)) h0 = span;
         const Vector<N> slope = f_(point.t + h0, point.y + h0 * k_[0]);
-        ++counts_.evaluations;
+        ++counts.evaluations;
         const double d2 = norm(slope - k_[0]) / h0;
         const double h1 = d1 <= 1e-15 && d2 <= 1e-15
                               ? std::max(1e-6, 1e-3 * h0)
@@ -220,9 +217,7 @@ class ExplicitMethod {
     }
 
     const System& f_;
-    StepCounts counts_;
     std::array<Vector<N>, all_stages> k_;
-    Dense last_dense_;
 };
 
 }  // namespace rolling_ellipse

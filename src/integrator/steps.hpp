@@ -7,11 +7,11 @@
 //     explicit Method(const System&);
 //     bool advance(Point<N>&, double h);       // one step; false if its stages have no solution
 //     Dense dense_output(const Point<N>& from, double h);  // .change(s) = y - from.y, 0 <= s <= 1
-//     const StepCounts& counts() const;
+//     StepCounts counts;                       // so far
 // and, if it controls its error,
 //     Ending integrate(Point<N>, double t_end, const Tolerance&, long max_steps, Visit);
 //     static constexpr bool keeps_dense;
-//     const Dense& last_dense() const;         // if keeps_dense
+//     Dense last_dense;                        // of the last step, if keeps_dense
 // A step allocates no memory and adds increments by compensated summation (`add`).
 #pragma once
 
@@ -65,7 +65,7 @@ Ending integrate(Integrator& integrator, Steps<N>& steps, const Tolerance& toler
             return integrator.integrate(start, t_end, tolerance, max_steps, [&](Point<N>& point) {
                 if constexpr (Integrator::keeps_dense) {
                     auto& kept = steps.dense;
-                    if (kept.size() < most_kept) kept.push_back(integrator.last_dense());
+                    if (kept.size() < most_kept) kept.push_back(integrator.last_dense);
                 }
                 return visit(point);
             });

@@ -20,6 +20,29 @@ Coordinates rolling_direction(const ConstraintMatrix& a) {
     return direction;
 }
 
+// Second derivatives of all coordinates, and the multipliers that have the effect of a contact
+// force.
+//
+// The multipliers of the gradients of f1 ... f4 are lambda1 = F and lambda2 = N. The rows of psi
+// and r carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3. At the
+// contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
+MultiplierSolution contact_solution(const Axes& axes, const Geometry& at,
+                                    const CoordinateState& state, const ContactForce& force,
+                                    const RollingEquation::Accelerations& acceleration) {
+    const double omega = state.q_dot[coordinate::theta];
+    const double psi = state.q[coordinate::psi];
+    const double psi_dot = contact_angle_rate(axes, at) * omega;
+    const double psi_ddot = contact_angle_rate(axes, at) * acceleration.theta +
+                            contact_angle_second(axes, at) * omega * omega;
+    const PolarRadius r = polar_radius(axes, psi);
+    const double r_ddot = r.derivative * psi_ddot + r.second * psi_dot * psi_dot;
+    const double stationary = force.normal * std::cos(psi - state.q[coordinate::theta]);
+    MultiplierSolution result;
+    result.q_ddot << acceleration.x, acceleration.z, acceleration.theta, psi_ddot, r_ddot;
+    result.multipliers << force.friction, force.normal, stationary, 0.0;
+    return result;
+}
+
 }  // namespace
 
 CoordinateState coordinate_state(const Axes& axes, const State& state) {
@@ -35,17 +58,22 @@ CoordinateState coordinate_state(const Axes& axes, const State& state) {
 
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force) {
-    const Axes axes = scene.axes();
-    const Geometry at = geometry(axes, state.q[coordinate::theta]);
-    const double omega_dot = -(at.h * force.friction + at.dh * force.normal) / scene.inertia;
-    const SecondRates rates = contact_point_second_rates(axes, at, state.q[coordinate::psi],
-                                                         state.q_dot[coordinate::theta], omega_dot);
+    const Geometry at = geometry(scene.axes(), state.q[coordinate::theta]);
     const GroundGravity gravity = scene.ground_gravity();
-    MultiplierSolution result;
-    result.q_ddot << force.friction / scene.mass + gravity.along,
-        force.normal / scene.mass - gravity.into, omega_dot, rates.psi, rates.r;
-    result.multipliers = contact_multipliers(state.q, force);
-    return result;
+    const double omega_dot = -(at.h * force.friction + at.dh * force.normal) / scene.inertia;
+    return contact_solution(scene.axes(), at, state, force,
+                            {omega_dot, force.friction / scene.mass + gravity.along,
+                             force.normal / scene.mass - gravity.into});
+}
+
+RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
+    const Axes axes = scene.axes();
+    const Geometry at = geometry(axes, theta);
+    const RollingEquation rolling(scene.body(), scene.slope);
+    const RollingEquation::Accelerations of_centre = rolling.accelerations(at, omega);
+    const CoordinateState state = kinematics(axes, theta, omega);
+    const ContactForce force = rolling.force(scene.mass, of_centre);
+    return {contact_solution(axes, at, state, force, of_centre), state, force};
 }
 
 ConstrainedBody::ConstrainedBody(const Scene& scene)

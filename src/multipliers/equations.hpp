@@ -24,6 +24,14 @@ CoordinateState coordinate_state(const Axes& axes, const State& state);
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force);
 
+// A rolling state in the coordinates of the multiplier model; x is the integral of h from 0.
+struct RollingDetail : MultiplierSolution {
+    CoordinateState state;
+    ContactForce force;
+};
+
+RollingDetail rolling_detail(const Scene& scene, double theta, double omega);
+
 class ConstrainedBody {
   public:
     explicit ConstrainedBody(const Scene& scene);

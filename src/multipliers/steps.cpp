@@ -1,6 +1,9 @@
 #include "multipliers/steps.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 
 #include "integrator/radau.hpp"
 #include "integrator/runge_kutta.hpp"
@@ -84,6 +87,19 @@ struct IndexTwo {
     }
 };
 
+// The result of one step of size 1 of y' = z y from y = 1.
+template <class Tableau>
+std::complex<double> stability_function(std::complex<double> z) {
+    std::array<std::complex<double>, Tableau::stages> slopes;
+    std::complex<double> y;
+    for (int i = 0; i <= Tableau::stages; ++i) {
+        y = 1.0;
+        for (int j = 0; j < i; ++j) y += Tableau::a[i][j] * slopes[j];
+        if (i < Tableau::stages) slopes[i] = z * y;
+    }
+    return y;
+}
+
 // Call action(integrator, steps) with the integrator and the steps of a motion.
 template <class Motion, class Action>
 void with_integrator(Motion& motion, Action action) {
@@ -124,10 +140,9 @@ bool projects(const SteppedMultipliers& motion) {
 
 // Project a state by the stabilization in force; returns the largest residual before.
 double project(const SteppedMultipliers& motion, CoordinateState& state) {
-    if (motion.settings.stabilization == Stabilization::projection_energy) {
-        return motion.body.project(state, motion.specific_energy);
-    }
-    return motion.body.project(state);
+    const bool by_energy = motion.settings.stabilization == Stabilization::projection_energy;
+    return by_energy ? motion.body.project(state, motion.specific_energy)
+                     : motion.body.project(state);
 }
 
 template <int N>
@@ -196,9 +211,9 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
             integrator, steps, {settings.rtol, settings.atol}, settings.max_steps, t_end,
             [&](auto& point) { return adjust(motion, point); },
             [](auto& point) { return reduce(point); }, checkpoint);
-        result.counts = integrator.counts();
+        result.counts = integrator.counts;
         result.counts.steps = static_cast<long>(steps.knots.size()) - 1;
-        if (result.ending != Ending::completed) result.followed_until = steps.knots.back().t;
+        result.followed_until = steps.knots.back().t;
     });
     return result;
 }
@@ -245,6 +260,23 @@ MultiplierSolution accelerations(const ConstrainedBody& body, const Settings& se
     demand -= 2 * alpha * (constraint_matrix(axes, state.q) * state.q_dot);
     demand.tail<3>() -= square(beta) * position_residuals(axes, state.q);
     return body.solve(state.q, demand);
+}
+
+double feedback_growth(const Settings& settings) {
+    if (settings.stabilization != Stabilization::baumgarte || !settings.step) return 0.0;
+    const double alpha = settings.baumgarte[0];
+    const double beta = settings.baumgarte[1];
+    const std::complex<double> split =
+        std::sqrt(std::complex<double>(square(alpha) - square(beta)));
+    return with_tableau(settings.method, [&](auto tableau) {
+        double largest = 0.0;
+        for (const std::complex<double> root :
+             {-alpha + split, -alpha - split, std::complex<double>(-2 * alpha)}) {
+            const auto factor = stability_function<decltype(tableau)>(root * *settings.step);
+            largest = std::max(largest, std::abs(factor));
+        }
+        return largest;
+    });
 }
 
 }  // namespace rolling_ellipse

@@ -6,7 +6,6 @@
 #include "contact/continuation.hpp"
 #include "integrator/system.hpp"
 #include "proof/slope.hpp"
-#include "proof/slope_end.hpp"
 #include "scene/impact.hpp"
 #include "scene/refuse.hpp"
 

@@ -25,6 +25,24 @@ struct Quarter {
     const EnergyRange& range;
     double friction;
     bool from_tip;
+    double direction;    // sign of omega at the start
+    bool rises;          // towards the tip; true for a body that lies flat or stands on the tip
+    ContactForce force;  // at the start
+    double start;        // its place
+
+    Quarter(const RollingStart& from, const EnergyRange& energies, double mu)
+        : range(energies),
+          friction(mu),
+          from_tip(std::abs(from.view.sin) > std::abs(from.view.cos)),
+          direction(direction_of(from)),
+          rises(direction * from.view.sin >= 0) {
+        const FlatView& at = from.view;
+        const double omega2 = from.omega * from.omega * at.long_axis / from.body.gravity;
+        const RollingForces forces =
+            rolling_forces(range, at.sin * at.sin, at.cos * at.cos, omega2);
+        force = {forces.normal, forces.friction};
+        start = place(forces);
+    }
 
     double flat() const { return from_tip ? -half_pi : 0.0; }
     double tip() const { return from_tip ? 0.0 : half_pi; }
@@ -41,36 +59,16 @@ struct Quarter {
     }
 };
 
-// The start on its quarter turn.
-struct QuarterStart {
-    double place;
-    bool rises;        // towards the tip; true for a body that lies flat or stands on the tip
-    double direction;  // sign of omega
-    ContactForce force;
-};
-
-QuarterStart start_on(const Quarter& quarter, const RollingStart& from) {
-    const FlatView& at = from.view;
-    const double direction = direction_of(from);
-    const double omega2 = from.omega * from.omega * at.long_axis / from.body.gravity;
-    const RollingForces forces =
-        rolling_forces(quarter.range, at.sin * at.sin, at.cos * at.cos, omega2);
-    return {quarter.place(forces),
-            direction * at.sin >= 0,
-            direction,
-            {forces.normal, forces.friction}};
-}
-
 // The place from which on the law holds; empty where it is broken. It is the start, or a place
 // ahead of a start at which the law is at its limit.
-std::optional<double> holds_from(const Quarter& quarter, const QuarterStart& start) {
+std::optional<double> holds_from(const Quarter& quarter) {
     constexpr double ahead = 1e-8;  // share of the path: sqrt(epsilon), beyond rounding
-    if (!at_the_limit(start.force, quarter.friction)) {
-        const bool holds = law_margin(start.force, quarter.friction) > 0;
-        return holds ? std::optional(start.place) : std::nullopt;
+    if (!at_the_limit(quarter.force, quarter.friction)) {
+        const bool holds = law_margin(quarter.force, quarter.friction) > 0;
+        return holds ? std::optional(quarter.start) : std::nullopt;
     }
-    const double goal = start.rises ? quarter.top() : quarter.flat();
-    const double next = start.place + ahead * (goal - start.place);
+    const double goal = quarter.rises ? quarter.top() : quarter.flat();
+    const double next = quarter.start + ahead * (goal - quarter.start);
     return quarter.holds(next) ? std::optional(next) : std::nullopt;
 }
 
@@ -139,27 +137,27 @@ struct Turn {
 
 // The turn to the first of the places (ascending, at least one) after `from`, on either side of the
 // flat position; empty if the body never reaches one: on the separatrix it ends at the tip.
-std::optional<Turn> first_meeting(const Quarter& quarter, const QuarterStart& start, double from,
+std::optional<Turn> first_meeting(const Quarter& quarter, double from,
                                   const std::vector<double>& places) {
-    const double on = start.direction;
+    const double on = quarter.direction;
+    const double start = quarter.start;
     const EnergyRange& range = quarter.range;
     const auto above = std::upper_bound(places.begin(), places.end(), from);
     const double flat = quarter.flat();
     const double tip = quarter.tip();
-    if (!start.rises && above != places.begin()) return Turn{on * (start.place - above[-1]), on};
-    if (start.rises && above != places.end()) return Turn{on * (*above - start.place), on};
-    if (!start.rises) return Turn{on * ((start.place - flat) + (places.front() - flat)), on};
+    if (!quarter.rises && above != places.begin()) return Turn{on * (start - above[-1]), on};
+    if (quarter.rises && above != places.end()) return Turn{on * (*above - start), on};
+    if (!quarter.rises) return Turn{on * ((start - flat) + (places.front() - flat)), on};
     if (!range.libration && range.energy_gap == 0) return std::nullopt;
     // The last place, met again beyond the tip or after the turning point.
-    if (range.libration) return Turn{on * (places.back() - start.place), -on};
-    return Turn{on * ((tip - start.place) + (tip - places.back())), on};
+    if (range.libration) return Turn{on * (places.back() - start), -on};
+    return Turn{on * ((tip - start) + (tip - places.back())), on};
 }
 
 // The end of rolling under a law that holds where both polynomials are positive.
 template <int N>
 EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polynomials,
-                           const Polynomial<N>& law_polynomial, double theta,
-                           const QuarterStart& start) {
+                           const Polynomial<N>& law_polynomial, double theta) {
     const Bernstein<5> contact = bernstein(polynomials.normal);
     const Bernstein<N> law = bernstein(law_polynomial);
     const Sign contact_sign = sign_on_unit_interval(contact);
@@ -167,8 +165,8 @@ EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polyn
     if (contact_sign == Sign::positive && law_sign == Sign::positive) return {Validity::valid};
 
     const bool broken = contact_sign == Sign::negative || law_sign == Sign::negative;
-    EndOfRolling end{broken ? Validity::invalid : Validity::edge, theta, start.direction};
-    const std::optional<double> from = holds_from(quarter, start);
+    EndOfRolling end{broken ? Validity::invalid : Validity::edge, theta, quarter.direction};
+    const std::optional<double> from = holds_from(quarter);
     if (!from) return end;
     std::vector<double> places = breaking_places(quarter, contact, law);
     add_ends_about(places, *from, quarter);
@@ -177,7 +175,7 @@ EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polyn
         places.push_back(quarter.place(std::isinf(quarter.friction) ? extremes.least_normal
                                                                     : extremes.most_friction));
     }
-    const std::optional<Turn> turn = first_meeting(quarter, start, *from, places);
+    const std::optional<Turn> turn = first_meeting(quarter, *from, places);
     if (!turn) return {end.validity};
     return {end.validity, theta + turn->angle, turn->heading};
 }
@@ -194,13 +192,12 @@ std::optional<EndOfRolling> end_without_forces(const RollingStart& from, double 
 EndOfRolling end_of_rolling(const RollingStart& from, const EnergyRange& range,
                             const ForcePolynomials& polynomials, double friction) {
     if (const auto end = end_without_forces(from, friction)) return *end;
-    const Quarter quarter{range, friction, std::abs(from.view.sin) > std::abs(from.view.cos)};
-    const QuarterStart start = start_on(quarter, from);
+    const Quarter quarter(from, range, friction);
     if (std::isinf(friction)) {
-        return end_under_law(quarter, polynomials, polynomials.normal, from.theta, start);
+        return end_under_law(quarter, polynomials, polynomials.normal, from.theta);
     }
     const Polynomial<10> law = grip_polynomial(polynomials, friction);
-    return end_under_law(quarter, polynomials, law, from.theta, start);
+    return end_under_law(quarter, polynomials, law, from.theta);
 }
 
 }  // namespace

@@ -25,26 +25,30 @@ Scene downhill(Scene scene) {
 // and falls from there: dW = (g sin(alpha) h - g cos(alpha) h') dtheta, from physics (18).
 class Well {
   public:
-    Well(const Scene& scene, double angle, double omega)
-        : axes_(scene.axes()),
-          gravity_(scene.ground_gravity()),
-          gyration2_(scene.body().gyration2),
-          pull_(scene.gravity * (scene.a - scene.b) * (scene.a + scene.b)),
-          mass_(scene.mass),
-          rolling_(scene.body(), scene.slope) {
-        const auto found = equilibria(axes_.a, axes_.b, std::tan(scene.slope));
+    // The well of a body that rolls from a state.
+    Well(const Scene& asked, const State& from)
+        : scene_(downhill(asked)),
+          axes_(scene_.axes()),
+          gravity_(scene_.ground_gravity()),
+          gyration2_(scene_.body().gyration2),
+          rolling_(scene_.body(), scene_.slope),
+          theta_(from.theta),
+          side_(std::copysign(1.0, asked.slope)) {
+        const auto found = equilibria(axes_.a, axes_.b, std::tan(scene_.slope));
         if (!found) return;
         upright_ = half_pi + found->upright;
         lying_ = found->lying;
+        const FlatView at = flat_view(asked.axes(), theta_);
+        const double angle = side_ * std::atan2(at.sin, at.cos);
         start_ = angle < upright_ ? angle : angle - pi;
-        energy_ = 0.5 * inertia(geometry(axes_, start_)) * square(omega);
+        energy_ = 0.5 * inertia(geometry(axes_, start_)) * square(from.omega);
         holds_ = energy(upright_) < 0;
     }
 
     // Whether the body cannot leave it.
     bool holds() const { return holds_; }
 
-    void add_extremes(double theta, double side, Certificate& found) const {
+    void add_extremes(Certificate& found) const {
         const double first = bisect(upright_ - pi, std::min(start_, lying_), [&](double at) {
                                  return energy(at) >= 0;
                              }).high;
@@ -55,9 +59,9 @@ class Well {
         const double light = highest(at, [&](double angle) { return -force(angle).normal; });
         const double rough = highest(at, [&](double angle) { return needed(angle); });
         found.smallest_normal_force = force(light).normal;
-        found.smallest_normal_force_angle = theta + side * (light - start_);
+        found.smallest_normal_force_angle = theta_ + side_ * (light - start_);
         found.largest_friction_needed = needed(rough);
-        found.largest_friction_needed_angle = theta + side * (rough - start_);
+        found.largest_friction_needed_angle = theta_ + side_ * (rough - start_);
     }
 
   private:
@@ -72,9 +76,10 @@ class Well {
         const Geometry from = geometry(axes_, start_);
         const auto [a, b] = axes_;
         if (std::abs(turned) < 0.1 * b / a) {
+            const double pull = scene_.gravity * (a - b) * (a + b);
             const auto rate = [&](double at) {
                 const double swung = std::sin(at - lying_) * std::sin(upright_ - at);
-                return -pull_ * swung / geometry(axes_, at).h;
+                return -pull * swung / geometry(axes_, at).h;
             };
             return double(integrate(gauss_rule(20), start_, angle, rate));
         }
@@ -87,7 +92,7 @@ class Well {
     ContactForce force(double angle) const {
         const Geometry at = geometry(axes_, angle);
         const double omega2 = 2 * std::max(energy(angle), 0.0) / inertia(at);
-        return rolling_.force(mass_, at, std::sqrt(omega2));
+        return rolling_.force(scene_.mass, at, std::sqrt(omega2));
     }
 
     double needed(double angle) const { return friction_needed(force(angle)); }
@@ -137,25 +142,19 @@ class Well {
         return place;
     }
 
+    const Scene scene_;
     const Axes axes_;
     const GroundGravity gravity_;
     const double gyration2_;
-    const double pull_;  // g (a^2 - b^2)
-    const double mass_;
     const RollingEquation rolling_;
+    const double theta_;  // of the start
+    const double side_;   // +1, or -1 if the slope falls to the other side
     double upright_ = 0.0;
     double lying_ = 0.0;
     double start_ = 0.0;
     double energy_ = 0.0;  // W at the start
     bool holds_ = false;
 };
-
-double side_of(const Scene& scene) { return std::copysign(1.0, scene.slope); }
-
-Well well_of(const Scene& scene, const State& start) {
-    const FlatView at = flat_view(scene.axes(), start.theta);
-    return Well(downhill(scene), side_of(scene) * std::atan2(at.sin, at.cos), start.omega);
-}
 
 // The friction needed by a motion with constant forces, of a body in equilibrium or of a circle.
 std::optional<double> constant_friction(const Scene& scene, const State& start) {
@@ -170,7 +169,7 @@ std::optional<double> constant_friction(const Scene& scene, const State& start) 
 }  // namespace
 
 bool may_hold_for_ever(const Scene& scene, const State& start) {
-    return constant_friction(scene, start) || well_of(scene, start).holds();
+    return constant_friction(scene, start) || Well(scene, start).holds();
 }
 
 Certificate certify_on_slope(const Scene& scene, const State& start, const EndOfRolling& end) {
@@ -179,8 +178,8 @@ Certificate certify_on_slope(const Scene& scene, const State& start, const EndOf
         return {end, weight, start.theta, *needed, start.theta};
     }
     Certificate found{end, -infinity, std::nullopt, infinity, std::nullopt};
-    const Well well = well_of(scene, start);
-    if (well.holds()) well.add_extremes(start.theta, side_of(scene), found);
+    const Well well(scene, start);
+    if (well.holds()) well.add_extremes(found);
     return found;
 }
 

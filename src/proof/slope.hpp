@@ -1,9 +1,63 @@
-// The certificate of rolling on a slope, with the forces of a body that cannot leave its place.
+// Rolling on a slope: its end, and its certificate with the forces of a body that cannot leave its
+// place.
 #pragma once
 
 #include "proof/certificate.hpp"
+#include "rolling/slope/flow.hpp"
 
 namespace rolling_ellipse {
+
+// A time [s] since the start, the angle there, and the sign of omega.
+struct Meeting {
+    double time;
+    double theta;
+    double heading;
+};
+
+// `touched`: the first place at which the margin of the law falls to rounding and no further.
+// `broken`: the first place at which the law fails; the search ends there.
+struct LawMeetings {
+    std::optional<Meeting> touched;
+    std::optional<Meeting> broken;
+};
+
+// Examines the law on pieces of a motion in the order of time.
+class LawWatch {
+  public:
+    LawWatch(const SlopeFlow& flow, double friction) : flow_(flow), friction_(friction) {}
+
+    // True once the law is broken.
+    bool examine(const SlopePiece& piece);
+
+    // The meetings so far. A motion that ends close to the limit has touched it.
+    LawMeetings met() const;
+
+  private:
+    struct Law;
+
+    // A stretch of time on which the margin is within rounding of 0.
+    struct Stretch {
+        bool open = false;
+        std::optional<Meeting> begin;  // empty if it begins at the start of the motion
+    };
+
+    bool examine_parts(const SlopePiece& piece);
+    void examine(const SlopePiece& piece, const Law& law, Stretch& near);
+    void break_at(const Meeting& found);
+    Meeting meeting(const SlopePiece& piece, double share) const;
+
+    const SlopeFlow& flow_;
+    const double friction_;
+    Stretch near_[2];  // of the laws for friction to each side
+    bool at_start_ = true;
+    LawMeetings met_;
+};
+
+// The meetings over the whole motion, or up to a time [s] at least; extends the flow as needed.
+LawMeetings law_meetings(SlopeFlow& flow, double friction, double until = infinity);
+
+// The end of rolling for a certificate: a touch is an edge.
+EndOfRolling end_of_rolling(const LawMeetings& met);
 
 // Whether the rolling motion from a state on a slope may be valid for ever. A circle and a body in
 // equilibrium have the same forces all the time; a body that rocks has turning points; all others

@@ -1,11 +1,17 @@
-#include "proof/slope_end.hpp"
-
+// The end of rolling on a slope: the law of the contact along the motion, as polynomials of time.
+//
+// N and F come from the same power series as the motion, N = g_into + h'' and F = x'' - g_along, so
+// that the first place at which the law is broken is the first root of a polynomial. Half turns
+// need not be followed one by one: at each angle N and F are linear in W = D omega^2/2, physics
+// (58), so that the law holds for an interval of W. A law that holds in two half turns holds in all
+// between them.
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "numerics/bisect.hpp"
 #include "proof/law.hpp"
+#include "proof/slope.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -78,14 +84,10 @@ struct LawWatch::Law {
 Meeting LawWatch::meeting(const SlopePiece& piece, double share) const {
     const double since = share * piece.lasts;
     const SlopePlace place = place_in(piece, since);
-    const double rate = place.omega != 0 ? place.omega : acceleration_in(piece, since);
+    const double rate =
+        place.omega != 0 ? place.omega : derivative(piece.series.omega, since / piece.unit);
     return {double(place.time) * flow_.body.time, sample_of(flow_, place).theta,
             flow_.body.side * std::copysign(1.0, rate)};
-}
-
-double LawWatch::margin(const SlopePiece& piece, double share, double side) const {
-    const SlopePlace place = place_in(piece, share * piece.lasts);
-    return law_margin(contact_force(flow_.body, place), friction_, side);
 }
 
 void LawWatch::break_at(const Meeting& found) {
@@ -93,7 +95,10 @@ void LawWatch::break_at(const Meeting& found) {
 }
 
 void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
-    const auto at = [&](double share) { return margin(piece, share, law.side); };
+    const auto at = [&](double share) {
+        const SlopePlace place = place_in(piece, share * piece.lasts);
+        return law_margin(contact_force(flow_.body, place), friction_, law.side);
+    };
     const std::vector<double> places = law.divisions();
     for (std::size_t i = 0; i + 1 < places.size(); ++i) {
         const double low = places[i];

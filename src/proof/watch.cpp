@@ -10,8 +10,6 @@
 namespace rolling_ellipse {
 namespace {
 
-// The parabola through three samples finds a dip below zero that is narrower than an eighth of a
-// step.
 constexpr int samples_per_step = 8;
 
 // The law of the contact at samples in ascending time. A dip below zero between two positive
@@ -23,13 +21,13 @@ class Watcher {
 
     void take(double t, const ContactForce& force) {
         note_extremes(t, force);
-        if (watch_.holds_until < infinity) return;
+        if (watch.holds_until < infinity) return;
         samples_ = {samples_[1], samples_[2], Sample{t, law_margin(force, friction_)}};
         ++count_;
-        watch_.holds_until = first_negative();
+        watch.holds_until = first_negative();
     }
 
-    const ContactWatch& result() const { return watch_; }
+    ContactWatch watch{infinity, 0.0, 0.0, 0.0, infinity};
 
   private:
     struct Sample {
@@ -45,13 +43,13 @@ class Watcher {
 
     void note_extremes(double t, const ContactForce& force) {
         const double needed = friction_needed(force);
-        if (force.normal < watch_.smallest_normal_force) {
-            watch_.smallest_normal_force = force.normal;
-            watch_.smallest_normal_force_time = t;
+        if (force.normal < watch.smallest_normal_force) {
+            watch.smallest_normal_force = force.normal;
+            watch.smallest_normal_force_time = t;
         }
-        if (needed > watch_.largest_friction_needed) {
-            watch_.largest_friction_needed = needed;
-            watch_.largest_friction_needed_time = t;
+        if (needed > watch.largest_friction_needed) {
+            watch.largest_friction_needed = needed;
+            watch.largest_friction_needed_time = t;
         }
     }
 
@@ -91,7 +89,6 @@ class Watcher {
 
     const double friction_;
     const ForcesAt& forces_at_;
-    ContactWatch watch_{infinity, 0.0, 0.0, 0.0, infinity};
     std::array<Sample, 3> samples_{};
     long count_ = 0;
 };
@@ -112,7 +109,7 @@ ContactWatch watch_contact(double friction, const std::vector<double>& times,
         for (int j = 0; j < count; ++j) watcher.take(at[j], forces[j]);
         if (i % steps_between_checks == 0) checkpoint();
     }
-    return watcher.result();
+    return watcher.watch;
 }
 
 }  // namespace rolling_ellipse

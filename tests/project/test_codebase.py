@@ -189,8 +189,7 @@ def test_only_the_bindings_know_python() -> None:
 
 def folder_of(name: str) -> int:
     """Place of a source in the order of the folders, by its path from src."""
-    folder = name.rpartition("/")[0].removesuffix("/runs")  # slope/runs is a part of slope
-    return FOLDERS.index(folder)
+    return FOLDERS.index(name.rpartition("/")[0])
 
 
 def test_each_folder_includes_only_those_before_it() -> None:

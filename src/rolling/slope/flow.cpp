@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rolling/slope/runs/reader.hpp"
-
 namespace rolling_ellipse {
 namespace {
 
@@ -30,10 +28,6 @@ const SlopePlace& first_of_pieces(const SlopeFlow& flow) { return flow.pieces.fr
 
 bool climbs_for_ever(const SlopeFlow& flow) {
     return flow.climb && flow.climb->half_turns == most_half_turns && !flow.pieces.empty();
-}
-
-bool is_followed(const SlopeFlow& flow) {
-    return flow.kind == MotionKind::libration || flow.run || climbs_for_ever(flow);
 }
 
 // Time at which the pieces end.
@@ -79,17 +73,14 @@ SlopePlace place_in_pieces(const std::vector<SlopePiece>& pieces, DoubleDouble t
 
 // The motion between the first turning point and the mirrored start is the motion before, reversed.
 SlopePlace place_about_turning(const SlopeFlow& flow, DoubleDouble time) {
-    if (!flow.turnings.empty()) {
-        const DoubleDouble turning = flow.turnings.front();
-        const DoubleDouble mirrored = turning * 2.0 - time;
-        const bool is_later = double(mirrored - turning) < 0;
-        if (is_later && double(mirrored - first_of_pieces(flow).time) > 0) {
-            SlopePlace place = place_in_pieces(flow.pieces, mirrored);
-            place.omega = -place.omega;
-            return place;
-        }
-    }
-    return place_in_pieces(flow.pieces, time);
+    if (flow.turnings.empty()) return place_in_pieces(flow.pieces, time);
+    const DoubleDouble turning = flow.turnings.front();
+    const DoubleDouble mirrored = turning * 2.0 - time;
+    const bool is_mirrored =
+        double(mirrored - turning) < 0 && double(mirrored - first_of_pieces(flow).time) > 0;
+    SlopePlace place = place_in_pieces(flow.pieces, is_mirrored ? mirrored : time);
+    if (is_mirrored) place.omega = -place.omega;
+    return place;
 }
 
 // The begin of the next piece: the end of the last one. After a turning point it is the reversed
@@ -173,8 +164,7 @@ SlopeFlow slope_flow(const Body& body, double slope, double theta, double omega,
 }
 
 bool grow(SlopeFlow& flow) {
-    if (flow.kind == MotionKind::rest || flow.kind == MotionKind::uniform) return false;
-    if (is_followed(flow)) return false;
+    if (flow.kind != MotionKind::rotation || flow.run || climbs_for_ever(flow)) return false;
     const SlopePlace from = flow.pieces.empty() ? begin(flow) : next_place(flow);
     if (!flow.downhill && from.omega > 0) {
         const Geometry here = geometry(flow.body, from);

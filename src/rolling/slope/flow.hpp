@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "rolling/level/flow.hpp"
-#include "rolling/slope/runs/run.hpp"
+#include "rolling/slope/run.hpp"
 
 namespace rolling_ellipse {
 

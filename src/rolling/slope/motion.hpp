@@ -7,7 +7,7 @@
 
 #include "numerics/numbers.hpp"
 #include "numerics/polynomial.hpp"
-#include "rolling/slope/series.hpp"
+#include "numerics/series.hpp"
 #include "scene/scene.hpp"
 
 namespace rolling_ellipse {
@@ -24,13 +24,19 @@ std::optional<Equilibria> equilibria(double long_axis, double short_axis, double
 
 // Body and ground in units of their own, powers of two. The slope falls to the side of growing
 // angles; a slope that falls to the other side is seen from behind.
-struct SlopeBody : SlopeConstants {
+struct SlopeBody {
     double length;  // unit [m]
     double time;    // unit [s]
     double side;    // +1, or -1 if seen from behind
     double long_axis;
     double short_axis;
+    double short_axis2;
+    double long_axis2;
+    double c2;
+    double d0;  // D h^2 = d0 + d1 sin^2 phi, physics (28), phi the angle from the flat position
+    double d1;
     double gyration2;
+    GroundGravity gravity;  // along > 0: the slope falls to growing angles
     std::optional<Equilibria> equilibria;
     double pull;          // (along^2 + into^2)^(1/2) c2
     double slowest;       // rate at which gravity moves a body that starts at rest
@@ -73,7 +79,14 @@ SlopeEnergy energy_of(const SlopeBody& body, const SlopePlace& start);
 Tracked energy_at(const SlopeBody& body, const SlopeEnergy& energy, const SlopePlace& at,
                   const Geometry& here);
 
-// A stretch of the motion as one power series in time.
+struct SlopeSeries {
+    LongSeries angle;
+    LongSeries omega;
+    LongSeries path;
+    LongSeries height;
+};
+
+// A stretch of the motion as power series in time.
 struct SlopePiece {
     SlopePlace from;
     double unit;   // of time, in the series
@@ -87,11 +100,6 @@ SlopePiece piece_from(const SlopeBody& body, const SlopePlace& from);
 
 // The place at a time since the begin of the piece.
 SlopePlace place_in(const SlopePiece& piece, double since);
-
-// The angle from the flat position or tip beside the begin of the piece, and the angular
-// acceleration, at a time since that begin.
-double angle_in(const SlopePiece& piece, double since);
-double acceleration_in(const SlopePiece& piece, double since);
 
 // Times of the motion at which it turns back in the piece, and at which it passes the tip before it
 // turns; infinite if it does not. A turning point or tip at the begin of the piece does not count.

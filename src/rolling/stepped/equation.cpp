@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace rolling_ellipse {
+
 RollingEquation::RollingEquation(const Body& body, double slope)
     : axes_(body.axes()),
       turned_{{square(body.a), square(body.b), (body.a - body.b) * (body.a + body.b)},
@@ -48,39 +49,6 @@ ContactForce RollingEquation::force(double mass, const Accelerations& of_centre)
 ContactForce rolling_force(const Scene& scene, double theta, double omega) {
     const RollingEquation rolling(scene.body(), scene.slope);
     return rolling.force(scene.mass, geometry(scene.axes(), theta), omega);
-}
-
-// The multipliers of the gradients of f1 ... f4 are lambda1 = F and lambda2 = N. The rows of psi
-// and r carry no mass: 0 = r sin lambda2 - R' lambda3 + lambda4, 0 = -cos lambda2 + lambda3. At the
-// contact r cos(psi - theta) is stationary in psi, so that lambda4 = 0: physics (22).
-Eigen::Vector4d contact_multipliers(const Coordinates& q, const ContactForce& force) {
-    const double offset = q[coordinate::psi] - q[coordinate::theta];
-    return {force.friction, force.normal, force.normal * std::cos(offset), 0.0};
-}
-
-SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, double psi,
-                                       double omega, double omega_dot) {
-    const double psi_dot = contact_angle_rate(axes, at) * omega;
-    const double psi_ddot =
-        contact_angle_rate(axes, at) * omega_dot + contact_angle_second(axes, at) * omega * omega;
-    const PolarRadius r = polar_radius(axes, psi);
-    return {psi_ddot, r.derivative * psi_ddot + r.second * psi_dot * psi_dot};
-}
-
-RollingDetail rolling_detail(const Scene& scene, double theta, double omega) {
-    const Axes axes = scene.axes();
-    const Geometry at = geometry(axes, theta);
-    const RollingEquation rolling(scene.body(), scene.slope);
-    const RollingEquation::Accelerations acceleration = rolling.accelerations(at, omega);
-
-    RollingDetail detail;
-    detail.state = kinematics(axes, theta, omega);
-    const SecondRates rates = contact_point_second_rates(axes, at, detail.state.q[coordinate::psi],
-                                                         omega, acceleration.theta);
-    detail.q_ddot << acceleration.x, acceleration.z, acceleration.theta, rates.psi, rates.r;
-    detail.force = rolling.force(scene.mass, acceleration);
-    detail.multipliers = contact_multipliers(detail.state.q, detail.force);
-    return detail;
 }
 
 }  // namespace rolling_ellipse

@@ -1,10 +1,10 @@
-// Rolling without slip as one degree of freedom: the equation of motion, and the accelerations,
-// forces, coordinates and multipliers that follow from theta and omega.
+// Rolling without slip as one degree of freedom: the equation of motion, and the accelerations and
+// forces that follow from theta and omega.
 #pragma once
 
 #include <cmath>
 
-#include "geometry/constraints.hpp"
+#include "geometry/ellipse.hpp"
 #include "integrator/system.hpp"
 #include "numerics/numbers.hpp"
 #include "scene/scene.hpp"
@@ -103,26 +103,5 @@ class RollingEquation {
 
 // The contact force of a rolling body.
 ContactForce rolling_force(const Scene& scene, double theta, double omega);
-
-// Second derivatives of the coordinates psi and r of the contact point.
-struct SecondRates {
-    double psi;
-    double r;
-};
-SecondRates contact_point_second_rates(const Axes& axes, const Geometry& at, double psi,
-                                       double omega, double omega_dot);
-
-// The multipliers of f1 ... f4 that have the effect of a contact force.
-Eigen::Vector4d contact_multipliers(const Coordinates& q, const ContactForce& force);
-
-// A rolling state in the coordinates of the multiplier model.
-struct RollingDetail {
-    CoordinateState state;  // x is the integral of h from 0
-    Coordinates q_ddot;
-    ContactForce force;
-    Eigen::Vector4d multipliers;
-};
-
-RollingDetail rolling_detail(const Scene& scene, double theta, double omega);
 
 }  // namespace rolling_ellipse

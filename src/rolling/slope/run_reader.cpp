@@ -1,8 +1,8 @@
-#include "rolling/slope/runs/reader.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "rolling/slope/run.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -15,17 +15,16 @@ double guess(const SlopeRun& run, double time) {
 }
 
 // Legendre coefficients of the integrand of a part, from the times at its nodes.
-template <std::size_t Order>
-std::array<double, Order> legendre_coefficients(const std::array<double, Order>& times) {
-    std::array<double, Order> nodes, before, coefficients;
-    for (std::size_t i = 0; i < Order; ++i) nodes[i] = node_of(part_rule(), int(i)).place;
+PartArray legendre_coefficients(const PartArray& times) {
+    PartArray nodes, before, coefficients;
+    for (int i = 0; i < part_order; ++i) nodes[i] = node_of(part_rule(), i).place;
     before.fill(1.0);
-    std::array<double, Order> now = nodes;
-    for (std::size_t k = 0; k < Order; ++k) {
+    PartArray now = nodes;
+    for (int k = 0; k < part_order; ++k) {
         const double up = (2 * k + 3.0) / (k + 2);
         const double down = (k + 1.0) / (k + 2);
         double sum = 0.0;
-        for (std::size_t i = 0; i < Order; ++i) {
+        for (int i = 0; i < part_order; ++i) {
             sum += times[i] * before[i];
             const double next = up * nodes[i] * now[i] - down * before[i];
             before[i] = now[i];
@@ -37,8 +36,7 @@ std::array<double, Order> legendre_coefficients(const std::array<double, Order>&
 }
 
 // The place in a part, -1 ... 1, at a time since its beginning: Newton's method with bisection.
-template <std::size_t Order>
-double place_in_part(const std::array<double, Order>& coefficients, double time) {
+double place_in_part(const PartArray& coefficients, double time) {
     constexpr int most_tries = 60;
     constexpr double converged = 1e-9;  // Newton's method squares it
     double x = std::clamp(time / coefficients[0] - 1, -1.0, 1.0);
@@ -49,7 +47,7 @@ double place_in_part(const std::array<double, Order>& coefficients, double time)
         double p1 = x;
         double rate = coefficients[0];
         double sum = coefficients[0] * (x + 1);
-        for (int k = 1; k < int(Order); ++k) {
+        for (int k = 1; k < part_order; ++k) {
             const double p2 = ((2 * k + 1) * x * p1 - k * p0) / (k + 1);
             rate += coefficients[k] * p1;
             sum += coefficients[k] * (p2 - p0) / (2 * k + 1);
@@ -124,7 +122,7 @@ double RunReader::node_time(const RunNodes& nodes, std::size_t i) const {
            std::sqrt(nodes.level[i] + run_.heading * half_turns_ * run_.body.gain);
 }
 
-RunReader::PartArray RunReader::node_times(std::size_t part) const {
+PartArray RunReader::node_times(std::size_t part) const {
     PartArray times;
     for (int i = 0; i < part_order; ++i) {
         times[i] = node_time(run_.part_nodes, part * part_order + i);

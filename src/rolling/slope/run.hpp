@@ -8,6 +8,7 @@
 // of the least W; panels are graded towards both as in physics (31).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace rolling_ellipse {
 // Gauss rule of a part of a panel, where the integrand is the polynomial through its nodes.
 inline constexpr int part_order = 16;
 inline const GaussRule& part_rule() { return gauss_rule(part_order); }
+using PartArray = std::array<double, part_order>;  // numbers at its nodes
 
 // Nodes of Gauss rules: weight times sqrt(D/2), and W in the first half turn.
 struct RunNodes {
@@ -93,5 +95,30 @@ SlopePlace place_on(const SlopeRun& run, const RunPanel& panel, double v, double
 
 // The place after n half turns.
 SlopePlace place_after(const SlopeRun& run, double half_turns);
+
+// Reads places at times after `from`. Integrals over the current half turn are kept for the next
+// times in it; the bits of an answer do not depend on earlier calls.
+class RunReader {
+  public:
+    explicit RunReader(const SlopeRun& run);
+    SlopePlace operator()(DoubleDouble time);
+
+  private:
+    void move_to(DoubleDouble since);
+    void set_half_turn(double half_turns);
+    double node_time(const RunNodes& nodes, std::size_t i) const;
+    PartArray node_times(std::size_t part) const;
+    double part_time(std::size_t part);
+    SlopePlace place_at(double rest);
+
+    const SlopeRun& run_;
+    double half_turns_ = 0.0;  // number before the current half turn
+    DoubleDouble begin_;       // time of the current half turn since `from`
+    double lasts_ = 0.0;       // its duration; 0 before the first call
+    std::vector<double> panel_times_;
+    std::vector<double> part_times_;  // negative where not computed yet
+    std::size_t part_ = 0;            // the part whose Legendre coefficients are kept
+    PartArray coefficients_{};
+};
 
 }  // namespace rolling_ellipse

@@ -1,4 +1,4 @@
-#include "rolling/slope/runs/run.hpp"
+#include "rolling/slope/run.hpp"
 
 #include <algorithm>
 #include <cmath>
