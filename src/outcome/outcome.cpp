@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "contact/continuation.hpp"
-#include "integrator/system.hpp"
 #include "proof/slope.hpp"
 #include "scene/impact.hpp"
 #include "scene/refuse.hpp"
@@ -143,6 +142,7 @@ Outcome outcome_of_circle(const SlopeFlow& flow) {
 // The outcome for a body that rolls on a slope, from its series.
 Outcome outcome_on_slope(const Scene& scene, const State& start, const Checkpoint& checkpoint) {
     constexpr int most_pieces = 100'000;
+    constexpr int pieces_between_checks = 64;
     SlopeFlow flow = slope_flow(scene.body(), scene.slope, start.theta, start.omega, start.x);
     if (flow.kind == MotionKind::uniform) {
         const LawMeetings met = law_meetings(flow, scene.friction);
@@ -152,7 +152,7 @@ Outcome outcome_on_slope(const Scene& scene, const State& start, const Checkpoin
     LawWatch watch(flow, scene.friction);
     SlopePlace place = flow.start;
     for (int i = 0; i < most_pieces; ++i) {
-        if (i % steps_between_checks == 0) checkpoint();
+        if (i % pieces_between_checks == 0) checkpoint();
         const SlopePiece piece = piece_from(flow.body, place);
         if (std::isinf(piece.lasts)) return Outcome::edge;
         const SlopePlace next = place_after(flow.body, flow.energy, piece);
