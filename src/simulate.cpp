@@ -12,7 +12,8 @@ namespace {
 // The settings with "auto" resolved: no more model than the scene needs.
 Settings chosen(Settings settings, Validity validity) {
     if (settings.model == Model::automatic) {
-        const bool fixed = settings.method != Method::automatic;  // only rolling has methods
+        const bool fixed =
+            settings.method != Method::automatic;  // only the rolling model has methods
         settings.model = fixed || validity == Validity::valid ? Model::rolling : Model::contact;
     }
     if (settings.method == Method::automatic) {

@@ -62,7 +62,7 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
     const GilRelease release;
     struct Stopped {};
     struct Failure {
-        py::ssize_t piece = -1;  // none: an interrupt, between two of them
+        py::ssize_t piece = -1;  // -1: an interrupt between two pieces
         std::exception_ptr exception;
     };
     std::vector<Failure> failures(workers);
@@ -166,7 +166,7 @@ py::ssize_t require_matrix(const std::string& name, const Array& array, py::ssiz
 
 std::string with_index(const std::string& message, py::ssize_t index, const Argument* arguments,
                        std::size_t count) {
-    // The message begins with the name of one argument, or with those of two, "a/b".
+    // The message begins with the name of one argument, or with two names, "a/b".
     const std::size_t end = message.find(' ');
     std::string named;
     for (std::size_t begin = 0; begin < end;) {

@@ -20,8 +20,8 @@ namespace rolling_ellipse::bindings {
 namespace py = pybind11;
 using namespace pybind11::literals;
 
-// An array of doubles that are contiguous and aligned. An argument that is not (a field of a
-// record, part of a buffer) is copied on its way in.
+// An array of doubles that are contiguous and aligned. Any other argument (a field of a record,
+// part of a buffer) is copied first.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast |
                                       py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 

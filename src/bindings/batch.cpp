@@ -10,7 +10,7 @@ namespace rolling_ellipse::bindings {
 namespace {
 
 constexpr std::size_t scene_numbers = std::size(scene_fields) + std::size(impulse_fields);
-constexpr int refused = -1;  // a code beside those of Ending
+constexpr int refused = -1;  // code of a refused scene; Ending uses 0 and above
 
 // The scene of a row; NaN stands for an absent number.
 Scene scene_in(const double* row, double most) {
@@ -45,7 +45,7 @@ py::object first_refused(const Array& scenes, bool reached) {
 // The motion of a scene as samples and events. Only one of the sample vectors is filled.
 struct Answer {
     int ending = refused;
-    Solution solution = {};  // without the segments of its motion
+    Solution solution = {};  // its segments are dropped
     py::ssize_t segments = 0;
     py::ssize_t samples = 0;
     std::vector<FlowSample> rolling = {};

@@ -38,7 +38,8 @@ class ContactRun {
     Integration<Motion> run() {
         const double x_dot = state_.x_dot;
         recount(state_, {state_.theta, 0.0});
-        if (scene_.friction == 0) state_.x_dot = x_dot;  // which nothing but gravity changes
+        if (scene_.friction == 0)
+            state_.x_dot = x_dot;  // without friction only gravity changes x_dot
         next_ = first_continuation(scene_, state_);
         if (is_stuck()) note(EventKind::jam, state_);
         while (!ending_) {
@@ -126,8 +127,8 @@ class ContactRun {
         roll(std::move(flow), lasts);
     }
 
-    // Where the law is at its limit but for rounding, the ground may hold the body, and may let it
-    // slip: with slightly more friction it rolls until that is clear.
+    // At the limit of the law rounding cannot decide whether the body rolls or slips. With slightly
+    // more friction it rolls until this is decided.
     double friction_to_roll() const {
         const ContactForce force = rolling_force(scene_, state_.theta, state_.omega);
         return at_the_limit(force, scene_.friction) ? beyond_the_limit(scene_.friction)
@@ -184,7 +185,7 @@ class ContactRun {
         go_on_with(next, kind_of(next.mode, EventKind::reverse), before);
     }
 
-    // A free motion, which is that of the contact to 1e-14 until the body has turned so far.
+    // Follows a grazing contact as free flight: both motions agree to 1e-14 up to this angle.
     void graze() {
         const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, next_.mode};
         const double lasts = turn_of_grazing / std::abs(state_.omega);
@@ -254,7 +255,7 @@ class ContactRun {
         }
     }
 
-    // In SI units, with the whole angle.
+    // The state in SI units, with its whole angle.
     State in_full(State state) const {
         state.theta = static_cast<double>(turned_ + state.theta);
         return in_si(state, units_);
@@ -296,7 +297,7 @@ class ContactRun {
     const double rest_speed_;
     Motion motion_;
     std::optional<SlidePoint> sliding_on_;  // the end of a slide that another one follows
-    DoubleDouble turned_;                   // beside the angle of the state
+    DoubleDouble turned_;                   // half turns, added to the angle of the state
     bool axes_exchanged_ = false;
     Continuation next_{Mode::flight};
     double t_ = 0.0;

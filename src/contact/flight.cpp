@@ -215,8 +215,8 @@ double first_touch(const Flight& flight, const Gap& gap) {
             if (before < 0) {
                 const double lowest = after > 0 ? bisect_root(now.begin, end, rate).high : end;
                 if (gap.value(lowest) <= 0) return bisect_root(now.begin, lowest, value).high;
-                // If the tip passes below so low a centre, it touches, though the gap of a body
-                // that spins fast for its fall may be rounded to more than 0.
+                // A tip that passes below a centre this low touches the ground, even if rounding
+                // leaves a positive gap for a body that spins fast.
                 const double tip = curvature.tip_time(now);
                 if (now.begin < tip && tip <= end && gap.height(tip) <= tall) return lowest;
             }

@@ -44,7 +44,7 @@ struct Segment {
     std::variant<Apart<RollingFlow>, Apart<SlopeFlow>, SteppedRolling, SteppedMultipliers, Slide,
                  Flight, Settling, Standing>
         law;
-    DoubleDouble turned{};        // beside the angles of the law
+    DoubleDouble turned{};        // half turns, added to the angles of the law
     bool axes_exchanged = false;  // in the law: after an odd number of quarter turns
 };
 

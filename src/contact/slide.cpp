@@ -66,12 +66,12 @@ std::optional<double> first_end(double reach, const Coefficient& coefficient) {
 std::pair<double, double> sin_cos(const DoubleDouble& angle) {
     const double sin = std::sin(angle.high);
     const double cos = std::cos(angle.high);
-    const double rest_sin = std::sin(angle.low);  // up to one, after 1e16 radians
+    const double rest_sin = std::sin(angle.low);  // angle.low reaches 1 after 1e16 radians
     const double rest_cos = std::cos(angle.low);
     return {sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin};
 }
 
-// The height of the tip position over that of the centre.
+// Height of the centre over the tip less its present height.
 double under_tip(const Axes& axes, const Geometry& at) {
     return under_tip(flat_view(axes, at.sin, at.cos), at.h);
 }
@@ -121,14 +121,14 @@ class SlideIntegration {
             {reach(angle), reach(omega), reach(series.rolled), reach(series.pressure), most});
         find_end(body, series);
         omega[0] = series.slip[0] = x_dot[0] = 0.0;
-        SlidePiece& piece = slide_.pieces.emplace_back();  // in place, as it is large
+        SlidePiece& piece = slide_.pieces.emplace_back();  // made in place, since a piece is large
         piece.centre = from;
         piece.clock = clock_;
         piece.unit = unit;
         piece.reach = reach_;
         piece.motion = series.motion;
         SlidePoint next = moved(piece, reach_);
-        // Beyond some 1e100 powers of the rate leave the doubles.
+        // Powers of a rate beyond about 1e100 overflow.
         if (!is_finite(next)) {
             slide_.pieces.pop_back();
             return SlideStop::no_progress;
@@ -146,10 +146,10 @@ class SlideIntegration {
         return geometry(slide_.body.axes, sin, cos);
     }
 
-    // Where the body creeps over the tip, omega follows from the energy. The series have it there
-    // with the roundings of the fast motion before; the energy, counted from the tip, has fewer.
+    // Where the body creeps over the tip, omega follows from the energy. There the series carry the
+    // roundings of the fast motion before; the energy, counted from the tip, has smaller ones.
     void keep_energy() {
-        constexpr double slow = 0.02;  // of the largest kinetic energy
+        constexpr double slow = 0.02;  // share of the largest kinetic energy
         constexpr double near = 10;    // g times the height under the tip, by the kinetic energy
         constexpr double rounding = 1e-12;  // a larger change of omega is none of rounding
         const Geometry at = geometry_here();
@@ -165,8 +165,8 @@ class SlideIntegration {
         last_.slip = last_.slip + -at.h * change;
     }
 
-    // The rate of turning and, where B is so small that it is large, that of the change of B: in
-    // units of it no power leaves the doubles.
+    // The rate of turning or, where B is small, of the change of B, whichever is larger. In units
+    // of this rate no power overflows.
     double rate(const Geometry& at) const {
         constexpr double stiff = 0x1p20;
         const double omega = double(last_.omega);
@@ -196,7 +196,7 @@ class SlideIntegration {
             });
         };
         if (body.side != 0) {
-            // Where rolling reaches the limit of friction, slip starts at a rate of 0, rounded.
+            // After rolling at the limit of friction, slip starts at a rate of 0 to rounding.
             const bool starts = series.slip[0] == 0;
             search(End::slip, [&](int k) -> Tracked {
                 const double slip = series.slip[k];
@@ -250,8 +250,8 @@ class SlideIntegration {
         return std::nullopt;
     }
 
-    // Whether c, now 0 but for rounding, goes on to fall: h'' is least on the tip, so that c < 0,
-    // if at all, on the way there.
+    // Whether c, now 0 to rounding, will fall below 0. h'' is least on the tip, so that c can be
+    // negative only on the way there.
     bool leaves() const {
         const Axes& axes = slide_.body.axes;
         const Geometry tip = axes.a > axes.b ? geometry(axes, 1.0, 0.0) : geometry(axes, 0.0, 1.0);

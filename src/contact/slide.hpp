@@ -15,16 +15,16 @@
 namespace rolling_ellipse {
 
 struct SlidePoint {
-    // From the quarter turn next to the start: there a thin body is the most sensitive to it, and
-    // the whole angle has no room for these digits.
+    // Angle from the quarter turn nearest to the start. A thin body is most sensitive to it there,
+    // and the whole angle could not hold these digits.
     DoubleDouble angle;
     DoubleDouble omega;
     DoubleDouble slip;
     // A number of its own: the sum of slip and h omega would have their rounding, where friction
     // hardly changes it.
     DoubleDouble x_dot;
-    DoubleDouble path;  // since the start
-    DoubleDouble time;  // since the start
+    DoubleDouble path;  // path since the start
+    DoubleDouble time;  // time since the start
     // Per mass, of turning and of the height over the tip's; only the work of friction changes it.
     DoubleDouble energy;
 };
@@ -33,8 +33,8 @@ struct SlidePoint {
 struct SlidePiece {
     SlidePoint centre;
     SlideClock clock;
-    double unit;   // of time in the series
-    double reach;  // of the clock
+    double unit;   // unit of time of the series
+    double reach;  // range of the clock
     SlideMotion motion;
 };
 
@@ -43,7 +43,7 @@ struct Slide {
     Axes axes;
     DoubleDouble theta_base;
     double x_base;
-    SlidePoint last;  // where the pieces end
+    SlidePoint last;  // end of the last piece
     std::vector<SlidePiece> pieces;
 };
 

@@ -100,7 +100,7 @@ SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, Sli
     TwoSeries h_bend, h_w2;  // h^2, (a b - u)(a b + u) omega^2
     TwoSeries p_u, lever_h;  // p L, u h
     TwoSeries u_h, v_v;      // u V, h V
-    TwoSeries c_w;           // with lever_h: L C, h omega
+    TwoSeries c_w;           // products L C and h omega, L = lever_h
     TwoSeries loads, gains;  // (u V) omega', (h V) impulse'
     TwoSeries rate_c, w_h;   // dt/dtau omega, C h
     LongSeries h, rate, impulse, pull;

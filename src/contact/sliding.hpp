@@ -19,7 +19,7 @@ struct SlidingBody {
     double normal_share;
     double friction_share;
 
-    // With infinite friction B is small near the tip, but the force does not grow there.
+    // False for infinite friction: B is small near the tip, but the force does not grow there.
     bool may_jam() const { return normal_share != 0; }
 };
 

@@ -23,7 +23,7 @@ CarlsonPair carlson(double x, double y, double z) {
         const double mean = (x + y + 3 * z) / 5;
         const double spread =
             std::max({std::abs(mean - x), std::abs(mean - y), std::abs(mean - z)});
-        if (!(spread >= series_radius * mean)) break;  // also for NaN
+        if (!(spread >= series_radius * mean)) break;  // a NaN ends the loop, too
         const double rx = std::sqrt(x);
         const double ry = std::sqrt(y);
         const double rz = std::sqrt(z);

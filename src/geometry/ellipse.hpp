@@ -135,7 +135,7 @@ struct QuarterView {
 
 inline QuarterView quarter_view(const DoubleDouble& angle) {
     const double quarters = std::nearbyint(angle.high / half_pi);
-    if (quarters == 0) return {quarters, angle};  // mostly
+    if (quarters == 0) return {quarters, angle};  // the usual case
     return {quarters, angle - half_pi_exact * quarters};
 }
 

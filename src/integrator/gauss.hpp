@@ -20,7 +20,7 @@ class Gauss {
 
     StepCounts counts;
 
-    // One step; false if it is so large that the stages do not converge.
+    // Takes a step; false if the stages do not converge because it is too large.
     bool advance(Point<N>& point, double h) {
         const std::array<double, S> hb = weights(h);
         // First guess: the collocation polynomial of the previous step, extrapolated.

@@ -22,7 +22,7 @@ class Radau {
 
     StepCounts counts;
 
-    // One step; false if it is so large that the stages do not converge.
+    // Takes a step; false if the stages do not converge because it is too large.
     bool advance(Point<N>& point, double h) {
         constexpr double rounding = 2 * epsilon;
         const std::complex<double> pair(C::alpha, C::beta);

@@ -49,7 +49,7 @@ class ExplicitMethod {
     StepCounts counts;
     Dense last_dense;  // of the last step of controlled error, if keeps_dense
 
-    // One step of the given size; always true.
+    // Takes a step of the given size; always true.
     bool advance(Point<N>& point, double h) {
         evaluate<0, Tableau::stages>(point, h);
         add<N>(point, increment(h));
@@ -122,7 +122,7 @@ class ExplicitMethod {
             dense.terms[3 + term] = h * weighted_sum<Tableau::dense, term, all_stages>(k_);
         });
         for (Vector<N>& term : dense.terms) {
-            // After an overflow in a stage the interpolant is unknown.
+            // An overflow in a stage leaves the interpolant without this term.
             if (!in_range<N>(term)) term.setZero();
         }
         return dense;

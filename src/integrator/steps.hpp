@@ -29,7 +29,7 @@ struct Knot {
     double t;
     Vector<N> y;
     Vector<N> carry;
-    double periods;  // of f, subtracted from y so far
+    double periods;  // periods of f that were subtracted from y
 
     Point<N> point() const { return {t, y, carry, Vector<N>::Zero()}; }
 };

@@ -82,7 +82,7 @@ bool in_range(const Vector<N>& y) {
 struct StepCounts {
     long steps = 0;
     long rejected = 0;
-    long evaluations = 0;  // of f
+    long evaluations = 0;  // evaluations of f
 };
 
 // Return value of a visitor: `changed` if it altered the point, so that f must be evaluated again.

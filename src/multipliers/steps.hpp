@@ -14,13 +14,13 @@ struct CoordinateStart {
     CoordinateState state;
     double x;
     DoubleDouble angle_base;
-    bool rests = false;  // at rest for ever
+    bool rests = false;  // the body rests for ever
 };
 
 struct SteppedMultipliers {
     ConstrainedBody body;
     Settings settings;
-    double specific_energy;   // of the start [J/kg]
+    double specific_energy;   // energy of the start per mass [J/kg]
     double x_base;            // x at the start, from which x is integrated
     DoubleDouble angle_base;  // angle of the start, from which half turns are counted
     // y = (q, q_dot); the index-2 system appends lambda per mass and the position multipliers.

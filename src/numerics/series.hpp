@@ -65,13 +65,14 @@ double derivative(const std::array<double, Size>& series, double z) {
     return sum;
 }
 
-// Two doubles in one register, where the processor has such; the bits are those of single doubles.
+// Two doubles in one register where the processor has one; the bits are the same as for single
+// doubles.
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 inline Pair pair(double first, double second) { return Pair{first, second}; }
 
-// Power series of high order, which solve an arc in a few pieces. Their cost grows little faster
-// with the order than their radius, and each piece has a fixed cost besides.
+// Power series of high order, which solve an arc in a few pieces. Higher orders have a larger
+// radius at nearly proportional cost, and each piece has a fixed cost.
 inline constexpr int long_order = 24;
 using LongSeries = std::array<double, long_order + 1>;
 

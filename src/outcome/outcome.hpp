@@ -11,9 +11,9 @@ namespace rolling_ellipse {
 
 enum class Outcome : std::int8_t {
     rests,
-    rocks,          // it turns back before anything else happens
+    rocks,          // the body turns back before anything else happens
     rolls_over,     // it passes the tip before anything else happens
-    slips,          // its contact slides
+    slips,          // the contact slides
     loses_contact,  // it leaves the ground, or is in the air
     jams,           // not out of rolling, see outcome/outcome.cpp
     edge,           // undecided within rounding

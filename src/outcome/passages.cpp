@@ -11,11 +11,11 @@ namespace {
 
 int sign_of(double value) { return (value > 0) - (value < 0); }
 
-// A time with the observable less the value: exactly 0 where rounding cannot tell a touch.
+// A time, and the observable less the value there: exactly 0 for a touch within rounding.
 struct Reading {
     double t;
     double excess;
-    bool is_last;  // of its stretch
+    bool is_last;  // the last reading of its stretch
 };
 
 struct Search {
@@ -61,7 +61,7 @@ struct Search {
 
     bool is_wanted(int sense) const { return direction == 0 || direction == sense; }
 
-    // The times between readings at which the sign changes in the wanted sense, and those of zeros.
+    // The times of zeros, and of changes of sign between readings in the wanted direction.
     std::vector<double> passages_in(const std::vector<Reading>& readings, double value) const {
         std::vector<double> found;
         struct Crossing {

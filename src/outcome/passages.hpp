@@ -33,7 +33,7 @@ Observable observable(const Motion& motion, Quantity quantity, const Checkpoint&
 struct Stretch {
     const char* where;           // a phrase for people: "while it rolls"
     std::vector<double> times;   // [s], ascending; begin, turning points, end
-    std::vector<double> values;  // of the observable
+    std::vector<double> values;  // values of the observable
     bool proved = true;          // is the observable monotone from each time to the next?
     // [s], of a motion that repeats itself often: `times` then cover the first two and the last two
     // periods.
@@ -55,7 +55,8 @@ struct Passages {
 };
 
 // All passages up to a last time. Direction: +1 where the observable rises through the value, -1
-// where it falls, 0 for both and for touches. A jump of omega across the value at an event counts.
+// where it falls, 0 for both and for touches. A jump of omega across the value at an event counts
+// as a passage.
 Passages passages(const Motion& motion, double last, const Observable& of,
                   const std::vector<double>& values, int direction, const Checkpoint& checkpoint);
 

@@ -177,10 +177,11 @@ struct Climb {
     double flat = scene.a >= scene.b ? 0.0 : half_pi;  // theta
     double tip = flat + half_pi;
 
-    // The climb alone decides: c vanishes only on the way up, where its rate is h''' omega^3,
-    // physics (53), since h'' falls from the flat to the tip.
+    // The fate of a climb from the flat to the tip. c can vanish only on the way up, where its rate
+    // is h''' omega^3, physics (53), since h'' falls from the flat to the tip.
     Fate fate(double omega) const {
-        // So many segments mean slides of no length: N and c vanish together, right at the tip.
+        // A climb of more segments has slides of no length: N and c vanish together, right at the
+        // tip.
         constexpr int most_segments = 64;
         checkpoint();
         State state = on_ground(flat, omega, 0.0, Mode::rolling);
@@ -239,8 +240,8 @@ double too_slow(const Body& body, const FlatView& at) {
 }
 
 // Without jams a body that leaves the ground does so at any higher speed: coarse steps, each by a
-// factor, find the least one. With jams the fates may alternate, up to 50 times the slip speed:
-// there gravity, 2500 times weaker in units of omega^2, no longer matters.
+// factor, find the least one. Fine steps, since with jams the fates may alternate. At 50 times the
+// slip speed gravity is 2500 times weaker in units of omega^2 and no longer matters.
 LiftOff scanned(const Climb& climb, double low, bool may_jam) {
     const double growth = may_jam ? 1.02 : 1.05;
     const int most_growths = may_jam ? 198 : 200;

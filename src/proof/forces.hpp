@@ -42,7 +42,7 @@ ShapePlace place_at(const Shape& shape, double sin2, double cos2);
 
 // The heights h = short_axis + width x, 0 <= x <= 1, that a body of a shape reaches.
 struct EnergyRange : Shape {
-    double width;       // of the heights reached
+    double width;       // width of the range of heights
     double energy_gap;  // H minus the greatest height reached (0 in libration)
     double tip_gap;     // 1 minus the greatest height reached (0 in rotation)
     bool libration;
@@ -68,8 +68,8 @@ ForcePolynomials force_polynomials(const EnergyRange& range);
 
 // Contact forces at one place, from the equations of rolling.
 struct RollingForces {
-    double sin;       // of the angle from the flat position
-    double cos;       // both >= 0
+    double sin;       // sine of the angle from the flat position
+    double cos;       // its cosine; both are >= 0
     double normal;    // N/(m g)
     double friction;  // |F|/(m g)
 

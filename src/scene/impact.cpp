@@ -129,7 +129,7 @@ class ImpulsePath {
 
     double u_;
     double restitution_;
-    double rebound_;  // by Newton's law
+    double rebound_;  // rebound by Newton's law
     Restitution law_;
     double work_ = 0.0;         // left for restitution by Stronge's law
     double last_normal_ = 0.0;  // at the end of restitution by Poisson's law
@@ -230,7 +230,8 @@ InitialState initial_state(const Scene& scene) {
     }
 
     Contact c = contact(scene, at, state, rate);
-    // Right beside the flat position a slide would end at a time that doubles cannot tell from 0.
+    // Next to the flat position the slide would end at a time that doubles cannot distinguish from
+    // 0.
     if (slip_removed && zero_if_negligible(state.theta) == 0) {
         c.gtn = 0.0;
         c.u_without_slip = c.u;
@@ -276,7 +277,7 @@ double sticking_friction(const Scene& scene) {
     const double rate = strike(scene, *scene.impulse, at, state);
     const Contact c = contact(scene, at, state, rate);
     if (c.u > 0) return infinity;
-    if (c.u == 0) return c.v == 0 ? 0.0 : infinity;  // no pressure, no friction
+    if (c.u == 0) return c.v == 0 ? 0.0 : infinity;  // without pressure there is no friction
     const double to_stay = std::abs(c.gtn) / c.gtt;
     const double towards = c.v == 0 ? 0.0 : std::copysign(c.gtn, c.gtn * c.v);  // s Gtn
     const double normal = std::abs(c.u) * c.gtt + std::abs(c.v) * towards;

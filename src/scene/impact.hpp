@@ -20,7 +20,7 @@ struct InitialState {
     double reaction_z;
     double free_omega;          // without the ground's reaction: the report's eq 48
     double slip_removed = 0.0;  // given slip that infinite friction stops at once [m/s]
-    double energy_lost = 0.0;   // with that slip [J]
+    double energy_lost = 0.0;   // energy lost with that slip [J]
     double gap_rate = 0.0;      // with its own digits; 0 in contact [m/s]
     bool touching = false;      // the body was on the ground before
 };

@@ -20,11 +20,11 @@ std::string text(double value);
 // A unit as messages have it: " [m]".
 std::string in_brackets(const Unit& unit);
 
-// For a position, velocity or impulse.
+// Throws unless a position, velocity or impulse is finite and small enough.
 void require_finite(std::string_view name, const Unit& unit, double value);
 
-// For a quantity of a kind ("length [m]") that must be positive, and neither so small nor so large
-// that products of it leave the range of doubles.
+// Throws unless a quantity of a kind ("length [m]") is positive and of a size whose products stay
+// within the range of doubles.
 void require_positive(std::string_view name, std::string_view kind, double value);
 
 }  // namespace rolling_ellipse

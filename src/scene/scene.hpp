@@ -85,7 +85,8 @@ struct SceneField {
     void set(Scene& scene, std::optional<double> value) const;
 };
 
-// In the order of the columns of a table of scenes, and of the files of `simulate_many`.
+// The fields of a scene, in the order of the columns of a table of scenes and of the files of
+// `simulate_many`.
 inline constexpr SceneField scene_fields[] = {
     {"a", &Scene::a, unit::length},
     {"b", &Scene::b, unit::length},
@@ -124,7 +125,7 @@ struct Units {
 // The powers of two next to the long semi-axis L, sqrt(L/g) and the mass.
 Units natural_units(const Body& body, double mass = 1.0);
 
-// All numbers of a scene but those of its impulse.
+// A scene in other units, except its impulse.
 Scene in_units(const Scene& scene, const Units& units);
 
 State in_units(const State& state, const Units& units);

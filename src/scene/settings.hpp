@@ -42,7 +42,7 @@ struct Settings {
     double rtol;
     double atol;
     std::optional<double> step;  // [s]; absent: chosen by error control
-    std::optional<int> stages;   // of Gauss; absent: 4
+    std::optional<int> stages;   // stages of "gauss"; 4 if absent
     Stabilization stabilization;
     std::array<double, 2> baumgarte;  // alpha and beta [1/s]
     long max_steps;

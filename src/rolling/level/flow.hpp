@@ -46,7 +46,7 @@ struct RollingStart {
     double omega;
     FlatView view;
     EnergyHeight height;
-    bool rests;  // in equilibrium for all times
+    bool rests;  // the body stays in equilibrium
 };
 
 RollingStart rolling_start(const Body& body, double theta, double omega);
@@ -127,8 +127,8 @@ struct PhaseTime {
     TwoParts<T> quarter_turn;  // time to the tip or turning point; infinite on the separatrix
     TwoParts<T> half_turn;     // time in which the phase advances by pi
     T quarter_path;            // path of the centre in a quarter of a rotation
-    // For first guesses of the place at a time: dt/dy at the steps of the map and one step beyond
-    // its ends, and the time since the flat by cubics through these.
+    // Data for the first guess of the place at a time: dt/dy at the steps of the map and one step
+    // beyond its ends, and the time since the flat by cubics through them.
     static constexpr int most_steps = 160;
     T slope[most_steps + 3];
     T time[most_steps + 2];

@@ -11,7 +11,7 @@
 namespace rolling_ellipse {
 namespace {
 
-constexpr std::size_t most_bodies = 512;  // of one kernel call
+constexpr std::size_t most_bodies = 512;  // bodies of one kernel call
 
 FlowSample sample_alone(const RollingStart& start, double t) {
     const RollingFlow flow = rolling_flow(start);

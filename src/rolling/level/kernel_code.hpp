@@ -166,7 +166,8 @@ void reduce(const FlowReader& motion, const double* times, int n, Block& found) 
     }
 }
 
-// One series at several times. The sums of even and odd powers are independent of each other.
+// Evaluates one series at several times. The sums of even and odd powers are independent of each
+// other.
 inline MotionSample<Pack> together(const TableSeries& series, Pack z) {
     const auto& rows = series.rows;
     const Pack z2 = z * z;

@@ -64,7 +64,7 @@ class TableMaker {
   private:
     // Places from the flat position to the end of the quarter.
     void place(double spacing) {
-        constexpr double wider = 1.5;  // from 45 degrees of the phase on
+        constexpr double wider = 1.5;  // factor of the spacing beyond 45 degrees of the phase
         // At this distance beyond 45 degrees, a body on the separatrix is on the tip within
         // rounding.
         constexpr double longest_rise = 38.0;
@@ -86,8 +86,8 @@ class TableMaker {
     double half_way_back(std::size_t i) { return 0.5 * places_[i == 0 ? 1 : i].time; }
     double half_way_on(std::size_t i) { return half_way_back(std::min(i + 1, count() - 1)); }
 
-    // The motion at all places, and the series about them; false if two series do not meet half
-    // way.
+    // Computes the motion at all places and the series about them; false if two neighbouring series
+    // do not meet half way.
     bool expand() {
         const int n = static_cast<int>(count());
         kernel_.states(flow_.phase.integrand, flow_.phase.map, flow_.amplitude, places_.data(), n);

@@ -149,7 +149,7 @@ MotionSample<T> sample_at(const PhaseMotion<T>& motion, const PhaseStart<T>& fro
         TwoParts<T>{heading * turned.high, heading * turned.low} + from.theta;
 
     // The place of a libration beyond a turning point is the mirror image before it. The path
-    // between the places leaves out the way to the turning point and back, which cancels.
+    // between the places omits the part to the turning point and back, which cancels.
     const auto turned_back = (now.omega < 0) & negated(rotates);
     T path = gain.path;
     if (any(turned_back)) {

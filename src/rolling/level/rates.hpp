@@ -50,7 +50,7 @@ template <class T>
 void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     constexpr double steps_per_unit = 4.0;
     constexpr double largest_complement = 0.70710678118654752;  // q = 1/32
-    constexpr double tail = 20.0;                               // beyond log(2/largest_grade)
+    constexpr double tail = 20.0;                               // range beyond log(2/largest_grade)
     constexpr double falling_in_tail = 2.0611536224385579e-9;   // e^-tail
     map.kappa = kappa;
     const T complement = min<T>(kappa * largest_grade, filled<T>(largest_complement));

@@ -20,12 +20,12 @@ namespace rolling_ellipse {
 struct SlopeFlow {
     MotionKind kind;  // `uniform` for a circle, which accelerates evenly; `rotation` until two
                       // turning points are found
-    double theta;     // at the start [rad, rad/s, m]
+    double theta;     // angle, angular velocity and position at the start [rad, rad/s, m]
     double omega;
     double x;
     SlopeBody body;
     // All members below are in units of the body.
-    double acceleration;  // of a circle
+    double acceleration;  // acceleration of a circle
     SlopePlace start;
     SlopeEnergy energy;
     std::vector<SlopePiece> foot;  // first half turn of a climb, where a sum loses digits

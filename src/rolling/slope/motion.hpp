@@ -50,9 +50,9 @@ SlopeBody slope_body(const Body& body, double slope);
 struct SlopePlace {
     DoubleDouble time;
     double quarters;
-    DoubleDouble angle;  // from the end of the quarters
+    DoubleDouble angle;  // angle beyond the quarters
     double omega;
-    DoubleDouble path;  // of the centre, since the start
+    DoubleDouble path;  // path of the centre since the start
 };
 
 Geometry geometry(const SlopeBody& body, double quarters, double angle);
@@ -89,8 +89,8 @@ struct SlopeSeries {
 // A stretch of the motion as power series in time.
 struct SlopePiece {
     SlopePlace from;
-    double unit;   // of time, in the series
-    double lasts;  // in units of the body
+    double unit;   // unit of time of the series
+    double lasts;  // duration in units of the body
     SlopeSeries series;
 
     double end() const { return double(from.time + lasts); }

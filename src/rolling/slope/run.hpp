@@ -31,19 +31,19 @@ struct RunNodes {
 // The first terms of the sum of (W + j w)^(-1/2), and the level W + j w at which the
 // Euler-Maclaurin formula takes over.
 struct FirstRates {
-    double count;  // of terms
+    double count;  // number of terms
     double sum;
     double level;
-    double root;       // of the level
-    double remainder;  // of the formula at the level
+    double root;       // root of the level
+    double remainder;  // remainder of the formula at the level
 };
 
 // The coordinate v of a panel: tan((phi - centre)/scale) = grade sinh(v), first <= v <= last. The
 // integral over the whole panel has one Gauss rule, an integral over a part of it the finer rules
 // of its parts.
 struct RunPanel {
-    double quarters;  // of the centre
-    double angle;     // of the centre, beside its quarters
+    double quarters;  // quarters of the centre
+    double angle;     // angle of the centre beyond its quarters
     double scale;
     double grade;
     double first;
@@ -60,12 +60,12 @@ struct SlopeRun {
     double turns;    // whole half turns before `from`, in quarters
     double heading;  // +1 downhill, -1 uphill
     double path;     // at `from`, counted from the flat position at `turns`
-    Geometry at;     // at `from`
+    Geometry at;     // geometry at `from`
     double energy;   // W at `from`
     std::vector<RunPanel> panels;
     RunNodes nodes;
     RunNodes part_nodes;
-    std::vector<FirstRates> first;  // one a node, downhill only
+    std::vector<FirstRates> first;  // one for each node, downhill only
     double mass;                    // sum of all weights
     double half_turn;               // time of the first half turn
     double half_turns;              // largest number of half turns
@@ -114,7 +114,7 @@ class RunReader {
     const SlopeRun& run_;
     double half_turns_ = 0.0;  // number before the current half turn
     DoubleDouble begin_;       // time of the current half turn since `from`
-    double lasts_ = 0.0;       // its duration; 0 before the first call
+    double lasts_ = 0.0;       // duration of the half turn; 0 before the first call
     std::vector<double> panel_times_;
     std::vector<double> part_times_;  // negative where not computed yet
     std::size_t part_ = 0;            // the part whose Legendre coefficients are kept

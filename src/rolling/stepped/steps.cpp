@@ -148,7 +148,7 @@ class StepView {
     PathSeries path_;
     const Knot<2>* knot_ = nullptr;
     DoubleDouble theta_;
-    double path_before_ = 0.0;  // of the half turns before the knot
+    double path_before_ = 0.0;  // path of the half turns before the knot
 };
 
 // The motion before its first step.

@@ -17,7 +17,7 @@ struct SteppedRolling {
     Settings settings;
     DoubleDouble theta_base;  // angle at which half turns and remainder are 0
     DoubleDouble x_base;      // x there
-    double half_turn_path;    // of the centre
+    double half_turn_path;    // path of the centre in a half turn
     Steps<2> steps;
 };
 
