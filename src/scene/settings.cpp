@@ -38,7 +38,8 @@ void validate_step(const Settings& settings, double t_end) {
     }
     const double smallest = smallest_step_ulps * (t_end - std::nextafter(t_end, 0.0));
     if (step < smallest && step < t_end) {
-        refuse("step", "at least " + text(smallest) + " [s], which the last time still knows",
+        refuse("step",
+               "at least " + text(smallest) + " [s], ten units in the last place of the last time",
                step);
     }
 }
