@@ -3,8 +3,6 @@
 #include <stdexcept>
 
 #include "proof/slope.hpp"
-#include "reason.hpp"
-#include "scene/impact.hpp"
 
 namespace rolling_ellipse {
 namespace {

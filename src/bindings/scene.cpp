@@ -2,7 +2,7 @@
 
 #include "bindings/bindings.hpp"
 #include "multipliers/steps.hpp"
-#include "reason.hpp"
+#include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {

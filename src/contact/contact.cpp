@@ -3,7 +3,6 @@
 #include <limits>
 #include <optional>
 
-#include "contact/continuation.hpp"
 #include "contact/segments.hpp"
 #include "proof/certificate.hpp"
 #include "proof/law.hpp"

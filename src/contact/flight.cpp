@@ -6,7 +6,6 @@
 
 #include "numerics/bisect.hpp"
 #include "scene/impact.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {

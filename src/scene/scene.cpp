@@ -5,7 +5,6 @@
 
 #include "geometry/ellipse.hpp"
 #include "scene/impact.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {

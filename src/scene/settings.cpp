@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "scene/refuse.hpp"
+#include "scene/field.hpp"
 
 namespace rolling_ellipse {
 namespace {
