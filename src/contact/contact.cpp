@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "contact/segments.hpp"
 #include "proof/certificate.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/ellipse.hpp"
 #include "scene/impact.hpp"
 
 namespace rolling_ellipse {
