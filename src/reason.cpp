@@ -1,7 +1,7 @@
-#include "reason.hpp"
-
 #include <cmath>
 #include <cstdio>
+
+#include "simulate.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "bindings/bindings.hpp"
 #include "outcome/outcome.hpp"
-#include "outcome/thresholds.hpp"
 #include "scene/impact.hpp"
 #include "simulate.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "bindings/bindings.hpp"
 #include "multipliers/steps.hpp"
-#include "reason.hpp"
+#include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {
 namespace {
@@ -21,7 +21,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.restitution = restitution;
         scene.theta = theta;
         scene.omega = omega;
-        scene.z = above_ground(scene.axes());  // a height from which it may move down
+        scene.z = a + b;  // above the ground at any angle: it may move down from there
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
         validate(scene.body());                // by its own names: k^2 is no inertia

@@ -2,7 +2,6 @@
 
 #include "bindings/bindings.hpp"
 #include "outcome/passages.hpp"
-#include "scene/refuse.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {

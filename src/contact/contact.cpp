@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "contact/continuation.hpp"
 #include "contact/segments.hpp"
 #include "proof/certificate.hpp"
 #include "proof/law.hpp"

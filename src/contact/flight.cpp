@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "numerics/bisect.hpp"
 #include "scene/impact.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/continuation.hpp"
+#include "contact/sliding.hpp"
 #include "proof/slope.hpp"
 #include "scene/impact.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "outcome/passages.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -1,11 +1,10 @@
-#include "outcome/thresholds.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/continuation.hpp"
 #include "contact/slide.hpp"
 #include "numerics/bisect.hpp"
+#include "outcome/outcome.hpp"
 #include "proof/certificate.hpp"
 
 namespace rolling_ellipse {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/state.hpp"
+#include "scene/scene.hpp"
 
 namespace rolling_ellipse {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "scene/scene.hpp"
 #include "scene/settings.hpp"
-#include "scene/state.hpp"
 
 namespace rolling_ellipse {
 

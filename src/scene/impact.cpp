@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/ellipse.hpp"
-
 namespace rolling_ellipse {
 namespace {
 

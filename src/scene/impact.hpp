@@ -13,7 +13,7 @@ namespace rolling_ellipse {
 enum class Restitution { stronge, poisson, newton };
 
 // The state just after the applied impulse, or the scene's own state without one. Its mode follows
-// from its velocities; contact/continuation.hpp has the mode that the forces allow.
+// from its velocities; contact/sliding.hpp has the mode that the forces allow.
 struct InitialState {
     State state;
     double reaction_x;  // impulse of the ground [N s]

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/ellipse.hpp"
 #include "scene/impact.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "scene/refuse.hpp"
+#include "scene/field.hpp"
 
 namespace rolling_ellipse {
 namespace {
@@ -86,10 +86,6 @@ void validate_stages(const Settings& settings) {
 }
 
 }  // namespace
-
-void no_integrator_for(Method method) {
-    throw std::logic_error("there is no integrator for the method '" + name(method) + "'");
-}
 
 void validate(const Settings& settings, double t_end) {
     require_tolerance("rtol", settings.rtol);

@@ -65,9 +65,6 @@ inline constexpr std::tuple settings_fields{std::pair{"model", &Settings::model}
 // Called now and then during long work; throws to stop it.
 using Checkpoint = std::function<void()>;
 
-// Throws std::logic_error, for the choice of an integrator: validation lets no such method pass.
-[[noreturn]] void no_integrator_for(Method method);
-
 // Throws std::invalid_argument naming the argument, what was required and what came.
 void validate(const Settings& settings, double t_end);
 

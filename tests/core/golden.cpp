@@ -21,7 +21,6 @@
 
 #include "motions.hpp"
 #include "outcome/outcome.hpp"
-#include "outcome/thresholds.hpp"
 #include "rolling/level/kernel.hpp"
 #include "simulate.hpp"
 

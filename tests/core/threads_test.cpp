@@ -14,7 +14,6 @@
 
 #include "motions.hpp"
 #include "outcome/outcome.hpp"
-#include "outcome/thresholds.hpp"
 #include "rolling/level/kernel.hpp"
 #include "rolling/level/many_times.hpp"
 #include "simulate.hpp"

@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "bytes.hpp"
-#include "contact/continuation.hpp"
+#include "contact/sliding.hpp"
 #include "outcome/outcome.hpp"
 #include "outcome/passages.hpp"
-#include "outcome/thresholds.hpp"
 #include "proof/law.hpp"
 #include "rolling/level/kernel.hpp"
 #include "rolling/stepped/equation.hpp"

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "rolling/level/motion.hpp"
-#include "scene/refuse.hpp"
 
 namespace rolling_ellipse {
 namespace {

@@ -1,4 +1,4 @@
-#include "scene/refuse.hpp"
+#include "scene/field.hpp"
 
 #include <cmath>
 #include <locale>
@@ -8,13 +8,6 @@
 #include "numerics/numbers.hpp"
 
 namespace rolling_ellipse {
-namespace {
-
-// Products of four lengths, an energy and gravity between these stay in the range of doubles.
-constexpr double smallest = 1e-30;
-constexpr double largest = 1e30;
-
-}  // namespace
 
 // The fewest digits that distinguish the number from its neighbours; 17 do for any.
 std::string text(double value) {
@@ -55,7 +48,8 @@ void require_positive(std::string_view name, std::string_view kind, double value
     if (!(value > 0 && std::isfinite(value))) {
         refuse(name, "a positive finite " + std::string(kind), value);
     }
-    if (value < smallest || value > largest) {
+    // Products of four lengths, an energy and gravity of these sizes stay in the range of doubles.
+    if (value < 1e-30 || value > 1e30) {
         refuse(name, "a " + std::string(kind) + " between 1e-30 and 1e30", value);
     }
 }
