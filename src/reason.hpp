@@ -6,7 +6,6 @@
 #include "contact/continuation.hpp"
 #include "integrator/system.hpp"
 #include "proof/certificate.hpp"
-#include "proof/watch.hpp"
 #include "scene/impact.hpp"
 
 namespace rolling_ellipse {

@@ -8,7 +8,6 @@
 
 #include "contact/segments.hpp"
 #include "proof/certificate.hpp"
-#include "proof/watch.hpp"
 
 namespace rolling_ellipse {
 

@@ -16,7 +16,6 @@
 #include "outcome/outcome.hpp"
 #include "outcome/thresholds.hpp"
 #include "rolling/level/kernel.hpp"
-#include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;
