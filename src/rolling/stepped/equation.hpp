@@ -2,6 +2,7 @@
 // forces that follow from theta and omega.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/ellipse.hpp"
@@ -32,15 +33,41 @@ class RollingEquation {
   public:
     static constexpr int size = 2;
 
-    RollingEquation(const Body& body, double slope);
+    RollingEquation(const Body& body, double slope)
+        : axes_(body.axes()),
+          turned_{{square(body.a), square(body.b), (body.a - body.b) * (body.a + body.b)},
+                  {square(body.b), square(body.a), (body.b - body.a) * (body.b + body.a)}},
+          gyration2_(body.gyration2),
+          gravity_(ground_gravity(body.gravity, slope)),
+          long_axis_(std::max(body.a, body.b)) {}
 
     double acceleration(double sin_theta, double cos_theta, double omega) const {
         return acceleration(turned_[0], sin_theta, cos_theta, omega);
     }
 
     Vector<2> operator()(double t, const Vector<2>& y) const;
-    Matrix<2> jacobian(double t, const Vector<2>& y) const;
-    SpecificEnergy energy(const Geometry& at, double omega, double x) const;
+
+    // physics (19), with D' = 2 h' rho and rho' = -3 rho h'/h.
+    Matrix<2> jacobian(double, const Vector<2>& y) const {
+        const Geometry at = geometry(axes_, y[0]);
+        const double omega = y[1];
+        const double inertia = inertia_about_contact(gyration2_, at);
+        const double load = gravity_.into + at.rho * omega * omega;
+        const double rho_derivative = -3 * at.rho * at.dh / at.h;
+        const double by_theta = at.dh * gravity_.along - at.ddh * load -
+                                at.dh * rho_derivative * omega * omega -
+                                2 * at.dh * at.rho * acceleration(at.sin, at.cos, omega);
+        const double by_omega = -2 * at.dh * at.rho * omega;
+        Matrix<2> jacobian;
+        jacobian << 0.0, 1.0, by_theta / inertia, by_omega / inertia;
+        return jacobian;
+    }
+
+    // physics (17)
+    SpecificEnergy energy(const Geometry& at, double omega, double x) const {
+        return {0.5 * inertia_about_contact(gyration2_, at) * omega * omega,
+                gravity_.into * at.h - gravity_.along * x};
+    }
 
     // Accelerations of theta and of the centre, and the contact force of a body with a mass:
     // physics (20), Newton's law for the centre.
@@ -49,8 +76,16 @@ class RollingEquation {
         double x;
         double z;
     };
-    Accelerations accelerations(const Geometry& at, double omega) const;
-    ContactForce force(double mass, const Accelerations& of_centre) const;
+
+    Accelerations accelerations(const Geometry& at, double omega) const {
+        const double omega2 = omega * omega;
+        const double omega_dot = acceleration(at.sin, at.cos, omega);
+        return {omega_dot, at.h * omega_dot + at.dh * omega2, at.dh * omega_dot + at.ddh * omega2};
+    }
+
+    ContactForce force(double mass, const Accelerations& of_centre) const {
+        return {mass * (gravity_.into + of_centre.z), mass * (of_centre.x - gravity_.along)};
+    }
     ContactForce force(double mass, const Geometry& at, double omega) const {
         return force(mass, accelerations(at, omega));
     }
@@ -102,6 +137,9 @@ class RollingEquation {
 }
 
 // The contact force of a rolling body.
-ContactForce rolling_force(const Scene& scene, double theta, double omega);
+inline ContactForce rolling_force(const Scene& scene, double theta, double omega) {
+    const RollingEquation rolling(scene.body(), scene.slope);
+    return rolling.force(scene.mass, geometry(scene.axes(), theta), omega);
+}
 
 }  // namespace rolling_ellipse

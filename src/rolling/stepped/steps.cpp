@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "integrator/gauss.hpp"
-#include "integrator/radau.hpp"
+#include "integrator/implicit.hpp"
 #include "integrator/runge_kutta.hpp"
 #include "numerics/series.hpp"
 
