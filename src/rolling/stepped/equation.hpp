@@ -45,7 +45,15 @@ class RollingEquation {
         return acceleration(turned_[0], sin_theta, cos_theta, omega);
     }
 
-    Vector<2> operator()(double t, const Vector<2>& y) const;
+    // The rate of y. A quarter turn exchanges the axes of the body.
+    [[gnu::always_inline]] Vector<2> operator()(double, const Vector<2>& y) const {
+        if (!(std::abs(y[0]) <= largest_in_quarters)) {
+            return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
+        }
+        const auto [rest, odd] = nearest_quarter(y[0]);
+        const auto [sine, cosine] = sine_cosine_of_rest(rest);
+        return {y[1], acceleration(turned_[odd], sine, cosine, y[1])};
+    }
 
     // physics (19), with D' = 2 h' rho and rho' = -3 rho h'/h.
     Matrix<2> jacobian(double, const Vector<2>& y) const {
@@ -102,7 +110,20 @@ class RollingEquation {
         double b2;
         double c2;  // a^2 - b^2
     };
-    double acceleration(const Squares& axes, double s, double c, double omega) const;
+
+    // The acceleration by physics (18) times h^4, with one root and one division that does not wait
+    // for the root. With u = h^2, p = h h',
+    //     theta'' (u^2 (k^2 + u) + u p^2)
+    //         = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
+    [[gnu::always_inline]] double acceleration(const Squares& axes, double s, double c,
+                                               double omega) const {
+        const double u = axes.a2 * (s * s) + axes.b2 * (c * c);
+        const double p = axes.c2 * (s * c);
+        const double inverse = 1 / (u * u * (gyration2_ + u) + u * (p * p));
+        const double drive = u * (u * gravity_.along - p * gravity_.into) * std::sqrt(u);
+        const double turning = p * (axes.a2 * axes.b2 * (omega * omega));
+        return (drive - turning) * inverse;
+    }
 
     Axes axes_;
     Squares turned_[2];  // after an even number of quarter turns, and after an odd one
@@ -110,31 +131,6 @@ class RollingEquation {
     GroundGravity gravity_;
     double long_axis_;
 };
-
-// The acceleration by physics (18) times h^4, with one root and one division: with u = h^2, p = h
-// h',
-//     theta'' (u^2 (k^2 + u) + u p^2) = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
-// The division does not wait for the root.
-[[gnu::always_inline]] inline double RollingEquation::acceleration(const Squares& axes, double s,
-                                                                   double c, double omega) const {
-    const double u = axes.a2 * (s * s) + axes.b2 * (c * c);
-    const double p = axes.c2 * (s * c);
-    const double inverse = 1 / (u * u * (gyration2_ + u) + u * (p * p));
-    const double drive = u * (u * gravity_.along - p * gravity_.into) * std::sqrt(u);
-    const double turning = p * (axes.a2 * axes.b2 * (omega * omega));
-    return (drive - turning) * inverse;
-}
-
-// The rate of y. A quarter turn exchanges the axes of the body.
-[[gnu::always_inline]] inline Vector<2> RollingEquation::operator()(double,
-                                                                    const Vector<2>& y) const {
-    if (!(std::abs(y[0]) <= largest_in_quarters)) {
-        return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
-    }
-    const auto [rest, odd] = nearest_quarter(y[0]);
-    const auto [sine, cosine] = sine_cosine_of_rest(rest);
-    return {y[1], acceleration(turned_[odd], sine, cosine, y[1])};
-}
 
 // The contact force of a rolling body.
 inline ContactForce rolling_force(const Scene& scene, double theta, double omega) {
