@@ -9,7 +9,6 @@
 
 #include "contact/segments.hpp"
 #include "proof/certificate.hpp"
-#include "proof/watch.hpp"
 #include "scene/impact.hpp"
 
 namespace rolling_ellipse {

@@ -31,9 +31,9 @@ struct GaussCoefficients;
 
 RADAU = """\
 
-// Radau IIA with three stages. inverse(a) = transform . eigenvalues . inverse(transform), the
-// eigenvalues being gamma and the pair alpha +- i beta in the real form [alpha, -beta; beta, alpha]
-// (Hairer, Wanner, Solving ODEs II, IV.8).
+// Radau IIA with three stages. Its matrix a has inverse(a) = transform . eigenvalues .
+// inverse(transform), the eigenvalues being gamma and the pair alpha +- i beta in the real form
+// [alpha, -beta; beta, alpha] (Hairer, Wanner, Solving ODEs II, IV.8).
 struct RadauCoefficients {"""
 
 
@@ -101,8 +101,7 @@ def print_gauss(s: int) -> None:
 def print_radau() -> None:
     s = 3
     c = nodes(s, 1)
-    a = butcher_matrix(c)
-    values, vectors = eig(inverse(a))
+    values, vectors = eig(inverse(butcher_matrix(c)))
     real = min(range(s), key=lambda k: abs(values[k].imag))
     lower = min(range(s), key=lambda k: values[k].imag)  # the eigenvalue alpha - i beta
     # eigenvectors are scaled to the last element 1
@@ -111,7 +110,6 @@ def print_radau() -> None:
     transform = matrix([[first[i], pair[i].real, pair[i].imag] for i in range(s)])
     print(RADAU)
     print_vector("c", c)
-    print_matrix("a", a.tolist())
     for name, value in {"gamma": values[real].real, "alpha": values[lower].real,
                         "beta": -values[lower].imag}.items():  # fmt: skip
         print(f"    static constexpr double {name} = {float(value)!r};")

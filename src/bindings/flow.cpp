@@ -3,7 +3,6 @@
 
 #include "bindings/bindings.hpp"
 #include "rolling/level/kernel.hpp"
-#include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
 namespace rolling_ellipse::bindings {

@@ -33,8 +33,8 @@ py::dict gauss_tableau() {
 
 py::dict radau_tableau() {
     using T = RadauCoefficients;
-    return py::dict("c"_a = array(T::c), "a"_a = array(T::a), "gamma"_a = T::gamma,
-                    "alpha"_a = T::alpha, "beta"_a = T::beta, "transform"_a = array(T::transform),
+    return py::dict("c"_a = array(T::c), "gamma"_a = T::gamma, "alpha"_a = T::alpha,
+                    "beta"_a = T::beta, "transform"_a = array(T::transform),
                     "inverse_transform"_a = array(T::inverse_transform));
 }
 

@@ -11,7 +11,7 @@
 #include "contact/flight.hpp"
 #include "contact/slide.hpp"
 #include "multipliers/steps.hpp"
-#include "rolling/level/many_times.hpp"
+#include "rolling/level/kernel.hpp"
 #include "rolling/slope/flow.hpp"
 #include "rolling/stepped/steps.hpp"
 #include "scene/impact.hpp"

@@ -58,16 +58,11 @@ struct GaussCoefficients<4> {
     };
 };
 
-// Radau IIA with three stages. inverse(a) = transform . eigenvalues . inverse(transform), the
-// eigenvalues being gamma and the pair alpha +- i beta in the real form [alpha, -beta; beta, alpha]
-// (Hairer, Wanner, Solving ODEs II, IV.8).
+// Radau IIA with three stages. Its matrix a has inverse(a) = transform . eigenvalues .
+// inverse(transform), the eigenvalues being gamma and the pair alpha +- i beta in the real form
+// [alpha, -beta; beta, alpha] (Hairer, Wanner, Solving ODEs II, IV.8).
 struct RadauCoefficients {
     static constexpr double c[3] = {0.1550510257216822, 0.6449489742783178, 1.0};
-    static constexpr double a[3][3] = {
-        {0.1968154772236604, -0.06553542585019839, 0.02377097434822015},
-        {0.3944243147390873, 0.2920734116652285, -0.04154875212599793},
-        {0.37640306270046725, 0.5124858261884216, 0.1111111111111111},
-    };
     static constexpr double gamma = 3.637834252744496;
     static constexpr double alpha = 2.6810828736277523;
     static constexpr double beta = 3.0504301992474105;

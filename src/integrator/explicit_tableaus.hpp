@@ -57,22 +57,12 @@ struct DormandPrince853 {
     static constexpr int order = 8;
     static constexpr int stages = 12;
     static constexpr int all_stages = 16;
-    static constexpr double c[all_stages] = {0,
-                                             0.526001519587677318785587544488e-1,
-                                             0.789002279381515978178381316732e-1,
-                                             0.118350341907227396726757197510,
-                                             0.281649658092772603273242802490,
-                                             1.0 / 3,
-                                             0.25,
-                                             4.0 / 13,
-                                             127.0 / 195,
-                                             0.6,
-                                             6.0 / 7,
-                                             1,
-                                             1,
-                                             0.1,
-                                             0.2,
-                                             7.0 / 9};
+    // clang-format off
+    static constexpr double c[all_stages] = {
+        0, 0.526001519587677318785587544488e-1, 0.789002279381515978178381316732e-1,
+        0.118350341907227396726757197510, 0.281649658092772603273242802490, 1.0 / 3, 0.25,
+        4.0 / 13, 127.0 / 195, 0.6, 6.0 / 7, 1, 1, 0.1, 0.2, 7.0 / 9};
+    // clang-format on
     static constexpr double a[all_stages][all_stages] = {
         {},
         {5.26001519587677318785587544488e-2},

@@ -126,9 +126,23 @@ double ConstrainedBody::largest_residual(const Coordinates& q) const {
     return as_length(position_residuals(axes_, q)) / length_;
 }
 
+// Newton's method, until the residuals stop shrinking. psi and r have no mass, so that their values
+// are free: if they are far off they are first computed from theta, which keeps the digits of
+// theta.
 double ConstrainedBody::project(CoordinateState& state) const {
+    constexpr int most_iterations = 20;
     auto& [q, q_dot] = state;
-    const double missed = project_position(q);
+    const double missed = largest_residual(q);
+    if (!(missed <= 1)) q.tail<2>() = kinematics(axes_, q[coordinate::theta], 0.0).q.tail<2>();
+    double last = infinity;
+    for (int i = 0; i < most_iterations; ++i) {
+        const Eigen::Vector3d residuals = position_residuals(axes_, q);
+        const double size = as_length(residuals);
+        if (size == 0 || !(size < last)) break;
+        last = size;
+        const Eigen::Matrix<double, 3, 5> rows = constraint_matrix(axes_, q).bottomRows<3>();
+        q += solve_saddle<3>(rows, Coordinates::Zero(), -residuals).change;
+    }
     const ConstraintMatrix a = constraint_matrix(axes_, q);
     q_dot += solve_saddle<4>(a, Coordinates::Zero(), -a * q_dot).change;
     return missed;
@@ -162,25 +176,6 @@ double ConstrainedBody::project(CoordinateState& state, double energy) const {
 
 double ConstrainedBody::as_length(const Eigen::Vector3d& residuals) const {
     return residuals.cwiseProduct(Eigen::Vector3d{1.0, 1.0, length_}).cwiseAbs().maxCoeff();
-}
-
-// Newton's method, until the residuals stop shrinking. psi and r have no mass, so that their values
-// are free: if they are far off they are first computed from theta, which keeps the digits of
-// theta.
-double ConstrainedBody::project_position(Coordinates& q) const {
-    constexpr int most_iterations = 20;
-    const double missed = largest_residual(q);
-    if (!(missed <= 1)) q.tail<2>() = kinematics(axes_, q[coordinate::theta], 0.0).q.tail<2>();
-    double last = infinity;
-    for (int i = 0; i < most_iterations; ++i) {
-        const Eigen::Vector3d residuals = position_residuals(axes_, q);
-        const double size = as_length(residuals);
-        if (size == 0 || !(size < last)) break;
-        last = size;
-        const Eigen::Matrix<double, 3, 5> rows = constraint_matrix(axes_, q).bottomRows<3>();
-        q += solve_saddle<3>(rows, Coordinates::Zero(), -residuals).change;
-    }
-    return missed;
 }
 
 }  // namespace rolling_ellipse

@@ -72,7 +72,6 @@ class ConstrainedBody {
                               const Eigen::Matrix<double, Rows, 1>& demand) const;
 
     double as_length(const Eigen::Vector3d& residuals) const;  // the largest
-    double project_position(Coordinates& q) const;
 
     Axes axes_;
     double mass_;

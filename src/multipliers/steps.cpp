@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "integrator/radau.hpp"
+#include "integrator/implicit.hpp"
 #include "integrator/runge_kutta.hpp"
 #include "rolling/stepped/steps.hpp"
 

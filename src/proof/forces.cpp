@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proof/law.hpp"
-
 namespace rolling_ellipse {
 namespace {
 

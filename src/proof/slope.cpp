@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "numerics/bisect.hpp"
 #include "numerics/quadrature.hpp"
-#include "proof/law.hpp"
-#include "rolling/slope/motion.hpp"
 #include "rolling/stepped/equation.hpp"
 
 namespace rolling_ellipse {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "numerics/bisect.hpp"
-#include "proof/law.hpp"
 #include "proof/slope.hpp"
 
 namespace rolling_ellipse {

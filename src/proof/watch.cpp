@@ -1,11 +1,9 @@
-#include "proof/watch.hpp"
-
 #include <array>
 #include <cmath>
 
 #include "integrator/system.hpp"
 #include "numerics/bisect.hpp"
-#include "proof/law.hpp"
+#include "proof/certificate.hpp"
 
 namespace rolling_ellipse {
 namespace {

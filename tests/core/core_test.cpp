@@ -15,8 +15,8 @@
 #include "numerics/lu.hpp"
 #include "numerics/numbers.hpp"
 #include "numerics/polynomial.hpp"
+#include "proof/certificate.hpp"
 #include "proof/law.hpp"
-#include "proof/watch.hpp"
 #include "rolling/level/kernel.hpp"
 #include "simulate.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "motions.hpp"
 #include "rolling/level/kernel.hpp"
-#include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;

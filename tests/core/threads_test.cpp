@@ -15,7 +15,6 @@
 #include "motions.hpp"
 #include "outcome/outcome.hpp"
 #include "rolling/level/kernel.hpp"
-#include "rolling/level/many_times.hpp"
 #include "simulate.hpp"
 
 using namespace rolling_ellipse;

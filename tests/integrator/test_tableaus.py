@@ -260,21 +260,24 @@ def check_gauss(c: Long, b: Long, mu: Long, nu: Long) -> None:
 
 
 def check_radau(
-    c: Long, a: Long, gamma: Long, alpha: Long, beta: Long, transform: Long, inverse_transform: Long
+    c: Long, gamma: Long, alpha: Long, beta: Long, transform: Long, inverse_transform: Long
 ) -> None:
+    """The matrix a = T inverse(eigenvalues) inverse(T), with the transform T, has order 5."""
     if c[-1] != 1:
         raise Violation("the last stage is not the end of the step")
+    sizes = np.abs(transform) @ np.abs(inverse_transform)
+    require(transform @ inverse_transform, np.eye(3), sizes, 2)
+    zero, square = np.zeros_like(alpha), alpha**2 + beta**2
+    inverse = long([[square / gamma, zero, zero], [zero, alpha, beta], [zero, -beta, alpha]])
+    product = (transform, inverse / square, inverse_transform)
+    a = np.linalg.multi_dot(product)
+    sizes = np.linalg.multi_dot([np.abs(m) for m in product])
     check_quadrature(a[-1], c, 5)
-    check_stages(a, np.abs(a), c, 3)
-    check_dual(a, np.abs(a), a[-1], c, 2)
-    zero, one = np.zeros_like(alpha), np.eye(3)
-    eigenvalues = long([[gamma, zero, zero], [zero, alpha, -beta], [zero, beta, alpha]])
-    for product in (
-        (transform, inverse_transform),
-        (a, transform, eigenvalues, inverse_transform),  # inverse(a) = T eigenvalues T^-1
-    ):
-        sizes = np.linalg.multi_dot([np.abs(m) for m in product])
-        require(np.linalg.multi_dot(product), one, sizes, len(product))
+    check_stages(a, sizes, c, 3)
+    check_dual(a, sizes, a[-1], c, 2)
+
+
+CHECKS: dict[str, Callable[..., None]] = {**dict.fromkeys(GAUSS, check_gauss), "radau": check_radau}
 
 
 def collocation(name: str) -> dict[str, Long]:

@@ -1,10 +1,11 @@
-// The inner loops of exact rolling: of many bodies, and of many times of one motion by a table. The
-// same code is compiled for several vector levels (lanes_*.cpp) and gives the same bits at every
-// level (numerics/lanes.hpp).
+// Exact rolling of many bodies, and at many times of one motion by a table, with the inner loops of
+// both. The same code is compiled for several vector levels (lanes_*.cpp) and gives the same bits
+// at every level (numerics/lanes.hpp).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "numerics/series.hpp"
@@ -78,6 +79,13 @@ struct FlowColumns {
     FlowColumns from(std::size_t begin) const { return {theta + begin, omega + begin, x + begin}; }
 };
 
+// Writes a sample into place i of the columns.
+inline void store(const FlowSample& sample, const FlowColumns& columns, std::size_t i) {
+    columns.theta[i] = sample.theta;
+    columns.omega[i] = sample.omega;
+    columns.x[i] = sample.x;
+}
+
 struct Kernel {
     const char* name;  // name of the vector level
     // The rates of one motion at y = quarters Y + offset, |quarters| <= 1. The arrays have room for
@@ -116,5 +124,35 @@ const Kernel& kernel();
 // bodies are not validated; throws std::invalid_argument for a time that is out of range.
 void sample(const Kernel& kernel, const RollingStart* starts, const double* times, std::size_t n,
             FlowSample* samples);
+
+// The table of a rotation or a libration, for any time. Never copied: the reader, which a kernel
+// takes, points to the pieces and their ends.
+struct FlowTable {
+    FlowTable() = default;
+    FlowTable(FlowTable&&) = default;
+    FlowTable& operator=(FlowTable&&) = default;
+
+    std::vector<FlowPiece> pieces;
+    std::vector<double> ends;
+    FlowReader reader;
+};
+
+// No table where no series holds.
+std::optional<FlowTable> flow_table(const RollingFlow& flow);
+
+// Sampler of a motion, to which it refers, for an expected number of times. A few times need no
+// table, nor do rest and uniform rotation. The bits of a sample depend on its time only, not on the
+// others.
+class FlowSampler {
+  public:
+    FlowSampler(const RollingFlow& flow, std::size_t expected);
+
+    void operator()(const double* times, std::size_t n, const FlowColumns& out) const;
+    void operator()(const double* times, std::size_t n, FlowSample* samples) const;
+
+  private:
+    const RollingFlow& flow_;
+    std::optional<FlowTable> table_;
+};
 
 }  // namespace rolling_ellipse

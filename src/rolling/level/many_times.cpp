@@ -1,5 +1,9 @@
-#include "rolling/level/many_times.hpp"
-
+// Exact rolling at many times, by Taylor series in time about points of the exact solution.
+//
+// The series cover the quarter turn (or swing) from the flat position on; all other times are
+// mirror images. One more series starts at t = 0, so that small moves keep their digits. The
+// coefficients follow from the equation of motion by the rules for products, quotients and roots of
+// series (A. Jorba, M. Zou, Experiment. Math. 14 (2005) 99).
 #include <algorithm>
 #include <array>
 #include <cmath>

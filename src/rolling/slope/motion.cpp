@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "numerics/bisect.hpp"
-#include "numerics/series.hpp"
 
 namespace rolling_ellipse {
 namespace {

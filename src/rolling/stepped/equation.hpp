@@ -2,6 +2,7 @@
 // forces that follow from theta and omega.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/ellipse.hpp"
@@ -32,15 +33,49 @@ class RollingEquation {
   public:
     static constexpr int size = 2;
 
-    RollingEquation(const Body& body, double slope);
+    RollingEquation(const Body& body, double slope)
+        : axes_(body.axes()),
+          turned_{{square(body.a), square(body.b), (body.a - body.b) * (body.a + body.b)},
+                  {square(body.b), square(body.a), (body.b - body.a) * (body.b + body.a)}},
+          gyration2_(body.gyration2),
+          gravity_(ground_gravity(body.gravity, slope)),
+          long_axis_(std::max(body.a, body.b)) {}
 
     double acceleration(double sin_theta, double cos_theta, double omega) const {
         return acceleration(turned_[0], sin_theta, cos_theta, omega);
     }
 
-    Vector<2> operator()(double t, const Vector<2>& y) const;
-    Matrix<2> jacobian(double t, const Vector<2>& y) const;
-    SpecificEnergy energy(const Geometry& at, double omega, double x) const;
+    // The rate of y. A quarter turn exchanges the axes of the body.
+    [[gnu::always_inline]] Vector<2> operator()(double, const Vector<2>& y) const {
+        if (!(std::abs(y[0]) <= largest_in_quarters)) {
+            return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
+        }
+        const auto [rest, odd] = nearest_quarter(y[0]);
+        const auto [sine, cosine] = sine_cosine_of_rest(rest);
+        return {y[1], acceleration(turned_[odd], sine, cosine, y[1])};
+    }
+
+    // physics (19), with D' = 2 h' rho and rho' = -3 rho h'/h.
+    Matrix<2> jacobian(double, const Vector<2>& y) const {
+        const Geometry at = geometry(axes_, y[0]);
+        const double omega = y[1];
+        const double inertia = inertia_about_contact(gyration2_, at);
+        const double load = gravity_.into + at.rho * omega * omega;
+        const double rho_derivative = -3 * at.rho * at.dh / at.h;
+        const double by_theta = at.dh * gravity_.along - at.ddh * load -
+                                at.dh * rho_derivative * omega * omega -
+                                2 * at.dh * at.rho * acceleration(at.sin, at.cos, omega);
+        const double by_omega = -2 * at.dh * at.rho * omega;
+        Matrix<2> jacobian;
+        jacobian << 0.0, 1.0, by_theta / inertia, by_omega / inertia;
+        return jacobian;
+    }
+
+    // physics (17)
+    SpecificEnergy energy(const Geometry& at, double omega, double x) const {
+        return {0.5 * inertia_about_contact(gyration2_, at) * omega * omega,
+                gravity_.into * at.h - gravity_.along * x};
+    }
 
     // Accelerations of theta and of the centre, and the contact force of a body with a mass:
     // physics (20), Newton's law for the centre.
@@ -49,8 +84,16 @@ class RollingEquation {
         double x;
         double z;
     };
-    Accelerations accelerations(const Geometry& at, double omega) const;
-    ContactForce force(double mass, const Accelerations& of_centre) const;
+
+    Accelerations accelerations(const Geometry& at, double omega) const {
+        const double omega2 = omega * omega;
+        const double omega_dot = acceleration(at.sin, at.cos, omega);
+        return {omega_dot, at.h * omega_dot + at.dh * omega2, at.dh * omega_dot + at.ddh * omega2};
+    }
+
+    ContactForce force(double mass, const Accelerations& of_centre) const {
+        return {mass * (gravity_.into + of_centre.z), mass * (of_centre.x - gravity_.along)};
+    }
     ContactForce force(double mass, const Geometry& at, double omega) const {
         return force(mass, accelerations(at, omega));
     }
@@ -67,7 +110,20 @@ class RollingEquation {
         double b2;
         double c2;  // a^2 - b^2
     };
-    double acceleration(const Squares& axes, double s, double c, double omega) const;
+
+    // The acceleration by physics (18) times h^4, with one root and one division that does not wait
+    // for the root. With u = h^2, p = h h',
+    //     theta'' (u^2 (k^2 + u) + u p^2)
+    //         = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
+    [[gnu::always_inline]] double acceleration(const Squares& axes, double s, double c,
+                                               double omega) const {
+        const double u = axes.a2 * (s * s) + axes.b2 * (c * c);
+        const double p = axes.c2 * (s * c);
+        const double inverse = 1 / (u * u * (gyration2_ + u) + u * (p * p));
+        const double drive = u * (u * gravity_.along - p * gravity_.into) * std::sqrt(u);
+        const double turning = p * (axes.a2 * axes.b2 * (omega * omega));
+        return (drive - turning) * inverse;
+    }
 
     Axes axes_;
     Squares turned_[2];  // after an even number of quarter turns, and after an odd one
@@ -76,32 +132,10 @@ class RollingEquation {
     double long_axis_;
 };
 
-// The acceleration by physics (18) times h^4, with one root and one division: with u = h^2, p = h
-// h',
-//     theta'' (u^2 (k^2 + u) + u p^2) = u h (u g sin(alpha) - p g cos(alpha)) - p a^2 b^2 omega^2
-// The division does not wait for the root.
-[[gnu::always_inline]] inline double RollingEquation::acceleration(const Squares& axes, double s,
-                                                                   double c, double omega) const {
-    const double u = axes.a2 * (s * s) + axes.b2 * (c * c);
-    const double p = axes.c2 * (s * c);
-    const double inverse = 1 / (u * u * (gyration2_ + u) + u * (p * p));
-    const double drive = u * (u * gravity_.along - p * gravity_.into) * std::sqrt(u);
-    const double turning = p * (axes.a2 * axes.b2 * (omega * omega));
-    return (drive - turning) * inverse;
-}
-
-// The rate of y. A quarter turn exchanges the axes of the body.
-[[gnu::always_inline]] inline Vector<2> RollingEquation::operator()(double,
-                                                                    const Vector<2>& y) const {
-    if (!(std::abs(y[0]) <= largest_in_quarters)) {
-        return {y[1], acceleration(std::sin(y[0]), std::cos(y[0]), y[1])};
-    }
-    const auto [rest, odd] = nearest_quarter(y[0]);
-    const auto [sine, cosine] = sine_cosine_of_rest(rest);
-    return {y[1], acceleration(turned_[odd], sine, cosine, y[1])};
-}
-
 // The contact force of a rolling body.
-ContactForce rolling_force(const Scene& scene, double theta, double omega);
+inline ContactForce rolling_force(const Scene& scene, double theta, double omega) {
+    const RollingEquation rolling(scene.body(), scene.slope);
+    return rolling.force(scene.mass, geometry(scene.axes(), theta), omega);
+}
 
 }  // namespace rolling_ellipse

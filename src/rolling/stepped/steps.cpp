@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "integrator/gauss.hpp"
-#include "integrator/radau.hpp"
+#include "integrator/implicit.hpp"
 #include "integrator/runge_kutta.hpp"
 #include "numerics/series.hpp"
 
@@ -155,15 +154,14 @@ class StepView {
 SteppedRolling rolling_from(const Scene& scene, const State& start, const Settings& settings) {
     const Axes axes = scene.axes();
     const double rest = within_a_turn(start.theta);
-    SteppedRolling motion{RollingEquation(scene.body(), scene.slope),
-                          axes,
-                          settings,
-                          two_sum(start.theta, -rest),
-                          two_sum(start.x, -centre_path(axes, rest)),
-                          centre_path(axes, pi),
-                          {settings.step.value_or(0.0), {}}};
-    motion.steps.knots.push_back({0.0, {rest, start.omega}, Vector<2>::Zero(), 0.0});
-    return motion;
+    const Knot<2> knot{0.0, {rest, start.omega}, Vector<2>::Zero(), 0.0};
+    return {RollingEquation(scene.body(), scene.slope),
+            axes,
+            settings,
+            two_sum(start.theta, -rest),
+            two_sum(start.x, -centre_path(axes, rest)),
+            centre_path(axes, pi),
+            {settings.step.value_or(0.0), {knot}}};
 }
 
 }  // namespace
