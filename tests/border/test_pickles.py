@@ -179,8 +179,6 @@ def test_pools_return_motions(how: str, tmp_path: Path) -> None:
         require_same(dataclasses.replace(one, **changed), other)
 
 
-# ------------------------------------------------------------------------- pictures, the core
-
 PICTURES = (
     rl.plot, rl.plot_strobe, rl.plot_phase, rl.plot_energy, rl.plot_constraints, rl.plot_forces,
     rl.plot_paths, rl.plot_error,

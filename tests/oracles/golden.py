@@ -105,9 +105,6 @@ def difference(one: list[Record], other: list[Record]) -> tuple[float, str]:
     return worst, where
 
 
-# -------------------------------------------------------------------- records through Python
-
-
 def given(value: float) -> float | None:
     return None if math.isnan(value) else value
 

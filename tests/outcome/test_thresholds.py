@@ -182,7 +182,6 @@ def test_a_circle_has_no_threshold() -> None:
         assert math.isinf(thresholds(0.7, 0.7, friction=friction).lift_off_speed)
 
 
-# --------------------------------------------------------------------- lift_off_speed
 #
 # At the threshold c = g + h'' omega^2 vanishes on the tip. Where c = 0 while the body slides, N = F
 # = 0 and omega stands still, so that the slope of c is omega^2 times that of h'', which falls up to

@@ -74,9 +74,6 @@ def test_a_motion_of_next_to_no_time(units: int) -> None:
     assert rl.animate(motion)._repr_html_() and motion._repr_html_()
 
 
-# ------------------------------------------------------------------------------------ films
-
-
 def test_paths_that_cannot_be_written(tmp_path: Path, monkeypatch: Any) -> None:
     (tmp_path / "folder.gif").mkdir()
     monkeypatch.setattr(rl.Trajectory, "sol", None)  # the path is checked before any work

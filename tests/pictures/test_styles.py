@@ -96,9 +96,6 @@ def test_films_follow_the_style() -> None:
         assert all(contrast(colour, paper) > 3 for colour in drawn), style
 
 
-# ---------------------------------------------------------------------------- arguments of users
-
-
 DRAWN = (
     "motions", "normal", "friction", "total", "error", "errors", "lines", "centres", "tips",
 )  # fmt: skip

@@ -115,9 +115,6 @@ def test_a_picture_that_is_refused_leaves_no_figure(all_provoked: list[Provoked]
     assert all_provoked and pyplot.get_fignums() == []
 
 
-# ------------------------------------------------------------------------------- the sources
-
-
 def raising(path: Path) -> Iterator[tuple[int, int, str]]:
     """First line, last line and text of each statement of a file that raises."""
     source = path.read_text(encoding="utf-8")

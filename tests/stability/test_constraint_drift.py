@@ -11,9 +11,6 @@ from oracles.stability import grain
 from rolling_ellipse import Scene
 from stability_laws import ROUND, envelopes, exponent, half_turn, kept_by, run
 
-# --------------------------------------------------------------------------- drift
-
-
 DRIFTS = {
     "rk4, two decades": (ROUND, "rk4", 2.0**-8, 1000),
     "dop853, three decades": (ROUND, "dop853", 2.0**-5, 10_000),
@@ -34,8 +31,6 @@ def test_drift_grows_like_t_squared(scene: Scene, method: str, step: float, last
     assert found[0, -1] < 1e-2
     assert abs(gap - 2) <= 0.05 and abs(position - 2) <= 0.05 and abs(velocity - 1) <= 0.05
 
-
-# ------------------------------------------------------------------- methods that hold them
 
 HELD: dict[str, dict[str, Any]] = {
     "projection": kept_by("projection", method="rk4", step=2.0**-8),

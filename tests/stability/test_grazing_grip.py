@@ -51,9 +51,6 @@ def friction(k: int, side: int) -> float:
         return float(need()[0] * (1 + side * mp.mpf(10) ** -k))
 
 
-# ------------------------------------------------------------------------- search by samples
-
-
 def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
     """A maximum is flat: slope -2, up to the scatter of the rms of 64 draws, a tenth of it, over
     two decades: 0.05. So a grid finds a lack of friction only above this shortfall."""
@@ -65,9 +62,6 @@ def test_samples_miss_a_loss_of_grip_by_the_square_of_their_distance() -> None:
         told(f"{count} samples: short by {missed:.1e}, blind from k = {-math.log10(missed):.1f} on")
     told(f"slope {slope:.3f} (-2)")
     assert abs(slope + 2) <= 0.05
-
-
-# ------------------------------------------------------------------------- search by signs
 
 
 @pytest.mark.parametrize("side", [1, -1])

@@ -39,8 +39,6 @@ def sliding(friction: float, **given: Any) -> Scene:
     return Scene(A, B, friction=friction, **({"theta": float(critical()[1]), "x_dot": 5.0} | given))
 
 
-# ------------------------------------------------------------------------- a law of force
-
 BEYOND = [sliding(3.0, theta=0.9), sliding(3.0, theta=0.3), sliding(1.5), sliding(1.36)]
 
 
@@ -72,9 +70,6 @@ def test_a_law_of_force_goes_on_with_nonsense_and_the_product_jams(scene: Scene)
     assert [event.kind for event in found.events] == [EventKind.JAM]
     assert found.t.tolist() == [0.0] and found.t_end == 0.0 and found.mode[0] == Mode.SLIDING
     assert np.all(np.isfinite(found.normal_force)) and found.normal_force[0] >= 0
-
-
-# ------------------------------------------------------------------------- the critical friction
 
 
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12])

@@ -34,17 +34,11 @@ def first_wrong(side: int, **how: Any) -> int | None:
     return next(wrong, None)
 
 
-# ------------------------------------------------------------------------- the exact motion
-
-
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("how", [*DECIDE.values(), {"model": "auto"}], ids=[*DECIDE, "auto"])
 def test_these_decide_right_down_to_1e_minus_14(how: dict[str, Any], side: int) -> None:
     """Exact motions decide right to 45 ulp of omega; stepped motions with their energy, too."""
     assert first_wrong(side, **how) is None
-
-
-# ------------------------------------------------------------------------- stepped motions
 
 
 @pytest.mark.parametrize("name", FAIL)

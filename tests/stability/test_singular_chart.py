@@ -23,9 +23,6 @@ def slope(values: list[float], first: int = 3) -> float:
     return exponent([10.0**-k for k in CLOSE if k >= first], values[first - CLOSE[0] :])
 
 
-# ------------------------------------------------------------------------- the printed formulas
-
-
 def test_the_printed_lambda3_is_infinite_at_the_tip_and_for_a_circle() -> None:
     """1/sin(2 psi) and tan^2 theta give the distance to the power -3, with the lost terms; a circle
     gives 1/(a - b), with a numerator that changes its sign near a/b = 1.003. The next order is the

@@ -63,8 +63,6 @@ def test_plain_steps_get_worse_with_more_of_them() -> None:
     assert errors[-1] > 4 * errors[best]
 
 
-# ------------------------------------------------------------------ compensated sums
-
 ORDERS = {"rk4": 4, "dopri5": 5, "radau": 5, "dop853": 8, "gauss": 8}
 COARSE = {"rk4": (4, 10), "dopri5": (5, 9), "radau": (4, 8), "dop853": (2, 4), "gauss": (2, 4)}
 FINE = {"rk4": (14, 18), "dopri5": (11, 17), "radau": (11, 15), "dop853": (8, 16), "gauss": (8, 16)}
@@ -96,8 +94,6 @@ def test_constraints_cost_digits_but_no_more_with_more_steps(name: str) -> None:
         found, _ = ends(**kept_by(name, method="dop853", step=2.0**-power))
         assert rms(found - known()) <= 16 * EPS * 0.4
 
-
-# -------------------------------------------------------------------------------- a plateau
 
 ASKED: dict[str, tuple[range, range, float]] = {
     "dop853": (range(5, 14), range(16, 21), 8),

@@ -187,9 +187,6 @@ def test_errors_are_attributes_and_items() -> None:
         errors["median"]
 
 
-# ---------------------------------------------------------------------------------- files
-
-
 def test_a_file_gives_back_what_was_saved(tmp_path: Path) -> None:
     path = tmp_path / "race.json"
     found = replace(FOUND, scene=replace(FOUND.scene, impulse=rl.Impulse.press(1.0, 0.5)))
