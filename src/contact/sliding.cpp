@@ -225,7 +225,7 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
     return {Mode::sliding, 0.0, Painleve::no_motion};
 }
 
-// The continuation by the given geometry and slip, which may be those a moment later.
+// The continuation of a state, decided by a geometry and a slip that may be taken a moment later.
 Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
                              double slip, bool may_roll) {
     if (scene.friction == 0) {

@@ -140,7 +140,8 @@ FlatView flat_view(const Axes& axes, double sin, double cos) {
 bool is_equilibrium(const Geometry& at, double incline) {
     const bool is_circle = at.dh == 0 && at.ddh == 0;
     if (is_circle) return incline == 0;
-    // A nearly round body has a small h' everywhere. Its angle h'/h'' from equilibrium counts.
+    // The angle h'/h'' from equilibrium decides, since a nearly round body has a small h'
+    // everywhere.
     const double size = std::min(at.h, std::abs(at.ddh) + std::abs(incline) * at.h);
     return std::abs(at.dh - incline * at.h) <= equal_ulps * epsilon * size;
 }

@@ -13,7 +13,8 @@ namespace rolling_ellipse {
 template <int N, int Stages>
 using StageVectors = std::array<Vector<N>, Stages>;
 
-// Size of each component of a step: an ordinary state, the point and the parts of the step.
+// Scale of each component for the errors of a step: the sizes of an ordinary state, of the point
+// and of the stages.
 template <int Stages, class System, int N = System::size>
 Vector<N> size(const System& f, const Point<N>& point, const StageVectors<N, Stages>& parts) {
     Vector<N> sum = f.typical() + point.y.cwiseAbs();

@@ -30,7 +30,8 @@ struct IndexOne {
     }
 };
 
-// C. W. Gear, B. Leimkuhler, G. K. Gupta, J. Comput. Appl. Math. 12-13 (1985) 77, per mass, for
+// The stabilised index-2 equations divided by the mass, by C. W. Gear, B. Leimkuhler, G. K. Gupta,
+// J. Comput. Appl. Math. 12-13 (1985) 77, for
 // y = (q, v, lambda, mu), G being the rows of A that belong to positions:
 //     q_dot = v + G^T mu,   M v_dot = Q + A^T lambda,   0 = A v,   0 = (f2, f3, f4)
 struct IndexTwo {

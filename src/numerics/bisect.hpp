@@ -71,7 +71,7 @@ class RootBracket {
     double f_high_;
     bool rises_;
     int secants_ = 0;
-    int kept_ = 0;  // the end that was moved last: +1 the upper one, -1 the lower one
+    int kept_ = 0;  // the end that the last step moved: +1 upper, -1 lower, 0 none yet
 };
 
 template <class Function>

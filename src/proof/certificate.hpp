@@ -28,7 +28,8 @@ struct Certificate {
     // Extremes over the whole motion, in both directions of time; empty without a proof. A body
     // that runs downhill for ever has infinite extremes without angles.
     std::optional<double> smallest_normal_force;        // [N]
-    std::optional<double> smallest_normal_force_angle;  // theta, on level ground in [0, pi/2]
+    std::optional<double> smallest_normal_force_angle;  // theta of that smallest N; on level ground
+                                                        // folded into [0, pi/2]
     std::optional<double> largest_friction_needed;      // max |F/N|
     std::optional<double> largest_friction_needed_angle;
 };

@@ -94,7 +94,8 @@ struct ForceExtremes {
     RollingForces most_friction;  // largest |F|/N
 };
 
-// Extremes among the critical points of N and of |F|/N, the ends of the range and the zeros of N.
+// The extremes of N and |F|/N over a range. Candidates are their critical points, the ends of the
+// range and the zeros of N.
 ForceExtremes force_extremes(const EnergyRange& range, const ForcePolynomials& polynomials);
 
 }  // namespace rolling_ellipse

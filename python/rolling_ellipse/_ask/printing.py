@@ -19,7 +19,7 @@ def _dotted(value: enum.Enum) -> str:
 
 
 def _formatted(value: enum.Enum, spec: str) -> str:
-    """Return the code for a format of numbers, ``f"{mode:d}"``, and the name for any other."""
+    """Format an enum: as its code by a number format (``f"{mode:d}"``), else as its name."""
     return format(value.value, spec) if spec[-1:] in tuple("bdoxX") else format(str(value), spec)
 
 

@@ -107,7 +107,7 @@ class Events(tuple[Event, ...]):
     def _repr_html_(self) -> str:
         return html_table(self._caption(), self._shown(), _HEAD)
 
-    if TYPE_CHECKING:  # bound by `_show.methods`
+    if TYPE_CHECKING:  # `_show.methods` binds these methods
         to_dataframe = event_table.to_dataframe
 
 

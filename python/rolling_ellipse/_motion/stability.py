@@ -12,8 +12,9 @@ if TYPE_CHECKING:
     from .._ask.settings import Settings
     from .trajectory import Trajectory
 
-_LOST_ENERGY = 1e-2  # largest change of the energy over itself
-_MISSED = 1e-3  # largest error of the constraints [long semi-axes, rad]: a pixel of a picture
+_LOST_ENERGY = 1e-2  # largest accepted relative change of the energy
+# Largest accepted error of the constraints [long semi-axes, rad]: a pixel of a picture
+_MISSED = 1e-3
 _MOVED = 0.1  # largest error of the constraints by one step, before its projection
 _OF_RTOL = 10.0  # largest change of the energy over rtol
 

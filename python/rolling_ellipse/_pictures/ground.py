@@ -94,7 +94,7 @@ def draw_ground(ax: Axes, scene: Scene, x: FloatArray, span: float = 0.0) -> Pol
         facecolor=palette.earth, edgecolor=palette.grey, lw=1, zorder=1,
         transform=tilted(scene) + ax.transData,
     )  # fmt: skip
-    ax.add_artist(earth)  # add_patch would widen the view to the whole of it
+    ax.add_artist(earth)  # add_patch would widen the view to the whole earth
     return earth
 
 

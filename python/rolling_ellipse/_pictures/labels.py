@@ -24,7 +24,7 @@ _TALLEST = 0.35  # largest height of an upright label, in heights of the axes
 _RISE = 0.65  # from a line to the middle of the letters on it, in font sizes
 _CLEAR = 0.9  # distance of a good place from other lines and names, in font sizes
 _TIGHT = 0.5  # a place with less distance is not used
-_FINE = 16  # parts of a segment, to find where a line enters the view
+_FINE = 16  # parts into which a straight piece of a line is cut, to find where it enters the view
 _SHIFTS = (0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.4, -0.4, 0.5, -0.5, 0.6, -0.6)
 
 

@@ -28,7 +28,8 @@ from .sampling import are_ranges, curve, half_turns, ranges
 DASHES = ("-", "--", "-.")  # of the first, second and third quantity of a motion
 RANGE = 0.6  # how opaque a range is: there may be one over another
 _DOTS = (".", "x", "+", "1", "2")
-_ROUNDING = 1e-13  # the scale of errors reaches ten times this at least: rounding looks small
+# The axis of errors reaches at least ten times this, so that rounding looks small
+_ROUNDING = 1e-13
 _SPIKE = 20.0  # times the weight: a higher force would flatten ordinary ones on a linear scale
 
 

@@ -183,7 +183,7 @@ def dress_ground_axes(ax: Axes, scene: Scene, view: tuple[float, float, float, f
     """Show a view of the ground with equal scales and labelled axes."""
     left, right, bottom, top = view
     ax.update_datalim([(left, bottom), (right, top)])  # the equal aspect never cuts these
-    ax.set_xlim(left, right, auto=True)  # auto, because the aspect may widen either
+    ax.set_xlim(left, right, auto=True)  # auto: equal scales may widen either axis
     ax.set_ylim(bottom, top, auto=True)
     ax.set_aspect("equal", adjustable="datalim")  # so that the ground fills the whole width
     ax.set_xlabel("x [m]" if scene.slope == 0 else "horizontal [m]")

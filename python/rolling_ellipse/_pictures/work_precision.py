@@ -200,7 +200,7 @@ def _title(key: Any) -> str:
 
 
 def _below(ax: Axes, lines: list[str], after: int) -> Text | None:
-    """Write lines under the axes, below `after` others."""
+    """Write lines of text under the axes, below the first `after` lines."""
     if not lines:
         return None
     return ax.annotate(

@@ -125,7 +125,7 @@ def _can(executor: Any, what: str) -> bool:
 
 
 def _is_pool(workers: Any) -> bool:
-    """Whether it can map and be closed; sequences of some libraries have `map` alone."""
+    """Whether `workers` is a pool, with `map` and a way to close it; some sequences have `map`."""
     return _can(workers, "map") and (_can(workers, "close") or _can(workers, "shutdown"))
 
 

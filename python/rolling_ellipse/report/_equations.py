@@ -20,7 +20,7 @@ CASES = ("as_it_is", "1", "2")
 
 
 def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
-    """Return theta, psi, r, sin and cos of psi - theta; `others` must broadcast with q."""
+    """Return theta, psi, r, sin and cos of psi - theta from q; `others` must broadcast with q."""
     found = coordinates("q", q)
     require_together(q=found, **others)
     theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
@@ -44,7 +44,7 @@ def case_sign(theta: Any) -> FloatArray:
 
 
 def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return x_C - x_G by eqs 5 to 7 and the two cases [m]; right: `geometry.support_slope`."""
+    """Return x_C - x_G [m] as printed (eqs 5 to 7, cases 1 and 2), not `geometry.support_slope`."""
     psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
     body = Scene(a, b)
     r = body.a * body.b / np.sqrt(polar(psi, body.a, body.b))

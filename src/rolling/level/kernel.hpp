@@ -50,7 +50,7 @@ struct FlowReader {
     const double* ends;  // ends of the pieces, then infinities: 2 half - 1 numbers
     int half;
     double last_end;
-    double per_unit;  // variable of the series over time [1/s]
+    double per_unit;  // the variable of the series is this times the time [1/s]
     // The time of a half turn, and the time of the start since the flat position.
     DoubleDouble half_turn;
     double half_turns_per_time;

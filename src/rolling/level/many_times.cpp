@@ -173,7 +173,7 @@ class TableMaker {
         table_.reader.start_radius = first == same.end() ? 0.0 : unit_ * first->radius;
     }
 
-    // The numbers of the reader.
+    // Sets the numbers by which a kernel reads the table.
     void describe() {
         FlowReader& reader = table_.reader;
         const std::vector<FlowPiece>& pieces = table_.pieces;

@@ -98,7 +98,8 @@ PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     return {at_tip ? side : T{}, side * (at_tip ? -offset : offset)};
 }
 
-// Sine and cosine of the phase, each to full relative accuracy; `at` must use the nearest quarter.
+// Sine and cosine of the phase, each to full relative accuracy; `at` must count from the nearest
+// quarter of the phase.
 template <class C, class T>
 PhasePoint<T> phase_point(const PhaseMap<C>& map, const PhasePlace<T>& at) {
     const auto at_tip = is_odd(at.quarters);

@@ -35,7 +35,7 @@ SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity, do
     // Pairs of series that are multiplied at the same time.
     TwoSeries p_q, w_w;           // the rates of u and p
     TwoSeries u_u, inertia_h;     // the mass u D h^2, u h
-    TwoSeries w_h;                // omega^2, h^2
+    TwoSeries w_h;                // series of omega^2 and h^2 in time
     TwoSeries p_uh, load_drive;   // their products: the terms of omega and of gravity
     TwoSeries mass_h, turning_w;  // factors of omega' u D h^2 and of the path's rate h omega
     const double centrifugal = -body.long_axis2 * body.short_axis2;

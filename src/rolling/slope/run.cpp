@@ -140,7 +140,8 @@ SlopeRun slope_run(const SlopeBody& body, const SlopePlace& from, double energy,
     run.path = path_at(body, from.quarters - run.turns, double(from.angle));
     run.at = geometry(body, from);
 
-    // W is least at the unstable equilibrium, or at the tip if there is no equilibrium.
+    // Uphill W falls by the gain in each half turn. In a half turn it is least at the unstable
+    // equilibrium, or at the tip if there is none.
     const double lost = run.heading < 0 ? (half_turns - 1) * body.gain : 0.0;
     const double hill = body.equilibria ? body.equilibria->upright : 0.0;
     const Geometry top = geometry(body, 1.0, hill);

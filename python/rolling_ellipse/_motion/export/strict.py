@@ -24,7 +24,7 @@ def restored(
     writer: str = "save",
     cure: str = "",
 ) -> _Made:
-    """Return the result of `restore` for the bytes of a file that `writer` has written.
+    """Return `restore(bytes)` of a file; errors name the function `writer` that writes such files.
 
     Only a file with the right first bytes (and the end of an archive) is read: another file may
     have any size.

@@ -277,7 +277,7 @@ def _time_in_turns(attempts: Sequence[_Attempt], rounds: int, seconds: float) ->
     able.sort(key=lambda attempt: attempt.repeats * attempt.once)
     deadline = time.perf_counter() + seconds
     was_enabled = gc.isenabled()
-    gc.disable()  # timeit switches it off, too
+    gc.disable()  # no garbage collection, as in timeit
     try:
         for i in range(rounds):
             for k, attempt in enumerate(able):

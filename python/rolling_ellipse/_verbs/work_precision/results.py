@@ -69,7 +69,7 @@ class WorkPrecision:
     def best(
         self, at: float = 1e-8, *, x: str = "largest", y: str = "time", t_end: float | None = None
     ) -> Run | None:
-        """Return the run of least `y` among those with an error of at most `at`, or None.
+        """Return the run of least `y` among the runs whose error `x` is at most `at`, or None.
 
         An error of the state below the reference's own error counts as the latter.
         """

@@ -71,7 +71,7 @@ class Run:
     status: str = COMPLETED  # or a name of `Status`, "REFUSED", "FAILED", "NOT_RUN" (no time left)
     reason: str = ""  # why it has no answer, or a warning about its answer
     tags: tuple[str, ...] = ()  # "own" or "peer", and others
-    samples_time: float = math.nan  # of a call that returns the states at all sample times [s]
+    samples_time: float = math.nan  # time of a call that returns the states at all sample times [s]
     t_end: float = math.nan  # [s]
 
     @property

@@ -47,7 +47,7 @@ def end_alone(runs: Sequence[Run]) -> list[str]:
 
 
 def _leaders(runs: Sequence[Run], table: Table, is_open: dict[float, bool]) -> Iterator[str]:
-    """Yield the fastest over each range of decades, and below it the next by which factors."""
+    """Yield a line for the fastest method in each range of error, and one for the runner-up."""
     methods = {run.name: (run.model, run.method) for run in runs}
 
     def first(least: dict[str, float]) -> str:
