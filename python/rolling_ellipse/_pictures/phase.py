@@ -27,7 +27,7 @@ from .sampling import FEW, between, half_turns, is_at_hand, span_of
 from .separatrix import QUARTER, flat_angle, flat_angles, separatrix
 
 _FEW_TURNS = 2.0  # a motion of more turns is folded into one half turn
-_COARSE = 1e-3  # angles with a larger ulp are not drawn [rad]
+_COARSE = 1e-3  # largest accepted ulp of theta [rad]
 _MOST = 1000.0  # half turns or swings in one picture
 _SMALL = 0.1  # of the roll-over speed: a slower motion would be a dot in a whole eye
 
