@@ -277,9 +277,6 @@ def check_radau(
     check_dual(a, sizes, a[-1], c, 2)
 
 
-CHECKS: dict[str, Callable[..., None]] = {**dict.fromkeys(GAUSS, check_gauss), "radau": check_radau}
-
-
 def collocation(name: str) -> dict[str, Long]:
     return {key: long(values) for key, values in TABLEAUS[name].items()}
 
