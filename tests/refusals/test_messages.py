@@ -161,7 +161,7 @@ def thrown_texts(path: Path) -> Iterator[str]:
 def test_no_text_of_the_core_is_out_of_reach(all_provoked: list[Provoked]) -> None:
     said = "\n".join(found.message for found in all_provoked)
     missed, total = [], 0
-    for path in sorted((ROOT / "src").rglob("*.cpp")):
+    for path in sorted((ROOT / "src").rglob("*.?pp")):
         for text in thrown_texts(path):
             total += 1
             if text not in said and text not in UNREACHABLE:
@@ -173,7 +173,7 @@ def test_no_text_of_the_core_is_out_of_reach(all_provoked: list[Provoked]) -> No
 def test_what_is_listed_as_out_of_reach_is_there() -> None:
     sources = "".join(
         path.read_text(encoding="utf-8")
-        for folder, kind in (("python", "*.py"), ("src", "*.cpp"))
+        for folder, kind in (("python", "*.py"), ("src", "*.?pp"))
         for path in (ROOT / folder).rglob(kind)
     )
     for text in UNREACHABLE:
