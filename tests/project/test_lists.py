@@ -47,8 +47,9 @@ class Kind(NamedTuple):
 KINDS = {
     "an event": Kind(
         [kind.name for kind in EventKind],
-        ("tests/border/test_stub.py", "tests/contact/test_contact_reference.py",
-         "tests/core/golden.cpp", "tests/core/test_core.py"),
+        ("src/contact/segments.cpp", "tests/border/test_stub.py",
+         "tests/contact/test_contact_reference.py", "tests/core/golden.cpp",
+         "tests/core/test_core.py"),
     ),
     "a method": Kind(
         ["dopri5"],  # the tableaus call it DormandPrince5
@@ -57,16 +58,24 @@ KINDS = {
          "tests/integrator/test_integrators.py", "tools/fuzz/scenes.py",
          "benchmarks/bench_integrators.py"),
     ),
-    "a picture": Kind([name for name in PLOTS if name != "plot_phase_map"]),
+    "a picture": Kind(
+        [name for name in PLOTS if name != "plot_phase_map"],
+        ("python/rolling_ellipse/_pictures/comparison.py",),
+    ),
     "a verb": Kind(of_room("_verbs")),
     "a column of a motion": Kind([each.name for each in QUANTITIES]),
     "a setting": Kind([field.name for field in fields(Settings)], ("tests/border/test_fields.py",)),
     "a field of Scene": Kind(
         [field.name for field in fields(Scene)],
-        ("tests/border/test_fields.py", "tests/outcome/test_thresholds.py",
-         "tests/impacts/test_laws_and_fit.py", "tests/core/motions.hpp", "tests/core/golden.cpp",
-         "tests/core/test_core.py", "tests/oracles/golden.py", "tools/fuzz/calls.py",
-         "tools/fuzz_core/fuzz_core.cpp"),
+        ("python/rolling_ellipse/_motion/export/files.py",
+         "python/rolling_ellipse/_verbs/batches/folders.py", "tests/border/test_fields.py",
+         "tests/outcome/test_thresholds.py", "tests/impacts/test_laws_and_fit.py",
+         "tests/core/motions.hpp", "tests/core/golden.cpp", "tests/core/test_core.py",
+         "tests/oracles/golden.py", "tools/fuzz/calls.py", "tools/fuzz_core/fuzz_core.cpp"),
+    ),
+    "a law of restitution": Kind(
+        ["Stronge", "Poisson", "Newton"],
+        ("tests/border/test_stub.py", "tests/impacts/test_laws_and_fit.py", "tools/fuzz/calls.py"),
     ),
     "a peer": Kind(PEER_MODULES, ("tests/project/test_lists.py",)),
 }  # fmt: skip
