@@ -31,7 +31,7 @@ struct Losses {
     double projected = 0.0;    // that maximum within a step, before its projection
 };
 
-// The certificate of the motion that starts from the scene; its reason in one sentence.
+// The certificate of the motion that starts from the scene, and one sentence that explains it.
 struct CertifiedScene {
     Certificate certificate;
     std::string reason;
@@ -46,7 +46,7 @@ Solution simulate(const Scene& scene, const Settings& settings, double t_end,
 Solution simulate(const Scene& scene, const CoordinateState& start, const Settings& settings,
                   double t_end, const Checkpoint& checkpoint);
 
-// The losses along a stepped motion; empty for an exact one.
+// Numerical errors of energy and constraints in a motion with steps; empty for all others.
 std::optional<Losses> losses(const Solution& solution);
 
 // Why the model of a scene's solution is valid, or until when, in one sentence. It needs the whole

@@ -113,9 +113,9 @@ class SlideIntegration {
                                            double(from.slip) * unit, double(from.x_dot) * unit},
                                           clock_);
         auto& [angle, omega, x_dot, path, time] = series.motion;
-        // An unbounded series may reach at most 15 times the time slid so far, and 1 at first. The
-        // path and the pressure of a nearly round body vary more, in shares of themselves, than
-        // angle and speed do.
+        // Largest reach of a piece: 1 + 15 times the time slid so far, since the series of a circle
+        // never lose their digits. Path and pressure bound the reach, too: in a nearly round body
+        // they vary more, in shares of themselves, than angle and speed do.
         const double most = 1 + 15 * from.time.high / unit;
         reach_ = std::min(
             {reach(angle), reach(omega), reach(series.rolled), reach(series.pressure), most});
@@ -285,8 +285,8 @@ class SlideIntegration {
     SlideClock clock_ = SlideClock::time;
     double reach_ = 0.0;
     std::optional<End> end_;
-    // c has reached its rounding and does not vanish. Beside B = 0 a slide under infinite friction
-    // begins so. From there on c counts with the rounding of gravity and h'' omega^2.
+    // The free acceleration c is 0 within rounding, not negative: beside B = 0 a slide under
+    // infinite friction begins so. c then has the rounding of gravity and h'' omega^2, too.
     bool grazes_ = false;
 };
 

@@ -25,7 +25,7 @@ struct SlidePoint {
     DoubleDouble x_dot;
     DoubleDouble path;  // path since the start
     DoubleDouble time;  // time since the start
-    // Per mass, of turning and of the height over the tip's; only the work of friction changes it.
+    // Energy per mass, without the energy of x_dot and from the tip; only friction changes it.
     DoubleDouble energy;
 };
 
@@ -71,8 +71,9 @@ enum class SlideStop {
 // Slide on from the start until something stops the body, at the time of the last point.
 SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& checkpoint);
 
-// The state at the last point, and its angle with all digits.
+// The state at the last point.
 State end_of(const Slide& slide);
+// The angle at the last point, with all digits.
 DoubleDouble angle_at_end(const Slide& slide);
 
 // States and forces at n times since the start, ascending.

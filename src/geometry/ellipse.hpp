@@ -111,8 +111,8 @@ double centre_path(const Axes& axes, double theta);
 // Arc length along the ellipse from the contact at 0 to the contact at theta [m]: centre_path + h'.
 double arc_length(const Axes& axes, double theta);
 
-// The path of the centre over an offset with sine s >= 0 and cosine c >= 0, from the flat position
-// (long axis parallel to the ground) or from the tip (short axis parallel to the ground).
+// The path of the centre from the flat position (long axis along the ground) or from the tip to an
+// angle with sine s >= 0 and cosine c >= 0 from there: one function for each start.
 double path_from_flat(double long_axis, double short_axis, double s, double c);
 double path_from_tip(double long_axis, double short_axis, double s, double c);
 

@@ -44,7 +44,7 @@ class LU {
         }
     }
 
-    // The solution for a right side; NaN if the matrix is singular.
+    // The solution for a right side; infinite or NaN if the matrix is singular.
     Vector solve(Vector v) const {
         for (int k = 0; k < N; ++k) std::swap(v[k], v[pivots_[k]]);
         for (int k = 0; k < N; ++k) subtract(v[k], k, v.data());

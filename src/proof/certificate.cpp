@@ -17,9 +17,9 @@ double direction_of(const RollingStart& from) {
     return from.omega != 0 ? std::copysign(1.0, from.omega) : -std::copysign(1.0, from.view.sin);
 }
 
-// The law on the quarter turn of which the motion repeats mirror images. A place is the angle from
-// the flat position or the negative angle from the tip, whichever is nearer to the start: a place
-// next to the start has all its digits.
+// The law on the quarter turn whose mirror images make up the motion. A place is the angle from the
+// flat position, or the negative angle from the tip if the motion starts nearer to the tip: places
+// next to its start then have all their digits.
 struct Quarter {
     const EnergyRange& range;
     double friction;
@@ -61,7 +61,7 @@ struct Quarter {
 // The place from which on the law holds; empty where it is broken. It is the start, or a place
 // ahead of a start at which the law is at its limit.
 std::optional<double> holds_from(const Quarter& quarter) {
-    constexpr double ahead = 1e-8;  // share of the path: sqrt(epsilon), beyond rounding
+    constexpr double ahead = 1e-8;  // share of the turn to the goal, far enough to pass rounding
     if (!at_the_limit(quarter.force, quarter.friction)) {
         const bool holds = law_margin(quarter.force, quarter.friction) > 0;
         return holds ? std::optional(quarter.start) : std::nullopt;

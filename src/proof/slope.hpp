@@ -1,5 +1,5 @@
-// Rolling on a slope: its end, and its certificate with the forces of a body that cannot leave its
-// place.
+// Rolling on a slope: its end, and its certificate. The extremes of the forces are infinite unless
+// the body rests, rocks between two turning points, or is a circle.
 #pragma once
 
 #include "proof/certificate.hpp"
@@ -14,7 +14,7 @@ struct Meeting {
     double heading;
 };
 
-// `touched`: the first place at which the margin of the law falls to rounding and no further.
+// `touched`: the first place at which the margin of the law is 0 within rounding, and not less.
 // `broken`: the first place at which the law fails; the search ends there.
 struct LawMeetings {
     std::optional<Meeting> touched;

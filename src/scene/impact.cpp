@@ -103,7 +103,7 @@ class ImpulsePath {
     Reaction result(bool sticks) const { return {tangential_, normal_, u_, sticks}; }
 
   private:
-    // The normal impulse until restitution ends, and u there.
+    // The normal impulse still to come until restitution ends, and u at that end.
     struct End {
         double p;
         double u;

@@ -191,9 +191,9 @@ inline bool is_weightless(const Geometry& at, double gravity_into_ground, double
 // Units of a body's own size, powers of two: a number in them keeps its bits. Results computed in
 // them do not depend on the units of the input and stay in the range of doubles.
 struct Units {
-    double length = 1.0;  // [m]
-    double time = 1.0;    // [s]
-    double mass = 1.0;    // [kg]
+    double length = 1.0;  // unit of length [m]
+    double time = 1.0;    // unit of time [s]
+    double mass = 1.0;    // unit of mass [kg]
 
     double speed() const { return length / time; }
     double of(const Unit& unit) const {

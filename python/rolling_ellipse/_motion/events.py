@@ -107,7 +107,7 @@ class Events(tuple[Event, ...]):
     def _repr_html_(self) -> str:
         return html_table(self._caption(), self._shown(), _HEAD)
 
-    if TYPE_CHECKING:  # `_show.methods` binds these methods
+    if TYPE_CHECKING:  # at run time, `_show.methods` adds this method to the class
         to_dataframe = event_table.to_dataframe
 
 

@@ -28,7 +28,7 @@ _STEEP = 3.0  # largest |F|/N that the scale makes room for: it is infinite wher
 
 @dataclass(frozen=True, repr=False)
 class Forces(Artists):
-    """Artists of `plot_forces`; item i of each tuple belongs to motion i.
+    """Artists of `plot_forces`; item i belongs to motion i, but for `axes` and `marks`.
 
     `limits` are None where friction has no limit; `needed` and `available` (the coefficients of
     friction) are empty where only one Axes was given.

@@ -29,7 +29,7 @@ HALF_TURNS = 2 * SHOWN_TURNS
 
 
 def tilted(scene: Scene) -> Affine2D:
-    """Return ground axes as the eye sees them: x down the slope, gravity down the page."""
+    """Return the rotation from ground axes to the page, on which gravity points down."""
     return Affine2D().rotate(-scene.slope)
 
 

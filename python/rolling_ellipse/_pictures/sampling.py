@@ -156,7 +156,7 @@ def half_turns(motion: Trajectory) -> float:
 
 
 def turned_until(motion: Trajectory, turns: float, rate: str) -> float:
-    """Return the time [s] at which a motion has made so many turns, or a path as long.
+    """Return the time [s] after so many turns or, if earlier, a path of `turns` 2 pi max(a, b).
 
     It is at most the time of the last sample, and of the second turning point, where a rate
     ("omega", "x_dot") changes its sign.

@@ -200,7 +200,7 @@ def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
 
 
 def appendix_b_r_x(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return r_x of appendix B [m]; right: `contact_x`."""
+    """Return r_x as appendix B prints it [m]; `contact_x` returns the correct one."""
     theta, _, _, _, _ = state(q)
     angle = eq_5(theta, a=a, b=b) - theta
     radius = appendix_b_radius(theta, a=a, b=b)

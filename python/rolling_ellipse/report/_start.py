@@ -72,7 +72,7 @@ def violations(
 
 
 def _scaled_rows(q: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
-    """Return the gradients of f1 ... f4, of which the report's rows 3 and 4 are multiples."""
+    """Return the rows in use; rows 3 and 4 are divided by factors to give rates of f3 and f4."""
     matrix = rows(q, body.a, body.b, printed)
     matrix[..., 2, :] /= matrix[..., 2, 4, None].copy()
     matrix[..., 3, :] /= matrix[..., 3, 3, None].copy()

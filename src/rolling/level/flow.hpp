@@ -70,7 +70,7 @@ template <class T>
 struct PhaseMap {
     T quarter;  // Y; infinite on the separatrix
     T step;     // step of the trapezoidal rule for a quarter
-    T steps;    // number of steps in a quarter, or up to the tail
+    T steps;    // number of steps in a quarter, or from the flat to where the tail begins
     // The quarter is longer than the steps, which end at the tip within rounding. A body with a
     // tail is computed alone.
     Mask<T> has_tail;

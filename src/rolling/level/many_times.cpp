@@ -14,7 +14,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// A quarter turn has 10 to 60 pieces; near the separatrix their number has no bound.
+// A quarter turn has 15 to 85 pieces; the number grows near the separatrix.
 constexpr std::size_t most_pieces = 1000;
 
 // Angle and path since the flat position, each as quarter turns plus an offset from the nearest one
@@ -151,7 +151,7 @@ class TableMaker {
     void add_start() {
         const FlatView& at_start = flow_.from.view;
         table_.reader.start_time = time_since_flat(flow_, flow_.start_phase);
-        // First guess of the radius: the length of the piece about the same place.
+        // First guess of the radius: the length of the table's piece that holds the start.
         const double since = std::abs(double(table_.reader.start_time));
         const auto piece = std::find_if(table_.pieces.begin(), table_.pieces.end() - 1,
                                         [&](const FlowPiece& p) { return since < p.high; });

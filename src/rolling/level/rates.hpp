@@ -50,14 +50,14 @@ template <class T>
 void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     constexpr double steps_per_unit = 4.0;
     constexpr double largest_complement = 0.70710678118654752;  // q = 1/32
-    constexpr double tail = 20.0;                               // range beyond log(2/largest_grade)
-    constexpr double falling_in_tail = 2.0611536224385579e-9;   // e^-tail
+    constexpr double before_tail = 20.0;                        // y of the last step, less log(2/g)
+    constexpr double falling_at_tail = 2.0611536224385579e-9;   // e^-before_tail
     map.kappa = kappa;
     const T complement = min<T>(kappa * largest_grade, filled<T>(largest_complement));
     const T quarter = complement > 0 ? log<T>(4 / complement) : filled<T>(infinity);
-    map.has_tail = complement < 2 * falling_in_tail * largest_grade;
+    map.has_tail = complement < 2 * falling_at_tail * largest_grade;
     // Whole steps of it give a nome a little below that of k'.
-    const T length = any(map.has_tail) ? tail + log<T>(2 / largest_grade) : quarter;
+    const T length = any(map.has_tail) ? before_tail + log<T>(2 / largest_grade) : quarter;
     map.steps = rounded_up<T>(length * steps_per_unit);
     map.step = map.has_tail ? filled<T>(1 / steps_per_unit) : quarter / map.steps;
     map.quarter = map.has_tail ? quarter : map.steps * map.step;
@@ -69,7 +69,7 @@ void set_phase_map(PhaseMap<T>& map, T kappa, T largest_grade) {
     map.tip_scale2 = kappa * kappa * sine_scale2;
 }
 
-// The place of a phase.
+// The coordinate y of a phase, by Newton's method.
 template <class T>
 PhasePlace<T> place_of(const PhaseMap<T>& map, const PhasePoint<T>& phase) {
     constexpr double converged = 1e-8;

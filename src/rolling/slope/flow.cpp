@@ -8,7 +8,7 @@ namespace {
 
 // Least number of half turns of a climb that is computed as a sum.
 constexpr double least_climb = 16;
-// Half turns computed by series before a sum takes over. A sum over less would lose digits.
+// Half turns computed by series before a SlopeRun takes over; its sum over fewer loses digits.
 constexpr double half_turns_before_a_run = 1;
 
 SlopePlace first_place(const SlopeBody& body, const FlatView& view, double omega) {

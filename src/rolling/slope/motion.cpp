@@ -32,7 +32,7 @@ SlopeSeries slope_series(const SlopeBody& body, const GroundGravity& gravity, do
                          double cos, double omega, double drive) {
     SlopeSeries motion;
     auto& [angle, w, path, h] = motion;
-    // Pairs of series that are multiplied at the same time.
+    // Pairs of series. Two pairs on a line are multiplied: first by first, second by second.
     TwoSeries p_q, w_w;           // the rates of u and p
     TwoSeries u_u, inertia_h;     // the mass u D h^2, u h
     TwoSeries w_h;                // series of omega^2 and h^2 in time

@@ -37,7 +37,7 @@ struct SlopeBody {
     double gyration2;
     GroundGravity gravity;  // along > 0: the slope falls to growing angles
     std::optional<Equilibria> equilibria;
-    double pull;          // (along^2 + into^2)^(1/2) c2
+    double pull;          // gravity times c2, the factor of physics (62)
     double slowest;       // rate at which gravity moves a body that starts at rest
     double quarter_path;  // path of the centre in a quarter turn
     double gain;          // of W = D omega^2/2 in half a turn downhill, physics (58)

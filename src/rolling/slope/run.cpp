@@ -53,7 +53,7 @@ double sum_of_rates(double level, const FirstRates& first, double gain, double n
 // Widest part of a panel in v. Singularities are pi/2 or more away, five times half of that width.
 constexpr double widest_part = 0.6;
 
-// The angle from the centre of a panel at v, and its derivative.
+// The angle from the centre of a panel at its coordinate v, and the derivative by v.
 struct Offset {
     double angle;
     double rate;

@@ -48,7 +48,7 @@ struct RunPanel {
     double grade;
     double first;
     double last;
-    std::size_t begin = 0;  // index of its first node
+    std::size_t begin = 0;  // index of the panel's first node in `SlopeRun::nodes`
     std::size_t end = 0;
     std::size_t part = 0;  // index of its first part
     int parts = 0;

@@ -126,7 +126,7 @@ class RollingEquation {
     }
 
     Axes axes_;
-    Squares turned_[2];  // after an even number of quarter turns, and after an odd one
+    Squares turned_[2];  // after an even number of quarter turns; after an odd one, exchanged
     double gyration2_;
     GroundGravity gravity_;
     double long_axis_;

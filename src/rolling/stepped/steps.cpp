@@ -95,7 +95,7 @@ class PathSeries {
         } while (share * width > distance(found.middle));
         found.high = found.low + width;
 
-        // h^2 = u, u'' = -4 u + constant
+        // Series of u = h^2 by u'' = -4 u + constant, then of h and of the path, its integral
         const double s = std::sin(found.middle);
         const double c = std::cos(found.middle);
         Series u;

@@ -31,7 +31,7 @@ class Errors(Mapping[str, float]):
     final: float = math.nan  # error of the state at the end
     l2: float = math.nan  # root mean square of the states at the sample times
     linf: float = math.nan  # largest of the states at the sample times
-    energy: float = math.nan  # largest change over |kinetic| + |potential|
+    energy: float = math.nan  # largest change over the largest kinetic + |potential|
     gap: float = math.nan  # largest distance from the ground
     slip: float = math.nan  # largest velocity of the contact along the ground
 
