@@ -34,7 +34,7 @@ def _evaluate(function: Callable[..., FloatArray], theta: Any, a: Any, b: Any) -
 
 
 def support(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the support function h, the height of the touching body's centre [m]."""
+    """Return the support function h, the height of the centre of a body on the ground [m]."""
     return _evaluate(_core.support, theta, a, b)
 
 
@@ -59,12 +59,12 @@ def contact_distance(theta: Any, *, a: Any, b: Any) -> Any:
 
 
 def contact_angle(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return psi, tan(psi) = (a/b)^2 tan(theta), on the branch continuous over all theta [rad]."""
+    """Return psi [rad], continuous over all theta, with tan(psi) = (a/b)^2 tan(theta)."""
     return _evaluate(_core.contact_angle, theta, a, b)
 
 
 def centre_path(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the integral of h from 0 to theta, the path of the rolling centre [m].
+    """Return the integral of h from 0 to theta: the displacement of the centre in rolling [m].
 
     By Carlson's symmetric elliptic integrals (DLMF 19.25.9 and 19.25.10) in forms without
     cancellation, for any number of turns.
@@ -73,7 +73,7 @@ def centre_path(theta: Any, *, a: Any, b: Any) -> Any:
 
 
 def arc_length(theta: Any, *, a: Any, b: Any) -> Any:
-    """Return the length rolled along the ellipse from the contact at 0 to that at theta [m].
+    """Return the arc of the ellipse from its contact at angle 0 to its contact at theta [m].
 
     Equal to ``centre_path + support_slope``; 2 pi gives the perimeter.
     """

@@ -102,5 +102,5 @@ def kinetic_speed(x_dot: Any, z_dot: Any, omega: Any, *, gyration2: Any) -> Any:
     for name, values in zip(arguments, (x_dot, z_dot, omega), strict=False):
         require(name, "finite", values, np.isfinite(values))
     require("gyration2", "a positive finite area [m^2]", k2, (k2 > 0) & np.isfinite(k2))
-    with np.errstate(over="ignore"):  # infinite beyond the largest double
+    with np.errstate(over="ignore"):  # speeds beyond the largest double are infinite
         return shaped(np.hypot(np.hypot(x_dot, z_dot), np.sqrt(k2) * omega), shape)

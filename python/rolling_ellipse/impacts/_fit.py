@@ -20,14 +20,14 @@ _MEASURES: dict[Measure, Callable[[FloatArray], float]] = {
     "median": lambda errors: float(np.median(errors)),
     "rms": lambda errors: float(np.sqrt(np.mean(errors**2))),
 }
-_INTERVALS = 40  # of the first grid, over the whole range of either coefficient
-# A finer grid reaches 2 old steps to either side in steps 1/4 as long; there are 4 of them.
+_INTERVALS = 40  # of the first grid, over all restitutions and over all friction angles
+# Each of 4 finer grids reaches 2 old steps to either side of the best point, in steps 1/4 as long.
 _REACH, _FINER, _REFINEMENTS = 2, 4, 4
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class FittedImpacts(Listed):
-    """One coefficient of restitution and one of friction for all impacts of a series.
+    """The coefficients of restitution and friction that fit a series of impacts best.
 
     Attributes
     ----------
@@ -151,7 +151,7 @@ def _friction(angle: float) -> float:
 
 
 def _least(objective: Callable[[float, float], float]) -> tuple[float, float]:
-    """Return the best restitution and angle of friction of grids within grids."""
+    """Return restitution and friction angle [rad] of the least objective on ever finer grids."""
     ranges = ((0.0, 1.0), (0.0, math.pi / 2))
     axes = [np.linspace(low, high, _INTERVALS + 1) for low, high in ranges]
     steps = [(high - low) / _INTERVALS for low, high in ranges]
@@ -168,7 +168,7 @@ def _least(objective: Callable[[float, float], float]) -> tuple[float, float]:
 
 
 def _series(name: str, columns: Sequence[Any], count: int) -> FloatArray:
-    """Return columns of equal length as the rows of one array of finite numbers."""
+    """Return `count` columns, one number an impact, as the rows of an array of finite numbers."""
     rows = finite(name, columns)
     if rows.ndim != 2 or len(rows) != count or rows.shape[1] == 0:
         raise ValueError(

@@ -1,7 +1,7 @@
-"""The report's equations exactly as printed, and beside each the right one under a name.
+"""The report's equations as printed, named by number, and the right ones, named by words.
 
 Arrays have q = (x, z, theta, psi, r), its rates or its accelerations along the last axis. A printed
-equation has its number as name. A printed residual less the right one is the misprint.
+residual less the right one is the effect of the misprint.
 """
 
 from __future__ import annotations
@@ -20,31 +20,31 @@ CASES = ("as_it_is", "1", "2")
 
 
 def state(q: Any, **others: Any) -> tuple[FloatArray, ...]:
-    """Return theta, psi, r, sin and cos of psi - theta from q; `others` must broadcast with q."""
+    """Return theta, psi, r, sin(psi - theta), cos(psi - theta) of q; `others` must broadcast."""
     found = coordinates("q", q)
     require_together(q=found, **others)
     theta, psi, r = found[..., 2], found[..., 3], found[..., 4]
     return theta, psi, r, np.sin(psi - theta), np.cos(psi - theta)
 
 
-# ---------------------------------------------------------------------------- sections 2.1 and 2.2
+# -------------------------------------------------------------- sections 2.1 and 2.2 of the report
 
 
 def eq_5(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return psi by the arctan of eq 5 [rad]; `geometry.contact_angle` is continuous."""
+    """Return psi [rad] as eq 5 prints it, an arctan; right and continuous: `contact_angle`."""
     body = Scene(a, b)
     found: FloatArray = np.arctan(body.a**2 / body.b**2 * np.tan(finite("theta", theta)))
     return found
 
 
 def case_sign(theta: Any) -> FloatArray:
-    """Return the sign of r sin(psi - theta) by the report's cases: -1 in the second quadrant."""
+    """Return the report's sign before r sin(psi - theta): -1 in the second quadrant, else 1."""
     turned = np.mod(finite("theta", theta), 2 * np.pi)
     return np.where((turned >= np.pi / 2) & (turned <= np.pi), -1.0, 1.0)
 
 
 def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return x_C - x_G [m] as printed (eqs 5 to 7, cases 1 and 2), not `geometry.support_slope`."""
+    """Return x_C - x_G [m] as eqs 5 to 7 and cases 1, 2 print it; right: `support_slope`."""
     psi, angle = eq_5(theta, a=a, b=b), finite("theta", theta)
     body = Scene(a, b)
     r = body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
@@ -68,13 +68,13 @@ def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
 
 
 def f2(q: Any) -> FloatArray:
-    """Return f2 of eq 10 [m]; it is right with the continuous psi."""
+    """Return f2 = z - r cos(psi - theta) of eq 10 [m], printed right for a continuous psi."""
     _, _, r, _, cosine = state(q)
     return coordinates("q", q)[..., 1] - r * cosine
 
 
 def f3(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return f3 of eq 10 [m]; it is right."""
+    """Return f3 of eq 10 [m], the error of r at the angle psi; eq 10 prints it right."""
     _, psi, r, _, _ = state(q)
     body = Scene(a, b)
     found: FloatArray = r - body.a * body.b / np.sqrt(polar(psi, body.a, body.b))
@@ -82,18 +82,18 @@ def f3(q: Any, *, a: float, b: float) -> FloatArray:
 
 
 def f4(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return f4 of eq 10 [rad], its arctan as printed: off by multiples of pi."""
+    """Return f4 of eq 10 [rad]; its printed arctan is off by multiples of pi in some quadrants."""
     theta, psi, _, _, _ = state(q)
     return psi - eq_5(theta, a=a, b=b)
 
 
-# ---------------------------------------------------------------------------------- section 3.2
+# -------------------------------------------------------------------- section 3.2 of the report
 
 
 def eqs_33_to_37(
     q: Any, q_ddot: Any, multipliers: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return the residuals of eqs 33, 34, 35, 37, 36 (x, z, theta, psi, r), (..., 5)."""
+    """Return the residuals of eqs 33, 34, 35, 37, 36 as printed, for x, z, theta, psi, r."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot, multipliers=multipliers)
     inertia, ddot = body.mass * (body.a**2 + body.b**2) / 4, coordinates("q_ddot", q_ddot)
@@ -116,7 +116,7 @@ def eqs_33_to_37(
 def equations_of_motion(
     q: Any, q_ddot: Any, multipliers: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return the right residuals of eqs 33, 34, 35, 37, 36, with corrected rows, (..., 5)."""
+    """Return the residuals of the right equations in place of eqs 33, 34, 35, 37, 36."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
     ddot = coordinates("q_ddot", q_ddot)
@@ -125,7 +125,7 @@ def equations_of_motion(
         np.stack(_multipliers(multipliers), axis=-1),
     )  # fmt: skip
     weight = np.array([0, body.mass * body.gravity, 0, 0, 0])
-    forces = np.array([-1, -1, -1, 1, 1])  # eqs 36 and 37 have them on the other side
+    forces = np.array([-1, -1, -1, 1, 1])  # signs of the forces: + in eqs 36 and 37
     found: FloatArray = masses(body) * ddot + weight + forces * pull
     return found
 
@@ -138,7 +138,7 @@ def _multipliers(values: Any) -> tuple[FloatArray, ...]:
 
 
 def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
-    """Return the rates of f1 (f1 itself), f2, f3 and f4 as eq 38 prints them, (..., 4)."""
+    """Return f1 [m/s] and the rates of f2, f3 and f4 as eq 38 prints them, (..., 4)."""
     body = Scene(a, b)
     theta, psi, r, sine, cosine = state(q, q_dot=q_dot)
     x, z, spin, turn, stretch = np.moveaxis(coordinates("q_dot", q_dot), -1, 0)
@@ -157,7 +157,7 @@ def eq_38(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
 
 
 def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
-    """Return the right rates of eq 38, in its scaling, (..., 4)."""
+    """Return the right values of f1 and the rates of f2 to f4, in the scaling of eq 38."""
     body = Scene(a, b)
     require_together(q=q, q_dot=q_dot)
     matrix = rows(coordinates("q", q), body.a, body.b, ("tan",))
@@ -165,18 +165,18 @@ def constraint_rates(q: Any, q_dot: Any, *, a: float, b: float) -> FloatArray:
     return found
 
 
-# ----------------------------------------------------------------------- section 3.4, appendix B
+# ------------------------------------------------------- section 3.4 and appendix B of the report
 
 
 def eq_48(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
-    """Return theta_dot just after the blow by eq 48 [rad/s]; right: `struck_speed`."""
+    """Return theta_dot just after the blow [rad/s] as eq 48 prints it; right: `struck_speed`."""
     body = Scene(a, b, mass=mass)
     impulse, d = _blow(impulse, d)
     return 4 * impulse * d / (body.mass * (body.a**2 + body.b**2))
 
 
 def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -> float:
-    """Return theta_dot after a blow on the body at rest, lying flat, that sticks [rad/s]."""
+    """Return theta_dot [rad/s] after a press on the flat body at rest whose contact sticks."""
     impulse, d = _blow(impulse, d)
     return Scene(a, b, mass=mass, impulse=Impulse.press(impulse, d)).initial_state.omega
 
@@ -184,23 +184,23 @@ def struck_speed(impulse: float, d: float, *, a: float, b: float, mass: float) -
 def _blow(impulse: Any, d: Any) -> tuple[float, float]:
     blow = number("impulse", impulse), number("d", d)
     for name, value in zip(("impulse", "d"), blow, strict=True):
-        if not abs(value) <= 1e50:  # the limit of an Impulse
+        if not abs(value) <= 1e50:  # largest size of a number of an Impulse
             wanted = "at most 1e50 in size" if math.isfinite(value) else "finite"
             raise ValueError(f"{name} must be {wanted}, got {value}")
     return blow
 
 
 def appendix_b_radius(theta: Any, *, a: float, b: float) -> FloatArray:
-    """Return r of r_x in appendix B [m]; right: `geometry.contact_distance`."""
+    """Return r [m] as appendix B prints it in its r_x; right: `geometry.contact_distance`."""
     body = Scene(a, b)
-    t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p, where eq 6 has psi
+    t = np.arctan(body.a * np.tan(finite("theta", theta)) / body.b)  # Th_p; eq 6 has psi here
     across, along = body.b**2 * np.sin(t), body.a**2 * np.cos(t)
     found: FloatArray = body.a * body.b / np.hypot(across, along)
     return found
 
 
 def appendix_b_r_x(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return r_x as appendix B prints it [m]; `contact_x` returns the correct one."""
+    """Return r_x, the x of the contact [m], as appendix B prints it; right: `contact_x`."""
     theta, _, _, _, _ = state(q)
     angle = eq_5(theta, a=a, b=b) - theta
     radius = appendix_b_radius(theta, a=a, b=b)
@@ -209,6 +209,6 @@ def appendix_b_r_x(q: Any, *, a: float, b: float) -> FloatArray:
 
 
 def contact_x(q: Any, *, a: float, b: float) -> FloatArray:
-    """Return x_C = x + h' [m]."""
+    """Return x_C = x + h', the position of the contact along the ground [m]."""
     found: FloatArray = coordinates("q", q)[..., 0] + support_slope(state(q)[0], a=a, b=b)
     return found

@@ -141,5 +141,5 @@ def errata_table() -> str:
 
 
 def _rounded(value: float) -> str:
-    """Return the text of a right value; one that is 0 but for rounding is 0."""
+    """Return a right value in four digits, as text; sizes up to 1e-12 are rounding errors of 0."""
     return f"{value if abs(value) > 1e-12 else 0.0:.4g}"

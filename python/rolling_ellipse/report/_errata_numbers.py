@@ -20,11 +20,11 @@ from ._rows import CODE, consistent_rates, constraint_matrix
 from ._start import Start
 
 _A, _B, _MASS, _GRAVITY = 2.0, 1.0, 10.0, 9.81
-_THETA, _OMEGA = 0.2, 3.2  # fast enough to pass through all quadrants
+_THETA, _OMEGA = 0.2, 3.2  # rad, rad/s: the body rolls through all quadrants
 
 
 class Comparison(NamedTuple):
-    """The two numbers of an erratum."""
+    """The two numbers of an erratum: its quantity as the report prints it, and right."""
 
     printed: float
     right: float
@@ -36,7 +36,7 @@ class Comparison(NamedTuple):
 
 
 class _Exact(NamedTuple):
-    """The exact motion at an angle; `body` has the keywords of the equations."""
+    """State, accelerations and multipliers of exact rolling at one angle, and the body."""
 
     q: FloatArray
     q_dot: FloatArray
@@ -50,10 +50,10 @@ class _Exact(NamedTuple):
 
 
 def _at(theta: float, b: float = _B) -> _Exact:
-    """Return the rolling motion through (_THETA, _OMEGA) at another angle of the same energy."""
+    """Return, at the angle theta, the rolling motion that has speed _OMEGA at the angle _THETA."""
     k2 = (_A * _A + b * b) / 4
 
-    def inertia(angle: float) -> float:  # D = k^2 + r^2
+    def inertia(angle: float) -> float:  # D = k^2 + r^2, about the contact, per mass [m^2]
         return k2 + float(contact_distance(angle, a=_A, b=b)) ** 2
 
     fall = float(support(_THETA, a=_A, b=b) - support(theta, a=_A, b=b))
@@ -66,7 +66,7 @@ def _at(theta: float, b: float = _B) -> _Exact:
     return _Exact(q, q_dot, q_ddot, _multipliers.multipliers(q, q_ddot, **body), body)
 
 
-GENERIC, SECOND, THIRD = 0.7, 2.0, 4.0  # angles: in the first, second and third quadrant
+GENERIC, SECOND, THIRD = 0.7, 2.0, 4.0  # theta [rad] in the quadrants 1, 2 and 3
 
 
 def velocity() -> Comparison:
@@ -82,7 +82,7 @@ def cases() -> Comparison:
 
 
 def row(index: int, printed: tuple[str, ...]) -> Comparison:
-    """Compare a row, as printed and right, times the rates of the exact motion."""
+    """Compare a row of the constraint matrix, as printed and right, both times exact rates."""
     at = _at(GENERIC)
     both = (constraint_matrix(at.q, printed=p, **at.shape) for p in (printed, ("tan",)))
     return Comparison(*(float(matrix[index] @ at.q_dot) for matrix in both))

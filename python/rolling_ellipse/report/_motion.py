@@ -71,7 +71,7 @@ class PrintedMotion:
         return constraints(self.q, self.q_dot, a=self.body.a, b=self.body.b)
 
     def back_substitution(self) -> FloatArray:
-        """Return the residuals of the equations that were solved, (n, 9).
+        """Return the residuals of the equations that were solved, printed rows included, (n, 9).
 
         They are the five equations of motion [N, N m] and the four constraints on the rates: the
         report's own test (Figure 11). Small values show that the equations were solved, not that
@@ -111,7 +111,7 @@ def accelerations(
     try:
         solution = np.linalg.solve(system, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
-        if q.ndim > 1:  # one sample is singular: the others have a solution
+        if q.ndim > 1:  # some sample is singular: each is solved alone
             found = [accelerations(*one, body, printed) for one in zip(q, q_dot, strict=True)]
             return np.stack([each[0] for each in found]), np.stack([each[1] for each in found])
         solution = np.full_like(right, np.nan)
@@ -121,13 +121,13 @@ def accelerations(
 def follow(
     start: Start, t: FloatArray, body: Scene, printed: tuple[str, ...], how: Settings
 ) -> PrintedMotion:
-    """Integrate from a start at time 0 and sample at increasing times."""
+    """Integrate the equations with the `printed` rows from t = 0, and sample at the times t."""
 
     def slope(y: FloatArray) -> FloatArray:
         q, q_dot = y[:COORDINATES], y[COORDINATES:]
         return np.concatenate([q_dot, accelerations(q, q_dot, body, printed)[0]])
 
-    # without a finite solution it stops with a message
+    # no warnings: a motion whose numbers become infinite or NaN ends there, with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         begun = np.concatenate([start.q, start.q_dot])
         samples, message = integrate(slope, begun, t, how)
@@ -139,5 +139,5 @@ def follow(
         end = int(np.argmax(lost))
         message = f"the equations have no finite solution at {t[end]:.6g} s"
         q, q_dot, q_ddot, multipliers = q[:end], q_dot[:end], q_ddot[:end], multipliers[:end]
-    reached = t[: len(q)].copy()  # the caller's own times may change
+    reached = t[: len(q)].copy()  # a copy: the caller may change the array t
     return PrintedMotion(reached, q, q_dot, q_ddot, multipliers, body, printed, start, message)

@@ -36,7 +36,7 @@ def eq_39(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 def lambda4_numerator(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return the numerator of lambda4 in eq 39; over 4 a^2 it follows from eqs 32 and 35."""
+    """Return the numerator of lambda4 in eq 39; eqs 32 and 35 give it the divisor 4 a^2."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, _, r, sine, cosine = state(q, q_ddot=q_ddot)
     x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
@@ -49,7 +49,7 @@ def lambda4_numerator(
 def multipliers(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return the right values of eq 39: the multipliers of the corrected rows, (..., 4).
+    """Return the right lambda1 ... lambda4, the multipliers of the corrected rows, (..., 4).
 
     lambda3 follows from the equation of r without a division by sin(2 psi). lambda4 vanishes on the
     ground, since r cos(psi - theta) has its largest value over psi there.
@@ -65,7 +65,7 @@ def multipliers(
 
 
 def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
-    """Return values over the divisor of eqs 39 and 41; infinite where that is 0, even of 0."""
+    """Return values over 4 a^3 b^3 sin(2 psi) (a^2 - b^2), as in eqs 39 and 41; 0/0 is inf."""
     squeeze = 4 * (body.a * body.b) ** 3 * np.sin(2 * psi) * (body.a**2 - body.b**2)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found: FloatArray = np.where((squeeze == 0) & (values == 0), np.inf, values / squeeze)
@@ -73,7 +73,7 @@ def _squeezed(values: FloatArray, psi: FloatArray, body: Scene) -> FloatArray:
 
 
 def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
-    """Return F of eq 40, term by term as printed; right: `complete_f`."""
+    """Return F, in lambda3 of eq 39, term by term as eq 40 prints it; right: `complete_f`."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     theta, psi, r, sine, cosine = state(q, q_ddot=q_ddot)
     x, z, spin, _, _ = np.moveaxis(coordinates("q_ddot", q_ddot), -1, 0)
@@ -96,7 +96,7 @@ def eq_40(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: floa
 def complete_f(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return F with every term, as eqs 33, 35, 37 and lambda2 of eq 39 give it.
+    """Return F of eq 40 with every term, as eqs 33, 35, 37 and lambda2 of eq 39 give it.
 
     It has the signs of these equations, so that the difference from `eq_40` is the lost terms.
     """
@@ -113,7 +113,7 @@ def complete_f(
 def eq_41(
     q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float, complete: bool = False
 ) -> FloatArray:
-    """Return the residual of eq 41, with F1 of `eq_42` or, if complete, 2 (...)^(3/2) F [N].
+    """Return the residual of eq 41, with F1 of `eq_42` or, if `complete`, 2 (...)^(3/2) F.
 
     Complete, it is eq 36 times -1 with the multipliers put in. It divides by zero where eq 39 does,
     and is infinite there.
@@ -131,7 +131,7 @@ def eq_41(
 
 
 def eq_42(q: Any, q_ddot: Any, *, a: float, b: float, mass: float, gravity: float) -> FloatArray:
-    """Return F1 of eq 42: the head of eq 41 again, less a factor times the terms of F.
+    """Return F1 of eq 42: the first terms of eq 41, less a factor times the terms of F.
 
     The opening bracket before b^6 is missing in print; the brackets are read as around all terms of
     F, which eq 42 has completely (`complete_f`). The factor has lost its power 3/2 and the square

@@ -10,30 +10,30 @@ import numpy.typing as npt
 from .._ask.check import COORDINATES, FloatArray, coordinates, finite, require_together, shown
 from .._ask.scene import Scene
 
-#: Parts that can be as printed: rows of f1, f2 and f3 (eq 32), the sign of a44 (appendix C), and
-#: tan(theta) in row 4. A corrected row 4 is multiplied by cos^2(theta) and stays finite.
+#: Parts of the matrix that may be as printed: rows of f1, f2, f3 (eq 32), the sign of a44 (appendix
+#: C), and tan(theta) in row 4. A corrected row 4, times cos^2(theta), stays finite.
 MISPRINTS = ("f1", "df2", "df3", "a44", "tan")
 EQ_32 = ("f1", "df2", "df3", "tan")
 MATRIX = ("f1", "df2", "tan")
 CODE = ("f1", "df2", "a44", "tan")
 
-_TINY = 1e-30  # a complex step this small has neither truncation nor rounding error
+_TINY = 1e-30  # size of the complex step: no truncation error in doubles, and nothing cancels
 
 
 def masses(body: Scene) -> FloatArray:
-    """Return the masses of x, z [kg] and theta [kg m^2]; psi and r have none (0)."""
+    """Return the diagonal mass matrix: mass [kg] of x, z, inertia [kg m^2] of theta, 0, 0."""
     found: FloatArray = np.array([1, 1, body.gyration2, 0, 0]) * body.mass
     return found
 
 
 def polar(psi: npt.NDArray[Any], a: float, b: float) -> npt.NDArray[Any]:
-    """Return (a b/r)^2 of the ellipse at the polar angle psi, real or complex [m^2]."""
+    """Return (a b/r)^2 [m^2], r the radius of the ellipse at the angle psi, real or complex."""
     found: npt.NDArray[Any] = (b * np.sin(psi)) ** 2 + (a * np.cos(psi)) ** 2
     return found
 
 
 def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> npt.NDArray[Any]:
-    """Return the matrix, (..., 4, 5), for real or complex q."""
+    """Return the constraint matrix at a real or complex q, (..., 4, 5)."""
     theta, psi, r = q[..., 2], q[..., 3], q[..., 4]
     sine, cosine = np.sin(psi - theta), np.cos(psi - theta)
     matrix = np.zeros((*q.shape[:-1], 4, COORDINATES), dtype=q.dtype)
@@ -41,7 +41,7 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
 
     x_[..., 0] = 1
     theta_[..., 0] = -r * cosine
-    if "f1" in printed:  # the rate of x + r sin(psi - theta); without slip x_dot = h theta_dot
+    if "f1" in printed:  # d(x + r sin(psi - theta))/dt; right: x_dot - h theta_dot
         psi_[..., 0] = r * cosine
         r_[..., 0] = sine
 
@@ -69,7 +69,7 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
 def rows_and_rate(
     q: FloatArray, q_dot: FloatArray, a: float, b: float, printed: tuple[str, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the matrix and its time derivative along q_dot.
+    """Return the constraint matrix and its time derivative along q_dot.
 
     The derivative is the imaginary part after a complex step along q_dot, exact to rounding
     (W. Squire, G. Trapp, SIAM Rev. 40 (1998) 110).
@@ -79,7 +79,7 @@ def rows_and_rate(
 
 
 def direction(q: FloatArray, a: float, b: float, printed: tuple[str, ...]) -> FloatArray:
-    """Return the rates that the rows allow at theta_dot = 1, (..., 5)."""
+    """Return the q_dot with theta_dot = 1 that the constraint rows allow, (..., 5)."""
     matrix = rows(q, a, b, printed)
     found: FloatArray = np.zeros(q.shape)
     found[..., 2] = 1
@@ -90,7 +90,7 @@ def direction(q: FloatArray, a: float, b: float, printed: tuple[str, ...]) -> Fl
 
 
 def misprints(printed: Any) -> tuple[str, ...]:
-    """Return the names of rows to take as printed, or raise ValueError."""
+    """Return `printed` as a tuple of names out of MISPRINTS, or raise ValueError."""
     names = tuple(printed) if isinstance(printed, (tuple, list)) else (printed,)
     for name in names:
         if not isinstance(name, str) or name not in MISPRINTS:
@@ -100,7 +100,7 @@ def misprints(printed: Any) -> tuple[str, ...]:
 
 
 def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> FloatArray:
-    """Return the coefficients of the constraints on the rates.
+    """Return the constraint matrix: coefficients of q_dot in f1 and the rates of f2, f3, f4.
 
     The report's columns are (x, r, psi, theta, z); here they are in the order of q.
 
@@ -129,7 +129,7 @@ def constraint_matrix(q: Any, *, a: float, b: float, printed: Any = CODE) -> Flo
 
 
 def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = CODE) -> FloatArray:
-    """Return the rates with theta_dot = omega that the rows, as printed or not, allow.
+    """Return the q_dot with theta_dot = omega that the constraint rows allow, printed or not.
 
     Parameters
     ----------
@@ -153,6 +153,6 @@ def consistent_rates(q: Any, omega: Any, *, a: float, b: float, printed: Any = C
     speed = finite("omega", omega)[..., None]
     require_together(q=q, omega=speed)
     allowed = direction(coordinates("q", q), body.a, body.b, misprints(printed))
-    with np.errstate(over="ignore"):  # infinite beyond the largest double
+    with np.errstate(over="ignore"):  # rates beyond the largest double are infinite
         rates: FloatArray = allowed * speed
     return rates

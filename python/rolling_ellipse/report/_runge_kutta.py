@@ -17,13 +17,13 @@ from .._ask.settings import Settings
 
 _TABLEAUS = _core.tableaus()
 _SAFETY, _MOST_SHRINKING, _MOST_GROWTH = 0.9, 0.2, 10.0
-_TINY = 1e-300  # keeps a component of 0 from an allowed error of 0
+_TINY = 1e-300  # least allowed error, for a component of 0 where atol = 0
 
 
 def integrate(
     slope: Callable[[FloatArray], FloatArray], y: FloatArray, t: FloatArray, how: Settings
 ) -> tuple[FloatArray, str]:
-    """Solve y' = slope(y) from time 0 and sample it at increasing times.
+    """Solve y' = slope(y) from time 0 and sample y at the increasing times t.
 
     Steps are of one size where `how` has a `step`; else their size follows from the local error
     (HNW II.4).
@@ -62,7 +62,7 @@ def integrate(
         if not np.all(np.isfinite(after)):
             return np.array(samples), f"the equations have no finite solution at {now:.6g} s"
         last = end if h == end - now else now + h
-        extra = h * (tableau["dense"][0, : stages + 1] @ slopes)  # terms beyond Hermite's cubic
+        extra = h * (tableau["dense"][0, : stages + 1] @ slopes)  # of the dense output
         first, change = h * slopes[0], after - y
         bend = 2 * change - first - h * slopes[-1]
         while len(samples) < t.size and t[len(samples)] <= last:
@@ -76,12 +76,12 @@ def integrate(
 
 
 def _allowed(size: FloatArray, how: Settings) -> FloatArray:
-    """Return the allowed errors of components of a size."""
+    """Return the allowed local error of each component: atol + rtol times its size."""
     return how.atol + how.rtol * size + _TINY
 
 
 def _first_step(y: FloatArray, first: FloatArray, how: Settings, end: float) -> float:
-    """Return a hundredth of the time in which y changes by its size (HNW II.4)."""
+    """Return the first step: 1/100 of the time in which y changes by its size (HNW II.4)."""
     allowed = _allowed(np.abs(y), how)
     size, speed = float(np.linalg.norm(y / allowed)), float(np.linalg.norm(first / allowed))
     return min(0.01 * size / speed, end) if size > 0 and speed > 0 else 1e-6 * end

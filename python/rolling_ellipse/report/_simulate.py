@@ -114,7 +114,7 @@ def simulate(
         atol=atol,
         step=step,
         max_steps=max_steps,
-        max_events=1,  # this model has none
+        max_events=1,  # "multipliers" has no events
         **{name: value for name, value in how.items() if value is not None},
     )
     if corrected:
@@ -124,12 +124,12 @@ def simulate(
     return follow(_checked_start(*state, body, names, consistent), times, body, names, settings)
 
 
-def _is_ggl(stabilization: object) -> bool:  # == would compare the entries of an array
+def _is_ggl(stabilization: object) -> bool:  # `==` of an array has many answers
     return isinstance(stabilization, str) and stabilization == "ggl"
 
 
 def _corrected(start: Start, t: FloatArray, body: Scene, settings: Settings) -> Trajectory:
-    """Return the motion of the model "multipliers" from a start."""
+    """Return the motion by the corrected equations, the model "multipliers", from a start."""
     x, _, theta, _, _ = start.q.tolist()
     scene = replace(body, theta=theta, omega=float(start.q_dot[2]), x=x)
     trajectory = Trajectory.computed(scene, settings, t, (start.q, start.q_dot))

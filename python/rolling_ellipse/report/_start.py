@@ -13,7 +13,7 @@ from ..geometry import support, support_curvature, support_slope
 from ._rows import direction, masses, rows
 
 _EPS = float(np.finfo(float).eps)
-_ULPS = 16.0  # allowed error of each coordinate, as in `kinematics`
+_ULPS = 16.0  # allowed error of each coordinate and rate [ulp], as that of `kinematics`
 _NAMES = (
     ("f2", "m"), ("f3", "m"), ("f4", "rad"),
     ("f1", "m/s"), ("rate of f2", "m/s"), ("rate of f3", "m/s"), ("rate of f4", "rad/s"),
@@ -48,14 +48,14 @@ class Start:
 def violations(
     q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return the violated constraints by name: f2, f3, f4, and the rates by the rows in use.
+    """Return the violated ones of f2, f3, f4, f1 and the rates of f2 to f4: name, size, unit.
 
     A residual may be as large as 16 ulp of each coordinate make it, and 16 ulp of its terms more:
     the errors of `kinematics` and of the evaluation.
     """
     state = np.concatenate([q, q_dot])
     off = _ULPS * np.spacing(np.abs(state))
-    off[3] += _ULPS / 2 * _EPS * abs(q[3] - q[2])  # the error of psi - theta is one of psi
+    off[3] += _ULPS / 2 * _EPS * abs(q[3] - q[2])  # an error of psi - theta acts as one of psi
     moved = state + np.concatenate([np.zeros((1, 10)), np.diag(off), np.diag(-off)])
     residuals = _residuals(moved[:, :5], moved[:, 5:], body, printed)
     sizes = np.abs(residuals[0])
@@ -72,7 +72,7 @@ def violations(
 
 
 def _scaled_rows(q: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
-    """Return the rows in use; rows 3 and 4 are divided by factors to give rates of f3 and f4."""
+    """Return the constraint matrix with rows 3 and 4 scaled so that they give rates of f3, f4."""
     matrix = rows(q, body.a, body.b, printed)
     matrix[..., 2, :] /= matrix[..., 2, 4, None].copy()
     matrix[..., 3, :] /= matrix[..., 3, 3, None].copy()
@@ -82,14 +82,14 @@ def _scaled_rows(q: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatA
 def _residuals(
     q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]
 ) -> FloatArray:
-    """Return f2, f3, f4, f1 and the rates of f2, f3, f4, (..., 7)."""
+    """Return the seven residuals f2, f3, f4, f1 and the rates of f2, f3, f4, (..., 7)."""
     position = constraints(q, q_dot, a=body.a, b=body.b).position
     velocity = np.einsum("...ij,...j->...i", _scaled_rows(q, body, printed), q_dot)
     return np.concatenate([position, velocity], axis=-1)
 
 
 def _terms(q: FloatArray, q_dot: FloatArray, body: Scene, printed: tuple[str, ...]) -> FloatArray:
-    """Return the sizes of the terms of the seven residuals."""
+    """Return, for each of the seven residuals, the sum of the sizes of its terms."""
     _, z, theta, psi, r = np.abs(q)
     velocity = np.abs(_scaled_rows(q, body, printed)) @ np.abs(q_dot)
     return np.concatenate([[z + r, 2 * r, theta + psi], velocity])
