@@ -2,12 +2,12 @@
 
 
 class ValidityWarning(UserWarning):
-    """Part of the motion is impossible for a body on the ground."""
+    """Warning: part of the motion is impossible for a body on the ground."""
 
 
 class StabilityWarning(UserWarning):
-    """The computed motion has lost energy, or misses its constraints."""
+    """Warning: the computed motion has lost energy, or misses its constraints."""
 
 
 class CompletenessWarning(UserWarning):
-    """The results of a search are not proved to be complete."""
+    """Warning: the results of a search are not proved to be complete."""

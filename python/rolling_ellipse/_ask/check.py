@@ -22,18 +22,18 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
-COORDINATES = 5  # x, z, theta, psi, r
+COORDINATES = 5  # number of coordinates x, z, theta, psi, r
 
 _DOUBLE = np.dtype(np.float64)
 _MOST_WORKERS = 1024
 _KNOWN = "within the range of doubles"
 _PLACE = r"\[(\d+)\]"
-_LONGEST = 300  # characters of a value in a message
+_LONGEST = 300  # largest number of characters of a value in a message
 _MOST_AXES = 32  # largest number of axes that NumPy broadcasts
-_PIECE = 2**17  # numbers converted at a time: 10 ms at most, between which Ctrl-C acts
+_PIECE = 2**17  # numbers converted at a time, in 10 ms at most: Ctrl-C acts in between
 _SLICED = (list, tuple, range)
-_TEXT = (str, bytes, bytearray, memoryview)  # sequences, but not of numbers
-_PLAIN = frozenset({float, int, bool, np.float64})  # types of nearly all entries of lists
+_TEXT = (str, bytes, bytearray, memoryview)  # types of sequences that hold no numbers
+_PLAIN = frozenset({float, int, bool, np.float64})  # types of numbers that need no further check
 _UNITS = ("unit", "units", "dimensions")
 
 _short = reprlib.Repr()
@@ -54,7 +54,7 @@ def number(name: str, value: Any) -> float:
     if type(value) is float:  # the fast path: most arguments are floats
         return value
     if type(value) in _PLAIN:
-        with suppress(OverflowError):  # refused below
+        with suppress(OverflowError):  # an int beyond doubles, refused below
             return float(value)
     found = _doubles(name, value)
     if found is None or found.ndim:
@@ -68,7 +68,7 @@ def optional_number(name: str, value: Any) -> float | None:
 
 def whole(name: str, value: Any) -> int:
     """Return ``value`` as an int, or raise TypeError naming the argument."""
-    if type(value) is int:  # the usual case
+    if type(value) is int:  # the fast path: most arguments are ints
         return value
     _require_plain(name, value)
     if not isinstance(value, (bool, np.bool_)):
@@ -78,7 +78,7 @@ def whole(name: str, value: Any) -> int:
 
 
 def positive(name: str, value: Any) -> float:
-    """Return ``value`` as a positive finite float."""
+    """Return ``value`` as a positive finite float, or raise an error naming the argument."""
     found = number(name, value)
     if not 0 < found < math.inf:
         raise ValueError(f"{name} must be positive and finite, got {found!r}")
@@ -86,7 +86,7 @@ def positive(name: str, value: Any) -> float:
 
 
 def whole_within(name: str, value: Any, most: int) -> int:
-    """Return ``value`` as a whole number from 1 to ``most``."""
+    """Return ``value`` as an int from 1 to ``most``, or raise an error naming the argument."""
     found = whole(name, value)
     if not 1 <= found <= most:
         raise ValueError(f"{name} must be from 1 to {most}, got {shown(value)}")
@@ -94,7 +94,7 @@ def whole_within(name: str, value: Any, most: int) -> int:
 
 
 def worker_count(workers: int) -> int:
-    """Return the number of threads for an argument ``workers``."""
+    """Return the number of threads that an int ``workers`` asks for; -1: one for each core."""
     count = whole("workers", workers)
     if count == -1:
         return min(os.cpu_count() or 1, _MOST_WORKERS)
@@ -140,7 +140,7 @@ def _doubles(name: str, value: Any) -> FloatArray | None:
 
 
 def _converted(name: str, value: Any) -> FloatArray | None:
-    """Return `_doubles` of a plain value; a long list is converted piece by piece."""
+    """Return a value without masks and units as `_doubles` does; a long list piece by piece."""
     if isinstance(value, _SLICED) and (size := _size(value)) > _PIECE:
         return _in_pieces(name, value, size)
     try:
@@ -150,7 +150,7 @@ def _converted(name: str, value: Any) -> FloatArray | None:
             return found if dtype is _DOUBLE else copied(found)
         if dtype.kind != "f" and (dtype.kind != "O" or hasattr(type(value), "__array__")):
             return None
-        # Decimals, Fractions, ints of more than 64 bits and long doubles: by their own conversion
+        # Decimals, Fractions, ints of more than 64 bits and long doubles convert themselves
         doubles = np.array(vector("d", found.ravel().tolist())).reshape(found.shape)
     except OverflowError:
         raise ValueError(f"{name} must be {_KNOWN}, got {shown(value)}") from None
@@ -174,14 +174,14 @@ def _in_pieces(name: str, entries: Any, size: int) -> FloatArray | None:
 
 
 def _size(value: Any) -> int:
-    """Return the number of numbers in a list whose entries are all like the first."""
+    """Return the number of numbers in nested lists, if all entries of a list are like its first."""
     if isinstance(value, _SLICED):
         return len(value) * _size(value[0]) if value else 0
     return value.size if type(value) is np.ndarray else 1
 
 
 def pieces(values: npt.NDArray[Any]) -> Iterator[tuple[int, npt.NDArray[Any]]]:
-    """Yield begin and numbers of one piece of an array after the other, in C order."""
+    """Yield the pieces of an array in C order: index of the first number, and the numbers."""
     flat: Any = values.reshape(-1) if values.flags.c_contiguous else values.flat
     for begin in range(0, values.size, _PIECE):
         yield begin, flat[begin : begin + _PIECE]
@@ -196,7 +196,7 @@ def copied(values: npt.NDArray[Any]) -> FloatArray:
 
 
 def _require_plain(name: str, value: Any, axes: int = 0) -> None:
-    """Raise TypeError for a value with masks or units, or a sequence that holds one."""
+    """Raise TypeError if a value, or an entry of nested sequences, is masked or has units."""
     if isinstance(value, np.generic):
         return
     if isinstance(value, (Sequence, chain)) and not isinstance(value, _TEXT):
@@ -205,7 +205,7 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
             if _PLAIN.issuperset(map(type, piece)):
                 continue
             nested = [entry for entry in piece if type(entry) in _SLICED]
-            if nested:  # all at once: there may be a million of pairs
+            if nested:  # in one call for all: there may be a million pairs
                 if axes == _MOST_AXES:
                     found = shown(nested[0])
                     raise ValueError(f"{name} must have at most {_MOST_AXES} axes, got {found}")
@@ -216,7 +216,7 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
                         _require_plain(name, entry, axes + 1)
         return
     is_masked = isinstance(value, np.ndarray) and np.any(getattr(value, "mask", False))
-    # Xarray keeps the array in `data`
+    # An xarray object holds its array, which may have units, in `data`
     held = None if isinstance(value, np.ndarray) else getattr(value, "data", None)
     if is_masked or _has_units(value) or _has_units(held):
         raise TypeError(
@@ -239,29 +239,29 @@ def _has_units(value: Any) -> bool:
 
 
 def shown(value: Any) -> str:
-    """Return ``repr(value)``, cut to the room in a message."""
+    """Return ``repr(value)``, cut to `_LONGEST` characters for a message."""
     try:
         text = _short.repr(value)
-    except Exception:  # an int of more digits than Python writes
+    except Exception:  # for example, an int of more digits than Python writes
         return f"an object of type {type(value).__name__}"
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
 
 
 def require(name: str, requirement: str, values: Any, holds: Any) -> None:
-    """Raise ValueError with the first of the values for which `holds` is False."""
+    """Raise ValueError with the first value for which `holds` is False, if there is one."""
     if not holds.all():
         raise ValueError(f"{name} must be {requirement}, got {values[~holds][0]!s}")
 
 
 def finite(name: str, value: Any) -> FloatArray:
-    """Return ``value`` as an array of finite numbers."""
+    """Return ``value`` as an array of finite numbers, or raise an error naming the argument."""
     found = array(name, value)
     require(name, "finite", found, np.isfinite(found))
     return found
 
 
 def coordinates(name: str, value: Any) -> FloatArray:
-    """Return ``value`` as an array of coordinates of finite numbers along its last axis."""
+    """Return ``value`` as an array of finite numbers with 5 coordinates along its last axis."""
     found = finite(name, value)
     if found.ndim == 0 or found.shape[-1] != COORDINATES:
         raise ValueError(
@@ -272,7 +272,7 @@ def coordinates(name: str, value: Any) -> FloatArray:
 
 
 def common_shape(arrays: dict[str, FloatArray], axes: slice) -> tuple[int, ...]:
-    """Return the shape to which arrays broadcast along some of their axes, or raise ValueError."""
+    """Return the common shape of the given axes of all arrays; ValueError if there is none."""
     try:
         return np.broadcast_shapes(*(values.shape[axes] for values in arrays.values()))
     except ValueError:
@@ -281,12 +281,12 @@ def common_shape(arrays: dict[str, FloatArray], axes: slice) -> tuple[int, ...]:
 
 
 def require_together(**arguments: Any) -> None:
-    """Raise ValueError if axes before the last do not broadcast."""
+    """Raise ValueError unless the axes before the last of all arguments broadcast together."""
     common_shape({name: array(name, value) for name, value in arguments.items()}, slice(-1))
 
 
 def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
-    """Return the common shape, and 1-D arrays of all elements or of one, as the core takes them.
+    """Return the arguments' common shape, and a 1-D array of each: all its elements, or its one.
 
     Raises
     ------
@@ -302,14 +302,14 @@ def broadcast(**arguments: Any) -> tuple[tuple[int, ...], list[FloatArray]]:
 
 
 def shaped(found: Any, shape: tuple[int, ...]) -> Any:
-    """Return an array of all elements, or a tuple of them, in their shape: floats for scalars."""
+    """Return a 1-D array, or each array of a tuple, in the given shape; if that is (), a float."""
     if isinstance(found, tuple):
         return tuple([shaped(values, shape) for values in found])
     return float(found[0]) if shape == () else found.reshape(shape)
 
 
 def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> Any:
-    """Return the result of a function of the core for bodies, `shaped`; the arguments broadcast.
+    """Return what a function of the core gives for arguments that broadcast, in their shape.
 
     The function takes the number of elements, the arguments as `broadcast` returns them, and the
     settings. A ``gyration2`` of None is that of uniform discs of semi-axes ``a`` and ``b``. An
@@ -329,7 +329,7 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
 
 
 def _with_indices(message: str, shape: tuple[int, ...]) -> str:
-    """Return a message of the core, ``a[7] must be``, with the indices of element 7 instead."""
+    """Return a message of the core with element 7 in ``a[7]`` named by its indices in `shape`."""
     if len(shape) < 2:
         return message
     name, rest = message.split(" ", 1)
@@ -341,14 +341,14 @@ def _with_indices(message: str, shape: tuple[int, ...]) -> str:
 
 
 def uniform_disc(a: Any, b: Any) -> FloatArray:
-    """Return k^2 = I/m of uniform discs."""
-    with np.errstate(over="ignore"):  # the core refuses infinite values by name
+    """Return k^2 = I/m = (a^2 + b^2)/4 of uniform discs with semi-axes a, b [m^2]."""
+    with np.errstate(over="ignore"):  # the core refuses such an a or b by name
         squares: FloatArray = (array("a", a) ** 2 + array("b", b) ** 2) / 4
     return squares
 
 
 def require_near(name: str, size: float, farthest: float) -> None:
-    """Raise ValueError if a double cannot resolve a thousandth of a body so far away."""
+    """Raise ValueError if a double near `farthest` [m] cannot resolve a thousandth of `size`."""
     if not size > 1e3 * np.spacing(farthest):
         raise ValueError(
             f"{name} must stay where a double resolves a thousandth of its body of {size:.6g} m, "
@@ -363,7 +363,7 @@ def file_name(name: str, value: Any) -> str:
         raise TypeError(f"{name} must be a path, a string or a PathLike, got {shown(value)}")
     try:
         named = bool(os.fsencode(found)) and "\0" not in found
-    except UnicodeEncodeError:  # a lone surrogate
+    except UnicodeEncodeError:  # a lone surrogate, which no file name can have
         named = False
     if not named:
         raise ValueError(f"{name} must name a file, got {found!r}")
@@ -373,6 +373,6 @@ def file_name(name: str, value: Any) -> str:
 def choice(name: str, value: Any, valid: tuple[str, ...]) -> str:
     """Return ``value`` if it is one of the valid names, or raise ValueError listing them."""
     if isinstance(value, str) and value in valid:
-        return valid[valid.index(value)]  # a str, whatever kind of str was given
+        return valid[valid.index(value)]  # a plain str, even if `value` is of a subclass
     names = ", ".join(repr(v) for v in valid)
     raise ValueError(f"{name} must be one of {names}, got {shown(value)}")

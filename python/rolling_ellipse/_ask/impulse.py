@@ -46,9 +46,9 @@ class Impulse:
     def __post_init__(self) -> None:
         for field in fields(self):
             object.__setattr__(self, field.name, numbers(field.name, getattr(self, field.name)))
-        _ = self.shape  # arrays must broadcast
+        _ = self.shape  # raises if the arrays do not broadcast
         if not self._arrays:
-            _ = self.core  # the core validates
+            _ = self.core  # raises if a number is out of range
             return
         for name, values in vars(self).items():
             _let_the_core_refuse(name, np.asarray(values), name)
@@ -95,7 +95,7 @@ class Impulse:
     def _values(self) -> tuple[Any, ...]:
         """Return the values that decide equality: floats, and the shape and bits of arrays."""
         return tuple(
-            # + 0.0: the two zeros are equal, their bits are not
+            # + 0.0 turns -0.0 into 0.0, which is equal but has other bits
             (value.shape, (value + 0.0).tobytes()) if isinstance(value, np.ndarray) else value
             for value in vars(self).values()
         )
@@ -107,7 +107,7 @@ class Impulse:
         return hash(self._values())
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Make the arrays read-only again: pickles and deep copies do not keep that."""
+        """Make the arrays read-only again: pickles and deep copies leave them writeable."""
         self.__dict__.update(state)
         for values in self._arrays.values():
             values.flags.writeable = False
@@ -124,15 +124,15 @@ def numbers(name: str, value: Any) -> Any:
 
 
 def _largest(values: FloatArray) -> int:
-    """Return the index of the largest size; NaN is larger than any number."""
+    """Return the index of the value of largest size; NaN counts as the largest."""
     return int(np.abs(values).argmax())
 
 
 def _let_the_core_refuse(name: str, values: FloatArray, argument: str) -> None:
-    """Raise the core's error for the worst number (NaN, or else the largest), as `argument`."""
+    """Let the core check the worst value (NaN, or else the largest); its error names `argument`."""
     if not values.size:
         return
-    # Index of the worst number of each piece
+    # Flat index of the worst value of each piece
     worst = [begin + _largest(piece) for begin, piece in pieces(values)]
     index = np.unravel_index(worst[_largest(values.flat[worst])], values.shape)
     try:

@@ -23,7 +23,7 @@ def _formatted(value: enum.Enum, spec: str) -> str:
     return format(value.value, spec) if spec[-1:] in tuple("bdoxX") else format(str(value), spec)
 
 
-# Codes (IntEnum) print as bare numbers by default, and all of them as <Kind.NAME: number> in lists.
+# These enums print as Kind.NAME; Python would print <Kind.NAME: 1> in lists, an IntEnum as 1.
 for _kind in (EventKind, Mode, Outcome, Validity):
     for _name, _face in {"__repr__": _dotted, "__str__": _dotted, "__format__": _formatted}.items():
         setattr(_kind, _name, _face)
@@ -53,18 +53,18 @@ def with_unit(value: Any, unit: str) -> str:
 
 
 def text_table(rows: Sequence[Row]) -> str:
-    """Return rows of equal length with their columns aligned."""
+    """Return rows of equally many cells as text with aligned columns."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ("  ".join(map(str.ljust, row, widths)) for row in rows)
     return "\n".join(line.rstrip() for line in lines)
 
 
 def html_table(caption: str, rows: Iterable[Row], head: Row = ()) -> str:
-    """Return a table without colours of its own; the first cell of a row names it.
+    """Return an HTML table without colours of its own; the first cell of a row is its heading.
 
     All text is escaped.
     """
-    from html import escape  # whose list of entities is slow to load
+    from html import escape  # imported here, since it is slow to load
 
     parts = ["<table>", f"<caption>{escape(caption)}</caption>"]
     if head:

@@ -16,7 +16,7 @@ Report = Callable[[int, int | None], Any]
 
 @contextmanager
 def reporting(progress: bool | Report, unit: str, name: str = "") -> Iterator[Report]:
-    """Yield a function that is called with the amounts done and in all (None: unknown).
+    """Yield a function to be called with two counts: done, and in all (None: unknown).
 
     It is `progress` itself; True makes a bar with `name` before it, False does nothing.
     """

@@ -26,7 +26,7 @@ _DOES = {
 
 
 def blow(impulse: Impulse) -> str:
-    """Return components and point of attack of an impulse as text."""
+    """Return the components [N s] and the point of attack [m] of an impulse as text."""
     return (
         f"({impulse.jx:g}, {impulse.jz:g}) N s at ({impulse.dx:g}, {impulse.dz:g}) m from the "
         "centre"
@@ -56,7 +56,7 @@ def what_the_blow_did(scene: Scene, start: dict[str, Any]) -> str:
 
 
 def what_follows(scene: Scene, start: dict[str, Any]) -> str:
-    """Return the motion that follows, and why if its velocities alone suggest another one."""
+    """Return the motion after t = 0 in words, and why if its velocities suggest another one."""
     mode, paradox = start["mode"], start["paradox"]
     if start["why_it_rolls"]:
         return f"the body rolls; {start['why_it_rolls']}"

@@ -36,7 +36,7 @@ class cached_property(Generic[_Value]):
 
 
 class FieldsOnly:
-    """A dataclass whose pickles and deep copies hold its fields only, not its cached values.
+    """A base of dataclasses: pickles and deep copies hold the fields, not the cached values.
 
     Cached values are computed again when asked for: objects of the core cannot be pickled, and
     arrays that follow from the fields would only make a pickle larger.
@@ -46,21 +46,21 @@ class FieldsOnly:
         return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
 
     def __copy__(self) -> Self:
-        """Share all values: they never change."""
+        """Return a copy that shares all values, cached ones too: they never change."""
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         return other
 
 
 def trusted(kind: type[_Owner], values: dict[str, Any]) -> _Owner:
-    """Make a dataclass of values of the core, without checks, and three times as fast."""
+    """Make an object of a dataclass from valid values, three times as fast as with checks."""
     made = object.__new__(kind)
     object.__setattr__(made, "__dict__", values)
     return made
 
 
 def find_late(of: type[_Owner], **finds: Callable[[_Owner], Any]) -> None:
-    """Let fields that `trusted` has left out be computed when first asked for.
+    """Let fields of a class that `trusted` leaves out be computed when first asked for.
 
     They are set after the class is made: a dataclass would take them for defaults.
     """

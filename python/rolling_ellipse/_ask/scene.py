@@ -157,7 +157,7 @@ class Scene(FieldsOnly, Listed):
         self._hold(given)
 
     def _hold(self, given: dict[str, Any], *, reached: bool = False) -> None:
-        """Keep the arguments if they are valid."""
+        """Check the arguments, and keep them as the fields of this scene."""
         impulse = given.pop("impulse")
         for name, value in given.items():
             if type(value) is not float and not (value is None and name in OPTIONAL):
@@ -169,7 +169,7 @@ class Scene(FieldsOnly, Listed):
                 f"impulse must be one blow, got an Impulse of shape {impulse.shape}: "
                 "use outcome(scene, impulse)"
             )
-        core = _for_core(given, impulse, reached)  # the core validates
+        core = _for_core(given, impulse, reached)  # refuses numbers out of range
         object.__setattr__(self, "__dict__", given | {"impulse": impulse, "core": core})
 
     @cached_property
@@ -179,7 +179,7 @@ class Scene(FieldsOnly, Listed):
         return _for_core(numbers, numbers.pop("impulse"), reached=True)
 
     def replace(self, **changes: Any) -> Scene:
-        """Return the scene with some of its arguments changed.
+        """Return a new scene with some of the arguments changed.
 
         Raises
         ------
@@ -208,7 +208,7 @@ class Scene(FieldsOnly, Listed):
         return InitialState(**known, reason=f"{did}; {then}")
 
     def _changed(self) -> dict[str, Any]:
-        """Return the fields that differ from their defaults; the semi-axes have none."""
+        """Return the semi-axes, which have no defaults, and all fields that differ from theirs."""
         found = ((field, getattr(self, field.name)) for field in fields(self))
         return {field.name: value for field, value in found if value != field.default}
 
@@ -217,7 +217,7 @@ class Scene(FieldsOnly, Listed):
         return f"Scene({', '.join(given)})"
 
     def _rows(self) -> list[Row]:
-        """Return the fields that differ from their defaults, and the start that follows."""
+        """Return the rows of a table: the changed fields, then the motion at the start."""
         changed = self._changed()
         impulse = changed.pop("impulse", None)
         rows: list[Row] = [
@@ -248,7 +248,7 @@ def reached_scene(arguments: Mapping[str, Any]) -> Scene:
 
 
 def require_scene(scene: object) -> Scene:
-    """Return the scene, or raise TypeError."""
+    """Return the argument if it is a Scene, or raise TypeError."""
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a Scene, got {shown(scene)}")
     return scene

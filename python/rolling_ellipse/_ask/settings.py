@@ -47,7 +47,7 @@ class Settings(FieldsOnly):
 
 
 def settings(*given: Any) -> Settings:
-    """Return Settings of values in the order of their fields; equal ones are checked once."""
+    """Return Settings of values in the order of the fields; equal values are checked once."""
     if all(map(is_, given, _GIVEN_BY_DEFAULT)):
         return DEFAULTS
     plain = all(type(value) in _PLAIN or value is DEFAULTS.baumgarte for value in given)
@@ -90,4 +90,4 @@ _CHECKS = {field.name: _CHECK_OF[str(field.type)] for field in fields(Settings)}
 DEFAULTS = Settings()
 _NAMES = tuple(field.name for field in fields(Settings))
 _GIVEN_BY_DEFAULT = tuple(getattr(DEFAULTS, name) for name in _NAMES)
-_PLAIN = (float, int, str, type(None))  # immutable types
+_PLAIN = (float, int, str, type(None))  # types of immutable values, which `_kept` may hold
