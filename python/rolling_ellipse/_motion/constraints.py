@@ -15,7 +15,7 @@ from .._ask.check import FloatArray, broadcast, coordinates, number, require, re
 
 @dataclass(frozen=True)
 class ConstraintResiduals:
-    """Residuals of the constraints; the leading axes are those of the states.
+    """Residuals of the constraints of one or many states, whose axes come first.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Events between the segments of a contact motion: slip, stick, lift-off, impact, rest, jam."""
+"""Events of a contact motion: slip, stick, reversal, lift-off, impact, rest and jam."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ _SENTENCES = {
 }
 _PULLED = "the ground would have to pull: the body slides, not pressed (infinite friction)"
 _HEAD = ("t [s]", "kind", "theta [rad]", "x [m]", "what changes")
-_FIRST, _LAST = 12, 4  # events shown at the two ends of a long table
+_FIRST, _LAST = 12, 4  # numbers of events at the begin and at the end of a long table
 
 
 @dataclass(frozen=True, repr=False)
 class Event(FieldsOnly):
-    """A change of mode, or an impact.
+    """One event of a motion: an impact, or a change of mode or of the direction of the slip.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Event(FieldsOnly):
     state_after: InitialState
 
     def _row(self) -> Row:
-        """Return the cells of a row under `_HEAD`."""
+        """Return the event as a table row, with the columns of `_HEAD`."""
         after = self.state_after
         numbers = (f"{self.t:.9g}", self.kind.name, brief(after.theta), brief(after.x))
         return (*numbers, self._change())
@@ -92,7 +92,7 @@ class Events(tuple[Event, ...]):
 
     def _shown(self) -> list[Row]:
         hidden = len(self) - _FIRST - _LAST
-        if hidden <= 1:  # the row "and … more" takes as much room
+        if hidden <= 1:  # the row "and … more" would save no row
             return [each._row() for each in self]
         first, last = self[:_FIRST], self[-_LAST:]
         gap = ("…", f"and {hidden} more", "", "", "")

@@ -95,7 +95,7 @@ def when(
 def _measure(
     motion: Trajectory, function: Callable[[Trajectory], Any]
 ) -> Callable[[FloatArray], FloatArray]:
-    """Return the function of a Trajectory as a function of times."""
+    """Return the caller's function of a Trajectory as a function of an array of times."""
 
     def measure(times: FloatArray) -> FloatArray:
         found = array("function's result", function(motion.sol(times)))

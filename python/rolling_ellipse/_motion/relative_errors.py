@@ -1,4 +1,4 @@
-"""The errors of a motion without units, so that rounding shows as 1e-16 whatever the body."""
+"""Dimensionless errors of a motion: rounding errors have the size 1e-16 for every body."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def constraint_errors(motion: Trajectory) -> tuple[Errors, Errors]:
-    """Return the errors of positions and of velocities, each (n,), by name.
+    """Return the relative errors of the constraints by name: positions, then velocities, (n,).
 
     Lengths are over the longer semi-axis, rates also over max|omega|, or over sqrt(gravity/length)
     for a motion without rotation. The ground does not constrain f1, f2, gap and slip in flight, nor

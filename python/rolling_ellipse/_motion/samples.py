@@ -1,4 +1,4 @@
-"""The arrays of a Trajectory: of one length and type, and read-only."""
+"""The arrays of a Trajectory: one number of each for every sample, and read-only."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class ContactSamples(NamedTuple):
     mode: npt.NDArray[np.int8]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Make unpickled arrays read-only."""
+        """Let unpickling make the arrays read-only again."""
         return _frozen_contact, tuple(self)
 
 
@@ -42,18 +42,18 @@ def _frozen_contact(*arrays: Any) -> ContactSamples:
 
 
 def frozen(values: _Values) -> _Values:
-    """Make a new array read-only, and return it."""
+    """Make an array read-only, and return the array itself."""
     values.setflags(write=False)
     return values
 
 
 def even_times(begin: float, end: float, count: int) -> FloatArray:
-    """Return even times up to `end`, although `np.linspace` rounds subnormal steps up."""
+    """Return `count` even times, none beyond `end`: `np.linspace` rounds subnormal steps up."""
     return np.minimum(np.linspace(begin, end, count), end)
 
 
 def sampled(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
-    """Return the arrays of a Trajectory; their bits do not depend on the order of times."""
+    """Return a solution's samples at times as fields of a Trajectory, in any order of times."""
     if _core.are_sample_times(times):
         return _ascending(solution, times)
     order = np.argsort(times, kind="stable")
@@ -80,14 +80,14 @@ def _ascending(solution: _core.Solution, times: FloatArray) -> dict[str, Any]:
 
 
 def of_contact(columns: dict[str, Any]) -> dict[str, Any]:
-    """Return the arrays of a Trajectory from the samples of a contact motion by their names."""
+    """Return a contact motion's samples, by name in `columns`, as fields of a Trajectory."""
     t, theta, omega, x = _known_of_all(columns)
     contact = ContactSamples._make(_beside(columns))
     return {"t": t, "theta": theta, "omega": omega, "x": x, "contact": contact}
 
 
 def of_coordinates(t: FloatArray, q: FloatArray, q_dot: FloatArray) -> dict[str, Any]:
-    """Return the arrays of a Trajectory from samples in coordinates."""
+    """Return samples in the five coordinates, and their rates, as fields of a Trajectory."""
     theta, omega, x = q[:, 2].copy(), q_dot[:, 2].copy(), q[:, 0].copy()
     held = {"theta": frozen(theta), "omega": frozen(omega), "x": frozen(x)}
     return {"t": t, **held, "coordinates": (q, q_dot)}
@@ -124,9 +124,9 @@ def touch(of: Trajectory) -> Mapping[str, FloatArray]:
 
 
 def _untouchable(values: _Values) -> _Values:
-    """Return a read-only array: a copy if the array or one that it is a view of is writeable."""
+    """Return the array read-only: a copy if anybody could write to it, or if it is strided."""
     if values.base is None and not values.flags.writeable:
-        return values  # the samples of the core are not writeable either
+        return values  # read-only already, and no view of an array
     layer: Any = values
     while isinstance(layer, np.ndarray) and not layer.flags.writeable:
         layer = layer.base
@@ -136,7 +136,7 @@ def _untouchable(values: _Values) -> _Values:
 
 
 def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
-    """Return a 1-D array of numbers, of a given size if any.
+    """Return a 1-D array of numbers, read-only, of the given size (None: of any size).
 
     Raises
     ------
@@ -156,7 +156,7 @@ def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
 def coordinate_pair(
     name: str, values: Any, shape: tuple[int, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return q and q_dot, both of a shape; errors are those of `vector`."""
+    """Return q and q_dot as read-only arrays of the given shape; errors are those of `vector`."""
     required = f"{name} must be q and q_dot, arrays of shape {shape}"
     try:
         q, q_dot = values
@@ -169,7 +169,7 @@ def coordinate_pair(
 
 
 def contact_samples(values: Any, size: int) -> ContactSamples:
-    """Return the samples of a contact motion; errors are those of `vector`."""
+    """Return ContactSamples with checked, read-only arrays; errors are those of `vector`."""
     if not isinstance(values, ContactSamples):
         raise TypeError(f"contact must be ContactSamples or None, got {shown(values)}")
     *columns, mode = ContactSamples._fields

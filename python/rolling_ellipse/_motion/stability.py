@@ -1,4 +1,4 @@
-"""Losses of energy and constraints by a computed motion, and advice against them."""
+"""Advice for a computed motion that has lost energy, or misses its constraints."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 _LOST_ENERGY = 1e-2  # largest accepted relative change of the energy
-# Largest accepted error of the constraints [long semi-axes, rad]: a pixel of a picture
+# Largest accepted error of the constraints, over the long semi-axis: a pixel of a picture
 _MISSED = 1e-3
-_MOVED = 0.1  # largest error of the constraints by one step, before its projection
-_OF_RTOL = 10.0  # largest change of the energy over rtol
+_MOVED = 0.1  # largest accepted error of the constraints after a step, before its projection
+_OF_RTOL = 10.0  # accepted relative change of the energy over rtol, with error control
 
 
 def advice(motion: Trajectory) -> str | None:
-    """Return advice for a motion that has lost energy or its constraints, or None.
+    """Return advice, one sentence, if a motion has lost energy or its constraints; else None.
 
     The losses are measured at steps and between them. The energy, which rolling conserves, is
     measured by the largest kinetic plus |potential| energy, the latter with x = 0 at the start. A
@@ -63,7 +63,7 @@ def advice(motion: Trajectory) -> str | None:
 
 
 def _too_stiff(settings: Settings, step: float, growth: float) -> str:
-    """Return advice for a step too large for Baumgarte's feedback, with a step that is stable."""
+    """Return the advice to take the largest step at which Baumgarte's feedback is stable."""
     stable, unstable = 0.0, step
     for _ in range(60):
         middle = (stable + unstable) / 2

@@ -34,9 +34,9 @@ class Status(enum.Enum):
     STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
 
 
-COMPLETED = Status.COMPLETED  # cached: access by the class is five times slower
-_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two motions are possible
-# The status for each code of an ending
+COMPLETED = Status.COMPLETED  # `Status.COMPLETED` takes five times as long
+_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # UNDETERMINED: two motions
+# The Status for each code of the core's endings
 STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}
 
 
@@ -53,4 +53,4 @@ class IntegrationError(RuntimeError):
 
 
 class WorkerError(RuntimeError):
-    """An executor lost a task, and its scenes have no result; `__cause__` is the reason."""
+    """An executor lost a task, whose scenes have no result; `__cause__` is its exception."""

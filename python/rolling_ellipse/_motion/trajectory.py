@@ -54,7 +54,7 @@ _Values = TypeVar("_Values", bound=npt.NDArray[Any])
 
 
 def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Values]:
-    """A read-only array, computed when first asked for."""
+    """Make a property of a Trajectory: a read-only array, computed when first asked for."""
 
     def values(self: Trajectory) -> _Values:
         return frozen(function(self))
@@ -63,7 +63,7 @@ def _derived(function: Callable[[Trajectory], _Values]) -> cached_property[_Valu
 
 
 def _column(name: str, column: int) -> cached_property[FloatArray]:
-    """A contiguous copy of one column of q, q_dot or q_ddot."""
+    """Make a property of a Trajectory: one column of q, q_dot or q_ddot, copied."""
     return _derived(lambda self: np.ascontiguousarray(self._details[name][:, column]))
 
 
@@ -105,7 +105,7 @@ class Trajectory(FieldsOnly):
     mode : ndarray of int8, shape (n,)
         Codes of `Mode`.
     scene, model, method, status, message, reason : Scene, str, str, Status, str, str
-        Scene, model and method used, how the motion ended, and why the model is valid.
+        Scene, model and method used, how the motion ended, and what is proved of rolling.
     valid_until : float
         Time until which the model is true [s]; infinite if it always is.
     t_end : float
@@ -170,7 +170,7 @@ class Trajectory(FieldsOnly):
             checked[name] = number(name, getattr(self, name))
         for name in ("message", "reason"):
             checked[name] = _sentence(name, getattr(self, name))
-        checked["model"] = choice("model", self.model, MODELS[1:])  # a motion is not "auto"
+        checked["model"] = choice("model", self.model, MODELS[1:])  # all models but "auto"
         checked["method"] = choice("method", self.method, METHODS[1:])
         require_scene(self.scene)
         for name, kind in (("settings", Settings), ("status", Status)):
@@ -216,7 +216,7 @@ class Trajectory(FieldsOnly):
     def _sampled(
         cls, solution: _core.Solution, times: FloatArray, known: dict[str, Any]
     ) -> Trajectory:
-        """Return the trajectory of a solution (arrays need no check), and keep the solution."""
+        """Return a solution sampled at times, with the facts in `known`; it keeps the solution."""
         return trusted(cls, known | sampled(solution, times) | {"_solution": solution})
 
     @cached_property
@@ -249,7 +249,7 @@ class Trajectory(FieldsOnly):
 
     @cached_property
     def _touch(self) -> Mapping[str, FloatArray]:
-        """z, x_dot, z_dot, normal and friction force: cheaper than `_details`."""
+        """z, x_dot, z_dot, normal and friction force at the samples: cheaper than `_details`."""
         return touch(self)
 
     z, x_dot, z_dot = _touching("z"), _touching("x_dot"), _touching("z_dot")
@@ -299,14 +299,14 @@ class Trajectory(FieldsOnly):
 
     @cached_property
     def events(self) -> Events:
-        """Changes of mode and impacts in the order of time, a tuple that prints as a table."""
+        """Events of the model "contact" in the order of time, a tuple that prints as a table."""
         if self.kept_events is not None:
             return Events(self.kept_events)
         return events(self.scene, self._solution.events.tolist())
 
     @property
     def success(self) -> bool:
-        """Whether the motion was followed to the end, or to a jam, after which none exists."""
+        """Whether the status is COMPLETED, or JAMMED, where no motion, or more than one, goes on."""
         return self.status in (Status.COMPLETED, Status.JAMMED)
 
     def constraint_residuals(self) -> ConstraintResiduals:
@@ -376,14 +376,14 @@ class Trajectory(FieldsOnly):
         return hash(self._facts())
 
     def _facts(self) -> tuple[Any, ...]:
-        """Return what decides equality, without arrays and events."""
+        """Return the values that decide equality, except for arrays and events."""
         return (
             self.scene, self.settings, self.span, self.model, self.method, self.status,
             self.message, self.reason, self.valid_until, self.t_end, self.t.shape,
         )  # fmt: skip
 
     def _bytes(self) -> list[bytes | None]:
-        """Return the bytes of the samples and the start."""
+        """Return the bytes of each array that decides equality: samples and start."""
         groups = ((self.t, self.theta, self.omega, self.x), self.coordinates, self.start)
         arrays = [group or (None,) for group in (*groups, self.contact)]
         return [None if each is None else each.tobytes() for group in arrays for each in group]
@@ -401,7 +401,7 @@ class Trajectory(FieldsOnly):
 def _sentence(name: str, value: Any) -> str:
     if not isinstance(value, str):
         raise TypeError(f"{name} must be a sentence, got {shown(value)}")
-    return str.__str__(value)  # a str, whatever kind of str was given
+    return str.__str__(value)  # a plain str, even if `value` is of a subclass
 
 
 def _kept(found: Any) -> tuple[Event, ...] | None:
@@ -421,18 +421,18 @@ def _require_counts(stats: Any) -> None:
 
 
 def _reason(self: Trajectory) -> str:
-    """The reason why the model is valid, in one sentence."""
+    """One sentence: the model, and what the certificate proves of rolling."""
     return self._solution.reason(self.scene.core)
 
 
 def _stats(self: Trajectory) -> dict[str, int]:
-    """Figures of the solver: segments, steps, rejected_steps, evaluations."""
+    """Counts of the solver by name: segments, steps, rejected_steps, evaluations."""
     return self._solution.stats
 
 
 find_late(Trajectory, reason=_reason, stats=_stats)
 for _each in (*QUANTITIES, MODE):
-    if _each.name in vars(Trajectory):  # fields have no place for a docstring
+    if _each.name in vars(Trajectory):  # only properties can have a docstring
         vars(Trajectory)[_each.name].__doc__ = _each.sentence
 
 
@@ -452,7 +452,7 @@ def solve(
     t_end: float,
     start: tuple[FloatArray, FloatArray] | None,
 ) -> _core.Solution:
-    """Return the core's solution: the motion at any time in [0, t_end]."""
+    """Solve a scene, and return the core's solution, which has the motion at any time to t_end."""
     if start is None:
         return _core.simulate(scene.core, settings.core, t_end)
     q, q_dot = (np.atleast_2d(values) for values in start)

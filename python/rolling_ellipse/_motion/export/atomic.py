@@ -37,7 +37,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         target, old = _target(name)
         new = _beside(target) if old is None or stat.S_ISREG(old.st_mode) else None
-    except OSError as error:  # it may name a folder, or the new file
+    except OSError as error:  # it may name another file than `path`
         raise OSError(error.errno, error.strerror, name) from None
     if new is None:
         yield Path(name)
@@ -47,7 +47,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
             yield new
             _store(new)
             if old is not None:
-                with suppress(PermissionError):  # only root can give files away
+                with suppress(PermissionError):  # only root can change the owner of a file
                     os.chown(new, old.st_uid, old.st_gid)
                 new.chmod(stat.S_IMODE(old.st_mode))
             os.replace(new, target)
@@ -57,7 +57,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def remove_unfinished(folder: Path) -> None:
-    """Remove the unfinished files of killed processes; files that are being written are locked."""
+    """Remove the unfinished files of killed processes; files still being written are locked."""
     for path in folder.glob(f"{UNFINISHED}*"):
         with suppress(OSError), _locked(path) as is_free:
             if is_free:
@@ -66,7 +66,7 @@ def remove_unfinished(folder: Path) -> None:
 
 @contextmanager
 def _locked(path: Path) -> Iterator[bool]:
-    """Hold the lock of a file, which ends with the process; yield whether it was free.
+    """Hold the lock of a file, until the process ends at the latest; yield whether it was free.
 
     Windows needs no lock: open files cannot be removed there.
     """
@@ -78,7 +78,7 @@ def _locked(path: Path) -> Iterator[bool]:
         is_free = True
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:  # another process has it, or there are no locks on this file system
+        except OSError:  # another process has the lock, or this file system has no locks
             is_free = False
         yield is_free
     finally:
@@ -104,7 +104,7 @@ def _target(name: str) -> tuple[Path, os.stat_result | None]:
 
 
 def _beside(target: Path) -> Path:
-    """Create an empty file in the same folder: files move only within a file system."""
+    """Create an empty file in the folder of `target`: files move only within a file system."""
     plain = re.fullmatch(r"\.[A-Za-z0-9_]{1,16}", target.suffix)
     new = target.with_name(f"{UNFINISHED}{secrets.token_hex(8)}{plain[0] if plain else ''}")
     os.close(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
@@ -112,7 +112,7 @@ def _beside(target: Path) -> Path:
 
 
 def _store(new: Path) -> None:
-    """Wait until the bytes are on the disk: else the name might be moved before them."""
+    """Wait until the bytes of a new file are on the disk; only then may it replace an old one."""
     descriptor = os.open(new, os.O_RDWR)
     try:
         os.fsync(descriptor)

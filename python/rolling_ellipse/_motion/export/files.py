@@ -97,7 +97,7 @@ def _arrays(trajectory: Trajectory) -> dict[str, Any]:
 
 
 def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
-    """Return the trajectory of a text and arrays, if `save` would write the same for it.
+    """Return the trajectory of a file's JSON text and arrays, if `save` would write the same.
 
     So nothing is converted, filled in or left out, even where the classes would accept that.
     """
@@ -131,7 +131,7 @@ def _restored(kind: type[_Made], text: str, arrays: dict[str, Any]) -> _Made:
 
 
 def _array_names(model: Any, there: Collection[str]) -> set[str]:
-    """Return the names of the arrays of a model; only "multipliers" may have a start."""
+    """Return the names of the arrays in a file of a model; only "multipliers" may have a start."""
     names = set(_VECTORS)
     if model == "contact":
         names |= set(ContactSamples._fields)
@@ -149,7 +149,7 @@ def event_values(found: Event) -> list[Any]:
 
 
 def event_row(values: Any) -> list[float]:
-    """Return the row that `events` takes for an event of `event_values`."""
+    """Return the row of numbers, for `events`, of an event that `event_values` has written."""
     t, kind, (*before, mode_before), (*after, mode_after) = values
     for value in (t, *before, *after):
         if not (isinstance(value, float) and math.isfinite(value)):
@@ -161,7 +161,7 @@ def event_row(values: Any) -> list[float]:
 
 
 def _require_consistent(trajectory: Trajectory) -> None:
-    """Raise ValueError if parts contradict one another, or `sol` could not solve the scene."""
+    """Raise ValueError if parts of a trajectory contradict, or its scene cannot be solved."""
     asked, t, t_end, span = (getattr(trajectory, n) for n in ("settings", "t", "t_end", "span"))
     _require_asked("model", trajectory.model, asked.model)
     _require_asked("method", trajectory.method, asked.method)
@@ -174,7 +174,7 @@ def _require_consistent(trajectory: Trajectory) -> None:
     if times != sorted(times):
         raise ValueError(f"times of events must not fall, got {times}")
     _core.validate_settings(asked.core, span)
-    solve(trajectory.scene, asked, 0.0, trajectory.start)  # refused by the core if impossible
+    solve(trajectory.scene, asked, 0.0, trajectory.start)  # raises if the core cannot solve it
 
 
 def _require_asked(name: str, value: str, asked: str) -> None:

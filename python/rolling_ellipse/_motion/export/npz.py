@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-_VERSION = 1, 0  # of the format; NumPy writes another one only for very long headers
-_HEADER = 256  # largest header [bytes]: numbers and text have 118
+_VERSION = 1, 0  # version of .npy files; NumPy writes others only for very long headers
+_HEADER = 256  # largest header of a .npy file [bytes]; arrays of numbers and text have 118
 
 
 def arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[Any]]:
@@ -34,7 +34,7 @@ def arrays(content: bytes, names: Collection[str]) -> dict[str, npt.NDArray[Any]
 
 
 def _array(name: str, content: bytes) -> npt.NDArray[Any]:
-    """Return the array of a .npy file; its size is checked first."""
+    """Return the array in the bytes of a .npy file; its header must fit their number."""
     file = io.BytesIO(content)
     if (version := np.lib.format.read_magic(file)) != _VERSION:
         raise ValueError(f"{name} must be of version {_VERSION}, got {version}")

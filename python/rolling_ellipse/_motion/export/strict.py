@@ -1,4 +1,4 @@
-"""Strict reading of files: every required name once, and nothing else."""
+"""Strict reading of files: they must have every required name once, and no other name."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from zipfile import is_zipfile
 from ..._ask.check import file_name
 from ..._ask.scene import Impulse, Scene, reached_scene
 
-ARCHIVE, OBJECT = b"PK\x03\x04", b"{"  # first bytes of .npz files, and of JSON
+ARCHIVE, OBJECT = b"PK\x03\x04", b"{"  # first bytes of .npz files, and of JSON objects
 
 _Made = TypeVar("_Made")
 
@@ -59,7 +59,7 @@ def restored(
 
 
 def parsed(name: str, text: str) -> Any:
-    """Return the content of a text of JSON, in which numbers may be infinite, but not NaN.
+    """Return the value of a JSON text, in which numbers may be infinite, but not NaN.
 
     Raises
     ------

@@ -65,7 +65,7 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
             "long_name": "; ".join(each.meaning for each in MULTIPLIERS),
         },
     )
-    flags = {  # codes are written by the CF conventions
+    flags = {  # names of the codes, as in the CF conventions
         "flag_values": np.array(list(Mode), dtype=np.int8),
         "flag_meanings": " ".join(mode.name for mode in Mode),
     }
@@ -79,7 +79,7 @@ def to_xarray(trajectory: Trajectory) -> Dataset:
 
 
 def required(package: str, method: str) -> Any:
-    """Import a package of the extra "data", or raise an ImportError that names the extra."""
+    """Return an imported package of the extra "data"; an ImportError names that extra."""
     try:
         return importlib.import_module(package)
     except ImportError as error:
@@ -97,7 +97,7 @@ def _attributes(quantity: Quantity) -> dict[str, Any]:
 
 
 def _facts(trajectory: Trajectory) -> dict[str, float | str]:
-    """Return scene and solution as numbers and strings, which every file format can hold.
+    """Return facts of scene and solution as numbers and strings, which every format can hold.
 
     A field of the scene that is None, its default, has no entry.
     """
