@@ -306,7 +306,7 @@ class Trajectory(FieldsOnly):
 
     @property
     def success(self) -> bool:
-        """Whether the status is COMPLETED, or JAMMED, where no motion, or more than one, goes on."""
+        """Whether the status is COMPLETED, or JAMMED, where no motion goes on, or more than one."""
         return self.status in (Status.COMPLETED, Status.JAMMED)
 
     def constraint_residuals(self) -> ConstraintResiduals:

@@ -1,4 +1,4 @@
-"""Methods of a motion whose modules import it or are slow to load, bound when first asked for."""
+"""Methods of Trajectory and Events whose modules import these classes, or are slow to load."""
 
 from __future__ import annotations
 

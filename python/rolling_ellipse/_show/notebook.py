@@ -1,4 +1,4 @@
-"""A motion in a notebook: a table of its numbers, and a small picture."""
+"""A motion as HTML for notebooks: a table of its facts, and a small picture."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def _repr_html_(trajectory: Trajectory) -> str:
-    """Return a table of the motion and, where there are samples, its strobe."""
+    """Return a table of the motion's facts and, if there are samples, the picture `strobe_svg`."""
     return f"{html_table(repr(trajectory)[1:-1], _rows(trajectory))}{strobe_svg(trajectory)}"
 
 

@@ -18,13 +18,13 @@ _Places = npt.NDArray[np.complex128]
 
 _BODIES, _POINTS = 9, 81
 _WIDTH, _HEIGHT = 480.0, 180.0  # largest size of the picture [px]
-_MARGIN = 1.1  # around the centres [long semi-axes]
-_REACH = 12.0  # the picture ends where the body is so far from its start [long semi-axes],
-_TURNING = 4 * math.pi  # or has turned so much, in any direction [rad]
+_MARGIN = 1.1  # room around the centres in the picture [long semi-axes]
+_REACH = 12.0  # largest distance from the start in the picture [long semi-axes]
+_TURNING = 4 * math.pi  # most that the body turns in the picture, back and forth [rad]
 
 
 def strobe_svg(trajectory: Trajectory) -> str:
-    """Return the picture, with gravity downwards; "" for a motion without samples.
+    """Return the picture as SVG, with gravity downwards; "" for a motion without samples.
 
     Points are complex numbers, x - iz relative to the foot of the first centre: i points down as on
     a screen, and clockwise rotation is positive. Their unit is the long semi-axis, so that no scene
@@ -50,7 +50,7 @@ def strobe_svg(trajectory: Trajectory) -> str:
         seen = np.append(seen, ground)
     corner = complex(seen.real.min(), seen.imag.min())
     size = complex(seen.real.max(), seen.imag.max()) - corner
-    if size.real == 0 or size.imag == 0:  # so far away that its points do not differ
+    if size.real == 0 or size.imag == 0:  # the body is too far away for doubles
         return ""
     scale = min(_WIDTH / size.real, _HEIGHT / size.imag)
     rx, ry = _short(scale * scene.a / unit), _short(scale * scene.b / unit)
@@ -71,7 +71,7 @@ def strobe_svg(trajectory: Trajectory) -> str:
 
 
 def _shown_until(trajectory: Trajectory) -> float:
-    """Return the time at which the body leaves the reach of the picture, or the last one [s]."""
+    """Return the time [s] at which the picture ends: at `_REACH`, `_TURNING` or the last sample."""
     t, x, z, theta = (getattr(trajectory, name) for name in ("t", "x", "z", "theta"))
     reach = _REACH * max(trajectory.scene.a, trajectory.scene.b)
     away = np.maximum(np.abs(x - x[0]), np.abs(z - z[0])) / reach

@@ -15,8 +15,8 @@ from ..geometry import support
 from .certify import certify
 from .outcome import outcome
 
-_SPEEDS = 2048  # number of speeds that are tried, from the least that reaches the tip upwards
-_FASTEST = 1e3  # largest of them over that one
+_SPEEDS = 2048  # number of speeds tried above the one that just reaches the tip
+_FASTEST = 1e3  # largest excess of these speeds, over the speed that just reaches the tip
 
 
 def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Impulse:
@@ -31,7 +31,7 @@ def blow_to(scene: Scene, distance: float, *, omega: float | None = None) -> Imp
     omega : float, optional
         Angular velocity just after the blow [rad/s], met within rounding. Default: the least press
         after which the body rolls over on level ground, the least double for which `outcome` proves
-        it. It is searched at 2048 speeds, up to 1000 times the one that just reaches the tip, since
+        it. It is searched at 2049 speeds, up to 1001 times the one that just reaches the tip, since
         a harder press may need less friction (of a nearly round body), and refined by bisection.
 
     Returns
@@ -78,7 +78,7 @@ def _needed_friction(scene: Scene) -> str:
 
 
 def _press_to(scene: Scene, distance: float, omega: float) -> Impulse:
-    """Return the press that gives an angular velocity if the contact sticks."""
+    """Return the press at a distance that gives an angular velocity, if the contact sticks."""
     F = _core.press_to(scene.core, distance, omega)
     _require_lever(F, distance)
     if F == 0:
@@ -100,7 +100,7 @@ def _require_lever(F: float, distance: float) -> None:
 
 
 def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
-    """Search upwards from the speed that just reaches the tip, and bisect to the last bit."""
+    """Return the least press after which the body rolls over, found by a scan and bisection."""
     if scene.slope != 0:
         raise ValueError(f"omega must be given on a slope, got None with slope {scene.slope!r}")
     if outcome(scene) is Outcome.ROLLS_OVER:
@@ -131,7 +131,7 @@ def _least_to_roll_over(scene: Scene, distance: float) -> Impulse:
 
 
 def _never_over(scene: Scene, distance: float, least: float) -> ValueError:
-    """Return an error with the reason why a press that is just strong enough fails."""
+    """Return an error: why a press just strong enough to reach the tip does not roll it over."""
     after = scene.replace(impulse=_press_to(scene, distance, least * (1 + 1e-6)))
     start = after.initial_state
     why = f"{start.reason}{_needed_friction(after)}"

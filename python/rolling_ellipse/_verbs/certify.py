@@ -11,7 +11,7 @@ from .._ask.records import trusted
 from .._ask.scene import Scene, require_scene
 from .._core import Validity
 
-_VALIDITIES = tuple(Validity)  # validities by their codes
+_VALIDITIES = tuple(Validity)  # members, at the places of their codes
 
 
 @dataclass(frozen=True, repr=False)

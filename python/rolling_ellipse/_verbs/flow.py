@@ -81,7 +81,7 @@ def flow(
     threads = threads_of(workers)
     one = (a, b, theta, omega, gravity)
     if all(type(v) in _SCALARS for v in one) and type(gyration2) in (*_SCALARS, NoneType):
-        with suppress(TypeError):  # an int beyond the range of doubles: refused by name below
+        with suppress(TypeError):  # an int beyond doubles is refused by name below
             if type(t) in _SCALARS:
                 return _core.flow_scalar(t, *one, gyration2)
             times = array("t", t)
@@ -100,7 +100,7 @@ def flow(
 
 
 def _times(n: int, columns: list[FloatArray], threads: int) -> Any:
-    """Evaluate many times of one motion, as a task of an executor."""
+    """Return the states of one motion at many times, as a task of an executor."""
     times, *one = columns
     a, b, theta, omega, gravity, gyration2 = (float(value[0]) for value in one)
     return _core.flow_times(times, a, b, theta, omega, gravity, gyration2, threads)

@@ -153,7 +153,7 @@ def simulate(
 
 
 def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel: int) -> None:
-    """Warn of lost validity; raise for an integration that stopped before its end."""
+    """Warn if the validity was lost; raise, if asked to, for an integration that stopped early."""
     if trajectory.status is COMPLETED:
         return
     if trajectory.status is Status.VALIDITY_LOST:
@@ -163,7 +163,7 @@ def report_status(trajectory: Trajectory, *, raise_on_failure: bool, stacklevel:
 
 
 def sample_times(t: Any) -> FloatArray:
-    """Return the sample times of an argument: 1001 even ones for an end time."""
+    """Return the argument `t` as sample times; an end time gives 1001 even ones."""
     times = array("t", t)
     if isinstance(t, tuple) and times.shape == (2,) and times[0] == 0:
         end = shown(t[1])

@@ -19,14 +19,14 @@ from .._ask.check import FloatArray, shown, worker_count
 
 Columns = list[FloatArray]
 
-_IN_FLIGHT = 128  # largest number of tasks submitted at a time
-_HELD = 96 * 2**20  # most bytes of results that wait for earlier ones, unless one result has more
-_ELEMENTS = 2**16  # elements of a task; a multiple of the core's own parts, so that lanes agree
+_IN_FLIGHT = 128  # largest number of tasks that are submitted and not yet yielded
+_HELD = 96 * 2**20  # most bytes of results held for yielding in order, unless one result has more
+_ELEMENTS = 2**16  # elements of a task; a multiple of the core's parts, for the same bits
 
 
 @dataclass(frozen=True)
 class Lost:
-    """A task that failed; `refused` if the executor did not accept it."""
+    """The result of a task that failed; `refused` if the executor did not accept the task."""
 
     error: Exception
     refused: bool = False
@@ -42,7 +42,7 @@ def threads_of(workers: Any) -> int | None:
     ValueError
         If the number is out of range.
     """
-    if type(workers) is int:  # the usual case
+    if type(workers) is int:  # the fast path: most calls give a number
         return worker_count(workers)
     if isinstance(workers, type) or not (_can(workers, "submit") or _is_pool(workers)):
         try:
@@ -94,7 +94,7 @@ def in_order(
 
 
 def shared(workers: Any, function: Callable[..., Any]) -> Callable[[int, Columns], Any]:
-    """Return a function of (number of elements, columns) that is computed by workers.
+    """Return `function` as one of (number of elements, columns) that workers compute.
 
     `function` also takes a number of threads. The bits are the same for any workers; an exception
     of a task is raised.
@@ -132,7 +132,7 @@ def _is_pool(workers: Any) -> bool:
 def _next(
     places: Iterator[tuple[int, bytes]], waiting: int, size: Callable[[], int]
 ) -> tuple[int, bytes] | None:
-    """Return the next task, or None if too many wait."""
+    """Return place and bytes of the next task; None if there is none, or too many wait."""
     most = min(_IN_FLIGHT, _HELD // max(1, size()))
     return None if waiting and waiting >= most else next(places, None)
 
@@ -143,7 +143,7 @@ def _mapped(
     places: Iterator[tuple[int, bytes]],
     size: Callable[[], int],
 ) -> Iterator[tuple[int, Any]]:
-    """Use a pool that takes no single tasks: the tasks of one `map` are lost together."""
+    """Yield place and result of each task by a pool's `map`; if one fails, its whole `map` does."""
     while True:
         part: list[tuple[int, bytes]] = []
         while taken := _next(places, len(part), size):
@@ -184,7 +184,7 @@ def _cancel(futures: Iterable[Any]) -> None:
 
 
 def _ranges(n: int) -> Iterator[tuple[int, int]]:
-    """Yield the ranges of tasks; the last one is longer, so that no task is small."""
+    """Yield begin and end of each task's elements; the last task is longer, so none is small."""
     begin = 0
     while n - begin >= 2 * _ELEMENTS:
         yield begin, begin + _ELEMENTS

@@ -22,10 +22,10 @@ _REPEATS = {"rocks": "full swing", "rolls_over": "full turn"}
 
 
 def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
-    """Return the facts of a motion and the files written; None for missing values."""
+    """Return the facts of a motion and the files written, by name; None for missing values."""
     scene = trajectory.scene
     certificate, start = certify(scene), scene.initial_state
-    # the certificate is about rolling
+    # the numbers of the certificate are about rolling: for other motions they are left out
     rolls = trajectory.model != "contact" or certificate.validity is Validity.VALID
     found: dict[str, Any] = {
         "scene": _scene_facts(scene),
@@ -58,7 +58,7 @@ def summary(trajectory: Trajectory, files: Sequence[str]) -> dict[str, Any]:
 
 
 def _scene_facts(scene: Scene) -> dict[str, Any]:
-    """Return the fields that differ from their defaults; JSON has no infinite friction."""
+    """Return the changed fields of a scene: JSON has no infinite friction, which is the default."""
     facts = {name: value for name, value in asdict(scene).items() if name in scene._changed()}
     return facts | {"impulse": facts.get("impulse")}
 
@@ -72,7 +72,7 @@ def _largest(values: np.ndarray[Any, Any]) -> float:
 
 
 def _period(scene: Scene) -> float | None:
-    with suppress(ValueError):  # downhill for ever
+    with suppress(ValueError):  # a body that rolls downhill for ever has no period
         return _finite(period(scene))
     return None
 
@@ -119,7 +119,7 @@ def _motion_rows(found: dict[str, Any], trajectory: Trajectory) -> list[tuple[st
 
 
 def _repeat(found: dict[str, Any], trajectory: Trajectory) -> tuple[str, str]:
-    """Return the row of the time after which a motion repeats, or of why it never does."""
+    """Return the row with the time after which a motion repeats, or with why it never does."""
     if found["period"] is not None:
         return _REPEATS.get(found["outcome"], "swing or turn"), f"{found['period']:.12g} s"
     name = "swing or turn"

@@ -1,4 +1,4 @@
-"""Results of many scenes: tables of the core, of other processes and of files, and answers.
+"""Results of many scenes: tables of numbers, as the core and files have them, and answers.
 
 An answer is a trajectory, or the exception of its scene."""
 
@@ -25,10 +25,10 @@ from ..._motion.trajectory import Trajectory
 Tables = dict[str, npt.NDArray[Any]]
 Answer: TypeAlias = Trajectory | Exception
 
-REFUSED = -1  # the ending of a scene that was refused
-MODELS, METHODS = _core.MODELS, _core.METHODS  # names by their codes
+REFUSED = -1  # code of the ending of a scene that the core refused
+MODELS, METHODS = _core.MODELS, _core.METHODS  # names, at the places of their codes
 _COLUMNS, _STATS = _core.COLUMNS, _core.STATS
-# Bytes of a sample in the tables
+# Bytes of one sample in the tables, by model
 SAMPLE_BYTES = {"rolling": 24, "contact": 65, "auto": 65, "multipliers": 80}
 _AT_AN_END = (Status.COMPLETED, Status.JAMMED, Status.VALIDITY_LOST)
 
@@ -56,7 +56,7 @@ def solve_task(task: bytes) -> Tables:
 
 
 def columns(name: str, tables: Tables) -> dict[str, npt.NDArray[Any]]:
-    """Return the columns of a table by their names."""
+    """Return the columns of the table `name`, by the names of the columns."""
     return dict(zip(_COLUMNS[name], tables[name].T, strict=True))
 
 
@@ -106,7 +106,7 @@ def answers(
 
 
 class _Cut:
-    """The tables cut into the parts of one scene after the other."""
+    """Cuts the tables of many scenes into the parts of each scene, in their order."""
 
     def __init__(self, tables: Tables, times: FloatArray) -> None:
         self.times = times
@@ -126,7 +126,7 @@ class _Cut:
         return made_events(scene, self._tables["events"][self._next("events", size)].tolist())
 
     def samples(self, model: str, size: int) -> dict[str, Any]:
-        """Return the arrays of a Trajectory."""
+        """Return the next `size` samples of a model as fields of a Trajectory."""
         here, tables = self._next(model, size), self._tables
         t = self.times if size == self.times.size else frozen(self.times[:size].copy())
         if model == "multipliers":

@@ -1,8 +1,8 @@
 """The scenes of `simulate_many` in chunks: from an iterable, or from arrays that broadcast.
 
-The size of a chunk depends only on the number of scenes before it. The first chunks are small, so
-that a few slow scenes occupy many workers. Since sizes do not depend on the workers, a folder that
-was begun by some can be finished by others.
+The size of a chunk depends only on the numbers of scenes before it and of samples per scene. The
+first chunks are small, so that a few slow scenes occupy many workers. Since sizes do not depend on
+the workers, a folder that was begun by some can be finished by others.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from ..._ask.check import FloatArray, array, common_shape, shown
 from ..._ask.scene import OPTIONAL, Impulse, Scene
 from .tables import BLOW, NAMES, WIDTH, scenes_of, table_of
 
-_FIRST, _MOST = 16, 2048  # scenes of the first and of the largest chunk
-_SHARE = 32  # all scenes before a chunk over those by which it is larger than the first
-_SAMPLES = 2**18  # largest number of samples of a chunk
+_FIRST, _MOST = 16, 2048  # numbers of scenes of the first and of the largest chunk
+_SHARE = 32  # scenes before a chunk that make it larger than the first by one scene
+_SAMPLES = 2**18  # largest number of samples of a chunk of several scenes
 _DEFAULTS: dict[str, Any] = {field.name: field.default for field in fields(Scene)}
 
 
@@ -41,7 +41,7 @@ class Chunk:
 
 
 def sizes(samples: int) -> Iterator[tuple[int, int]]:
-    """Yield begin and size of one chunk after the other, for a number of samples per scene."""
+    """Yield, chunk by chunk, the index of its first scene and its largest number of scenes."""
     most = max(1, min(_MOST, _SAMPLES // samples))
     begin = 0
     while True:
@@ -69,7 +69,7 @@ class SceneList:
 
 
 class SceneGrid:
-    """Scenes of numbers and arrays that broadcast, in C order.
+    """Scenes of the arguments in a mapping, numbers and arrays that broadcast, in C order.
 
     Raises
     ------
@@ -132,7 +132,7 @@ class SceneGrid:
         return table
 
     def _own(self, values: FloatArray, index: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Return the index into one array for an index into the common shape."""
+        """Return the index into `values` of the element at an index into the common shape."""
         last = index[len(index) - values.ndim :]
         return tuple(i * (size > 1) for i, size in zip(last, values.shape, strict=True))
 
@@ -166,7 +166,7 @@ def _indexed(index: tuple[Any, ...]) -> str:
 
 
 def asked(scenes: Any) -> SceneList | SceneGrid:
-    """Return the scenes of an argument, or raise TypeError."""
+    """Return the argument `scenes` as a SceneList or a SceneGrid, or raise TypeError."""
     if isinstance(scenes, Mapping):
         return SceneGrid(scenes)
     with suppress(TypeError):  # an array without axes has `__iter__`, but cannot be iterated

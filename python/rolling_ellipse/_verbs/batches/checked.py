@@ -11,7 +11,7 @@ from ..._motion.status import STATUSES
 from .answers import METHODS, MODELS, REFUSED, Tables, columns
 
 _WIDTH = {name: len(names) for name, names in _core.COLUMNS.items()}
-_FIRST_COUNT = _core.COLUMNS["codes"].index("samples")  # this column and all later ones are counts
+_FIRST_COUNT = _core.COLUMNS["codes"].index("samples")  # counts begin at this column
 NAMES = (
     "codes", "numbers", "text", "events", "rolling", "contact", "mode", "q", "q_dot",
 )  # fmt: skip
@@ -41,7 +41,7 @@ def require_tables(scenes: FloatArray, tables: Tables, n: int, times: int) -> No
     for name, shape in shapes.items():
         dtype = np.int8 if name in ("text", "mode") else np.float64
         require_array(name, tables[name], dtype, shape)
-    numbers = tables["numbers"]  # `valid_until` may be infinite
+    numbers = tables["numbers"]  # not all finite: `valid_until` may be infinite
     require_array("numbers", numbers, np.float64, (n, _WIDTH["numbers"]), finite=False)
     if np.isnan(numbers).any():
         raise ValueError("numbers must not contain NaN")

@@ -39,10 +39,10 @@ _SAME = "a folder of the same request"
 _REQUEST, _END = "request.npz", "end.json"
 _CHUNK = re.compile(r"\d{8}-[0-9a-f]{16}-[0-9a-f]{16}\.npz")
 _AGAIN = "simulate_many with the same arguments"
-# Hidden files are allowed, too
+# Names of the files that a folder may hold; hidden files are allowed, too
 _OURS = re.compile(rf"{_CHUNK.pattern}|{_REQUEST}|{_END}|\..*|lost\+found")
 
-_Names = dict[int, list[str]]  # names of the files of chunks, by index, in order
+_Names = dict[int, list[str]]  # names of the files of each chunk, by its index, ascending
 
 _Made = TypeVar("_Made")
 
@@ -77,7 +77,7 @@ class Folder:
                 np.savez(file, about=np.array(json.dumps(about)), t=request.times)
         remove_unfinished(self.path)
         self._scenes: float = math.inf
-        with suppress(FileNotFoundError, ValueError):  # a damaged one is written again
+        with suppress(FileNotFoundError, ValueError):  # a damaged `end.json` is written again
             self._scenes = _scenes_in(self.path, self._request, self._names, self._samples)
 
     def has(self, chunk: Chunk) -> bool:
@@ -108,7 +108,7 @@ class Folder:
         self._names[chunk.index] = [name]
 
     def end(self, scenes: int, chunks: int) -> None:
-        """Write the file that makes the folder complete."""
+        """Write `end.json`, which makes the folder complete."""
         if max(self._names, default=-1) >= chunks:
             self._refuse_scenes(f"which has more than {scenes}")
         digest = _digest_of_all(self._request, scenes, self._names)
@@ -116,7 +116,7 @@ class Folder:
             new.write_text(json.dumps({"scenes": scenes, "digest": digest}))
 
     def _require_new(self) -> None:
-        """Refuse foreign files; chunks without their request are known by their names."""
+        """Raise ValueError for a name that is not of simulate_many, in a folder without request."""
         for name in sorted(os.listdir(self.path)):
             if not _OURS.fullmatch(name):
                 self._refuse(
@@ -164,7 +164,7 @@ def load_many(path: str | os.PathLike[str]) -> Iterator[Answer]:
     """
     folder = Path(file_name("path", path))
     if not (folder / _REQUEST).exists():
-        os.listdir(folder)  # raises if there is no folder
+        os.listdir(folder)  # raises OSError if there is no folder
         raise ValueError(f"path must be a folder written by simulate_many, got {str(folder)!r}")
     about, times = _request_in(folder)
     if about["schema"] != _SCHEMA:
@@ -225,7 +225,7 @@ def _digest_of_all(request: str, scenes: int, names: _Names) -> str:
 
 
 def _tables(content: bytes, name: str, n: int, samples: int) -> Tables:
-    """Return the tables of a chunk of n scenes, "scenes" among them, if they match its name."""
+    """Return the tables of a file of n scenes, "scenes" included, if they match its `name`."""
     tables = npz_arrays(content, {"request", "scenes", *NAMES})
     scenes = tables["scenes"]
     require_tables(scenes, tables, n, samples)
@@ -243,7 +243,7 @@ def _about(request: Request) -> dict[str, Any]:
         "settings": asdict(request.settings),
         "raise_on_failure": request.raise_on_failure,
     }
-    found: dict[str, Any] = json.loads(json.dumps(about))  # a pair is a list there
+    found: dict[str, Any] = json.loads(json.dumps(about))  # JSON makes the pair a list
     return found
 
 
@@ -279,7 +279,7 @@ def _chunk(path: Path, restore: Callable[[bytes], _Made]) -> _Made:
 
 
 def _replacing(path: Path) -> AbstractContextManager[Path]:
-    """Return `replacing` of a path, without following a link out of the folder."""
+    """Return `replacing(path)`; a link, which may lead out of the folder, is removed first."""
     if path.is_symlink():
         path.unlink()
     return replacing(path)
@@ -297,7 +297,7 @@ def _name(index: int, request: str, scenes: FloatArray) -> str:
 
 
 def _digest_of(about: dict[str, Any], times: FloatArray) -> str:
-    """Return the hash of everything except the scene that the bits of a motion depend on."""
+    """Return the hash of all that the bits of a motion depend on, except for its scene."""
     said = {name: about[name] for name in ("schema", "version", "settings")}
     return _digest(json.dumps(said, sort_keys=True).encode() + times.tobytes())
 

@@ -109,7 +109,7 @@ def simulate_many(
 
 
 def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator[tuple[Chunk, Any]]:
-    """Yield the chunks with their tables, or with `Lost`."""
+    """Yield each chunk with the tables of its motions, or with `Lost` if its worker failed."""
     threads = threads_of(workers)
     if threads is not None:
         for chunk in chunks:
@@ -118,7 +118,7 @@ def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator
     held: dict[int, Chunk] = {}
     samples = request.times.size
     _, scenes = next(sizes(samples))
-    # bytes of a scene: its samples, and as many events as scenes before it had
+    # most bytes of the results of a scene: those of its samples, or of a scene before it
     each = samples * SAMPLE_BYTES[request.settings.model]
 
     def tasks() -> Iterator[bytes]:

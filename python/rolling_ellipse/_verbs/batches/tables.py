@@ -27,7 +27,7 @@ _blow = attrgetter(*BLOW)
 
 
 def table_of(scenes: Sequence[Scene]) -> FloatArray:
-    """Return the table of scenes, with a row for each."""
+    """Return scenes as a table, with a row of numbers for each."""
     table = np.full((len(scenes), WIDTH), math.nan)
     if scenes:
         table[:, : len(NAMES)] = np.array([_numbers(scene) for scene in scenes], dtype=np.float64)
@@ -38,7 +38,7 @@ def table_of(scenes: Sequence[Scene]) -> FloatArray:
 
 
 def scenes_of(table: FloatArray) -> list[Scene]:
-    """Return the scenes of a table that the core has validated."""
+    """Return the scenes in the rows of a table that the core has found valid."""
     return [_scene(row) for row in table.tolist()]
 
 
