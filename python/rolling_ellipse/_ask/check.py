@@ -115,7 +115,7 @@ def flag(name: str, value: Any) -> bool:
 
 
 def array(name: str, value: Any) -> FloatArray:
-    """Return ``value`` as a float64 array; errors are those of `number`."""
+    """Return ``value`` as a float64 array; it raises the errors of `number`."""
     found = _doubles(name, value)
     if found is None:
         raise TypeError(f"{name} must be a number or an array of numbers, got {shown(value)}")
@@ -225,7 +225,7 @@ def _require_plain(name: str, value: Any, axes: int = 0) -> None:
 
 
 def _has_units(value: Any) -> bool:
-    """Whether an object carries units, as those of pint, astropy, unyt and brian2 do.
+    """Whether an object carries units, as quantities of pint, astropy, unyt and brian2 do.
 
     The attribute belongs to its class or to its own `__dict__`: attributes of pandas and xarray
     objects may be labels of the user. A tuple holds the names of the axes of a netCDF4 variable.

@@ -156,7 +156,7 @@ def vector(name: str, values: Any, size: int | None = None) -> FloatArray:
 def coordinate_pair(
     name: str, values: Any, shape: tuple[int, ...]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return q and q_dot as read-only arrays of the given shape; errors are those of `vector`."""
+    """Return q and q_dot as read-only arrays of the given shape; it raises as `vector` does."""
     required = f"{name} must be q and q_dot, arrays of shape {shape}"
     try:
         q, q_dot = values
@@ -169,7 +169,7 @@ def coordinate_pair(
 
 
 def contact_samples(values: Any, size: int) -> ContactSamples:
-    """Return ContactSamples with checked, read-only arrays; errors are those of `vector`."""
+    """Return ContactSamples with checked, read-only arrays; it raises as `vector` does."""
     if not isinstance(values, ContactSamples):
         raise TypeError(f"contact must be ContactSamples or None, got {shown(values)}")
     *columns, mode = ContactSamples._fields

@@ -115,8 +115,8 @@ class Trajectory(FieldsOnly):
     settings : Settings
         Arguments of `simulate`: model, method and their options.
     events : tuple of Event
-        Changes of mode and impacts of the model "contact", in the order of time; it prints as a
-        table and has `to_dataframe`.
+        Impacts, and changes of mode and of the direction of slip, of the model "contact", in the
+        order of time; it prints as a table and has `to_dataframe`.
     stats : dict
         Figures of the solver: ``segments``, ``steps``, ``rejected_steps``, ``evaluations`` (of
         the right-hand side, without those for the dense output).
@@ -197,7 +197,7 @@ class Trajectory(FieldsOnly):
     ) -> Trajectory:
         """Solve a scene up to the last of the times, and sample it at all times that are reached.
 
-        A start (q, q_dot) in coordinates replaces that of the scene.
+        A start (q, q_dot) in coordinates replaces the start of the scene.
         """
         span = float(times[-1])
         solution = solve(scene, settings, span, start)

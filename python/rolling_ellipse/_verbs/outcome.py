@@ -52,7 +52,7 @@ def outcome(scene: Scene, impulse: Impulse | None = None) -> Outcome | npt.NDArr
     Raises
     ------
     ValueError
-        If a blow misses the body, or is stronger than that of a Scene may be.
+        If a blow misses the body, or is stronger than a Scene accepts.
     """
     scene = require_scene(scene)
     if impulse is None:

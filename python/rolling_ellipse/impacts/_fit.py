@@ -20,7 +20,7 @@ _MEASURES: dict[Measure, Callable[[FloatArray], float]] = {
     "median": lambda errors: float(np.median(errors)),
     "rms": lambda errors: float(np.sqrt(np.mean(errors**2))),
 }
-_INTERVALS = 40  # of the first grid, over all restitutions and over all friction angles
+_INTERVALS = 40  # intervals of the first grid along restitution and along friction angle
 # Each of 4 finer grids reaches 2 old steps to either side of the best point, in steps 1/4 as long.
 _REACH, _FINER, _REFINEMENTS = 2, 4, 4
 

@@ -55,7 +55,7 @@ def case_lead(theta: Any, *, a: float, b: float) -> FloatArray:
 def f1(q: Any, q_dot: Any, *, case: str = "2") -> FloatArray:
     """Return f1 of eq 10 [m/s], the velocity of the geometric contact point along the ground.
 
-    ``case`` "1" takes the lower signs, "2" the upper ones, "as_it_is" that of theta's quadrant.
+    ``case`` "1" takes the lower signs, "2" the upper ones, "as_it_is" the sign of `case_sign`.
     Right is x_dot - r cos(psi - theta) theta_dot, the first velocity residual of `constraints`.
     """
     theta, _, r, sine, cosine = state(q, q_dot=q_dot)

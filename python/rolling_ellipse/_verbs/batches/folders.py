@@ -139,7 +139,7 @@ class Folder:
 
 
 def load_many(path: str | os.PathLike[str]) -> Iterator[Answer]:
-    """Return the motions that `simulate_many` wrote to a folder, one after the other, in order.
+    """Return an iterator over the motions that `simulate_many` wrote to a folder, in order.
 
     A scene without a motion yields its exception, as in the list of `simulate_many`. Only a file of
     at most 2048 scenes is in memory at a time.
@@ -199,7 +199,7 @@ def _scenes_in(folder: Path, request: str, names: _Names, samples: int) -> int:
     Raises
     ------
     ValueError
-        If ``end.json`` is damaged, or its chunks are not those of the folder.
+        If ``end.json`` is damaged, or does not fit the chunks in the folder.
     """
     cure = f": {_AGAIN} writes it anew"
     end = restored(folder / _END, _of_end, OBJECT, "simulate_many", cure)

@@ -118,7 +118,7 @@ def _solved(request: Request, chunks: Iterator[Chunk], workers: Any) -> Iterator
     held: dict[int, Chunk] = {}
     samples = request.times.size
     _, scenes = next(sizes(samples))
-    # most bytes of the results of a scene: those of its samples, or of a scene before it
+    # most bytes of results per scene so far; at first, the bytes of its samples
     each = samples * SAMPLE_BYTES[request.settings.model]
 
     def tasks() -> Iterator[bytes]:
