@@ -329,7 +329,7 @@ def evaluate(function: Callable[..., Any], *settings: Any, **arguments: Any) -> 
 
 
 def _with_indices(message: str, shape: tuple[int, ...]) -> str:
-    """Return a message of the core with element 7 in ``a[7]`` named by its indices in `shape`."""
+    """Return a message of the core about ``a[7]`` with the indices in `shape` in place of 7."""
     if len(shape) < 2:
         return message
     name, rest = message.split(" ", 1)

@@ -29,7 +29,7 @@ _SENTENCES = {
 }
 _PULLED = "the ground would have to pull: the body slides, not pressed (infinite friction)"
 _HEAD = ("t [s]", "kind", "theta [rad]", "x [m]", "what changes")
-_FIRST, _LAST = 12, 4  # numbers of events at the begin and at the end of a long table
+_FIRST, _LAST = 12, 4  # numbers of events shown first and last in a long table
 
 
 @dataclass(frozen=True, repr=False)

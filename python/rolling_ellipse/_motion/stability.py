@@ -16,7 +16,7 @@ _LOST_ENERGY = 1e-2  # largest accepted relative change of the energy
 # Largest accepted error of the constraints, over the long semi-axis: a pixel of a picture
 _MISSED = 1e-3
 _MOVED = 0.1  # largest accepted error of the constraints after a step, before its projection
-_OF_RTOL = 10.0  # accepted relative change of the energy over rtol, with error control
+_OF_RTOL = 10.0  # with error control, accepted relative change of the energy over rtol
 
 
 def advice(motion: Trajectory) -> str | None:

@@ -34,8 +34,8 @@ class Status(enum.Enum):
     STEP_TOO_LARGE = "the integration stopped at a step that cannot be solved: take smaller steps"
 
 
-COMPLETED = Status.COMPLETED  # `Status.COMPLETED` takes five times as long
-_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # UNDETERMINED: two motions
+COMPLETED = Status.COMPLETED  # kept: access by the class is five times slower
+_OF_NAMES = {**Status.__members__, "UNDETERMINED": Status.JAMMED}  # two motions are possible
 # The Status for each code of the core's endings
 STATUSES = {ending.value: _OF_NAMES[ending.name] for ending in _core.Ending}
 

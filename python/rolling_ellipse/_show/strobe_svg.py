@@ -50,7 +50,7 @@ def strobe_svg(trajectory: Trajectory) -> str:
         seen = np.append(seen, ground)
     corner = complex(seen.real.min(), seen.imag.min())
     size = complex(seen.real.max(), seen.imag.max()) - corner
-    if size.real == 0 or size.imag == 0:  # the body is too far away for doubles
+    if size.real == 0 or size.imag == 0:  # too far away: doubles do not resolve the picture
         return ""
     scale = min(_WIDTH / size.real, _HEIGHT / size.imag)
     rx, ry = _short(scale * scene.a / unit), _short(scale * scene.b / unit)

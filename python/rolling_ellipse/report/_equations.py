@@ -116,7 +116,7 @@ def eqs_33_to_37(
 def equations_of_motion(
     q: Any, q_ddot: Any, multipliers: Any, *, a: float, b: float, mass: float, gravity: float
 ) -> FloatArray:
-    """Return the residuals of the right equations in place of eqs 33, 34, 35, 37, 36."""
+    """Return the residuals of the corrected eqs 33, 34, 35, 37, 36, for x, z, theta, psi, r."""
     body = Scene(a, b, mass=mass, gravity=gravity)
     require_together(q=q, q_ddot=q_ddot, multipliers=multipliers)
     ddot = coordinates("q_ddot", q_ddot)
@@ -125,7 +125,7 @@ def equations_of_motion(
         np.stack(_multipliers(multipliers), axis=-1),
     )  # fmt: skip
     weight = np.array([0, body.mass * body.gravity, 0, 0, 0])
-    forces = np.array([-1, -1, -1, 1, 1])  # signs of the forces: + in eqs 36 and 37
+    forces = np.array([-1, -1, -1, 1, 1])  # signs of the constraint forces: + in eqs 36, 37
     found: FloatArray = masses(body) * ddot + weight + forces * pull
     return found
 

@@ -41,7 +41,7 @@ def rows(q: npt.NDArray[Any], a: float, b: float, printed: tuple[str, ...]) -> n
 
     x_[..., 0] = 1
     theta_[..., 0] = -r * cosine
-    if "f1" in printed:  # d(x + r sin(psi - theta))/dt; right: x_dot - h theta_dot
+    if "f1" in printed:  # f1 is d(x + r sin(psi - theta))/dt, not x_dot - h theta_dot
         psi_[..., 0] = r * cosine
         r_[..., 0] = sine
 

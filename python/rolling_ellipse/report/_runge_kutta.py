@@ -62,7 +62,7 @@ def integrate(
         if not np.all(np.isfinite(after)):
             return np.array(samples), f"the equations have no finite solution at {now:.6g} s"
         last = end if h == end - now else now + h
-        extra = h * (tableau["dense"][0, : stages + 1] @ slopes)  # last terms between steps
+        extra = h * (tableau["dense"][0, : stages + 1] @ slopes)  # dense output beyond a cubic
         first, change = h * slopes[0], after - y
         bend = 2 * change - first - h * slopes[-1]
         while len(samples) < t.size and t[len(samples)] <= last:

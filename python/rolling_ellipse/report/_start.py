@@ -21,7 +21,7 @@ _NAMES = (
 
 
 class InconsistentStartWarning(UserWarning):
-    """A simulation runs from a state that violates its constraints."""
+    """Warning: a simulation runs from a state that violates its constraints."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -243,7 +243,7 @@ def _about(request: Request) -> dict[str, Any]:
         "settings": asdict(request.settings),
         "raise_on_failure": request.raise_on_failure,
     }
-    found: dict[str, Any] = json.loads(json.dumps(about))  # JSON makes the pair a list
+    found: dict[str, Any] = json.loads(json.dumps(about))  # JSON makes the pair of gains a list
     return found
 
 
