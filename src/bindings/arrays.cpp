@@ -30,7 +30,7 @@ std::string shape_of(const Array& array) {
 GilRelease::~GilRelease() {
     try {
         PyEval_RestoreThread(state_);
-    } catch (...) {  // pthread_exit, which must not be swallowed
+    } catch (...) {  // unwinding by pthread_exit: this thread waits for the end of the process
         for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
     }
 }
@@ -113,7 +113,7 @@ void run_each(py::ssize_t n, int workers, const Piece& body) {
             check_for_stop();
             check_for_signals();
         });
-        std::unique_lock<std::mutex> lock(mutex);  // the last pieces of others may be long
+        std::unique_lock<std::mutex> lock(mutex);  // waits until all other threads are idle
         while (!ended.wait_for(lock, std::chrono::milliseconds(50),
                                [&] { return idle == threads.size(); })) {
             lock.unlock();

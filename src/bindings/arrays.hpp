@@ -100,7 +100,7 @@ struct Argument {
 std::string with_index(const std::string& message, py::ssize_t index, const Argument* arguments,
                        std::size_t count);
 
-// Several such arguments; the element i of each, in their order.
+// Several arguments, each an array or one number; [i] gives the element i of each, in their order.
 template <std::size_t Count>
 class Arguments {
   public:

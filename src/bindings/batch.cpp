@@ -45,7 +45,7 @@ py::object first_refused(const Array& scenes, bool reached) {
 // The motion of a scene as samples and events. Only one of the sample vectors is filled.
 struct Answer {
     int ending = refused;
-    Solution solution = {};  // its segments are dropped
+    Solution solution = {};  // solution without its segments
     py::ssize_t segments = 0;
     py::ssize_t samples = 0;
     std::vector<FlowSample> rolling = {};

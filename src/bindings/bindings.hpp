@@ -37,13 +37,13 @@ void bind_enum(py::module_& m, const char* name, const char* base, const char* d
     bound.finalize();
 }
 
-// A named count.
+// A whole number and its name.
 struct Figure {
     const char* name;
     std::int64_t value;
 };
 
-// The counts of a solver.
+// The counts of an integration, each with its name.
 inline std::array<Figure, 4> stats_of(py::ssize_t segments, const StepCounts& counts) {
     return {Figure{"segments", segments}, Figure{"steps", counts.steps},
             Figure{"rejected_steps", counts.rejected}, Figure{"evaluations", counts.evaluations}};
@@ -88,7 +88,7 @@ const double* read(Struct& to, const Field<Struct> (&table)[N], const double* fr
     return from;
 }
 
-// The state of q and q_dot, (1, 5); refuses other shapes.
+// The state given by arrays q and q_dot of shape (1, 5); other shapes are refused.
 CoordinateState single_state(const Array& q, const Array& q_dot);
 
 // An event as a row: t, the code of its kind, and the states before and after, each with the code
@@ -114,7 +114,7 @@ struct ContactColumns {
     std::vector<double*> numbers;
     std::int8_t* modes;
 
-    // Stores the samples begin .. end, which stand from `samples` on.
+    // Stores the samples begin .. end - 1 in the columns; samples[0] is the sample `begin`.
     void store(const ContactSample* samples, py::ssize_t begin, py::ssize_t end) const;
 };
 

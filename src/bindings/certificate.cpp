@@ -83,7 +83,7 @@ py::dict thresholds_by_name(double a, double b, double gravity, std::optional<do
     return found;
 }
 
-// The lift-off speed and the ranges of speeds that jam. Two other thresholds of the body are given.
+// Lift-off speed and the ranges of speeds that jam; slip_speed and painleve_friction are known.
 py::tuple lift_off_interruptible(double a, double b, double gravity,
                                  std::optional<double> gyration2, double friction,
                                  double slip_speed, double painleve_friction) {

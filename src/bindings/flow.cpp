@@ -8,7 +8,7 @@
 namespace rolling_ellipse::bindings {
 namespace {
 
-constexpr py::ssize_t scenes_at_once = 512;  // their starts take 64 kB
+constexpr py::ssize_t scenes_at_once = 512;  // scenes in one kernel call; their starts take 64 kB
 
 RollingStart validated_start(const Body& body, double theta, double omega) {
     validate(body);
@@ -64,7 +64,7 @@ const Kernel& kernel_called(const std::string& wanted) {
 py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int workers,
                      const std::string& level) {
     const Arguments<7> of({"t", "a", "b", "theta", "omega", "gravity", "gyration2"}, arguments, n);
-    // Lanes do not pay for one scene.
+    // One scene alone is computed without vector lanes, which would cost more.
     const Kernel& lanes = kernel_called(n == 1 && level == "best" ? "one by one" : level);
     FlowArrays out(n);
     const FlowColumns found = out.columns();
@@ -86,7 +86,7 @@ py::tuple flow_array(py::ssize_t n, const std::array<Array, 7>& arguments, int w
             try {
                 sample_all(lanes, begin, end);
             } catch (const std::invalid_argument&) {
-                // Lanes validate times last. One by one, the first wrong scene is named.
+                // Vector lanes validate times last; one by one, the first wrong scene is named.
                 for (py::ssize_t i = begin; i < end; ++i) {
                     of.naming(i, [&] { sample_all(kernels().front(), i, i + 1); });
                 }

@@ -24,7 +24,7 @@ py::tuple collide_arrays(py::ssize_t n, const std::array<Array, 9>& arguments, R
         scene.z = a + b;  // above the ground at any angle: it may move down from there
         scene.x_dot = x_dot;
         scene.z_dot = z_dot;
-        validate(scene.body());                // by its own names: k^2 is no inertia
+        validate(scene.body());                // first: a refusal then names gyration2
         validate(scene, most_energy_reached);  // the widest limit, as gravity is arbitrary here
         const State before = state_before_impulse(scene);
         const double approach = gap_rate(before, geometry(scene.axes(), before.theta));

@@ -114,7 +114,7 @@ py::tuple passages_of(const Solution& solution, Quantity quantity,
     return lists(found);
 }
 
-// The function takes an array of times and returns an array of as many numbers.
+// Times of the zeros of a function that takes an array of times and returns as many numbers.
 py::tuple zeros_of(const Solution& solution, const py::function& function, int direction) {
     const Measure measure = [&](const std::vector<double>& times) {
         const Array values = function(array_of(times));

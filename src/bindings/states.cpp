@@ -92,7 +92,7 @@ py::dict contact_arrays(const Scene& scene, const std::map<std::string, Array>& 
     return named({"q", "q_dot", "q_ddot", "multipliers"}, computed(n, row));
 }
 
-// q_ddot and multipliers of the multiplier model.
+// q_ddot and multipliers of the multiplier model, at each row of q and q_dot.
 py::tuple multiplier_arrays(const Scene& scene, const Settings& settings, const Array& q,
                             const Array& q_dot) {
     const ConstrainedBody body(scene);
