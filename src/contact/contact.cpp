@@ -10,7 +10,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The name of an event that leads to a mode; sliding has two.
+// The kind of the event that leads to the mode `next`; for sliding it is the given one.
 EventKind kind_of(Mode next, EventKind sliding) {
     if (next == Mode::rest) return EventKind::rest;
     if (next == Mode::rolling) return EventKind::stick;
@@ -50,8 +50,8 @@ class ContactRun {
   private:
     Axes axes() const { return scene_.axes(); }
 
-    // Counts an angle from the flat position or tip beside it, where a thin body is the most
-    // sensitive to it, and turns the scene so; returns the angle from there.
+    // Counts an angle from the nearest flat position or tip, where a thin body is most sensitive to
+    // it, and exchanges the axes of the scene for it; returns the angle so counted.
     DoubleDouble count_from_quarter(DoubleDouble theta) {
         if (const double rest = resolved(theta.high); rest != theta.high) {
             turned_ = turned_ + two_sum(theta.high, -rest) + theta.low;
@@ -107,7 +107,7 @@ class ContactRun {
         const double friction = friction_to_roll();
         const bool at_limit = friction != scene_.friction;
         EndOfRolling end = end_of_rolling(start, friction);
-        // The added friction may turn the body by less than a rounding of its angle.
+        // At the limit of friction rolling may last less than a rounding of theta: it is made one.
         if (at_limit && end.angle && std::abs(*end.angle - start.theta) < epsilon) {
             end.angle = start.theta + end.heading * epsilon;
         }
@@ -178,12 +178,12 @@ class ContactRun {
         const Geometry at = geometry(axes(), before.theta);
         state_ = in_contact(at, before.theta, before.omega, before.x, 0.0, Mode::sliding);
         const Continuation next = continuation(scene_, state_);
-        // The velocity of the centre has not the rounding of h omega.
+        // A body that slides keeps its x_dot: h omega would add a rounding.
         if (next.mode == Mode::sliding) state_.x_dot = before.x_dot;
         go_on_with(next, kind_of(next.mode, EventKind::reverse), before);
     }
 
-    // Follows a grazing contact as free flight: both motions agree to 1e-14 up to this angle.
+    // Follows a grazing contact as free flight: both motions agree to 1e-14 up to turn_of_grazing.
     void graze() {
         const Flight free{axes(), scene_.ground_gravity(), state_, 0.0, next_.mode};
         const double lasts = turn_of_grazing / std::abs(state_.omega);
@@ -200,7 +200,7 @@ class ContactRun {
         const Flight flight{axes(), scene_.ground_gravity(), state_, gap_rate_};
         const auto [lasts, small_rate] = touch_down(flight);
         State before = state_at(flight, t_ + lasts <= t_end_ ? lasts : t_end_ - t_);
-        // Bounces down a slope may grow, each more than the last, until they leave the doubles.
+        // Bounces down a slope may grow higher and higher, until the state is no longer finite.
         if (!is_finite(before)) return give_up(Ending::step_too_small, 0.0);
         add_segment(flight);
         if (!advance(lasts)) return;
@@ -213,7 +213,7 @@ class ContactRun {
     void hit(const State& before, const Geometry& at, double approach) {
         const auto [after, rebound] = collision(scene_, before, approach);
         state_ = after;
-        // A rebound below a rounding of the speed of a fall is none.
+        // A rebound slower than a rounding of the speed of a fall counts as no rebound.
         if (!(rebound > epsilon * speed_of_fall(scene_))) {
             return go_on_with(continuation(scene_, state_), EventKind::impact, before);
         }
@@ -264,7 +264,7 @@ class ContactRun {
         motion_.segments.push_back({t_, std::move(law), turned_, axes_exchanged_});
     }
 
-    // Goes on to the end of the segment just added; false if the motion is over before.
+    // Advances the time to the end of the segment just added; false if the motion is over before.
     bool advance(double lasts) {
         if (t_ + lasts > t_end_) {
             finish();
@@ -279,14 +279,14 @@ class ContactRun {
         ending_ = Ending::completed;
     }
 
-    // Ends the motion after so much of its last segment.
+    // Ends the motion at the time `lasts` after the begin of its last segment.
     void give_up(Ending ending, double lasts) {
         t_ += lasts;
         ending_ = ending;
     }
 
     const Units units_;
-    Scene scene_;  // with its axes exchanged after an odd number of quarter turns
+    Scene scene_;  // the scene, its axes exchanged after an odd number of quarter turns
     const Settings& settings_;
     const double t_end_;
     const Checkpoint& checkpoint_;
@@ -294,8 +294,8 @@ class ContactRun {
     double gap_rate_;
     const double rest_speed_;
     Motion motion_;
-    std::optional<SlidePoint> sliding_on_;  // the end of a slide that another one follows
-    DoubleDouble turned_;                   // half turns, added to the angle of the state
+    std::optional<SlidePoint> sliding_on_;  // the end of a slide, if another one follows it
+    DoubleDouble turned_;                   // quarter turns and roundings taken off theta
     bool axes_exchanged_ = false;
     Continuation next_{Mode::flight};
     double t_ = 0.0;

@@ -9,8 +9,8 @@
 namespace rolling_ellipse {
 namespace {
 
-// The largest ratio of a rebound to the last one with which bounces are summed: at most 1e5 of
-// them.
+// Limit of the ratio of a rebound to the one before for which bounces are summed: a sum has at most
+// 3e5 of them.
 constexpr double largest_ratio = 0.9999;
 
 // sin(x) cos(x) - x and sin(x)^2 - x^2 for |x| <= 1/4, as series in which nothing cancels.
@@ -68,7 +68,7 @@ class Gap {
         return (flight_.gap_rate - fallen) - rise->slope * flight_.start.omega;
     }
 
-    // The time at which the centre falls to a height, the start's at most if it starts to fall.
+    // The time of falling to a height, which is at most the start's if the body starts by falling.
     double falls_to(double height) const {
         const double drop = flight_.start.z - height;
         const double v = flight_.start.z_dot;
@@ -81,9 +81,9 @@ class Gap {
         return geometry(flight_.axes, flight_.start.theta + flight_.start.omega * t);
     }
 
-    // h - (h0 + h0' phi) after a small turn phi, and its derivative h' - h0', by the difference of
-    // h^2 and the square of the tangent: all terms are of the order of phi^2, and the first, with
-    // the h'' of the start, keeps its digits for every body.
+    // Rise of h over its tangent, h - (h0 + h0' phi), after a small turn phi, and its slope, h' -
+    // h0', by the difference of h^2 and the square of the tangent: all terms are of the order of
+    // phi^2, and the first, with the h'' of the start, keeps its digits for every body.
     struct Rise {
         double height;
         double slope;
@@ -124,7 +124,7 @@ class Curvature {
             positive_root(flight.gravity.into / square(omega), view.short_axis * view.long_axis);
         if (omega == 0 || !(root < view.long_axis)) return;  // concave for all times
         const double turned = flight.start.omega > 0 ? view.sin : -view.sin;
-        const double phi = std::atan2(turned, view.cos);  // grows with time
+        const double phi = std::atan2(turned, view.cos);  // angle from the flat, growing with time
         const double tip_side = std::sqrt((root - view.short_axis) * (root + view.short_axis));
         const double flat_side = std::sqrt((view.long_axis - root) * (view.long_axis + root));
         const double edge = std::atan2(tip_side, flat_side);
@@ -150,7 +150,7 @@ class Curvature {
         return {last.end, last.end + (convex ? convex_time_ : concave_time_), convex};
     }
 
-    // The interval around a later time, from that time on.
+    // The interval that contains a later time, shortened so that it begins at that time.
     Interval around(Interval interval, double t) const {
         if (t < interval.end) return {t, interval.end, interval.convex};
         const double period = convex_time_ + concave_time_;
@@ -158,14 +158,14 @@ class Curvature {
         interval = after({interval.begin, interval.end + skipped, interval.convex});
         while (!(t < interval.end)) {
             const Interval next = after(interval);
-            if (!(interval.end < next.end)) return {t, t, next.convex};  // shorter than an ulp
+            if (!(interval.end < next.end)) return {t, t, next.convex};  // shorter than an ulp of t
             interval = next;
         }
         return {t, interval.end, interval.convex};
     }
 
   private:
-    // Newton's method from the right, where the quartic is convex.
+    // The positive root of the quartic, by Newton's method from its right, where it is convex.
     static double positive_root(double load, double ab) {
         double h = load + std::sqrt(ab);
         for (;;) {
@@ -186,9 +186,9 @@ double first_touch(const Flight& flight, const Gap& gap) {
     const Curvature curvature(flight);
     // Whether the flight starts on the ground without a velocity away from it.
     const bool leaves_slowly = gap.value(0.0) <= 0 && gap.rate(0.0) <= 0;
-    // A higher centre is no contact, however h is rounded.
+    // The height of the centre above which there is no contact, however h is rounded.
     const double tall = std::max(flight.axes.a, flight.axes.b) * (1 + equal_ulps * epsilon);
-    // The time of a contact at the latest, however h is rounded.
+    // The time by which a contact is certain, however h is rounded.
     const double sure =
         gap.falls_to(std::min(flight.axes.a, flight.axes.b) * (1 - equal_ulps * epsilon));
     const auto value = [&](double t) { return gap.value(t); };
@@ -198,10 +198,10 @@ double first_touch(const Flight& flight, const Gap& gap) {
     // A body that leaves by its acceleration does so in a convex interval of the gap.
     if (leaves_slowly && !now.convex) {
         now = curvature.after(now);
-        // The interval begins at once, or the body does not leave.
+        // Unless that interval begins at once, the gap closes before it: the body does not leave.
         if (!(gap.value(now.begin) >= -equal_ulps * epsilon * tall)) return 0.0;
     }
-    double before = leaves_slowly ? 0.0 : gap.rate(now.begin);  // rate at the interval's begin
+    double before = leaves_slowly ? 0.0 : gap.rate(now.begin);  // rate of the gap at now.begin
     for (;;) {
         if (gap.height(now.begin) > tall) {
             now = curvature.around(now, gap.falls_to(tall));
@@ -223,7 +223,7 @@ double first_touch(const Flight& flight, const Gap& gap) {
             return bisect_root(from, end, value).high;
         }
         const Curvature::Interval next = curvature.after(now);
-        // Intervals, or the halves of a convex one, may be shorter than an ulp of time.
+        // The body spins so fast that an interval, or half a convex one, is below an ulp of time.
         const bool too_fast =
             !(now.end < next.end) || (next.convex && !(next.begin < curvature.tip_time(next)));
         if (too_fast || !(end < sure)) return end;
@@ -257,7 +257,7 @@ double speed_of_fall(const Scene& scene) {
 
 double rest_speed(const Scene& scene, const Units& units, const Settings& settings) {
     constexpr double small = 1e-6;
-    // Relative error of c and h', which are constant while bounces are summed.
+    // Largest rest speed by the speed of a fall, which bounds the relative error of the sum.
     constexpr double large = 1e-2;
     const double unit = speed_of_fall(scene);
     if (!settings.rest_speed) return small * unit;
@@ -271,8 +271,8 @@ double rest_speed(const Scene& scene, const Units& units, const Settings& settin
     return speed;
 }
 
-// The bounces are summed under one c and h'. The relative error is the square of their duration by
-// the time in which the body falls, or turns by b/a; it must stay below the rest speed by the speed
+// Whether bounces are summed under one c and h'. The relative error, the square of their duration
+// by the time in which the body falls, or turns by b/a, must be at most the rest speed by the speed
 // of a fall.
 bool settles(const Scene& scene, double omega, const Bounce& first, double rest_speed) {
     const auto [rebound, ratio, c] = first;
@@ -283,10 +283,10 @@ bool settles(const Scene& scene, double omega, const Bounce& first, double rest_
     return 2 * rebound * rate <= longest * c * (1 - ratio);
 }
 
-// Infinitely many bounces that shrink by a ratio take a finite time, physics (57). Such small ones
-// take place at one angle, under the c of their beginning.
+// The sum of infinitely many bounces that shrink by a ratio: they take a finite time, physics (57).
+// Bounces this small take place at one angle, under the c of their beginning.
 Settling settling(const Scene& scene, const State& start, const Bounce& first) {
-    constexpr double negligible_share = 1e-12;  // of the first rebound: smaller ones add no digit
+    constexpr double negligible_share = 1e-12;  // of the first rebound; slower ones are left out
     const Geometry at = geometry(scene.axes(), start.theta);
     const GroundGravity gravity = scene.ground_gravity();
     State moving = start;
@@ -296,8 +296,8 @@ Settling settling(const Scene& scene, const State& start, const Bounce& first) {
     double speed = first.rebound;
     while (speed > negligible_share * first.rebound) {
         const double hop = 2 * speed / first.c;
-        const double gained = (gravity.along - at.dh * square(moving.omega)) * hop;  // slip
-        // The centre moves with the slip and (h + h' turned) omega.
+        const double gained = (gravity.along - at.dh * square(moving.omega)) * hop;  // slip gained
+        // The velocity of the centre is the slip plus (h + h' turned) omega.
         const double velocity = moving.x_dot + at.dh * turned * moving.omega;
         moved += (velocity + 0.5 * gravity.along * hop) * hop;
         lasts += hop;

@@ -13,15 +13,15 @@ struct Flight {
     Axes axes;
     GroundGravity gravity;
     State start;
-    double gap_rate;  // at the start; z_dot - h' omega has fewer digits of it for a low hop
+    double gap_rate;  // rate of the gap at the start; z_dot - h' omega would have fewer digits
     Mode mode = Mode::flight;
 };
 
 State state_at(const Flight& flight, double t);
 
-// The first contact after the start. A start in contact counts as leaving the ground, with its
-// velocity or its acceleration. The rate of the gap is given after a small turn, where it has more
-// digits than the velocities.
+// The first contact of a flight: the time since its start and, after a small turn, the rate of the
+// gap, which then has more digits than the velocities. A start in contact counts as leaving the
+// ground, with its velocity or its acceleration.
 struct Landing {
     double after;
     std::optional<double> gap_rate;

@@ -8,7 +8,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The kind of sample that a law computes. State and force follow from it, and all else from those.
+// The type of sample that a law computes itself; `convert` makes the other types from it.
 template <class Law>
 using OwnSample = std::conditional_t<
     std::is_same_v<Law, SteppedMultipliers>, CoordinateState,
@@ -16,7 +16,7 @@ using OwnSample = std::conditional_t<
                            std::is_same_v<Law, SteppedRolling>,
                        FlowSample, ContactSample>>;
 
-// A law at times since its begin; those with an overload of `sample` elsewhere have none here.
+// Samples of a law at times since its begin. Laws whose header declares `sample` need none here.
 
 void sample(const RollingFlow& flow, const double* times, std::size_t n, FlowSample* samples) {
     FlowSampler{flow, n}(times, n, samples);
@@ -26,8 +26,8 @@ void sample(const Flight& flight, const double* times, std::size_t n, ContactSam
     for (std::size_t i = 0; i < n; ++i) samples[i] = {state_at(flight, times[i]), {0.0, 0.0}};
 }
 
-// Velocities change evenly. A coordinate is the integral of its rate, and the rest of its change
-// comes evenly, too.
+// While bounces settle, velocities change evenly. A coordinate is the integral of its rate; what is
+// then missing of its change is added evenly, too.
 void sample(const Settling& settling, const double* times, std::size_t n, ContactSample* samples) {
     const auto& [axes, lasts, start, end, angle] = settling;
     for (std::size_t i = 0; i < n; ++i) {
@@ -53,7 +53,7 @@ void sample(const Standing& standing, const double*, std::size_t n, ContactSampl
     std::fill_n(samples, n, standing);
 }
 
-// Conversions of samples; of a multiplier model the force is among its unknowns.
+// Converts samples of a law to another type; a multiplier model has the force among its unknowns.
 
 template <class Law>
 void convert(const Scene& scene, const Law&, const std::vector<FlowSample>& from,
@@ -106,7 +106,7 @@ double whole_angle(const DoubleDouble& turned, double theta) {
     return turned.high == 0 ? theta : static_cast<double>(turned + theta);
 }
 
-// Samples in SI units, with their whole angles.
+// Converts a sample to SI units, with its whole angle.
 
 void complete(FlowSample& sample, const Units& units, const DoubleDouble& turned) {
     sample = {whole_angle(turned, sample.theta), sample.omega / units.time,
@@ -165,7 +165,7 @@ void Sampler::operator()(const double* times, std::size_t n, Sample* samples) co
     std::vector<double> since;
     since.reserve(n);
     for (std::size_t i = 0; i < n;) {
-        // The last segment that has begun at the time i, and the times from there on within it.
+        // The time j in units of the motion. One law samples all times from i on in its segment.
         const auto time = [&, unit = units.time](std::size_t j) {
             return std::min(times[j] / unit, std::numeric_limits<double>::max());
         };

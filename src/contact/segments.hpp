@@ -34,7 +34,7 @@ InitialState start_after(const Scene& scene, const Event& event);
 // force of the ground is right.
 using Standing = ContactSample;
 
-// A law of some kB, kept outside of the list, in which every bounce would take as much.
+// A law of some kB behind a pointer: in the list, every segment would take as much memory.
 template <class Law>
 using Apart = std::shared_ptr<const Law>;
 
@@ -44,18 +44,18 @@ struct Segment {
     std::variant<Apart<RollingFlow>, Apart<SlopeFlow>, SteppedRolling, SteppedMultipliers, Slide,
                  Flight, Settling, Standing>
         law;
-    DoubleDouble turned{};        // half turns, added to the angles of the law
-    bool axes_exchanged = false;  // in the law: after an odd number of quarter turns
+    DoubleDouble turned{};        // angle to be added to the angles of the law
+    bool axes_exchanged = false;  // the law has a and b exchanged (odd quarter turns)
 };
 
 struct Motion {
-    Units units;  // of scene and segments; events are in SI units
+    Units units;  // units of scene and segments; events are in SI units
     Scene scene;  // body and ground
     std::vector<Segment> segments;
     std::vector<Event> events;
 };
 
-// The law, wherever it is kept.
+// The law of a segment, whether it is stored there or behind a pointer (Apart).
 template <class Law>
 const Law& itself(const Law& law) {
     return law;
@@ -72,7 +72,7 @@ Integration<Motion> integrate_contact(const Scene& scene, const InitialState& st
                                       const Settings& settings, double t_end,
                                       const Checkpoint& checkpoint);
 
-// A motion in SI units by one law.
+// A motion of one segment, with this law, in SI units.
 Motion single(const Scene& scene, decltype(Segment::law) law);
 
 // Samples a motion at an expected number of times in all, which may come in parts: a table that so
@@ -86,15 +86,15 @@ class Sampler {
     template <class Sample>
     void operator()(const double* times, std::size_t n, Sample* samples) const;
 
-    // theta, omega, x as columns.
+    // Writes theta, omega and x of n samples as columns.
     void operator()(const double* times, std::size_t n, const FlowColumns& out) const;
 
   private:
     const Motion& motion_;
-    std::optional<FlowSampler> flow_;  // of a motion that is one exact rolling
+    std::optional<FlowSampler> flow_;  // set if the motion is one exact rolling
 };
 
-// The times between the steps of an integrated motion, which has one law; else none.
+// The times at which the steps of an integrated motion begin and end; empty for all other motions.
 std::vector<double> knot_times(const Motion& motion);
 
 }  // namespace rolling_ellipse

@@ -11,12 +11,12 @@
 namespace rolling_ellipse {
 namespace {
 
-// B, physics (50), below which the slower clock is the better one, physics (54).
+// Value of B, physics (50), below which the slower clock of physics (54) is used.
 constexpr double small_response = 1e-2;
-// B that counts as 0.
+// Value of B, physics (50), below which B counts as 0.
 constexpr double no_response = 1e-13;
 
-// The point at a reading of the clock. Slip and energy, which no sample needs, stay as they are.
+// The point at a reading of the piece's clock; slip and energy, which no sample needs, are kept.
 SlidePoint moved(const SlidePiece& piece, double clock) {
     const auto& [centre, kind, unit, reach, motion] = piece;
     const auto change = [clock](const LongSeries& series) { return value(series, clock); };
@@ -36,13 +36,13 @@ bool is_finite(const SlidePoint& point) {
                        [](const DoubleDouble& each) { return std::isfinite(double(each)); });
 }
 
-// The coefficients of a circle vanish but for the first ones, and powers of its reach are infinite.
+// coefficient * power, but 0 for a coefficient 0: powers of the reach of a circle are infinite.
 double times_power(double coefficient, double power) {
     return coefficient == 0 ? 0.0 : coefficient * power;
 }
 
-// The first share of a reach at which a series that must stay positive is provably negative; each
-// coefficient with the magnitude of the terms it was made from.
+// The first share of the reach at which a series that must stay positive is provably negative; each
+// coefficient(k) comes with the magnitude of the terms it was made from.
 template <class Coefficient>
 std::optional<double> first_end(double reach, const Coefficient& coefficient) {
     double others = 0.0;
@@ -71,7 +71,7 @@ std::pair<double, double> sin_cos(const DoubleDouble& angle) {
     return {sin * rest_cos + cos * rest_sin, cos * rest_cos - sin * rest_sin};
 }
 
-// Height of the centre over the tip less its present height.
+// Height of the centre over the tip minus its height now.
 double under_tip(const Axes& axes, const Geometry& at) {
     return under_tip(flat_view(axes, at.sin, at.cos), at.h);
 }
@@ -113,9 +113,9 @@ class SlideIntegration {
                                            double(from.slip) * unit, double(from.x_dot) * unit},
                                           clock_);
         auto& [angle, omega, x_dot, path, time] = series.motion;
-        // Largest reach of a piece: 1 + 15 times the time slid so far, since the series of a circle
-        // never lose their digits. Path and pressure bound the reach, too: in a nearly round body
-        // they vary more, in shares of themselves, than angle and speed do.
+        // Largest reach of a piece in units of its time: 1 + 15 times the time slid so far, for
+        // circles, whose series never lose their digits. h omega and pressure bound the reach, too:
+        // in a nearly round body they vary more, in shares of themselves, than angle and speed do.
         const double most = 1 + 15 * from.time.high / unit;
         reach_ = std::min(
             {reach(angle), reach(omega), reach(series.rolled), reach(series.pressure), most});
@@ -146,12 +146,12 @@ class SlideIntegration {
         return geometry(slide_.body.axes, sin, cos);
     }
 
-    // Where the body creeps over the tip, omega follows from the energy. There the series carry the
+    // Takes omega from the energy where the body creeps over the tip. The series carry the
     // roundings of the fast motion before; the energy, counted from the tip, has smaller ones.
     void keep_energy() {
-        constexpr double slow = 0.02;  // share of the largest kinetic energy
-        constexpr double near = 10;    // g times the height under the tip, by the kinetic energy
-        constexpr double rounding = 1e-12;  // a larger change of omega is none of rounding
+        constexpr double slow = 0.02;       // kinetic energy below this share of its maximum
+        constexpr double near = 10;         // g times height under the tip over kinetic energy
+        constexpr double rounding = 1e-12;  // a larger relative change of omega is no rounding
         const Geometry at = geometry_here();
         const double fallen = slide_.body.gravity.into * under_tip(slide_.body.axes, at);
         const double kinetic = double(last_.energy + fallen);
@@ -165,8 +165,8 @@ class SlideIntegration {
         last_.slip = last_.slip + -at.h * change;
     }
 
-    // The rate of turning or, where B is small, of the change of B, whichever is larger. In units
-    // of this rate no power overflows.
+    // 1 + the rate of turning + the rate at which the force changes B, where that is large. In
+    // units of this rate no power overflows.
     double rate(const Geometry& at) const {
         constexpr double stiff = 0x1p20;
         const double omega = double(last_.omega);
@@ -178,7 +178,7 @@ class SlideIntegration {
 
     enum class End { slip, pressure, response, recovery, bounds };
 
-    // Shortens the reach to the first place where something ends.
+    // Shortens the reach to the first place where slip, pressure or B vanishes or a bound lies.
     void find_end(const SlidingBody& body, const SlideSeries& series) {
         end_.reset();
         const auto search = [&](End what, const auto& coefficient) {
@@ -196,7 +196,7 @@ class SlideIntegration {
             });
         };
         if (body.side != 0) {
-            // After rolling at the limit of friction, slip starts at a rate of 0 to rounding.
+            // A slip that begins after rolling at the limit has a rate of 0 to rounding.
             const bool starts = series.slip[0] == 0;
             search(End::slip, [&](int k) -> Tracked {
                 const double slip = series.slip[k];
@@ -250,8 +250,8 @@ class SlideIntegration {
         return std::nullopt;
     }
 
-    // Whether c, now 0 to rounding, will fall below 0. h'' is least on the tip, so that c can be
-    // negative only on the way there.
+    // Whether c, now 0 to rounding, will fall below 0: only on the way to the tip, where h'' is
+    // least.
     bool leaves() const {
         const Axes& axes = slide_.body.axes;
         const Geometry tip = axes.a > axes.b ? geometry(axes, 1.0, 0.0) : geometry(axes, 0.0, 1.0);
@@ -261,7 +261,7 @@ class SlideIntegration {
                geometry_here().dh * omega > 0;
     }
 
-    // B = 0: in a moment, N = c/B ends the slide.
+    // The end of a slide at B = 0: in a moment, N = c/B stops the slip or jams the body.
     SlideStop last_moment() {
         const double angle = double(last_.angle);
         const auto [stops, omega, slip, x_dot, lasts] = rolling_ellipse::last_moment(
@@ -285,12 +285,12 @@ class SlideIntegration {
     SlideClock clock_ = SlideClock::time;
     double reach_ = 0.0;
     std::optional<End> end_;
-    // The free acceleration c is 0 within rounding, not negative: beside B = 0 a slide under
+    // True once c was found to be 0 within rounding, not negative: beside B = 0 a slide under
     // infinite friction begins so. c then has the rounding of gravity and h'' omega^2, too.
     bool grazes_ = false;
 };
 
-// The reading of the clock at a time since the centre.
+// The reading of the piece's clock at a time since the centre of the piece.
 double clock_at(const SlidePiece& piece, double time) {
     time /= piece.unit;
     if (piece.clock == SlideClock::time) return time;

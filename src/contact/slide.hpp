@@ -15,17 +15,17 @@
 namespace rolling_ellipse {
 
 struct SlidePoint {
-    // Angle from the quarter turn nearest to the start. A thin body is most sensitive to it there,
-    // and the whole angle could not hold these digits.
+    // Angle of the body from the quarter turn nearest to the start. A thin body is most sensitive
+    // to the angle there, and the whole angle could not hold these digits.
     DoubleDouble angle;
     DoubleDouble omega;
     DoubleDouble slip;
-    // A number of its own: the sum of slip and h omega would have their rounding, where friction
-    // hardly changes it.
+    // Velocity of the centre, not computed from slip + h omega: it would have their rounding, where
+    // friction hardly changes it.
     DoubleDouble x_dot;
     DoubleDouble path;  // path since the start
     DoubleDouble time;  // time since the start
-    // Energy per mass, without the energy of x_dot and from the tip; only friction changes it.
+    // Energy per mass, without the energy of x_dot, 0 at rest on the tip; only friction changes it.
     DoubleDouble energy;
 };
 
@@ -39,7 +39,7 @@ struct SlidePiece {
 };
 
 struct Slide {
-    SlidingBody body;  // after an odd number of quarter turns with its axes exchanged
+    SlidingBody body;  // the body; after an odd number of quarter turns its axes are exchanged
     Axes axes;
     DoubleDouble theta_base;
     double x_base;
@@ -47,15 +47,15 @@ struct Slide {
     std::vector<SlidePiece> pieces;
 };
 
-// The start of sliding, with the slip to the given side (0: without friction there is none). At the
-// end of another slide it has no slip, and all digits that the states have rounded away.
+// A slide at its start, with the slip to the given side (0: without friction there is none). After
+// the end of another slide it starts without slip, with all digits that states round away.
 Slide slide_from(const Scene& scene, const State& start, double side,
                  const std::optional<SlidePoint>& end_of_other = {});
 
 struct SlideBounds {
     double t_end = infinity;
     long most_pieces = 0;
-    double theta = infinity;  // the slide stops behind it, or where it turns back before
+    double theta = infinity;  // the slide stops beyond this angle, or where it turns back
 };
 
 enum class SlideStop {
@@ -68,12 +68,12 @@ enum class SlideStop {
     no_progress
 };
 
-// Slide on from the start until something stops the body, at the time of the last point.
+// Extends the slide until something stops the body; `slide.last` is the point where it stops.
 SlideStop slide_on(Slide& slide, const SlideBounds& bounds, const Checkpoint& checkpoint);
 
 // The state at the last point.
 State end_of(const Slide& slide);
-// The angle at the last point, with all digits.
+// The angle of the body at the last point of the slide, with all digits.
 DoubleDouble angle_at_end(const Slide& slide);
 
 // States and forces at n times since the start, ascending.

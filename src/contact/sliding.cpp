@@ -35,8 +35,8 @@ SlidingBody sliding_body(const Scene& scene, double side) {
             endless ? -side : -scene.friction * side};
 }
 
-// Per mass N = c/B with B = Gnn - mu s Gtn, physics (50); with infinite friction F = c/Gtn and N =
-// 0, physics (52).
+// The response c and B = Gnn - mu s Gtn, from which N = c/B per mass, physics (50); with infinite
+// friction F = c/Gtn and N = 0, physics (52).
 Response response(const SlidingBody& body, const Geometry& at, double omega) {
     const double c = free_acceleration(at, body.gravity.into, omega);
     const double gnn = 1 + at.dh * at.dh / body.gyration2;
@@ -46,7 +46,7 @@ Response response(const SlidingBody& body, const Geometry& at, double omega) {
 
 ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double omega) {
     const auto [c, b] = response(body, at, omega);
-    const double force = body.mass * (std::max(c, 0.0) / b);  // c = 0 at lift-off, but for rounding
+    const double force = body.mass * (std::max(c, 0.0) / b);  // c < 0 at lift-off is rounding
     return {body.normal_share * force, body.friction_share * force};
 }
 
@@ -60,7 +60,7 @@ double slowed_response_rate(const SlidingBody& body, const Geometry& at, double 
     return std::sqrt(std::abs(response_derivative(body, at) * c * spin(body, at)));
 }
 
-// The impulse of N changes omega and slip in a fixed ratio, physics (54).
+// The last moment: the impulse of N changes omega and slip in a fixed ratio, physics (54).
 LastMoment last_moment(const SlidingBody& body, double angle, double omega, double slip) {
     const Geometry at = geometry(body.axes, angle);
     const double b_derivative = response_derivative(body, at);
@@ -75,8 +75,8 @@ LastMoment last_moment(const SlidingBody& body, double angle, double omega, doub
     const bool stops = impulse_to_stop >= 0 && impulse_to_stop <= impulse_to_jam;
     const double omega_after = stops ? without_slip : without_c;
     const double slip_after = stops ? 0.0 : slip + slip_by_turning * (omega_after - omega);
-    // The moment ends with B = 0, or when N = c/B has made the impulse: a slide that starts with so
-    // small a B need not turn towards B = 0, nor turn at all.
+    // The moment lasts until B = 0, or until N = c/B has made the impulse: a slide that starts with
+    // so small a B need not turn towards B = 0, nor turn at all.
     const double b_rate = b_derivative * omega;
     const double until_no_b = b_rate < 0 ? -b / b_rate : infinity;
     const double until_made = (stops ? impulse_to_stop : impulse_to_jam) * b / c;
@@ -98,15 +98,15 @@ SlideSeries slide_series(const SlidingBody& body, const SlideCentre& centre, Sli
     SlideSeries slide;
     auto& [motion, slip, rolled, pressure, response, u, work] = slide;
     auto& [angle, w, x_dot, path, time] = motion;
-    // Two factors side by side, for two products at once.
-    TwoSeries p_q, spread;   // p angle', q angle'
-    TwoSeries w_u;           // omega^2, u^2
-    TwoSeries h_bend, h_w2;  // h^2, (a b - u)(a b + u) omega^2
-    TwoSeries p_u, lever_h;  // p L, u h
-    TwoSeries u_h, v_v;      // u V, h V
-    TwoSeries c_w;           // products L C and h omega, L = lever_h
-    TwoSeries loads, gains;  // (u V) omega', (h V) impulse'
-    TwoSeries rate_c, w_h;   // dt/dtau omega, C h
+    // Pairs of series; two pairs on a line are multiplied, for the two products behind them.
+    TwoSeries p_q, spread;   // products p angle', q angle'
+    TwoSeries w_u;           // squares omega^2, u^2
+    TwoSeries h_bend, h_w2;  // products h^2, (a b - u)(a b + u) omega^2
+    TwoSeries p_u, lever_h;  // products p L, u h
+    TwoSeries u_h, v_v;      // products u V, h V
+    TwoSeries c_w;           // products L C and h omega, with L = lever_h
+    TwoSeries loads, gains;  // products (u V) omega', (h V) impulse'
+    TwoSeries rate_c, w_h;   // products dt/dtau omega, C h
     LongSeries h, rate, impulse, pull;
     w[0] = omega;
     angle[0] = path[0] = time[0] = impulse[0] = work[0] = 0.0;
@@ -199,9 +199,9 @@ bool rests(const Scene& scene, const State& state, const Geometry& at) {
 
 // The body leaves the ground if c <= 0, physics (53), and jams if B <= 0, physics (50, 52). Only if
 // it slips already can a slide with N = c/B > 0, c < 0, be a second motion beside flight: without
-// slip, the N and F of rolling rule out that slip starts to the side of this slide. A body may be
-// put there, but no motion leads there: a slide ends before, where c or B vanishes, and an impact
-// with B < 0 goes on until the slip stops.
+// slip, the N and F of rolling rule out that slip starts to the side of this slide. Such a state
+// may be a start, but no motion leads to it: a slide ends before, where c or B vanishes, and an
+// impact with B < 0 goes on until the slip stops.
 Continuation slide_or_leave(const Scene& scene, const Geometry& at, double omega, double side,
                             bool slips = false) {
     const auto [c, b] = response(sliding_body(scene, side), at, omega);
@@ -225,7 +225,7 @@ Continuation starting_to_slide(const Scene& scene, const Geometry& at, const Sta
     return {Mode::sliding, 0.0, Painleve::no_motion};
 }
 
-// The continuation of a state, decided by a geometry and a slip that may be taken a moment later.
+// The continuation of a state, decided by a geometry and a slip, which may be those a moment later.
 Continuation continuation_at(const Scene& scene, const State& state, const Geometry& at,
                              double slip, bool may_roll) {
     if (scene.friction == 0) {
@@ -251,7 +251,7 @@ Continuation continuation(const Scene& scene, const State& state, bool may_roll)
     const double slip = slip_velocity(state, at);
     const bool weightless = is_weightless(at, scene.ground_gravity().into, state.omega);
     if (!weightless) return continuation_at(scene, state, at, slip, may_roll);
-    // h'' is least on the tip, so that c falls on the way up to it and grows behind it.
+    // A weightless body flies on its way up to the tip: c falls there, since h'' is least on it.
     if (at.dh * state.omega > 0 && !is_equilibrium(at)) return {Mode::flight};
     State later = state;
     later.theta += std::copysign(turn_of_grazing, state.omega);

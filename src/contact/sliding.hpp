@@ -15,7 +15,7 @@ struct SlidingBody {
     double gyration2;
     GroundGravity gravity;
     double side;
-    // Shares of the contact force along the normal and along the ground: 1 and -mu s, or 0 and -s.
+    // Shares of the contact force along normal and ground: 1, -mu s; for infinite friction 0, -s.
     double normal_share;
     double friction_share;
 
@@ -38,8 +38,8 @@ ContactForce sliding_force(const SlidingBody& body, const Geometry& at, double o
 // The rate of the slip velocity, physics (51).
 double slip_rate(const SlidingBody& body, const Geometry& at, double omega);
 
-// The rate at which the force changes B by turning the body, in a time that runs by B (hence the
-// square root). In the time itself it is 1/B times as large.
+// The rate at which the contact force changes B by turning the body, by a clock that slows down
+// with B (hence the square root); by time it is 1/B times as large.
 double slowed_response_rate(const SlidingBody& body, const Geometry& at, double c);
 
 // The end of a slide that has reached B = 0 with c > 0, physics (54): in a moment N = c/B makes
@@ -77,11 +77,11 @@ struct SlideMotion {
 struct SlideSeries {
     SlideMotion motion;
     LongSeries slip;
-    LongSeries rolled;    // h omega
-    LongSeries pressure;  // C
-    LongSeries response;  // V
-    LongSeries height2;   // u
-    LongSeries work;      // of the friction on the turning, per mass
+    LongSeries rolled;    // h omega, rate of the path
+    LongSeries pressure;  // C = h^3 c, the scaled c
+    LongSeries response;  // V = k^2 u B, the scaled B
+    LongSeries height2;   // u = h^2
+    LongSeries work;      // work of friction on the turning, per mass
 };
 
 // Physics (51, 52) times powers of h, with u = h^2, p = h h' and the shares nu, phi of the contact
@@ -104,13 +104,13 @@ struct Continuation {
     Mode mode;
     double side = 0.0;  // sign of the slip
     Painleve paradox = Painleve::determined;
-    // Infinite friction, and c = 0 within rounding: N is then rounding as well, and next to the tip
-    // so is B. The body moves freely until it has turned so far that they have digits.
+    // Set for infinite friction and c = 0 within rounding: N is then rounding as well, and next to
+    // the tip so is B. The body moves freely until it has turned so far that N and B have digits.
     bool grazes = false;
-    bool may_fly = false;  // the body rolls, and flight would obey the laws as well
+    bool may_fly = false;  // the body rolls, but flight would obey the laws, too
 };
 
-inline constexpr double turn_of_grazing = 0x1p-22;  // [rad]
+inline constexpr double turn_of_grazing = 0x1p-22;  // turn of a grazing body in free flight [rad]
 
 // The mode that the forces allow. Without slip the body rolls if it may and can; else it starts to
 // slide, or leaves the ground if its contact is not pressed any more. On slopes the forces may
@@ -118,7 +118,7 @@ inline constexpr double turn_of_grazing = 0x1p-22;  // [rad]
 // rolling.
 Continuation continuation(const Scene& scene, const State& state, bool may_roll = true);
 
-// The same state by other axes, and the angle that belongs to them. Contact and no slip remain so.
+// A state for exchanged axes, with its angle from these. Contact and no slip remain so.
 State with_angle(const Axes& axes, State state, const Axes& new_axes, double theta);
 
 // The mode in which a body goes on from its start, which may be in the air.
