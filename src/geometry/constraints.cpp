@@ -42,7 +42,7 @@ Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const C
     const double omega = q_dot[theta];
     const double psi_dot = q_dot[psi];
     const double turn = psi_dot - omega;
-    // physics (15)
+    // The rows of A_dot q_dot, physics (15).
     return {(q[r] * s * turn - q_dot[r] * c) * omega,
             2 * q_dot[r] * s * turn + q[r] * c * turn * turn,
             -polar_radius(axes, q[psi]).second * psi_dot * psi_dot,
@@ -52,7 +52,7 @@ Eigen::Vector4d constraint_drift(const Axes& axes, const Coordinates& q, const C
 Eigen::Vector3d position_residuals(const Axes& axes, const Coordinates& q) {
     using namespace coordinate;
     const double offset = q[psi] - q[theta];
-    // physics (13)
+    // The residuals f2, f3 and f4, physics (13).
     return {q[z] - q[r] * std::cos(offset), q[r] - polar_radius(axes, q[psi]).value,
             offset - contact_angle_offset(geometry(axes, q[theta]))};
 }
@@ -69,11 +69,11 @@ CoordinateState kinematics(const Axes& axes, double theta, double omega) {
     const Geometry at = geometry(axes, theta);
     const double psi = contact_angle(axes, theta);
     const double psi_dot = contact_angle_rate(axes, at) * omega;
-    // r from psi as it is rounded: then f3 is zero to rounding, and f2 is flat in psi.
+    // The radius for psi as rounded: then f3 is zero to rounding, and f2 is flat in psi.
     const PolarRadius r = polar_radius(axes, psi);
     CoordinateState state;
     state.q << centre_path(axes, theta), at.h, theta, psi, r.value;
-    // physics (12)
+    // The velocities of a rolling body, physics (12).
     state.q_dot << at.h * omega, at.dh * omega, omega, psi_dot, r.derivative * psi_dot;
     return state;
 }

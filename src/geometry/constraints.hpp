@@ -40,12 +40,12 @@ struct ConstraintResiduals {
     Eigen::Vector3d position;  // f2 [m], f3 [m], f4 [rad]
     Eigen::Vector4d velocity;  // f1 [m/s] and the rates of f2, f3, f4
     double gap;                // height of the lowest point over the ground [m]
-    double slip;               // velocity along the ground of the material point there [m/s]
+    double slip;               // velocity of the lowest material point along the ground [m/s]
 };
 
 ConstraintResiduals constraints(const Axes& axes, const Coordinates& q, const Coordinates& q_dot);
 
-// The state that meets all constraints at an angle and angular velocity; x is the integral of h.
+// The state that meets all constraints at theta and omega; its x is the path from theta = 0.
 CoordinateState kinematics(const Axes& axes, double theta, double omega);
 
 }  // namespace rolling_ellipse

@@ -67,8 +67,8 @@ CarlsonPair carlson(double x, double y, double z) {
     return result;
 }
 
-// The arc from the contact at the tip to the contact at an offset, physics (10): DLMF 19.25.10
-// without its last term, the lead -h' of the centre.
+// The arc of the ellipse between the contacts at the tip and at an angle from it, physics (10):
+// DLMF 19.25.10 without its last term, the lead -h' of the centre.
 double arc_from_tip(double long_axis, double short_axis, double s, double c) {
     const double c2 = (long_axis - short_axis) * (long_axis + short_axis);
     const double h = root_of_squares(long_axis * c, short_axis * s);
@@ -77,8 +77,8 @@ double arc_from_tip(double long_axis, double short_axis, double s, double c) {
     return short_axis * short_axis * s * (rf + c2 * s * s / 3 * rd);
 }
 
-// Path of the centre, and of the contact along the ellipse (h' more), from theta = 0 over an offset
-// with sine and cosine >= 0: physics (9). The digits of a small path are kept.
+// Path of the centre, and arc of the contact along the ellipse (h' longer), from theta = 0 to an
+// angle with sine and cosine >= 0: physics (9). Small paths keep their digits.
 struct QuarterPath {
     double centre;
     double contact;

@@ -59,8 +59,8 @@ struct FlatView {
 FlatView flat_view(const Axes& axes, double theta);
 FlatView flat_view(const Axes& axes, double sin, double cos);
 
-// The heights L - h and h - S of the centre under its place over the tip and over its place over
-// the flat [m]. They are products, since differences of heights would lose digits.
+// under_tip: L - h, the depth of the centre under its highest position; over_flat: h - S, its
+// height over its lowest position [m]. They are products, since differences of heights lose digits.
 inline double under_tip(const FlatView& at, double h) {
     return at.c2 * square(at.cos) / (at.long_axis + h);
 }
@@ -78,7 +78,7 @@ double contact_angle_offset(const Geometry& at);
 // The angle psi of the report's eq 5, continuous over all theta.
 double contact_angle(const Axes& axes, double theta);
 
-// The derivatives d psi/d theta and d^2 psi/d theta^2.
+// contact_angle_rate is d psi/d theta, contact_angle_second is d^2 psi/d theta^2.
 double contact_angle_rate(const Axes& axes, const Geometry& at);
 double contact_angle_second(const Axes& axes, const Geometry& at);
 
@@ -111,15 +111,15 @@ double centre_path(const Axes& axes, double theta);
 // Arc length along the ellipse from the contact at 0 to the contact at theta [m]: centre_path + h'.
 double arc_length(const Axes& axes, double theta);
 
-// The path of the centre from the flat position (long axis along the ground) or from the tip to an
-// angle with sine s >= 0 and cosine c >= 0 from there: one function for each start.
+// path_from_flat is the path of the centre from the flat position (long axis along the ground),
+// path_from_tip from the tip, to the angle with sine s >= 0 and cosine c >= 0 from there.
 double path_from_flat(double long_axis, double short_axis, double s, double c);
 double path_from_tip(double long_axis, double short_axis, double s, double c);
 
-// Angles as half turns and a remainder: the ellipse is the same after half a turn.
+// Half a turn, pi in two parts: the ellipse is the same after it.
 inline constexpr DoubleDouble half_turn = {2 * half_pi_exact.high, 2 * half_pi_exact.low};
 
-// An angle of at most half a turn as it is; a larger one without full turns.
+// An angle without its full turns, if it exceeds half a turn in size; unchanged otherwise.
 inline double within_a_turn(double angle) {
     return std::abs(angle) > pi ? std::atan2(std::sin(angle), std::cos(angle)) : angle;
 }
@@ -139,14 +139,14 @@ inline QuarterView quarter_view(const DoubleDouble& angle) {
     return {quarters, angle - half_pi_exact * quarters};
 }
 
-// An angle whose sums with others still resolve a part of a turn: unchanged up to 1e15, where a
-// double resolves 0.1 rad, and without full turns beyond.
+// An angle small enough that its sums with others resolve a part of a turn: unchanged up to 1e15,
+// where a double resolves 0.1 rad, and without its full turns beyond.
 inline double resolved(double angle) {
     constexpr double largest = 1e15;
     return std::abs(angle) > largest ? within_a_turn(angle) : angle;
 }
 
-// Takes the half turns off angle + carry if it exceeds one; returns their number.
+// Takes whole half turns off angle + carry if the angle exceeds half a turn; returns their number.
 inline double take_half_turns_off(double& angle, double& carry) {
     if (!(std::abs(angle) > pi)) return 0.0;
     const double over = std::nearbyint(angle / pi);
