@@ -13,8 +13,8 @@ namespace rolling_ellipse {
 template <int N, int Stages>
 using StageVectors = std::array<Vector<N>, Stages>;
 
-// Scale of each component for the errors of a step: the sizes of an ordinary state, of the point
-// and of the stages.
+// Scale of each component for the errors of a step: the sum of the sizes of an ordinary state, of
+// the point and of the stages.
 template <int Stages, class System, int N = System::size>
 Vector<N> size(const System& f, const Point<N>& point, const StageVectors<N, Stages>& parts) {
     Vector<N> sum = f.typical() + point.y.cwiseAbs();
@@ -74,11 +74,11 @@ class Stagnation {
     Vector<N> first_ = Vector<N>::Zero();
 };
 
-// Limit of iterations. An iteration ends when its changes are settled and do not shrink any more.
+// Most iterations of a step. It ends earlier, once its changes are settled and no longer shrink.
 inline constexpr int most_iterations = 200;
 
-// Dense output of an implicit method by a shorter step, hence of the full order. It stays at the
-// start of the step if the stages of the shorter step do not converge.
+// Dense output of an implicit method by a shorter step, hence of the full order. Its change is 0 if
+// the stages of the shorter step do not converge.
 template <class Method, class System>
 struct PartialStep {
     static constexpr int N = System::size;
@@ -151,7 +151,7 @@ class Gauss {
   private:
     using Coefficients = GaussCoefficients<S>;
 
-    // h b_j; the outer two are chosen so that the sum is h.
+    // The weights h b_j of a step of size h; the first and last are chosen so that their sum is h.
     static std::array<double, S> weights(double h) {
         std::array<double, S> hb;
         double rest = h;

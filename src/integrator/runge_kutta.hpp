@@ -47,7 +47,7 @@ class ExplicitMethod {
     explicit ExplicitMethod(const System& system) : f_(system) {}
 
     StepCounts counts;
-    Dense last_dense;  // of the last step of controlled error, if keeps_dense
+    Dense last_dense;  // dense output of the last step of controlled error, if keeps_dense
 
     // Takes a step of the given size; always true.
     bool advance(Point<N>& point, double h) {
@@ -79,7 +79,7 @@ class ExplicitMethod {
                 const double smallest = 10 * (std::nextafter(point.t, infinity) - point.t);
                 if (!(h >= smallest)) return Ending::step_too_small;
                 const double t = std::min(point.t + h, t_end);
-                h = t - point.t;  // the step after rounding of t
+                h = t - point.t;  // the step between rounded times
                 evaluate<1, error_stages>(point, h);
                 Point<N> next = point;
                 add<N>(next, increment(h));
@@ -94,7 +94,7 @@ class ExplicitMethod {
                     h *= std::min(growth_limit, factor);
                     break;
                 }
-                h *= std::max(most_shrinking, factor);  // the limit if the error is NaN
+                h *= std::max(most_shrinking, factor);  // most_shrinking if the error is NaN
                 growth_limit = 1.0;
                 ++counts.rejected;
             }
@@ -122,13 +122,13 @@ class ExplicitMethod {
             dense.terms[3 + term] = h * weighted_sum<Tableau::dense, term, all_stages>(k_);
         });
         for (Vector<N>& term : dense.terms) {
-            // An overflow in a stage leaves the interpolant without this term.
+            // A term of the interpolant that overflows, because a stage does, is left out.
             if (!in_range<N>(term)) term.setZero();
         }
         return dense;
     }
 
-    // Number of stages in the error estimate: one pair includes f at the end of the step.
+    // Number of stages in the error estimate: with f at the end of the step if that has a weight.
     static constexpr int error_stages =
         Tableau::stages + (Tableau::error[0][Tableau::stages] != 0.0 ? 1 : 0);
 
@@ -157,7 +157,7 @@ class ExplicitMethod {
         return h * weighted_sum<Tableau::a, Tableau::stages, all_stages>(k_);
     }
 
-    // 1/(atol + rtol size); infinite where both are 0.
+    // The scales 1/(atol + rtol size) of errors; infinite where the sum is 0.
     static Vector<N> inverse_scale(const Tolerance& tolerance, const Vector<N>& size) {
         Vector<N> inverse;
         for (int i = 0; i < N; ++i) {
@@ -176,7 +176,7 @@ class ExplicitMethod {
         return sum / N;
     }
 
-    // The square of the error relative to the tolerance; squared, it needs no root.
+    // The mean square of a step's error relative to the tolerance; squared, it needs no root.
     [[gnu::always_inline]] double error_square(const Point<N>& before, const Point<N>& after,
                                                double h, const Tolerance& tolerance) const {
         Vector<N> size;
@@ -195,9 +195,9 @@ class ExplicitMethod {
         }
     }
 
-    // HNW II.4: from the sizes of y, y' and y''.
+    // Size of the first step, HNW II.4: from the sizes of y, y' and y''.
     double starting_step(const Point<N>& point, double t_end, const Tolerance& tolerance) {
-        constexpr double longest = 1e300;  // in place of an infinite span, which cannot shrink
+        constexpr double longest = 1e300;  // replaces an infinite span, which cannot shrink
         const double span = std::min(t_end - point.t, longest);
         const Vector<N> size = (point.origin + point.y).cwiseAbs();
         const Vector<N> inverse = inverse_scale(tolerance, size);

@@ -29,16 +29,16 @@ struct Knot {
     double t;
     Vector<N> y;
     Vector<N> carry;
-    double periods;  // periods of f that were subtracted from y
+    double periods;  // number of periods of f subtracted from y
 
     Point<N> point() const { return {t, y, carry, Vector<N>::Zero()}; }
 };
 
 template <int N>
 struct Steps {
-    double size;  // 0: chosen by error control
+    double size;  // size of each step; 0: error control chooses it
     std::vector<Knot<N>> knots;
-    std::vector<DenseOutput<N, 1>> dense = {};  // of the first steps, where it is kept
+    std::vector<DenseOutput<N, 1>> dense = {};  // dense output of the first steps, where stored
 };
 
 // Largest number of steps whose dense output is stored, a bound on the memory of long runs.
@@ -83,7 +83,7 @@ void sample_steps(Integrator& integrator, const Steps<N>& steps, const double* t
     const std::size_t last = knots.size() - 1;
     std::size_t step = last + 1;  // the step that contains the time; none at first
     std::optional<decltype(integrator.dense_output({}, 0.0))> dense;
-    // Time since the knot. A fixed step begins at the exact multiple of its size.
+    // Time since the knot of the step. A fixed step begins at the exact multiple of its size.
     const auto since_knot = [&](double t) {
         return steps.size == 0 ? t - knots[step].t
                                : std::fma(-static_cast<double>(step), steps.size, t);

@@ -116,7 +116,7 @@ struct Integration {
 template <class Method, int N, class Visit>
 Ending integrate_by_fixed_steps(Method& method, Point<N> point, double step, double t_end,
                                 long max_steps, Visit visit) {
-    constexpr double no_step = 1e-10;  // share of a step: a shorter last step is rounding of times
+    constexpr double no_step = 1e-10;  // share of a step: a shorter rest is rounding of times
     const double start = point.t;
     for (long n = 0; point.t < t_end; ++n) {
         if (n == max_steps) return Ending::max_steps;
