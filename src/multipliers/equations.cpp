@@ -8,7 +8,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// The direction in q in which theta grows by 1 and A q_dot = 0.
+// The direction in q of rolling: theta grows by 1, and A q_dot = 0.
 Coordinates rolling_direction(const ConstraintMatrix& a) {
     using namespace coordinate;
     Coordinates direction;
@@ -83,7 +83,7 @@ ConstrainedBody::ConstrainedBody(const Scene& scene)
       gravity_(scene.ground_gravity()),
       length_(std::max(scene.a, scene.b)) {}
 
-// Angles are scaled to lengths, so that pivots are comparable; f4 is always the last row.
+// Solves with angles scaled to lengths, so that pivots are comparable; f4 is the last row of `a`.
 template <int Rows>
 ConstrainedBody::Saddle<Rows> ConstrainedBody::solve_saddle(
     const Eigen::Matrix<double, Rows, 5>& a, const Coordinates& force,
@@ -126,9 +126,8 @@ double ConstrainedBody::largest_residual(const Coordinates& q) const {
     return as_length(position_residuals(axes_, q)) / length_;
 }
 
-// Newton's method, until the residuals stop shrinking. psi and r have no mass, so that their values
-// are free: if they are far off they are first computed from theta, which keeps the digits of
-// theta.
+// Projection by Newton's method until the residuals stop shrinking. psi and r have no mass, so that
+// their values are free: if far off, they are first computed from theta, which keeps its digits.
 double ConstrainedBody::project(CoordinateState& state) const {
     constexpr int most_iterations = 20;
     auto& [q, q_dot] = state;
@@ -148,10 +147,10 @@ double ConstrainedBody::project(CoordinateState& state) const {
     return missed;
 }
 
-// Newton's method along the rolling direction, until the energy in excess stops shrinking. Along it
-// the energy changes by D (omega domega - pull dtheta), where `pull` is the component of the force
-// over D. The correction is the least one in domega^2 + (g/L) dtheta^2, regular at turning points,
-// too.
+// Projection by Newton's method along the rolling direction, until the energy in excess stops
+// shrinking. Along it the energy changes by D (omega domega - pull dtheta), where `pull` is the
+// component of the force over D. The correction is the least one in domega^2 + (g/L) dtheta^2,
+// regular at turning points, too.
 double ConstrainedBody::project(CoordinateState& state, double energy) const {
     constexpr int most_iterations = 20;
     const double rate2 = root_of_squares(gravity_.into, gravity_.along) / length_;

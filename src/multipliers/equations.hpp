@@ -14,7 +14,7 @@ namespace rolling_ellipse {
 
 struct MultiplierSolution {
     Coordinates q_ddot;
-    Eigen::Vector4d multipliers;  // [N, N, N, N m]; the first two are F and N
+    Eigen::Vector4d multipliers;  // units N, N, N, N m; the first two are F and N
 };
 
 // The coordinates of a body in any mode: psi and r belong to its lowest point.
@@ -24,7 +24,7 @@ CoordinateState coordinate_state(const Axes& axes, const State& state);
 MultiplierSolution accelerations(const Scene& scene, const CoordinateState& state,
                                  const ContactForce& force);
 
-// A rolling state in the coordinates of the multiplier model; x is the integral of h from 0.
+// Rolling in full: state (its x the integral of h from 0), accelerations, multipliers and force.
 struct RollingDetail : MultiplierSolution {
     CoordinateState state;
     ContactForce force;
@@ -39,7 +39,7 @@ class ConstrainedBody {
     const Axes& axes() const { return axes_; }
     double length() const { return length_; }
 
-    // Accelerations and multipliers for A q_ddot = demand, from one factorisation.
+    // Accelerations and multipliers such that A q_ddot = demand, from one factorisation.
     MultiplierSolution solve(const Coordinates& q, const Eigen::Vector4d& demand) const;
 
     // Accelerations and multipliers that keep the constraints.
@@ -47,11 +47,11 @@ class ConstrainedBody {
 
     SpecificEnergy specific_energy(const CoordinateState& state) const;
 
-    // M/m, Q/m.
+    // The diagonal of the mass matrix and the force, both by the mass: M/m and Q/m.
     Coordinates specific_mass() const { return {1.0, 1.0, gyration2_, 0.0, 0.0}; }
     Coordinates specific_force() const { return {gravity_.along, -gravity_.into, 0.0, 0.0, 0.0}; }
 
-    // max(|f2|/L, |f3|/L, |f4|) with the long semi-axis L.
+    // The largest residual at q, max(|f2|/L, |f3|/L, |f4|), with the long semi-axis L.
     double largest_residual(const Coordinates& q) const;
 
     // Project a state to the nearest one, in the kinetic metric, that meets the constraints, and
@@ -66,12 +66,12 @@ class ConstrainedBody {
         Eigen::Matrix<double, Rows, 1> multipliers;
     };
 
-    // [M, -A^T; A, 0] (change, multipliers) = (force, demand), per mass.
+    // Solves [M, -A^T; A, 0] (change, multipliers) = (force, demand), all per mass.
     template <int Rows>
     Saddle<Rows> solve_saddle(const Eigen::Matrix<double, Rows, 5>& a, const Coordinates& force,
                               const Eigen::Matrix<double, Rows, 1>& demand) const;
 
-    double as_length(const Eigen::Vector3d& residuals) const;  // the largest
+    double as_length(const Eigen::Vector3d& residuals) const;  // largest residual [m]
 
     Axes axes_;
     double mass_;

@@ -67,8 +67,7 @@ struct IndexTwo {
         return typical;
     }
 
-    // Finite differences by q, accurate enough for a simplified Newton iteration; the rest is
-    // linear.
+    // Jacobian by finite differences in q, enough for simplified Newton steps; the rest is linear.
     Matrix<17> jacobian(double t, const Vector<17>& y) const {
         const double length = motion.body.length();
         const Coordinates unit{length, length, 1.0, 1.0, length};

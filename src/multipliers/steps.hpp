@@ -9,7 +9,7 @@
 
 namespace rolling_ellipse {
 
-// A start in coordinates with x = 0 and angles measured from a base.
+// A start in coordinates: its state has x = 0 and angles counted from `angle_base`.
 struct CoordinateStart {
     CoordinateState state;
     double x;
@@ -21,14 +21,14 @@ struct SteppedMultipliers {
     ConstrainedBody body;
     Settings settings;
     double specific_energy;   // energy of the start per mass [J/kg]
-    double x_base;            // x at the start, from which x is integrated
-    DoubleDouble angle_base;  // angle of the start, from which half turns are counted
-    // y = (q, q_dot); the index-2 system appends lambda per mass and the position multipliers.
+    double x_base;            // x at the start, added to the integrated x
+    DoubleDouble angle_base;  // angle to be added to the integrated angles
+    // Steps of y = (q, q_dot); the index-2 system appends lambda per mass and multipliers mu.
     std::variant<Steps<10>, Steps<17>> steps;
     double most_projected = 0.0;  // largest residual of a step before its projection
 };
 
-// The start of a rolling body, and a start from any coordinates and velocities.
+// The start of a rolling body given by its state, and a start with any coordinates and velocities.
 CoordinateStart coordinate_start(const Scene& scene, const State& start);
 CoordinateStart coordinate_start(const CoordinateState& state);
 
@@ -41,8 +41,8 @@ Integration<SteppedMultipliers> integrate_multipliers(const Scene& scene,
 void sample(const SteppedMultipliers& motion, const double* times, std::size_t n,
             CoordinateState* samples);
 
-// Energies and constraint residuals along a motion that took so many evaluations, at a twentieth of
-// their cost.
+// Energies and constraint residuals at points along a motion, at about a twentieth of its cost; it
+// took so many `evaluations`.
 std::vector<Invariants> invariants(const SteppedMultipliers& motion, long evaluations);
 
 // Accelerations and multipliers of a state, with Baumgarte's feedback if the settings ask for it.
