@@ -65,7 +65,7 @@ inline T number(Bits<T> of) {
     return found;
 }
 
-// Access to one lane of a number; a double has one lane.
+// Number of lanes of a type, 1 for double; lane_of and set_lane read and write one lane.
 template <class T>
 inline constexpr int lanes_of = sizeof(T) / sizeof(double);
 inline double lane_of(double x, int) { return x; }
@@ -99,7 +99,7 @@ inline double largest(T x) {
     return found;
 }
 
-// For every lane, its value in the element of the array with the index in that lane.
+// from[index] lane by lane: each lane takes its value from the element with its own index.
 template <class T>
 inline T element(const T* from, T index) {
     T found{};
@@ -143,7 +143,7 @@ inline T min(T x, T y) {
     return x < y ? x : y;
 }
 
-// The nearest whole number, for |x| < 2^51, and the next whole number below and above.
+// The nearest whole number, if |x| < 2^51; rounded_down and rounded_up: the next below and above.
 template <class T>
 inline T nearest(T x) {
     return (x + to_integer) - to_integer;
@@ -217,7 +217,7 @@ template <class T>
 inline T log(T x) {
     constexpr unsigned long long root_half = 0x3fe6a09e667f3bcdULL;
     constexpr unsigned long long one = 0x3ff0000000000000ULL;
-    const Bits<T> exponent = (bits(x) - root_half + one) >> 52;  // n + 1023
+    const Bits<T> exponent = (bits(x) - root_half + one) >> 52;  // biased exponent, n + 1023
     const T m = number<T>(bits(x) - (exponent << 52) + one);
     const T n = number<T>(exponent | 0x4330000000000000ULL) - (4503599627370496.0 + 1023);
     const T f = (m - 1) / (m + 1);

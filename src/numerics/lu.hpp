@@ -61,7 +61,7 @@ class LU {
         for (int i = k + 1; i < N; ++i) column[i] -= factors_(i, k) * times;
     }
 
-    Matrix factors_;  // without the unit diagonal of the lower factor
+    Matrix factors_;  // both factors; the lower one without its unit diagonal
     std::array<Number, N> inverses_;
     std::array<int, N> pivots_;  // the row exchanged with each row
 };

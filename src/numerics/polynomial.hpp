@@ -112,7 +112,7 @@ constexpr auto binomials() {
 
 template <int N>
 Bernstein<N> bernstein(const Polynomial<N>& p) {
-    // From powers to Bernstein coefficients: binomial(i, j)/binomial(N, j), physics (37).
+    // Matrix from powers to Bernstein's form: binomial(i, j)/binomial(N, j), physics (37).
     static constexpr auto matrix = [] {
         std::array<std::array<double, N + 1>, N + 1> rows{};
         for (int i = 0; i <= N; ++i) {
@@ -147,7 +147,7 @@ double value(const Bernstein<N>& p, double x) {
     return sum * power;
 }
 
-// A polynomial on [0, at] and on [at, 1], by de Casteljau's subdivision.
+// One polynomial in two parts, on [0, at] and on [at, 1], by de Casteljau's subdivision.
 template <int N>
 struct Parts {
     Bernstein<N> left;

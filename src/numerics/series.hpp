@@ -31,20 +31,20 @@ template <class Coefficients>
     return even + odd;
 }
 
-// The coefficient k of a product.
+// The coefficient k of the product of two series.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto product(const Coefficients& p, const Coefficients& q, int k) {
     return terms(p, q, k, 0, k);
 }
 
-// The coefficient k of a square, without the first `from` and the last `from` terms.
+// The coefficient k of the square of a series, without its first `from` and last `from` terms.
 template <class Coefficients>
 [[gnu::always_inline]] inline auto self_product(const Coefficients& p, int k, int from = 0) {
     const auto pairs = 2 * terms(p, p, k, from, (k + 1) / 2 - 1);
     return k % 2 == 0 && k / 2 >= from ? pairs + p[k / 2] * p[k / 2] : pairs;
 }
 
-// The value at z. Two independent sums halve the time of the chain of operations.
+// The value of a series at z. Two independent sums halve the time of the chain of operations.
 template <std::size_t Size>
 double value(const std::array<double, Size>& series, double z) {
     static_assert(Size % 2 == 1 && Size > 2);
@@ -71,8 +71,8 @@ using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
 inline Pair pair(double first, double second) { return Pair{first, second}; }
 
-// Power series of high order, which solve an arc in a few pieces. Higher orders have a larger
-// radius at nearly proportional cost, and each piece has a fixed cost.
+// Order of power series that solve an arc in a few pieces. Higher orders have a larger radius at
+// nearly proportional cost, and each piece has a fixed cost.
 inline constexpr int long_order = 24;
 using LongSeries = std::array<double, long_order + 1>;
 

@@ -12,7 +12,7 @@
 namespace rolling_ellipse {
 namespace {
 
-// Dense outputs have degrees up to 7; other quantities need shorter intervals.
+// Degree of fitted polynomials. Dense outputs have at most 7; other quantities are halved more.
 constexpr int degree = 8;
 
 // Chebyshev's nodes on [0, 1], to four digits. At one more place between them, `compared`, the
@@ -57,7 +57,7 @@ struct Part {
 // Adds the turning points in some intervals; false if a polynomial misses the quantity.
 bool add_turns(const Measure& measure, double size, std::vector<Part> parts,
                std::vector<double>& times) {
-    constexpr double roundings = 1000;  // the inverse of the basis has a norm of 300
+    constexpr double roundings = 1000;  // roundings allowed: the inverse basis has a norm of 300
     constexpr int deepest = 16;
     std::size_t halvings = 64 * parts.size();  // a limit, since halving does not help against noise
     bool all_met = true;
