@@ -37,7 +37,7 @@ Outcome at_the_top(const RollingStart& from) {
     return over == Sign::positive ? Outcome::rolls_over : Outcome::rocks;
 }
 
-// A law of rolling on the part of its range from x to the top.
+// The polynomial of a law of rolling, on the part of the range of heights from x to the top.
 template <int N>
 Bernstein<N> from_place(const Polynomial<N>& law, double x) {
     const Bernstein<N> whole = bernstein(law);
@@ -179,8 +179,8 @@ Outcome classify(const Body& body, double friction, double theta, double omega) 
     if (from.rests) return Outcome::rests;
     if (at.c2 == 0) return friction > 0 ? Outcome::rolls_over : Outcome::slips;
 
-    // The angle is folded by half turns, which changes only signs of sin and cos. The functions h,
-    // h'' and rho are even in both.
+    // The view has the angle without its half turns, which change only signs of sin and cos: h, h''
+    // and rho are even in both.
     const bool a_is_long = body.a >= body.b;
     const Geometry here =
         geometry(body.axes(), a_is_long ? at.sin : at.cos, a_is_long ? at.cos : at.sin);

@@ -17,8 +17,8 @@ enum class Outcome : std::int8_t {
     rolls_over,     // it passes the tip before anything else happens
     slips,          // the contact slides
     loses_contact,  // it leaves the ground, or is in the air
-    jams,           // not out of rolling, see outcome/outcome.cpp
-    edge,           // undecided within rounding
+    jams,           // the contact jams; never out of rolling, see outcome/outcome.cpp
+    edge,           // undecided between two outcomes within rounding
 };
 
 // The outcome for a body that rolls (or rests) on level ground with the given angle and angular
@@ -30,8 +30,8 @@ Outcome classify(const Body& body, double friction, double theta, double omega);
 // tip (a circle: half a turn) or ends; `edge` if it does none of these for long.
 Outcome outcome(const Scene& scene, const Checkpoint& checkpoint);
 
-// The downward impulse at a horizontal distance from the centre after which the body has an angular
-// velocity, if the contact sticks: physics (38, 40). Negative if it would have to be a pull;
+// The downward impulse at a horizontal distance from the centre that gives the body the angular
+// velocity omega, if the contact sticks: physics (38, 40). Negative if it would have to be a pull;
 // infinite if its lever is so small that no impulse of a scene would do.
 double press_to(const Scene& scene, double distance, double omega);
 
@@ -71,7 +71,7 @@ struct SpeedRange {
 };
 
 struct LiftOff {
-    double speed = infinity;  // the least with which it leaves the ground
+    double speed = infinity;  // the least speed with which the body leaves the ground
     std::vector<SpeedRange> jam_speeds;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 int sign_of(double value) { return (value > 0) - (value < 0); }
 
-// A time, and the observable less the value there: exactly 0 for a touch within rounding.
+// A time, and the observable there less the value searched: exactly 0 for a touch within rounding.
 struct Reading {
     double t;
     double excess;
@@ -69,19 +69,19 @@ struct Search {
         };
         std::vector<Crossing> crossings;
         std::size_t next = 0;  // the reading after the last one that is not 0
-        int before = 0;        // sign of that last one; 0 if there is none
+        int before = 0;        // sign of the last reading that is not 0; 0 if none
         for (std::size_t i = 0; i < readings.size(); ++i) {
             const int now = sign_of(readings[i].excess);
             if (now == 0) continue;
             const bool crosses = before == -now;
-            if (i > next) {  // readings[next] is the first zero
+            if (i > next) {  // zeros since the last sign; readings[next] is the first
                 const int sense = before == 0 || crosses ? now : 0;
                 if (is_wanted(sense)) found.push_back(readings[next].t);
             } else if (crosses && is_wanted(now)) {
                 if (readings[i - 1].is_last) {
                     found.push_back(readings[i].t);
                 } else {
-                    // Multiplied so that it falls: a time with excess 0 becomes the upper end.
+                    // Excess times -now, which falls: a time with excess 0 is the upper end.
                     const RootBracket bracket(readings[i - 1].t, readings[i].t,
                                               -now * readings[i - 1].excess,
                                               -now * readings[i].excess);

@@ -23,20 +23,20 @@ inline constexpr std::array names<Quantity>{"theta", "x", "z", "omega", "contact
 struct Observable {
     std::optional<Quantity> quantity;  // absent for a function of the caller
     Measure measure;
-    double length;  // [m] its rounding counts beside that of the values: paths are sums
+    double length;  // a length [m] whose rounding counts, too: paths are sums
 };
 
-// A quantity of a motion. Motion and checkpoint have to live as long.
+// Observes a quantity of a motion. Motion and checkpoint have to live as long as the observable.
 Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint);
 
 // One segment of a motion with the turning points of an observable.
 struct Stretch {
-    const char* where;           // a phrase for people: "while it rolls"
-    std::vector<double> times;   // [s], ascending; begin, turning points, end
+    const char* where;           // phrase for messages: "while it rolls"
+    std::vector<double> times;   // begin, turning points, end [s], ascending
     std::vector<double> values;  // values of the observable
     bool proved = true;          // is the observable monotone from each time to the next?
-    // [s], of a motion that repeats itself often: `times` then cover the first two and the last two
-    // periods.
+    // The period [s] of a motion that repeats itself often: `times` then cover the first two and
+    // the last two periods.
     std::optional<DoubleDouble> period = {};
 };
 
@@ -45,12 +45,12 @@ struct Stretch {
 std::vector<Stretch> stretches(const Motion& motion, double last, const Observable& of,
                                const Checkpoint& checkpoint);
 
-// Throws std::invalid_argument: "<observable> must <requirement>, got <got>".
+// Throws std::invalid_argument for a long motion: "<observable> must <requirement>, got <got>".
 [[noreturn]] void refuse_length(const Observable& of, const std::string& requirement,
                                 const std::string& got);
 
 struct Passages {
-    std::vector<std::vector<double>> times;  // [s], ascending; for each value
+    std::vector<std::vector<double>> times;  // passages of each value [s], ascending
     std::vector<std::string> unproved;       // phrases: where passages may be missing
 };
 

@@ -70,7 +70,7 @@ struct CourseOf {
     }
 
     Course operator()(const SlopeFlow& flow) const {
-        const double unit = flow.body.time;  // a power of two: products with it are exact
+        const double unit = flow.body.time;  // unit of time; a power of two: products are exact
         Course found{flow.kind == MotionKind::rest ? resting : rolling};
         if (flow.kind == MotionKind::libration) {
             found.period = (flow.turnings[1] - flow.turnings[0]) * 2.0 * unit;
@@ -115,7 +115,7 @@ struct CourseOf {
 
 // Finds the turning points of an observable, segment by segment.
 struct Survey {
-    double unit;  // [s], of the times of a course
+    double unit;  // unit of the times of a course [s]
     const Observable& of;
     Observable theta;
     double quarters = 0.0;  // quarter turns searched so far
@@ -159,9 +159,9 @@ struct Survey {
     }
 
     // Adds the turning points between times from each of which to the next the motion is smooth.
-    // Each interval is divided into at least so many parts, and into four a quarter turn. A
-    // function of the caller gets 16 in all, since it may change while the body rests. Returns
-    // whether the observable is proved to be monotone between the times.
+    // Each interval is divided into at least `least` parts, and each quarter turn into four. A
+    // function of the caller gets 16 parts in all, since it may change while the body rests.
+    // Returns whether the observable is proved to be monotone between the times.
     bool divide(std::vector<double>& times, double least) {
         constexpr double parts_a_quarter = 4;
         if (!of.quantity) least = std::max(least, std::ceil(16.0 / double(times.size())));
@@ -196,7 +196,7 @@ void refuse_length(const Observable& of, const std::string& requirement, const s
 }
 
 Observable observable(const Motion& motion, Quantity quantity, const Checkpoint& checkpoint) {
-    constexpr std::size_t many = 1000;  // samples, for which a table of the motion pays
+    constexpr std::size_t many = 1000;  // samples expected: so many that a table of the motion pays
     const auto sample = std::make_shared<const Sampler>(motion, many);
     const auto values = [&motion, &checkpoint, sample, quantity](const std::vector<double>& times) {
         constexpr std::size_t together = 1024;

@@ -12,7 +12,7 @@ namespace {
 
 // A position of rolling, by its angle and the height of its centre.
 struct Position : ShapePlace {
-    double angle;      // phi
+    double angle;      // phi, the angle from the flat position
     double over_flat;  // h - S
 };
 
@@ -94,8 +94,8 @@ Onset slip_at_rest(const Shape& shape, double friction) {
 Onset slip(const Shape& shape, double friction) {
     if (std::isinf(friction)) return contact_loss(shape);
     constexpr int scan = 512;
-    constexpr double first = -24.0;  // of ln tan phi: the forces change over angles of (b/a)^2
-    constexpr double last = 20.0;    // near the flat, and over 1/friction near the tip
+    constexpr double first = -24.0;  // least ln tan phi: near the flat forces change over (b/a)^2
+    constexpr double last = 20.0;    // largest ln tan phi: near the tip forces change over 1/mu
     const auto energy_at = [&](double log_tan) {
         const double tan2 = std::exp(2 * log_tan);
         const Position at = position(shape, tan2 / (1 + tan2), 1 / (1 + tan2));
@@ -173,7 +173,7 @@ struct EndOfSegment {
 struct Climb {
     const Scene& scene;
     const Checkpoint& checkpoint;
-    double flat = scene.a >= scene.b ? 0.0 : half_pi;  // theta
+    double flat = scene.a >= scene.b ? 0.0 : half_pi;  // theta of the flat position
     double tip = flat + half_pi;
 
     // The fate of a climb from the flat to the tip. c can vanish only on the way up, where its rate
@@ -201,7 +201,7 @@ struct Climb {
         return in_contact(geometry(scene.axes(), theta), theta, omega, x, 0.0, mode);
     }
 
-    // The ends of segments are empty if the body gets over the tip, or turns back.
+    // The end of a segment of rolling; empty if the body gets over the tip or turns back.
     std::optional<EndOfSegment> end_of_rolling(const State& from) const {
         const RollingStart start = rolling_start(scene.body(), from.theta, from.omega);
         const EndOfRolling end = rolling_ellipse::end_of_rolling(start, scene.friction);
@@ -213,7 +213,7 @@ struct Climb {
     }
 
     std::optional<EndOfSegment> end_of_slide(const State& from, double side) const {
-        constexpr double over_the_tip = 0.5;  // [rad], where c no longer falls
+        constexpr double over_the_tip = 0.5;  // angle past the tip [rad], where c no longer falls
         constexpr long most_pieces = 2000;
         if (std::isinf(scene.friction) && !reaches_the_tip(scene, from)) return {};
         Slide slide = slide_from(scene, from, side);
@@ -238,9 +238,9 @@ double too_slow(const Body& body, const FlatView& at) {
     return std::sqrt(body.gravity * at.long_axis / at.c2 * body.gyration2 / flat_inertia);
 }
 
-// Without jams a body that leaves the ground does so at any higher speed: coarse steps, each by a
-// factor, find the least one. Fine steps, since with jams the fates may alternate. At 50 times the
-// slip speed gravity is 2500 times weaker in units of omega^2 and no longer matters.
+// The least speed of lift-off, by steps of a factor: coarse without jams, since a body that leaves
+// the ground does so at any higher speed; fine with jams, since fates may alternate. At 50 times
+// the slip speed gravity is 2500 times weaker in units of omega^2 and no longer matters.
 LiftOff scanned(const Climb& climb, double low, bool may_jam) {
     const double growth = may_jam ? 1.02 : 1.05;
     const int most_growths = may_jam ? 198 : 200;
