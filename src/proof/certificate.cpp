@@ -25,9 +25,9 @@ struct Quarter {
     double friction;
     bool from_tip;
     double direction;    // sign of omega at the start
-    bool rises;          // towards the tip; true for a body that lies flat or stands on the tip
-    ContactForce force;  // at the start
-    double start;        // its place
+    bool rises;          // whether it moves towards the tip; true if flat or upright
+    ContactForce force;  // contact force at the start
+    double start;        // place of the start
 
     Quarter(const RollingStart& from, const EnergyRange& energies, double mu)
         : range(energies),
@@ -58,10 +58,10 @@ struct Quarter {
     }
 };
 
-// The place from which on the law holds; empty where it is broken. It is the start, or a place
-// ahead of a start at which the law is at its limit.
+// The place from which on the law holds: the start, or a place just ahead of a start at which the
+// law is at its limit; empty where the law is broken.
 std::optional<double> holds_from(const Quarter& quarter) {
-    constexpr double ahead = 1e-8;  // share of the turn to the goal, far enough to pass rounding
+    constexpr double ahead = 1e-8;  // share of way to flat or tip, far enough to pass rounding
     if (!at_the_limit(quarter.force, quarter.friction)) {
         const bool holds = law_margin(quarter.force, quarter.friction) > 0;
         return holds ? std::optional(quarter.start) : std::nullopt;
@@ -153,7 +153,7 @@ std::optional<Turn> first_meeting(const Quarter& quarter, double from,
     return Turn{on * ((tip - start) + (tip - places.back())), on};
 }
 
-// The end of rolling under a law that holds where both polynomials are positive.
+// The end of rolling under a law that holds where N and the law's polynomial are positive.
 template <int N>
 EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polynomials,
                            const Polynomial<N>& law_polynomial, double theta) {
@@ -179,8 +179,8 @@ EndOfRolling end_under_law(const Quarter& quarter, const ForcePolynomials& polyn
     return {end.validity, theta + turn->angle, turn->heading};
 }
 
-// The end of rolling of a body that needs no friction: at rest, or a circle. Contact without
-// friction slides from the start.
+// The end of rolling of a body that needs no friction, at rest or a circle, or that has none and
+// slides from the start; empty for all others.
 std::optional<EndOfRolling> end_without_forces(const RollingStart& from, double friction) {
     if (from.rests) return EndOfRolling{Validity::valid};
     if (friction == 0) return EndOfRolling{Validity::invalid, from.theta, direction_of(from)};

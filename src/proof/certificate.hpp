@@ -27,10 +27,10 @@ struct Certificate {
     EndOfRolling end;
     // Extremes over the whole motion, in both directions of time; empty without a proof. A body
     // that runs downhill for ever has infinite extremes without angles.
-    std::optional<double> smallest_normal_force;        // [N]
-    std::optional<double> smallest_normal_force_angle;  // theta of that smallest N; on level ground
-                                                        // folded into [0, pi/2]
-    std::optional<double> largest_friction_needed;      // max |F/N|
+    std::optional<double> smallest_normal_force;  // smallest N [N]
+    // theta at the smallest N; on level ground it is folded into [0, pi/2].
+    std::optional<double> smallest_normal_force_angle;
+    std::optional<double> largest_friction_needed;  // max |F/N|
     std::optional<double> largest_friction_needed_angle;
 };
 
@@ -47,9 +47,9 @@ Polynomial<10> grip_polynomial(const ForcePolynomials& p, double friction);
 // Contact forces along a computed motion, where no proof decides in advance whether the ground can
 // give them.
 struct ContactWatch {
-    double smallest_normal_force;  // [N]
+    double smallest_normal_force;  // smallest N seen [N]
     double smallest_normal_force_time;
-    double largest_friction_needed;  // |F|/N
+    double largest_friction_needed;  // largest |F|/N seen
     double largest_friction_needed_time;
     double holds_until;  // first time at which N < 0 or |F| > mu N; infinite if there is none
 };
@@ -57,7 +57,7 @@ struct ContactWatch {
 // The contact forces at n times.
 using ForcesAt = std::function<void(const double* times, std::size_t n, ContactForce* forces)>;
 
-// Samples the forces eight times between each two of the times. A violation between two samples
+// Watches the forces at eight samples from each time to the next. A violation between two samples
 // that obey the law is found at the minimum of the margin between them.
 ContactWatch watch_contact(double friction, const std::vector<double>& times,
                            const ForcesAt& forces_at, const Checkpoint& checkpoint);

@@ -53,15 +53,15 @@ EnergyRange energy_range(const RollingStart& start);
 // The range of a rotation with the energy of the separatrix, H = 1.
 EnergyRange separatrix_range(const Shape& shape);
 
-// Polynomials in x. P = normal_at_rest + e normal_moving.
+// Polynomials in x of the forces; P = normal_at_rest + e normal_moving.
 struct ForcePolynomials {
     Polynomial<1> height;
-    Polynomial<2> weight;  // V
+    Polynomial<2> weight;  // V, of D = V/u
     Polynomial<5> normal_at_rest;
     Polynomial<4> normal_moving;
-    Polynomial<5> normal;        // P
-    Polynomial<3> friction;      // Q
-    Polynomial<4> slope_square;  // G
+    Polynomial<5> normal;        // P, of N = h P/V^2
+    Polynomial<3> friction;      // Q, of F = h' u Q/V^2
+    Polynomial<4> slope_square;  // G = (h h')^2
 };
 
 ForcePolynomials force_polynomials(const EnergyRange& range);
@@ -69,29 +69,29 @@ ForcePolynomials force_polynomials(const EnergyRange& range);
 // Contact forces at one place, from the equations of rolling.
 struct RollingForces {
     double sin;       // sine of the angle from the flat position
-    double cos;       // its cosine; both are >= 0
+    double cos;       // cosine of the angle from the flat; both are >= 0
     double normal;    // N/(m g)
     double friction;  // |F|/(m g)
 
-    // Angle from the flat position, 0 .. pi/2, and the remainder to the tip with all its digits.
+    // angle() is from the flat position, 0 .. pi/2; angle_to_tip() has all digits near the tip.
     double angle() const { return std::atan2(sin, cos); }
     double angle_to_tip() const { return std::atan2(cos, sin); }
-    // |F|/N; infinite where N <= 0 without N = F = 0.
+    // The friction needed, |F|/N; infinite where N <= 0, unless N = F = 0.
     double needed() const { return friction_needed({normal, friction}); }
 };
 
-// Forces at the height h = short_axis + width x.
+// Contact forces at the height h = short_axis + width x.
 RollingForces rolling_forces(const EnergyRange& range, double x);
 
-// Forces by sin^2 and cos^2 of the angle, which near the tip have more digits than x.
+// Contact forces by sin^2 and cos^2 of the angle, which near the tip have more digits than x.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2);
 
-// Forces by sin^2 and cos^2 of the angle and omega^2 in units of g/L.
+// Contact forces by sin^2 and cos^2 of the angle and by omega^2 in units of g/L.
 RollingForces rolling_forces(const EnergyRange& range, double sin2, double cos2, double omega2);
 
 struct ForceExtremes {
     RollingForces least_normal;
-    RollingForces most_friction;  // largest |F|/N
+    RollingForces most_friction;  // forces at the largest |F|/N
 };
 
 // The extremes of N and |F|/N over a range. Candidates are their critical points, the ends of the

@@ -26,7 +26,7 @@ inline double law_size(const ContactForce& force, double friction) {
     return std::isinf(friction) ? normal : friction * normal + std::abs(force.friction);
 }
 
-// Rounding of a margin beside its size, by the operations that lead from the angle to it.
+// Rounding of a margin, relative to its size, by the operations from the angle to the margin.
 inline constexpr double law_rounding = 64 * epsilon;
 // Smallest normal double: below it friction has lost digits.
 inline constexpr double least_friction = std::numeric_limits<double>::min();
@@ -37,7 +37,7 @@ inline bool at_the_limit(const ContactForce& force, double friction) {
            law_rounding * law_size(force, friction) + least_friction * std::abs(force.normal);
 }
 
-// A friction coefficient for which a law at its limit holds beyond rounding.
+// A friction coefficient a little larger, for which a law at its limit holds beyond rounding.
 inline double beyond_the_limit(double friction) {
     return friction * (1 + 8 * law_rounding) + 8 * least_friction;
 }

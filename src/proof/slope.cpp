@@ -11,15 +11,15 @@
 namespace rolling_ellipse {
 namespace {
 
-// A body on a slope that falls to the side of growing angles, its long axis along the ground at 0.
+// The scene seen with the slope falling to growing angles and the long axis along the ground at 0.
 Scene downhill(Scene scene) {
     if (scene.a < scene.b) std::swap(scene.a, scene.b);
     scene.slope = std::abs(scene.slope);
     return scene;
 }
 
-// Between two upright equilibria, half a turn apart, W = D omega^2/2 rises to the lying equilibrium
-// and falls from there: dW = (g sin(alpha) h - g cos(alpha) h') dtheta, from physics (18).
+// The well between two upright equilibria, half a turn apart: W = D omega^2/2 rises to the lying
+// one and falls from there: dW = (g sin(alpha) h - g cos(alpha) h') dtheta, from physics (18).
 class Well {
   public:
     // The well of a body that rolls from a state.
@@ -42,7 +42,7 @@ class Well {
         holds_ = energy(upright_) < 0;
     }
 
-    // Whether the body cannot leave it.
+    // Whether the body cannot leave the well.
     bool holds() const { return holds_; }
 
     void add_extremes(Certificate& found) const {
@@ -144,7 +144,7 @@ class Well {
     const GroundGravity gravity_;
     const double gyration2_;
     const RollingEquation rolling_;
-    const double theta_;  // of the start
+    const double theta_;  // theta of the start
     const double side_;   // +1, or -1 if the slope falls to the other side
     double upright_ = 0.0;
     double lying_ = 0.0;

@@ -7,7 +7,7 @@
 
 namespace rolling_ellipse {
 
-// A time [s] since the start, the angle there, and the sign of omega.
+// A meeting with the limit of the law: time [s] since the start, angle and sign of omega then.
 struct Meeting {
     double time;
     double theta;
@@ -26,10 +26,10 @@ class LawWatch {
   public:
     LawWatch(const SlopeFlow& flow, double friction) : flow_(flow), friction_(friction) {}
 
-    // True once the law is broken.
+    // Examines the next piece of the motion; true once the law is broken.
     bool examine(const SlopePiece& piece);
 
-    // The meetings so far. A motion that ends close to the limit has touched it.
+    // The meetings found so far. A motion that ends close to the limit has touched it.
     LawMeetings met() const;
 
   private:
@@ -38,7 +38,7 @@ class LawWatch {
     // A stretch of time on which the margin is within rounding of 0.
     struct Stretch {
         bool open = false;
-        std::optional<Meeting> begin;  // empty if it begins at the start of the motion
+        std::optional<Meeting> begin;  // empty if the stretch begins with the motion
     };
 
     bool examine_parts(const SlopePiece& piece);
@@ -48,7 +48,7 @@ class LawWatch {
 
     const SlopeFlow& flow_;
     const double friction_;
-    Stretch near_[2];  // of the laws for friction to each side
+    Stretch near_[2];  // stretches of the laws for friction to each side
     bool at_start_ = true;
     LawMeetings met_;
 };
@@ -64,7 +64,7 @@ EndOfRolling end_of_rolling(const LawMeetings& met);
 // run downhill faster and faster until no ground holds them.
 bool may_hold_for_ever(const Scene& scene, const State& start);
 
-// The certificate of rolling that ends there.
+// The certificate of rolling on a slope that ends as given.
 Certificate certify_on_slope(const Scene& scene, const State& start, const EndOfRolling& end);
 
 }  // namespace rolling_ellipse

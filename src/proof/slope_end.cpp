@@ -17,14 +17,14 @@ namespace {
 
 constexpr int degree = long_order - 2;
 
-// Error of a law's polynomial beside the sum of the sizes of its terms. The series of the motion
-// end where their last terms are a rounding; the second derivative of the terms left out is up to
-// some thousand roundings.
+// Error of a law's polynomial, relative to the sum of the sizes of its terms. The series of the
+// motion end where their last terms are a rounding; the second derivative of the terms left out is
+// up to some thousand roundings.
 constexpr double rounding = 1e-12;
 
 }  // namespace
 
-// The margin of the law for friction to one side, over the share 0 <= x <= 1 of a piece.
+// The margin of the law for friction to one side, a polynomial of the share 0 <= x <= 1 of a piece.
 struct LawWatch::Law {
     double side;
     double size;  // the sum of the sizes of its terms
@@ -65,7 +65,7 @@ struct LawWatch::Law {
         return least > tolerance();
     }
 
-    // 0, 1 and the places between them at which the margin passes the tolerance to either side.
+    // 0, 1 and the places between them at which the margin passes +tolerance or -tolerance.
     std::vector<double> divisions() const {
         std::vector<double> places{0.0, 1.0};
         for (const double level : {tolerance(), -tolerance()}) {
@@ -108,7 +108,7 @@ void LawWatch::examine(const SlopePiece& piece, const Law& law, Stretch& near) {
             if (!met_.touched) met_.touched = near.begin;
             near = {};
         } else if (here >= -law.tolerance()) {
-            // The forces themselves are more accurate than the series of their polynomials.
+            // The rounding of the forces, smaller than the error of their polynomials.
             const double fine = law_rounding * law.size;
             double least = at(low) < at(high) ? low : high;
             if (at(least) >= -fine) {
@@ -178,7 +178,7 @@ LawMeetings LawWatch::met() const {
 
 namespace {
 
-// The law in a half turn of series from any place of the motion.
+// The meetings with the law in one half turn from a place of the motion, by series.
 LawMeetings law_in_half_turn(const SlopeFlow& flow, double friction, const SlopePlace& from) {
     const SlopeEnergy energy = energy_of(flow.body, from);
     SlopePlace place = from;
@@ -243,7 +243,7 @@ LawMeetings law_in_run(const SlopeFlow& flow, const SlopeRun& run, double fricti
     return met;
 }
 
-// A circle, and a body in equilibrium, need the same friction all the time.
+// The meetings of a circle or a body in equilibrium: both need the same friction all the time.
 LawMeetings law_of_constant_forces(const SlopeFlow& flow, double friction, const Meeting& start) {
     const auto [into, along] = flow.body.gravity;
     double needed = along / into;
